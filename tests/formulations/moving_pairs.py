@@ -26,3 +26,15 @@ def paper_pair(
     wheel = Rotor(80.0, masses[1], 4.0, held, damped, torques[1])
     mesh = constant(k) if wave is None else wave
     return MovingPair(pinion, wheel, ANGLE, mesh, frequency, kinematics=kinematics, **more)
+
+
+def oscillator(ratio, load, shake=0.0, wave=None, frequency=0.1):
+    """x'' + 2 zeta x' + k(t) f(x) = F_m + F_a W^2 cos W t with a gap of 2, as a pair of unit mass.
+
+    x = 1 - delta: contact at x > 1, apart between -1 and 1.
+    """
+    rotor = Rotor(1.0, 1.0, 2.0, (1.0, 1.0), torque=load)
+    mesh = constant(1.0) if wave is None else wave
+    return MovingPair(
+        rotor, rotor, 0.3, mesh, frequency, drag=2.0 * ratio, backlash=2.0, error=(shake,)
+    )

@@ -178,7 +178,10 @@ def test_the_stiffness_of_a_pair_is_load_over_transmission_error(solved):
 
 @pytest.mark.slow
 def test_jumps_between_two_motions(tmp_path):
-    """The example's pair: from 4700 to 5200 rpm two motions, one of them with separation."""
+    """The example's pair: from 4150 to 5250 rpm two motions, one of them with separation.
+
+    A Runge-Kutta program of its own, falling from 6000 rpm: 0.041248 mm at 4150, 0.024893 at 5000.
+    """
     path = tmp_path / "motion.toml"
     text = changed(
         ('range = ["500 rpm", "12000 rpm"]', 'range = ["4000 rpm", "6000 rpm"]'),
@@ -190,8 +193,10 @@ def test_jumps_between_two_motions(tmp_path):
     speed = np.array(found["speed_rpm"])
     rising, falling = np.array(found["rms_mm"]), np.array(found["falling_rms_mm"])
     two = speed[falling > 1.2 * rising]
-    assert 4500.0 < two.min() < 5000.0 < two.max() < 5400.0
-    assert falling == pytest.approx(rising, rel=2.0) and np.all(rising > 0.0)
+    assert (two.min(), two.max()) == (4150.0, 5250.0)
+    assert falling[speed == 4150.0] == pytest.approx(0.041248, rel=1e-3)
+    assert falling[speed == 5000.0] == pytest.approx(0.024893, rel=1e-3)
+    assert falling[speed < 4150.0] == pytest.approx(rising[speed < 4150.0])
 
 
 @pytest.mark.slow
@@ -261,8 +266,7 @@ def test_a_backlash_that_is_used_up_is_told(tmp_path):
         [0.1, 0.0, -0.03, -0.1, 0.0],
     ]
     states = np.hstack([apart, np.zeros((3, 5))])
-    assert jammed(pair, "plane", np.arange(3.0), states) == 2.0
-    assert jammed(pair, "plane", np.arange(2.0), states[:2]) is None
-    assert jammed(pair, "line", np.arange(3.0), states) is None
+    assert jammed(pair, "plane", states).tolist() == [False, False, True]
+    assert not jammed(pair, "line", states).any()
     told = gearopt.solve(path).design["warnings"]
     assert any("backlash is used up, first at" in each for each in told)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.dynamics.dynamics_design import Chosen, Response, Speeds, Stability
+from gearopt.formulations.motion.stability import UNSTABLE, bands
 from gearopt.report.measures import Measures
 from gearopt.report.pages.player import Animation, Body, Reading, View
 from gearopt.report.pages.sheet import Sheet, Window, around, series
@@ -171,28 +172,50 @@ def stability(found: Stability) -> Figure:
 
 def over_speed(found: Speeds, measures: Measures) -> Figure:
     """Plot the RMS of the deformation over speed, rising and falling where they differ."""
-    rising, falling = _micro(found.rms_mm, measures), _micro(found.falling_rms_mm, measures)
-    traces = [line(found.speed_rpm, rising, "speed rising" if falling != rising else "")]
-    if falling != rising:
+    ways = found.rms_mm, found.falling_rms_mm or found.rms_mm
+    rising, falling = ([_shown(v, measures) for v in way] for way in ways)
+    two = falling != rising
+    traces = [line(found.speed_rpm, rising, "speed rising" if two else "")]
+    if two:
         traces.append(line(found.speed_rpm, falling, "speed falling", 2, "dash"))
+    told = [(rising, found.repeats), (falling, found.falling_repeats)]
+    longer = {
+        (n, v)
+        for values, repeats in told[: 1 + two]
+        for n, v, r in zip(found.speed_rpm, values, repeats, strict=True)
+        if r != 1 and v is not None
+    }
+    if longer:
+        places = [[one[k] for one in sorted(longer)] for k in range(2)]
+        marks = line(places[0], places[1], "not every period alike")
+        look = {"color": "--ink", "size": 5, "symbol": "circle-open"}
+        traces.append(marks | {"mode": "markers", "marker": look})
     plot = layout(
         axis("speed of the pinion [rpm]"),
         axis(f"RMS of the deformation [{measures.unit('um')}]", rangemode="tozero"),
         HEIGHT,
         hovermode="x",
     )
-    caption = "Periodic motions over speed: RMS of the deformation about its mean."
+    unstable = [g > 1.0 + UNSTABLE for g in found.growth]
+    half = 0.5 * (found.speed_rpm[1] - found.speed_rpm[0])
+    ends = bands(found.speed_rpm, unstable)
+    plot["shapes"] = [_band(low - half, high + half) for low, high in ends]
+    if len(traces) > 1:
+        plot["margin"] |= {"t": 44}
+    caption = "Motions over speed: RMS of the deformation about its mean."
+    if any(unstable):
+        caption += " Shaded: teeth in contact are unstable."
     return Figure(traces, plot, caption)
 
 
 def waterfall(found: Speeds, measures: Measures) -> Figure:
     """Draw the orders of the mesh frequency over speed."""
-    values = [[measures.of(v, "um") for v in row] for row in found.harmonics_mm]
+    values = [[_shown(v, measures) for v in row] for row in found.harmonics_mm]
     heat = {
         "type": "heatmap",
         "x": list(found.speed_rpm),
         "y": list(range(1, len(values) + 1)),
-        "z": [[math.log10(max(v, 1e-4)) for v in row] for row in values],
+        "z": [[v and math.log10(max(v, 1e-4)) for v in row] for row in values],
         "customdata": values,
         "colorscale": [[0.0, QUIET], [1.0, LOUD]],
         "hovertemplate": "%{x:.5g} rpm, order %{y}: %{customdata:.3g} " + measures.unit("um"),
@@ -208,7 +231,8 @@ def waterfall(found: Speeds, measures: Measures) -> Figure:
         axis("order of the mesh frequency", dtick=1),
         HEIGHT,
     )
-    caption = "Waterfall: amplitudes of the orders of the mesh frequency over speed."
+    caption = "Waterfall: amplitudes of the orders of the mesh frequency over speed"
+    caption += ", speed rising." if found.falling_rms_mm not in ((), found.rms_mm) else "."
     return Figure([heat], plot, caption)
 
 
@@ -237,10 +261,20 @@ def _micro(values: Values | Any, measures: Measures) -> list[float]:
     return [float(f"{measures.of(float(v), 'um'):.6g}") for v in values]
 
 
+def _shown(value: float | None, measures: Measures) -> float | None:
+    return None if value is None else _micro([value], measures)[0]
+
+
 def _across(level: float) -> dict[str, Any]:
     look = {"color": "--axis", "width": 1}
     ends = {"x0": 0.0, "x1": 1.0, "y0": level, "y1": level}
     return {"type": "line", "xref": "paper", "line": look} | ends
+
+
+def _band(low: float, high: float) -> dict[str, Any]:
+    look = {"fillcolor": series(2), "opacity": 0.12, "line": {"width": 0}, "layer": "below"}
+    ends = {"x0": low, "x1": high, "y0": 0.0, "y1": 1.0}
+    return {"type": "rect", "yref": "paper"} | look | ends
 
 
 def _upright(place: float) -> dict[str, Any]:

@@ -1,16 +1,17 @@
 """The design of least vibration as a result holds it, over a dense grid of speeds."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.dynamics import dynamics_parts as parts
 from gearopt.formulations.dynamics.dynamics_design import Chosen
+from gearopt.formulations.dynamics.motions_over_speed import in_contact
 from gearopt.formulations.orbit.orbit_search import DENSE, FINE, growth
 from gearopt.formulations.orbit.task import MICRO, Task, measured, series, worst
 from gearopt.formulations.orbit.task import parts as orbit_parts
+from gearopt.optimise.clock import Clock
 from gearopt.physics.motion.moving_pair import MovingPair
 
 COARSE = 91  # speeds of the pair before, between which its curve is straight
@@ -26,10 +27,9 @@ def chosen(
     made = orbit_parts(task, kb, ratio, width, rim)
     dense = worst(task, point, speeds, FINE)
     _, highest = measured(task, series(task, point[None], speeds, FINE))
-    old = parts.over_speeds(
-        replace(before, backlash=None), "line", task.teeth, (speeds[0], speeds[-1], COARSE), FINE
-    )
-    told = old.rms_mm if task.measure == "rms" else old.peak_to_peak_mm
+    coarse = np.linspace(speeds[0], speeds[-1], COARSE)
+    old = in_contact(before, "line", task.teeth * coarse / 60.0, FINE, Clock())
+    told = [o.series.rms if task.measure == "rms" else np.ptp(o.series.extremes) for o in old]
     return Chosen(
         bearing_stiffness_N_per_mm=kb,
         contact_ratio=ratio,
@@ -43,7 +43,7 @@ def chosen(
         rounds=tuple(_round(one) for one in rounds),
         dense_rpm=parts.columns(speeds),
         dense_mm=parts.columns(dense / MICRO, 7),
-        before_mm=parts.columns(np.interp(speeds, old.speed_rpm, told), 7),
+        before_mm=parts.columns(np.interp(speeds, coarse, told), 7),
         dense_maximum_mm=float(dense.max()) / MICRO,
         largest_multiplier=growth(task, point),
         highest_mm=float(highest.max()) / MICRO,

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 Columns = tuple[float, ...]
 Rows = tuple[Columns, ...]
+Gaps = tuple[float | None, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,8 +29,8 @@ class Response:
 
     deformation: negative where teeth press. axes: x and y of pinion and wheel; none on fixed axes.
     error: estimated, of the deformation, relative to its largest value. frequency, amplitude: of
-    the deformation's spectrum over the second half. jammed: the first output at which both flanks
-    are pressed at once, as the axes came together; None: at none.
+    the deformation's spectrum over the second half. jammed: when both flanks are first pressed at
+    once, as the axes came together; None: never.
     """
 
     method: str
@@ -81,18 +82,28 @@ class Stability:
 
 @dataclass(frozen=True, kw_only=True)
 class Speeds:
-    """Periodic motions over speed: rising, and falling where teeth may part.
+    """Motions over speed, None where one grows for ever: rising, and falling where teeth may part.
 
-    growth: largest multiplier of teeth in contact. harmonics (orders, speeds): amplitudes.
+    falling: () where they may not, or the run was stopped. teeth_part: whether they may; else the
+    mesh also pulls. repeats: after how many periods of the
+    mesh; 0: not within eight. growth: largest multiplier of
+    teeth in contact. jammed: speeds at which both flanks are pressed at once, as the axes come
+    together. harmonics (orders, speeds): amplitudes.
     """
 
+    teeth_part: bool
     speed_rpm: Columns
-    rms_mm: Columns
-    peak_to_peak_mm: Columns
-    highest_mm: Columns
-    falling_rms_mm: Columns
+    rms_mm: Gaps
+    peak_to_peak_mm: Gaps
+    highest_mm: Gaps
+    repeats: tuple[int, ...]
+    falling_rms_mm: Gaps
+    falling_peak_to_peak_mm: Gaps
+    falling_highest_mm: Gaps
+    falling_repeats: tuple[int, ...]
     growth: Columns
-    harmonics_mm: Rows
+    jammed_rpm: Columns
+    harmonics_mm: tuple[Gaps, ...]
 
 
 @dataclass(frozen=True, kw_only=True)

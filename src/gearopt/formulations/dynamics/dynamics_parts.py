@@ -1,24 +1,20 @@
 """From a moving pair to what a result says of it: equilibrium, response, stability, speeds."""
 
 import math
-from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gearopt.formulations.dynamics.dynamics_design import (
     Columns,
     Equilibrium,
     Response,
-    Speeds,
     Stability,
     Tongue,
 )
-from gearopt.formulations.motion.balance import Orbit, linear_orbit, orbit
-from gearopt.formulations.motion.integrate import march
-from gearopt.formulations.motion.simulate import fastest, simulate
-from gearopt.formulations.motion.stability import bands, largest, stability_map
-from gearopt.formulations.motion.timeline import timeline
+from gearopt.formulations.motion.simulate import simulate
+from gearopt.formulations.motion.stability import UNSTABLE, bands, largest, stability_map
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.kinematics import growth
@@ -32,10 +28,6 @@ Grid = tuple[float, float, int]  # ends and how many, equally far apart
 LINES = 400  # of a spectrum that are kept
 HARMONICS = 4  # of the wave, whose tongues are listed
 WIDEST = 12  # tongues that are listed
-ORDERS = 12  # of the mesh frequency, shown over speed
-LEAP = 3.0  # times as large as the motion before, or as the linear one: Newton's method has left
-SETTLED, KEPT = 200, 8  # periods of a simulation that is to settle, and that are judged then
-LOOKS, STEPS = 64, 12.0  # outputs of a period of the mesh; steps in one of the fastest mode
 
 
 def columns(values: Any, digits: int = 9) -> Columns:
@@ -90,14 +82,18 @@ def response(
     error: float,
     from_load: bool,
     clock: Clock,
-) -> Response:
+) -> Response | None:
     """Return the motion from rest, unloaded or in the equilibrium, to an error that is asked.
 
-    span: how long [s], and how many outputs.
+    span: how long [s], and how many outputs. Where the clock stops, a motion of less error or of
+    less time; None where there is none as yet.
     """
     start, times = resting(pair, level), np.linspace(0.0, *span)
     made = simulate(pair, level, times, error, start if from_load else 0.0 * start, clock)
-    delta, later = made.motion.delta, len(times) // 2
+    if made is None:
+        return None
+    times, delta = made.times, made.motion.delta
+    later = len(times) // 2
     steady = delta[later:] - delta[later:].mean()
     window = np.hanning(steady.size)
     amplitude = 2.0 * np.abs(np.fft.rfft(steady * window)) / window.sum()
@@ -118,21 +114,20 @@ def response(
         axes_mm=tuple(columns(c, 7) for c in _axes(pair, level, made.motion.states)),
         frequency_Hz=columns(lines[shown]),
         amplitude_mm=columns(amplitude[shown], 5),
-        jammed_ms=jammed(pair, level, MILLI * times, made.motion.states),
+        jammed_ms=None if made.motion.jammed is None else MILLI * made.motion.jammed,
     )
 
 
-def jammed(pair: MovingPair, level: str, times: Array, states: Array) -> float | None:
-    """Return the first of times (T,) at which the coast flank is pressed without any backlash left.
+def jammed(pair: MovingPair, level: str, states: Array) -> NDArray[np.bool_]:
+    """Return whether both flanks are pressed at once at states (T, 2 n), as the axes came together.
 
-    states (T, 2 n). None: at none of them; on fixed axes or a line the backlash stays as it is.
+    room < delta < 0; on fixed axes or a line the backlash stays as it is.
     """
     if pair.backlash is None or level != "plane":
-        return None
+        return np.zeros(len(states), bool)
     x1, y1, delta, x2, y2 = states.T[:5]
     room = pair.backlash + growth(pair.kinematics, pair.rest, x2 - x1, y2 - y1).length
-    found = np.flatnonzero((room < 0.0) & (delta > room))
-    return float(times[found[0]]) if found.size else None
+    return np.asarray((room < delta) & (delta < 0.0))
 
 
 def _axes(pair: MovingPair, level: str, states: Array) -> list[Array]:
@@ -180,6 +175,7 @@ def stability(
     if len(growth) < 2:
         return None
     own = largest(system, wave, frequencies)
+    unstable = bands(frequencies, own > 1.0 + UNSTABLE)
     here = None
     if pair.mesh_frequency > 0.0:
         here = float(largest(system, wave, np.array([pair.mesh_frequency]))[0])
@@ -198,96 +194,10 @@ def stability(
         frequency_Hz=columns(frequencies),
         depth=columns(depths[: len(growth)]),
         growth=tuple(columns(row, 6) for row in growth),
-        unstable_percent=100.0 * float(np.mean(growth > 1.0 + 1e-6)),
+        unstable_percent=100.0 * float(np.mean(growth > 1.0 + UNSTABLE)),
         own_depth=own_depth(wave),
         own_frequency_Hz=pair.mesh_frequency,
         here=here,
-        bands_Hz=tuple(columns(ends) for ends in bands(frequencies, own)),
+        bands_Hz=tuple(columns(ends) for ends in unstable),
         tongues=tuple(found[:WIDEST]),
     )
-
-
-class Found(NamedTuple):
-    """A periodic motion: RMS about its mean, least and largest delta, amplitudes of orders [mm]."""
-
-    rms: float
-    least: float
-    highest: float
-    amplitudes: Array
-
-
-def over_speeds(
-    pair: MovingPair, level: str, teeth: int, grid: Grid, harmonics: int, clock: Clock | None = None
-) -> Speeds:
-    """Return periodic motions over speeds of the pinion, followed up and down where teeth part.
-
-    grid: least and largest speed [rpm], and how many. Where the clock stops, only the speeds that
-    were followed in both directions.
-    """
-    clock, speeds_rpm = clock or Clock(), np.linspace(*grid)
-    frequencies = teeth * np.asarray(speeds_rpm) / 60.0
-    rising = followed(pair, level, frequencies, harmonics, clock)
-    done = slice(0, len(rising))
-    falling = rising
-    if pair.backlash is not None:
-        falling = followed(pair, level, frequencies[done][::-1], harmonics, clock)[::-1]
-        done = slice(len(rising) - len(falling), len(rising))
-    speeds_rpm, frequencies, rising = speeds_rpm[done], frequencies[done], rising[done]
-    grown = largest(around(pair, level), pair.wave, frequencies)
-    return Speeds(
-        speed_rpm=columns(speeds_rpm),
-        rms_mm=columns([o.rms for o in rising], 7),
-        peak_to_peak_mm=columns([o.highest - o.least for o in rising], 7),
-        highest_mm=columns([o.highest for o in rising], 7),
-        falling_rms_mm=columns([o.rms for o in falling], 7),
-        growth=columns(grown, 6),
-        harmonics_mm=tuple(columns(row, 5) for row in np.array([o.amplitudes for o in rising]).T),
-    )
-
-
-def followed(
-    pair: MovingPair, level: str, frequencies: Array, harmonics: int, clock: Clock
-) -> list[Found]:
-    """Return the motions at frequencies [Hz], by harmonic balance, each from the one before.
-
-    Linear ones are solved. Where Newton's method does not end, or leaps, the motion is the one that
-    a simulation of SETTLED periods from the equilibrium comes to. Of the first alone where the
-    clock stops.
-    """
-    found: list[Found] = []
-    last: Orbit | None = None
-    for frequency in frequencies:
-        if not clock.tell():
-            break
-        simple = linear_orbit(pair, level, float(frequency), harmonics)
-        made = simple
-        if pair.backlash is not None and (simple.extremes[1] > 0.0 or last is not None):
-            made = orbit(pair, level, float(frequency), harmonics, last or simple)
-        leaps = not made.found or (found and made.rms > LEAP * max(found[-1].rms, simple.rms))
-        if leaps and simple.extremes[1] <= 0.0:
-            made, leaps = simple, False
-        if leaps:
-            kept, made = _settled(pair, level, float(frequency))
-        found.append(kept if leaps else _balanced(made))
-        last = made if made.extremes[1] > 0.0 else None
-    return found
-
-
-def _balanced(made: Orbit) -> Found:
-    amplitudes = np.zeros(ORDERS)
-    orders = 2.0 * np.abs(made.harmonics[1 : ORDERS + 1])
-    amplitudes[: orders.size] = orders
-    return Found(made.rms, *made.extremes, amplitudes)
-
-
-def _settled(pair: MovingPair, level: str, frequency: float) -> tuple[Found, Orbit]:
-    """Return what a simulation comes to over its last KEPT periods, and as the next one's guess."""
-    slow = replace(pair, mesh_frequency=frequency)
-    times = np.arange((SETTLED + KEPT) * LOOKS) / (LOOKS * frequency)
-    longest = fastest(slow, level) / STEPS
-    start = resting(pair, level)
-    delta = march(slow, level, timeline(slow, times), "rk8", longest, start).delta[-KEPT * LOOKS :]
-    lines = np.fft.rfft(delta)[::KEPT] / delta.size
-    orders = 2.0 * np.abs(lines[1 : ORDERS + 1])
-    kept = Found(float(delta.std()), float(delta.min()), float(delta.max()), orders)
-    return kept, Orbit(frequency, lines)

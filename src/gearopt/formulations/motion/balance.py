@@ -5,7 +5,6 @@ N the mesh force; 2 H + 1 unknowns are left at every level.
 """
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -14,15 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.optimise.terms import Array
-from gearopt.physics.motion.linear import linear
+from gearopt.physics.motion.linear import Linear, linear
 from gearopt.physics.motion.moving_pair import MovingPair
 
 Complex = NDArray[np.complex128]
-NEWTON, CLOSE = (
-    40,
-    1e-12,
-)  # steps, and the change relative to the largest coefficient that ends them
-SAMPLES = 16  # of a period, a harmonic: where the flank changes series converge slowly
+NEWTON = 30  # steps
+CLOSE = 1e-12  # change relative to the largest coefficient that ends Newton's method
+SAMPLES = 64  # of a period, a harmonic: where the flank changes series converge slowly
 LOOKS = 2048  # samples of a period for the extremes
 
 
@@ -43,17 +40,32 @@ class Orbit:
         """RMS of delta about its mean [mm]."""
         return float(np.sqrt(2.0 * np.sum(np.abs(self.harmonics[1:]) ** 2)))
 
-    def delta(self, phase: Array) -> Array:
-        """Return delta at phases of the mesh [mm]."""
-        orders = np.arange(1, len(self.harmonics))
-        waves = np.exp(2j * math.pi * np.multiply.outer(phase, orders)) @ self.harmonics[1:]
-        return np.asarray(self.harmonics[0].real + 2.0 * waves.real)
+    def delta(self, count: int) -> Array:
+        """Return delta at the phases 0, 1/count, 2/count, ... of a period [mm]; count > 2 H."""
+        return _sampled(self.harmonics, count)
 
-    @property
+    @cached_property
     def extremes(self) -> tuple[float, float]:
         """Least and largest delta [mm]."""
-        found = self.delta(np.arange(LOOKS) / LOOKS)
+        found = self.delta(LOOKS)
         return float(found.min()), float(found.max())
+
+
+def _sampled(half: Complex, count: int) -> Array:
+    """Return a real series of coefficients (H + 1, ...) at equal phases, (count, ...)."""
+    return np.asarray(np.fft.irfft(half, count, axis=0) * count)
+
+
+def _bare(pair: MovingPair, level: str) -> Linear:
+    return linear(replace(pair, damping=0.0, drag=0.0), level)
+
+
+def _moved(pair: MovingPair, level: str, omegas: Any) -> tuple[Complex, Complex]:
+    """Return -q_h/N_h (H, n) and R = delta_h/N_h (H,) of the pair without its mesh [mm/N]."""
+    bare, w = _bare(pair, level), np.asarray(omegas, float)[:, None, None]
+    dynamic = bare.stiffness - w**2 * np.diag(bare.mass) + 1j * w * bare.damping
+    moved = np.linalg.solve(dynamic, bare.direction[:, None])[..., 0]
+    return moved, np.asarray(-(moved @ bare.direction))
 
 
 def receptance(pair: MovingPair, level: str, omegas: Any) -> Complex:
@@ -61,108 +73,94 @@ def receptance(pair: MovingPair, level: str, omegas: Any) -> Complex:
 
     -w' (K - W^2 M + i W C)^-1 w; with axes that do not move 1/(m_e W^2).
     """
-    bare = linear(replace(pair, damping=0.0, drag=0.0), level)
-    w = np.asarray(omegas, float)[:, None, None]
-    dynamic = bare.stiffness - w**2 * np.diag(bare.mass) + 1j * w * bare.damping
-    moved = np.linalg.solve(dynamic, bare.direction[:, None])
-    return np.asarray(-(moved[..., 0] @ bare.direction))
+    return _moved(pair, level, omegas)[1]
+
+
+@dataclass(frozen=True)
+class _Balance:
+    """The equations of a pair, in two-sided coefficients delta_-H ... delta_H.
+
+    A delta = b + s l: l of the force that is lost where teeth are apart; s = -R_h, and 1/mean k in
+    the row of the mean, where N_0 = -F takes the place of R.
+    """
+
+    pair: MovingPair
+    level: str
+    frequency: float
+    harmonics: int
+
+    @cached_property
+    def order(self) -> NDArray[np.int64]:
+        """Numbers of the coefficients."""
+        return np.arange(-self.harmonics, self.harmonics + 1)
+
+    @cached_property
+    def turning(self) -> Complex:
+        """Factor i h W of a rate."""
+        return np.asarray(2j * math.pi * self.frequency * self.order)
+
+    @cached_property
+    def row(self) -> Complex:
+        """The factors s."""
+        h = self.harmonics
+        omegas = 2.0 * math.pi * self.frequency * np.arange(1, h + 1)
+        ahead = receptance(self.pair, self.level, omegas)
+        mean = 1.0 / self.pair.wave.mean
+        return np.asarray(np.concatenate([-np.conj(ahead[::-1]), [mean], -ahead]), complex)
+
+    @cached_property
+    def matrix(self) -> Complex:
+        """The matrix A, of N_h = sum over m of k_(h-m) delta_m + i h W c delta_h."""
+        pair, h = self.pair, self.harmonics
+        half = pair.wave.harmonics(2 * h)
+        both = np.concatenate([np.conj(half[:0:-1]), half])
+        mesh = both[self.order[:, None] - self.order + 2 * h].astype(complex)
+        mesh += np.diag((pair.damping + pair.drag) * self.turning)
+        found = np.eye(2 * h + 1) + self.row[:, None] * mesh
+        found[h, h] -= 1.0
+        return np.asarray(found, complex)
+
+    @cached_property
+    def right(self) -> Complex:
+        """The right side b: the load, and the transmission error."""
+        pair, h = self.pair, self.harmonics
+        found = np.zeros(2 * h + 1, complex)
+        found[h] = -pair.load / pair.wave.mean
+        for n, a in enumerate(pair.error[:h], 1):
+            found[h + n] = found[h - n] = 0.5 * a
+        return found
+
+    @cached_property
+    def stiffness(self) -> Array:
+        """Return the mesh stiffness at equal phases."""
+        count = SAMPLES * self.harmonics
+        return self.pair.wave.value(np.arange(count) / count)
+
+    def newton(self, delta: Complex) -> Complex:
+        """Return the change that Newton's method asks for."""
+        pair, k, h = self.pair, self.stiffness, self.harmonics
+        count, c = k.size, pair.damping
+        assert pair.backlash is not None
+        both = _sampled(np.stack([delta[h:], (self.turning * delta)[h:]], axis=1), count)
+        apart = (both[:, 0] > 0.0) & (both[:, 0] <= pair.backlash)
+        coast = both[:, 0] > pair.backlash
+        lost = np.where(apart, k * both[:, 0] + c * both[:, 1], 0.0)
+        lost[coast] = pair.backlash * k[coast]
+        of_lost, of_k, of_c = np.fft.fft([lost, k * apart, c * apart]) / count
+        shift = self.order[:, None] - self.order
+        slope = self.matrix - self.row[:, None] * (of_k[shift] + of_c[shift] * self.turning)
+        wrong = self.matrix @ delta - self.right - self.row * of_lost[self.order]
+        return np.asarray(-np.linalg.solve(slope, wrong))
 
 
 def linear_orbit(pair: MovingPair, level: str, frequency: float, harmonics: int) -> Orbit:
     """Return the motion of a pair whose teeth never part: one linear system (2 H + 1,).
 
-    N_h = sum over m of k_(h-m) delta_m + i h W c delta_h with the exact harmonics k_l of the wave,
-    to l = 2 H; N_0 = -F.
+    It holds the exact harmonics k_l of the wave to l = 2 H; N_0 = -F. frequency of the mesh [Hz].
     """
-    order, wave = np.arange(-harmonics, harmonics + 1), pair.wave
-    half = wave.harmonics(2 * harmonics)
-    both = np.concatenate([np.conj(half[:0:-1]), half])
-    omega = 2.0 * math.pi * frequency
-    mesh = both[order[:, None] - order[None, :] + 2 * harmonics].astype(complex)
-    mesh += np.diag(1j * order * omega * (pair.damping + pair.drag))
-    ahead = receptance(pair, level, omega * np.arange(1, harmonics + 1))
-    answer = np.concatenate([np.conj(ahead[::-1]), [0.0], ahead])
-    matrix = np.eye(order.size) - answer[:, None] * mesh
-    matrix[harmonics] = mesh[harmonics] / wave.mean
-    right = np.zeros(order.size, complex)
-    right[harmonics] = -pair.load / wave.mean
-    for h, a in enumerate(pair.error[:harmonics], 1):
-        right[harmonics + h] = right[harmonics - h] = 0.5 * a
-    return Orbit(frequency, np.linalg.solve(matrix, right)[harmonics:])
-
-
-@dataclass(frozen=True)
-class _Balance:
-    """The equations of a pair with backlash, in real coefficients (mean, cosines, sines)."""
-
-    pair: MovingPair
-    level: str
-    harmonics: int
-
-    @cached_property
-    def phases(self) -> Array:
-        """Phases at which the force is sampled."""
-        count = SAMPLES * self.harmonics
-        return (np.arange(count) + 0.5) / count
-
-    @cached_property
-    def stiffness(self) -> Array:
-        """Return the mesh stiffness at the phases."""
-        return self.pair.wave.value(self.phases)
-
-    @cached_property
-    def basis(self) -> Array:
-        """Values of 1, cos, sin at the phases, (samples, 2 H + 1)."""
-        angle = 2.0 * math.pi * np.outer(self.phases, np.arange(1, self.harmonics + 1))
-        return np.hstack([np.ones((len(angle), 1)), np.cos(angle), np.sin(angle)])
-
-    @cached_property
-    def turned(self) -> Array:
-        """Derivative of the basis by the angle of the mesh."""
-        h = self.harmonics
-        found = np.hstack(
-            [np.zeros((len(self.basis), 1)), -self.basis[:, h + 1 :], self.basis[:, 1 : h + 1]]
-        )
-        found[:, 1:] *= np.tile(np.arange(1.0, h + 1.0), 2)
-        return found
-
-    def equations(self, q: Array, frequency: float) -> tuple[Array, Array, Array]:
-        """Return residuals (2 H + 1,), their derivatives by q, and by the frequency [Hz]."""
-        step = 1e-6 * frequency
-        found, slopes = self.at(q, frequency)
-        moved = [self.at(q, frequency + s * step)[0] for s in (1.0, -1.0)]
-        return found, slopes, (moved[0] - moved[1]) / (2.0 * step)
-
-    def at(self, q: Array, frequency: float) -> tuple[Array, Array]:
-        """Return residuals and their derivatives by q."""
-        pair, h, basis = self.pair, self.harmonics, self.basis
-        omega = 2.0 * math.pi * frequency
-        rates, k = omega * self.turned, self.stiffness
-        delta, rate = basis @ q, rates @ q
-        room = math.inf if pair.backlash is None else pair.backlash
-        pressed = (delta < 0.0) | (delta > room) | (pair.backlash is None)
-        base = np.where(delta > room, room if room < math.inf else 0.0, 0.0)
-        force = np.where(pressed, k * (delta - base) + pair.damping * rate, 0.0)
-        force += pair.drag * rate
-        slope = np.where(pressed, k, 0.0)[:, None] * basis
-        slope += (np.where(pressed, pair.damping, 0.0) + pair.drag)[:, None] * rates
-        back = basis.T * (2.0 / len(basis))
-        back[0] *= 0.5
-        of_force, by_q = back @ force, back @ slope
-        answer = receptance(pair, self.level, omega * np.arange(1, h + 1))
-        a, b = answer.real, answer.imag
-        residual, jacobian = q.copy(), np.eye(2 * h + 1)
-        cosines, sines = slice(1, h + 1), slice(h + 1, 2 * h + 1)
-        # delta_h = (cos - i sin)/2: (a + i b)(n_c - i n_s)
-        residual[cosines] -= a * of_force[cosines] + b * of_force[sines]
-        residual[sines] -= a * of_force[sines] - b * of_force[cosines]
-        jacobian[cosines] -= a[:, None] * by_q[cosines] + b[:, None] * by_q[sines]
-        jacobian[sines] -= a[:, None] * by_q[sines] - b[:, None] * by_q[cosines]
-        for n, e in enumerate(pair.error[:h], 1):
-            residual[n] -= e
-        residual[0] = (of_force[0] + pair.load) / pair.wave.mean
-        jacobian[0] = by_q[0] / pair.wave.mean
-        return residual, jacobian
+    system = _Balance(pair, level, frequency, harmonics)
+    found = np.linalg.solve(system.matrix, system.right)[harmonics:]
+    return Orbit(frequency, np.asarray(found, complex))
 
 
 def orbit(
@@ -170,85 +168,42 @@ def orbit(
 ) -> Orbit:
     """Return a motion of a pair with backlash at a mesh frequency [Hz], by Newton's method.
 
-    guess: a motion near by; None: the static state. Both flanks count as in `MovingPair`, with the
-    backlash of the axes at rest. `found` is False where Newton's method does not end.
+    guess: a motion near by; None: that of teeth in contact. Both flanks count as in `MovingPair`,
+    with the backlash of the axes at rest. `found` is False where Newton's method does not end.
     """
-    system, q = _Balance(pair, level, harmonics), _real(guess, pair, harmonics)
-    for _ in range(NEWTON):
-        residual, slopes = system.at(q, frequency)
-        change = np.linalg.solve(slopes, residual)
-        q = q - change
-        if np.max(np.abs(change)) <= CLOSE * np.max(np.abs(q)):
-            return Orbit(frequency, _complex(q))
-    return Orbit(frequency, _complex(q), found=False)
-
-
-def branch(
-    pair: MovingPair, level: str, frequencies: tuple[float, float], harmonics: int, step: float
-) -> Iterator[Orbit]:
-    """Yield the motions along a branch from one mesh frequency to another [Hz], round its folds.
-
-    Pseudo-arclength continuation: frequency and coefficients, each over its scale, are unknowns;
-    step: the arc between two motions (frequency over the first one counts 1), halved where Newton's
-    method fails, up to 2^-12. At a fold the frequency turns back: there a sweep jumps.
-    """
-    system, first = _Balance(pair, level, harmonics), frequencies[0]
-    sign = math.copysign(1.0, frequencies[1] - first)
-    last = orbit(pair, level, first, harmonics)
-    size = abs(pair.load) / pair.wave.mean
-    point = np.append(_real(last, pair, harmonics) / size, 1.0)
-    yield last
-    before, arc = np.append(np.zeros(point.size - 1), sign), step
-    while True:
-        _, slopes, by_f = system.equations(point[:-1] * size, point[-1] * first)
-        whole = np.column_stack([slopes * size, by_f * first]) / size
-        tangent = np.linalg.solve(np.vstack([whole, before]), np.append(np.zeros(len(whole)), 1.0))
-        tangent /= np.linalg.norm(tangent)
-        slope = by_f * first / size
-        found = _corrected(system, point + arc * tangent, tangent, slope, size, first)
-        if found is None:
-            arc *= 0.5
-            if arc < step / 4096.0:
-                return
-            continue
-        point, before, arc = found, tangent, min(step, 1.5 * arc)
-        yield Orbit(float(point[-1] * first), _complex(point[:-1] * size))
-        past = sign * (point[-1] * first - frequencies[1]) >= 0.0
-        if past or sign * (point[-1] - 1.0) < -1e-9:
-            return
-
-
-def _corrected(
-    system: _Balance, guess: Array, tangent: Array, slope: Array, size: float, first: float
-) -> Array | None:
-    """Return the point of a branch in the plane across its tangent at a guess.
-
-    slope: of the residuals by the frequency where the tangent was taken, which is near enough.
-    """
-    point = guess.copy()
-    for _ in range(16):
-        residual, slopes = system.at(point[:-1] * size, point[-1] * first)
-        whole = np.vstack([np.column_stack([slopes, slope]), tangent])
-        wrong = np.append(residual / size, tangent @ (point - guess))
-        change = np.linalg.solve(whole, wrong)
-        point = point - change
-        if np.max(np.abs(change)) < 1e-10 * np.max(np.abs(point)):
-            return point
-    return None
-
-
-def _real(guess: Orbit | None, pair: MovingPair, harmonics: int) -> Array:
-    found = np.zeros(2 * harmonics + 1)
+    system = _Balance(pair, level, frequency, harmonics)
+    half = np.zeros(harmonics + 1, complex)
     if guess is None:
-        found[0] = -pair.load / pair.wave.mean
-        return found
-    count = min(harmonics, len(guess.harmonics) - 1)
-    found[0] = guess.harmonics[0].real
-    found[1 : count + 1] = 2.0 * guess.harmonics[1 : count + 1].real
-    found[harmonics + 1 : harmonics + count + 1] = -2.0 * guess.harmonics[1 : count + 1].imag
-    return found
+        half = linear_orbit(pair, level, frequency, harmonics).harmonics
+    else:
+        count = min(harmonics + 1, len(guess.harmonics))
+        half[:count] = guess.harmonics[:count]
+    delta = np.concatenate([np.conj(half[:0:-1]), half])
+    for _ in range(NEWTON):
+        change = system.newton(delta)
+        delta = delta + change
+        if np.max(np.abs(change)) <= CLOSE * np.max(np.abs(delta)):
+            return Orbit(frequency, delta[harmonics:])
+    return Orbit(frequency, delta[harmonics:], found=False)
 
 
-def _complex(q: Array) -> Complex:
-    h = len(q) // 2
-    return np.concatenate([[q[0] + 0j], 0.5 * (q[1 : h + 1] - 1j * q[h + 1 :])])
+def states(pair: MovingPair, level: str, made: Orbit, count: int) -> Array:
+    """Return coordinates and velocities of a motion at equal phases, (count, 2 n).
+
+    The axes by q_h = -(K - W^2 M + i W C)^-1 w N_h with N_h = (delta_h - e_h)/R_h, about the place
+    to which the load moves them on a line of action that does not turn.
+    """
+    bare, harmonics = _bare(pair, level), len(made.harmonics) - 1
+    n = bare.mass.size
+    omegas = 2.0 * math.pi * made.frequency * np.arange(1, harmonics + 1)
+    moved, ahead = _moved(pair, level, omegas)
+    force = made.harmonics[1:].copy()
+    shaken = np.array(pair.error[:harmonics], float)
+    force[: shaken.size] -= 0.5 * shaken
+    half = np.zeros((harmonics + 1, n), complex)
+    half[1:] = -moved * (force / ahead)[:, None]
+    axes = np.arange(n) != n // 2
+    half[0, axes] = pair.load * (bare.direction / np.maximum(np.diag(bare.stiffness), 1e-300))[axes]
+    half[:, n // 2] = made.harmonics
+    rates = half * np.append(0.0, 1j * omegas)[:, None]
+    return _sampled(np.hstack([half, rates]), count)

@@ -10,6 +10,7 @@ import numpy as np
 
 from gearopt.formulations.motion.numbers import deformation, numbers
 from gearopt.formulations.motion.timeline import Timeline
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.accelerations import LEVELS
@@ -17,12 +18,18 @@ from gearopt.physics.motion.moving_pair import MovingPair
 
 MARCH = "gearopt.formulations.motion.march_kernel"
 ALPHA = "gearopt.formulations.motion.alpha_kernel"
+SLICE = 50_000  # steps between two looks at a clock: some tenth of a second
 HHT, RHO = 0.05, 0.9  # numerical damping: alpha of HHT, spectral radius of generalised alpha
 
 
 @dataclass(frozen=True)
 class Marched:
-    """States (outputs, 2 n) at the times asked; steps, and what they cost: rates evaluated."""
+    """States (outputs, 2 n) at the times asked; steps, and what they cost: rates evaluated.
+
+    Where a clock stopped, at the first of the times alone. events: times that teeth part or meet.
+    jammed [s]: when both flanks are first pressed at once, as axes in the plane came together; None
+    where they never are, and of methods that locate no separation.
+    """
 
     pair: MovingPair
     level: str
@@ -30,6 +37,7 @@ class Marched:
     steps: int
     rates: int
     events: int = 0
+    jammed: float | None = None
 
     @property
     def delta(self) -> Array:
@@ -46,29 +54,50 @@ class Stepper:
 
     order: int
     rates: int
-    run: Callable[[Any, Timeline, Any, Array, Array], int]
+    run: Callable[[Any, Any, Any, Array, Array, Array], int]
     undamped: bool = False
 
 
 def march(
-    pair: MovingPair, level: str, times: Timeline, method: str, longest: float, state: Array
+    pair: MovingPair,
+    level: str,
+    times: Timeline,
+    method: str,
+    longest: float,
+    state: Array,
+    clock: Clock | None = None,
 ) -> Marched:
     """Return the motion by a method of STEPPERS with steps of at most `longest` [s].
 
-    state (2 n,): coordinates and velocities at the start.
+    state (2 n,): coordinates and velocities at the start. clock: asked every SLICE steps; where it
+    stops, the motion ends there. It counts rates as evaluations.
     """
     stepper, model = STEPPERS[method], numbers(pair, level)
     if stepper.undamped and not conservative(pair, level):
         raise ValueError(f"{method} is for pairs without damping, not at the level {level!r}")
     counts = times.counts(longest)
-    out = np.empty((len(times.starts), 2 * LEVELS[level][0]))
-    last = np.array(state, float)
-    found = stepper.run(model, times, counts, last, out)
-    steps = int(counts.sum())
-    whole = np.concatenate([[state], out])[times.asked + 1]
-    newton = method in ALPHAS
-    rates = 2 * found if newton else steps * stepper.rates
-    return Marched(pair, level, whole, steps, rates, 0 if newton else found)
+    if clock is not None and counts.max() > SLICE:
+        times = times.divided(-(-counts // SLICE))
+        counts = times.counts(longest)
+    out = np.empty((len(counts), 2 * LEVELS[level][0]))
+    last, told = np.array(state, float), np.array([-1.0, np.inf])
+    newton, ends = method in ALPHAS, np.cumsum(counts)
+    events = rates = done = 0
+    while done < len(counts):
+        before, stop = int(ends[done - 1]) if done else 0, len(counts)
+        if clock is not None:
+            stop = max(done + 1, int(np.searchsorted(ends, before + SLICE, "right")))
+        part = slice(done, stop)
+        found = stepper.run(model, times.between(done, stop), counts[part], last, out[part], told)
+        spent = 2 * found if newton else (int(ends[stop - 1]) - before) * stepper.rates
+        events, rates, done = events + (0 if newton else found), rates + spent, stop
+        if clock is not None:
+            clock.evaluations += spent
+            if done < len(counts) and not clock.tell():
+                break
+    whole = np.concatenate([[state], out])[times.asked[times.asked < done] + 1]
+    jammed = float(told[1]) if np.isfinite(told[1]) else None
+    return Marched(pair, level, whole, int(ends[done - 1]), rates, events, jammed)
 
 
 def conservative(pair: MovingPair, level: str) -> bool:
@@ -79,23 +108,20 @@ def conservative(pair: MovingPair, level: str) -> bool:
 
 
 def _explicit(tableau: Callable[[], tuple[Array, Array, Array]]) -> Any:
-    def run(model: Any, times: Timeline, counts: Any, state: Array, out: Array) -> int:
+    def run(model: Any, pieces: Any, counts: Any, state: Array, out: Array, told: Array) -> int:
         law, (table, weights, nodes) = kernel(MARCH).march, tableau()
-        given = times.starts, times.lengths, times.k0, times.k1
-        return int(law(*model, table, weights, nodes, *given, counts, state, out))
+        return int(law(*model, table, weights, nodes, *pieces, counts, state, out, told))
 
     return run
 
 
-def _composed(model: Any, times: Timeline, counts: Any, state: Array, out: Array) -> int:
-    given = times.starts, times.lengths, times.k0, times.k1
-    return int(kernel(MARCH).compose(*model, composition(), *given, counts, state, out))
+def _composed(model: Any, pieces: Any, counts: Any, state: Array, out: Array, told: Array) -> int:
+    return int(kernel(MARCH).compose(*model, composition(), *pieces, counts, state, out))
 
 
 def _implicit(alphas: tuple[float, float, float, float]) -> Any:
-    def run(model: Any, times: Timeline, counts: Any, state: Array, out: Array) -> int:
-        given = times.starts, times.lengths, times.k0, times.k1
-        return int(kernel(ALPHA).advance(*model, alphas, *given, counts, state, out))
+    def run(model: Any, pieces: Any, counts: Any, state: Array, out: Array, told: Array) -> int:
+        return int(kernel(ALPHA).advance(*model, alphas, *pieces, counts, state, out))
 
     return run
 

@@ -141,13 +141,26 @@ def carried(m, w, table, weights, nodes, place, line, flank, h, y, new, slopes, 
     return flank, events
 
 
+@inlined
+def jams(m, y):
+    """Whether both flanks are pressed at once, as the axes came together."""
+    delta, _, room, _ = opening(m, y)
+    return room < delta < 0.0
+
+
 @entry
-def march(pair, w, table, weights, nodes, starts, lengths, k0, k1, counts, y, out):
-    """Runge-Kutta steps; out[i] is the state at the end of interval i. Return events located."""
+def march(pair, w, table, weights, nodes, starts, lengths, k0, k1, counts, y, out, told):
+    """Runge-Kutta steps; out[i] is the state at the end of interval i. Return events located.
+
+    told: the flank at the start, or -1: that of the state; at the end that there. Then when first
+    both flanks were pressed at once, inf: not yet.
+    """
     m, size = pair[0], y.size
     slopes, inside = np.empty((weights.size, size)), np.empty(size)
     new, line = np.empty(size), np.empty(3)
-    flank, events = flank_of(m, y), 0
+    flank, events = int(told[0]), 0
+    if flank < 0:
+        flank = flank_of(m, y)
     for i in range(starts.size):
         h = lengths[i] / counts[i]
         line[0], line[1], line[2] = starts[i], k0[i], (k1[i] - k0[i]) / lengths[i]
@@ -156,8 +169,11 @@ def march(pair, w, table, weights, nodes, starts, lengths, k0, k1, counts, y, ou
                 m, w, table, weights, nodes, j * h, line, flank, h, y, new, slopes, inside
             )
             events += more
+            if told[1] == math.inf and m.backlash < math.inf and m.level > 4 and jams(m, y):
+                told[1] = starts[i] + (j + 1) * h
         for a in range(size):
             out[i, a] = y[a]
+    told[0] = flank
     return events
 
 

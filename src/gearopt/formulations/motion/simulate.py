@@ -18,6 +18,7 @@ COARSE = 4.0  # steps in a period of the fastest mode, of the longest steps trie
 EXACT = 1e-11  # error of exact pieces, of the largest |delta|: rounding over a long run
 ROUNDING = 3e-13  # error below which halving a step shows rounding, not the method
 SAFETY = 4.0  # times the error that changes by halving tell of the finer run
+SHORTEST = 11  # outputs of a motion that was cut short, at least
 MOST = 400_000_000  # rates evaluated, at most: some minute
 CANDIDATES = ("rk8", "rk4", "symplectic", "newmark")
 LOCATING = ("rk8", "rk4")  # those that locate where teeth part and meet
@@ -30,7 +31,7 @@ class Simulated:
     error: the last change c by halving the steps, times 4/(q - 1) where the changes fell by a
     factor of q > 5 (at most 2^p of an order p): four times what is left of a geometric series.
     rates: evaluated in all, those of the search for a method included. met: whether the error asked
-    was reached. longest [s]: the step of the run kept; 0 of exact pieces.
+    was reached, to the last of the times. longest [s]: the step of the run kept; 0 of exact pieces.
     """
 
     times: Array
@@ -65,41 +66,57 @@ def simulate(
     error: float,
     state: Array | None = None,
     clock: Clock | None = None,
-) -> Simulated:
+) -> Simulated | None:
     """Return the motion whose error of delta is at most `error`, by the method that costs least.
 
     times (outputs,) [s], from the start; state (2 n,): coordinates and velocities there, at rest
     and unloaded where None. Piecewise linear scenes whose teeth never part are solved exactly; else
     steps of several methods are halved (with backlash of those that locate separations), always of
     that whose order promises to need the fewest evaluations, until the change says that the error
-    is met, or the clock stops.
+    is met, or the clock stops. Then the best run is told, or of the first two what both have
+    reached; None where that is less than SHORTEST outputs.
     """
     state, clock = np.zeros(2 * LEVELS[level][0]) if state is None else state, clock or Clock()
     intervals = timeline(pair, times)
     if pair.backlash is None and piecewise_linear(pair, level):
-        motion = exact_motion(pair, level, intervals, state)
-        return Simulated(times, motion, "exponential", EXACT, error >= EXACT, motion.rates, 0.0)
+        exact = exact_motion(pair, level, intervals, state, clock)
+        return _told(times, exact, "exponential", EXACT, error, exact.rates, 0.0)
     tried: list[_Try] = []
     spent = 0
     for method in CANDIDATES if pair.backlash is None else LOCATING:
         if tried and not clock.tell():
             break
         if not STEPPERS[method].undamped or conservative(pair, level):
-            first = _first(pair, level, intervals, method, state)
-            second = _halved(first, intervals, state)
-            tried.append(second)
-            spent += second.spent
-    while True:
+            first = _first(pair, level, intervals, method, state, clock)
+            second = None if clock.stopped else _halved(first, intervals, state, clock)
+            if second is not None and (not tried or not clock.stopped):
+                tried.append(second)
+                spent += second.spent
+    while tried:
         best = min(tried, key=lambda t: (t.error > error, t.ahead(error)))
         if best.error <= error or spent + 2 * best.motion.rates > MOST or not clock.tell():
             break
-        finer = _halved(best, intervals, state)
+        finer = _halved(best, intervals, state, clock)
+        if clock.stopped or finer is None:
+            break
         spent += finer.motion.rates
         if best.change < 1e-6 and finer.change > 0.5 * best.change:  # rounding alone is left
             break
         tried[tried.index(best)] = finer
-    met = best.error <= error
-    return Simulated(times, best.motion, best.method, best.error, met, spent, best.longest)
+    if not tried:
+        return None
+    return _told(times, best.motion, best.method, best.error, error, spent, best.longest)
+
+
+def _told(
+    times: Array, motion: Marched, method: str, error: float, asked: float, spent: int, step: float
+) -> Simulated | None:
+    """Return a motion as far as it has come; None where that is less than SHORTEST outputs."""
+    count = len(motion.states)
+    if count < min(SHORTEST, len(times)):
+        return None
+    met = error <= asked and count == len(times)
+    return Simulated(times[:count], motion, method, error, met, spent, step)
 
 
 def fastest(pair: MovingPair, level: str) -> float:
@@ -112,22 +129,29 @@ def fastest(pair: MovingPair, level: str) -> float:
     return 2.0 * math.pi / max(float(top), harmonic)
 
 
-def _first(pair: MovingPair, level: str, times: Timeline, method: str, state: Array) -> _Try:
+def _first(
+    pair: MovingPair, level: str, times: Timeline, method: str, state: Array, clock: Clock
+) -> _Try:
     longest = fastest(pair, level) / (COARSE if method == "rk8" else 4.0 * COARSE)
-    motion = march(pair, level, times, method, longest, state)
+    motion = march(pair, level, times, method, longest, state, clock)
     return _Try(method, longest, motion, math.inf, math.inf, motion.rates)
 
 
-def _halved(tried: _Try, times: Timeline, state: Array) -> _Try:
-    """Return a run of half the steps, with the error that the change between both tells."""
+def _halved(tried: _Try, times: Timeline, state: Array, clock: Clock) -> _Try | None:
+    """Return a run of half the steps, with the error that the change between both tells.
+
+    Of the outputs that it has reached where the clock stops; None without any.
+    """
     old, half = tried.motion, 0.5 * tried.longest
     while True:
-        new = march(old.pair, old.level, times, tried.method, half, state)
-        if new.steps > old.steps:
+        new = march(old.pair, old.level, times, tried.method, half, state, clock)
+        if new.steps > old.steps or clock.stopped:
             break
         half *= 0.5
+    if len(new.states) < 2:
+        return None
     scale = float(np.max(np.abs(new.delta))) or 1.0
-    change = float(np.max(np.abs(new.delta - old.delta))) / scale
+    change = float(np.max(np.abs(new.delta - old.delta[: len(new.states)]))) / scale
     change = change if math.isfinite(change) else math.inf
     falls = tried.change / change if change > 0.0 else math.inf
     falls = min(falls, 2.0 ** STEPPERS[tried.method].order) if tried.change < math.inf else 1.0

@@ -68,22 +68,22 @@ def stability_map(
 ) -> Array:
     """Return the largest |multiplier| of every wave at every mesh frequency [Hz], (W, F).
 
-    Of the first waves alone where the clock stops.
+    Of the first waves alone where the clock stops; it counts multipliers as evaluations.
     """
     rows, clock = [], clock or Clock()
     for wave in waves:
         if not clock.tell():
             break
         rows.append(largest(system, wave, frequencies))
+        clock.evaluations += len(frequencies)
     return np.reshape(rows, (len(rows), len(frequencies)))
 
 
-def bands(frequencies: Array, largest: Array) -> list[tuple[float, float]]:
-    """Return the unstable ranges of a row of a map: first and last unstable frequency [Hz]."""
-    inside = np.concatenate([[False], largest > 1.0 + UNSTABLE, [False]]).astype(int)
-    change = np.flatnonzero(np.diff(inside))
+def bands(places: Any, inside: Any) -> list[tuple[float, float]]:
+    """Return the first and last of neighbouring places (N,) that are inside (N,)."""
+    change = np.flatnonzero(np.diff(np.concatenate([[False], inside, [False]]).astype(int)))
     ends = zip(change[::2], change[1::2], strict=True)
-    return [(float(frequencies[a]), float(frequencies[b - 1])) for a, b in ends]
+    return [(float(places[a]), float(places[b - 1])) for a, b in ends]
 
 
 def _top(system: Linear, wave: Wave) -> float:

@@ -25,6 +25,27 @@ class Timeline:
     k1: Array
     asked: NDArray[np.int64]
 
+    def divided(self, parts: NDArray[np.int64]) -> "Timeline":
+        """Return the same with each interval cut into so many equal parts."""
+        first = np.cumsum(parts) - parts
+        share = (np.arange(parts.sum()) - np.repeat(first, parts)) / np.repeat(parts, parts)
+        starts, lengths = np.repeat(self.starts, parts), np.repeat(self.lengths, parts)
+        k0, rise = np.repeat(self.k0, parts), np.repeat(self.k1 - self.k0, parts)
+        ahead = share + 1.0 / np.repeat(parts, parts)
+        asked = np.append(0, np.cumsum(parts))[self.asked + 1] - 1
+        return Timeline(
+            starts + share * lengths,
+            lengths / np.repeat(parts, parts),
+            k0 + share * rise,
+            k0 + ahead * rise,
+            asked,
+        )
+
+    def between(self, first: int, last: int) -> tuple[Array, Array, Array, Array]:
+        """Return starts, lengths, k0 and k1 of the intervals from first to last - 1."""
+        one = slice(first, last)
+        return self.starts[one], self.lengths[one], self.k0[one], self.k1[one]
+
     def counts(self, longest: float) -> NDArray[np.int64]:
         """Return how many equal steps of at most `longest` [s] each interval takes."""
         return np.maximum(1, np.ceil(self.lengths / longest - SAME)).astype(np.int64)

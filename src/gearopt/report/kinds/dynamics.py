@@ -3,7 +3,11 @@
 from collections.abc import Sequence
 from typing import Any
 
-from gearopt.formulations.dynamics.dynamics_design import DynamicsDesign
+import numpy as np
+
+from gearopt.formulations.dynamics.dynamics_design import DynamicsDesign, Speeds
+from gearopt.formulations.dynamics.motions_over_speed import ranges
+from gearopt.formulations.motion.stability import UNSTABLE
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report import dynamics_plots as plots
@@ -14,6 +18,7 @@ from gearopt.report.measures import Measures
 from gearopt.report.section import Section, Table, Tile, cell, percent
 from gearopt.report.words import amount, number
 
+TWO = 0.02  # of an RMS by which rising and falling speeds differ where there are two motions
 MEASURES = {"rms": "RMS", "peak_to_peak": "peak to peak"}
 
 
@@ -45,7 +50,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
             )
         )
     if found.stability is not None and found.stability.here is not None:
-        verdict = "unstable" if found.stability.here > 1.0 + 1e-6 else "stable"
+        verdict = "unstable" if found.stability.here > 1.0 + UNSTABLE else "stable"
         made.append(Tile("largest multiplier", number(found.stability.here), verdict))
     fastest = f"{rest.frequencies_Hz[-1]:,.0f} Hz"
     return [*made, Tile("highest natural frequency", fastest, "at the mean stiffness")]
@@ -122,27 +127,81 @@ def stability(result: Result, measures: Measures) -> Section | None:
 
 
 def speeds(result: Result, measures: Measures) -> Section | None:
-    """Show periodic motions over speed."""
+    """Show motions over speed: where they are largest, where there are two, and what they are."""
     found = design_of(result)
     if found is None or (held := found.speeds) is None:
         return None
-    micro = measures.unit("um")
-    heads = ("speed [rpm]", f"RMS [{micro}]", f"peak to peak [{micro}]", f"largest [{micro}]")
-    rows = [
-        [speed, *(cell(v, "um", measures) for v in values)]
-        for speed, *values in zip(
-            held.speed_rpm, held.rms_mm, held.peak_to_peak_mm, held.highest_mm, strict=True
-        )
-    ]
-    table = Table("motions over speed", heads, rows, folded=True)
     figures = (plots.over_speed(held, measures), plots.waterfall(held, measures))
-    worst = max(range(len(held.rms_mm)), key=lambda k: held.rms_mm[k])
-    words = (
-        f"The RMS of the deformation is largest at {held.speed_rpm[worst]:,.0f} rpm: "
-        f"{amount(held.rms_mm[worst], 'um', measures)}, peak to peak "
-        f"{amount(held.peak_to_peak_mm[worst], 'um', measures)}.",
+    words = (_worst(held, measures), *_two(held))
+    return Section(
+        "Speeds", words=words, figures=figures, tables=(_speeds(held, measures),), terminal=words
     )
-    return Section("Speeds", words=words, figures=figures, tables=(table,), terminal=words)
+
+
+def _worst(held: Speeds, measures: Measures) -> str:
+    """Say where the RMS of a stable motion is largest."""
+    ways = [("", held.rms_mm, held.peak_to_peak_mm)]
+    if held.falling_rms_mm and held.falling_rms_mm != held.rms_mm:
+        ways.append((" as speed falls", held.falling_rms_mm, held.falling_peak_to_peak_mm))
+    ends = [
+        (rms, speed, way, height)
+        for way, all_rms, heights in ways
+        for rms, height, speed in zip(all_rms, heights, held.speed_rpm, strict=True)
+        if rms is not None and height is not None
+    ]
+    if not ends:
+        return "The motion is unstable at all speeds."
+    rms, speed, way, height = max(ends)
+    return (
+        f"The RMS of the deformation is largest at {speed:,.0f} rpm{way}: "
+        f"{amount(rms, 'um', measures)}, peak to peak {amount(height, 'um', measures)}."
+    )
+
+
+def _two(held: Speeds) -> list[str]:
+    """Say where speed that rises and speed that falls lead to two motions."""
+    falling = held.falling_rms_mm or held.rms_mm
+    pairs = [(a or 0.0, b or 0.0) for a, b in zip(held.rms_mm, falling, strict=True)]
+    where = [min(pair) > 0.0 and np.ptp(pair) > TWO * max(pair) for pair in pairs]
+    if not any(where):
+        return []
+    most = max(max(pair) / min(pair) for pair, two in zip(pairs, where, strict=True) if two)
+    return [
+        f"There are two motions at {ranges(held.speed_rpm, where)}, one up to {most:.3g} times "
+        "as large as the other: from where the speed comes decides which."
+    ]
+
+
+def _speeds(held: Speeds, measures: Measures) -> Table:
+    """Return every speed's motion as a table, of falling speeds beside the rising ones."""
+    micro = measures.unit("um")
+    heads = [f"RMS [{micro}]", f"peak to peak [{micro}]", f"largest [{micro}]", "motion"]
+    rising = held.rms_mm, held.peak_to_peak_mm, held.highest_mm, held.repeats
+    falling = (
+        held.falling_rms_mm,
+        held.falling_peak_to_peak_mm,
+        held.falling_highest_mm,
+        held.falling_repeats,
+    )
+    ways = [rising, falling] if held.falling_rms_mm and rising != falling else [rising]
+    rows: list[list[Any]] = []
+    for k, speed in enumerate(held.speed_rpm):
+        row: list[Any] = [speed]
+        for rms, height, highest, repeats in ways:
+            row += [cell(values[k], "um", measures) for values in (rms, height, highest)]
+            row.append(_said(repeats[k], highest[k]))
+        rows.append(row)
+    names = heads if len(ways) == 1 else [f"{h}, {w}" for w in ("rising", "falling") for h in heads]
+    return Table("motions over speed", ("speed [rpm]", *names), rows, folded=True)
+
+
+def _said(repeats: int, highest: float | None) -> str:
+    """Return in a few words what kind of motion there is."""
+    if highest is None:
+        return "unstable"
+    if repeats != 1:
+        return f"repeats after {repeats} periods" if repeats else "does not repeat"
+    return "teeth part" if highest > 0.0 else "in contact"
 
 
 def chosen(result: Result, measures: Measures) -> Section | None:

@@ -1,7 +1,6 @@
 """kind = "dynamics": a spur pair on moving axes: response, stability, speeds, least vibration."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -9,6 +8,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations.dynamics import dynamics_parts as parts
 from gearopt.formulations.dynamics.chosen import chosen
 from gearopt.formulations.dynamics.dynamics_design import Chosen, DynamicsDesign
+from gearopt.formulations.dynamics.motions_over_speed import over_speeds
 from gearopt.formulations.orbit.orbit_search import NEAR, exchange, methods
 from gearopt.formulations.orbit.orbit_text import problem, start
 from gearopt.formulations.orbit.task import MICRO, VARIABLES, pair_of
@@ -20,12 +20,11 @@ from gearopt.optimise.typed import untyped
 from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.scenes.dynamics.example import EXAMPLE
 from gearopt.scenes.dynamics.scene import Scene, wave_of
-from gearopt.scenes.dynamics.tables import MOST_OUTPUTS
+from gearopt.scenes.dynamics.warnings import warnings
 from gearopt.scenes.reading.ask import Ask
 
 __all__ = ["EXAMPLE", "Scene", "compared", "idle", "model", "solve"]
 METHODS = ("screened",)  # its own
-FINE = 10.0  # times in a period of the fastest motion at which it is told, at least
 NOTHING = "the file has no table [optimise], so that nothing is chosen"
 
 
@@ -48,7 +47,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
         design=untyped(replace(design, warnings=tuple(warnings(design)))),
         report={"assumptions": assumptions(scene)},
         message=missing,
-        evaluations=1,
+        evaluations=clock.evaluations + 1,
         seed=ask.seed,
         versions=versions("numpy"),
     )
@@ -121,7 +120,7 @@ def _design(scene: Scene, pair: MovingPair, level: str, clock: Clock) -> Dynamic
     if speeds is not None:
         low, high = (30.0 / math.pi * end.value for end in speeds.range)
         grid = low, high, speeds.points
-        motions = parts.over_speeds(pair, level, scene.mesh.teeth, grid, speeds.harmonics, clock)
+        motions = over_speeds(pair, level, scene.mesh.teeth, grid, speeds.harmonics, clock)
         motions = motions if len(motions.speed_rpm) > 1 else None
     return DynamicsDesign(
         kinematics=pair.kinematics,
@@ -140,8 +139,12 @@ def _missing(scene: Scene, design: DynamicsDesign) -> str:
     found = []
     if simulate is not None and design.response is None:
         found.append("the motion in time")
-    elif design.response is not None and not design.response.met:
-        found.append("the error asked of the motion")
+    elif simulate is not None and design.response is not None:
+        reached, asked = design.response.time_ms[-1], 1e3 * simulate.duration.value
+        if reached < (1.0 - 1e-9) * asked:
+            found.append(f"the motion after {reached:.4g} ms")
+        elif not design.response.met:
+            found.append("the error asked of the motion")
     if stability is not None:
         rows = len(design.stability.depth) if design.stability else 0
         if rows < stability.depths:
@@ -150,6 +153,8 @@ def _missing(scene: Scene, design: DynamicsDesign) -> str:
         done = len(design.speeds.speed_rpm) if design.speeds else 0
         if done < speeds.points:
             found.append(f"{speeds.points - done} of {speeds.points} speeds")
+        if design.speeds and design.speeds.teeth_part and not design.speeds.falling_rms_mm:
+            found.append("falling speeds")
     return f"Stopped early: {', '.join(found)} missing." if found else ""
 
 
@@ -170,58 +175,6 @@ def assumptions(scene: Scene) -> list[str]:
             "between one and two pairs of teeth is a trapezoid."
         )
     return said
-
-
-def warnings(design: DynamicsDesign) -> list[str]:
-    """Return what must be known of this answer before its numbers."""
-    found = []
-    response, stability = design.response, design.stability
-    if response is not None:
-        found += _too_few(response.time_ms, design)
-    if response is not None and not response.met:
-        found.append(
-            f"The error asked, {response.error_asked:.1e}, was not reached: the estimate is "
-            f"{response.error:.1e}."
-        )
-    if response is not None and response.jammed_ms is not None:
-        found.append(
-            f"The axes come together until the backlash is used up, first at "
-            f"{response.jammed_ms:.4g} ms: both flanks are pressed at once, where the model of one "
-            "flank at a time does not hold. The motion is wrong from there on."
-        )
-    if response is not None and response.highest_mm > 0.0 and response.separations == 0:
-        found.append(
-            f"The deformation rises to {MICRO * response.highest_mm:.3g} µm: teeth would part "
-            "there, and a mesh without backlash pulls instead."
-        )
-    if stability is not None and stability.here is not None and stability.here > 1.0 + 1e-6:
-        found.append(
-            f"The pair is unstable at its speed: the largest Floquet multiplier is "
-            f"{stability.here:.4f} a mesh period. A linear motion grows without end."
-        )
-    if design.speeds is not None and max(design.speeds.growth) > 1.0 + 1e-6:
-        count = sum(g > 1.0 + 1e-6 for g in design.speeds.growth)
-        found.append(
-            f"At {count} of {len(design.speeds.growth)} speeds the periodic motion of a mesh in "
-            "contact is unstable; an amplitude there says nothing."
-        )
-    return found
-
-
-def _too_few(times_ms: Sequence[float], design: DynamicsDesign) -> list[str]:
-    """Return what is missed between the times at which a motion is told, where they are few."""
-    fastest = max(design.mesh_frequency_Hz, design.equilibrium.frequencies_Hz[-1])
-    duration = 1e-3 * (times_ms[-1] - times_ms[0])
-    needed = math.ceil(FINE * fastest * duration) + 1
-    if len(times_ms) >= needed:
-        return []
-    most = MOST_OUTPUTS / (FINE * fastest)
-    change = f"outputs = {needed}" if needed <= MOST_OUTPUTS else f"at most {1e3 * most:.3g} ms"
-    return [
-        f"The motion is told at {len(times_ms):,} times, {len(times_ms) / fastest / duration:.2g} "
-        f"in a period of {fastest:,.0f} Hz: peaks, RMS and spectrum may miss what lies between. "
-        f"Take {change}."
-    ]
 
 
 def idle(scene: Scene, method: str | None) -> dict[str, str]:

@@ -1,0 +1,106 @@
+"""What must be known of the motion of a pair before its numbers."""
+
+import math
+from collections.abc import Sequence
+
+from gearopt.formulations.dynamics.dynamics_design import DynamicsDesign, Response, Speeds
+from gearopt.formulations.dynamics.motions_over_speed import MOST_PERIODS, ranges
+from gearopt.formulations.motion.stability import UNSTABLE
+from gearopt.formulations.orbit.task import MICRO
+from gearopt.scenes.dynamics.tables import MOST_OUTPUTS
+
+FINE = 10.0  # times in a period of the fastest motion at which it is told, at least
+
+
+def warnings(design: DynamicsDesign) -> list[str]:
+    """Return what is unstable, parts, jams, or was not reached."""
+    found, stability = list[str](), design.stability
+    if design.response is not None:
+        found += _of_response(design.response, design)
+    if stability is not None and stability.here is not None and stability.here > 1.0 + UNSTABLE:
+        found.append(
+            f"The pair is unstable at its speed: the largest Floquet multiplier is "
+            f"{stability.here:.4f} a mesh period. A linear motion grows without end."
+        )
+    if design.speeds is not None:
+        found += _of_speeds(design.speeds)
+    return found
+
+
+def _of_response(response: Response, design: DynamicsDesign) -> list[str]:
+    found = _too_few(response.time_ms, design)
+    if not response.met:
+        found.append(
+            f"The error asked, {response.error_asked:.1e}, was not reached: the estimate is "
+            f"{response.error:.1e}."
+        )
+    if response.jammed_ms is not None:
+        found.append(
+            f"The axes come together until the backlash is used up, first at "
+            f"{response.jammed_ms:.4g} ms: both flanks are pressed at once, where the model of one "
+            "flank at a time does not hold. The motion is wrong from there on."
+        )
+    if response.highest_mm > 0.0 and response.separations == 0:
+        found.append(
+            f"The deformation rises to {MICRO * response.highest_mm:.3g} µm: teeth would part "
+            "there, and a mesh without backlash pulls instead."
+        )
+    return found
+
+
+def _too_few(times_ms: Sequence[float], design: DynamicsDesign) -> list[str]:
+    """Return what is missed between the times at which a motion is told, where they are few."""
+    fastest = max(design.mesh_frequency_Hz, design.equilibrium.frequencies_Hz[-1])
+    duration = 1e-3 * (times_ms[-1] - times_ms[0])
+    needed = math.ceil(FINE * fastest * duration) + 1
+    if len(times_ms) >= needed:
+        return []
+    most = MOST_OUTPUTS / (FINE * fastest)
+    change = f"outputs = {needed}" if needed <= MOST_OUTPUTS else f"at most {1e3 * most:.3g} ms"
+    return [
+        f"The motion is told at {len(times_ms):,} times, {len(times_ms) / fastest / duration:.2g} "
+        f"in a period of {fastest:,.0f} Hz: peaks, RMS and spectrum may miss what lies between. "
+        f"Take {change}."
+    ]
+
+
+def _of_speeds(speeds: Speeds) -> list[str]:
+    """Return where motions over speed are unstable, part, jam, or take more than a period."""
+    found, unstable = list[str](), [g > 1.0 + UNSTABLE for g in speeds.growth]
+    falling = speeds.falling_rms_mm or speeds.rms_mm
+    endless = [None in both for both in zip(speeds.rms_mm, falling, strict=True)]
+    limited = [u and not e for u, e in zip(unstable, endless, strict=True)]
+    if any(endless):
+        found.append(
+            f"At {ranges(speeds.speed_rpm, endless)} the pair is unstable: its motion grows "
+            "without end, and has no amplitude."
+        )
+    if any(limited):
+        found.append(
+            f"At {ranges(speeds.speed_rpm, limited)} teeth in contact are unstable: they part, and "
+            "that alone limits the amplitude."
+        )
+    pulls = [h is not None and h > 0.0 for h in speeds.highest_mm]
+    if any(pulls) and not speeds.teeth_part:
+        found.append(
+            f"At {ranges(speeds.speed_rpm, pulls)} the deformation rises above zero: teeth would "
+            "part there, and a mesh without backlash pulls instead."
+        )
+    ways = {"rising": speeds.repeats, "falling": speeds.falling_repeats}
+    if speeds.repeats == speeds.falling_repeats:
+        ways = {"rising or falling": speeds.repeats}
+    for way, repeats in ways.items():
+        for count in sorted(set(repeats) - {1}, reverse=True):
+            where = ranges(speeds.speed_rpm, [r == count for r in repeats])
+            told = (
+                f"repeats only after {count}" if count else f"does not repeat within {MOST_PERIODS}"
+            )
+            found.append(f"With {way} speed the motion {told} periods of the mesh at {where}.")
+    if speeds.jammed_rpm:
+        jammed = [n in speeds.jammed_rpm for n in speeds.speed_rpm]
+        found.append(
+            f"At {ranges(speeds.speed_rpm, jammed)} the axes come together until the backlash is "
+            "used up: both flanks are pressed at once, where the model of one flank at a time does "
+            "not hold."
+        )
+    return found
