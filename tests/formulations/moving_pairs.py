@@ -1,7 +1,11 @@
-"""The pair of Yoon, Kim and Chung in mm, t, N, with what their print leaves open."""
+"""The pair of Yoon, Kim and Chung in mm, t, N; the oscillator of Kahraman and Singh as a pair."""
 
 import math
 
+import numpy as np
+
+from gearopt.formulations.motion.integrate import march
+from gearopt.formulations.motion.timeline import timeline
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor
 from gearopt.physics.motion.stiffness_wave import constant
 
@@ -38,3 +42,13 @@ def oscillator(ratio, load, shake=0.0, wave=None, frequency=0.1):
     return MovingPair(
         rotor, rotor, 0.3, mesh, frequency, drag=2.0 * ratio, backlash=2.0, error=(shake,)
     )
+
+
+def steady(pair, periods, state, points=100, kept=10):
+    """RMS of delta about its mean over the last periods kept, its extremes and its last state."""
+    phases = np.arange(kept * points + 1) / points + periods
+    times = np.append(np.arange(0.0, periods, 5.0), phases) / pair.mesh_frequency
+    longest = 1.0 / pair.mesh_frequency / 30.0
+    made = march(pair, "fixed", timeline(pair, times, False), "rk8", longest, state)
+    delta = made.delta[-kept * points :]
+    return delta.std(), delta.min(), delta.max(), made.states[-1]

@@ -2,18 +2,20 @@
 
 Data of Yoon, Kim and Chung, who print no result; their mesh stiffness is assumed (2e5 N/mm). From
 rest, 20 ms, 401 outputs. Error: largest difference of delta from steps of RK8 eight times shorter
-than any compared, over the largest |delta|.
+than any compared, over the largest |delta|. Times are of the processor, which other programs do not
+lengthen by waiting; all methods take turns, so that what slows the machine slows all of them.
 """
 
 import math
 import statistics
+import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Any
 
 from gearopt.formulations.motion.integrate import STEPPERS, conservative, march
 from gearopt.formulations.motion.reference import SCIPY, cvodes, scipy_motion
 from gearopt.formulations.motion.timeline import timeline
-from gearopt.optimise.clock import Clock
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor
 from gearopt.physics.motion.stiffness_wave import Wave, constant, trapezoid
 
@@ -22,8 +24,10 @@ STIFFNESS = 2e5  # N/mm
 TIME, OUTPUTS = 0.02, 401
 REFERENCE = 128  # steps of RK8 between two outputs
 PATIENCE = 1200.0  # ms that a run may take for the next finer one to be tried
+BATCH = 10.0  # ms: shorter runs are timed several together
 TOLERANCES = tuple(10.0**-p for p in range(3, 14))
 COARSEST = {"rk8": 1, "rk4": 4, "symplectic": 2}  # steps between two outputs; of others 4
+YARDSTICK = "rk8"
 
 
 def pair(kinematics: str, wave: Wave, frequency: float = 0.0) -> MovingPair:
@@ -43,21 +47,30 @@ def scenes() -> dict[str, MovingPair]:
 
 
 def run(repeat: int) -> list[dict[str, Any]]:
-    """Return rows: case, method, its order, ms (median) to each error of TARGETS, least error.
+    """Return rows: case, method, order, ms to each error of TARGETS, over RK8's; least error.
 
     The time to an error lies between those of two settings, on a straight line of the logarithms.
-    order: the largest slope of log error over log step of two settings whose errors lie between
-    1e-9 and 0.02. None: not reached, within a second a run; or no order, of adaptive methods.
+    Medians of so many rounds, in each of which all methods take their turn; over_rk8: the median of
+    the ratios within a round. order: the largest slope of log error over log step of two settings
+    whose errors lie between 1e-9 and 0.02. None: not reached, within a second a run; or no order,
+    of adaptive methods.
     """
     rows = []
     for case, scene in scenes().items():
-        for name, ladder in _ladders(scene):
-            found = list(_climbed(ladder, scene, repeat))
-            times = {f"ms_{target:.0e}": _least(found, target) for target in TARGETS}
-            fixed = name in STEPPERS
-            slope = _slope([e for e, _ in found]) if fixed else None
-            least = min(e for e, _ in found)
-            rows.append({"case": case, "method": name, "order": slope, **times, "error": least})
+        known = reference(scene)
+        made = {name: list(_climbed(ladder, known)) for name, ladder in _ladders(scene)}
+        rounds = [_round(made) for _ in range(max(repeat, 1))]
+        for name, settings in made.items():
+            errors = [one.error for one in settings]
+            slope = _slope(errors) if name in STEPPERS else None
+            row = {"case": case, "method": name, "order": slope}
+            for index, target in enumerate(TARGETS):
+                times = [one[name][index] for one in rounds]
+                row[f"ms_{target:.0e}"] = _median(times)
+                bases = [one[YARDSTICK][index] for one in rounds]
+                shares = [t / b if t and b else None for t, b in zip(times, bases, strict=True)]
+                row[f"over_rk8_{target:.0e}"] = _median(shares)
+            rows.append({**row, "error": min(errors)})
     return rows
 
 
@@ -93,26 +106,57 @@ def _ladders(scene: MovingPair) -> Iterator[tuple[str, Iterator[Run]]]:
     yield "CVODES", (lambda b=b: b(rest) for b in built)  # type: ignore[misc]
 
 
-def _climbed(
-    ladder: Iterator[Run], scene: MovingPair, repeat: int
-) -> Iterator[tuple[float, float]]:
-    """Yield error and median time [ms] of each run, until the least target or patience ends."""
+@dataclass(frozen=True)
+class _Setting:
+    """A run of a method, the error it ends with, and how often it runs at a time."""
+
+    run: Run
+    error: float
+    calls: int
+
+
+def _climbed(ladder: Iterator[Run], known: Any) -> Iterator[_Setting]:
+    """Yield the settings of a method, until the least target is met or patience ends."""
     import numpy as np
 
-    known = reference(scene)
     scale = np.max(np.abs(known))
     for run_ in ladder:
         made = run_()  # the first compiles
         error = float(np.max(np.abs(made.delta - known)) / scale)
-        took = []
-        for _ in range(repeat):
-            clock = Clock()
-            run_()
-            took.append(1000.0 * clock.seconds)
-        took_ms = statistics.median(took)
-        yield error if math.isfinite(error) else math.inf, took_ms
-        if error <= TARGETS[-1] or took_ms > PATIENCE:
+        took = _took(run_, 1)
+        calls = max(1, round(BATCH / max(took, 1e-3)))
+        yield _Setting(run_, error if math.isfinite(error) else math.inf, calls)
+        if error <= TARGETS[-1] or took > PATIENCE:
             return
+
+
+def _took(run_: Run, calls: int) -> float:
+    """Return the processor's time of one of so many runs [ms]."""
+    begun = time.process_time()
+    for _ in range(calls):
+        run_()
+    return 1000.0 * (time.process_time() - begun) / calls
+
+
+def _round(made: dict[str, list[_Setting]]) -> dict[str, list[float | None]]:
+    """Return the time of every method to each error of TARGETS [ms], measured anew."""
+    found: dict[str, list[float | None]] = {}
+    for name, settings in made.items():
+        needed = _needed([one.error for one in settings])
+        times = [(settings[i].error, _took(settings[i].run, settings[i].calls)) for i in needed]
+        found[name] = [_least(times, target) for target in TARGETS]
+    return found
+
+
+def _needed(errors: list[float]) -> list[int]:
+    """Return which settings lie beside an error of TARGETS."""
+    firsts = [next((i for i, e in enumerate(errors) if e <= t), None) for t in TARGETS]
+    return sorted({j for i in firsts if i is not None for j in (max(i - 1, 0), i)})
+
+
+def _median(values: list[float | None]) -> float | None:
+    known = [v for v in values if v is not None]
+    return float(f"{statistics.median(known):.3g}") if known else None
 
 
 def reference(scene: MovingPair) -> Any:
@@ -130,9 +174,9 @@ def _least(found: list[tuple[float, float]], target: float) -> float | None:
     for (worse, less), (better, more) in zip([(math.inf, 0.0), *found], found, strict=False):
         if better <= target:
             if not math.isfinite(worse) or worse <= better or more <= less:
-                return round(more, 3)
+                return more
             share = math.log(worse / target) / math.log(worse / better)
-            return round(float(less * (more / less) ** share), 3)
+            return float(less * (more / less) ** share)
     return None
 
 
