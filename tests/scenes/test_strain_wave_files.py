@@ -7,13 +7,16 @@ import pytest
 
 import gearopt
 from gearopt.errors import SceneError, SolveError
+from gearopt.formulations.strain_wave.duty import equal_pressure, loads_at
+from gearopt.formulations.strain_wave.exchange import design_of
+from gearopt.formulations.strain_wave.range_ends import RangeEnd
 from gearopt.formulations.strain_wave.wave_report import WaveDesign
 from gearopt.optimise.typed import typed
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.strain_wave import EXAMPLE, compared, explain, model, objectives, several
 from gearopt.scenes.strain_wave.example import FROM_DUTY
-from gearopt.scenes.strain_wave.wave_assumptions import assumptions
+from gearopt.scenes.strain_wave.wave_assumptions import assumptions, range_notes
 
 
 def scene(text):
@@ -53,12 +56,78 @@ def test_other_deflections_of_the_same_teeth(solved):
 def test_what_is_assumed_is_told_until_it_is_given(solved):
     design = typed(WaveDesign, solved("strain_wave_base").design)
     told = " ".join(assumptions(scene(EXAMPLE), design))
-    for word in ("1e+05 N/mm", "400 MPa", "3e+03 N/mm", "chain of springs"):
+    for word in (
+        *("1e+05 N/mm", "400 MPa", "230 MPa", "3e+03 N/mm", "chain of springs", "206 GPa"),
+        *(
+            "notch factor of 1.6",
+            "safety of 1.5",
+            "0.6 times as thick",
+            "30 mm long",
+            "0.25 modules",
+        ),
+        *("Poisson's ratio 0.3", "3 mm of the circular spline", "3 times the torque"),
+    ):
         assert word in told
-    limits = '[material]\nbending_limit = "400 MPa"\nshear_limit = "230 MPa"\n'
+    limits = '[material]\nbending_limit = "400 MPa"\n'
     more = EXAMPLE.replace('rim = "elastic"', 'rim = "rigid"\npair_compliance = "9 um/kN"') + limits
     told = " ".join(assumptions(scene(more), design))
     assert "400 MPa" not in told and "1e+05" not in told and "springs" not in told
+    assert "230 MPa" in told and "notch factor" in told
+
+
+def test_every_assumption_can_be_given(solved):
+    """A file that gives all is told no number as assumed but what has no key."""
+    given = EXAMPLE.replace("# [design]", "[design]\n" + "\n".join(LIMITS) + "\n# [design]")
+    sizes = 'face_width = "10 mm"\nclearance = 0.25\nshell = "3 mm"'
+    given = given.replace('face_width = "10 mm"', sizes) + "[material]\n" + "\n".join(STEEL)
+    given = given.replace('rim = "elastic"', 'wall_over_rim = 0.6\npair_compliance = "9 um/kN"')
+    design = typed(WaveDesign, solved("strain_wave_base").design)
+    told = assumptions(scene(given), design)
+    assert not [words for words in told if words.startswith("Assumed")]
+
+
+STEEL = (
+    'elastic_modulus = "200 GPa"',
+    "poisson_ratio = 0.29",
+    'shear_limit = "230 MPa"',
+    'bending_limit = "400 MPa"',
+)
+LIMITS = (
+    *("notch = 1.6", "safety = 1.5", "ratcheting = 3", "pairs = 1"),
+    'radial_compliance = "333 um/kN"',
+)
+
+
+def test_assumed_ranges_are_told_until_they_are_given(solved):
+    design = typed(WaveDesign, solved("strain_wave_base").design)
+    (told,) = [w for w in assumptions(scene(FROM_DUTY), design) if "ranges of what" in w]
+    for words in ("profile shift 0 to 2", "pressure angle 15° to 30°", "deflection 0.97 to 1.25"):
+        assert words in told
+    own = scene(FROM_DUTY + "[design]\nprofile_shift = [0, 1]\n")
+    (told,) = [w for w in assumptions(own, design) if "ranges of what" in w]
+    assert "profile shift" not in told and "addendum 0.4 to 0.9" in told
+
+
+def test_ends_of_ranges_are_told_with_what_decides():
+    ends = (
+        RangeEnd(name="deflection", value=0.97, least=True, gain=2.46),
+        RangeEnd(name="rim", value=1.4, least=False, gain=0.161),
+    )
+    own = scene(FROM_DUTY + '[design]\nrim = ["0.4 mm", "1.4 mm"]\n')
+    first, second = range_notes(own, ends)
+    assert "deflection 0.97 (least, assumed) and rim 1.4 mm (largest, of [design])" in first
+    assert "2.5 MPa by deflection and 0.16 MPa by rim: deflection decides most" in second
+    assert range_notes(own, ()) == []
+
+
+@pytest.mark.parametrize(("line", "held"), [("", 1.0125), ('torque_of = "output"', 1.0)])
+def test_teeth_carry_what_the_circular_spline_holds(line, held):
+    """Equilibrium: the spline holds the torques of output and input, T (1 + 1/80)."""
+    own = scene(EXAMPLE.replace("[sharing]", f"[sharing]\n{line}"))
+    duty, made = own.loads(), design_of(own.demand(), own.start())
+    _, loads = loads_at(duty, made)
+    assert 2.0 * loads.forces.sum() * 38.05755114 == pytest.approx(1e5 * held, rel=1e-8)
+    assert equal_pressure(duty, made) == pytest.approx(117.38 * math.sqrt(held), abs=0.01)
 
 
 def test_interference_is_told_before_numbers(solved):
@@ -113,9 +182,10 @@ def test_problems_of_a_duty_alone():
     assert posed.problem.rows.objectives == ("pressure", "load_share")
     posed = several(own, ("volume_per_torque", "pressure"), None)
     assert posed.limiting.names == ("pressure",)
-    for names in (("pressure", "load_share"), ("pressure", "volume_per_torque")):
-        with pytest.raises(SolveError, match="in this order alone: volume_per_torque,pressure"):
-            several(own, names, None)
+    posed = several(own, ("pressure", "volume_per_torque"), None)
+    assert posed.limiting.names == ("volume_per_torque",)
+    with pytest.raises(SolveError, match="load_share counts teeth"):
+        several(own, ("pressure", "load_share"), None)
     for call in (compared, objectives, lambda s: model(s, "")):
         with pytest.raises(SolveError, match="the gearing is given"):
             call(scene(EXAMPLE))

@@ -9,6 +9,7 @@ import numpy as np
 from gearopt.formulations.strain_wave.cutter_fit import arc_edge, arc_of_cones, straight_edge
 from gearopt.physics.strain_wave.cutter import Profile, envelope, generated, least_teeth
 from gearopt.physics.strain_wave.gearing import StrainWave
+from gearopt.physics.strain_wave.vectors import Vector
 
 Columns = tuple[float, ...]
 POINTS = 51  # of the cutter's edge that are told
@@ -20,13 +21,14 @@ class Cutter:
     """teeth Z_b of a pinion-type cutter, 0: a rack; pitch_radius P_f of the blank [mm], 0: m z_f/2.
 
     angle [rad]: of a straight tool that is there, beside the best one. least_radius [mm]: of an arc
-    that replaces the edge, 0: any.
+    that replaces the edge, 0: any. replaced: whether a line and an arc that replace it are sought.
     """
 
     teeth: int = 0
     pitch_radius: float = 0.0
     angle: float = USUAL
     least_radius: float = 0.0
+    replaced: bool = True
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,19 +79,26 @@ def cutter_of(gearing: StrainWave, blank: Profile, asked: Cutter) -> CutterDesig
     back = (generated(found.profile, pitch, radius) - blank.points).length
     pick = np.rint(np.linspace(0, len(back) - 1, POINTS)).astype(int)
     edge = found.profile.points[pick]
-    line, arc, given = straight_edge(edge), arc_edge(edge), straight_edge(edge, asked.angle)
-    if arc.radius < asked.least_radius:
-        arc = arc_of_cones(edge, arc, asked.least_radius)
     return CutterDesign(
         **head,
         x_mm=tuple(map(float, edge.x)),
         y_mm=tuple(map(float, edge.y)),
         round_trip_mm=float(back.max()),
-        straight_deg=math.degrees(line.angle),
-        straight_deviation_mm=line.deviation,
-        arc_radius_mm=arc.radius,
-        arc_deviation_mm=arc.deviation,
-        least_radius_mm=asked.least_radius,
-        given_deg=math.degrees(asked.angle),
-        given_deviation_mm=given.deviation,
+        **(_replacements(edge, asked) if asked.replaced else {}),
     )
+
+
+def _replacements(edge: Vector, asked: Cutter) -> dict[str, Any]:
+    """Return line and arc of least deviation from an edge, and the line at the tool's angle."""
+    line, arc, given = straight_edge(edge), arc_edge(edge), straight_edge(edge, asked.angle)
+    if arc.radius < asked.least_radius:
+        arc = arc_of_cones(edge, arc, asked.least_radius)
+    return {
+        "straight_deg": math.degrees(line.angle),
+        "straight_deviation_mm": line.deviation,
+        "arc_radius_mm": arc.radius,
+        "arc_deviation_mm": arc.deviation,
+        "least_radius_mm": asked.least_radius,
+        "given_deg": math.degrees(asked.angle),
+        "given_deviation_mm": given.deviation,
+    }

@@ -20,6 +20,7 @@ from gearopt.formulations.strain_wave.duty import (
     shared_pressure,
 )
 from gearopt.formulations.strain_wave.exchange import STEP_DEG, stretched
+from gearopt.formulations.strain_wave.range_ends import RangeEnd
 from gearopt.formulations.strain_wave.shift import (
     ShiftPoint,
     largest_addendum,
@@ -168,6 +169,7 @@ class WaveDesign:
     deflections: tuple[Deflected, ...]
     cutter: CutterDesign | None = None
     rounds: tuple[RoundRow, ...] = ()
+    range_ends: tuple[RangeEnd, ...] = ()
 
 
 def described(

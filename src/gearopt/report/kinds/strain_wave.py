@@ -11,6 +11,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report import wave_tables as tables
 from gearopt.report.answer import asked, assumptions, limits, summary
+from gearopt.report.deciding import of_limits
 from gearopt.report.kinds import Kind
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
 from gearopt.report.measures import METRIC, Measures
@@ -18,7 +19,7 @@ from gearopt.report.pages.cutter_drawing import drawing
 from gearopt.report.pages.sheet import series
 from gearopt.report.pages.wave_motion import running
 from gearopt.report.section import Figure, Section, Tile, axis, layout
-from gearopt.report.words import amount, number
+from gearopt.report.words import amount, number, series_of
 
 RUNS = "strain wave gearing"  # the animation that plots follow
 ANGLE = "angle of the tooth on the wave [°]"
@@ -66,11 +67,23 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
 
 
 def decides(result: Result) -> str:
-    """Return how many teeth carry, and how hard they press."""
-    if (found := design_of(result)) is None or result.value is not None:
+    """Return what was reached: of a given gearing its loads, else its teeth and what decides."""
+    if (found := design_of(result)) is None:
         return ""
-    pressure = amount(found.shared_pressure_MPa, "MPa", METRIC)
-    return f"{found.carrying_teeth} teeth of a lobe carry, at up to {pressure}"
+    if result.value is None:
+        pressure = amount(found.shared_pressure_MPa, "MPa", METRIC)
+        carry = "1 tooth of a lobe carries"
+        if found.carrying_teeth > 1:
+            carry = f"{found.carrying_teeth} teeth of a lobe carry"
+        return f"{carry}, at up to {pressure}"
+    sizes = (
+        f"{found.flexspline_teeth} and {found.circular_spline_teeth} teeth of module "
+        f"{amount(found.module_mm, 'mm', METRIC)} carry {amount(found.torque_Nm, 'Nm', METRIC)} "
+        f"in {amount(found.outer_diameter_mm, 'mm', METRIC)}"
+    )
+    ends = [end.name.replace("_", " ") for end in found.range_ends]
+    rest = f"; at ends of their ranges: {series_of(ends)}" if ends else ""
+    return f"{sizes}; {of_limits(result)}{rest}"
 
 
 def warns(result: Result) -> Sequence[str]:

@@ -43,15 +43,17 @@ def drawing(
     for tooth in teeth:
         path = " L ".join(f"{u:.3f} {v:.3f}" for u, v in (sheet.at(*p) for p in tooth.tolist()))
         sheet.shape(f"M {path} Z", "tip", series(1), "tooth of the cutter")
-    _straight(sheet, found, room)
+    if found.straight_deg:
+        _straight(sheet, found, room)
     for v, u in edge[::5].tolist():
         sheet.circle(u, v, 2.0 / sheet.scale, "design")
     name = f"pinion-type cutter of {found.teeth} teeth" if found.teeth else "rack"
     caption = (
         f"Active part of two teeth of a {name} at {scale:g}:1, grid {measures.length(step, 3)} "
-        f"{measures.lengths}; every fifth point of the CSV is marked. Dashed: the straight edge "
-        f"of least deviation, {found.straight_deg:.3f}°."
+        f"{measures.lengths}; every fifth point of the CSV is marked."
     )
+    if found.straight_deg:
+        caption += f" Dashed: the straight edge of least deviation, {found.straight_deg:.3f}°."
     return sheet.drawing("cutting edge", caption)
 
 

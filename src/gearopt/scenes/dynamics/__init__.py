@@ -21,7 +21,7 @@ from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.scenes.dynamics.example import EXAMPLE
 from gearopt.scenes.dynamics.scene import Scene, wave_of
 from gearopt.scenes.dynamics.warnings import warnings
-from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.ask import Ask, without_method
 
 __all__ = ["EXAMPLE", "Scene", "compared", "idle", "model", "solve"]
 METHODS = ("screened",)  # its own
@@ -34,8 +34,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     pair = scene.pair(wave_of(scene.mesh, ask))
     if scene.optimise is not None:
         return _optimised(scene, ask, pair, clock)
-    if ask.method is not None:
-        raise SolveError(f"--method {ask.method} changes nothing here: {NOTHING}; leave it out")
+    without_method(ask, NOTHING)
     design = _design(scene, pair, scene.mesh.axes, clock)
     missing = _missing(scene, design) if clock.stopped else ""
     found = Result(

@@ -25,20 +25,9 @@ from gearopt.scenes.pair.example import EXAMPLE, MORE_EXAMPLES
 from gearopt.scenes.pair.relief_part import relieved
 from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.scene import Scene
-from gearopt.scenes.reading.ask import Ask, unseeded
+from gearopt.scenes.reading.ask import Ask, unseeded, without_method
 
-__all__ = [
-    "EXAMPLE",
-    "MORE_EXAMPLES",
-    "Scene",
-    "compared",
-    "explain",
-    "idle",
-    "model",
-    "objectives",
-    "several",
-    "solve",
-]
+__all__ = ["EXAMPLE", "MORE_EXAMPLES", "Scene"]
 METHODS = ("exact", "mpec")  # its own
 NOTHING = "the gears are given, so that nothing is chosen"
 
@@ -108,8 +97,7 @@ def _with_relief(scene: Scene, made: PairMesh, gears: Result, ask: Ask) -> Resul
 
 def _evaluated(scene: Scene, ask: Ask) -> Result:
     """Return what is to be known of gears that are given, rated where the file asks for it."""
-    if ask.method is not None:
-        raise SolveError(f"--method {ask.method} changes nothing here: {NOTHING}; leave it out")
+    without_method(ask, NOTHING)
     clock = Clock(ask.budget, ask.watch)
     if scene.rating is not None:
         found = rated.rate(scene.drive, ask)

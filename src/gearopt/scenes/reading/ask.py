@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from gearopt.errors import SolveError
 from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.solve import GAP
 
@@ -30,6 +31,12 @@ class Ask:
 def unseeded(method: str | None) -> dict[str, str]:
     """Return that a seed changes nothing, for a kind whose own methods are not random."""
     return {} if method in RANDOM else {"seed": f"{method or 'the method'} is not random"}
+
+
+def without_method(ask: Ask, nothing: str) -> None:
+    """Raise SolveError where a method is named although nothing is chosen; nothing: why."""
+    if ask.method is not None:
+        raise SolveError(f"--method {ask.method} changes nothing here: {nothing}; leave it out")
 
 
 def idle(module: Any, scene: Any, method: str | None) -> dict[str, str]:

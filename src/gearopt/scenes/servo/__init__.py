@@ -48,17 +48,7 @@ from gearopt.scenes.servo.train_part import (
     train_part,
 )
 
-__all__ = [
-    "EXAMPLE",
-    "Scene",
-    "compared",
-    "explain",
-    "idle",
-    "model",
-    "objectives",
-    "several",
-    "solve",
-]
+__all__ = ["EXAMPLE", "Scene", "objectives", "several"]
 
 METHODS = ("exact", "enumeration")  # its own
 COUNTS = {"combinations": "trains_looked_at", "feasible_trains": "feasible_trains"}

@@ -1,15 +1,18 @@
 """kind = "strain_wave": a strain wave gearing (harmonic drive), given or chosen."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from types import MappingProxyType
 from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.strain_wave import sampled
 from gearopt.formulations.strain_wave.demand import FREE, PRESSURE, VOLUME
 from gearopt.formulations.strain_wave.exchange import Exchanged, design_of, exchange
+from gearopt.formulations.strain_wave.range_ends import ends_of, slopes_of
+from gearopt.formulations.strain_wave.sampled import SHARE
 from gearopt.formulations.strain_wave.swept_report import (
     described_by_law,
     swept_gearing,
@@ -34,27 +37,17 @@ from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.physics.strain_wave.conjugate import Flank
-from gearopt.scenes.reading.ask import Ask, unseeded
+from gearopt.scenes.reading.ask import Ask, unseeded, without_method
 from gearopt.scenes.strain_wave.example import EXAMPLE, MORE_EXAMPLES
 from gearopt.scenes.strain_wave.scene import Scene
-from gearopt.scenes.strain_wave.wave_assumptions import assumptions, notes
+from gearopt.scenes.strain_wave.wave_assumptions import assumptions, notes, range_notes
 
-__all__ = [
-    "EXAMPLE",
-    "MORE_EXAMPLES",
-    "Scene",
-    "compared",
-    "explain",
-    "idle",
-    "model",
-    "objectives",
-    "several",
-    "solve",
-]
+__all__ = ["EXAMPLE", "MORE_EXAMPLES", "Scene"]
 METHODS = ("exchange",)  # its own
 SAMPLERS = ("annealing", "nsga2")
 NOTHING = "the gearing is given, so that nothing is chosen"
 UNEXPLAINED = "numbers are not solved again, because each would take another search over all poses"
+NO_SLOPES: Mapping[str, float] = MappingProxyType({})
 HIDDEN = (
     "Teeth cut each other by {:.3g} µm between the poses that the method looked at: "
     "--method exchange looks at all."
@@ -74,11 +67,13 @@ def solve(scene: Scene, ask: Ask) -> Result:
     found = exchange(scene.demand(), scene.start(), clock, ask.gap)
     result = replace(found.result, seconds=clock.seconds, evaluations=clock.evaluations)
     result = replace(result, method="exchange", seed=ask.seed)
-    if found.design is None:
+    numbers = found.outcome.x
+    if found.design is None or numbers is None:
         return result
     if result.status == "stationary":  # what Ipopt says of itself is certified
         result = replace(result, message="")
-    shown = _with(scene, result, found.design, _rounds(found))
+    slopes = slopes_of(found.problem, numbers) if result.status == "stationary" else {}
+    shown = _with(scene, result, found.design, numbers, slopes, _rounds(found))
     if found.clear:
         return shown
     message = "Stopped before all poses kept clear: teeth interfere."
@@ -105,15 +100,14 @@ def _sampled(scene: Scene, ask: Ask) -> Result:
         return result
     result = replace(result, message="")
     made = design_of(scene.demand(), outcome.x[: len(FREE)])
-    shown = _with(scene, result, made)
+    shown = _with(scene, result, made, outcome.x)
     least = shown.design["least_clearance_mm"]
     return replace(shown, message=HIDDEN.format(-1e3 * least) if least < -1e-6 else "")
 
 
 def _evaluated(scene: Scene, ask: Ask) -> Result:
     """Return what is to be known of a gearing that is given."""
-    if ask.method is not None:
-        raise SolveError(f"--method {ask.method} changes nothing here: {NOTHING}; leave it out")
+    without_method(ask, NOTHING)
     clock = Clock(ask.budget, ask.watch)
     design, limits = _given(scene)
     excess = max(0.0, max(limits.values()) - 1.0)
@@ -169,16 +163,27 @@ def _no_contact(scene: Scene) -> str:
     )
 
 
-def _with(scene: Scene, result: Result, made: Flank, rounds: Sequence[RoundRow] = ()) -> Result:
+def _with(
+    scene: Scene,
+    result: Result,
+    made: Flank,
+    numbers: Array,
+    slopes: Mapping[str, float] = NO_SLOPES,
+    rounds: Sequence[RoundRow] = (),
+) -> Result:
     """Return a result with the design that was chosen and what it uses of every limit."""
     demand = scene.demand()
-    design = described(demand, made, scene.tool(), rounds)
+    ends = ends_of(demand.ranges, numbers[: len(FREE)], slopes)
+    design = replace(described(demand, made, scene.tool(), rounds), range_ends=ends)
     return _shown(scene, result, design, used(demand, made) | _cut(result))
 
 
 def _shown(scene: Scene, result: Result, design: WaveDesign, limits: dict[str, float]) -> Result:
     """Return a result with a design and all that is told of it."""
-    told: dict[str, Any] = {"assumptions": assumptions(scene, design), "notes": notes(design)}
+    told: dict[str, Any] = {
+        "assumptions": assumptions(scene, design),
+        "notes": [*notes(design), *range_notes(scene, design.range_ends)],
+    }
     drawing = scene.cutter
     if drawing is not None:
         grid = drawing.grid.value if drawing.grid else 0.05
@@ -236,7 +241,7 @@ def objectives(scene: Scene) -> dict[str, str]:
 
 
 def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
-    """Return the problem of a front: least volumes under pressures, or for methods that sample.
+    """Return the problem of a front: the first objective under limits on the other, or sampled.
 
     The former is clear at all poses. load_share counts teeth, so that it is for the latter.
     """
@@ -248,12 +253,12 @@ def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
 
     if method in SAMPLERS:
         return Several(sampled.problem(demand, start, names), listed, drawn)
-    if tuple(names) != (VOLUME, PRESSURE):
+    if SHARE in names:
         raise SolveError(
-            f"least volumes under pressures are found in this order alone: {VOLUME},{PRESSURE}; "
-            f"--method {' or '.join(SAMPLERS)} samples all others"
+            f"{SHARE} counts teeth, which no gradient follows: --method {' or '.join(SAMPLERS)} "
+            f"samples it; {VOLUME},{PRESSURE} are found without it"
         )
-    limiting = Limiting(partial(sampled.limited, demand, start), (PRESSURE,))
+    limiting = Limiting(partial(sampled.limited, demand, start), tuple(names[1:]))
     whole = sampled.problem(demand, start, names, sampled.WHOLE)
     return Several(whole, listed, drawn, limiting)
 

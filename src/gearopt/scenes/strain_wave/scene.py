@@ -16,6 +16,7 @@ from gearopt.scenes.reading.fields import Table, refuse, words
 from gearopt.scenes.strain_wave.law_faults import law_fault
 from gearopt.scenes.strain_wave.wave_tables import (
     MODULES,
+    OUTPUT,
     RANGES,
     RIMS,
     WaveCutter,
@@ -173,6 +174,7 @@ class Scene(Table):
             stiffness,
             cup,
             asked.rim == "elastic",
+            1.0 if asked.torque_of == OUTPUT else 1.0 + 1.0 / self.duty.ratio,
         )
 
     def demand(self) -> Demand:
@@ -244,6 +246,7 @@ class Scene(Table):
             0.0 if pitch is None else 0.5 * pitch.value,
             _or(self.cutter.tool_angle, USUAL),
             _or(self.cutter.least_radius, 0.0),
+            self.involute,
         )
 
 

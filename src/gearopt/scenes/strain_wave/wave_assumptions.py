@@ -1,52 +1,158 @@
 """What a strain wave gearing takes for granted, and what is to be known of its answer."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 
+from gearopt.formulations.strain_wave.demand import (
+    FREE,
+    LAND,
+    OUTSIDE_BASE,
+    ROOM,
+    UNITS,
+    Demand,
+)
 from gearopt.formulations.strain_wave.exchange import STEP_DEG
+from gearopt.formulations.strain_wave.range_ends import WIDER, RangeEnd
+from gearopt.formulations.strain_wave.swept_report import DOUBLE_ARC
 from gearopt.formulations.strain_wave.wave_report import WaveDesign
 from gearopt.scenes.strain_wave.scene import PAIR, RATCHET, Scene
 
 
 def assumptions(scene: Scene, made: WaveDesign) -> list[str]:
     """Return what the numbers take for granted, in sentences."""
-    return [
+    model = [
         "A plane section: no taper of the cup, no stretch of the neutral curve, no friction, no "
         "oil film; teeth do not bend by themselves, and the wave generator is rigid.",
         "Stress: Hertz's line contact; beyond the arc of contact teeth touch at an end of a flank, "
         "which is taken as the nearest conjugate point.",
-        *_assumed(scene, made),
+        _mesh_torque(scene),
     ]
+    limits = (
+        f"Limits of every gearing: lands and root spaces of {LAND:g} modules, tip circle "
+        f"{100.0 * (OUTSIDE_BASE - 1.0):.2g} % outside the base circle, {ROOM:g} modules between "
+        "the tips on the minor axis."
+    )
+    assumed = [*_sizes(scene, made), *_materials(scene, scene.demand()), *_sharing(scene, made)]
+    ranges = list(_ranges(scene)) if scene.limited else []
+    return [*model, limits, *(f"Assumed: {words}." for words in (*assumed, *ranges))]
 
 
-def _assumed(scene: Scene, made: WaveDesign) -> Iterator[str]:
-    """Yield the numbers of which the file says nothing."""
-    sharing, material = scene.sharing, scene.material
+def _mesh_torque(scene: Scene) -> str:
+    """Return what torque the teeth carry."""
+    held = scene.loads().reaction
+    if held == 1.0:
+        return (
+            "Load: the teeth carry the torque of the output, as Jun and Oh have it; the circular "
+            f"spline holds {1.0 + 1.0 / scene.duty.ratio:.5g} times as much, the input's with it."
+        )
+    return (
+        f"Load: the teeth carry what the circular spline holds, {held:.5g} times the torque of the "
+        "output: that of the input with it."
+    )
+
+
+def _sizes(scene: Scene, made: WaveDesign) -> Iterator[str]:
+    """Yield the sizes of which the file says nothing."""
+    gears, teeth = scene.gears, scene.teeth
+    if gears.face_width is None:
+        yield f"a face width of {made.face_width_mm:.4g} mm, 1/9 of the outer diameter"
+    if gears.shell is None:
+        yield f"{scene.shell:.4g} mm of the circular spline outside its roots"
+    if "clearance" not in gears.model_fields_set:
+        yield f"a bottom clearance of {made.clearance:g} modules"
+    if scene.wave_generator.shape == "discs" and scene.wave_generator.wrap_angle is None:
+        yield f"discs that carry over {made.wrap_angle_deg:g}° on each side"
+    if not scene.involute and teeth.thickness is None:
+        yield f"teeth {made.thickness_mm:.4g} mm thick at half their height, half the pitch"
+    if teeth.law == DOUBLE_ARC:
+        named = teeth.convex_radius, teeth.concave_radius, teeth.tangent
+        values = (*made.arc_radii_mm, made.tangent_mm)
+        names = "convex radius", "concave radius", "tangent"
+        rows = zip(names, values, named, strict=True)
+        if left := [f"{name} {value:.4g} mm" for name, value, given in rows if given is None]:
+            yield f"double arcs with {_series(left)}, in modules as in the literature"
+
+
+def _materials(scene: Scene, demand: Demand) -> Iterator[str]:
+    """Yield the material's data and factors of which the file says nothing."""
+    steel, asked = scene.material, scene.design
+    if steel.elastic_modulus is None:
+        yield f"a modulus of elasticity of {1e-3 * demand.duty.moduli[0]:.4g} GPa"
+    if "poisson_ratio" not in steel.model_fields_set:
+        yield f"Poisson's ratio {demand.duty.poissons[0]:g}"
+    if steel.bending_limit is None:
+        yield f"a fatigue limit of the rim of {demand.bending_limit:g} MPa in bending"
+    if steel.shear_limit is None:
+        yield f"a fatigue limit of the rim of {demand.shear_limit:g} MPa in shear"
+    if "notch" not in asked.model_fields_set:
+        yield f"a notch factor of {demand.notch:g} of the teeth on the rim"
+    if "safety" not in asked.model_fields_set:
+        yield f"a safety of {demand.safety:g} against fatigue of the rim"
+    if "ratcheting" not in asked.model_fields_set:
+        yield f"teeth that ratchet above {demand.ratchet_factor:g} times the torque"
+    if "pairs" not in asked.model_fields_set:
+        yield f"at least {demand.pairs:g} conjugate pair in the mean"
+
+
+def _sharing(scene: Scene, made: WaveDesign) -> Iterator[str]:
+    """Yield stiffnesses of which the file says nothing."""
+    sharing = scene.sharing
     if sharing.pair_compliance is None:
         stiffness = PAIR * made.face_width_mm
-        yield f"Assumed: a stiffness of {stiffness:.3g} N/mm of a pair of teeth."
-    if material.bending_limit is None or material.shear_limit is None:
-        demand = scene.demand()
-        yield (
-            f"Assumed: fatigue limits of {demand.bending_limit:g} MPa in bending and "
-            f"{demand.shear_limit:g} MPa in shear, with a notch factor of {demand.notch:g}."
-        )
+        yield f"a stiffness of {stiffness:.3g} N/mm of a pair of teeth"
     if scene.design.radial_compliance is None:
         stiffness = RATCHET * made.face_width_mm
         yield (
-            f"Assumed: ratcheting by a radial stiffness of {stiffness:.3g} N/mm, a model that is "
-            "not published."
+            f"ratcheting by a radial stiffness of {stiffness:.3g} N/mm, a model that is not "
+            "published"
         )
-    if scene.gears.face_width is None:
-        yield f"Assumed: a face width of {made.face_width_mm:.4g} mm, 1/9 of the outer diameter."
+    if "wall_over_rim" not in sharing.model_fields_set:
+        yield f"a wall of the cup {float(sharing.wall_over_rim):g} times as thick as the rim"
     if sharing.rim == "elastic":
-        yield "Assumed: the rim is a chain of springs, its tension and the shear of the cup's wall."
+        yield "the rim is a chain of springs, its tension and the shear of the cup's wall"
+        if sharing.cup_length is None:
+            yield f"a cup {scene.loads().cup.length:.4g} mm long, three face widths"
+
+
+def _ranges(scene: Scene) -> Iterator[str]:
+    """Yield the ranges of which the file says nothing."""
+    left = [n for n in FREE if getattr(scene.gears, n) is None and getattr(scene.design, n) is None]
+    if left:
+        ranges = scene.ranges()
+        ends = ((n, *(_amount(n, end) for end in ranges[n])) for n in left)
+        each = [f"{_name(name)} {low} to {high}" for name, low, high in ends]
+        yield f"ranges of what is chosen: {_series(each)}"
+
+
+def range_notes(scene: Scene, ends: Sequence[RangeEnd]) -> list[str]:
+    """Return which numbers lie at ends of their ranges, and what wider ones would give."""
+    if not ends:
+        return []
+    each = []
+    for end in ends:
+        given = getattr(scene.design, end.name) is not None
+        side = "least" if end.least else "largest"
+        each.append(
+            f"{_name(end.name)} {_amount(end.name, end.value)} ({side}, "
+            f"{'of [design]' if given else 'assumed'})"
+        )
+    told = [f"At ends of their ranges: {_series(each)}."]
+    gains = [end for end in ends if end.gain is not None]
+    if gains:
+        shown = _series([f"{end.gain:.2g} MPa by {_name(end.name)}" for end in gains])
+        told.append(
+            f"With a range {100.0 * WIDER:g} % wider the pressure would fall, to first order, by "
+            f"{shown}: {_name(gains[0].name)} decides most of them."
+        )
+    return told
 
 
 def notes(made: WaveDesign) -> list[str]:
     """Return what is to be known of this gearing, in sentences."""
+    carry = "1 tooth carries" if made.carrying_teeth == 1 else f"{made.carrying_teeth} carry"
     found = [
         f"{made.pairs_in_contact:.3f} pairs of teeth per lobe and flank are conjugate in the mean; "
-        f"{made.carrying_teeth} carry, as if {made.effective_teeth:.2f} carried alike.",
+        f"{carry}, as if {made.effective_teeth:.2f} carried alike.",
     ]
     if made.least_clearance_mm < -1e-9:
         found.append(
@@ -59,3 +165,19 @@ def notes(made: WaveDesign) -> list[str]:
             "passes the other's tip circle between two of them they may, by some tenths of a µm."
         )
     return found
+
+
+def _name(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def _amount(name: str, value: float) -> str:
+    """Return a number of FREE with its unit, an angle in degrees."""
+    if name == "pressure_angle":
+        return f"{math.degrees(value):.4g}°"
+    unit = UNITS.get(name, "")
+    return f"{value:.4g} {unit}".strip()
+
+
+def _series(parts: Sequence[str]) -> str:
+    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"

@@ -18,6 +18,7 @@ RANGES = {  # of what a design may choose, beside modules of the size asked for
     "deflection": (0.97, 1.25),
     "addendum": (0.4, 0.9),
 }
+SPLINE, OUTPUT = "circular spline", "output"  # where the torque that the teeth carry is taken
 MODULES = (0.8, 1.1)  # of the module that fits the outer diameter
 RIMS = (4.0 / 900.0, 14.0 / 900.0)  # of the outer diameter
 
@@ -145,6 +146,11 @@ class WaveMaterial(Table):
 class WaveSharing(Table):
     """How the teeth share the load."""
 
+    torque_of: Annotated[str, choice(SPLINE, OUTPUT)] = Field(
+        SPLINE,
+        description="Whose torque the teeth carry: that which the circular spline holds, 1 + "
+        "1/ratio times the output's, or the output's, as Jun and Oh have it",
+    )
     rim: Annotated[str, choice("rigid", "elastic")] = Field(
         "rigid", description="Whether the rim yields to the loads of its teeth"
     )

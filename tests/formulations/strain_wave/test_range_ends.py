@@ -1,0 +1,44 @@
+"""Numbers at ends of their ranges, and what wider ranges give."""
+
+import numpy as np
+import pytest
+
+from gearopt.formulations.strain_wave.demand import FREE
+from gearopt.formulations.strain_wave.range_ends import WIDER, ends_of, slopes_of
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.solve import solve
+from gearopt.optimise.terms import Terms, Var
+
+RANGES = dict.fromkeys(FREE, (0.0, 2.0)) | {"module": (0.5, 0.5)}
+
+
+def posed(shift=2.0):
+    """Least (x - 3)^2 + (a + 1)^2 with x + a >= 1: at x = shift and a = 0, the ends of both."""
+
+    def evaluate(x, p):
+        cost = (x.profile_shift - 3.0) ** 2 + (x.addendum + 1.0) ** 2 + 1.0
+        return Terms({"cost": cost}, {"sum": 2.0 - x.profile_shift - x.addendum})
+
+    variables = Var("profile_shift", "", 0.0, shift, 1.0), Var("addendum", "", 0.0, 2.0, 1.0)
+    return Problem("two ranges", variables, (), evaluate)
+
+
+def test_slopes_are_what_moved_ends_give():
+    """d/dx (x - 3)^2 = -2 at 2, d/da (a + 1)^2 = 2 at 0; the end of x moved and solved again."""
+    found = slopes_of(posed(), np.array([2.0, 0.0]))
+    assert found == pytest.approx({"profile_shift": -2.0, "addendum": 2.0}, abs=1e-9)
+    moved = [solve(posed(2.0 + d), method="ipopt").value for d in (-1e-3, 1e-3)]
+    assert (moved[1] - moved[0]) / 2e-3 == pytest.approx(found["profile_shift"], abs=1e-5)
+
+
+def test_ends_are_in_order_of_what_they_give():
+    slopes = {"profile_shift": -2.0, "addendum": 3.0, "rim": 1.0}
+    numbers = [2.0, 1.0, 0.7, 0.0, 1.0, 0.5]
+    first, second = ends_of(RANGES, np.array(numbers), slopes)
+    assert (first.name, first.least, second.name, second.least) == (
+        *("addendum", True),
+        *("profile_shift", False),
+    )
+    assert (first.gain, second.gain) == pytest.approx((3.0 * WIDER * 2.0, 2.0 * WIDER * 2.0))
+    (alone, _) = ends_of(RANGES, np.array(numbers), {})
+    assert alone.gain is None
