@@ -18,7 +18,7 @@ LAWS = (
     "strain_wave_double_arc",
     pytest.param("strain_wave_half_locus", marks=pytest.mark.slow),
 )
-ARC = EXAMPLE + '[teeth]\nlaw = "double arc"\n'
+ARC = EXAMPLE.replace('"involute" ', '"double arc"')
 
 
 def scene(text):
@@ -113,6 +113,6 @@ def test_what_a_law_cannot_do_is_refused_at_its_key(old, new, place):
 
 def test_a_locus_that_is_too_low_is_refused():
     text = EXAMPLE.replace('pressure_angle = "20 deg"\n', "").replace('tool_angle = "20 deg"\n', "")
-    text = text.replace("addendum = 0.6", "addendum = 1.1") + '[teeth]\nlaw = "half locus"\n'
+    text = text.replace("addendum = 0.6", "addendum = 1.1").replace('"involute" ', '"half locus"')
     with pytest.raises(SceneError, match=r"gears.addendum"):
         scene(text)

@@ -99,6 +99,7 @@ class Flank:
         return (arc[..., -1] - arc[..., 0]) * np.squeeze(self.gearing.teeth) / (2.0 * math.pi)
 
 
+@np.errstate(invalid="ignore")
 def tangents(gearing: StrainWave) -> tuple[Any, Any]:
     """Return t = sqrt((r/r_b)^2 - 1) at the circular spline's tip and at its last active radius."""
     base = gearing.base_radius

@@ -1,6 +1,5 @@
 """kind = "strain_wave": a strain wave gearing (harmonic drive), given or chosen."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -137,30 +136,7 @@ def _given(scene: Scene) -> tuple[WaveDesign, dict[str, float]]:
         design = described_by_law(demand, swept, scene.law(), scene.tool())
         return design, used_by_law(demand, swept)
     made = design_of(demand, scene.start())
-    if not made.complete.all():
-        raise SolveError(_no_contact(scene))
     return described(demand, made, scene.tool()), used(demand, made)
-
-
-def _no_contact(scene: Scene) -> str:
-    """Say why a gearing has no conjugate flank, and from which deflection on it would have."""
-    from gearopt.physics.strain_wave.conjugate import existence, least_deflection
-
-    made = scene.gearing()
-    least = least_deflection(made)
-    if made.deflection < least:
-        arcs = existence(made)
-        beyond = math.degrees(min(abs(end) for arc in arcs for end in arc)) if arcs else 90.0
-        where = f"from {beyond:.1f} degrees of the wave on" if arcs else "nowhere on the wave"
-        return (
-            f"there is no contact at the major axis: a deflection of {made.deflection:g} modules "
-            f"is below {least:.4f}, where the instant centre enters the base circle; contact "
-            f"exists {where}"
-        )
-    return (
-        "the flank has no conjugate point at some radius: change deflection, addendum or profile "
-        "shift"
-    )
 
 
 def _with(

@@ -19,6 +19,9 @@ deflection = 1
 rim = "0.8 mm"
 face_width = "10 mm"
 
+[teeth]
+law = "involute"               # or double arc, half locus
+
 [wave_generator]
 shape = "cosine"               # or ellipse, discs
 

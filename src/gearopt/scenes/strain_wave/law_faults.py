@@ -1,6 +1,7 @@
-"""What no tooth of a law can be: the key at fault, and a value to write instead."""
+"""What no tooth can be: the key at fault, and a value to write instead."""
 
 import math
+from dataclasses import replace
 
 from gearopt.formulations.strain_wave.swept_report import (
     DOUBLE_ARC,
@@ -9,10 +10,36 @@ from gearopt.formulations.strain_wave.swept_report import (
     swept_tooth,
 )
 from gearopt.physics.strain_wave.circular_arc import DoubleArc, tooth_heights
+from gearopt.physics.strain_wave.conjugate import existence, flank, least_deflection
 from gearopt.physics.strain_wave.gearing import StrainWave
 
 THINNEST = 0.05  # modules that a tooth's tip is thick at least
-Fault = tuple[str, tuple[str, str], str | None]  # rule, place, and what to write there
+HIGHER, TRIED = 0.01, 60  # modules between deflections that are tried instead, and how many
+Fault = tuple[str, tuple[str, str], str | float | None]  # rule, place, and what to write there
+
+
+def contact_fault(gearing: StrainWave) -> Fault | None:
+    """Return why an involute has no conjugate flank from root to tip; None where it has one."""
+    if flank(gearing).complete.all():
+        return None
+    least, own = least_deflection(gearing), float(gearing.deflection)
+    first = math.ceil(100.0 * max(least, own)) / 100.0
+    tried = (first + HIGHER * k for k in range(TRIED))
+    enough = (w for w in tried if flank(replace(gearing, deflection=w), 41).complete.all())
+    write, place = next(enough, None), ("gears", "deflection")
+    if write is not None:
+        write = round(write, 2)
+    if own >= least:
+        rule = "gives the flank no conjugate point at some radius"
+        return rule, place if write else ("gears", "addendum"), write
+    arcs = existence(gearing)
+    beyond = math.degrees(min(abs(end) for arc in arcs for end in arc)) if arcs else 90.0
+    where = f"from {beyond:.1f} degrees of the wave on" if arcs else "nowhere on the wave"
+    rule = (
+        f"is too small: there is no contact at the major axis below {least:.4f}, where the instant "
+        f"centre enters the base circle; contact exists {where}"
+    )
+    return rule, place, write
 
 
 def law_fault(gearing: StrainWave, law: Law) -> Fault | None:

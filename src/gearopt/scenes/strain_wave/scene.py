@@ -13,7 +13,7 @@ from gearopt.formulations.strain_wave.wave_report import INVOLUTE
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.rim import Cup
 from gearopt.scenes.reading.fields import Table, refuse, words
-from gearopt.scenes.strain_wave.law_faults import law_fault
+from gearopt.scenes.strain_wave.law_faults import Fault, contact_fault, law_fault
 from gearopt.scenes.strain_wave.wave_tables import (
     MODULES,
     OUTPUT,
@@ -99,8 +99,10 @@ class Scene(Table):
     @model_validator(mode="after")
     def _given_by_law(self) -> "Scene":
         """Refuse what a law of teeth cannot do, each with its key."""
-        if self.involute:
+        if self.limited:
             return self
+        if self.involute:
+            return self._made(contact_fault(self.gearing()))
         for name in FREE:
             own = name == "pressure_angle" and self.teeth.law == HALF_LOCUS
             if own and getattr(self.gears, name) is not None:
@@ -116,7 +118,11 @@ class Scene(Table):
             if self.cutter is not None and getattr(self.cutter, name) is not None:
                 rule = f'changes nothing: no simple edge is fitted for law = "{self.teeth.law}"'
                 raise refuse(rule, at=("cutter", name), action="remove")
-        if fault := law_fault(self.gearing(), self.law()):
+        return self._made(law_fault(self.gearing(), self.law()))
+
+    def _made(self, fault: Fault | None) -> "Scene":
+        """Return the scene; refuse a gearing whose teeth have a fault."""
+        if fault:
             rule, at, write = fault
             raise refuse(rule, write, at, "set" if write else "sample")
         return self
