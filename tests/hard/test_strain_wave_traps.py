@@ -89,12 +89,12 @@ def test_teeth_made_for_a_larger_deflection(w, radius):
 
 def test_teeth_made_for_a_small_deflection_interfere():
     found = interference(flank(replace(BASE, deflection=0.9)), 0.1)
-    assert 1e3 * found.least == pytest.approx(-42.0, abs=0.6)
+    assert 1e3 * found.gap == pytest.approx(-42.0, abs=0.6)
 
 
 def test_short_teeth_of_a_low_pressure_angle_interfere_as_they_disengage():
     made = flank(replace(BASE, pressure_angle=np.radians(12.0), addendum=0.4))
-    assert 1e3 * interference(made, 0.1).least == pytest.approx(-9.8, abs=0.15)
+    assert 1e3 * interference(made, 0.1).gap == pytest.approx(-9.8, abs=0.15)
 
 
 @pytest.mark.parametrize(("wrap", "radius"), [(20.0, 328), (45.0, 400)])

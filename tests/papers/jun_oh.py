@@ -68,7 +68,7 @@ def wave_rows():
 def angle_rows():
     for angle in (8, 10, 12, 15, 20, 25, 28):
         made = flank(replace(BASE, pressure_angle=np.radians(angle)))
-        gap = min(0.0, round(1e3 * interference(made, 0.25).least, 1))
+        gap = min(0.0, round(1e3 * interference(made, 0.25).gap, 1))
         yield row(angle, f"{made.pairs_in_contact:.2f}", f"{gap:.1f}")
 
 
@@ -93,7 +93,7 @@ def addendum_rows():
 def deflection_rows():
     for w in (0.95, 0.98, 1.02, 1.05, 1.1):
         run = replace(BASE, deflection=w, neutral=BASE.neutral_radius)
-        gap = interference(replace(base(), gearing=run, curve=neutral_curve(run)), 0.1).least
+        gap = interference(replace(base(), gearing=run, curve=neutral_curve(run)), 0.1).gap
         yield row(w, f"{1e3 * gap:.1f}")
 
 
@@ -101,7 +101,7 @@ def made_for_rows():
     for w in (0.9, 1.0, 1.1, 1.2, 1.3, 1.5):
         made = flank(replace(BASE, deflection=w))
         arc = np.degrees(made.contacts.motion.arc[[0, -1]])
-        gap = min(0.0, round(1e3 * interference(made, 0.25).least, 1))
+        gap = min(0.0, round(1e3 * interference(made, 0.25).gap, 1))
         radius = 1.0 / made.contacts.gap_curvature.max()
         yield row(w, f"{arc[0]:.2f} to {arc[1]:.2f}", f"{radius:.0f}", f"{gap:.1f}")
 

@@ -209,7 +209,7 @@ def load(found: WaveDesign, measures: Measures) -> Table:
 def rounds(found: WaveDesign, measures: Measures) -> Table:
     """Return how the search went."""
     heads = [
-        *("round", "poses held clear", f"pressure [{measures.unit('MPa')}]"),
+        *("round", "passages held clear", f"pressure [{measures.unit('MPa')}]"),
         *(f"least clearance [{measures.unit('um')}]", "iterations"),
     ]
     rows = [

@@ -87,10 +87,10 @@ def test_where_pairs_stay_above_one():
     ],
 )
 def test_the_largest_addendum_without_interference(shift, addendum, pairs):
-    """Another program found these on poses of 0.1 degrees, with 1.23 to 1.25 pairs."""
+    """Another program found a little more, on poses of 0.1 degrees, with 1.23 to 1.25 pairs."""
     shifted = replace(BASE, profile_shift=shift)
     found = largest_addendum(shifted)
-    assert found == pytest.approx(addendum, abs=5e-4)
+    assert addendum - 9e-4 < found < addendum
     made = flank(replace(shifted, addendum=found))
     assert float(made.pairs_in_contact) == pytest.approx(pairs, abs=2e-3)
 

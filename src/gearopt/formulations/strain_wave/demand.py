@@ -5,8 +5,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
 from gearopt.formulations.strain_wave.duty import Duty
 from gearopt.optimise.terms import Var
 from gearopt.physics.strain_wave.conjugate import Contact
@@ -29,6 +27,8 @@ OUTSIDE_BASE = 1.002  # tip radius over base radius of the circular spline, at l
 ROOM = 0.1  # modules between the tips on the minor axis
 CURVATURE_UNIT = 2e-3  # 1/mm, of the limit on curvature
 SPEED_UNIT = 10.0  # mm/rad, of the limit on the flank's speed
+LEAST_GAP = 1e-5  # mm: 0.01 um, kept where teeth pass each other, so that rounding cuts nothing
+GAP_UNIT = 0.1  # mm, of the limit on interference
 
 
 @dataclass(frozen=True)
@@ -153,20 +153,3 @@ def fatigue(demand: Demand, gearing: StrainWave, curve: NeutralCurve) -> Any:
     apex, _ = curvature(curve, 0.0)
     stresses = rim_stresses(gearing, apex, duty.torque, duty.moduli[0], demand.notch, duty.cup.wall)
     return rim_utilisation(stresses, (demand.bending_limit, demand.shear_limit), demand.safety)
-
-
-def clear(room: Any) -> Any:
-    """Return the limit on a clearance [mm]: 1 at LEAST_GAP, more below; its unit is GAP_UNIT."""
-    return 1.0 + (LEAST_GAP - room) / GAP_UNIT
-
-
-LEAST_GAP = 1e-5  # mm: 0.01 um, of poses that are looked at, so that those between keep clear
-GAP_UNIT = 0.1  # mm
-
-
-def smooth_maximum(first: Any, second: Any) -> Any:
-    """Return the maximum of two lengths [mm], smoothed by SMOOTH: at most SMOOTH/2 too large."""
-    return 0.5 * (first + second + np.sqrt((first - second) ** 2 + SMOOTH**2))
-
-
-SMOOTH = 1e-4  # mm

@@ -20,7 +20,7 @@ from gearopt.formulations.strain_wave.demand import (
     limits,
     squares,
 )
-from gearopt.formulations.strain_wave.exchange import CUTTING, POINTS, STEP_DEG, design_of, exchange
+from gearopt.formulations.strain_wave.exchange import CUTTING, STEP_DEG, design_of, exchange
 from gearopt.formulations.strain_wave.wave_design import COUNT
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
@@ -164,4 +164,4 @@ def hidden(demand: Demand, numbers: Array) -> float:
 
     Negative: the teeth cut each other between the poses that were looked at.
     """
-    return interference(design_of(demand, numbers), STEP_DEG, POINTS).least
+    return interference(design_of(demand, numbers), STEP_DEG).gap

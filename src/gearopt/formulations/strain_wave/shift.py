@@ -48,7 +48,7 @@ def shift_curve(gearing: StrainWave, duty: Duty, shifts: Iterable[float]) -> lis
                 equal_pressure(duty, made),
                 equal_pressure(duty, made, whole=True),
                 shared_pressure(duty, made),
-                interference(made, COARSE_DEG).least,
+                interference(made, COARSE_DEG).gap,
             )
         )
     return found

@@ -1,13 +1,15 @@
 """Least contact pressure of a strain wave gearing that interferes nowhere: one smooth program.
 
 Unknown are six numbers of the gearing, the change that keeps the neutral curve's length, the polar
-angles of COUNT contacts from root to tip, and the pressure. That no pose of the wave interferes is
-one limit for every pose: `exchange` solves with few of them, looks at all poses, and adds those at
-which teeth cut each other, until none does.
+angles of COUNT contacts from root to tip, and the pressure. Teeth cut each other where a point of
+the flank passes the tip circle of the circular spline on the wrong side of its corner. The pose of
+such a passage is one more unknown, held by an equation, so that the limit follows it as the design
+changes; `exchange` adds the passages that matter.
 """
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
@@ -15,47 +17,50 @@ import numpy as np
 
 from gearopt.formulations.strain_wave.demand import (
     FREE,
+    GAP_UNIT,
+    LEAST_GAP,
     PRESSURE,
     VOLUME,
     Demand,
-    clear,
     free_variables,
     limits,
-    smooth_maximum,
     squares,
 )
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Terms, Var
-from gearopt.physics.strain_wave.clearance import corner, involute_gap, thickness_at
-from gearopt.physics.strain_wave.conjugate import Contact, angle_at, contact, tangents
-from gearopt.physics.strain_wave.gearing import StrainWave
+from gearopt.physics.strain_wave.clearance import corner
+from gearopt.physics.strain_wave.conjugate import angle_at, contact, tangents
 from gearopt.physics.strain_wave.neutral_curve import (
     curve_of,
     neutral_curve,
     perimeter_error,
 )
-from gearopt.physics.strain_wave.tooth_motion import Motion, motion
+from gearopt.physics.strain_wave.tooth_motion import motion
 
 NO_LIMITS: Mapping[str, float] = MappingProxyType({})
 COUNT = 7  # contacts from root to tip, evenly by the tangent of the pressure angle
-CORNER = -1  # of a cut: the circular spline's corner against the flank, instead of a flank point
 CHANGE_UNIT = 1e-2  # mm, of the change of the neutral curve
 PRESSURES = (1.0, 1e4)  # MPa: ends of the search
 REACH = (-0.3, 0.6)  # rad: polar angles at which contacts are looked for
+PASSING = (1e-3, 0.5 * math.pi)  # rad: polar angles of passages, on the side that teeth leave
 
 
 @dataclass(frozen=True, order=True)
-class Cut:
-    """A pose p [rad] at which a point of the flank, 0 to COUNT - 1, or CORNER must keep clear."""
+class Passage:
+    """A point of the flank, 0 to COUNT - 1, passes the tip circle as its tooth leaves, or enters.
 
-    angle: float
+    leaves: at positive polar angles. angle [rad]: about where, the guess.
+    """
+
     point: int
+    leaves: bool
+    angle: float = field(compare=False)
 
 
 def problem(
     demand: Demand,
     start: Any,
-    cuts: Sequence[Cut] = (),
+    passages: Sequence[Passage] = (),
     minimise: str = PRESSURE,
     most: Mapping[str, float] = NO_LIMITS,
 ) -> Problem:
@@ -75,13 +80,14 @@ def problem(
             for c, share in zip(at, shares, strict=True)
         )
         found = limits(demand, gearing, curve, at)
-        if cuts:
-            poses: dict[float, Motion] = {}
-            for cut in cuts:
-                if cut.angle not in poses:
-                    poses[cut.angle] = motion(gearing, curve, cut.angle)
-            rooms = [room(gearing, poses[cut.angle], at, cut.point) for cut in cuts]
-            found["interference"] = tuple(clear(r) for r in rooms)
+        passing = [
+            motion(gearing, curve, getattr(x, name) + 0.0).placed(at[passage.point].point)
+            for name, passage in zip(_names(passages), passages, strict=True)
+        ]
+        if passages:
+            corner_angle = corner(gearing).angle
+            rooms = [gearing.base_radius * (corner_angle - z.angle) for z in passing]
+            found["interference"] = tuple(1.0 + (LEAST_GAP - room) / GAP_UNIT for room in rooms)
         pressure = tuple(s / x.pressure**2 for s in squares(demand, gearing, at))
         goals = {PRESSURE: x.pressure, VOLUME: demand.specific_volume(gearing)}
         found |= {f"most_{name}": goals[name] / value for name, value in most.items()}
@@ -89,28 +95,32 @@ def problem(
             {minimise: goals[minimise]},
             found,
             {"contact": pressure},
-            {"meshing": miss, "length": 1.0 + 100.0 * perimeter_error(curve)},
+            {
+                "meshing": miss,
+                "length": 1.0 + 100.0 * perimeter_error(curve),
+                "passing": tuple(1.0 + (z.length - gearing.tip_radius) / GAP_UNIT for z in passing),
+            },
         )
 
-    return Problem("strain wave gearing", variables(demand, start), (), evaluate)
+    unknown = (*variables(demand, start), *_angles(passages))
+    return Problem("strain wave gearing", unknown, (), evaluate)
 
 
-def room(gearing: StrainWave, at: Motion, contacts: Sequence[Contact], point: int) -> Any:
-    """Return the clearance [mm] of a flank point or the corner at a pose, smoothed.
-
-    A point is clear inside the space or before it has passed the tip circle; the corner, of the
-    flank or beyond its ends.
-    """
-    if point != CORNER:
-        gap, radius = involute_gap(gearing, at.placed(contacts[point].point))
-        return smooth_maximum(gap, gearing.tip_radius - radius)
-    nodes = tuple(c.point for c in contacts)
-    seen = at.of_tooth(corner(gearing))
-    beside = smooth_maximum(nodes[0].x - seen.x, seen.x - nodes[-1].x)
-    within = np.minimum(np.maximum(seen.x, nodes[0].x), nodes[-1].x)
-    return smooth_maximum(seen.y - thickness_at(nodes, within), beside)
+def _names(passages: Sequence[Passage]) -> list[str]:
+    return [f"passage_{k}" for k, _ in enumerate(passages, 1)]
 
 
+def _angles(passages: Sequence[Passage]) -> list[Var]:
+    """Return the polar angles of the passages."""
+    found = []
+    for name, passage in zip(_names(passages), passages, strict=True):
+        low, high = PASSING if passage.leaves else (-PASSING[1], -PASSING[0])
+        guess = min(max(passage.angle, low), high)
+        found.append(Var(name, "rad", low, high, guess, search=True))
+    return found
+
+
+@np.errstate(all="ignore")  # of a start without a flank
 def variables(demand: Demand, start: Any) -> tuple[Var, ...]:
     """Return the variables, with a guess made exactly from the free numbers of `start`."""
     free = free_variables(demand, start)
@@ -123,7 +133,7 @@ def variables(demand: Demand, start: Any) -> tuple[Var, ...]:
     angles = angle_at(gearing, curve, np.linspace(first, last, COUNT))
     angles = np.where(np.isfinite(angles), angles, 0.03)
     at = [contact(gearing, motion(gearing, curve, p)) for p in angles]
-    highest = np.nanmax(squares(demand, gearing, at), initial=1.0) ** 0.5
+    highest = np.nan_to_num(squares(demand, gearing, at)).max() ** 0.5
     return (
         *free,
         Var("change", "0.01 mm", -1e3, 1e3, change, search=True),

@@ -178,7 +178,7 @@ def described(
     """Return all that is told of a gearing and its flank; cutter: the tool that is asked for."""
     gearing, duty = made.gearing, demand.duty
     own = _carried(duty, made)
-    found = interference(made, STEP_DEG, 201)
+    found = interference(made, STEP_DEG)
     return WaveDesign(
         **_sizes(demand, made),
         **_columns(made),
@@ -187,7 +187,7 @@ def described(
         equal_pressure_MPa=equal_pressure(duty, made),
         whole_pairs_pressure_MPa=equal_pressure(duty, made, whole=True),
         shared_pressure_MPa=shared_pressure(duty, made),
-        least_clearance_mm=gap_of(found.least),
+        least_clearance_mm=gap_of(found.gap),
         least_clearance_at_deg=math.degrees(found.angle),
         least_deflection=least_deflection(gearing),
         shift_of_one_pair=last_shift_of_one_pair(gearing),
@@ -208,7 +208,7 @@ def sketched(demand: Demand, made: Flank) -> dict[str, Any]:
         "pairs_in_contact": float(made.pairs_in_contact),
         "equal_pressure_MPa": equal_pressure(demand.duty, made),
         "shared_pressure_MPa": shared_pressure(demand.duty, made),
-        "least_clearance_mm": gap_of(interference(made, STEP_DEG, 201).least),
+        "least_clearance_mm": gap_of(interference(made, STEP_DEG).gap),
     }
 
 
@@ -223,8 +223,8 @@ def used(demand: Demand, made: Flank) -> dict[str, float]:
     found = limits(demand, made.gearing, made.curve, at)
     if not math.isfinite(demand.outer_radius):
         del found["outer_radius"]
-    least = interference(made, STEP_DEG, 201)
-    clear = 0.0 if least.free else least.least
+    least = interference(made, STEP_DEG)
+    clear = 0.0 if least.free else least.gap
     flat = {k: float(max(v) if isinstance(v, tuple) else v) for k, v in found.items()}
     if clear < 0.0:
         flat["interference"] = 1.0 - clear / float(made.gearing.module)
@@ -375,7 +375,7 @@ def _shift(point: ShiftPoint) -> ShiftRow:
 def _deflected(made: Flank, by: float) -> Deflected:
     deflection = float(made.gearing.deflection) + by
     found = interference(stretched(made, deflection), STEP_DEG)
-    return Deflected(deflection=deflection, least_clearance_mm=gap_of(found.least))
+    return Deflected(deflection=deflection, least_clearance_mm=gap_of(found.gap))
 
 
 def gap_of(value: float) -> float:

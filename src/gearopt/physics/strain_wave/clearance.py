@@ -1,6 +1,7 @@
 """Clearance between tooth and space over the whole wave, exact for the involute."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +14,9 @@ from gearopt.physics.strain_wave.tooth_motion import Motion, motion
 from gearopt.physics.strain_wave.vectors import Vector, polar
 
 CURVE_NODES = 7  # points of a flank through which a polynomial replaces it to 1e-6 um
+SECANTS = 6  # each leaves a thousandth of an error, as poses are near each other
+PARABOLAS = 3  # the same: clearances are off by less than 1e-9 mm
+Look = Callable[[Any, Any], tuple[Any, Any]]
 
 
 @np.errstate(invalid="ignore")
@@ -82,14 +86,20 @@ def corner_clearance(flank: Flank, at: Motion) -> Any:
 
     To first order in the distance; infinite beside the flank's ends.
     """
+    gap, depth = corner_gap(flank, at)
+    return np.where(depth >= 0.0, gap, math.inf)
+
+
+def corner_gap(flank: Flank, at: Motion) -> tuple[Any, Any]:
+    """Return the corner's distance to the flank [mm], and how far it is within the flank's ends."""
     nodes = curve_points(flank.contacts.point)
     seen = at.of_tooth(corner(flank.gearing))
-    inside = (seen.x >= nodes[0].x) & (seen.x <= nodes[-1].x)
-    height = np.where(inside, seen.x, nodes[0].x)
-    step = 1e-4 * (nodes[-1].x - nodes[0].x)
+    low, high = nodes[0].x, nodes[-1].x
+    height, step = np.clip(seen.x, low, high), 1e-4 * (high - low)
     half = thickness_at(nodes, height)
     slope = (thickness_at(nodes, height + step) - thickness_at(nodes, height - step)) / (2 * step)
-    return np.where(inside, (seen.y - half) / np.sqrt(1.0 + slope * slope), math.inf)
+    gap = (seen.y - half) / np.sqrt(1.0 + slope * slope)
+    return gap, np.minimum(seen.x - low, high - seen.x)
 
 
 def poses(step_deg: float, reach_deg: float = 90.0) -> Any:
@@ -99,24 +109,119 @@ def poses(step_deg: float, reach_deg: float = 90.0) -> Any:
 
 
 @dataclass(frozen=True)
-class Interference:
-    """The least clearance [mm] over the whole wave, at a polar angle [rad]; negative: teeth cut."""
+class Least:
+    """A least clearance [mm] of one point over its poses, at a polar angle [rad] of the tooth.
 
-    least: float
+    Negative: it cuts. point: its place on the flank from 0 (root) to 1 (tip); None: the circular
+    spline's corner. passing: whether it is where the point passes the tip circle of the circular
+    spline, or the corner an end of the flank, beyond which nothing can touch it.
+    """
+
+    gap: float
     angle: float
+    point: float | None
+    passing: bool
 
     @property
     def free(self) -> bool:
         """Whether nothing interferes, by more than rounding (1e-9 mm)."""
-        return self.least >= -1e-9
+        return self.gap >= -1e-9
 
 
-def interference(flank: Flank, step_deg: float = 0.05, points: int = 51) -> Interference:
-    """Return the least clearance of one gearing over all poses from -90 to 90 degrees."""
+def interference(flank: Flank, step_deg: float = 0.05, points: int = 51) -> Least:
+    """Return the least clearance of one gearing over the whole wave, the first of `least_gaps`."""
+    return least_gaps(flank, step_deg, points)[0]
+
+
+@np.errstate(invalid="ignore", divide="ignore")
+def least_gaps(flank: Flank, step_deg: float = 0.05, points: int = 51) -> list[Least]:
+    """Return all least clearances over the wave from -90 to 90 degrees, the smallest first.
+
+    They are bracketed by poses of a step [degrees] and then found exactly: where a point passes the
+    tip circle by bisection, else by golden section, both to 1e-8 rad. points: how many of the
+    flank's, evenly; between them a clearance is less by at most the square of their distance over
+    8 R.
+    """
+    gearing, flex = flank.gearing, flank.contacts.point
+    last = len(flex.x) - 1
+    taken = np.unique(np.rint(np.linspace(0, last, points)).astype(int))
+
+    def of_point(k: Any, angle: Any) -> tuple[Any, Any]:
+        at = motion(gearing, flank.curve, angle)
+        gap, radius = involute_gap(gearing, at.placed(flex[k]))
+        return gap, radius - gearing.tip_radius
+
+    def of_corner(k: Any, angle: Any) -> tuple[Any, Any]:
+        return corner_gap(flank, motion(gearing, flank.curve, angle))
+
     angles = poses(step_deg)
-    found = clearances(flank, angles, points)
-    k = int(np.argmin(found))
-    return Interference(float(found[k]), float(angles[k]))
+    found = [
+        Least(gap, angle, float(k / last), passing)
+        for k, gap, angle, passing in _minima(of_point, taken, angles)
+    ]
+    corners = _minima(of_corner, np.array([-1]), angles)
+    found += [Least(gap, angle, None, passing) for _, gap, angle, passing in corners]
+    return sorted(found, key=lambda least: least.gap)
+
+
+def _minima(look: Look, items: Any, angles: Any) -> list[tuple[int, float, float, bool]]:
+    """Return of every item its least gaps: item, gap, angle, whether at an end of what counts.
+
+    look(items, angles) -> gap, and how far it counts: where that is at least 0.
+    """
+    gaps, depth = (np.atleast_2d(v) for v in look(items[:, None], angles))
+    inside = depth >= 0.0
+    gaps = np.where(inside, gaps, np.inf)
+    beside = np.pad(gaps, ((0, 0), (1, 1)), constant_values=np.inf)
+    row, at = np.nonzero(inside & (gaps <= beside[:, :-2]) & (gaps <= beside[:, 2:]))
+    item, middle = items[row], angles[at]
+    ends, passing = [], []
+    for k in (np.maximum(at - 1, 0), np.minimum(at + 1, len(angles) - 1)):
+        out = ~inside[row, k]
+        ends.append(np.where(out, _end(look, item, middle, angles[k]), angles[k]))
+        passing.append(out)
+    low, high = ends
+    middle = _lowest(look, item, (low, middle, high))
+    found = np.stack([look(item, a)[0] for a in (middle, low, high)])
+    best = found.argmin(axis=0)
+    gap, angle = (np.choose(best, list(v)) for v in (found, (middle, low, high)))
+    leaving = np.choose(best, [np.zeros(len(row), bool), *passing])
+    rows = zip(item, gap, angle, leaving, strict=True)
+    return [(int(k), float(g), float(a), bool(p)) for k, g, a, p in rows]
+
+
+def _end(look: Look, items: Any, inside: Any, beside: Any) -> Any:
+    """Return the poses at which gaps cease to count, between two, by false position."""
+    low, high = inside, beside
+    one, two = look(items, low)[1], look(items, high)[1]
+    middle = low
+    for _ in range(SECANTS):
+        share = np.where(one - two > 0.0, one / (one - two), 0.5)
+        middle = low + share * (high - low)
+        depth = look(items, middle)[1]
+        counts = depth >= 0.0
+        low, one = np.where(counts, middle, low), np.where(counts, depth, one)
+        high, two = np.where(counts, high, middle), np.where(counts, two, depth)
+    return middle
+
+
+def _lowest(look: Look, items: Any, poses: tuple[Any, Any, Any]) -> Any:
+    """Return the poses of the least gap within three, the middle one of the least, by parabolas."""
+    low, middle, high = poses
+    a, b, c = (look(items, p)[0] for p in poses)
+    for _ in range(PARABOLAS):
+        left, right = middle - low, high - middle
+        up, down = (b - a) * right, (b - c) * left
+        step = 0.5 * (down * left - up * right) / np.where(up + down < 0.0, up + down, -np.inf)
+        new = np.clip(middle - step, low, high)
+        gap = look(items, new)[0]
+        better = gap < b
+        end, there = np.where(better, middle, new), np.where(better, b, gap)
+        above = better == (new < middle)
+        low, a = np.where(above, low, end), np.where(above, a, there)
+        high, c = np.where(above, end, high), np.where(above, there, c)
+        middle, b = np.where(better, new, middle), np.where(better, gap, b)
+    return middle
 
 
 def tooth_arcs(flank: Flank, teeth: Any, shift: float = 0.0) -> Any:

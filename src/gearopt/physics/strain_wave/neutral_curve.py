@@ -5,6 +5,7 @@ In polar form rho(p), rho(0) = R_m + w_0 on the major axis, perimeter 2 pi R_m.
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -94,6 +95,7 @@ def _of_ellipse(curve: NeutralCurve, angle: Any) -> tuple[Any, Any, Any, Any]:
     return rho, first, second, third
 
 
+@cache
 def disc_constants(wrap: float) -> Any:
     """Return C1, e, A, E, B of the ring on two discs, for w(0) = 1.
 

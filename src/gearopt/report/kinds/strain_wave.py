@@ -280,8 +280,8 @@ def search(result: Result, measures: Measures) -> Section | None:
     if found is None or not found.rounds:
         return None
     words = (
-        "Each round holds the poses clear at which teeth of the last one cut each other; all poses "
-        "are looked at, 0.05° apart.",
+        "Each round holds those passages of the flank past the tip circle clear at which teeth of "
+        "the last one cut each other; all poses are looked at.",
     )
     return Section("Search", words=words, tables=[tables.rounds(found, measures)], half=True)
 

@@ -83,7 +83,7 @@ def _rounds(found: Exchanged) -> list[RoundRow]:
     return [
         RoundRow(
             cuts=r.cuts,
-            pressure_MPa=r.pressure or 0.0,
+            pressure_MPa=r.pressure,
             least_clearance_mm=r.gap,
             iterations=r.iterations,
         )
@@ -207,7 +207,7 @@ def model(scene: Scene, method: str) -> Model:
     if method in SAMPLERS:
         return Model(sampled.problem(demand, start), "Interference at poses of 0.75 deg", "MPa")
     problem = sampled.limited(demand, start, PRESSURE, {})
-    return Model(problem, "Interference at poses of 0.05 deg", "MPa")
+    return Model(problem, "Interference at all poses", "MPa")
 
 
 def objectives(scene: Scene) -> dict[str, str]:
