@@ -262,6 +262,5 @@ def test_a_clock_that_stops_leaves_the_first_speeds():
 
 
 def test_ranges_of_speeds_in_words():
-    assert ranges((800.0, 900.0, 1000.0, 1100.0), [True, True, False, True]) == (
-        "800 to 900, 1,100 rpm"
-    )
+    told = ranges((800.0, 900.0, 1000.0, 1200.0), [True, True, False, True])
+    assert told == "800 to 900 and 1,200 rpm"

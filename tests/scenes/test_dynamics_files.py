@@ -270,3 +270,50 @@ def test_a_backlash_that_is_used_up_is_told(tmp_path):
     assert not jammed(pair, "line", states).any()
     told = gearopt.solve(path).design["warnings"]
     assert any("backlash is used up, first at" in each for each in told)
+
+
+def test_a_backlash_that_is_used_up_is_told_of_speeds(tmp_path):
+    """Hardly damped, on bearings stiffer across: teeth part, and the axes come together.
+
+    At 3000 and 3500 rpm nothing holds the motion.
+    """
+    path = tmp_path / "motion.toml"
+    text = changed(
+        ('axes = "line"', 'axes = "plane"\nkinematics = "tangent"'),
+        ('"100 kN/mm"', '"10 kN/mm"\nbearing_stiffness_across = "30 kN/mm"'),
+        ("bearing_damping = 0.02", "bearing_damping = 0.001"),
+        ("\ndamping = 0.03", "\ndamping = 0.005"),
+        ("depth = 0.5", "depth = 0.9"),
+        ('backlash = "0.1 mm"', 'backlash = "0.02 mm"'),
+        text=BARE,
+    )
+    path.write_text(text + '[speeds]\nrange = ["3000 rpm", "3500 rpm"]\npoints = 2\n')
+    found = gearopt.solve(path).design
+    assert found["speeds"]["jammed_rpm"] == [3000.0, 3500.0]
+    assert found["speeds"]["rms_mm"] == [None, None]
+    grows, jams = found["warnings"]
+    assert grows.startswith("At 3,000 to 3,500 rpm the pair is unstable")
+    assert jams.startswith("At 3,000 to 3,500 rpm the axes come together until the backlash")
+
+
+def test_a_motion_spans_so_many_periods_of_the_mesh_at_most(tmp_path):
+    """3000 rpm of 30 teeth: 1500 periods a second, 67 s are 100,500 of them."""
+    with pytest.raises(SceneError, match="100,500 periods") as wrong:
+        read((BARE + '[simulate]\nduration = "67 s"\n').encode())
+    assert wrong.value.key == "simulate.duration"
+    read((BARE + '[simulate]\nduration = "66 s"\n').encode())
+
+
+def test_a_long_motion_ends_within_a_slice_of_its_steps(tmp_path):
+    """Half a minute at 12 steps or more in a period of 5.75 kHz: looks every 50,000 steps."""
+    path, seen = tmp_path / "motion.toml", []
+    path.write_text(BARE + '[simulate]\nduration = "30 s"\nerror = 1e-6\n')
+
+    def watch(event):
+        seen.append(event.evaluations)
+        return len(seen) <= 3
+
+    result = gearopt.solve(path, watch=watch)
+    assert result.message == "Stopped early: the motion in time missing." and len(seen) == 4
+    assert np.diff(seen) == pytest.approx([12 * 50_000] * 3, rel=0.01)
+    assert result.evaluations == seen[-1] + 1

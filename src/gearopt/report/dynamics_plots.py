@@ -187,11 +187,11 @@ def over_speed(found: Speeds, measures: Measures) -> Figure:
     }
     if longer:
         places = [[one[k] for one in sorted(longer)] for k in range(2)]
-        marks = line(places[0], places[1], "not every period alike")
+        marks = line(places[0], places[1], "several periods, or no repetition")
         look = {"color": "--ink", "size": 5, "symbol": "circle-open"}
         traces.append(marks | {"mode": "markers", "marker": look})
     plot = layout(
-        axis("speed of the pinion [rpm]"),
+        axis("speed of the pinion [rpm]", tickformat=","),
         axis(f"RMS of the deformation [{measures.unit('um')}]", rangemode="tozero"),
         HEIGHT,
         hovermode="x",
@@ -227,7 +227,7 @@ def waterfall(found: Speeds, measures: Measures) -> Figure:
         "name": "",
     }
     plot = layout(
-        axis("speed of the pinion [rpm]"),
+        axis("speed of the pinion [rpm]", tickformat=","),
         axis("order of the mesh frequency", dtick=1),
         HEIGHT,
     )
@@ -247,7 +247,7 @@ def before_and_after(found: Chosen, measure: str, measures: Measures) -> Figure:
     marks = line(found.speed_rpm, judged, "speeds of the problem")
     traces.append(marks | {"mode": "markers", "marker": {"color": series(1), "size": 6}})
     plot = layout(
-        axis("speed of the pinion [rpm]"),
+        axis("speed of the pinion [rpm]", tickformat=","),
         axis(f"{measure} of the deformation [{measures.unit('um')}]", rangemode="tozero"),
         HEIGHT,
         hovermode="x",

@@ -119,10 +119,10 @@ def over_speeds(
 
 
 def ranges(speeds_rpm: Columns, inside: Sequence[bool]) -> str:
-    """Return those speeds that are inside in words, neighbours as ranges: "800 to 900 rpm"."""
+    """Return those speeds that are inside in words: "800 to 900 and 1,200 rpm"."""
     ends = bands(speeds_rpm, inside)
     told = [f"{a:,.0f}" if a == b else f"{a:,.0f} to {b:,.0f}" for a, b in ends]
-    return f"{', '.join(told)} rpm"
+    return f"{' and '.join(', '.join(told).rsplit(', ', 1))} rpm"
 
 
 def _gaps(values: Any, digits: int) -> Gaps:
@@ -186,13 +186,13 @@ def _linear(pair: MovingPair, level: str, contact: Contact) -> Motion:
         series.delta(LOOKS),
         series,
     )
-    return found if contact.growth <= 1.0 + UNSTABLE else _growing(found)
+    return found if contact.growth <= 1.0 + UNSTABLE else _growing(found, jams=False)
 
 
-def _growing(motion: Motion) -> Motion:
+def _growing(motion: Motion, jams: bool) -> Motion:
     """Return what is told of a motion that grows for ever."""
-    nothing = np.full(ORDERS, math.nan)
-    return replace(motion, rms=math.nan, least=math.nan, highest=math.nan, amplitudes=nothing)
+    none, nothing = math.nan, np.full(ORDERS, math.nan)
+    return replace(motion, rms=none, least=none, highest=none, amplitudes=nothing, jams=jams)
 
 
 def _amplitudes(series: Orbit) -> Array:
@@ -289,12 +289,12 @@ def _settled(
     most, spent, changes = _patience(pair, level), 0, [math.inf]
     while min(changes) > SETTLED and spent < (LONGER if min(changes) < NEARLY else 1) * most:
         times = np.arange(CHUNK + 1) / pair.mesh_frequency
-        more = _marched(pair, level, times, passed[-1], clock).states
-        if len(more) <= CHUNK or not clock.tell():
+        made = _marched(pair, level, times, passed[-1], clock)
+        if len(made.states) <= CHUNK or not clock.tell():
             return None
-        if not np.max(np.abs(more / scale)) < ENDLESS * room:
-            return _growing(_linear(pair, level, contact))
-        passed = np.concatenate([passed[-CHUNK:], more[1:]])
+        if not np.max(np.abs(made.states / scale)) < ENDLESS * room:
+            return _growing(_linear(pair, level, contact), made.jammed is not None)
+        passed = np.concatenate([passed[-CHUNK:], made.states[1:]])
         spent += CHUNK
         changes = [_change(passed / scale, p) for p in range(1, MOST_PERIODS + 1)]
     repeats = next((p for p, c in enumerate(changes, 1) if c <= REPEATED), 0)

@@ -84,7 +84,7 @@ def simulate(
     tried: list[_Try] = []
     spent = 0
     for method in CANDIDATES if pair.backlash is None else LOCATING:
-        if tried and not clock.tell():
+        if clock.stopped or (tried and not clock.tell()):
             break
         if not STEPPERS[method].undamped or conservative(pair, level):
             first = _first(pair, level, intervals, method, state, clock)

@@ -168,7 +168,7 @@ def _two(held: Speeds) -> list[str]:
     most = max(max(pair) / min(pair) for pair, two in zip(pairs, where, strict=True) if two)
     return [
         f"There are two motions at {ranges(held.speed_rpm, where)}, one up to {most:.3g} times "
-        "as large as the other: from where the speed comes decides which."
+        "as large as the other: whether speed rises or falls decides which."
     ]
 
 

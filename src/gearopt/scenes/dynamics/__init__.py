@@ -139,9 +139,9 @@ def _missing(scene: Scene, design: DynamicsDesign) -> str:
     if simulate is not None and design.response is None:
         found.append("the motion in time")
     elif simulate is not None and design.response is not None:
-        reached, asked = design.response.time_ms[-1], 1e3 * simulate.duration.value
-        if reached < (1.0 - 1e-9) * asked:
-            found.append(f"the motion after {reached:.4g} ms")
+        reached = 1e-3 * design.response.time_ms[-1]
+        if reached < (1.0 - 1e-9) * simulate.duration.value:
+            found.append(f"the motion after {reached:.4g} s")
         elif not design.response.met:
             found.append("the error asked of the motion")
     if stability is not None:

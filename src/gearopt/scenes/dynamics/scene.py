@@ -30,6 +30,7 @@ NEEDED = {  # keys of [mesh] that a shape of the wave asks for; others change no
     "fourier": ("stiffness", "cosines"),
     "pair": ("pair",),
 }
+MOST_PERIODS = 100_000  # of the mesh in a motion
 SHAPED = ("stiffness", "depth", "duty", "ramp", "cosines", "sines", "pair")
 
 
@@ -132,6 +133,12 @@ class Scene(Table):
         if self.simulate is not None and mesh.wave != "constant" and mesh.speed is None:
             rule = "is missing: a stiffness that changes has a mesh frequency"
             raise refuse(rule, at=("mesh", "speed"))
+        if self.simulate is not None:
+            periods = self.simulate.duration.value * self.mesh_frequency
+            if periods > MOST_PERIODS:
+                rule = f"spans {periods:,.0f} periods of the mesh: at most {MOST_PERIODS:,}"
+                most = f"{MOST_PERIODS / self.mesh_frequency:.3g} s"
+                raise refuse(rule, most, ("simulate", "duration"))
         curved = mesh.axes == "plane" and mesh.kinematics in ("exact", "paper")
         if self.speeds is not None and curved and (self._uneven or mesh.kinematics == "paper"):
             rule = (
