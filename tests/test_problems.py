@@ -74,6 +74,11 @@ LONG = (
     "least_vibration",
     "unstable_speed",
     "teeth_as_springs",
+    "light_wheels",
+    "wind_pair_sized",
+    "servo_gimbal_backlash",
+    "servo_gimbal_fine",
+    "paper_program",
 )
 SI = {  # of numbers as a source prints them: their suffix, its value, the suffix of a result
     "_ft_per_min": (0.3048 / 60, "_m_per_s"),

@@ -8,6 +8,7 @@ from itertools import product
 import numpy as np
 import pytest
 from brute_force import k_factor_width, pairs
+from campaigns import few
 from rated_brute_force import cheapest
 from rated_drives import some_rated_drive
 from small_drives import drive
@@ -78,7 +79,7 @@ def unbeaten(rows):
     return np.array(kept)
 
 
-@pytest.mark.parametrize("face", ["tied", "fixed", "stepped"])
+@pytest.mark.parametrize("face", few(["tied", "fixed", "stepped"], ["tied"]))
 def test_the_front_is_complete_beside_every_design(face):
     for which, name in enumerate(("gear_volume", "sum_of_centre_distances")):
         train = drive(2, face, **SMALL)

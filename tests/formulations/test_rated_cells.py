@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from campaigns import few
 from random_cells import designs_within, needed_by, random_cells
 from rated_drives import (
     FREE,
@@ -70,7 +71,7 @@ def held(name, toothing, width, count, seed):
     return found
 
 
-@pytest.mark.parametrize("toothing", TOOTHINGS)
+@pytest.mark.parametrize("toothing", few(TOOTHINGS, ["helical", "shifted"]))
 @pytest.mark.parametrize("name", STANDARDS)
 def test_no_design_needs_less_than_its_cell(name, toothing):
     pressed, bent = held(name, toothing, 0.02, 300, 1)
@@ -150,7 +151,7 @@ def test_what_no_cell_allows_is_impossible(name):
 def test_the_bound_is_below_whole_teeth_and_designs_that_are_found(names, helix):
     train = rated_drive(20, [FREE, FREE], options=by(*names), helix=helix)
     whole = solve(teeth.problem(train))
-    found = run(train, 3.0)
+    found = run(train, 1.0)
     assert found.bound <= whole.value * (1.0 + 1e-9) and found.bound <= found.value
     assert found.bound > 0.0 and found.pairs is not None
 
@@ -164,7 +165,7 @@ def test_random_small_drives_are_not_better_than_their_bound(standard, block):
     for seed in range(6 * block, 6 * block + 6):
         train = some_rated_drive(seed, standard=standard)
         whole = solve(teeth.problem(train), budget=Budget(20.0))
-        found = run(train, 1.0, 1e-2)
+        found = run(train, 0.3, 1e-2)
         if whole.value is not None:
             assert found.bound <= whole.value * (1.0 + 1e-9)
             seen += 1

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from campaigns import few
 from relief_pairs import COUPLING, LOAD, PATH, compliance, mesh
 
 from gearopt.formulations.relief.meshing import NO_RELIEF, Relief
@@ -127,7 +128,10 @@ def test_a_population_is_its_designs():
 
 @pytest.mark.parametrize(
     "coupling, exponent, published",
-    [(0.0, 1.0, 1.680), (0.0, 2.0, 2.101), (COUPLING, 1.0, 1.2373), (COUPLING, 2.0, 1.3494)],
+    few(
+        [(0.0, 1.0, 1.680), (0.0, 2.0, 2.101), (COUPLING, 1.0, 1.2373), (COUPLING, 2.0, 1.3494)],
+        [(COUPLING, 1.0, 1.2373)],
+    ),
 )
 def test_annealing_at_two_loads(coupling, exponent, published):
     """No worse than the best of two published methods at 60 and 100 % of the load [um]."""

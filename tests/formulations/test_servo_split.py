@@ -40,7 +40,7 @@ def with_error(degrees):
     return replace(PAPER, error=math.radians(degrees))
 
 
-@pytest.mark.parametrize("stages", range(1, 7))
+@pytest.mark.parametrize("stages", few(range(1, 7), [1, 3]))
 def test_inertia_and_mass_by_number_of_stages(stages):
     for goal, expected, digits in (("inertia", INERTIA, 6e-6), ("mass", MASS, 6e-4)):
         text = core(48.0, stages, goal)
@@ -109,7 +109,7 @@ def values(train, teeth, modules):
     return 1e-3 * inertia, 1e3 * mass, math.degrees(error), batch.G[0]
 
 
-@pytest.mark.parametrize(("error", "goal", "teeth", "modules", "J", "mass", "E"), DESIGNS)
+@pytest.mark.parametrize(("error", "goal", "teeth", "modules", "J", "mass", "E"), few(DESIGNS, 3))
 def test_designs_known_independently(error, goal, teeth, modules, J, mass, E):
     text = problem(with_error(error), goal)
     for method in ("exact", "enumeration"):
@@ -141,15 +141,18 @@ def test_all_trains_are_counted_in_whole_numbers(error, feasible):
 
 @pytest.mark.parametrize(
     ("error", "wheel", "goal", "bound"),
-    [
-        (0.1082, 300, "inertia", 4.884e-4),
-        (0.1082, None, "inertia", 4.811e-4),
-        (0.12, 300, "inertia", 1.384e-4),
-        (0.1082, 300, "mass", 0.16577),
-        (0.1082, None, "mass", 0.16538),
-        (0.12, 300, "mass", 0.13029),
-        (0.12, None, "error", math.radians(0.09768)),
-    ],
+    few(
+        [
+            (0.1082, 300, "inertia", 4.884e-4),
+            (0.1082, None, "inertia", 4.811e-4),
+            (0.12, 300, "inertia", 1.384e-4),
+            (0.1082, 300, "mass", 0.16577),
+            (0.1082, None, "mass", 0.16538),
+            (0.12, 300, "mass", 0.13029),
+            (0.12, None, "error", math.radians(0.09768)),
+        ],
+        [(0.1082, None, "inertia", 4.811e-4), (0.12, 300, "mass", 0.13029)],
+    ),
 )
 def test_bounds_of_the_relaxation(error, wheel, goal, bound):
     train = replace(with_error(error), max_wheel_teeth=wheel)

@@ -68,12 +68,15 @@ def test_cost_table(k, rule, error, column):
 
 @pytest.mark.parametrize(
     ("given", "budgets", "cost"),
-    [
-        ({}, [("rss", E_WC)], (2.98723, 5e-6)),
-        ({}, [("worst_case", E_WC), ("rss", 0.7 * E_RSS)], (9.969507852, 6e-10)),
-        ({"k": ALTERNATING}, [("worst_case", E_WC)], (10.476355529, 6e-10)),
-        ({"k": ALTERNATING}, [("rss", E_RSS)], (7.837665499, 6e-10)),
-    ],
+    few(
+        [
+            ({}, [("rss", E_WC)], (2.98723, 5e-6)),
+            ({}, [("worst_case", E_WC), ("rss", 0.7 * E_RSS)], (9.969507852, 6e-10)),
+            ({"k": ALTERNATING}, [("worst_case", E_WC)], (10.476355529, 6e-10)),
+            ({"k": ALTERNATING}, [("rss", E_RSS)], (7.837665499, 6e-10)),
+        ],
+        1,
+    ),
 )
 def test_other_budgets_by_four_solvers(given, budgets, cost):
     tolerances = stack(*budgets, **given)
@@ -204,7 +207,7 @@ def test_random_stacks_by_three_solvers(seed):
         assert cone.value == pytest.approx(exact.value, rel=2e-6)
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", few(range(10), 3))
 def test_no_multipliers_pass_the_optimum(seed):
     """The bound holds for any lam >= 0 and any point; what it bounds is below any allowed point."""
     tolerances = stack(("worst_case", E_WC), ("mean_plus_sd", 0.9 * E_WC), k=ALTERNATING, most=3.0)

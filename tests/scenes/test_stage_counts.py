@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import cache
 
 import pytest
+from campaigns import few
 from edits import edited, scene_of
 from rich.console import Console
 
@@ -65,11 +66,7 @@ def solved(stages, name):
     return gearopt.solve(scene_of(text_of(stages, changes, teeth))[0], top=3 if teeth else 1)
 
 
-def slow(values, *names):
-    return [pytest.param(v, marks=[pytest.mark.slow] * (v in names)) for v in values]
-
-
-@pytest.mark.parametrize("name", slow(DUTIES, "high ratio, capped"))
+@pytest.mark.parametrize("name", few(DUTIES, ["low ratio", "free width"]))
 def test_the_best_is_that_of_separate_files(name):
     """Value, bound, design and the table; counts that are impossible alone are in the table too."""
     found, own = solved("[1, 3]", name), {n: solved(n, name) for n in (1, 2, 3)}

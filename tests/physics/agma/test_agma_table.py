@@ -241,9 +241,10 @@ def test_random_points_have_an_answer_or_a_name():
 
 
 @pytest.mark.slow
-def test_a_million_random_points_have_an_answer_or_a_name():
-    total = sum((check(random_pairs(100_000, seed)) for seed in range(10)), Counter())
-    assert sum(total.values()) == 1_000_000 and total[0] > 100_000
+@pytest.mark.parametrize("seed", range(10))
+def test_a_million_random_points_have_an_answer_or_a_name(seed):
+    found = check(random_pairs(100_000, seed))
+    assert sum(found.values()) == 100_000 and found[0] > 10_000
 
 
 # Teeth that are known to be refused: digest, section 10, and closed forms
