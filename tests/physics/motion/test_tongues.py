@@ -82,6 +82,7 @@ def test_contact_ratio_decides_the_first_harmonic():
     for ratio, first, damping in (
         (1.2, 0.244, 0.061),
         (1.4027, 0.350, 0.087),
+        (1.5, 0.347, 0.087),
         (1.6835, 0.265, 0.066),
         (1.9, 0.088, 0.022),
     ):
@@ -90,3 +91,5 @@ def test_contact_ratio_decides_the_first_harmonic():
         assert 4.0 * found.half_width == pytest.approx(first, abs=5.1e-4)
         assert found.damping == pytest.approx(damping, abs=5.1e-4)
         assert math.isclose(found.frequency, math.sqrt(wave.mean * 3400.0) / math.pi, rel_tol=1e-9)
+    almost = tongues(system, of_contact_ratio(1.3591e5, 1.9999), 1)[0]
+    assert almost.damping < 5e-5  # at 2 there is no wave

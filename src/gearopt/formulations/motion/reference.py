@@ -80,8 +80,8 @@ def _smooth(
     law = kernel(MARCH)
 
     def rate(at: float, y: Array) -> Array:
-        found = np.empty_like(y)
-        law.rates(*model, at, line[1] + line[2] * (at - line[0]), flank, y, found)
+        k, found = line[1] + line[2] * (at - line[0]), np.empty(y.size)
+        law.rates(*model, at, k, flank, np.ascontiguousarray(y), found)
         return found
 
     def leaves(at: float, y: Array) -> float:
