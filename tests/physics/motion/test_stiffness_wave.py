@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from gearopt.physics.iso6336.stiffness import mesh_stiffness
+from gearopt.physics.iso6336.stiffness import flexibility, mesh_stiffness
 from gearopt.physics.motion.stiffness_wave import (
     constant,
     fourier,
@@ -62,6 +62,16 @@ def test_the_wave_of_a_contact_ratio_has_the_mean_of_iso_6336():
     assert wave.mean == pytest.approx(mesh_stiffness(1.3e5, 1.68)[0], rel=1e-12)
     ends = wave.value(np.array([0.3, 0.9]))
     assert ends == pytest.approx([1.75 * 1.3e5, 1.3e5], rel=1e-12)  # two pairs of teeth, and one
+
+
+def test_what_is_assumed_of_the_mesh_where_the_paper_has_nothing():
+    """30 and 40 teeth on 10 mm: c' = 13.591, c_gamma = 20.559 N/(mm um), some 2e5 N/mm."""
+    single = 0.8 / float(flexibility((30.0, 40.0), (0.0, 0.0)))  # solid discs
+    assert single == pytest.approx(13.591246104904599, rel=1e-12)
+    wave = of_contact_ratio(1e4 * single, 1.6835237523353612)
+    assert wave.mean == pytest.approx(2.0558700757307914e5, rel=1e-12)
+    high, low = wave.value(np.array([0.3, 0.9]))
+    assert (high - low) / wave.mean == pytest.approx(0.49582095186900527, rel=1e-12)
 
 
 @pytest.mark.parametrize(("duty", "ramp"), [(0.05, 0.1), (0.95, 0.1), (0.5, -0.1), (1.2, 0.0)])
