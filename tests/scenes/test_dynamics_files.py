@@ -145,7 +145,7 @@ def test_a_kept_result_reads_and_shows_itself(solved, tmp_path):
     assert "motion of the axes" in page and "Spectrum of the second half" in page
     moved = result.design["response"]
     assert moved["method"] == "rk8" and moved["error"] <= 1e-6 and moved["met"]
-    assert len(moved["time_ms"]) == len(moved["deformation_mm"]) == 1001
+    assert len(moved["time_ms"]) == len(moved["deformation_mm"]) == 2001
     assert max(moved["deformation_mm"]) < 1e-9  # no load, then pressed
 
 
@@ -317,3 +317,24 @@ def test_a_long_motion_ends_within_a_slice_of_its_steps(tmp_path):
     assert result.message == "Stopped early: the motion in time missing." and len(seen) == 4
     assert np.diff(seen) == pytest.approx([12 * 50_000] * 3, rel=0.01)
     assert result.evaluations == seen[-1] + 1
+
+
+def test_where_contact_is_unstable_the_motion_that_parting_limits_is_told(tmp_path):
+    """11.5 kHz, light damping: multiplier 1.0753; an RK4 program of its own: RMS 15.40 um."""
+    path = tmp_path / "motion.toml"
+    text = changed(
+        ("bearing_damping = 0.02", "bearing_damping = 0.005"),
+        ("\ndamping = 0.03", "\ndamping = 0.01"),
+        ("depth = 0.5", "depth = 0.3"),
+        ("3000 rpm", "23000 rpm"),
+        text=BARE,
+    )
+    text += '[stability]\nmesh_frequency = ["11 kHz", "12 kHz"]\nfrequencies = 3\ndepths = 2\n'
+    path.write_text(text)
+    told = "The pair is unstable at its speed: the largest Floquet multiplier is 1.0753 a mesh"
+    limit = "Teeth part, which limits the motion to an RMS of 15.4 µm."
+    assert gearopt.solve(path).design["warnings"] == [f"{told} period. {limit}"]
+    path.write_text(text.replace('backlash = "0.1 mm"', "#"))
+    found = gearopt.solve(path)
+    assert found.design["warnings"] == [f"{told} period. Its motion grows without end."]
+    assert "own depth of 0.3: 11,500 Hz" in found.to_html()

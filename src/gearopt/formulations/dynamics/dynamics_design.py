@@ -66,7 +66,8 @@ class Stability:
     """Largest Floquet multipliers over mesh frequency and depth of the wave.
 
     growth (depths, frequencies). here: at the pair's own frequency and depth; None where it has
-    none. bands: unstable mesh frequencies at its own depth.
+    none. bands: unstable mesh frequencies at its own depth. limited_rms: of the motion at its own
+    frequency where contact is unstable there and teeth that part limit it; else None.
     """
 
     frequency_Hz: Columns
@@ -78,6 +79,7 @@ class Stability:
     here: float | None
     bands_Hz: Rows
     tongues: tuple[Tongue, ...]
+    limited_rms_mm: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,7 @@ before until it repeats itself.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -118,11 +118,28 @@ def over_speeds(
     )
 
 
+def limited(pair: MovingPair, level: str, harmonics: int, clock: Clock) -> float | None:
+    """Return the RMS of the motion at the pair's own mesh frequency [mm], from contact there.
+
+    None where the pair has no frequency or no backlash, where the motion grows for ever, or where
+    the clock stops.
+    """
+    if pair.backlash is None or pair.mesh_frequency <= 0.0:
+        return None
+    own = np.array([pair.mesh_frequency])
+    found = followed(pair, level, in_contact(pair, level, own, harmonics, clock), clock)
+    return found[0].rms if found and not found[0].grows else None
+
+
 def ranges(speeds_rpm: Columns, inside: Sequence[bool]) -> str:
     """Return those speeds that are inside in words: "800 to 900 and 1,200 rpm"."""
-    ends = bands(speeds_rpm, inside)
+    return f"{spans(bands(speeds_rpm, inside))} rpm"
+
+
+def spans(ends: Iterable[Sequence[float]]) -> str:
+    """Return ranges in words: "800 to 900 and 1,200"."""
     told = [f"{a:,.0f}" if a == b else f"{a:,.0f} to {b:,.0f}" for a, b in ends]
-    return f"{' and '.join(', '.join(told).rsplit(', ', 1))} rpm"
+    return f" and {told[-1]}".join([", ".join(told[:-1]), ""]) if len(told) > 1 else "".join(told)
 
 
 def _gaps(values: Any, digits: int) -> Gaps:
@@ -237,13 +254,11 @@ def _repeating(
     """
     scale, size = _scale(pair, level), state.size
     for _ in range(SHOTS):
-        end = _passed(pair, level, state, periods, clock)
-        wrong = (end - state) / scale
-        starts = state + MOVED * np.diag(scale)
-        ends = [_passed(pair, level, start, periods, clock) for start in starts]
-        slope = (np.array(ends) - end).T / scale[:, None] / MOVED
-        if not np.all(np.isfinite(slope)):
+        starts = np.vstack([state, state + MOVED * np.diag(scale)])
+        ends = np.array([_passed(pair, level, start, periods, clock) for start in starts])
+        if not np.all(np.isfinite(ends)):
             return None
+        wrong, slope = (ends[0] - state) / scale, (ends[1:] - ends[0]).T / scale[:, None] / MOVED
         if np.max(np.abs(wrong)) <= CLOSED * np.max(np.abs(state / scale)):
             stable = np.max(np.abs(np.linalg.eigvals(slope))) <= 1.0 + UNSTABLE
             return state if stable else None

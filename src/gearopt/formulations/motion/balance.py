@@ -17,7 +17,7 @@ from gearopt.physics.motion.linear import Linear, linear
 from gearopt.physics.motion.moving_pair import MovingPair
 
 Complex = NDArray[np.complex128]
-NEWTON = 30  # steps
+NEWTON = 12  # steps; near a motion four to six of them end it
 CLOSE = 1e-12  # change relative to the largest coefficient that ends Newton's method
 SAMPLES = 64  # of a period, a harmonic: where the flank changes series converge slowly
 LOOKS = 2048  # samples of a period for the extremes

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.dynamics.dynamics_design import DynamicsDesign, Speeds
-from gearopt.formulations.dynamics.motions_over_speed import ranges
+from gearopt.formulations.dynamics.motions_over_speed import ranges, spans
 from gearopt.formulations.motion.stability import UNSTABLE
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
@@ -112,10 +112,10 @@ def stability(result: Result, measures: Measures) -> Section | None:
     ]
     heads = ("modes", "harmonic", "mesh frequency [Hz]", "half width [%]", "damping against it [%]")
     table = Table("tongues", heads, rows, "Widest tongues by the first-order formulas.")
-    ends = ", ".join(f"{a:,.0f} to {b:,.0f}" for a, b in held.bands_Hz) or "none"
+    ends = f"{spans(held.bands_Hz)} Hz" if held.bands_Hz else "none"
     words = (
         f"{held.unstable_percent:.3g} % of the map is unstable. Unstable mesh frequencies at the "
-        f"pair's own depth of {held.own_depth:.3g}: {ends} Hz.",
+        f"pair's own depth of {held.own_depth:.3g}: {ends}.",
     )
     return Section(
         "Stability",

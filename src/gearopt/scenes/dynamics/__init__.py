@@ -8,7 +8,8 @@ from gearopt.errors import SolveError
 from gearopt.formulations.dynamics import dynamics_parts as parts
 from gearopt.formulations.dynamics.chosen import chosen
 from gearopt.formulations.dynamics.dynamics_design import Chosen, DynamicsDesign
-from gearopt.formulations.dynamics.motions_over_speed import over_speeds
+from gearopt.formulations.dynamics.motions_over_speed import limited, over_speeds
+from gearopt.formulations.motion.stability import UNSTABLE
 from gearopt.formulations.orbit.orbit_search import NEAR, exchange, methods
 from gearopt.formulations.orbit.orbit_text import problem, start
 from gearopt.formulations.orbit.task import MICRO, VARIABLES, pair_of
@@ -25,6 +26,7 @@ from gearopt.scenes.reading.ask import Ask, without_method
 
 __all__ = ["EXAMPLE", "Scene", "compared", "idle", "model", "solve"]
 METHODS = ("screened",)  # its own
+HARMONICS = 20  # of a motion at the pair's own speed
 NOTHING = "the file has no table [optimise], so that nothing is chosen"
 
 
@@ -116,6 +118,8 @@ def _design(scene: Scene, pair: MovingPair, level: str, clock: Clock) -> Dynamic
         first, last = (float(depth) for depth in stability.depth)
         across, up = (low, high, stability.frequencies), (first, last, stability.depths)
         mapped = parts.stability(pair, level, across, up, clock)
+        if mapped is not None and mapped.here is not None and mapped.here > 1.0 + UNSTABLE:
+            mapped = replace(mapped, limited_rms_mm=limited(pair, level, HARMONICS, clock))
     if speeds is not None:
         low, high = (30.0 / math.pi * end.value for end in speeds.range)
         grid = low, high, speeds.points

@@ -18,9 +18,13 @@ def warnings(design: DynamicsDesign) -> list[str]:
     if design.response is not None:
         found += _of_response(design.response, design)
     if stability is not None and stability.here is not None and stability.here > 1.0 + UNSTABLE:
+        held = "Its motion grows without end."
+        if stability.limited_rms_mm is not None:
+            limit = MICRO * stability.limited_rms_mm
+            held = f"Teeth part, which limits the motion to an RMS of {limit:.3g} µm."
         found.append(
             f"The pair is unstable at its speed: the largest Floquet multiplier is "
-            f"{stability.here:.4f} a mesh period. A linear motion grows without end."
+            f"{stability.here:.4f} a mesh period. {held}"
         )
     if design.speeds is not None:
         found += _of_speeds(design.speeds)
