@@ -137,16 +137,17 @@ def flank(found: WaveDesign, measures: Measures) -> Table:
     length = measures.unit("mm")
     columns: list[tuple[str, Sequence[float], str]] = [
         ("on the wave [°]", found.arc_deg, ""),
-        (f"radius on the circular spline [{length}]", found.radius_mm, "mm"),
-        (f"height over the neutral curve [{length}]", found.height_mm, "mm"),
+        (f"radius [{length}]", found.radius_mm, "mm"),
+        (f"height [{length}]", found.height_mm, "mm"),
         (f"half thickness [{length}]", found.half_thickness_mm, "mm"),
         (f"R_f [{length}]", found.flexspline_curvature_mm, "mm"),
         (f"R_c [{length}]", found.circular_curvature_mm, "mm"),
         (f"R [{length}]", found.relative_curvature_mm, "mm"),
     ]
     caption = (
-        "Where flanks are conjugate; radii of curvature of flexspline (convex: above 0) and "
-        "circular spline (concave: above 0), and R of the contact, 1/R = 1/R_f - 1/R_c."
+        "Where flanks are conjugate: radius on the circular spline, height over the neutral curve, "
+        "radii of curvature of flexspline (convex: above 0) and circular spline (concave: above "
+        "0), and R of the contact, 1/R = 1/R_f - 1/R_c."
     )
     return _columns("conjugate contact", columns, measures, caption)
 

@@ -15,7 +15,7 @@ from gearopt.report.deciding import of_limits
 from gearopt.report.kinds import Kind
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.pages.cutter_drawing import drawing
+from gearopt.report.pages.cutter_drawing import drawing, usual_scale
 from gearopt.report.pages.sheet import series
 from gearopt.report.pages.wave_motion import running
 from gearopt.report.section import Figure, Section, Tile, axis, layout
@@ -231,21 +231,20 @@ def cutter(result: Result, measures: Measures) -> Section | None:
         f"{amount(tool.pitch_radius_mm, 'mm', measures)}: regular, it generates the flank to "
         f"{1e3 * tool.round_trip_mm:.0e} µm. {_least(tool)}",
     )
-    shown = result.report["cutter_drawing"]
+    shown, pitch = result.report["cutter_drawing"], math.pi * found.module_mm
+    scale = shown["scale"] or usual_scale(tool, pitch, shown["grid_mm"])
     edges = [tables.edges(tool, measures)] if found.law == INVOLUTE else []
     return Section(
         "Cutter of the flexspline",
         words=words,
-        drawings=[
-            drawing(tool, math.pi * found.module_mm, shown["scale"], shown["grid_mm"], measures)
-        ],
+        drawings=[drawing(tool, pitch, scale, shown["grid_mm"], measures)],
         tables=[*edges, tables.edge_points(tool, measures)],
         terminal=(words[0], *edges),
     )
 
 
 def _tool(tool: CutterDesign) -> str:
-    return f"A pinion-type cutter of {tool.teeth} teeth" if tool.teeth else "A rack, as of a hob,"
+    return f"A pinion-type cutter of {tool.teeth} teeth" if tool.teeth else "A rack (as of a hob)"
 
 
 def _least(tool: CutterDesign) -> str:

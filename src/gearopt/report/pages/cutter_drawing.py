@@ -1,17 +1,23 @@
 """The edge of a cutter at a large scale on a grid, as a toolmaker plots it."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.strain_wave.cutter_report import CutterDesign
 from gearopt.report.measures import Measures
+from gearopt.report.pages.row import SHEET
 from gearopt.report.pages.sheet import Drawing, Place, Sheet, Window, series
 
+Frame = tuple[float, float, float, float]
 PX_PER_MM = 96.0 / 25.4  # of a screen and of paper as browsers print it
 FREE = (46.0, 16.0, 34.0, 16.0)  # px around the edge
 LINES = 60  # of the grid in one direction at most: coarser ones are taken beyond
+ROOM = 0.06  # of the width of two teeth, that is free beside them
+EVERY = (1, 2, 4, 10, 20, 40, 100, 200)  # lines of the grid from one with a number to the next
+APART = 60.0  # px between numbers at least
 STEPS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)  # times the grid
 
 
@@ -23,28 +29,15 @@ def drawing(
     pitch [mm] of a rack. x is upwards, away from the blank; y to the right, 0 in the middle of a
     space for a tooth of the blank. On paper at full size the scale is true.
     """
-    edge = np.c_[found.x_mm, found.y_mm]
-    teeth = [np.vstack([edge, _mirrored(found, edge, pitch)[::-1]])]
-    teeth.append(teeth[0] * (1.0, -1.0))
-    teeth = [tooth[:, ::-1] for tooth in teeth]
-    x, y = np.vstack(teeth).T
-    room = 0.06 * float(np.ptp(x))
-    step = next((s * grid for s in STEPS if np.ptp(x) + 2 * room < LINES * s * grid), 100 * grid)
-    low, high = (
-        [way(v / step) * step for v in ends]
-        for way, ends in (
-            (np.floor, (x.min() - room, y.min() - room)),
-            (np.ceil, (x.max() + room, y.max() + room)),
-        )
-    )
-    ends = float(low[0]), float(high[0]), float(low[1]), float(high[1])
+    edge, teeth = np.c_[found.x_mm, found.y_mm], _teeth(found, pitch)
+    ends, step = _frame(teeth, grid)
     sheet = Sheet(Window(*ends, FREE), scale * PX_PER_MM)
     _grid(sheet, ends, step, measures)
     for tooth in teeth:
         path = " L ".join(f"{u:.3f} {v:.3f}" for u, v in (sheet.at(*p) for p in tooth.tolist()))
         sheet.shape(f"M {path} Z", "tip", series(1), "tooth of the cutter")
     if found.straight_deg:
-        _straight(sheet, found, room)
+        _straight(sheet, found, ROOM * (ends[1] - ends[0]))
     for v, u in edge[::5].tolist():
         sheet.circle(u, v, 2.0 / sheet.scale, "design")
     name = f"pinion-type cutter of {found.teeth} teeth" if found.teeth else "rack"
@@ -54,7 +47,35 @@ def drawing(
     )
     if found.straight_deg:
         caption += f" Dashed: the straight edge of least deviation, {found.straight_deg:.3f}°."
-    return sheet.drawing("cutting edge", caption)
+    return replace(sheet.drawing("cutting edge", caption), true=True)
+
+
+def usual_scale(found: CutterDesign, pitch: float, grid: float) -> float:
+    """Return the largest of 1, 2, 5, 10 ... to 5000 at which two teeth fit on a sheet of A4."""
+    (left, right, _, _), _ = _frame(_teeth(found, pitch), grid)
+    room = (SHEET - FREE[0] - FREE[1]) / PX_PER_MM
+    scales = (s * 10.0**k for k in range(4) for s in (1.0, 2.0, 5.0))
+    return max((s for s in scales if s * (right - left) <= room), default=1.0)
+
+
+def _teeth(found: CutterDesign, pitch: float) -> list[Any]:
+    """Return the outlines of two teeth: y across, x upwards."""
+    edge = np.c_[found.x_mm, found.y_mm]
+    tooth = np.vstack([edge, _mirrored(found, edge, pitch)[::-1]])
+    return [tooth[:, ::-1], (tooth * (1.0, -1.0))[:, ::-1]]
+
+
+def _frame(teeth: list[Any], grid: float) -> tuple[Frame, float]:
+    """Return the ends of what is shown, left, right, bottom and top, on lines of a grid; its step.
+
+    The step is the grid [mm], or a multiple of it where there would be more than LINES.
+    """
+    x, y = np.vstack(teeth).T
+    room = ROOM * float(np.ptp(x))
+    step = next((s * grid for s in STEPS if np.ptp(x) + 2 * room < LINES * s * grid), 100 * grid)
+    low = [float(np.floor((v.min() - room) / step) * step) for v in (x, y)]
+    high = [float(np.ceil((v.max() + room) / step) * step) for v in (x, y)]
+    return (low[0], high[0], low[1], high[1]), step
 
 
 def _mirrored(found: CutterDesign, edge: Any, pitch: float) -> Any:
@@ -76,21 +97,21 @@ def _straight(sheet: Sheet, found: CutterDesign, room: float) -> None:
     sheet.line((slope * first + offset, first), (slope * last + offset, last), "far")
 
 
-def _grid(
-    sheet: Sheet, ends: tuple[float, float, float, float], step: float, measures: Measures
-) -> None:
+def _grid(sheet: Sheet, ends: Frame, step: float, measures: Measures) -> None:
     """Draw the grid with its coordinates."""
     left, right, bottom, top = ends
     across = np.arange(round(left / step), round(right / step) + 1) * step
     up = np.arange(round(bottom / step), round(top / step) + 1) * step
-    every = max(1, round(60.0 / (sheet.scale * step)))
-    for k, v in enumerate(map(float, across)):
-        sheet.line((v, bottom), (v, top), "extension")
-        if k % every == 0:
+    every = next((n for n in EVERY if n * sheet.scale * step >= APART), EVERY[-1])
+    for v in map(float, across):
+        named = round(v / step) % every == 0
+        sheet.line((v, bottom), (v, top), "extension" if named else "grid")
+        if named:
             u, w = sheet.at(v, bottom)
             sheet.label(measures.length(v, 3), [Place(u, w + 14.0)], "size")
-    for k, v in enumerate(map(float, up)):
-        sheet.line((left, v), (right, v), "extension")
-        if k % every == 0:
+    for v in map(float, up):
+        named = round(v / step) % every == 0
+        sheet.line((left, v), (right, v), "extension" if named else "grid")
+        if named:
             u, w = sheet.at(left, v)
             sheet.label(measures.length(v, 3), [Place(u - 24.0, w)], "size")

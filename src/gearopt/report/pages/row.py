@@ -23,6 +23,11 @@ class Row:
         return max(drawing.width for drawing in self.drawings)
 
     @property
+    def sheet(self) -> float:
+        """Return what an A4 sheet has room for [px]."""
+        return SHEET
+
+    @property
     def printed(self) -> float:
         """Return how much the drawings shrink in print so that all stand side by side, or two.
 

@@ -115,12 +115,17 @@ def around(
 
 @dataclass(frozen=True)
 class Drawing:
-    """An SVG (all text in it is escaped), its size at full scale [px], and its caption."""
+    """An SVG (all text in it is escaped), its size at full scale [px], and its caption.
+
+    true: it never shrinks, so that its scale holds: it is scrolled on a narrow screen, and printed
+    on a sheet of its own where it is wider than paper.
+    """
 
     svg: str
     width: float
     height: float
     caption: str
+    true: bool = False
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ FREE = (8.0, 8.0, 8.0, 8.0)  # px around a view
 COLOURS = (1, 4, 6)  # of flexspline, circular spline and wave generator, in the series
 UPRIGHT = 0.5 * math.pi  # the axis of the gearing's frame is drawn upwards
 TOOTH = "tooth of the flexspline"
-RING = 181  # points of the ring
+RING = 181, 721  # points of the ring, of the whole and of the close-up
 CAPTION = (
     "The wave generator turns counter-clockwise, the circular spline rests; to scale. Colour: load "
     "of a tooth at the duty's torque. After half a turn the flexspline has fallen back by one "
@@ -147,9 +147,9 @@ def _spaces(made: Drawn, numbers: Any, points: int) -> Any:
     return np.array(rows)
 
 
-def _ring(made: Drawn, offset: float) -> Any:
+def _ring(made: Drawn, offset: float, count: int) -> Any:
     """Return the neutral curve, moved outwards along its normal [mm], upright at turn 0."""
-    place, normal = whole_curve(made.curve, np.linspace(-math.pi, math.pi, RING)[:-1])
+    place, normal = whole_curve(made.curve, np.linspace(-math.pi, math.pi, count)[:-1])
     x, y = place.x + offset * np.cos(normal), place.y + offset * np.sin(normal)
     return np.c_[-y, x]
 
@@ -169,10 +169,10 @@ def _bodies(made: Drawn, found: WaveDesign, turns: Any, numbers: Any, points: in
     ]
 
 
-def _rings(made: Drawn, turns: Any) -> list[Body]:
+def _rings(made: Drawn, turns: Any, count: int) -> list[Body]:
     """Return the rim of the flexspline and the wave generator in it, which turn as one shape."""
     rim = 0.5 * float(made.gearing.rim)
-    outer, inner = _ring(made, rim), _ring(made, -rim)
+    outer, inner = _ring(made, rim, count), _ring(made, -rim, count)
     bar = np.array([(0.0, inner[:, 1].min()), (0.0, inner[:, 1].max())])
     own = _turning(turns)
     return [
@@ -192,7 +192,7 @@ def _whole(made: Drawn, found: WaveDesign, turns: Any, measures: Measures) -> Vi
     own = _shown(found, measures)
     teeth = _bodies(made, own, turns, range(int(gearing.teeth)), 2 if found.law == INVOLUTE else 4)
     words = f"The whole gearing, outer diameter {measures.length(2.0 * reach)} {measures.lengths}."
-    return View(sheet, "strain wave gearing", [*_rings(made, turns), *teeth], (), words)
+    return View(sheet, "strain wave gearing", [*_rings(made, turns, RING[0]), *teeth], (), words)
 
 
 def _close(made: Drawn, found: WaveDesign, turns: Any, measures: Measures) -> View:
@@ -205,9 +205,9 @@ def _close(made: Drawn, found: WaveDesign, turns: Any, measures: Measures) -> Vi
     _spline(sheet, made, range(-NEAR - 2, NEAR + 3), points, 0.0)
     teeth = _bodies(made, _shown(found, measures), turns, range(-NEAR - 2, NEAR + 3), points)
     words = (
-        f"The teeth at the top, at {sheet.scale * 25.4 / 96.0:.0f} times their size on a screen."
+        f"The teeth at the top: {measures.length(2.0 * half)} {measures.lengths} from side to side."
     )
-    bodies = [*_rings(made, turns)[:2], *teeth]
+    bodies = [*_rings(made, turns, RING[1])[:2], *teeth]
     return View(sheet, "teeth at the top", bodies, (), words)
 
 

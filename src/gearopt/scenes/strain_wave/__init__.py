@@ -163,7 +163,10 @@ def _shown(scene: Scene, result: Result, design: WaveDesign, limits: dict[str, f
     drawing = scene.cutter
     if drawing is not None:
         grid = drawing.grid.value if drawing.grid else 0.05
-        told["cutter_drawing"] = {"scale": float(drawing.scale), "grid_mm": grid}
+        told["cutter_drawing"] = {
+            "scale": None if drawing.scale is None else float(drawing.scale),
+            "grid_mm": grid,
+        }
     return replace(
         result,
         name="strain wave gearing",

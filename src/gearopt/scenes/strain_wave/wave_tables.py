@@ -231,8 +231,10 @@ class WaveCutter(Table):
     least_radius: Annotated[Quantity | None, quantity("length", "500 mm", "100 m")] = Field(
         None, description="Least radius of an arc that replaces the edge; by default any"
     )
-    scale: Annotated[Fraction, number(100, 1, 1000)] = Field(
-        Fraction(100), description="Scale of the drawing", json_schema_extra={"default": 100}
+    scale: Annotated[Fraction | None, number(100, 1, 1000)] = Field(
+        None,
+        description="Scale of the drawing; by default the largest of 1, 2, 5, 10 ... at which two "
+        "teeth fit on a sheet of A4",
     )
     grid: Annotated[Quantity | None, quantity("length", "0.1 mm")] = Field(
         None, description="Grid of the drawing; by default 0.05 mm"
