@@ -365,7 +365,7 @@ def test_every_key_of_a_problem_is_a_place_of_its_file(path):
     if not getattr(sized, "limited", True):
         pytest.skip("gears that are given and rated pose no problem")
     if kind == "strain_wave":
-        pytest.skip("looks at poses of numbers, and so cannot be traced; no number of it is moved")
+        pytest.skip("no number of it is moved: test_strain_wave_keys looks at every key")
     problem = scene_module(kind).model(own, METHODS.get(kind, "")).problem
     problem = problem.relaxed or problem
     keys = {k for q in problem.parameters for k in each_word(q.key, q.size)}

@@ -23,7 +23,8 @@ from gearopt.report.words import amount, number, series_of
 
 RUNS = "strain wave gearing"  # the animation that plots follow
 ANGLE = "angle of the tooth on the wave [°]"
-NEAR_DEG = 25.0  # of the wave, that the plot of clearances shows
+NEAR_DEG = 25.0  # of the wave, that the plot of clearances shows at least on either side
+BEYOND_DEG = 10.0  # and beyond the last contact
 
 
 def design_of(result: Result) -> WaveDesign | None:
@@ -140,7 +141,7 @@ def _clearances(found: WaveDesign, measures: Measures) -> Figure:
     rows = [
         (a, factor * c)
         for a, c in zip(found.wave_angle_deg, found.wave_clearance_mm, strict=True)
-        if abs(a) <= NEAR_DEG
+        if -NEAR_DEG <= a <= max(NEAR_DEG, found.touching_deg[-1][1] + BEYOND_DEG)
     ]
     x, y = zip(*rows, strict=True)
     plot = layout(axis(ANGLE), axis(f"clearance [{unit}]"), hovermode="x")

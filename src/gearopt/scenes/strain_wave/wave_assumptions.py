@@ -13,7 +13,7 @@ from gearopt.formulations.strain_wave.demand import (
 )
 from gearopt.formulations.strain_wave.range_ends import WIDER, RangeEnd
 from gearopt.formulations.strain_wave.swept_report import DOUBLE_ARC
-from gearopt.formulations.strain_wave.wave_report import WaveDesign
+from gearopt.formulations.strain_wave.wave_report import INVOLUTE, WaveDesign
 from gearopt.scenes.strain_wave.scene import PAIR, RATCHET, Scene
 
 
@@ -157,6 +157,10 @@ def notes(made: WaveDesign) -> list[str]:
         found.append(
             f"Teeth cut each other by {-1e3 * made.least_clearance_mm:.3g} µm where the wave is at "
             f"{made.least_clearance_at_deg:.4g} degrees."
+        )
+    elif made.law != INVOLUTE:
+        found.append(
+            "No teeth interfere: the circular spline is what the flexspline's teeth leave."
         )
     else:
         found.append("No teeth interfere at any pose of the whole wave.")
