@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -114,6 +115,20 @@ def test_the_cutter_is_drawn_to_scale_on_its_grid(result, found):
     assert names == ["cutting edges", "points of the cutting edge"]
     lines = section.tables[1].csv().splitlines()
     assert len(lines) == 52 and lines[0] == "x [mm],y [mm]"
+
+
+def test_a_cutter_never_shrinks_and_fits_a_sheet_by_default(result, found):
+    """2.9 mm at 50:1 are 145 mm, at 100:1 290 mm: more than an A4 sheet has, so one of its own."""
+    wide = cutter(result, METRIC)
+    drawn_wide = wide.drawings[0]
+    assert drawn_wide.true and drawn_wide.width / 96.0 * 25.4 == pytest.approx(306.4, abs=1.0)
+    told = result.report | {"cutter_drawing": {"scale": None, "grid_mm": 0.05}}
+    narrow = cutter(replace(result, report=told), METRIC).drawings[0]
+    assert "50:1" in narrow.caption and narrow.width / 96.0 * 25.4 < 180.0
+    page = result.to_html()
+    assert page.count('class="true wide"') == 1 and "@page sheet" in page
+    numbers_at = re.findall(r'<text class="size"[^>]*>(-?[0-9.]+)</text>', narrow.svg)
+    assert {"0.000", "0.500", "-0.500"} <= set(numbers_at)
 
 
 def test_sections_say_what_was_found(result, found):
