@@ -95,10 +95,7 @@ def response(
     times, delta = made.times, made.motion.delta
     later = len(times) // 2
     steady = delta[later:] - delta[later:].mean()
-    window = np.hanning(steady.size)
-    amplitude = 2.0 * np.abs(np.fft.rfft(steady * window)) / window.sum()
-    lines = np.fft.rfftfreq(steady.size, times[1] - times[0])
-    shown = slice(0, LINES)
+    lines, amplitude = _spectrum(steady, times[1] - times[0])
     return Response(
         method=made.method,
         error=made.error,
@@ -112,10 +109,17 @@ def response(
         time_ms=columns(MILLI * times),
         deformation_mm=columns(delta, 7),
         axes_mm=tuple(columns(c, 7) for c in _axes(pair, level, made.motion.states)),
-        frequency_Hz=columns(lines[shown]),
-        amplitude_mm=columns(amplitude[shown], 5),
+        frequency_Hz=columns(lines),
+        amplitude_mm=columns(amplitude, 5),
         jammed_ms=None if made.motion.jammed is None else MILLI * made.motion.jammed,
     )
+
+
+def _spectrum(values: Array, step: float) -> tuple[Array, Array]:
+    """Return frequencies [Hz] and amplitudes of values about zero at equal steps of time [s]."""
+    window = np.hanning(values.size)
+    amplitude = 2.0 * np.abs(np.fft.rfft(values * window)) / window.sum()
+    return np.asarray(np.fft.rfftfreq(values.size, step)[:LINES]), amplitude[:LINES]
 
 
 def jammed(pair: MovingPair, level: str, states: Array) -> NDArray[np.bool_]:

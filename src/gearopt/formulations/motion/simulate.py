@@ -81,17 +81,8 @@ def simulate(
     if pair.backlash is None and piecewise_linear(pair, level):
         exact = exact_motion(pair, level, intervals, state, clock)
         return _told(times, exact, "exponential", EXACT, error, exact.rates, 0.0)
-    tried: list[_Try] = []
-    spent = 0
-    for method in CANDIDATES if pair.backlash is None else LOCATING:
-        if clock.stopped or (tried and not clock.tell()):
-            break
-        if not STEPPERS[method].undamped or conservative(pair, level):
-            first = _first(pair, level, intervals, method, state, clock)
-            second = None if clock.stopped else _halved(first, intervals, state, clock)
-            if second is not None and (not tried or not clock.stopped):
-                tried.append(second)
-                spent += second.spent
+    tried = _begun(pair, level, intervals, state, clock)
+    spent = sum(t.spent for t in tried)
     while tried:
         best = min(tried, key=lambda t: (t.error > error, t.ahead(error)))
         if best.error <= error or spent + 2 * best.motion.rates > MOST or not clock.tell():
@@ -106,6 +97,20 @@ def simulate(
     if not tried:
         return None
     return _told(times, best.motion, best.method, best.error, error, spent, best.longest)
+
+
+def _begun(pair: MovingPair, level: str, times: Timeline, state: Array, clock: Clock) -> list[_Try]:
+    """Return the first two runs of every method that fits, or of those for which there was time."""
+    tried: list[_Try] = []
+    for method in CANDIDATES if pair.backlash is None else LOCATING:
+        if clock.stopped or (tried and not clock.tell()):
+            break
+        if not STEPPERS[method].undamped or conservative(pair, level):
+            first = _first(pair, level, times, method, state, clock)
+            second = None if clock.stopped else _halved(first, times, state, clock)
+            if second is not None and (not tried or not clock.stopped):
+                tried.append(second)
+    return tried
 
 
 def _told(

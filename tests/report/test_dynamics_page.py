@@ -1,0 +1,123 @@
+"""The page of a pair on moving axes: what is told of speeds, and axes that move as they did."""
+
+import numpy as np
+
+from gearopt.formulations.dynamics.dynamics_design import (
+    DynamicsDesign,
+    Equilibrium,
+    Response,
+    Speeds,
+)
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import untyped
+from gearopt.report import dynamics_plots
+from gearopt.report.kinds.dynamics import speeds
+from gearopt.report.measures import METRIC
+
+REST = Equilibrium(
+    normal_load_N=3000.0,
+    mean_stiffness_N_per_mm=2e5,
+    mesh_mass_kg=0.3,
+    deformation_mm=-0.015,
+    centre_distance_mm=149.0,
+    centre_distance_growth_mm=0.02,
+    pressure_angle_deg=20.0,
+    bearing_force_N=3000.0,
+    frequencies_Hz=(1300.0, 5700.0),
+    mesh_shares=(0.1, 0.9),
+)
+FOUND = Speeds(  # in contact; two motions; two that take two periods or none; without end
+    teeth_part=True,
+    speed_rpm=(1000.0, 2000.0, 3000.0, 4000.0, 5000.0),
+    rms_mm=(0.001, 0.002, 0.003, 0.02, None),
+    peak_to_peak_mm=(0.004, 0.005, 0.006, 0.07, None),
+    highest_mm=(-0.01, -0.01, -0.01, 0.01, None),
+    repeats=(1, 1, 1, 2, 1),
+    falling_rms_mm=(0.001, 0.002, 0.03, 0.02, 0.01),
+    falling_peak_to_peak_mm=(0.004, 0.005, 0.09, 0.07, 0.05),
+    falling_highest_mm=(-0.01, -0.01, 0.04, 0.01, 0.01),
+    falling_repeats=(1, 1, 0, 2, 1),
+    growth=(0.9, 0.9, 0.9, 0.9, 1.1),
+    jammed_rpm=(),
+    harmonics_mm=((0.002, 0.002, 0.002, 0.02, None), (0.0, 0.0, 0.0, 0.0, None)),
+)
+
+
+def told(found):
+    design = DynamicsDesign(
+        kinematics="exact", axes="line", mesh_frequency_Hz=0.0, equilibrium=REST, speeds=found
+    )
+    section = speeds(Result("dynamics", "evaluated", "modes", {}, design=untyped(design)), METRIC)
+    assert section is not None
+    return section
+
+
+def test_speeds_are_told_where_largest_and_where_two():
+    section = told(FOUND)
+    worst, two = section.words
+    assert worst == (
+        "The RMS of the deformation is largest at 3,000 rpm as speed falls: 30 µm, "
+        "peak to peak 90 µm."
+    )
+    assert two.startswith("There are two motions at 3,000 rpm, one up to 10 times as large")
+    (table,) = section.tables
+    assert table.heads[:2] == ("speed [rpm]", "RMS [µm], rising") and len(table.heads) == 9
+    kinds = [(row[4], row[8]) for row in table.rows]
+    assert kinds == [
+        ("in contact", "in contact"),
+        ("in contact", "in contact"),
+        ("in contact", "does not repeat"),
+        ("repeats after 2 periods", "repeats after 2 periods"),
+        ("unstable", "teeth part"),
+    ]
+
+
+def test_a_plot_over_speed_has_gaps_marks_and_the_unstable_range():
+    figure, waterfall = told(FOUND).figures
+    rising, falling, marks = figure.data
+    assert rising["y"] == [1.0, 2.0, 3.0, 20.0, None] and falling["y"][-1] == 10.0
+    assert list(zip(marks["x"], marks["y"], strict=True)) == [(3000.0, 30.0), (4000.0, 20.0)]
+    (band,) = figure.layout["shapes"]
+    assert (band["x0"], band["x1"]) == (4500.0, 5500.0) and "Shaded" in figure.caption
+    assert [row[-1] for row in waterfall.data[0]["z"]] == [None, None]
+    assert waterfall.data[0]["z"][0][0] == np.log10(2.0)
+
+
+def test_without_backlash_one_curve_is_told():
+    none = dict.fromkeys(("falling_rms_mm", "falling_peak_to_peak_mm", "falling_highest_mm"), ())
+    alone = {**FOUND.__dict__, **none, "falling_repeats": (), "teeth_part": False}
+    section = told(Speeds(**alone))
+    assert len(section.words) == 1 and len(section.tables[0].heads) == 5
+    assert "4,000 rpm: 20 µm" in section.words[0]
+    assert len(section.figures[0].data) == 2  # the curve, and where it takes two periods
+
+
+def test_axes_move_on_the_page_as_they_did():
+    turn = np.linspace(0.0, 4.0 * np.pi, 801)
+    axes = tuple(
+        tuple(0.01 * k * f(turn)) for k, f in ((1, np.cos), (2, np.sin), (3, np.sin), (4, np.cos))
+    )
+    found = Response(
+        method="rk8",
+        error=1e-9,
+        error_asked=1e-6,
+        met=True,
+        steps=1,
+        separations=0,
+        rms_mm=0.0,
+        peak_to_peak_mm=0.0,
+        highest_mm=0.0,
+        time_ms=tuple(np.linspace(0.0, 20.0, 801)),
+        deformation_mm=tuple(np.sin(turn)),
+        axes_mm=axes,
+        frequency_Hz=(0.0,),
+        amplitude_mm=(0.0,),
+    )
+    made = dynamics_plots.orbit(found, METRIC)
+    later = 2.0 * np.pi + np.pi * np.asarray(made.marks - 10.0) / 5.0
+    for view, a, b in zip(made.views, (0, 2), (1, 3), strict=True):
+        (dot,) = view.front
+        places = np.asarray(dot.places)
+        scale = 0.01 * np.array([a + 1, b + 1])
+        law = (np.cos, np.sin) if a == 0 else (np.sin, np.cos)
+        assert np.allclose(places[:, :2], np.stack([f(later) for f in law], axis=1) * scale)
