@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from moving_pairs import paper_pair
+from scipy import integrate
 
 from gearopt.formulations.motion.exponential import exact_motion, piecewise_linear
 from gearopt.formulations.motion.integrate import (
@@ -75,6 +76,25 @@ def test_momentum_of_a_free_pair_is_kept_by_the_exact_kinematics_alone(kind, dri
     kinetic = 6e-4 * (vx1**2 + vy1**2) + 9e-4 * (vx2**2 + vy2**2) + 2.0 * w1**2 + 4.0 * w2**2
     energy = 0.5 * kinetic + 0.5 * 2e5 * made.delta**2
     assert energy == pytest.approx(energy[0], rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["exact", "paper"])
+def test_energy_is_what_torques_stiffness_and_damping_give_and_take(kind):
+    """d/dt(T + V) = T_1 theta_1' + k'(t) delta^2/2 - c delta'^2 - c_b sum(x'^2 + y'^2)."""
+    pair = paper_pair(kind, wave=fourier(2e5, (5e4,)), frequency=1000.0, damping=0.2, bearing=0.01)
+    times = np.linspace(0.0, 0.002, 4001)
+    made = march(pair, "angles", timeline(pair, times), "rk8", 1e-6, np.zeros(12))
+    x1, y1, _, x2, y2, _, vx1, vy1, w1, vx2, vy2, w2 = made.states.T
+    phase = 2.0 * math.pi * 1000.0 * times
+    k, grows = 2e5 + 5e4 * np.cos(phase), -5e4 * 2.0 * math.pi * 1000.0 * np.sin(phase)
+    gu, gv = pair.contact(x2 - x1, y2 - y1).gradient
+    rate = gu * (vx2 - vx1) + gv * (vy2 - vy1) - 60.0 * w1 - 80.0 * w2
+    kinetic = 6e-4 * (vx1**2 + vy1**2) + 9e-4 * (vx2**2 + vy2**2) + 2.0 * w1**2 + 4.0 * w2**2
+    energy = 0.5 * (kinetic + 1e3 * (x1**2 + y1**2 + x2**2 + y2**2) + k * made.delta**2)
+    power = 2e5 * w1 + 0.5 * grows * made.delta**2 - 0.2 * rate**2
+    power -= 0.01 * (vx1**2 + vy1**2 + vx2**2 + vy2**2)
+    given = integrate.simpson(power, x=times)
+    assert energy[-1] - energy[0] == pytest.approx(given, rel=1e-8) and given > 1e4
 
 
 def test_angles_follow_from_delta_and_a_closed_form():
