@@ -201,11 +201,47 @@ def test_methods_that_are_not_there_are_refused():
         gearopt.solve(scene(EXAMPLE), method="exchange")
 
 
-def test_explain_names_what_decides_and_does_not_guess(solved):
+def test_explain_of_given_gears_names_what_decides(solved):
     told = replace(solved("strain_wave_base"), limits={"pairs": 1.0, "ratcheting": 0.5})
-    found = explain(scene(FROM_DUTY), Ask(), told)
+    found = explain(scene(EXAMPLE), Ask(), told)
     assert found.binding == ("pairs",) and not found.influences
-    assert "not solved again" in found.message
+    assert "the gearing is given" in found.message
+
+
+@pytest.mark.slow
+def test_explain_of_a_duty_follows_the_laws_of_similar_gearings():
+    """Hertz's pressure of similar gearings goes with (T/D^3)^(1/2), whatever the limits are."""
+    found = explain(scene(FROM_DUTY.replace("[cutter]\n", "")), Ask())
+    by = {i.key: i for i in found.influences}
+    assert set(found.binding) == {"outer_radius", "interference"}
+    for key, power in (("duty.torque", 0.5), ("duty.outer_diameter", -1.5)):
+        assert by[key].sensitivity == pytest.approx(power, abs=1e-3)
+        assert by[key].resolved == pytest.approx((power, power), abs=1e-3)
+    assert by["duty.ratio"].step == "+1" and by["duty.ratio"].price < 0.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("torque", "diameter", "status", "conflict"),
+    [
+        ("1000 N m", "90 mm", "infeasible", ("rim_fatigue", "outer_radius")),
+        ("100 N m", "5 mm", "infeasible", ("rim_fatigue",)),
+        ("300 N m", "90 mm", "failed", ("ratcheting", "rim_fatigue")),
+    ],
+)
+def test_an_impossible_duty_is_told_what_would_do(torque, diameter, status, conflict):
+    """Torque times size^-3 is what the teeth carry, so that both remedies are one law."""
+    text = FROM_DUTY.replace("100 N m", torque).replace("90 mm", diameter)
+    own = scene(text.replace("[cutter]\n", ""))
+    found = gearopt.solve(own)
+    ways = found.report["ways_out"]
+    assert found.status == status and set(ways["conflict"]) == set(conflict)
+    told = found.message + ways["message"]
+    assert "ratcheting: at" in told and "N m of" in told and "a safety of" in told
+    less, wider = ways["remedies"]
+    assert less["what"] == "duty.torque" and wider["what"] == "duty.outer_diameter"
+    assert less["factor"] ** (1.0 / 3.0) == pytest.approx(wider["factor"], rel=2e-3)
+    assert explain(own, Ask(), found).remedies[1].factor == wider["factor"]
 
 
 @pytest.mark.slow

@@ -122,7 +122,7 @@ def test_every_start_leads_to_the_same_design(start):
 @pytest.mark.slow
 def test_passages_that_cut_are_added(monkeypatch):
     """Without any at first: teeth cut by 0.3 mm, as without the limit; then the tip's is found."""
-    monkeypatch.setattr("gearopt.formulations.strain_wave.exchange._tip_leaves", lambda *_: ())
+    monkeypatch.setattr("gearopt.formulations.strain_wave.exchange.tip_leaves", lambda *_: ())
     found = exchange(DEMAND, np.array(STARTS[0]), Clock())
     assert [r.cuts for r in found.rounds] == [0, 1]
     assert found.rounds[0].pressure < 66.0 and found.rounds[0].gap < -0.25  # mm
@@ -142,7 +142,7 @@ def test_a_budget_that_ends_in_a_later_round_leaves_the_design_of_the_one_before
         return replace(result, status="limit", objective={}), replace(outcome, x=None)
 
     monkeypatch.setattr("gearopt.formulations.strain_wave.exchange.run", stops)
-    monkeypatch.setattr("gearopt.formulations.strain_wave.exchange._tip_leaves", lambda *_: ())
+    monkeypatch.setattr("gearopt.formulations.strain_wave.exchange.tip_leaves", lambda *_: ())
     found = exchange(DEMAND, np.array(STARTS[0]), Clock(Budget(seconds=60.0)))
     assert len(calls) == 2 and len(found.rounds) == 1
     assert found.design.complete and not found.clear and -0.4 < found.gap < -0.25  # mm

@@ -28,8 +28,8 @@ from gearopt.formulations.strain_wave.demand import (
 )
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Terms, Var
-from gearopt.physics.strain_wave.clearance import corner
-from gearopt.physics.strain_wave.conjugate import angle_at, contact, tangents
+from gearopt.physics.strain_wave.clearance import corner, least_gaps
+from gearopt.physics.strain_wave.conjugate import angle_at, contact, flank, tangents
 from gearopt.physics.strain_wave.neutral_curve import (
     curve_of,
     neutral_curve,
@@ -41,6 +41,7 @@ NO_LIMITS: Mapping[str, float] = MappingProxyType({})
 COUNT = 7  # contacts from root to tip, evenly by the tangent of the pressure angle
 CHANGE_UNIT = 1e-2  # mm, of the change of the neutral curve
 PRESSURES = (1.0, 1e4)  # MPa: ends of the search
+FIRST_DEG = 1.0  # of the wave, at which the first design's passage is looked for
 REACH = (-0.3, 0.6)  # rad: polar angles at which contacts are looked for
 PASSING = (1e-3, 0.5 * math.pi)  # rad: polar angles of passages, on the side that teeth leave
 
@@ -104,6 +105,17 @@ def problem(
 
     unknown = (*variables(demand, start), *_angles(passages))
     return Problem("strain wave gearing", unknown, (), evaluate)
+
+
+def tip_leaves(demand: Demand, start: Any) -> tuple[Passage, ...]:
+    """Return where the flank's tip passes the tip circle as its tooth leaves, in the first design.
+
+    There teeth come nearest but for their contact; of a start without a flank it is a guess.
+    """
+    made = flank(demand.gearing(dict(zip(FREE, map(float, start), strict=True))))
+    known = least_gaps(made, FIRST_DEG, 2) if made.complete.all() else []
+    angles = [one.angle for one in known if one.passing and one.point == 1.0 and one.angle > 0.0]
+    return (Passage(COUNT - 1, True, angles[0] if angles else 1.0),)
 
 
 def _names(passages: Sequence[Passage]) -> list[str]:

@@ -1,7 +1,7 @@
 """kind = "strain_wave": a strain wave gearing (harmonic drive), given or chosen."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import partial
 from types import MappingProxyType
 from typing import Any
@@ -10,6 +10,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations.strain_wave import sampled
 from gearopt.formulations.strain_wave.demand import FREE, PRESSURE, VOLUME
 from gearopt.formulations.strain_wave.exchange import Exchanged, design_of, exchange
+from gearopt.formulations.strain_wave.impossible import told
 from gearopt.formulations.strain_wave.range_ends import ends_of, slopes_of
 from gearopt.formulations.strain_wave.sampled import SHARE
 from gearopt.formulations.strain_wave.swept_report import (
@@ -24,7 +25,7 @@ from gearopt.formulations.strain_wave.wave_report import (
     sketched,
     used,
 )
-from gearopt.optimise.clock import Clock
+from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Explanation
@@ -36,16 +37,19 @@ from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.physics.strain_wave.conjugate import Flank
+from gearopt.scenes.explaining.default import of_report
 from gearopt.scenes.reading.ask import Ask, unseeded, without_method
 from gearopt.scenes.strain_wave.example import EXAMPLE, MORE_EXAMPLES
 from gearopt.scenes.strain_wave.scene import Scene
 from gearopt.scenes.strain_wave.wave_assumptions import assumptions, notes, range_notes
+from gearopt.scenes.strain_wave.ways_out import influences, ways_out
 
 __all__ = ["EXAMPLE", "MORE_EXAMPLES", "Scene"]
 METHODS = ("exchange",)  # its own
 SAMPLERS = ("annealing", "nsga2")
 NOTHING = "the gearing is given, so that nothing is chosen"
-UNEXPLAINED = "numbers are not solved again, because each would take another search over all poses"
+UNPROVEN = "numbers are not solved again, because the answer is not certified as stationary"
+NEAREST = "What the size reaches where its largest excess is smallest: {}."
 NO_SLOPES: Mapping[str, float] = MappingProxyType({})
 HIDDEN = (
     "Teeth cut each other by {:.3g} µm between the poses that the method looked at: "
@@ -68,7 +72,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     result = replace(result, method="exchange", seed=ask.seed)
     numbers = found.outcome.x
     if found.design is None or numbers is None:
-        return result
+        return _without_design(scene, found, result, clock)
     if result.status == "stationary":  # what Ipopt says of itself is certified
         result = replace(result, message="")
     slopes = slopes_of(found.problem, numbers) if result.status == "stationary" else {}
@@ -77,6 +81,20 @@ def solve(scene: Scene, ask: Ask) -> Result:
         return shown
     message = "Stopped before all poses kept clear: teeth interfere."
     return replace(shown, status="limit", message=f"{message} {shown.message}".strip())
+
+
+def _without_design(scene: Scene, found: Exchanged, result: Result, clock: Clock) -> Result:
+    """Return why nothing was found: what is asked and what is there, and what would do."""
+    if found.nearest is None:
+        return result
+    short = NEAREST.format("; ".join(told(scene.demand(), found.nearest)))
+    ways = ways_out(scene, found, clock)
+    if result.status == "infeasible":  # the message is the proof
+        ways = replace(ways, message=f"{short} {ways.message}".strip())
+    else:
+        result = replace(result, message=short)
+    report = {"nearest": dict(found.nearest.used), "ways_out": asdict(ways)}
+    return replace(result, report=report, seconds=clock.seconds)
 
 
 def _rounds(found: Exchanged) -> list[RoundRow]:
@@ -191,9 +209,14 @@ def idle(scene: Scene, method: str | None) -> dict[str, str]:
 
 
 def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
-    """Return the limits that decide; no number of the file is moved and solved again."""
+    """Return what every number does to the pressure, or what would make a file possible."""
+    clock = Clock(ask.budget, of_others(ask.watch))
     found = result or solve(scene, ask.half)
-    message = UNEXPLAINED if scene.limited else NOTHING
+    if "ways_out" in found.report:
+        return of_report(found)
+    if scene.limited and found.status == "stationary":
+        return influences(scene, found, clock, ask.gap)
+    message = UNPROVEN if scene.limited else NOTHING
     return Explanation(found, (), (), binding(found), (), message, found.seconds)
 
 

@@ -1,0 +1,77 @@
+"""What to write instead of an impossible file, and what every number does to a possible one."""
+
+from dataclasses import replace
+
+from gearopt.formulations.strain_wave.exchange import Exchanged, exchange
+from gearopt.formulations.strain_wave.impossible import least_factor, nearest
+from gearopt.formulations.strain_wave.wave_design import problem
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.explaining.explanation import Change, Explanation, Remedies, Remedy
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Result
+from gearopt.scenes.explaining.default import at_point, eases, of_design
+from gearopt.scenes.explaining.numbers import Number, apart, at, eased, moved, times, written
+from gearopt.scenes.reading.toml import toml_text
+from gearopt.scenes.strain_wave.scene import Scene
+
+MOVED = {("duty", "torque"): -1, ("duty", "outer_diameter"): 1}  # and the way that eases them
+EASES = {  # beside ends of ranges: what eases a limit
+    "design.pairs": -1,
+    "design.safety": -1,
+    "design.ratcheting": -1,
+    "material.bending_limit": 1,
+    "material.shear_limit": 1,
+    "duty.outer_diameter": 1,
+}
+ROOMY = (1.0, 1.001, 1.01)  # factors by which a change is made larger until a design is found
+
+
+def ways_out(scene: Scene, found: Exchanged, clock: Clock) -> Remedies:
+    """Return the limits in conflict, and torque and outer diameter moved alone until they do."""
+    used = found.nearest.used if found.nearest else {}
+    over = sorted((n for n, u in used.items() if u > 1.0), key=lambda n: -used[n])
+    names = tuple(found.result.proof.get("conflict", over))
+    tried = (_moved(scene, path, way, clock) for path, way in MOVED.items())
+    late = "the budget ended before all remedies were tried"
+    return Remedies(names, tuple(r for r in tried if r), late if clock.over else "")
+
+
+def _moved(scene: Scene, path: tuple[str, ...], way: int, clock: Clock) -> Remedy | None:
+    """Return a number of the file moved as little as a design takes; None where none helps."""
+    number = Number(path, at(scene, path))
+
+    def excess(factor: float) -> float | None:
+        other = None if clock.over else moved(scene, path, times(number.value, factor))
+        least = None if other is None else nearest(other.demand(), other.start(), clock)
+        return None if least is None else least.excess
+
+    factor = least_factor(excess, way)
+    for room in ROOMY if factor else ():
+        assert factor is not None
+        value = eased(number.value, factor * room, way)
+        other = moved(scene, path, value)
+        if other is not None and exchange(other.demand(), other.start(), clock).clear:
+            was, write = (toml_text(written(v, path)) for v in (number.value, value))
+            change = Change(number.key, was, write, apart(number.value, value))
+            sure = {"with": "feasible", "with_less": "undecided"}
+            kind = "less" if way < 0 else "alone"
+            return Remedy(kind, number.key, (change,), change.factor, None, sure)
+    return None
+
+
+def influences(scene: Scene, result: Result, clock: Clock, gap: float) -> Explanation:
+    """Return what every number of a file does to its pressure, by multipliers and solving again."""
+    found = exchange(scene.demand(), scene.start(), clock, gap)
+    x = found.outcome.x
+    assert x is not None and found.result.value is not None
+
+    def solved(other: Scene) -> float | None:
+        again = exchange(other.demand(), other.start(), Clock(clock.left, clock.watch), gap)
+        return again.result.value if again.result.status == "stationary" and again.clear else None
+
+    def posed(other: Scene) -> Problem:
+        return problem(other.demand(), x[:6], found.passages)
+
+    basis = at_point(found.result.value, solved, posed, scene, x)
+    ways = eases(found.problem) | EASES
+    return replace(of_design(scene, result, clock, basis, solved, "", ways), seconds=clock.seconds)

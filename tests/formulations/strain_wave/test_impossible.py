@@ -1,0 +1,90 @@
+"""Requests that nothing meets: bounds over the ranges, the least excess, what must change."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearopt.bench.wave_design import DEMAND, STARTS
+from gearopt.formulations.strain_wave import sampled
+from gearopt.formulations.strain_wave.box_bounds import least_used, proof
+from gearopt.formulations.strain_wave.demand import FREE
+from gearopt.formulations.strain_wave.exchange import exchange
+from gearopt.formulations.strain_wave.impossible import least_factor, nearest, told
+from gearopt.optimise.clock import Clock
+
+
+def carrying(torque_Nm):
+    return replace(DEMAND, duty=replace(DEMAND.duty, torque=1e3 * torque_Nm))
+
+
+def test_bounds_of_random_boxes():
+    """No gearing in a box uses a limit less than the bound; of one design it is its value."""
+    draw = np.random.default_rng(22)
+    for _ in range(6):
+        ranges = {}
+        for name, (low, high) in DEMAND.ranges.items():
+            ends = np.sort(draw.uniform(low, high, 2))
+            ranges[name] = (float(ends[0]), float(ends[1]))
+        own = replace(DEMAND, ranges=ranges, outer_radius=draw.uniform(30.0, 50.0))
+        low, high = np.array([ranges[name] for name in FREE]).T
+        points = low + (high - low) * draw.random((8, len(FREE)))
+        posed = sampled.problem(own, points[0], look=sampled.Look(30.0, 85.0, 3, 0.0))
+        used = dict(
+            zip([r.name for r in posed.rows.inequalities], posed.batch(points).G.T, strict=True)
+        )
+        within = used["outer_radius"] <= 1.0
+        for (name, *kept), bound in least_used(own).items():
+            assert (used[name][within | (not kept)] >= bound - 1e-12).all(), name
+    one = dict(zip(FREE, STARTS[0], strict=True))
+    of_one = least_used(replace(DEMAND, ranges={n: (v, v) for n, v in one.items()}))
+    assert of_one[("outer_radius",)] == pytest.approx((40.5 + 0.5 * 1.75 + 3.0) / 45.0, rel=1e-12)
+    assert of_one[("minor_axis",)] == pytest.approx(1.3 / 2.0, rel=1e-12)
+    shear = 1.6 * 1e5 / (2.0 * math.pi * 39.625**2 * 0.6 * 0.8)  # 33.8 MPa, R_m as in the paper
+    assert of_one[("rim_fatigue",)] == pytest.approx(1.5 * shear / 230.0, rel=1e-12)
+
+
+def test_what_no_corner_of_the_ranges_reaches_is_proven():
+    assert proof(DEMAND) is None
+    found = proof(carrying(1000.0))
+    assert found["conflict"] == ["rim_fatigue", "outer_radius"] and "118.2 %" in found["sentence"]
+    assert proof(replace(DEMAND, outer_radius=30.0))["conflict"][0] == "outer_radius"
+    never = replace(DEMAND, ranges={**DEMAND.ranges, "addendum": (1.3, 1.4)})
+    assert proof(never)["conflict"] == ["minor_axis"]
+
+
+def test_the_least_excess_balances_what_cannot_be_met():
+    """At 300 N m ratcheting and fatigue fall short alike; what is told is in units."""
+    own = carrying(300.0)
+    found = nearest(own, np.array(STARTS[0]), Clock())
+    assert found.used["ratcheting"] == pytest.approx(found.used["rim_fatigue"], rel=1e-6)
+    assert found.excess == pytest.approx(found.used["ratcheting"] - 1.0, abs=1e-6)
+    words = "; ".join(told(own, found))
+    torque, safety = 900.0 / (1.0 + found.excess), 1.5 / (1.0 + found.excess)
+    assert f"ratcheting: at {torque:.4g} N m of 900 N m" in words
+    assert f"rim fatigue: a safety of {safety:.3g} of 1.5" in words
+
+
+def test_a_number_is_moved_as_little_as_it_takes():
+    """A utilisation 8/f^2.5 is 1 at 8^0.4 = 2.2974; 8 f^1.5, of a number that shrinks, at 1/4."""
+    grown = least_factor(lambda f: 8.0 * f**-2.5 - 1.0, 1)
+    assert 8.0**0.4 <= grown < 8.0**0.4 * (1.0 + 1e-4)
+    shrunk = least_factor(lambda f: 8.0 * f**1.5 - 1.0, -1)
+    assert 4.0 <= shrunk < 4.0 * (1.0 + 1e-4)
+    assert least_factor(lambda f: 0.9 / f - 1.0, 1) == 1.0
+    assert least_factor(lambda f: 0.5, 1) is None and least_factor(lambda f: None, 1) is None
+
+
+@pytest.mark.slow
+def test_the_largest_torque_separates_what_is_found_from_what_is_not():
+    start = np.array(STARTS[0])
+    assert nearest(DEMAND, start, Clock()).excess < -0.1  # 100 N m are met with room
+
+    def excess(factor):
+        return nearest(carrying(300.0 * factor), start, Clock()).excess
+
+    most = 300.0 / least_factor(excess, -1)
+    assert exchange(carrying(0.999 * most), start, Clock()).clear
+    found = exchange(carrying(1.002 * most), start, Clock())
+    assert found.result.status == "failed" and 0.0 < found.nearest.excess < 4e-3
