@@ -115,7 +115,8 @@ def arc_problem(points: Vector, weights: Any) -> Conic:
 def arc_edge(points: Vector) -> ArcEdge:
     """Return the arc nearest to points (n,) of a cutter [mm], by linear programs.
 
-    With w_i = 1/(|p_i - c| + R) the weighted rows are the deviations |p_i - c| - R themselves.
+    With w_i = 1/(|p_i - c| + R) the weighted rows are the deviations |p_i - c| - R themselves. The
+    last program is certified; over all arcs there is no bound, as the fit is not convex.
     """
     turned, half, (origin, lean) = _normal_form(points)
     weights = np.ones(len(turned.x))
