@@ -70,6 +70,7 @@ LONG = (
     "strain_wave_from_duty",
     "strain_wave_320",
     "strain_wave_half_locus",
+    "strain_wave_interferes",
     "strain_wave_discs",
     "least_vibration",
     "unstable_speed",

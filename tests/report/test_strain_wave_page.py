@@ -151,8 +151,11 @@ def test_the_gearing_of_a_report_is_the_one_it_was_made_of(found):
     assert 2.0 * gearing.tip_radius == pytest.approx(found.tip_diameter_mm, rel=1e-14)
 
 
-def test_a_cutter_with_a_cusp_and_teeth_that_cut_are_warned_of(solved):
-    own = solved("strain_wave_interferes")
+def test_a_cutter_with_a_cusp_and_teeth_that_cut_are_warned_of(result):
+    """The result of the base file with a clearance below 0 and a cutter without an edge."""
+    cusp = {k: result.design["cutter"][k] for k in ("pitch_radius_mm", "least_teeth")}
+    cusp |= {"teeth": 8, "cutter_radius_mm": 2.0, "regular": False, "least_speed": -1.7}
+    own = replace(result, design=result.design | {"least_clearance_mm": -0.031, "cutter": cusp})
     first, second = warns(own)
     assert "cut each other by 3" in first and "has a cusp" in second
     assert not cutter(own, METRIC).drawings

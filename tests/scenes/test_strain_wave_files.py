@@ -131,6 +131,7 @@ def test_teeth_carry_what_the_circular_spline_holds(line, held):
     assert equal_pressure(duty, made) == pytest.approx(117.38 * math.sqrt(held), abs=0.01)
 
 
+@pytest.mark.slow
 def test_interference_is_told_before_numbers(solved):
     found = solved("strain_wave_interferes")
     assert not found.feasible and "interference" in found.message
