@@ -143,6 +143,15 @@ def test_sections_say_what_was_found(result, found):
     assert all(np.all(np.diff(line["y"]) < 0.0) for line in curve)
     sizes = dict((row[0], row[1]) for row in numbers(result, METRIC).tables[0].rows)
     assert sizes["teeth of the flexspline"] == 160
+    built = {
+        "flexspline, undeformed: tip diameter [mm]": 79.25 + 2.0 * 1.12856,
+        "root diameter of the flexspline [mm]": 80.05,
+        "bore of the flexspline [mm]": 78.45,
+        "wave generator: major diameter [mm]": 79.45,
+    }
+    assert {name: sizes[name].value for name in built} == pytest.approx(built, abs=2e-5)
+    minor = sizes["minor diameter [mm]"].value
+    assert 77.4 < minor < 77.45  # 2 (39.625 - 0.5 - 0.4) less the 13 um by which its length is kept
 
 
 def test_the_gearing_of_a_report_is_the_one_it_was_made_of(found):

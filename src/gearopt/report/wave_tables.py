@@ -39,10 +39,7 @@ def sizes(found: WaveDesign, measures: Measures) -> Table:
         [f"last active diameter [{length}]", cell(found.active_diameter_mm, "mm", measures)],
         [f"root diameter [{length}]", cell(found.root_diameter_mm, "mm", measures)],
         [f"base diameter [{length}]", _mm(found.base_diameter_mm, measures)],
-        [
-            f"neutral diameter of the flexspline [{length}]",
-            cell(found.neutral_diameter_mm, "mm", measures),
-        ],
+        *_flexspline(found, measures),
         ["conjugate pairs per lobe and flank", found.pairs_in_contact],
         ["teeth that carry, per lobe", found.carrying_teeth],
         ["the same, as if equally loaded", found.effective_teeth],
@@ -170,6 +167,20 @@ def space_points(found: WaveDesign, measures: Measures) -> Table:
         (f"out, from the axis [{length}]", found.space_out_mm, "mm"),
     ]
     return _columns("points of the circular spline's flank", columns, measures, folded=True)
+
+
+def _flexspline(found: WaveDesign, measures: Measures) -> list[list[Any]]:
+    """Return diameters of the flexspline before it is bent, and of the wave generator in it."""
+    length, neutral = measures.unit("mm"), found.neutral_diameter_mm
+    values = {
+        "flexspline, undeformed: tip diameter": neutral + 2.0 * found.tooth_height_mm[-1],
+        "root diameter of the flexspline": neutral + found.rim_mm,
+        "neutral diameter of the flexspline": neutral,
+        "bore of the flexspline": neutral - found.rim_mm,
+        "wave generator: major diameter": found.wave_major_mm,
+        "minor diameter": found.wave_minor_mm,
+    }
+    return [[f"{name} [{length}]", _mm(value, measures)] for name, value in values.items()]
 
 
 def _arcs(found: WaveDesign, measures: Measures) -> list[list[Any]]:

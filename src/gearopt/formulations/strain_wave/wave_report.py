@@ -34,7 +34,7 @@ from gearopt.physics.strain_wave.clearance import tooth_clearances as clearances
 from gearopt.physics.strain_wave.conjugate import Flank, contact, least_deflection
 from gearopt.physics.strain_wave.cutter import blank_profile
 from gearopt.physics.strain_wave.gearing import StrainWave
-from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, curvature
+from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, curvature, radii
 from gearopt.physics.strain_wave.strength import rim_stresses
 from gearopt.physics.strain_wave.tooth_motion import motion
 
@@ -99,6 +99,7 @@ class WaveDesign:
     law: how the teeth are made; what only involutes have is None of others, or empty. arc to
     relative_curvature: contacts by the tooth's angle on the wave, with heights over the neutral
     curve, half thicknesses of the tooth, radius on the circular spline, radii of curvature.
+    wave_major, wave_minor: diameters of the wave generator inside the flexspline's rim.
     touching: stretches of the wave on which flanks are conjugate. tooth: the flank from root to
     tip, height and half thickness; space: that of the circular spline from its tip, across from the
     middle of the space and out from the axis. wave: clearances of a tooth by its angle; load: what
@@ -130,6 +131,8 @@ class WaveDesign:
     active_diameter_mm: float
     root_diameter_mm: float
     neutral_diameter_mm: float
+    wave_major_mm: float
+    wave_minor_mm: float
     pairs_in_contact: float
     effective_teeth: float
     carrying_teeth: int
@@ -245,6 +248,7 @@ def _sizes(demand: Demand, made: Flank) -> dict[str, Any]:
 def sizes_of(demand: Demand, gearing: StrainWave, curve: NeutralCurve) -> dict[str, Any]:
     """Return the sizes of a gearing and the stresses of its rim, of teeth of any law."""
     duty = demand.duty
+    major, minor = (float(radii(curve, angle)[0]) for angle in (0.0, 0.5 * math.pi))
     apex, wall = curvature(curve, 0.0)[0], duty.cup.wall
     bending, shear = rim_stresses(gearing, apex, duty.torque, duty.moduli[0], demand.notch, wall)
     return {
@@ -267,6 +271,8 @@ def sizes_of(demand: Demand, gearing: StrainWave, curve: NeutralCurve) -> dict[s
         "active_diameter_mm": 2.0 * float(gearing.active_radius),
         "root_diameter_mm": 2.0 * float(gearing.root_radius),
         "neutral_diameter_mm": 2.0 * float(gearing.neutral_radius),
+        "wave_major_mm": 2.0 * major - float(gearing.rim),
+        "wave_minor_mm": 2.0 * minor - float(gearing.rim),
         "rim_bending_MPa": float(bending),
         "rim_shear_MPa": float(shear),
     }
