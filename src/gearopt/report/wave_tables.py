@@ -24,20 +24,20 @@ def sizes(found: WaveDesign, measures: Measures) -> Table:
         ["ratio, circular spline at rest", found.ratio],
         ["teeth of the flexspline", found.flexspline_teeth],
         ["teeth of the circular spline", found.circular_spline_teeth],
-        [f"module [{length}]", cell(found.module_mm, "mm", measures)],
+        [f"module [{length}]", _mm(found.module_mm, measures)],
         ["pressure angle [°]", found.pressure_angle_deg],
         ["profile shift, modules", found.profile_shift],
         ["addendum, modules", found.addendum],
         ["deflection, modules", found.deflection],
-        [f"rim [{length}]", cell(found.rim_mm, "mm", measures)],
+        [f"rim [{length}]", _mm(found.rim_mm, measures)],
         [f"thickness at half the height [{length}]", _mm(found.thickness_mm, measures)],
         *_arcs(found, measures),
         ["wave generator", shape],
-        [f"face width [{length}]", cell(found.face_width_mm, "mm", measures)],
-        [f"outer diameter [{length}]", cell(found.outer_diameter_mm, "mm", measures)],
-        [f"circular spline: tip diameter [{length}]", cell(found.tip_diameter_mm, "mm", measures)],
-        [f"last active diameter [{length}]", cell(found.active_diameter_mm, "mm", measures)],
-        [f"root diameter [{length}]", cell(found.root_diameter_mm, "mm", measures)],
+        [f"face width [{length}]", _mm(found.face_width_mm, measures)],
+        [f"outer diameter [{length}]", _mm(found.outer_diameter_mm, measures)],
+        [f"circular spline: tip diameter [{length}]", _mm(found.tip_diameter_mm, measures)],
+        [f"last active diameter [{length}]", _mm(found.active_diameter_mm, measures)],
+        [f"root diameter [{length}]", _mm(found.root_diameter_mm, measures)],
         [f"base diameter [{length}]", _mm(found.base_diameter_mm, measures)],
         *_flexspline(found, measures),
         ["conjugate pairs per lobe and flank", found.pairs_in_contact],
@@ -196,7 +196,10 @@ def _arcs(found: WaveDesign, measures: Measures) -> list[list[Any]]:
 
 
 def _mm(value: float | None, measures: Measures) -> Cell | None:
-    return None if value is None else cell(value, "mm", measures)
+    """Return a size with the digits that it is made by."""
+    if value is None:
+        return None
+    return Cell(measures.of(value, "mm"), measures.length(value, 4))
 
 
 def wave(found: WaveDesign, measures: Measures) -> Table:

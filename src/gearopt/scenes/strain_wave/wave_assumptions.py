@@ -141,7 +141,7 @@ def range_notes(scene: Scene, ends: Sequence[RangeEnd]) -> list[str]:
         shown = _series([f"{end.gain:.2g} MPa by {_name(end.name)}" for end in gains])
         told.append(
             f"With a range {100.0 * WIDER:g} % wider the pressure would fall, to first order, by "
-            f"{shown}: {_name(gains[0].name)} decides most of them."
+            f"{shown}: {_name(gains[0].name)} counts most."
         )
     return told
 
