@@ -137,15 +137,13 @@ def limited(demand: Demand, start: Any, name: str, most: Mapping[str, float]) ->
 
 def _given(value: Any, shape: tuple[int, ...]) -> Any:
     """Return values (N,) in the shape of the text's variables."""
-    if isinstance(value, tuple):
-        return tuple(_given(v, shape) for v in value)
     return value.reshape(shape)[()]
 
 
 def _limited(value: Any, known: Array) -> Any:
-    """Return utilisations, WORST where a design has no conjugate flank."""
+    """Return utilisations, WORST where a design has no conjugate flank; of several the largest."""
     if isinstance(value, tuple):
-        return tuple(_limited(v, known) for v in value)
+        value = np.max(value, axis=0)
     return np.where(known, np.nan_to_num(value, nan=WORST), WORST)
 
 

@@ -42,6 +42,7 @@ Columns = tuple[float, ...]
 INVOLUTE = "involute"  # law of the circular spline's teeth, to which the flexspline's are conjugate
 WITHIN = (1.0, 2.0, 5.0, 10.0, 20.0)  # um
 ROWS = 21  # of the flank's table
+DIGITS = 12  # of numbers in modules: a solver leaves 1e-13 of a 0
 OTHER_DEFLECTIONS = (-0.05, -0.02, 0.02, 0.05)  # modules beside the design's
 SHIFTS = (0.0, 0.3, 0.6, 0.9, 1.2, 1.5, 1.8, 2.1)  # profile shifts of the curve
 FINE = 80  # clearances that are listed on either side of the arc of contact
@@ -257,10 +258,10 @@ def sizes_of(demand: Demand, gearing: StrainWave, curve: NeutralCurve) -> dict[s
         "circular_spline_teeth": int(gearing.circular_teeth),
         "module_mm": float(gearing.module),
         "pressure_angle_deg": math.degrees(gearing.pressure_angle),
-        "profile_shift": float(gearing.profile_shift),
-        "addendum": float(gearing.addendum),
+        "profile_shift": round(float(gearing.profile_shift), DIGITS),
+        "addendum": round(float(gearing.addendum), DIGITS),
         "clearance": float(gearing.clearance),
-        "deflection": float(gearing.deflection),
+        "deflection": round(float(gearing.deflection), DIGITS),
         "rim_mm": float(gearing.rim),
         "wave_generator": gearing.wave,
         "wrap_angle_deg": math.degrees(gearing.wrap) if gearing.wave == "discs" else 0.0,
