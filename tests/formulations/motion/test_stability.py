@@ -7,7 +7,6 @@ import pytest
 from moving_pairs import paper_pair
 from scipy import special
 
-from gearopt.formulations.motion.integrate import march
 from gearopt.formulations.motion.stability import (
     bands,
     largest,
@@ -15,7 +14,6 @@ from gearopt.formulations.motion.stability import (
     multipliers,
     stability_map,
 )
-from gearopt.formulations.motion.timeline import timeline
 from gearopt.physics.motion.linear import Linear, linear, static, with_modal_damping
 from gearopt.physics.motion.stiffness_wave import fourier, sampled, trapezoid
 
@@ -121,21 +119,3 @@ def test_any_wave_is_carried_to_the_digits_of_a_rectangle():
     ramped = trapezoid(2e5, 0.5, 0.6, 0.1)
     one, other = (abs(multipliers(system, w, 3000.0)[0]) for w in (dense, ramped))
     assert one == pytest.approx(other, abs=1e-10)
-
-
-def test_in_a_tongue_a_linear_motion_grows_and_teeth_that_part_bound_it():
-    """Twice the mesh mode, without damping, 60 periods: with backlash it saturates."""
-
-    wave = trapezoid(2e5, 0.5, 0.68)
-    frequency = 2.0 * math.sqrt(2e5 * 3400.0) / (2.0 * math.pi)
-    system = linear(paper_pair(), "fixed")
-    growth = float(largest(system, wave, np.array([frequency]))[0])
-    assert 1.2 < growth < 1.59
-    times = np.linspace(0.0, 60.0 / frequency, 601)
-    ends = {}
-    for backlash in (None, 0.2):
-        pair = paper_pair(wave=wave, frequency=frequency, backlash=backlash)
-        start = np.array([-1.01 * pair.load / 2e5, 0.0])
-        made = march(pair, "fixed", timeline(pair, times), "rk8", 4e-6, start).delta
-        ends[backlash] = np.max(np.abs(made[-100:]))
-    assert ends[None] > 3.0 > 0.1 > ends[0.2]  # mm

@@ -5,11 +5,10 @@ Numbers in mm, N, Hz: an independent program in SI units, with scipy's eigenvalu
 
 import math
 
-import numpy as np
 import pytest
 from moving_pairs import paper_pair
 
-from gearopt.physics.motion.linear import linear, mesh_shares, modes, static
+from gearopt.physics.motion.linear import linear, modes, static
 
 STATIC = {  # x1, y1 [mm], pressure angle under load [deg], reaction over load
     "tangent": (-0.6035649588100036, -1.6582810955045443, 21.26500822598379, 1.0),
@@ -94,63 +93,3 @@ def test_limits_are_closed_forms():
     assert axes == pytest.approx([167.7640403482901, 205.46814802049994], rel=1e-12)
     line = modes(linear(paper_pair(), "line"), 2e5).hertz
     assert line == pytest.approx([UNLOADED[0], UNLOADED[2], UNLOADED[4]], rel=1e-11)
-
-
-LOADS = {  # kinematics, torque [N mm], balanced: k_perp [N/mm], the lowest frequency [Hz]
-    ("exact", 2e5): (442.15222587802506, 135.73408477134345),
-    ("exact", 1e6): (302.26798494076283, 135.73408477134888),
-    ("exact", 5e6): (117.07390762165393, 88.3966265034238),
-    ("exact", 5e7): (14.83324560931488, 31.63424904523355),
-    ("paper", 2e5): (459.2931717660205, 101.03304959754574),
-    ("paper", 1e6): (379.1145209803894, 126.64465642860841),
-    ("paper", 5e6): (223.89689235367958, 121.13139456666248),
-    ("paper", 5e7): (40.91639780968957, 52.478740341066135),
-}
-
-
-@pytest.mark.parametrize(("kind", "torque"), list(LOADS))
-def test_load_softens_the_axes_across_the_line_of_action_and_never_buckles_them(kind, torque):
-    """k_perp = k_b/2 - F/(Z_0 + 2 F/k_b), in the paper's form (k_b/2) C_0/C; both are above 0."""
-    pair, load = paper_pair(kind, torques=(torque, torque * 8 / 6)), torque / 60.0
-    state = static(pair)
-    if kind == "exact":
-        across = 500.0 - load / (140.0 * math.tan(math.radians(20.0)) + 2 * load / 1e3)
-    else:
-        centre = 140.0 / math.cos(math.radians(20.0))
-        across = 500.0 * centre / math.hypot(centre + state.apart[0], state.apart[1])
-    known, lowest = LOADS[kind, torque]
-    assert across == pytest.approx(known, rel=1e-12) and across > 0.0
-    g = 500.0 - across  # F/Z, the tangent grown by the load
-    masses = np.diag([6e-4, 9e-4])
-    squares = np.linalg.eigvals(np.linalg.solve(masses, [[1e3 - g, g], [g, 1e3 - g]])).real
-    found = modes(linear(pair, "plane", state), 2e5)
-    for square in squares:
-        assert np.min(np.abs(found.frequencies**2 / square - 1.0)) < 1e-9
-    assert found.hertz[0] == pytest.approx(lowest, rel=1e-9)
-
-
-def test_of_equal_masses_three_frequencies_are_one():
-    """Their shapes are any basis: the space they span is compared."""
-    pair = paper_pair(masses=(7.5e-4, 7.5e-4))
-    system = linear(pair, "plane")
-    found = modes(system, 2e5)
-    single = math.sqrt(1e3 / 7.5e-4) / (2 * math.pi)
-    assert single == pytest.approx(183.776, abs=5e-4)
-    assert found.hertz[1:4] == pytest.approx([single] * 3, rel=1e-9)
-    assert found.hertz[[0, 4]] == pytest.approx([137.54631610658546, 5545.173316526311], rel=1e-10)
-    sine, cosine = math.sin(pair.pressure_angle), math.cos(pair.pressure_angle)
-    known = np.array(
-        [[cosine, -sine, 0, 0, 0], [0, 0, 0, cosine, -sine], [sine, cosine, 0, sine, cosine]]
-    )
-    left = np.linalg.lstsq(found.shapes[:, 1:4], known.T, rcond=None)[0]
-    assert found.shapes[:, 1:4] @ left == pytest.approx(known.T, abs=1e-9)
-    assert mesh_shares(system, 2e5)[1:4] == pytest.approx([0.0] * 3, abs=1e-12)
-
-
-def test_line_modes_avoid_each_other():
-    """The smallest gap of the upper two, over the bearings: 1907.926 Hz at 1.33352e6 N/mm."""
-    found = modes(linear(paper_pair(kx=1.333521432163324e6), "line"), 2e5).hertz
-    assert found == pytest.approx([3490.81839378, 6499.90266878, 8407.82884290], rel=1e-9)
-    for near in (1.32e6, 1.35e6):
-        other = modes(linear(paper_pair(kx=near), "line"), 2e5).hertz
-        assert other[2] - other[1] > found[2] - found[1] == pytest.approx(1907.926174, abs=1e-5)
