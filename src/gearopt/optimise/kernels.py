@@ -138,12 +138,20 @@ class Warm:
             finally:  # a kernel seeds the generator that is the user's here
                 np.random.set_state(drawn)  # noqa: NPY002
                 self.seconds += time.process_time() - begun
-        if _kept(entry):
-            return entry(*given)
-        begun, found = time.perf_counter(), list[Any]()
-        clock.stopped = not compiled(lambda: found.append(entry(*given)), (entry,), clock.watch)
-        clock.start += time.perf_counter() - begun
-        return found[0] if found else None
+        return compiling_aside(clock, entry, lambda: entry(*given))
+
+
+def compiling_aside(clock: Clock, entry: Any, work: Callable[[], Any]) -> Any:
+    """Return what `work` returns; the time of compiling the kernel it calls is not the clock's.
+
+    None if the watcher ended that.
+    """
+    if _kept(entry):
+        return work()
+    begun, found = time.perf_counter(), list[Any]()
+    clock.stopped = not compiled(lambda: found.append(work()), (entry,), clock.watch)
+    clock.start += time.perf_counter() - begun
+    return found[0] if found else None
 
 
 warm = cache(Warm)

@@ -19,7 +19,7 @@ from gearopt.formulations.dynamics.dynamics_parts import around, columns, jammed
 from gearopt.formulations.motion.balance import SAMPLES, Orbit, linear_orbit, orbit, states
 from gearopt.formulations.motion.integrate import Marched, march
 from gearopt.formulations.motion.simulate import fastest
-from gearopt.formulations.motion.stability import UNSTABLE, bands, largest
+from gearopt.formulations.motion.stability import UNSTABLE, bands, largest, ready
 from gearopt.formulations.motion.timeline import timeline
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
@@ -37,6 +37,7 @@ CHUNK = 32  # periods between two looks at whether a simulation repeats itself
 MOST_PERIODS = 8  # of the mesh, after which a motion may repeat
 SETTLED, REPEATED = 1e-6, 1e-3  # change of states that ends a simulation; that counts as repeated
 PATIENCE = 15.0  # time constants of the least damped mode that a simulation may take
+GROWN = 8.0  # logarithm of the factor by which an unstable one may grow in it
 LONGER, NEARLY = 4, 0.02  # times as many where states change by less than this: it settles slowly
 LEAST, MOST_STEPS = 128, 100_000  # periods at least, and steps at most
 KEPT = 64  # periods of a motion that does not repeat from which its numbers are taken
@@ -155,6 +156,7 @@ def in_contact(
     Of the first alone where the clock stops.
     """
     found, system = [], around(pair, level)
+    ready(system, pair.wave, clock)
     for frequency in frequencies:
         if not clock.tell():
             break
@@ -301,7 +303,7 @@ def _settled(
         state = (1.0 - KICK) * state
     scale, passed = _scale(pair, level), state[None]
     room = float(np.max(np.abs(state / scale)) + (pair.backlash or 0.0) / scale[0])
-    most, spent, changes = _patience(pair, level), 0, [math.inf]
+    most, spent, changes = _patience(pair, level, contact.growth), 0, [math.inf]
     while min(changes) > SETTLED and spent < (LONGER if min(changes) < NEARLY else 1) * most:
         times = np.arange(CHUNK + 1) / pair.mesh_frequency
         made = _marched(pair, level, times, passed[-1], clock)
@@ -319,8 +321,11 @@ def _settled(
     return found
 
 
-def _patience(pair: MovingPair, level: str) -> int:
-    """Return how many periods of the mesh a simulation may take to settle."""
+def _patience(pair: MovingPair, level: str, growth: float) -> int:
+    """Return how many periods of the mesh a simulation may take to settle.
+
+    growth: the largest multiplier of teeth in contact; beyond 1 a motion takes time to grow.
+    """
     system = linear(pair, level)
     inverse = 1.0 / system.mass[:, None]
     n = system.mass.size
@@ -331,9 +336,11 @@ def _patience(pair: MovingPair, level: str) -> int:
         ]
     )
     slowest = float(np.min(-np.linalg.eigvals(held).real))
-    if slowest <= 1e-9 * pair.mesh_frequency:
-        return LEAST
-    wanted = PATIENCE * pair.mesh_frequency / slowest
+    wanted = 0.0
+    if slowest > 1e-9 * pair.mesh_frequency:
+        wanted = PATIENCE * pair.mesh_frequency / slowest
+    if growth > 1.0 + UNSTABLE:
+        wanted = max(wanted, GROWN / math.log(growth))
     a_period = max(1.0, STEPS / (fastest(pair, level) * pair.mesh_frequency))
     return max(LEAST, int(min(wanted, MOST_STEPS / a_period)))
 

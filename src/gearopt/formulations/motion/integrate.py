@@ -1,8 +1,9 @@
 """Fixed-step methods for the motion of a pair: explicit, symplectic, and Newmark's family."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from types import MappingProxyType
 from typing import Any
 
@@ -11,7 +12,7 @@ import numpy as np
 from gearopt.formulations.motion.numbers import deformation, numbers
 from gearopt.formulations.motion.timeline import Timeline
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.kernels import kernel
+from gearopt.optimise.kernels import compiling_aside, kernel
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.accelerations import LEVELS
 from gearopt.physics.motion.moving_pair import MovingPair
@@ -49,13 +50,20 @@ class Marched:
 class Stepper:
     """A method of fixed steps: its order, rates a step (Newton's steps count two), and its run.
 
+    entry: module and name of the kernel that runs it.
     undamped: only for pairs without damping, in coordinates whose forces are of positions alone.
     """
 
     order: int
     rates: int
     run: Callable[[Any, Any, Any, Array, Array, Array], int]
+    entry: tuple[str, str]
     undamped: bool = False
+
+    @property
+    def kernel(self) -> Any:
+        """The kernel that runs it."""
+        return getattr(kernel(self.entry[0]), self.entry[1])
 
 
 def march(
@@ -83,21 +91,21 @@ def march(
     last, told = np.array(state, float), np.array([-1.0, np.inf])
     newton, ends = method in ALPHAS, np.cumsum(counts)
     events = rates = done = 0
-    while done < len(counts):
-        before, stop = int(ends[done - 1]) if done else 0, len(counts)
-        if clock is not None:
-            stop = max(done + 1, int(np.searchsorted(ends, before + SLICE, "right")))
+    steps, slowed = 0, math.inf if clock is None else SLICE
+    clock = clock or Clock()
+    while done < len(counts) and (done == 0 or clock.tell()):
+        stop = max(done + 1, int(np.searchsorted(ends, steps + slowed, "right")))
         part = slice(done, stop)
-        found = stepper.run(model, times.between(done, stop), counts[part], last, out[part], told)
-        spent = 2 * found if newton else (int(ends[stop - 1]) - before) * stepper.rates
+        given = model, times.between(done, stop), counts[part], last, out[part], told
+        found = compiling_aside(clock, stepper.kernel, partial(stepper.run, *given))
+        if found is None:
+            break
+        spent = 2 * found if newton else (int(ends[stop - 1]) - steps) * stepper.rates
         events, rates, done = events + (0 if newton else found), rates + spent, stop
-        if clock is not None:
-            clock.evaluations += spent
-            if done < len(counts) and not clock.tell():
-                break
+        clock.evaluations, steps = clock.evaluations + spent, int(ends[stop - 1])
     whole = np.concatenate([[state], out])[times.asked[times.asked < done] + 1]
     jammed = float(told[1]) if np.isfinite(told[1]) else None
-    return Marched(pair, level, whole, int(ends[done - 1]), rates, events, jammed)
+    return Marched(pair, level, whole, steps, rates, events, jammed)
 
 
 def conservative(pair: MovingPair, level: str) -> bool:
@@ -169,10 +177,10 @@ ALPHAS: Mapping[str, tuple[float, float, float, float]] = MappingProxyType(
     }
 )
 STEPPERS: Mapping[str, Stepper] = MappingProxyType(
-    {name: Stepper(2, 4, _implicit(alphas)) for name, alphas in ALPHAS.items()}
+    {name: Stepper(2, 4, _implicit(alphas), (ALPHA, "advance")) for name, alphas in ALPHAS.items()}
     | {
-        "rk4": Stepper(4, 4, _explicit(fourth)),
-        "rk8": Stepper(8, 12, _explicit(eighth)),
-        "symplectic": Stepper(6, 7, _composed, undamped=True),
+        "rk4": Stepper(4, 4, _explicit(fourth), (MARCH, "march")),
+        "rk8": Stepper(8, 12, _explicit(eighth), (MARCH, "march")),
+        "symplectic": Stepper(6, 7, _composed, (MARCH, "compose"), undamped=True),
     }
 )

@@ -1,6 +1,7 @@
 """Stability of a pair under a periodic mesh stiffness: Floquet multipliers and maps of them."""
 
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 
 from gearopt.formulations.motion.integrate import eighth
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.kernels import kernel
+from gearopt.optimise.kernels import compiling_aside, kernel
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.linear import Linear, modes
 from gearopt.physics.motion.stiffness_wave import Wave
@@ -42,6 +43,13 @@ def monodromy(system: Linear, wave: Wave, frequency: float) -> Array:
     return np.asarray(found * scale / scale[:, None])
 
 
+def ready(system: Linear, wave: Wave, clock: Clock) -> None:
+    """Compile the kernel that `monodromy` takes for a wave, aside from the clock's time."""
+    if not wave.stepped:
+        work = partial(monodromy, system, wave, _top(system, wave))
+        compiling_aside(clock, kernel(KERNEL).monodromy, work)
+
+
 def multipliers(system: Linear, wave: Wave, frequency: float) -> NDArray[np.complex128]:
     """Return the Floquet multipliers, (2 n,), the largest first; any beyond 1 is unstable."""
     found = np.linalg.eigvals(monodromy(system, wave, frequency)).astype(complex)
@@ -71,6 +79,7 @@ def stability_map(
     Of the first waves alone where the clock stops; it counts multipliers as evaluations.
     """
     rows, clock = [], clock or Clock()
+    ready(system, waves[0], clock)
     for wave in waves:
         if not clock.tell():
             break
