@@ -8,7 +8,6 @@ from moving_pairs import paper_pair
 from scipy import special
 
 from gearopt.formulations.motion.stability import (
-    bands,
     largest,
     monodromy,
     multipliers,
@@ -80,15 +79,6 @@ def test_shares_of_the_map(name):
         assert 100.0 * np.mean(found > 1.0 + 1e-6) == pytest.approx(share, abs=5.1e-3)
         if ratio == 0.0:
             assert found.max() == pytest.approx(most, abs=6e-4)
-
-
-def test_bands_of_a_row():
-    found = largest(linear(paper_pair(), "fixed"), trapezoid(2e5, 0.5, 0.68), FREQUENCIES)
-    assert bands(FREQUENCIES, found > 1.0 + 1e-6)[-2:] == [(3950.0, 4300.0), (7800.0, 8800.0)]
-    pair = paper_pair(kx=1e6)
-    row = largest(linear(pair, "plane"), trapezoid(2e5, 0.5, 0.68), FREQUENCIES)
-    known = [(5350.0, 5550.0), (6400.0, 6750.0), (7500.0, 7750.0), (8900.0, 9050.0)]
-    assert set(known) < set(bands(FREQUENCIES, row > 1.0 + 1e-6))
 
 
 def test_exact_and_tangent_kinematics_have_the_same_multipliers():
