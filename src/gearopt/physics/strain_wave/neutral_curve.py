@@ -138,16 +138,40 @@ def arc_angle(curve: NeutralCurve, angle: Any) -> Any:
     if curve.wave != "discs":
         return _arc(curve, 0.0, angle)
     reach, wrap = np.abs(angle), curve.wrap
-    whole = _arc(curve, 0.0, np.minimum(reach, wrap)) + _arc(curve, wrap, np.maximum(reach, wrap))
-    return np.sign(angle) * whole
+    on_disc = _arc(curve, 0.0, np.minimum(reach, wrap))
+    return np.sign(angle) * (on_disc + _arc(curve, wrap, np.maximum(reach, wrap), free=True))
 
 
-def _arc(curve: NeutralCurve, low: Any, high: Any) -> Any:
+def _arc(curve: NeutralCurve, low: Any, high: Any, free: bool = False) -> Any:
+    """Return the integral of `arc_angle` on one side of a disc's end; free: beyond it."""
     half, total = 0.5 * (high - low), 0.0
     for node, weight in zip(NODES, WEIGHTS, strict=True):
-        rho, slope, _, _ = radii(curve, low + half * (1.0 + float(node)))
+        rho, slope = _radius(curve, low + half * (1.0 + float(node)), free)
         total = total + float(weight) * np.sqrt(rho * rho + slope * slope)
     return half * total / curve.radius
+
+
+def _radius(curve: NeutralCurve, angle: Any, free: bool) -> tuple[Any, Any]:
+    """Return rho [mm] and its derivative; free: of discs, where none carries, else where one does.
+
+    What most of the time goes into: without the derivatives and the side that are not asked for.
+    """
+    a = curve.second
+    if curve.wave == "ellipse":
+        mean, half = (0.5 * (curve.first**-2.0 + sign * a**-2.0) for sign in (1.0, -1.0))
+        double = 2.0 * angle
+        rho = 1.0 / np.sqrt(mean + half * np.cos(double))
+        return rho, rho**3 * half * np.sin(double)
+    if curve.wave == "cosine":
+        double = 2.0 * angle
+        return curve.first + a * np.cos(double), -2.0 * a * np.sin(double)
+    c1, e, middle, big, b = disc_constants(curve.wrap)
+    if not free:
+        return curve.first + a * (c1 + e * np.cos(angle)), -a * e * np.sin(angle)
+    s = angle - 0.5 * math.pi
+    cosine, sine = np.cos(s), np.sin(s)
+    shape = middle + big * cosine + 0.5 * b * s * sine
+    return curve.first + a * shape, a * (0.5 * b * (sine + s * cosine) - big * sine)
 
 
 def angle_of_arc(curve: NeutralCurve, arc: Any) -> Any:
