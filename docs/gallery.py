@@ -121,6 +121,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "unstable_speed": "A map of stability, and a motion that grows without end.",
         "teeth_as_springs": "Stiffness by the teeth of a file of kind pair; motions over speed.",
         "least_vibration": "Bearings, contact ratio, ramp, face width and rim of least vibration.",
+        "least_vibration_parting": "The same of teeth that part and meet, by direct collocation.",
     },
     "Packing of cylinders": {
         "six_cylinders": "Three large and three small ones; the number of layers is chosen too.",
@@ -276,7 +277,7 @@ def _answer(file: Mapping[str, Any]) -> str:
     if "sizing" in expected:
         value = METRIC.amount(expected["sizing"], unit)
         parts.append(f"with real-valued teeth and modules {value}")
-    if expected["status"] == "feasible":
+    if "bound" in expected and expected["status"] == "feasible":
         parts.append(f"lower bound {METRIC.amount(expected['bound'], unit, -1)}")
     if "least_factor" in expected:
         parts.append(f"limits must move by a factor of at least {expected['least_factor']:g}")

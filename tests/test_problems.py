@@ -34,7 +34,7 @@ KEYS = {  # of [x-expected], as the tests below read them
     "dynamics": {
         *("status", "objective", "normal_load_N", "deformation_um", "centre_distance_growth_mm"),
         *("pressure_angle_deg", "bearing_force_N", "frequencies_Hz", "unstable_percent"),
-        *("dense_maximum_um", "largest_multiplier"),
+        *("dense_maximum_um", "largest_multiplier", "parting_speeds"),
     },
     "servo": {
         *("status", "objective", "least_factor", "report"),
@@ -73,6 +73,7 @@ LONG = (
     "strain_wave_interferes",
     "strain_wave_discs",
     "least_vibration",
+    "least_vibration_parting",
     "unstable_speed",
     "teeth_as_springs",
     "light_wheels",

@@ -66,7 +66,8 @@ def test_what_does_not_fit_is_refused_with_its_key(pairs, key, rule):
         ("0.02\n\n[mesh]", "0.03\n\n[mesh]", "wheel.bearing_damping", "the pinion's"),
         ('axes = "line"', 'axes = "plane"', "mesh.axes", "along the line of action"),
         ("[mesh]", '[mesh]\nkinematics = "tangent"', "mesh.kinematics", "changes nothing"),
-        ("[mesh]", '[mesh]\nbacklash = "0.1 mm"', "mesh.backlash", "changes nothing"),
+        ("[optimise]", "[optimise]\nelements = 30", "optimise.elements", "with backlash"),
+        ("[optimise]", "[optimise]\nperiods = 2", "optimise.periods", "with backlash"),
     ],
 )
 def test_what_an_optimisation_would_leave_out_is_refused(old, new, key, rule):
@@ -75,6 +76,30 @@ def test_what_an_optimisation_would_leave_out_is_refused(old, new, key, rule):
     with pytest.raises(SceneError, match=rule) as wrong:
         read(changed((old, new), text=text).encode())
     assert wrong.value.key == key and "optimise" in str(wrong.value)
+
+
+@pytest.mark.parametrize("line", ['margin = "1 um"', "multiplier = 0.95"])
+def test_what_teeth_that_part_cannot_be_limited_by_is_refused(line):
+    text = (PROBLEMS / "least_vibration_parting.toml").read_text()
+    read(text.encode())
+    with pytest.raises(SceneError, match="without backlash") as wrong:
+        read(changed(("[optimise]", f"[optimise]\n{line}"), text=text).encode())
+    assert wrong.value.key == f"optimise.{line.split()[0]}"
+
+
+def test_a_mass_that_no_pair_of_the_ranges_has(tmp_path):
+    """The lightest weighs 1.3406 kg: 8 mm wide, rims of 0.6."""
+    path = tmp_path / "light.toml"
+    text = (PROBLEMS / "least_vibration.toml").read_text()
+    path.write_text(changed(('mass = "2 kg"', 'mass = "0.5 kg"'), text=text))
+    result = gearopt.solve(path)
+    assert result.status == "infeasible" and result.proof["conflict"] == ["mass"]
+    found = {r["what"]: r["changes"][0]["write"] for r in result.report["ways_out"]["remedies"]}
+    assert found["optimise.mass"] == '"1.35 kg"'
+    assert float(found["optimise.rim[1]"]) == pytest.approx(0.6 * 0.5 / 1.3406, abs=1e-3)
+    assert found["optimise.face_width[1]"] == '"2.98 mm"'
+    told = gearopt.explain(path)
+    assert {r.what for r in told.remedies} == set(found)
 
 
 def test_a_fourier_series_stays_above_zero():

@@ -7,11 +7,14 @@ import numpy as np
 
 from gearopt.formulations.dynamics import dynamics_parts as parts
 from gearopt.formulations.dynamics.dynamics_design import Chosen
-from gearopt.formulations.dynamics.motions_over_speed import in_contact
-from gearopt.formulations.orbit.orbit_search import DENSE, FINE, growth
-from gearopt.formulations.orbit.task import MICRO, Task, measured, series, worst
+from gearopt.formulations.dynamics.motions_over_speed import followed, in_contact
+from gearopt.formulations.orbit.climbing import FINE, growth
+from gearopt.formulations.orbit.least_vibration import dense
+from gearopt.formulations.orbit.settled import size, worst_motions
+from gearopt.formulations.orbit.task import MICRO, Task, measured, series
 from gearopt.formulations.orbit.task import parts as orbit_parts
 from gearopt.optimise.clock import Clock
+from gearopt.optimise.terms import Array
 from gearopt.physics.motion.moving_pair import MovingPair
 
 COARSE = 91  # speeds of the pair before, between which its curve is straight
@@ -20,16 +23,16 @@ COARSE = 91  # speeds of the pair before, between which its curve is straight
 def chosen(
     task: Task, values: Sequence[float], before: MovingPair, rounds: Sequence[dict[str, Any]]
 ) -> Chosen:
-    """Return what is to be known of a design (5,) over all speeds, beside the pair before it."""
-    point = np.array(values, float)
-    speeds = np.linspace(task.speeds_rpm[0], task.speeds_rpm[-1], DENSE)
+    """Return what is to be known of a design (5,) over all speeds, beside the pair before it.
+
+    Of motions that rising and falling speeds lead to, the larger one.
+    """
+    point, speeds = np.array(values, float), dense(task)
     kb, ratio, ramp, width, rim = (float(v) for v in point)
     made = orbit_parts(task, kb, ratio, width, rim)
-    dense = worst(task, point, speeds, FINE)
-    _, highest = measured(task, series(task, point[None], speeds, FINE))
+    found, highest, repeats = _motions(task, point, speeds)
     coarse = np.linspace(speeds[0], speeds[-1], COARSE)
-    old = in_contact(before, "line", task.teeth * coarse / 60.0, FINE, Clock())
-    told = [o.series.rms if task.measure == "rms" else np.ptp(o.series.extremes) for o in old]
+    told = _before(task, before, coarse)
     return Chosen(
         bearing_stiffness_N_per_mm=kb,
         contact_ratio=ratio,
@@ -42,14 +45,45 @@ def chosen(
         speed_rpm=parts.columns(task.speeds_rpm),
         rounds=tuple(_round(one) for one in rounds),
         dense_rpm=parts.columns(speeds),
-        dense_mm=parts.columns(dense / MICRO, 7),
+        dense_mm=parts.columns(found / MICRO, 7),
         before_mm=parts.columns(np.interp(speeds, coarse, told), 7),
-        dense_maximum_mm=float(dense.max()) / MICRO,
+        dense_maximum_mm=float(found.max()) / MICRO,
         largest_multiplier=growth(task, point),
         highest_mm=float(highest.max()) / MICRO,
+        parting_speeds=int(np.sum(highest > 0.0)),
+        longest_repeat=repeats,
     )
 
 
+def _motions(task: Task, point: Array, speeds: Array) -> tuple[Array, Array, int]:
+    """Return measure and largest delta [um] over speeds, and after how many periods they repeat.
+
+    0: a motion that does not repeat soon.
+    """
+    if task.backlash is None:
+        measure, highest = measured(task, series(task, point[None], speeds, FINE))
+        return measure[0], highest[0], 1
+    motions = worst_motions(task, point, speeds)
+    after = [motion.repeats for motion in motions]
+    sizes = np.array([size(task, motion) for motion in motions])
+    highest = MICRO * np.array([motion.highest for motion in motions])
+    return sizes, highest, max(after) if min(after) > 0 else 0
+
+
+def _before(task: Task, pair: MovingPair, speeds: Array) -> Array:
+    """Return the measure [mm] of the pair of the file over speeds [rpm].
+
+    Where teeth may part, of the larger of the motions that rising and falling speeds lead to.
+    """
+    frequencies = task.teeth * speeds / 60.0
+    contacts = in_contact(pair, "line", frequencies, FINE, Clock())
+    ways = [followed(pair, "line", contacts, Clock())]
+    if task.backlash is not None:
+        ways.append(followed(pair, "line", contacts[::-1], Clock())[::-1])
+    sizes = np.array([[size(task, motion) for motion in way] for way in ways])
+    return np.asarray(sizes.max(axis=0) / MICRO)
+
+
 def _round(one: dict[str, Any]) -> tuple[float, float, float, float]:
-    speeds, harmonics, objective, dense = (float(v) for v in one.values())
-    return speeds, harmonics, objective, dense
+    speeds, harmonics, objective, highest = (float(v) for v in one.values())
+    return speeds, harmonics, objective, highest

@@ -113,6 +113,8 @@ class Chosen:
     """The design of least vibration, its limits' numbers, and what the dense grid of speeds says.
 
     rounds: speeds, harmonics, objective and dense maximum [um] of every round of the exchange.
+    parting_speeds: of the dense grid, at which teeth part. longest_repeat: mesh periods after which
+    all motions repeat; 0: one does not soon.
     """
 
     bearing_stiffness_N_per_mm: float
@@ -131,6 +133,8 @@ class Chosen:
     dense_maximum_mm: float
     largest_multiplier: float
     highest_mm: float
+    parting_speeds: int
+    longest_repeat: int
 
 
 @dataclass(frozen=True, kw_only=True)

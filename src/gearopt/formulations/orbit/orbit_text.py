@@ -4,6 +4,7 @@ With `reduced` the balance is solved inside the text instead, so that samplers s
 """
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ from gearopt.optimise.terms import Array, Param, Repeat, Terms, Var
 
 LARGEST = 1000.0  # um, of any coefficient of delta: the end of a search
 LOGARITHMIC = ("bearing_stiffness", "face_width")
+CUTS = 8  # linear limits in the place of one of the multiplier
 
 
 def shared(task: Task) -> tuple[Var, ...]:
@@ -70,19 +72,12 @@ def problem(task: Task, methods: dict[str, Any] | None = None) -> Problem:
     minimise the largest measure over the speeds; rows of a speed: the balance of every harmonic
     (equal), the measure under the objective, no separation.
     """
-    count, largest = task.harmonics, (-LARGEST, LARGEST)
-    top = Var(task.measure, "um", 1e-3, LARGEST, 20.0, log=True, search=(True))
-    own = [
-        Var("mean", "um", *largest, -15.0, search=True),
-        Var("cosines", "um", *largest, 0.0, count, search=True),
-        Var("sines", "um", *largest, 0.0, count, search=True),
-    ]
-    if task.measure == "peak_to_peak":
-        own += [Var("lowest", "um", *largest, -20.0, search=True)]
-        own += [Var("highest", "um", *largest, -10.0, search=True)]
+    count = task.harmonics
+    top = Var(task.measure, "um", 1e-3, LARGEST, 20.0, log=True, search=True)
 
     def evaluate(x: Any, p: Any) -> Terms:
-        return Terms({task.measure: getattr(x, task.measure)}, limits(task, x, p))
+        cuts = {"multiplier": _cut(x, p)} if task.most_growth is not None else {}
+        return Terms({task.measure: getattr(x, task.measure)}, limits(task, x, p), cuts)
 
     def balance(x: Any, p: Any, row: Any) -> Terms:
         made = parts(task, x.bearing_stiffness, x.contact_ratio, x.face_width, x.rim)
@@ -98,9 +93,43 @@ def problem(task: Task, methods: dict[str, Any] | None = None) -> Problem:
         return Terms({}, kept, defines, equal)
 
     rows = 2.0 * math.pi * task.teeth / 60.0 * np.array(task.speeds_rpm)
-    repeat = Repeat("speed", tuple(own), {"omega": rows}, balance)
-    variables = (*shared(task), top)
-    return Problem("orbit", variables, parameters(task), evaluate, (repeat,), methods or {})
+    repeat = Repeat("speed", _of_a_speed(task), {"omega": rows}, balance)
+    variables, given = (*shared(task), top), parameters(task)
+    if task.most_growth is not None:
+        given = (*given, Param("slopes", "", (0.0,) * (5 * CUTS), 5 * CUTS))
+        given = (*given, Param("offsets", "", (1.0,) * CUTS, CUTS))
+    return Problem("orbit", variables, given, evaluate, (repeat,), methods or {})
+
+
+def _of_a_speed(task: Task) -> tuple[Var, ...]:
+    """Return the variables of a speed: coefficients of delta, and its ends where they count."""
+    largest = -LARGEST, LARGEST
+    own = [
+        Var("mean", "um", *largest, -15.0, search=True),
+        Var("cosines", "um", *largest, 0.0, task.harmonics, search=True),
+        Var("sines", "um", *largest, 0.0, task.harmonics, search=True),
+    ]
+    if task.measure == "peak_to_peak":
+        own += [Var("lowest", "um", *largest, -20.0, search=True)]
+        own += [Var("highest", "um", *largest, -10.0, search=True)]
+    return tuple(own)
+
+
+def _cut(x: Any, p: Any) -> tuple[Any, ...]:
+    """Return the rows slopes . x <= offset."""
+    point = [getattr(x, name) for name in VARIABLES]
+    return tuple(
+        1.0 + sum(p.slopes[5 * k + i] * v for i, v in enumerate(point)) - p.offsets[k]
+        for k in range(CUTS)
+    )
+
+
+def with_cuts(problem: Problem, cuts: Sequence[tuple[Array, float]]) -> Problem:
+    """Return the problem with rows slopes . x <= offset, (5,) and a float each, CUTS at most."""
+    slopes, offsets = np.zeros((CUTS, 5)), np.ones(CUTS)
+    for k, (slope, offset) in enumerate(cuts):
+        slopes[k], offsets[k] = slope, offset
+    return problem.at(slopes=tuple(map(float, slopes.ravel())), offsets=tuple(map(float, offsets)))
 
 
 def forces(task: Task, x: Any, made: Any, omega: Any) -> tuple[Any, list[Any], list[Any]]:

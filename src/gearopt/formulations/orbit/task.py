@@ -25,7 +25,9 @@ class Task:
     mesh_damping and bearing_damping: ratios zeta. speeds_rpm: where the motion is judged. ranges:
     (minimum, maximum) of VARIABLES. most_mass [t]; most_displacement F/k_b [mm]; margin [mm]: of
     the teeth from parting, None: not asked. most_growth: of the largest Floquet multiplier over all
-    speeds, None: not asked. measure: "rms" or "peak_to_peak" of delta.
+    speeds, None: not asked. measure: "rms" or "peak_to_peak" of delta. harmonics of a motion whose
+    teeth stay in contact. backlash [mm]: teeth may part; then motions are collocated in so many
+    elements of a mesh period, and repeat after so many periods. None: a linear mesh.
     """
 
     torque: float
@@ -45,6 +47,9 @@ class Task:
     most_growth: float | None = None
     measure: str = "rms"
     harmonics: int = 10
+    backlash: float | None = None
+    elements: int = 24
+    periods: int = 1
 
     @property
     def load(self) -> float:
@@ -66,6 +71,11 @@ class Parts(NamedTuple):
     mean: Any
     mesh_damping: Any
     bearing_damping: tuple[Any, Any]
+
+
+def solid(task: Task) -> float:
+    """Return rho pi (r_1^2 + r_2^2) [t/mm]: the mass of both gears is this times b lambda."""
+    return task.density * math.pi * sum(r**2 for r in task.radii)
 
 
 def parts(task: Task, stiffness: Any, contact_ratio: Any, face_width: Any, rim: Any) -> Parts:
@@ -176,5 +186,6 @@ def pair_of(task: Task, point: Sequence[float] | Array, speed_rpm: float) -> Mov
         wave,
         task.teeth * speed_rpm / 60.0,
         damping=damping_of(task.mesh_damping, wave.mean, float(made.mesh_mass)),
+        backlash=task.backlash,
         kinematics="tangent",
     )

@@ -2,29 +2,27 @@
 
 import math
 from dataclasses import replace
-from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.dynamics import dynamics_parts as parts
-from gearopt.formulations.dynamics.chosen import chosen
-from gearopt.formulations.dynamics.dynamics_design import Chosen, DynamicsDesign
+from gearopt.formulations.dynamics.dynamics_design import DynamicsDesign
 from gearopt.formulations.dynamics.motions_over_speed import limited, over_speeds
 from gearopt.formulations.motion.stability import UNSTABLE
-from gearopt.formulations.orbit.orbit_search import NEAR, exchange, methods
-from gearopt.formulations.orbit.orbit_text import problem, start
-from gearopt.formulations.orbit.task import MICRO, VARIABLES, pair_of
+from gearopt.formulations.orbit.task import pair_of
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.result import Result, versions
-from gearopt.optimise.solve import run
 from gearopt.optimise.typed import untyped
 from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.scenes.dynamics.example import EXAMPLE
+from gearopt.scenes.dynamics.optimised import BEST, optimised, told, whole_problem
 from gearopt.scenes.dynamics.scene import Scene, wave_of
 from gearopt.scenes.dynamics.warnings import warnings
+from gearopt.scenes.explaining.default import explained, of_report
 from gearopt.scenes.reading.ask import Ask, without_method
 
-__all__ = ["EXAMPLE", "Scene", "compared", "idle", "model", "solve"]
+__all__ = ["EXAMPLE", "Scene", "compared", "explain", "idle", "model", "solve"]
 METHODS = ("screened",)  # its own
 HARMONICS = 20  # of a motion at the pair's own speed
 NOTHING = "the file has no table [optimise], so that nothing is chosen"
@@ -35,7 +33,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     clock = Clock(ask.budget, ask.watch)
     pair = scene.pair(wave_of(scene.mesh, ask))
     if scene.optimise is not None:
-        return _optimised(scene, ask, pair, clock)
+        return _least(scene, ask, pair, clock)
     without_method(ask, NOTHING)
     design = _design(scene, pair, scene.mesh.axes, clock)
     missing = _missing(scene, design) if clock.stopped else ""
@@ -55,54 +53,34 @@ def solve(scene: Scene, ask: Ask) -> Result:
     return replace(found, seconds=clock.seconds)
 
 
-def _optimised(scene: Scene, ask: Ask, before: MovingPair, clock: Clock) -> Result:
-    """Return the pair of least vibration: the exchange finds its speeds, the certificate judges."""
+def _least(scene: Scene, ask: Ask, before: MovingPair, clock: Clock) -> Result:
+    """Return the pair of least vibration, with what the tables of the file ask of it."""
     assert scene.optimise is not None
-    task, point = scene.task, None
-    rounds: tuple[dict[str, Any], ...] = ()
-    if scene.optimise.exchange and ask.method is None:
-        made = exchange(task, Clock(ask.budget, of_others(ask.watch), clock.start), ask.seed)
-        if made is not None:
-            task, point = made.task, made.point
-            rounds = made.rounds
-    posed = problem(task, methods(task))
-    if point is None:
-        result, _ = run(posed, ask.method, clock.left, ask.seed, clock.watch, ask.gap)
-    else:
-        begun = posed.starting(start(task, posed, point))
-        result, _ = run(begun, "ipopt", clock.left, ask.seed, clock.watch, ask.gap)
-    result = replace(result, name="dynamics", seconds=clock.seconds)
-    if result.value is None:
+    result, best, task = optimised(scene, ask, before, clock)
+    if best is None:
         return result
-    told = result.objective | {"value": result.value / MICRO, "unit": "mm_as_um"}
-    result = replace(result, objective=told)
-    values = tuple(float(v) for v in list(result.design.values())[: len(VARIABLES)])
-    best = chosen(task, values, before, rounds)
     at = best.dense_rpm[best.dense_mm.index(max(best.dense_mm))]
+    values = [getattr(best, name) for name in BEST]
     design = replace(_design(scene, pair_of(task, values, at), "line", clock), chosen=best)
     if clock.stopped:
         text = f"{result.message} {_missing(scene, design)}".strip()
         result = replace(result, message=text)
-    said = (*_between(best, MICRO * float(told["value"])), *warnings(design))
-    design, report = replace(design, warnings=said), {"assumptions": assumptions(scene)}
-    limits = {k: v for k, v in result.limits.items() if "[" not in k}
-    parted = [v for k, v in result.limits.items() if "separation" in k]
-    limits |= {"separation": max(parted)} if parted else {}
-    if task.most_growth is not None:
-        limits["stability"] = best.largest_multiplier / task.most_growth
-    return replace(result, design=untyped(design), report=report, limits=limits)
+    said = (*told(best, result, scene.optimise.periods), *warnings(design))
+    report = {"assumptions": assumptions(scene)}
+    return replace(result, design=untyped(replace(design, warnings=said)), report=report)
 
 
-def _between(best: Chosen, objective: float) -> list[str]:
-    """Return what lies between the speeds of the problem, where it is more than they say."""
-    most = MICRO * best.dense_maximum_mm
-    if most <= (1.0 + NEAR) * objective:
-        return []
-    return [
-        f"Between the {len(best.speed_rpm)} speeds the deformation reaches {most:.4g} µm, "
-        f"{100.0 * (most / objective - 1.0):.0f} % above the objective: exchange = true adds the "
-        "speeds where it does."
-    ]
+def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
+    """Return what every number does to the answer, and what makes an impossible file possible."""
+    result = result or solve(scene, ask.half)
+    if "ways_out" in result.report:
+        return of_report(result)
+    clock = Clock(ask.budget, of_others(ask.watch))
+
+    def answer(other: Scene) -> Result:
+        return solve(other, replace(ask, budget=clock.left, watch=clock.watch))
+
+    return explained(scene, result, clock, answer, lambda other: model(other, "").problem)
 
 
 def _design(scene: Scene, pair: MovingPair, level: str, clock: Clock) -> DynamicsDesign:
@@ -196,8 +174,9 @@ def compared(scene: Scene) -> tuple[str, ...]:
 
 def model(scene: Scene, method: str) -> Model:
     """Return the problem on the speeds of the file; SolveError without [optimise]."""
-    task = _to_optimise(scene).task
-    return Model(problem(task, methods(task)), "Bearings, contact ratio, ramp, width and rim")
+    return Model(
+        whole_problem(_to_optimise(scene).task), "Bearings, contact ratio, ramp, width and rim"
+    )
 
 
 def _to_optimise(scene: Scene) -> Scene:

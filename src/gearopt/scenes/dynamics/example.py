@@ -30,7 +30,7 @@ depth = 0.5                    # greatest less least, over the mean
 duty = 0.68                    # contact ratio less 1
 ramp = 0.1
 damping = 0.03
-backlash = "0.1 mm"            # without it the teeth never part; leave it out beside [optimise]
+backlash = "0.1 mm"            # without it the teeth never part
 axes = "line"                  # or "plane", "fixed"
 
 [simulate]

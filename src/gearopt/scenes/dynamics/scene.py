@@ -161,9 +161,17 @@ class Scene(Table):
         if mesh.axes != "line":
             rule = "does not fit [optimise], whose axes move along the line of action"
             raise refuse(rule, "line", ("mesh", "axes"))
-        for name in {"kinematics", "backlash"} & mesh.model_fields_set:
-            rule = "changes nothing of [optimise], whose mesh is linear, on the line of action"
-            raise refuse(rule, at=("mesh", name), action="remove")
+        if "kinematics" in mesh.model_fields_set:
+            rule = "changes nothing of [optimise], whose axes move along the line of action"
+            raise refuse(rule, at=("mesh", "kinematics"), action="remove")
+        idle = ("elements", "periods") if mesh.backlash is None else ("margin", "multiplier")
+        rules = (
+            "is of a mesh with backlash",
+            "is of a mesh without backlash, whose teeth never part",
+        )
+        for name in sorted({*idle} & self.optimise.model_fields_set):
+            rule = rules[mesh.backlash is not None]
+            raise refuse(rule, at=("optimise", name), action="remove")
 
     @property
     def _balance(self) -> float:
@@ -230,6 +238,9 @@ class Scene(Table):
             most_growth=None if asked.multiplier is None else float(asked.multiplier),
             measure=asked.minimise,
             harmonics=asked.harmonics,
+            backlash=None if mesh.backlash is None else mesh.backlash.value,
+            elements=asked.elements,
+            periods=asked.periods,
         )
 
 

@@ -163,6 +163,12 @@ class OptimiseTable(Table):
     exchange: Annotated[bool, truth()] = Field(
         True, description="Whether speeds are added until the dense grid agrees"
     )
+    elements: Annotated[int, whole(24, 8, 200)] = Field(
+        24, description="Of a mesh period in which motions with backlash are collocated"
+    )
+    periods: Annotated[int, whole(1, 1, 8)] = Field(
+        1, description="Mesh periods after which motions with backlash repeat, at most"
+    )
     bearing_stiffness: Annotated[
         tuple[Quantity, Quantity],
         span(quantity("stiffness", "30 kN/mm"), ["30 kN/mm", "500 kN/mm"]),

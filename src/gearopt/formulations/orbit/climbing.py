@@ -1,0 +1,167 @@
+"""From a design to a local optimum of its problem, of a mesh in contact or of one that parts.
+
+In contact a motion is a harmonic balance, which a `Problem` holds to rounding. Where teeth may part
+it is collocated; the design is then simulated over rising and falling speeds, and what it does
+there counts.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gearopt.formulations.motion.stability import largest
+from gearopt.formulations.orbit import orbit_text, parting_text
+from gearopt.formulations.orbit.orbit_text import CUTS, with_cuts
+from gearopt.formulations.orbit.settled import size, worst_motions
+from gearopt.formulations.orbit.task import Task, pair_of, worst
+from gearopt.optimise.certificate import certify
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.optimise.solvers import ipopt
+from gearopt.optimise.terms import Array
+from gearopt.physics.motion.linear import linear
+
+NEAR = 0.01  # of an objective, by which what is judged more closely may exceed it
+FINE = 40  # harmonics of the judge of a mesh in contact
+AGAIN = 3  # runs from the motions that a design really has
+GROWTHS = 91  # speeds at which the multipliers of a design are looked at
+STEP = 1e-4  # of a range: differences of the largest multiplier
+WITHIN = 1e-5  # by which the largest multiplier may exceed its limit
+
+
+class Climbed(NamedTuple):
+    """A local optimum: its problem, its outcome there, and the objective [um].
+
+    judged [um]: the measure at the speeds of the task by the exact motions.
+    """
+
+    problem: Problem
+    outcome: Outcome
+    objective: float
+    judged: float
+
+    @property
+    def point(self) -> Array:
+        """The design (5,)."""
+        return _point(self.outcome)[:5]
+
+
+def posed(task: Task, methods: dict[str, Any] | None = None) -> Problem:
+    """Return the problem of a task: with collocated motions where teeth may part."""
+    own = {"exchange": _guess} if methods is None else methods
+    if task.backlash is None:
+        return orbit_text.problem(task, own)
+    return parting_text.problem(task, own)
+
+
+def _guess(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+    """Return the guess as it is: what an exchange has found, to be certified."""
+    return Outcome(problem.bounds()[2], evaluations=1)
+
+
+def climb(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbed | None:
+    """Return the local optimum that a design (5,) leads to; None where none was found."""
+    if task.backlash is not None:
+        return _parting(task, problem, point, clock)
+    found = _contact(task, problem, point, clock)
+    if found is None or task.most_growth is None:
+        return found
+    return _steadied(task, problem, found, clock) or _as_it_is(task, problem, point)
+
+
+def measure(task: Task, point: Array, speeds_rpm: Array) -> Array:
+    """Return the measure [um] of a design at speeds (K,): simulated where teeth may part."""
+    if task.backlash is None:
+        return worst(task, point, speeds_rpm, FINE)
+    return np.array([size(task, m) for m in worst_motions(task, point, speeds_rpm)])
+
+
+def _ipopt(problem: Problem, start: Array, clock: Clock) -> tuple[float, Outcome] | None:
+    found = ipopt.run(problem, clock.left, 0, clock.inner(False), start=start)
+    verdict = certify(problem, found, 0.0)
+    return None if verdict.objective is None else (verdict.objective, found)
+
+
+def _contact(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbed | None:
+    made = _ipopt(problem, orbit_text.start(task, problem, point), clock)
+    return made and Climbed(problem, made[1], made[0], made[0])
+
+
+def _steadied(task: Task, problem: Problem, found: Climbed, clock: Clock) -> Climbed | None:
+    """Return the optimum within the limit of the multiplier; None where none was found.
+
+    The largest multiplier is no text of the problem. Where a design exceeds the limit, the linear
+    approximation there becomes a row of the problem beside those before, which is solved again.
+    """
+    assert task.most_growth is not None
+    most, cuts = task.most_growth, list[tuple[Array, float]]()
+    while (value := growth(task, found.point)) > most + WITHIN:
+        if len(cuts) == CUTS or clock.over:
+            return None
+        slopes = growth_slopes(task, found.point, value)
+        cuts.append((slopes, most - value + float(slopes @ found.point)))
+        made = _contact(task, with_cuts(problem, cuts), found.point, clock)
+        if made is None:
+            return None
+        found = made
+    return found
+
+
+def _as_it_is(task: Task, problem: Problem, point: Array) -> Climbed | None:
+    """Return a design with its own motions, where it is within the limit of the multiplier."""
+    assert task.most_growth is not None
+    if growth(task, point) > task.most_growth + WITHIN:
+        return None
+    found = Outcome(orbit_text.start(task, problem, point), evaluations=1)
+    value = certify(problem, found, 0.0).objective
+    return None if value is None else Climbed(problem, found, value, value)
+
+
+def growth(task: Task, point: Array) -> float:
+    """Return the largest Floquet multiplier of a design in contact over all speeds."""
+    speeds = np.linspace(task.speeds_rpm[0], task.speeds_rpm[-1], GROWTHS)
+    pair = pair_of(task, point, float(speeds[0]))
+    return float(np.max(largest(linear(pair, "line"), pair.wave, task.teeth * speeds / 60.0)))
+
+
+def growth_slopes(task: Task, point: Array, value: float) -> Array:
+    """Return derivatives of `growth` (5,) at a design, by differences into the ranges."""
+    low, high = task.box()
+    step = STEP * (high - low)
+    step = np.where(point + step > high, -step, step)
+    moved = [point + one for one in np.diag(step)]
+    return np.array([growth(task, at) - value for at in moved]) / np.where(step, step, np.inf)
+
+
+def _parting(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbed | None:
+    """Return the optimum of collocated motions that a design leads to, the least simulated one.
+
+    The corner where teeth part is rounded less and less. Where the design then has a larger motion
+    than the one that was followed, the problem is solved again from that.
+    """
+    best: Climbed | None = None
+    speeds = np.array(task.speeds_rpm)
+    motions = worst_motions(task, point, speeds)
+    for _ in range(AGAIN):
+        start, made = parting_text.start(task, problem, point, motions), None
+        for width in parting_text.WIDTHS:
+            made = _ipopt(parting_text.rounded(task, problem, width), start, clock)
+            if made is None or clock.over:
+                break
+            start = _point(made[1])
+        if made is None:
+            break
+        motions = worst_motions(task, _point(made[1])[:5], speeds)
+        judged = max(size(task, motion) for motion in motions)
+        if best is None or judged < best.judged:
+            best = Climbed(problem, made[1], made[0], judged)
+        point = _point(made[1])[:5]
+        if judged <= (1.0 + NEAR) * made[0] or clock.over:
+            break
+    return best
+
+
+def _point(found: Outcome) -> Array:
+    assert found.x is not None
+    return found.x
