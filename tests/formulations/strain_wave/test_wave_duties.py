@@ -31,7 +31,6 @@ CASES = [
     for shape, value in zip(SHAPES, row, strict=True)
     if value
 ]
-FEW = [c for c in CASES if c[:1] == (320,) and c[3] == "cosine"]
 
 
 @cache
@@ -48,10 +47,8 @@ def solved(ratio, diameter, torque, shape, start=None):
     return demand, exchange(demand, scene.start() if start is None else start, Clock())
 
 
-@pytest.mark.parametrize(
-    ("ratio", "diameter", "torque", "shape", "value"),
-    [*FEW, *(pytest.param(*c, marks=pytest.mark.slow) for c in CASES if c not in FEW)],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("ratio", "diameter", "torque", "shape", "value"), CASES)
 def test_a_duty_alone_has_a_stationary_design_that_is_clear(ratio, diameter, torque, shape, value):
     demand, found = solved(ratio, diameter, torque, shape)
     assert found.result.status == "stationary" and found.clear and len(found.rounds) == 1
@@ -81,8 +78,8 @@ def test_random_starts_end_at_the_same_design(case):
     low, high = np.array([scene.demand().ranges[name] for name in FREE]).T
     draw = np.random.default_rng(5)
     values = [solved(*case)[1].result.value]
-    for _ in range(4):
+    for _ in range(2):
         found = solved(*case, start=low + (high - low) * draw.random(6))[1]
         assert found.result.status == "stationary" and found.clear
         values.append(found.result.value)
-    assert values == pytest.approx([values[0]] * 5, rel=1e-7)
+    assert values == pytest.approx([values[0]] * 3, rel=1e-7)

@@ -104,7 +104,9 @@ def by_complex_numbers(made, angles):
     return np.minimum(np.where(np.abs(tip) < top, np.inf, room), np.where(beside, np.inf, off))
 
 
-@pytest.mark.parametrize("wave", ["cosine", "ellipse", "discs"])
+@pytest.mark.parametrize(
+    "wave", ["cosine", *(pytest.param(w, marks=pytest.mark.slow) for w in ("ellipse", "discs"))]
+)
 def test_least_gaps_are_true_minima(wave):
     """The tip cuts most as it passes the corner: poses of 1e-3 degrees come near, 1e-7 meet it."""
     made = flank(StrainWave(0.5, 160, np.radians(18.0), 0.3, 0.8, 1.1, 1.0, wave=wave))

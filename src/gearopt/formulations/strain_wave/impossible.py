@@ -100,12 +100,14 @@ def told(demand: Demand, found: Nearest) -> list[str]:
     return [f"{n.replace('_', ' ')}: {words[n](over[n])}" for n in order]
 
 
-def least_factor(excess: Callable[[float], float | None], way: int) -> float | None:
+def least_factor(
+    excess: Callable[[float], float | None], way: int, power: float = 1.0
+) -> float | None:
     """Return the factor >= 1 by which a number must grow (way 1) or shrink (-1) at least.
 
     excess(factor): the smallest largest excess with the number times it, None where none is known.
     Utilisations are nearly powers of a number, so that secants of their logarithms come near in a
-    few steps. None where no factor up to FARTHEST is found.
+    few steps; power: about which one, at first. None where no factor up to FARTHEST is found.
     """
 
     def used(x: float) -> float | None:
@@ -115,7 +117,7 @@ def least_factor(excess: Callable[[float], float | None], way: int) -> float | N
     last, before = 0.0, used(0.0)
     if before is None or before <= 0.0:
         return None if before is None else 1.0
-    x = 0.5 * before
+    x = before / power
     for _ in range(SECANTS):
         now = used(x) if x < math.log(FARTHEST) else None
         if now is None:

@@ -125,6 +125,8 @@ def limited(demand: Demand, start: Any, name: str, most: Mapping[str, float]) ->
         """Solve by exchange; the seed changes nothing."""
         clock = Clock(budget, watch)
         made = exchange(demand, start, clock, minimise=name, most=most)
+        if made.result.status == "infeasible":
+            return Outcome(None, infeasible=True, proof=made.result.proof)
         if not made.clear or made.outcome.x is None:
             text = "teeth interfere" if made.design else made.result.message
             return Outcome(None, not clock.over, evaluations=clock.evaluations, message=text)

@@ -29,13 +29,15 @@ from gearopt.formulations.strain_wave.demand import (
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Terms, Var
 from gearopt.physics.strain_wave.clearance import corner, least_gaps
-from gearopt.physics.strain_wave.conjugate import angle_at, contact, flank, tangents
+from gearopt.physics.strain_wave.conjugate import Contact, angle_at, contact, flank, tangents
+from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.neutral_curve import (
     curve_of,
     neutral_curve,
     perimeter_error,
 )
 from gearopt.physics.strain_wave.tooth_motion import motion
+from gearopt.physics.strain_wave.vectors import Vector
 
 NO_LIMITS: Mapping[str, float] = MappingProxyType({})
 COUNT = 7  # contacts from root to tip, evenly by the tangent of the pressure angle
@@ -74,21 +76,13 @@ def problem(
         gearing = demand.gearing({name: getattr(x, name) for name in FREE})
         curve = curve_of(gearing, x.change * CHANGE_UNIT)
         at = [contact(gearing, motion(gearing, curve, angle + 0.0)) for angle in x.contact]
-        first, last = tangents(gearing)
-        shares = np.linspace(0.0, 1.0, COUNT)
-        miss = tuple(
-            1.0 + (c.tangent - first - (last - first) * float(share))
-            for c, share in zip(at, shares, strict=True)
-        )
         found = limits(demand, gearing, curve, at)
         passing = [
             motion(gearing, curve, getattr(x, name) + 0.0).placed(at[passage.point].point)
             for name, passage in zip(_names(passages), passages, strict=True)
         ]
         if passages:
-            corner_angle = corner(gearing).angle
-            rooms = [gearing.base_radius * (corner_angle - z.angle) for z in passing]
-            found["interference"] = tuple(1.0 + (LEAST_GAP - room) / GAP_UNIT for room in rooms)
+            found["interference"] = tuple(_cut(gearing, place) for place in passing)
         pressure = tuple(s / x.pressure**2 for s in squares(demand, gearing, at))
         goals = {PRESSURE: x.pressure, VOLUME: demand.specific_volume(gearing)}
         found |= {f"most_{name}": goals[name] / value for name, value in most.items()}
@@ -97,7 +91,7 @@ def problem(
             found,
             {"contact": pressure},
             {
-                "meshing": miss,
+                "meshing": _missed(gearing, at),
                 "length": 1.0 + 100.0 * perimeter_error(curve),
                 "passing": tuple(1.0 + (z.length - gearing.tip_radius) / GAP_UNIT for z in passing),
             },
@@ -107,6 +101,20 @@ def problem(
     return Problem("strain wave gearing", unknown, (), evaluate)
 
 
+def _missed(gearing: StrainWave, contacts: Sequence[Contact]) -> tuple[Any, ...]:
+    """Return 1 for contacts that lie evenly by t between the flank's ends."""
+    first, last = tangents(gearing)
+    wanted = (first + (last - first) * float(s) for s in np.linspace(0.0, 1.0, len(contacts)))
+    return tuple(1.0 + (c.tangent - t) for c, t in zip(contacts, wanted, strict=True))
+
+
+def _cut(gearing: StrainWave, place: Vector) -> Any:
+    """Return the limit on a point that passes the tip circle at a place, beside the corner [mm]."""
+    room = gearing.base_radius * (corner(gearing).angle - place.angle)
+    return 1.0 + (LEAST_GAP - room) / GAP_UNIT
+
+
+@np.errstate(all="ignore")  # of a start without a flank
 def tip_leaves(demand: Demand, start: Any) -> tuple[Passage, ...]:
     """Return where the flank's tip passes the tip circle as its tooth leaves, in the first design.
 

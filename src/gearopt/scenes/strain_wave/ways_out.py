@@ -14,7 +14,10 @@ from gearopt.scenes.explaining.numbers import Number, apart, at, eased, moved, t
 from gearopt.scenes.reading.toml import toml_text
 from gearopt.scenes.strain_wave.scene import Scene
 
-MOVED = {("duty", "torque"): -1, ("duty", "outer_diameter"): 1}  # and the way that eases them
+MOVED = {  # the way that eases them, and the power of them that loads go with
+    ("duty", "torque"): (-1, 1.0),
+    ("duty", "outer_diameter"): (1, 3.0),
+}
 EASES = {  # beside ends of ranges: what eases a limit
     "design.pairs": -1,
     "design.safety": -1,
@@ -31,12 +34,14 @@ def ways_out(scene: Scene, found: Exchanged, clock: Clock) -> Remedies:
     used = found.nearest.used if found.nearest else {}
     over = sorted((n for n, u in used.items() if u > 1.0), key=lambda n: -used[n])
     names = tuple(found.result.proof.get("conflict", over))
-    tried = (_moved(scene, path, way, clock) for path, way in MOVED.items())
+    tried = (_moved(scene, path, *how, clock) for path, how in MOVED.items())
     late = "the budget ended before all remedies were tried"
     return Remedies(names, tuple(r for r in tried if r), late if clock.over else "")
 
 
-def _moved(scene: Scene, path: tuple[str, ...], way: int, clock: Clock) -> Remedy | None:
+def _moved(
+    scene: Scene, path: tuple[str, ...], way: int, power: float, clock: Clock
+) -> Remedy | None:
     """Return a number of the file moved as little as a design takes; None where none helps."""
     number = Number(path, at(scene, path))
 
@@ -45,7 +50,7 @@ def _moved(scene: Scene, path: tuple[str, ...], way: int, clock: Clock) -> Remed
         least = None if other is None else nearest(other.demand(), other.start(), clock)
         return None if least is None else least.excess
 
-    factor = least_factor(excess, way)
+    factor = least_factor(excess, way, power)
     for room in ROOMY if factor else ():
         assert factor is not None
         value = eased(number.value, factor * room, way)
