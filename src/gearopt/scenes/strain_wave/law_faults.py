@@ -14,6 +14,7 @@ from gearopt.physics.strain_wave.conjugate import existence, flank, least_deflec
 from gearopt.physics.strain_wave.gearing import StrainWave
 
 THINNEST = 0.05  # modules that a tooth's tip is thick at least
+ANGLES = (20, 25, 30, 35, 40)  # degrees that are tried instead
 HIGHER, TRIED = 0.01, 60  # modules between deflections that are tried instead, and how many
 Fault = tuple[str, tuple[str, str], str | float | None]  # rule, place, and what to write there
 
@@ -23,6 +24,8 @@ def contact_fault(gearing: StrainWave) -> Fault | None:
     if flank(gearing).complete.all():
         return None
     least, own = least_deflection(gearing), float(gearing.deflection)
+    if math.isinf(least):
+        return _never(gearing)
     first = math.ceil(100.0 * max(least, own)) / 100.0
     tried = (first + HIGHER * k for k in range(TRIED))
     enough = (w for w in tried if flank(replace(gearing, deflection=w), 41).complete.all())
@@ -40,6 +43,22 @@ def contact_fault(gearing: StrainWave) -> Fault | None:
         f"centre enters the base circle; contact exists {where}"
     )
     return rule, place, write
+
+
+def _never(gearing: StrainWave) -> Fault:
+    """Return what keeps contact from the major axis at any deflection: the rim, else the angle."""
+    rule = "no deflection up to 2 modules brings contact to the major axis"
+    usual = 0.01 * float(gearing.module * gearing.teeth)
+    if gearing.rim > usual and math.isfinite(least_deflection(replace(gearing, rim=usual))):
+        return f"is too thick: {rule}", ("gears", "rim"), _mm(usual)
+    steeper = (a for a in ANGLES if math.isfinite(least_deflection(_steeper(gearing, a))))
+    angle = next(steeper, None)
+    write = None if angle is None else f"{angle} deg"
+    return f"is too small: {rule}", ("gears", "pressure_angle"), write
+
+
+def _steeper(gearing: StrainWave, degrees: int) -> StrainWave:
+    return replace(gearing, pressure_angle=math.radians(degrees))
 
 
 def law_fault(gearing: StrainWave, law: Law) -> Fault | None:
