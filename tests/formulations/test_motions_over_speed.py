@@ -14,10 +14,11 @@ from scipy.integrate import solve_ivp
 
 from gearopt.formulations.dynamics.motions_over_speed import (
     followed,
-    in_contact,
     over_speeds,
+    passed,
     ranges,
 )
+from gearopt.formulations.dynamics.steady_motion import in_contact
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import COMPILING
 from gearopt.optimise.result import Budget
@@ -129,6 +130,24 @@ def test_falling_speeds_stay_with_separated_teeth_through_motions_that_do_not_re
     assert down[3350.0].rms == pytest.approx(0.0068536, rel=1e-4)
     for f, rms in ((3450.0, 0.0063095), (4000.0, 0.0065320), (4750.0, 0.011683)):
         assert up[f].rms == pytest.approx(rms, rel=1e-4) and up[f].highest < 1e-4
+
+
+@pytest.mark.slow
+def test_few_speeds_lead_to_the_motions_of_many():
+    """Falling from 11,000 rpm to 7000 in two steps: the same branch as in steps of 100 rpm."""
+    found = over_speeds(driven_pair(), "line", 30, (7000.0, 11000.0, 3), 20)
+    assert found.falling_rms_mm[0] == pytest.approx(0.071990, rel=1e-3)
+    assert found.rms_mm[0] == pytest.approx(0.0061519, rel=1e-4)
+    assert found.rms_mm[1] == pytest.approx(0.0090772, rel=1e-4)
+    assert found.rms_mm[2] == pytest.approx(0.018844, rel=1e-3)
+    assert found.falling_rms_mm[2] == pytest.approx(0.018844, rel=1e-3)
+
+
+def test_steps_between_speeds_are_small():
+    asked = np.array([10.0, 20.0, 20.1, 25.0])
+    found = passed(asked)
+    assert np.all(np.isin(asked, found)) and np.all(np.diff(found) > 0.0)
+    assert np.max(found[1:] / found[:-1]) <= math.exp(0.025) and found.size == 1 + 28 + 1 + 9
 
 
 @pytest.mark.slow
@@ -247,7 +266,7 @@ def test_a_clock_that_stops_leaves_the_first_speeds():
             seen.append(event.evaluations)
         return len(seen) <= 14
 
-    found = over_speeds(pair, "fixed", 60, (0.05, 0.1, 10), 5, Clock(Budget(), watch))
+    found = over_speeds(pair, "fixed", 60, (0.09, 0.1, 10), 5, Clock(Budget(), watch))
     assert len(found.speed_rpm) == len(found.rms_mm) == len(found.growth) == 4
     assert found.falling_rms_mm == () and seen == sorted(seen) and seen[-1] > 0
 

@@ -240,7 +240,13 @@ def before_and_after(found: Chosen, measure: str, measures: Measures) -> Figure:
     """Plot the measure that is minimised over all speeds, of the file's pair and of the best."""
     after = _micro(found.dense_mm, measures)
     traces = [
-        line(found.dense_rpm, _micro(found.before_mm, measures), "the pair of the file", 4, "dash"),
+        line(
+            found.dense_rpm,
+            [_shown(v, measures) for v in found.before_mm],
+            "the pair of the file",
+            4,
+            "dash",
+        ),
         line(found.dense_rpm, after, "least vibration", 1),
     ]
     judged = [float(np.interp(n, found.dense_rpm, after)) for n in found.speed_rpm]

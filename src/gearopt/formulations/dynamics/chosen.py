@@ -7,7 +7,8 @@ import numpy as np
 
 from gearopt.formulations.dynamics import dynamics_parts as parts
 from gearopt.formulations.dynamics.dynamics_design import Chosen
-from gearopt.formulations.dynamics.motions_over_speed import followed, in_contact
+from gearopt.formulations.dynamics.motions_over_speed import followed
+from gearopt.formulations.dynamics.steady_motion import in_contact
 from gearopt.formulations.orbit.climbing import FINE, growth
 from gearopt.formulations.orbit.least_vibration import dense
 from gearopt.formulations.orbit.settled import size, worst_motions
@@ -46,7 +47,7 @@ def chosen(
         rounds=tuple(_round(one) for one in rounds),
         dense_rpm=parts.columns(speeds),
         dense_mm=parts.columns(found / MICRO, 7),
-        before_mm=parts.columns(np.interp(speeds, coarse, told), 7),
+        before_mm=parts.gaps(np.interp(speeds, coarse, told), 7),
         dense_maximum_mm=float(found.max()) / MICRO,
         largest_multiplier=growth(task, point),
         highest_mm=float(highest.max()) / MICRO,

@@ -129,7 +129,7 @@ class Chosen:
     rounds: tuple[tuple[float, float, float, float], ...]
     dense_rpm: Columns
     dense_mm: Columns
-    before_mm: Columns
+    before_mm: Gaps
     dense_maximum_mm: float
     largest_multiplier: float
     highest_mm: float

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from gearopt.formulations.dynamics.dynamics_design import (
     Columns,
     Equilibrium,
+    Gaps,
     Response,
     Stability,
     Tongue,
@@ -33,6 +34,11 @@ WIDEST = 12  # tongues that are listed
 def columns(values: Any, digits: int = 9) -> Columns:
     """Return numbers as a result holds them."""
     return tuple(float(f"{v:.{digits}g}") for v in np.ravel(values))
+
+
+def gaps(values: Any, digits: int) -> Gaps:
+    """Return numbers as a result holds them, None for those that are none."""
+    return tuple(v if math.isfinite(v) else None for v in columns(values, digits))
 
 
 def equilibrium(pair: MovingPair, level: str) -> Equilibrium:

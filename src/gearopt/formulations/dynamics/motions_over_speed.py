@@ -1,86 +1,32 @@
 """Motions over a range of speeds, as a machine has them whose speed slowly rises or falls.
 
-Each motion begins where the one before has come to. Teeth in contact move as the linear pair does,
-while that is stable. Where they part, harmonic balance gives a motion that repeats every period of
-the mesh; Newton's method on a simulated period corrects its state, and the multipliers of that
-period tell whether it is stable. Where there is none near by, a simulation goes on from the motion
-before until it repeats itself.
+Each motion begins where the one before has come to.
 """
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
-from gearopt.formulations.dynamics.dynamics_design import Columns, Gaps, Speeds
-from gearopt.formulations.dynamics.dynamics_parts import around, columns, jammed, resting
-from gearopt.formulations.motion.balance import SAMPLES, Orbit, linear_orbit, orbit, states
-from gearopt.formulations.motion.integrate import Marched, march
-from gearopt.formulations.motion.simulate import fastest
-from gearopt.formulations.motion.stability import UNSTABLE, bands, largest, ready
-from gearopt.formulations.motion.timeline import timeline
+from gearopt.formulations.dynamics.dynamics_design import Columns, Speeds
+from gearopt.formulations.dynamics.dynamics_parts import columns, gaps
+from gearopt.formulations.dynamics.steady_motion import (
+    Contact,
+    Motion,
+    in_contact,
+    linear_motion,
+    near,
+    settled,
+)
+from gearopt.formulations.motion.stability import bands
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
-from gearopt.physics.motion.linear import linear
 from gearopt.physics.motion.moving_pair import MovingPair
 
 Grid = tuple[float, float, int]  # ends and how many, equally far apart
-ORDERS = 12  # of the mesh frequency, shown over speed
-STEPS = 12.0  # of RK8 in a period of the fastest mode: 1e-6 of a motion
-LOOKS = 64  # samples of a period of the mesh
-NEAR = 0.3  # of its RMS by which a motion may differ from the one at the speed before
-SHOTS, CLOSED = 6, 1e-9  # Newton's steps to a state that repeats; what is left, of its size
-MOVED = 1e-6  # of its scale by which a state is moved for a derivative
-CHUNK = 32  # periods between two looks at whether a simulation repeats itself
-MOST_PERIODS = 8  # of the mesh, after which a motion may repeat
-SETTLED, REPEATED = 1e-6, 1e-3  # change of states that ends a simulation; that counts as repeated
-PATIENCE = 15.0  # time constants of the least damped mode that a simulation may take
-GROWN = 8.0  # logarithm of the factor by which an unstable one may grow in it
-LONGER, NEARLY = 4, 0.02  # times as many where states change by less than this: it settles slowly
-LEAST, MOST_STEPS = 128, 100_000  # periods at least, and steps at most
-KEPT = 64  # periods of a motion that does not repeat from which its numbers are taken
-ENDLESS = 1e4  # times as large as it began, and as the backlash: a motion that grows for ever
-KICK = 0.1  # of its state by which a motion in contact is moved where it is unstable
-
-
-@dataclass(frozen=True)
-class Motion:
-    """A motion at a speed: RMS of delta about its mean, least and largest delta [mm].
-
-    amplitudes (ORDERS,) of the orders of the mesh frequency [mm]. repeats: after how many periods
-    of the mesh, 0: not within MOST_PERIODS. A motion that grows for ever has NaN for numbers.
-    jams: both flanks are pressed at once, as the axes came together. For the next speed: the state
-    at phase 0, delta at LOOKS phases of each period, and its series.
-    """
-
-    rms: float
-    least: float
-    highest: float
-    amplitudes: Array
-    repeats: int
-    jams: bool
-    state: Array
-    delta: Array
-    series: Orbit
-
-    @property
-    def grows(self) -> bool:
-        """Whether it grows for ever, so that it has no size."""
-        return math.isnan(self.rms)
-
-
-class Contact(NamedTuple):
-    """The motion of teeth that stay in contact, and its largest multiplier."""
-
-    series: Orbit
-    growth: float
-
-    @property
-    def holds(self) -> bool:
-        """Whether teeth stay in contact, and would after a small disturbance."""
-        return self.series.extremes[1] <= 0.0 and self.growth <= 1.0 + UNSTABLE
+FINE = 0.025  # of itself by which speed rises or falls at once
 
 
 def over_speeds(
@@ -88,35 +34,48 @@ def over_speeds(
 ) -> Speeds:
     """Return motions over speeds of the pinion, followed up and down where teeth may part.
 
-    grid: least and largest speed [rpm], and how many. Where the clock stops, the first speeds
-    alone, or the rising ones.
+    grid: least and largest speed [rpm], and how many; where teeth may part, those between are
+    passed in steps of at most FINE. Where the clock stops, the first speeds alone, or the rising
+    ones.
     """
     clock, speeds_rpm = clock or Clock(), np.linspace(*grid)
-    frequencies = teeth * np.asarray(speeds_rpm) / 60.0
-    contacts = in_contact(pair, level, frequencies, harmonics, clock)
-    rising = followed(pair, level, contacts, clock)
-    falling: list[Motion] = []
-    if pair.backlash is not None and len(rising) == len(speeds_rpm):
-        falling = followed(pair, level, contacts[::-1], clock)[::-1]
-    if len(falling) < len(speeds_rpm):
-        falling = []
+    asked = teeth * np.asarray(speeds_rpm) / 60.0
+    frequencies = asked if pair.backlash is None else passed(asked)
+    kept = np.searchsorted(frequencies, asked)
+    every = in_contact(pair, level, frequencies, harmonics, clock)
+    up = followed(pair, level, every, clock)
+    down = list[Motion]()
+    if pair.backlash is not None and len(up) == len(frequencies):
+        down = followed(pair, level, every[::-1], clock)[::-1]
+    rising = [up[k] for k in kept if k < len(up)]
+    falling = [down[k] for k in kept] if len(down) == len(frequencies) else []
+    contacts = [every[k] for k in kept[: len(rising)]]
     jams = [any(o.jams for o in (rising[k], *falling[k : k + 1])) for k in range(len(rising))]
     speeds_rpm = speeds_rpm[: len(rising)]
     return Speeds(
         teeth_part=pair.backlash is not None,
         speed_rpm=columns(speeds_rpm),
-        rms_mm=_gaps([o.rms for o in rising], 7),
-        peak_to_peak_mm=_gaps([o.highest - o.least for o in rising], 7),
-        highest_mm=_gaps([o.highest for o in rising], 7),
+        rms_mm=gaps([o.rms for o in rising], 7),
+        peak_to_peak_mm=gaps([o.highest - o.least for o in rising], 7),
+        highest_mm=gaps([o.highest for o in rising], 7),
         repeats=tuple(o.repeats for o in rising),
-        falling_rms_mm=_gaps([o.rms for o in falling], 7),
-        falling_peak_to_peak_mm=_gaps([o.highest - o.least for o in falling], 7),
-        falling_highest_mm=_gaps([o.highest for o in falling], 7),
+        falling_rms_mm=gaps([o.rms for o in falling], 7),
+        falling_peak_to_peak_mm=gaps([o.highest - o.least for o in falling], 7),
+        falling_highest_mm=gaps([o.highest for o in falling], 7),
         falling_repeats=tuple(o.repeats for o in falling),
-        growth=columns([c.growth for c in contacts[: len(rising)]], 6),
+        growth=columns([c.growth for c in contacts], 6),
         jammed_rpm=columns(speeds_rpm[np.array(jams, bool)]),
-        harmonics_mm=tuple(_gaps(row, 5) for row in np.array([o.amplitudes for o in rising]).T),
+        harmonics_mm=tuple(gaps(row, 5) for row in np.array([o.amplitudes for o in rising]).T),
     )
+
+
+def passed(frequencies: Array) -> Array:
+    """Return rising frequencies with others between them: steps of at most FINE of themselves."""
+    found = [frequencies[:1]]
+    for low, high in pairwise(frequencies):
+        count = math.ceil(math.log(high / low) / FINE)
+        found.append(np.append(np.geomspace(low, high, count + 1)[1:-1], high))
+    return np.concatenate(found)
 
 
 def limited(pair: MovingPair, level: str, harmonics: int, clock: Clock) -> float | None:
@@ -143,29 +102,6 @@ def spans(ends: Iterable[Sequence[float]]) -> str:
     return f" and {told[-1]}".join([", ".join(told[:-1]), ""]) if len(told) > 1 else "".join(told)
 
 
-def _gaps(values: Any, digits: int) -> Gaps:
-    """Return numbers as a result holds them, None for those that are none."""
-    return tuple(v if math.isfinite(v) else None for v in columns(values, digits))
-
-
-def in_contact(
-    pair: MovingPair, level: str, frequencies: Array, harmonics: int, clock: Clock
-) -> list[Contact]:
-    """Return the motions of teeth in contact at mesh frequencies [Hz], by harmonic balance.
-
-    Of the first alone where the clock stops.
-    """
-    found, system = [], around(pair, level)
-    ready(system, pair.wave, clock)
-    for frequency in frequencies:
-        if not clock.tell():
-            break
-        series = linear_orbit(pair, level, float(frequency), harmonics)
-        found.append(Contact(series, float(largest(system, pair.wave, np.array([frequency]))[0])))
-        clock.evaluations += 2
-    return found
-
-
 def followed(pair: MovingPair, level: str, contacts: list[Contact], clock: Clock) -> list[Motion]:
     """Return the motions that a pair takes on as its speed passes slowly from one to the next.
 
@@ -181,203 +117,12 @@ def followed(pair: MovingPair, level: str, contacts: list[Contact], clock: Clock
         last = found[-1] if found and not found[-1].grows else None
         made: Motion | None = None
         if pair.backlash is None or (contact.holds and (last is None or last.highest <= 0.0)):
-            made = _linear(moved, level, contact)
+            made = linear_motion(moved, level, contact)
         elif last is not None:
-            made = _near(moved, level, contact, last, clock)
+            made = near(moved, level, contact, last, clock)
         if made is None:
-            made = _settled(moved, level, contact, last, clock)
+            made = settled(moved, level, contact, last, clock)
         if made is None:
             break
         found.append(made)
     return found
-
-
-def _linear(pair: MovingPair, level: str, contact: Contact) -> Motion:
-    series = contact.series
-    passed = states(pair, level, series, LOOKS)
-    found = Motion(
-        series.rms,
-        *series.extremes,
-        _amplitudes(series),
-        1,
-        bool(np.any(jammed(pair, level, passed))),
-        passed[0],
-        series.delta(LOOKS),
-        series,
-    )
-    return found if contact.growth <= 1.0 + UNSTABLE else _growing(found, jams=False)
-
-
-def _growing(motion: Motion, jams: bool) -> Motion:
-    """Return what is told of a motion that grows for ever."""
-    none, nothing = math.nan, np.full(ORDERS, math.nan)
-    return replace(motion, rms=none, least=none, highest=none, amplitudes=nothing, jams=jams)
-
-
-def _amplitudes(series: Orbit) -> Array:
-    found = np.zeros(ORDERS)
-    orders = 2.0 * np.abs(series.harmonics[1 : ORDERS + 1])
-    found[: orders.size] = orders
-    return found
-
-
-def _near(
-    pair: MovingPair, level: str, contact: Contact, last: Motion, clock: Clock
-) -> Motion | None:
-    """Return the stable motion near the last one that repeats as that does; None: there is none.
-
-    Near one that did not repeat, one of a single period is looked for.
-    """
-    state, periods = last.state, last.repeats or 1
-    harmonics = len(contact.series.harmonics) - 1
-    if periods == 1:
-        guess = contact.series if last.highest <= 0.0 else last.series
-        made = orbit(pair, level, pair.mesh_frequency, harmonics, guess)
-        clock.evaluations += 1
-        if not made.found:
-            return None
-        state = states(pair, level, made, SAMPLES * harmonics)[0]
-    repeating = _repeating(pair, level, state, periods, clock)
-    found = None if repeating is None else _told(pair, level, repeating, periods, clock)
-    if found is None:
-        return None
-    size = max(found.delta.size, last.delta.size)
-    off = float(np.std(np.resize(found.delta, size) - np.resize(last.delta, size)))
-    return found if off <= NEAR * max(found.rms, last.rms) else None
-
-
-def _repeating(
-    pair: MovingPair, level: str, state: Array, periods: int, clock: Clock
-) -> Array | None:
-    """Return the state that periods of the mesh repeat, by Newton's method from one near by.
-
-    None where it does not end, or where a small disturbance would grow. Derivatives are those of
-    periods simulated from states moved by MOVED, the moments at which teeth part included.
-    """
-    scale, size = _scale(pair, level), state.size
-    for _ in range(SHOTS):
-        starts = np.vstack([state, state + MOVED * np.diag(scale)])
-        ends = np.array([_passed(pair, level, start, periods, clock) for start in starts])
-        if not np.all(np.isfinite(ends)):
-            return None
-        wrong, slope = (ends[0] - state) / scale, (ends[1:] - ends[0]).T / scale[:, None] / MOVED
-        if np.max(np.abs(wrong)) <= CLOSED * np.max(np.abs(state / scale)):
-            stable = np.max(np.abs(np.linalg.eigvals(slope))) <= 1.0 + UNSTABLE
-            return state if stable else None
-        state = state + scale * np.linalg.lstsq(np.eye(size) - slope, wrong, rcond=None)[0]
-    return None
-
-
-def _passed(pair: MovingPair, level: str, state: Array, periods: int, clock: Clock) -> Array:
-    """Return the state after periods of the mesh."""
-    made = _marched(pair, level, np.array([0.0, periods]) / pair.mesh_frequency, state)
-    clock.evaluations += made.rates
-    return np.asarray(made.states[-1])
-
-
-def _marched(
-    pair: MovingPair, level: str, times: Array, state: Array, clock: Clock | None = None
-) -> Marched:
-    longest = fastest(pair, level) / STEPS
-    return march(pair, level, timeline(pair, times), "rk8", longest, state, clock)
-
-
-def _scale(pair: MovingPair, level: str) -> Array:
-    """Return lengths and rates (2 n,) in which a state is measured."""
-    size = resting(pair, level).size // 2
-    length = abs(pair.load) / pair.wave.mean
-    rate = 2.0 * math.pi * length / fastest(pair, level)
-    return np.append(np.full(size, length), np.full(size, rate))
-
-
-def _settled(
-    pair: MovingPair, level: str, contact: Contact, last: Motion | None, clock: Clock
-) -> Motion | None:
-    """Return the motion to which a simulation comes from the one before; None: the clock stopped.
-
-    Where that was in contact, and contact is unstable, it is moved by KICK: a disturbance that a
-    machine always has.
-    """
-    state = resting(pair, level) if last is None else last.state
-    if contact.growth > 1.0 + UNSTABLE and (last is None or last.highest <= 0.0):
-        state = (1.0 - KICK) * state
-    scale, passed = _scale(pair, level), state[None]
-    room = float(np.max(np.abs(state / scale)) + (pair.backlash or 0.0) / scale[0])
-    most, spent, changes = _patience(pair, level, contact.growth), 0, [math.inf]
-    while min(changes) > SETTLED and spent < (LONGER if min(changes) < NEARLY else 1) * most:
-        times = np.arange(CHUNK + 1) / pair.mesh_frequency
-        made = _marched(pair, level, times, passed[-1], clock)
-        if len(made.states) <= CHUNK or not clock.tell():
-            return None
-        if not np.max(np.abs(made.states / scale)) < ENDLESS * room:
-            return _growing(_linear(pair, level, contact), made.jammed is not None)
-        passed = np.concatenate([passed[-CHUNK:], made.states[1:]])
-        spent += CHUNK
-        changes = [_change(passed / scale, p) for p in range(1, MOST_PERIODS + 1)]
-    repeats = next((p for p, c in enumerate(changes, 1) if c <= REPEATED), 0)
-    found = _told(pair, level, passed[-1], repeats, clock)
-    if found is not None and repeats == 1 and found.highest <= 0.0 and contact.holds:
-        return _linear(pair, level, contact)
-    return found
-
-
-def _patience(pair: MovingPair, level: str, growth: float) -> int:
-    """Return how many periods of the mesh a simulation may take to settle.
-
-    growth: the largest multiplier of teeth in contact; beyond 1 a motion takes time to grow.
-    """
-    system = linear(pair, level)
-    inverse = 1.0 / system.mass[:, None]
-    n = system.mass.size
-    held = np.block(
-        [
-            [np.zeros((n, n)), np.eye(n)],
-            [-inverse * system.with_mesh(pair.wave.mean), -inverse * system.damping],
-        ]
-    )
-    slowest = float(np.min(-np.linalg.eigvals(held).real))
-    wanted = 0.0
-    if slowest > 1e-9 * pair.mesh_frequency:
-        wanted = PATIENCE * pair.mesh_frequency / slowest
-    if growth > 1.0 + UNSTABLE:
-        wanted = max(wanted, GROWN / math.log(growth))
-    a_period = max(1.0, STEPS / (fastest(pair, level) * pair.mesh_frequency))
-    return max(LEAST, int(min(wanted, MOST_STEPS / a_period)))
-
-
-def _change(passed: Array, periods: int) -> float:
-    """Return how far the last states are from those so many periods before, over that of delta."""
-    later, before = passed[-MOST_PERIODS:], passed[-MOST_PERIODS - periods : -periods]
-    half = passed.shape[1] // 2
-    size = np.max(np.abs(later[:, [half // 2, half + half // 2]]))
-    return float(np.max(np.abs(later - before)) / size)
-
-
-def _told(pair: MovingPair, level: str, state: Array, repeats: int, clock: Clock) -> Motion | None:
-    """Return what is to be known of the motion from a state on, over the periods it repeats in.
-
-    None: the clock stopped.
-    """
-    periods = repeats or KEPT
-    times = np.arange(periods * LOOKS + 1) / (LOOKS * pair.mesh_frequency)
-    made = _marched(pair, level, times, state, clock)
-    if len(made.states) < len(times):
-        return None
-    delta = made.delta[:-1]
-    for shorter in range(1, periods if repeats else 1):
-        apart = delta[shorter * LOOKS :] - delta[: -shorter * LOOKS]
-        if np.max(np.abs(apart)) <= REPEATED * np.max(np.abs(delta)):
-            repeats = shorter
-            break
-    series = Orbit(pair.mesh_frequency, np.fft.rfft(delta)[::periods][: LOOKS // 2] / delta.size)
-    return Motion(
-        rms=float(delta.std()),
-        least=float(delta.min()),
-        highest=float(delta.max()),
-        amplitudes=_amplitudes(series),
-        repeats=repeats,
-        jams=made.jammed is not None,
-        state=made.states[-1],
-        delta=delta[: (repeats or KEPT) * LOOKS],
-        series=series,
-    )

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.dynamics.motions_over_speed import Motion
+from gearopt.formulations.dynamics.steady_motion import Motion
 from gearopt.formulations.orbit.collocation import (
     TENS,
     Collocated,

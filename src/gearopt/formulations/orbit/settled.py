@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from gearopt.formulations.dynamics.motions_over_speed import Motion, followed, in_contact
+from gearopt.formulations.dynamics.motions_over_speed import followed
+from gearopt.formulations.dynamics.steady_motion import Motion, in_contact
 from gearopt.formulations.motion.integrate import march
 from gearopt.formulations.motion.simulate import fastest
 from gearopt.formulations.motion.timeline import timeline

@@ -4,7 +4,8 @@ import math
 from collections.abc import Sequence
 
 from gearopt.formulations.dynamics.dynamics_design import DynamicsDesign, Response, Speeds
-from gearopt.formulations.dynamics.motions_over_speed import MOST_PERIODS, ranges
+from gearopt.formulations.dynamics.motions_over_speed import ranges
+from gearopt.formulations.dynamics.steady_motion import MOST_PERIODS
 from gearopt.formulations.motion.stability import UNSTABLE
 from gearopt.formulations.orbit.task import MICRO
 from gearopt.scenes.dynamics.tables import MOST_OUTPUTS

@@ -1,0 +1,289 @@
+"""The motion that a pair comes to at a speed: in contact, near a motion before it, or simulated.
+
+Teeth in contact move as the linear pair does, while that is stable. Where they part, harmonic
+balance gives a motion that repeats every period of the mesh; Newton's method on a simulated period
+corrects its state, and the multipliers of that period tell whether it is stable. Where there is
+none near by, a simulation goes on from the motion before until it repeats itself.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from gearopt.formulations.dynamics.dynamics_parts import around, jammed, resting
+from gearopt.formulations.motion.balance import SAMPLES, Orbit, linear_orbit, orbit, states
+from gearopt.formulations.motion.integrate import Marched, march
+from gearopt.formulations.motion.simulate import fastest
+from gearopt.formulations.motion.stability import UNSTABLE, largest, ready
+from gearopt.formulations.motion.timeline import timeline
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.terms import Array
+from gearopt.physics.motion.linear import linear
+from gearopt.physics.motion.moving_pair import MovingPair
+
+ORDERS = 12  # of the mesh frequency, shown over speed
+STEPS = 12.0  # of RK8 in a period of the fastest mode: 1e-6 of a motion
+LOOKS = 64  # samples of a period of the mesh
+NEAR = 0.3  # of its RMS by which a motion may differ from the one at the speed before
+SHOTS, CLOSED = 6, 1e-9  # Newton's steps to a state that repeats; what is left, of its size
+MOVED = 1e-6  # of its scale by which a state is moved for a derivative
+CHUNK = 32  # periods between two looks at whether a simulation repeats itself
+MOST_PERIODS = 8  # of the mesh, after which a motion may repeat
+SETTLED, REPEATED = 1e-6, 1e-3  # change of states that ends a simulation; that counts as repeated
+PATIENCE = 15.0  # time constants of the least damped mode that a simulation may take
+GROWN = 8.0  # logarithm of the factor by which an unstable one may grow in it
+LONGER, NEARLY = 4, 0.02  # times as many where states change by less than this: it settles slowly
+LEAST, MOST_STEPS = 128, 100_000  # periods at least, and steps at most
+KEPT = 64  # periods of a motion that does not repeat from which its numbers are taken
+ENDLESS = 1e4  # times as large as it began, and as the backlash: a motion that grows for ever
+KICK = 0.1  # of its state by which a motion in contact is moved where it is unstable
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A motion at a speed: RMS of delta about its mean, least and largest delta [mm].
+
+    amplitudes (ORDERS,) of the orders of the mesh frequency [mm]. repeats: after how many periods
+    of the mesh, 0: not within MOST_PERIODS. A motion that grows for ever has NaN for numbers.
+    jams: both flanks are pressed at once, as the axes came together. For the next speed: the state
+    at phase 0, delta at LOOKS phases of each period, and its series.
+    """
+
+    rms: float
+    least: float
+    highest: float
+    amplitudes: Array
+    repeats: int
+    jams: bool
+    state: Array
+    delta: Array
+    series: Orbit
+
+    @property
+    def grows(self) -> bool:
+        """Whether it grows for ever, so that it has no size."""
+        return math.isnan(self.rms)
+
+
+class Contact(NamedTuple):
+    """The motion of teeth that stay in contact, and its largest multiplier."""
+
+    series: Orbit
+    growth: float
+
+    @property
+    def holds(self) -> bool:
+        """Whether teeth stay in contact, and would after a small disturbance."""
+        return self.series.extremes[1] <= 0.0 and self.growth <= 1.0 + UNSTABLE
+
+
+def in_contact(
+    pair: MovingPair, level: str, frequencies: Array, harmonics: int, clock: Clock
+) -> list[Contact]:
+    """Return the motions of teeth in contact at mesh frequencies [Hz], by harmonic balance.
+
+    Of the first alone where the clock stops.
+    """
+    found, system = [], around(pair, level)
+    ready(system, pair.wave, clock)
+    for frequency in frequencies:
+        if not clock.tell():
+            break
+        series = linear_orbit(pair, level, float(frequency), harmonics)
+        found.append(Contact(series, float(largest(system, pair.wave, np.array([frequency]))[0])))
+        clock.evaluations += 2
+    return found
+
+
+def linear_motion(pair: MovingPair, level: str, contact: Contact) -> Motion:
+    """Return the motion of teeth in contact, which grows for ever where that is unstable."""
+    series = contact.series
+    passed = states(pair, level, series, LOOKS)
+    found = Motion(
+        series.rms,
+        *series.extremes,
+        _amplitudes(series),
+        1,
+        bool(np.any(jammed(pair, level, passed))),
+        passed[0],
+        series.delta(LOOKS),
+        series,
+    )
+    return found if contact.growth <= 1.0 + UNSTABLE else _growing(found, jams=False)
+
+
+def _growing(motion: Motion, jams: bool) -> Motion:
+    """Return what is told of a motion that grows for ever."""
+    none, nothing = math.nan, np.full(ORDERS, math.nan)
+    return replace(motion, rms=none, least=none, highest=none, amplitudes=nothing, jams=jams)
+
+
+def _amplitudes(series: Orbit) -> Array:
+    found = np.zeros(ORDERS)
+    orders = 2.0 * np.abs(series.harmonics[1 : ORDERS + 1])
+    found[: orders.size] = orders
+    return found
+
+
+def near(
+    pair: MovingPair, level: str, contact: Contact, last: Motion, clock: Clock
+) -> Motion | None:
+    """Return the stable motion near the last one that repeats as that does; None: there is none.
+
+    Near one that did not repeat, one of a single period is looked for.
+    """
+    state, periods = last.state, last.repeats or 1
+    harmonics = len(contact.series.harmonics) - 1
+    if periods == 1:
+        guess = contact.series if last.highest <= 0.0 else last.series
+        made = orbit(pair, level, pair.mesh_frequency, harmonics, guess)
+        clock.evaluations += 1
+        if not made.found:
+            return None
+        state = states(pair, level, made, SAMPLES * harmonics)[0]
+    repeating = _repeating(pair, level, state, periods, clock)
+    found = None if repeating is None else _told(pair, level, repeating, periods, clock)
+    if found is None:
+        return None
+    size = max(found.delta.size, last.delta.size)
+    off = float(np.std(np.resize(found.delta, size) - np.resize(last.delta, size)))
+    return found if off <= NEAR * max(found.rms, last.rms) else None
+
+
+def _repeating(
+    pair: MovingPair, level: str, state: Array, periods: int, clock: Clock
+) -> Array | None:
+    """Return the state that periods of the mesh repeat, by Newton's method from one near by.
+
+    None where it does not end, or where a small disturbance would grow. Derivatives are those of
+    periods simulated from states moved by MOVED, the moments at which teeth part included.
+    """
+    scale, size = _scale(pair, level), state.size
+    for _ in range(SHOTS):
+        starts = np.vstack([state, state + MOVED * np.diag(scale)])
+        ends = np.array([_passed(pair, level, start, periods, clock) for start in starts])
+        if not np.all(np.isfinite(ends)):
+            return None
+        wrong, slope = (ends[0] - state) / scale, (ends[1:] - ends[0]).T / scale[:, None] / MOVED
+        if np.max(np.abs(wrong)) <= CLOSED * np.max(np.abs(state / scale)):
+            stable = np.max(np.abs(np.linalg.eigvals(slope))) <= 1.0 + UNSTABLE
+            return state if stable else None
+        state = state + scale * np.linalg.lstsq(np.eye(size) - slope, wrong, rcond=None)[0]
+    return None
+
+
+def _passed(pair: MovingPair, level: str, state: Array, periods: int, clock: Clock) -> Array:
+    """Return the state after periods of the mesh."""
+    made = _marched(pair, level, np.array([0.0, periods]) / pair.mesh_frequency, state)
+    clock.evaluations += made.rates
+    return np.asarray(made.states[-1])
+
+
+def _marched(
+    pair: MovingPair, level: str, times: Array, state: Array, clock: Clock | None = None
+) -> Marched:
+    longest = fastest(pair, level) / STEPS
+    return march(pair, level, timeline(pair, times), "rk8", longest, state, clock)
+
+
+def _scale(pair: MovingPair, level: str) -> Array:
+    """Return lengths and rates (2 n,) in which a state is measured."""
+    size = resting(pair, level).size // 2
+    length = abs(pair.load) / pair.wave.mean
+    rate = 2.0 * math.pi * length / fastest(pair, level)
+    return np.append(np.full(size, length), np.full(size, rate))
+
+
+def settled(
+    pair: MovingPair, level: str, contact: Contact, last: Motion | None, clock: Clock
+) -> Motion | None:
+    """Return the motion to which a simulation comes from the one before; None: the clock stopped.
+
+    Where that was in contact, and contact is unstable, it is moved by KICK: a disturbance that a
+    machine always has.
+    """
+    state = resting(pair, level) if last is None else last.state
+    if contact.growth > 1.0 + UNSTABLE and (last is None or last.highest <= 0.0):
+        state = (1.0 - KICK) * state
+    scale, passed = _scale(pair, level), state[None]
+    room = float(np.max(np.abs(state / scale)) + (pair.backlash or 0.0) / scale[0])
+    most, spent, changes = _patience(pair, level, contact.growth), 0, [math.inf]
+    while min(changes) > SETTLED and spent < (LONGER if min(changes) < NEARLY else 1) * most:
+        times = np.arange(CHUNK + 1) / pair.mesh_frequency
+        made = _marched(pair, level, times, passed[-1], clock)
+        if len(made.states) <= CHUNK or not clock.tell():
+            return None
+        if not np.max(np.abs(made.states / scale)) < ENDLESS * room:
+            return _growing(linear_motion(pair, level, contact), made.jammed is not None)
+        passed = np.concatenate([passed[-CHUNK:], made.states[1:]])
+        spent += CHUNK
+        changes = [_change(passed / scale, p) for p in range(1, MOST_PERIODS + 1)]
+    repeats = next((p for p, c in enumerate(changes, 1) if c <= REPEATED), 0)
+    found = _told(pair, level, passed[-1], repeats, clock)
+    if found is not None and repeats == 1 and found.highest <= 0.0 and contact.holds:
+        return linear_motion(pair, level, contact)
+    return found
+
+
+def _patience(pair: MovingPair, level: str, growth: float) -> int:
+    """Return how many periods of the mesh a simulation may take to settle.
+
+    growth: the largest multiplier of teeth in contact; beyond 1 a motion takes time to grow.
+    """
+    system = linear(pair, level)
+    inverse = 1.0 / system.mass[:, None]
+    n = system.mass.size
+    held = np.block(
+        [
+            [np.zeros((n, n)), np.eye(n)],
+            [-inverse * system.with_mesh(pair.wave.mean), -inverse * system.damping],
+        ]
+    )
+    slowest = float(np.min(-np.linalg.eigvals(held).real))
+    wanted = 0.0
+    if slowest > 1e-9 * pair.mesh_frequency:
+        wanted = PATIENCE * pair.mesh_frequency / slowest
+    if growth > 1.0 + UNSTABLE:
+        wanted = max(wanted, GROWN / math.log(growth))
+    a_period = max(1.0, STEPS / (fastest(pair, level) * pair.mesh_frequency))
+    return max(LEAST, int(min(wanted, MOST_STEPS / a_period)))
+
+
+def _change(passed: Array, periods: int) -> float:
+    """Return how far the last states are from those so many periods before, over that of delta."""
+    later, before = passed[-MOST_PERIODS:], passed[-MOST_PERIODS - periods : -periods]
+    half = passed.shape[1] // 2
+    size = np.max(np.abs(later[:, [half // 2, half + half // 2]]))
+    return float(np.max(np.abs(later - before)) / size)
+
+
+def _told(pair: MovingPair, level: str, state: Array, repeats: int, clock: Clock) -> Motion | None:
+    """Return what is to be known of the motion from a state on, over the periods it repeats in.
+
+    None: the clock stopped.
+    """
+    periods = repeats or KEPT
+    times = np.arange(periods * LOOKS + 1) / (LOOKS * pair.mesh_frequency)
+    made = _marched(pair, level, times, state, clock)
+    if len(made.states) < len(times):
+        return None
+    delta = made.delta[:-1]
+    for shorter in range(1, periods if repeats else 1):
+        apart = delta[shorter * LOOKS :] - delta[: -shorter * LOOKS]
+        if np.max(np.abs(apart)) <= REPEATED * np.max(np.abs(delta)):
+            repeats = shorter
+            break
+    series = Orbit(pair.mesh_frequency, np.fft.rfft(delta)[::periods][: LOOKS // 2] / delta.size)
+    return Motion(
+        rms=float(delta.std()),
+        least=float(delta.min()),
+        highest=float(delta.max()),
+        amplitudes=_amplitudes(series),
+        repeats=repeats,
+        jams=made.jammed is not None,
+        state=made.states[-1],
+        delta=delta[: (repeats or KEPT) * LOOKS],
+        series=series,
+    )
