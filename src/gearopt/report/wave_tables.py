@@ -14,8 +14,8 @@ SHAPES = {"cosine": "cos 2φ", "ellipse": "ellipse", "discs": "two discs"}
 
 
 def sizes(found: WaveDesign, measures: Measures) -> Table:
-    """Return numbers of the gearing as names and values."""
-    length, stress = measures.unit("mm"), measures.unit("MPa")
+    """Return what the gearing is built from, as names and values."""
+    length = measures.unit("mm")
     shape = SHAPES[found.wave_generator]
     if found.wave_generator == "discs":
         shape += f", {found.wrap_angle_deg:g}° each side"
@@ -40,6 +40,14 @@ def sizes(found: WaveDesign, measures: Measures) -> Table:
         [f"root diameter [{length}]", _mm(found.root_diameter_mm, measures)],
         [f"base diameter [{length}]", _mm(found.base_diameter_mm, measures)],
         *_flexspline(found, measures),
+    ]
+    return Table("sizes", ["", ""], [row for row in rows if row[1] is not None])
+
+
+def loads(found: WaveDesign, measures: Measures) -> Table:
+    """Return what the gearing carries and how hard it is loaded, as names and values."""
+    stress = measures.unit("MPa")
+    rows: list[list[Any]] = [
         ["conjugate pairs per lobe and flank", found.pairs_in_contact],
         ["teeth that carry, per lobe", found.carrying_teeth],
         ["the same, as if equally loaded", found.effective_teeth],
@@ -58,7 +66,7 @@ def sizes(found: WaveDesign, measures: Measures) -> Table:
         ],
         ["least deflection with contact, modules", found.least_deflection],
     ]
-    return Table("sizes", ["", ""], [row for row in rows if row[1] is not None])
+    return Table("loads and stresses", ["", ""], [row for row in rows if row[1] is not None])
 
 
 def teeth(found: WaveDesign, measures: Measures) -> Table:

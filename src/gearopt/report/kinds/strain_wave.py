@@ -201,6 +201,16 @@ def shift(result: Result, measures: Measures) -> Section | None:
     }
     plot["shapes"] = [mark]
     caption = "Pressure by the profile shift, all else as it is; dotted: this gearing."
+    return Section(
+        "Pressure against profile shift",
+        words=_ends_of_shift(found),
+        figures=[Figure(lines, plot, caption)],
+        tables=[tables.shifts(found, measures)],
+    )
+
+
+def _ends_of_shift(found: WaveDesign) -> list[str]:
+    """Return what ends a search over the profile shift."""
     words = ["The pressure has no least value over the profile shift: other limits end the search."]
     if found.shift_of_one_pair is not None:
         words.append(
@@ -211,12 +221,7 @@ def shift(result: Result, measures: Measures) -> Section | None:
             f"With an addendum above {found.largest_addendum:.3f} modules teeth would cut each "
             "other."
         )
-    return Section(
-        "Pressure against profile shift",
-        words=words,
-        figures=[Figure(lines, plot, caption)],
-        tables=[tables.shifts(found, measures)],
-    )
+    return words
 
 
 def cutter(result: Result, measures: Measures) -> Section | None:
@@ -262,15 +267,15 @@ def numbers(result: Result, measures: Measures) -> Section | None:
     """Return the gearing in numbers, its flank, and other deflections."""
     if (found := design_of(result)) is None:
         return None
-    sizes = tables.sizes(found, measures)
+    shown = tables.sizes(found, measures), tables.loads(found, measures)
     columns = (tables.flank, tables.tooth_points, tables.space_points)
     return Section(
         "Sizes and flanks",
         tables=[
-            *(sizes, tables.deflections(found, measures)),
+            *(*shown, tables.deflections(found, measures)),
             *(table(found, measures) for table in columns),
         ],
-        terminal=(sizes,),
+        terminal=shown,
     )
 
 
