@@ -17,6 +17,7 @@ from gearopt.scenes.reading.load import read
 from gearopt.scenes.strain_wave import EXAMPLE, compared, explain, model, objectives, several
 from gearopt.scenes.strain_wave.example import FROM_DUTY
 from gearopt.scenes.strain_wave.wave_assumptions import assumptions, range_notes
+from gearopt.scenes.strain_wave.ways_out import costs
 
 
 def scene(text):
@@ -209,6 +210,13 @@ def test_explain_of_given_gears_names_what_decides(solved):
     assert "the gearing is given" in found.message
 
 
+def test_what_limits_cost_is_told_in_their_units():
+    """Of the sum over passages; equations and rounding are left out."""
+    found = costs({"outer_radius": -97.0, "interference[1]": -1.0, "interference[2]": -0.5})
+    assert found.endswith("outer radius 0.97 MPa for 1 %, interference 0.015 MPa for 1 µm")
+    assert costs({"length": -29.0, "pairs": -1e-12}) == ""
+
+
 @pytest.mark.slow
 def test_explain_of_a_duty_follows_the_laws_of_similar_gearings():
     """Hertz's pressure of similar gearings goes with (T/D^3)^(1/2), whatever the limits are."""
@@ -219,6 +227,7 @@ def test_explain_of_a_duty_follows_the_laws_of_similar_gearings():
         assert by[key].sensitivity == pytest.approx(power, abs=1e-3)
         assert by[key].resolved == pytest.approx((power, power), abs=1e-3)
     assert by["duty.ratio"].step == "+1" and by["duty.ratio"].price < 0.0
+    assert "outer radius 0.974 MPa for 1 %, interference 0.0142 MPa for 1 µm" in found.message
 
 
 @pytest.mark.slow

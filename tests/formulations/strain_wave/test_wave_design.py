@@ -120,6 +120,22 @@ def test_every_start_leads_to_the_same_design(start):
 
 
 @pytest.mark.slow
+def test_what_limits_cost_is_what_solving_again_finds(monkeypatch):
+    """MPa for 1 % of the outer radius and for 1 um of clearance, by differences of designs."""
+    start = np.array(STARTS[0])
+
+    def pressure(demand=DEMAND, more=0.0):
+        monkeypatch.setattr("gearopt.formulations.strain_wave.wave_design.LEAST_GAP", 1e-5 + more)
+        return exchange(demand, start, Clock()).result.value
+
+    prices = exchange(DEMAND, start, Clock()).result.multipliers
+    ends = [pressure(replace(DEMAND, outer_radius=45.0 * (1.0 + s))) for s in (-1e-3, 1e-3)]
+    assert 0.01 * prices["outer_radius"] == pytest.approx((ends[1] - ends[0]) / 0.2, rel=1e-4)
+    least, most = (pressure(more=s) for s in (-5e-4, 5e-4))
+    assert -0.01 * prices["interference[1]"] == pytest.approx(most - least, rel=1e-4)
+
+
+@pytest.mark.slow
 def test_passages_that_cut_are_added(monkeypatch):
     """Without any at first: teeth cut by 0.3 mm, as without the limit; then the tip's is found."""
     monkeypatch.setattr("gearopt.formulations.strain_wave.exchange.tip_leaves", lambda *_: ())

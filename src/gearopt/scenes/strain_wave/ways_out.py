@@ -1,7 +1,9 @@
 """What to write instead of an impossible file, and what every number does to a possible one."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
+from gearopt.formulations.strain_wave.demand import GAP_UNIT
 from gearopt.formulations.strain_wave.exchange import Exchanged, exchange
 from gearopt.formulations.strain_wave.impossible import least_factor, nearest
 from gearopt.formulations.strain_wave.wave_design import problem
@@ -26,6 +28,11 @@ EASES = {  # beside ends of ranges: what eases a limit
     "material.shear_limit": 1,
     "duty.outer_diameter": 1,
 }
+LIMITS = (  # but for those that only keep the flank regular
+    *("outer_radius", "interference", "ratcheting", "rim_fatigue", "pairs", "base_circle"),
+    *("minor_axis", "flexspline_land", "flexspline_space", "spline_land"),
+)
+NOTHING = 1e-6  # MPa: a multiplier below it is rounding
 ROOMY = (1.0, 1.001, 1.01)  # factors by which a change is made larger until a design is found
 
 
@@ -77,6 +84,25 @@ def influences(scene: Scene, result: Result, clock: Clock, gap: float) -> Explan
     def posed(other: Scene) -> Problem:
         return problem(other.demand(), x[:6], found.passages)
 
+    note = costs(found.result.multipliers)
     basis = at_point(found.result.value, solved, posed, scene, x)
     ways = eases(found.problem) | EASES
-    return replace(of_design(scene, result, clock, basis, solved, "", ways), seconds=clock.seconds)
+    return replace(
+        of_design(scene, result, clock, basis, solved, note, ways), seconds=clock.seconds
+    )
+
+
+def costs(multipliers: Mapping[str, float]) -> str:
+    """Return what the pressure [MPa] owes to each limit that decides, by multipliers.
+
+    1 % of a limit, 1 um of overlap where teeth pass each other.
+    """
+    total: dict[str, float] = {}
+    for name, value in multipliers.items():
+        stem = name.split("[")[0]
+        total[stem] = total.get(stem, 0.0) - value
+    words = []
+    for name in (n for n in LIMITS if total.get(n, 0.0) > NOTHING):
+        step, part = (1e-3 / GAP_UNIT, "1 µm") if name == "interference" else (0.01, "1 %")
+        words.append(f"{name.replace('_', ' ')} {total[name] * step:.3g} MPa for {part}")
+    return f"what limits cost, by multipliers: {', '.join(words)}" if words else ""
