@@ -1,13 +1,19 @@
 """Numbers at ends of their ranges, and what wider ranges give."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from gearopt.formulations.strain_wave.demand import FREE
+from gearopt.formulations.strain_wave.exchange import exchange
 from gearopt.formulations.strain_wave.range_ends import WIDER, ends_of, slopes_of
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Terms, Var
+from gearopt.scenes.reading.load import read
+from gearopt.scenes.strain_wave.example import FROM_DUTY
 
 RANGES = dict.fromkeys(FREE, (0.0, 2.0)) | {"module": (0.5, 0.5)}
 
@@ -42,3 +48,22 @@ def test_ends_are_in_order_of_what_they_give():
     assert (first.gain, second.gain) == pytest.approx((3.0 * WIDER * 2.0, 2.0 * WIDER * 2.0))
     (alone, _) = ends_of(RANGES, np.array(numbers), {})
     assert alone.gain is None
+
+
+@pytest.mark.slow
+def test_wider_ranges_of_a_gearing_give_what_is_told():
+    """Each end moved by a hundredth of its range and all solved again, clear at all poses."""
+    own = read(FROM_DUTY.encode())[1]
+    demand, start = own.demand(), own.start()
+    found = exchange(demand, start, Clock())
+    slopes = slopes_of(found.problem, found.outcome.x)
+    ends = ends_of(demand.ranges, found.outcome.x[: len(FREE)], slopes)
+    assert {end.name for end in ends} == {"deflection", "addendum", "rim", "profile_shift"}
+    for end in ends:
+        low, high = demand.ranges[end.name]
+        by = 0.01 * (high - low)
+        moved = (low - by, high) if end.least else (low, high + by)
+        wider = replace(demand, ranges={**demand.ranges, end.name: moved})
+        other = exchange(wider, found.outcome.x[: len(FREE)], Clock())
+        lower = (found.result.value - other.result.value) * WIDER / 0.01
+        assert lower == pytest.approx(end.gain, rel=0.02)
