@@ -100,9 +100,10 @@ def test_packings_at_random(seeds):
 
 
 @pytest.mark.slow
-def test_many_packings_at_random():
-    found = [check(seed) for seed in range(6, 150)]
-    assert found.count(None) < 30 and found.count(True) > 50
+@pytest.mark.parametrize("first", range(6, 150, 18))
+def test_many_packings_at_random(first):
+    found = [check(seed) for seed in range(first, first + 18)]
+    assert found.count(None) < 8 and found.count(True) > 3
 
 
 EIGHT = tuple(

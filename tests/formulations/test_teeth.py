@@ -184,11 +184,14 @@ def test_a_gap_that_is_enough_ends_the_search():
 
 @pytest.mark.parametrize(
     ("total", "widths", "gap"),
-    [
-        (F(110), ("0.6", "0.6", "0.75"), 5e-3),
-        (F(300), ("0.6",) * 3 + ("0.75",), 1e-3),
-        (F(1000), ("0.6",) * 4 + ("0.75",), 1e-2),
-    ],
+    few(
+        [
+            (F(110), ("0.6", "0.6", "0.75"), 5e-3),
+            (F(300), ("0.6",) * 3 + ("0.75",), 1e-3),
+            (F(1000), ("0.6",) * 4 + ("0.75",), 1e-2),
+        ],
+        2,
+    ),
 )
 def test_a_requested_gap_is_reached_or_the_search_goes_on(total, widths, gap):
     """The bound of the first look holds for smaller ratios only and must not count."""

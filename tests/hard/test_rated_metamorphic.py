@@ -3,6 +3,7 @@
 import math
 import random
 from dataclasses import replace
+from itertools import product
 
 import pytest
 from campaigns import few
@@ -33,8 +34,9 @@ def made_of(train, change):
     return replace(train, stages=tuple(stages))
 
 
-@pytest.mark.parametrize("standard", [agma, some_iso])
-@pytest.mark.parametrize("seed", few([1, 0, *range(2, 12)], 1))
+@pytest.mark.parametrize(
+    ("seed", "standard"), few(product([1, 0, *range(2, 12)], [agma, some_iso]), [(1, agma)])
+)
 def test_more_power_never_takes_less(seed, standard):
     """By ISO 6336 this is no law: K_v may leave a resonance. Of these drives none does."""
     train = some_rated_drive(3000 + seed, standard=standard)

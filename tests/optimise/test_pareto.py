@@ -88,13 +88,13 @@ def test_the_front_of_a_conic_problem_is_proven_and_its_error_holds():
 
 @pytest.mark.parametrize("method", ["nsga2", "hybrid", "annealing"])
 def test_samplers_come_near_the_known_front(method):
-    budget = Budget(evaluations=6000)
-    points = 24 if method == "hybrid" else None
+    points, most = (8, 1500) if method == "hybrid" else (None, 6000)
+    budget = Budget(evaluations=most)
     front = gearopt.pareto(discs(), method=method, points=points, budget=budget, seed=1)
     excess = np.sqrt(values(front)).sum(axis=1) - math.sqrt(5.0)
     assert front.status == "not proven" and len(front.points) >= 5
     assert -1e-6 <= excess.min() and np.median(excess) < 0.02
-    assert front.evaluations <= 6100 and front.growth[-1].hypervolume == pytest.approx(
+    assert front.evaluations <= most + 100 and front.growth[-1].hypervolume == pytest.approx(
         front.hypervolume
     )
 

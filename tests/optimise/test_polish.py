@@ -45,8 +45,7 @@ def vessel():
     )
 
 
-@pytest.mark.parametrize("method", SAMPLERS)
-@pytest.mark.parametrize("seed", few([0, 1], 1))
+@pytest.mark.parametrize(("method", "seed"), few(product(SAMPLERS, (0, 1)), [("annealing", 0)]))
 def test_the_pressure_vessel(method, seed):
     result = solve(vessel(), method, Budget(evaluations=6_000), seed=seed)
     assert result.value == pytest.approx(6059.714335048436, rel=1e-9)
@@ -150,7 +149,7 @@ def rows_with_choices():
     return Problem("choices", (scale,), (), lambda x, p: Terms({}), (rows,))
 
 
-@pytest.mark.parametrize("method", SAMPLERS)
+@pytest.mark.parametrize("method", few(SAMPLERS, ["annealing"]))
 def test_discrete_variables_of_rows_are_held_each_at_its_own(method):
     targets = np.array([1.1, 2.1, 4.3])
     best = min(
@@ -180,7 +179,7 @@ def test_a_polish_never_returns_worse_than_the_sampler_found(method, seed):
     assert numbers == sorted(numbers, reverse=True)
 
 
-@pytest.mark.parametrize("method", SAMPLERS)
+@pytest.mark.parametrize("method", few(SAMPLERS, ["annealing"]))
 def test_what_cannot_be_traced_is_not_polished_and_says_so(method):
     def evaluate(x, p):
         return Terms({"f": x.n + (x.x - 1.3) ** 2 + 0.0 * np.frexp(x.x)[0]})

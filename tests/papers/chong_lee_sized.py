@@ -60,30 +60,25 @@ def widened(name, standard):
     return None if found.status == "infeasible" else found.value
 
 
-def sized_rows():
-    """Volumes of least size by standard and widths, with what governs."""
-    found = []
-    for count, standard in ((c, s) for c in (2, 3) for s in BY):
-        for low, widths in ((0.0, "tied"), (0.3, "free")):
-            result = sized(count, standard, low)
-            design = result.design["stages"]
-            made = ", ".join(
-                f"{s['normal_module_mm']:g} {s['pinion_teeth']}/{s['wheel_teeth']}" for s in design
-            )
-            breadth = ", ".join(f"{s['face_width_mm']:.1f}" for s in design)
-            said = " | ".join(
-                (
-                    str(count),
-                    BY[standard],
-                    widths,
-                    f"{result.value / 1e3:,.0f}",
-                    made,
-                    breadth,
-                    governs(result),
-                )
-            )
-            found.append(f"| {said} |")
-    return found
+WIDTHS = {"tied": 0.0, "free": 0.3}  # least b/d1
+CASES = [(count, standard, widths) for count in (2, 3) for standard in BY for widths in WIDTHS]
+
+
+def first_cells(count, standard, widths):
+    """How the row of a case begins."""
+    return f"| {count} | {BY[standard]} | {widths} |"
+
+
+def sized_row(count, standard, widths):
+    """Volume of least size by a standard, with what governs."""
+    result = sized(count, standard, WIDTHS[widths])
+    design = result.design["stages"]
+    made = ", ".join(
+        f"{s['normal_module_mm']:g} {s['pinion_teeth']}/{s['wheel_teeth']}" for s in design
+    )
+    breadth = ", ".join(f"{s['face_width_mm']:.1f}" for s in design)
+    said = " | ".join((f"{result.value / 1e3:,.0f}", made, breadth, governs(result)))
+    return f"{first_cells(count, standard, widths)} {said} |"
 
 
 def governs(result):

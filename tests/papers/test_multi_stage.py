@@ -50,10 +50,20 @@ def test_every_row_of_every_table_is_recomputed(rows):
     assert "|---|\n" + "\n".join(rows()) + "\n\n" in PAGE
 
 
+def test_every_drive_sized_by_its_rating_has_its_row():
+    begun = "[^\n]*\n".join(re.escape(by_rating.first_cells(*case)) for case in by_rating.CASES)
+    assert re.search(rf"\|---\|\n{begun}[^\n]*\n\n", PAGE)
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("rows", [by_rating.sized_rows, by_rating.widened_rows])
-def test_every_row_of_drives_sized_by_their_rating_is_recomputed(rows):
-    assert "|---|\n" + "\n".join(rows()) + "\n" in PAGE
+@pytest.mark.parametrize(("count", "standard", "widths"), by_rating.CASES)
+def test_every_row_of_drives_sized_by_their_rating_is_recomputed(count, standard, widths):
+    assert f"\n{by_rating.sized_row(count, standard, widths)}\n" in PAGE
+
+
+@pytest.mark.slow
+def test_every_row_of_widened_designs_is_recomputed():
+    assert "|---|\n" + "\n".join(by_rating.widened_rows()) + "\n" in PAGE
 
 
 @pytest.mark.slow

@@ -4,6 +4,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from campaigns import few
 
 import gearopt
 from gearopt.optimise.clock import OTHERS
@@ -102,6 +103,7 @@ CASES = {  # file, edit, method, evaluations, {part: (objective, unit, name of i
         {"compound": ("squared_error", "", "compound")},
     ),
 }
+LONG = "layout by nsga2", "real-valued drive", "stiff servo"
 
 
 def told(scene, call=gearopt.solve, **kind):
@@ -132,7 +134,7 @@ def check_order(events):
         assert all(e.bound <= e.best for e in own if None not in (e.best, e.bound))
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", few(CASES, [case for case in CASES if case not in LONG]))
 def test_every_scene_says_what_its_events_are_of(case):
     file, edit, method, evaluations, expected = CASES[case]
     text = (PROBLEMS / f"{file}.toml").read_text(encoding="utf-8")

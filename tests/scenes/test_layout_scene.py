@@ -315,9 +315,7 @@ STATIC = {  # what is added to the file, and a part of what is said
 }
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=[pytest.mark.slow] * (n == "too near")) for n in STATIC]
-)
+@pytest.mark.parametrize("name", few(STATIC, ["out of reach", "on the input"]))
 def test_what_no_search_can_mend_is_told_in_numbers(name):
     added, said = STATIC[name]
     result = gearopt.solve(scene(TABLE4.split("[x-expected]")[0] + added))
