@@ -64,7 +64,7 @@ def _motions(task: Task, point: Array, speeds: Array) -> tuple[Array, Array, int
     if task.backlash is None:
         measure, highest = measured(task, series(task, point[None], speeds, FINE))
         return measure[0], highest[0], 1
-    motions = worst_motions(task, point, speeds)
+    motions = worst_motions(task, point, speeds, Clock())
     after = [motion.repeats for motion in motions]
     sizes = np.array([size(task, motion) for motion in motions])
     highest = MICRO * np.array([motion.highest for motion in motions])

@@ -70,11 +70,15 @@ def climb(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbed |
     return _steadied(task, problem, found, clock) or _as_it_is(task, problem, point)
 
 
-def measure(task: Task, point: Array, speeds_rpm: Array) -> Array:
-    """Return the measure [um] of a design at speeds (K,): simulated where teeth may part."""
+def measure(task: Task, point: Array, speeds_rpm: Array, clock: Clock) -> Array:
+    """Return the measure [um] of a design at speeds (K,): simulated where teeth may part.
+
+    Infinite where the clock stops.
+    """
     if task.backlash is None:
         return worst(task, point, speeds_rpm, FINE)
-    return np.array([size(task, m) for m in worst_motions(task, point, speeds_rpm)])
+    motions = worst_motions(task, point, speeds_rpm, clock)
+    return np.array([size(task, m) for m in motions] or [np.inf] * len(speeds_rpm))
 
 
 def _ipopt(problem: Problem, start: Array, clock: Clock) -> tuple[float, Outcome] | None:
@@ -142,8 +146,8 @@ def _parting(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbe
     """
     best: Climbed | None = None
     speeds = np.array(task.speeds_rpm)
-    motions = worst_motions(task, point, speeds)
-    for _ in range(AGAIN):
+    motions = worst_motions(task, point, speeds, clock)
+    for _ in range(AGAIN if motions else 0):
         start, made = parting_text.start(task, problem, point, motions), None
         for width in parting_text.WIDTHS:
             made = _ipopt(parting_text.rounded(task, problem, width), start, clock)
@@ -152,11 +156,11 @@ def _parting(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbe
             start = _point(made[1])
         if made is None:
             break
-        motions = worst_motions(task, _point(made[1])[:5], speeds)
-        judged = max(size(task, motion) for motion in motions)
+        point = _point(made[1])[:5]
+        motions = worst_motions(task, point, speeds, clock)
+        judged = max((size(task, motion) for motion in motions), default=np.inf)
         if best is None or judged < best.judged:
             best = Climbed(problem, made[1], made[0], judged)
-        point = _point(made[1])[:5]
         if judged <= (1.0 + NEAR) * made[0] or clock.over:
             break
     return best

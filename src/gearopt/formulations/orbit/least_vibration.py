@@ -47,7 +47,7 @@ def methods(task: Task) -> dict[str, Callable[..., Outcome]]:
         if (never := impossible(task)) is not None:
             return never
         clock = Clock(budget, watch)
-        ends = climbed(task, problem, starts(task, screened(task, clock, seed)), clock)
+        ends = climbed(task, problem, starts(task, screened(task, clock, seed), clock), clock)
         message = "no start led to a design"
         found = ends[0].outcome if ends else Outcome(None, True, message=message)
         return replace(found, finished=not clock.stopped, evaluations=clock.evaluations)
@@ -55,7 +55,7 @@ def methods(task: Task) -> dict[str, Callable[..., Outcome]]:
     return {"screened": run}
 
 
-def starts(task: Task, pool: Array) -> Array:
+def starts(task: Task, pool: Array, clock: Clock) -> Array:
     """Return the designs of a sorted pool (N, 5) from which local optima are looked for.
 
     Where the multiplier has a limit, those within it come first; where teeth may part, those that
@@ -69,7 +69,7 @@ def starts(task: Task, pool: Array) -> Array:
     if task.backlash is None:
         return apart(space, pool, STARTS)
     tried, speeds = apart(space, pool, TRIED), np.array(task.speeds_rpm)
-    values = [measure(task, point, speeds).max() for point in tried]
+    values = [measure(task, point, speeds, clock).max() for point in tried]
     return tried[np.argsort(values, kind="stable")][:PARTING]
 
 
@@ -108,7 +108,7 @@ def exchange(task: Task, clock: Clock, seed: int) -> Exchanged | None:
     """
     grid = dense(task)
     rng, pool = np.random.default_rng(seed), screened(task, clock, seed)
-    points, known, last = starts(task, pool), list[tuple[float, Array]](), None
+    points, known, last = starts(task, pool, clock), list[tuple[float, Array]](), None
     rounds: list[dict[str, Any]] = []
     again = np.linspace(task.speeds_rpm[0], task.speeds_rpm[-1], SPREAD)
     while True:
@@ -116,7 +116,7 @@ def exchange(task: Task, clock: Clock, seed: int) -> Exchanged | None:
         ends = climbed(task, posed(task), points, clock)
         if not ends:
             return last
-        judged = [measure(task, end.point, grid) for end in ends]
+        judged = [measure(task, end.point, grid, clock) for end in ends]
         known += [(float(d.max()), end.point) for d, end in zip(judged, ends, strict=True)]
         lowest, nearest = min(known, key=lambda one: one[0])
         best, highest = ends[0], float(judged[0].max())
@@ -129,7 +129,7 @@ def exchange(task: Task, clock: Clock, seed: int) -> Exchanged | None:
         task = _wider(_finer(task, best.point, peaks), again if met else peaks[0])
         again = np.empty(0) if met else again
         pool = narrowed(task, np.vstack([nearest, best.point, pool]), clock, rng, AROUND)
-        points = starts(task, np.vstack([nearest, best.point, pool]))
+        points = starts(task, np.vstack([nearest, best.point, pool]), clock)
 
 
 def dense(task: Task) -> Array:

@@ -1,6 +1,7 @@
 """Exact motions of a design whose teeth part and meet, simulated over rising and falling speeds."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,13 +19,19 @@ HARMONICS = 20  # of motions in contact, and of the first guess of those that pa
 STEPS = 12.0  # in a period of the fastest mode: 1e-6 of a motion
 
 
-def worst_motions(task: Task, point: Array, speeds_rpm: Array) -> list[Motion]:
-    """Return at every speed the larger of the motions that rising and falling speeds lead to."""
+def worst_motions(task: Task, point: Array, speeds_rpm: Array, clock: Clock) -> list[Motion]:
+    """Return at every speed the larger of the motions that rising and falling speeds lead to.
+
+    None at all where the clock stops; what is simulated does not count as evaluations.
+    """
     pair = pair_of(task, point, float(speeds_rpm[0]))
     frequencies = task.teeth * np.asarray(speeds_rpm) / 60.0
-    contacts = in_contact(pair, "line", frequencies, HARMONICS, Clock())
-    rising = followed(pair, "line", contacts, Clock())
-    falling = followed(pair, "line", contacts[::-1], Clock())[::-1]
+    own = Clock(replace(clock.left, evaluations=None), lambda event: clock.tell())
+    contacts = in_contact(pair, "line", frequencies, HARMONICS, own)
+    rising = followed(pair, "line", contacts, own)
+    falling = followed(pair, "line", contacts[::-1], own)[::-1]
+    if min(len(rising), len(falling)) < len(speeds_rpm):
+        return []
     return [
         max(two, key=lambda motion: size(task, motion)) for two in zip(rising, falling, strict=True)
     ]
