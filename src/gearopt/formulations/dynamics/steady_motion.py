@@ -175,15 +175,12 @@ def _repeating(
 
 
 def _passed(pair: MovingPair, level: str, state: Array, periods: int, clock: Clock) -> Array:
-    """Return the state after periods of the mesh."""
-    made = _marched(pair, level, np.array([0.0, periods]) / pair.mesh_frequency, state)
-    clock.evaluations += made.rates
-    return np.asarray(made.states[-1])
+    """Return the state after periods of the mesh; NaN where the clock stopped."""
+    made = _marched(pair, level, np.array([0.0, periods]) / pair.mesh_frequency, state, clock)
+    return np.asarray(made.states[1] if len(made.states) > 1 else np.full(state.size, math.nan))
 
 
-def _marched(
-    pair: MovingPair, level: str, times: Array, state: Array, clock: Clock | None = None
-) -> Marched:
+def _marched(pair: MovingPair, level: str, times: Array, state: Array, clock: Clock) -> Marched:
     longest = fastest(pair, level) / STEPS
     return march(pair, level, timeline(pair, times), "rk8", longest, state, clock)
 
