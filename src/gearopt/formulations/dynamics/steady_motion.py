@@ -24,6 +24,8 @@ from gearopt.physics.motion.linear import linear
 from gearopt.physics.motion.moving_pair import MovingPair
 
 ORDERS = 12  # of the mesh frequency, shown over speed
+BEYOND, WIDER, MOST_HARMONICS = 3.0, 4, 512  # harmonics of a motion in contact
+GUESSED = 40  # of one that parts, at most: its state is made exact afterwards
 STEPS = 12.0  # of RK8 in a period of the fastest mode: 1e-6 of a motion
 LOOKS = 64  # samples of a period of the mesh
 NEAR = 0.3  # of its RMS by which a motion may differ from the one at the speed before
@@ -84,17 +86,30 @@ def in_contact(
 ) -> list[Contact]:
     """Return the motions of teeth in contact at mesh frequencies [Hz], by harmonic balance.
 
-    Of the first alone where the clock stops.
+    harmonics: at least so many, see `enough`. Of the first alone where the clock stops.
     """
     found, system = [], around(pair, level)
     ready(system, pair.wave, clock)
     for frequency in frequencies:
         if not clock.tell():
             break
-        series = linear_orbit(pair, level, float(frequency), harmonics)
+        wanted = enough(pair, level, float(frequency), harmonics)
+        series = linear_orbit(pair, level, float(frequency), wanted)
         found.append(Contact(series, float(largest(system, pair.wave, np.array([frequency]))[0])))
         clock.evaluations += 2
     return found
+
+
+def enough(pair: MovingPair, level: str, frequency: float, harmonics: int) -> int:
+    """Return how many harmonics of a mesh frequency [Hz] a motion of teeth in contact asks for.
+
+    A stiffness with kinks or jumps excites the fastest mode at any speed: harmonics to BEYOND times
+    that mode, at most MOST_HARMONICS. A Fourier series: WIDER times its own.
+    """
+    if len(pair.wave.edges) == 1:
+        return max(harmonics, WIDER * len(pair.wave.cosines))
+    top = 1.0 / fastest(replace(pair, mesh_frequency=0.0), level)
+    return max(harmonics, min(MOST_HARMONICS, math.ceil(BEYOND * top / frequency)))
 
 
 def linear_motion(pair: MovingPair, level: str, contact: Contact) -> Motion:
@@ -135,7 +150,7 @@ def near(
     Near one that did not repeat, one of a single period is looked for.
     """
     state, periods = last.state, last.repeats or 1
-    harmonics = len(contact.series.harmonics) - 1
+    harmonics = min(GUESSED, len(contact.series.harmonics) - 1)
     if periods == 1:
         guess = contact.series if last.highest <= 0.0 else last.series
         made = orbit(pair, level, pair.mesh_frequency, harmonics, guess)

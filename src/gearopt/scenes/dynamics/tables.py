@@ -141,7 +141,9 @@ class SpeedsTable(Table):
     )
     points: Annotated[int, whole(91, 2, 1000)] = Field(91, description="Speeds, equally far apart")
     harmonics: Annotated[int, whole(20, 1, 100)] = Field(
-        20, description="Harmonics of the mesh frequency in the motion"
+        20,
+        description="Harmonics of the mesh frequency in a motion, at least: more where modes ask "
+        "for them",
     )
 
 
