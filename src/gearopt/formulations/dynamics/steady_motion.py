@@ -27,7 +27,7 @@ ORDERS = 12  # of the mesh frequency, shown over speed
 BEYOND, WIDER, MOST_HARMONICS = 3.0, 4, 512  # harmonics of a motion in contact
 GUESSED = 40  # of one that parts, at most: its state is made exact afterwards
 STEPS = 12.0  # of RK8 in a period of the fastest mode: 1e-6 of a motion
-LOOKS = 64  # samples of a period of the mesh
+LOOKS, FINEST = 64, 16.0  # samples of a period of the mesh at least, and of the fastest mode
 NEAR = 0.3  # of its RMS by which a motion may differ from the one at the speed before
 SHOTS, CLOSED = 6, 1e-9  # Newton's steps to a state that repeats; what is left, of its size
 MOVED = 1e-6  # of its scale by which a state is moved for a derivative
@@ -115,7 +115,8 @@ def enough(pair: MovingPair, level: str, frequency: float, harmonics: int) -> in
 def linear_motion(pair: MovingPair, level: str, contact: Contact) -> Motion:
     """Return the motion of teeth in contact, which grows for ever where that is unstable."""
     series = contact.series
-    passed = states(pair, level, series, LOOKS)
+    count = LOOKS * (2 * len(series.harmonics) // LOOKS + 1)
+    passed = states(pair, level, series, count)
     found = Motion(
         series.rms,
         *series.extremes,
@@ -123,7 +124,7 @@ def linear_motion(pair: MovingPair, level: str, contact: Contact) -> Motion:
         1,
         bool(np.any(jammed(pair, level, passed))),
         passed[0],
-        series.delta(LOOKS),
+        series.delta(count)[:: count // LOOKS],
         series,
     )
     return found if contact.growth <= 1.0 + UNSTABLE else _growing(found, jams=False)
@@ -276,18 +277,20 @@ def _told(pair: MovingPair, level: str, state: Array, repeats: int, clock: Clock
 
     None: the clock stopped.
     """
-    periods = repeats or KEPT
-    times = np.arange(periods * LOOKS + 1) / (LOOKS * pair.mesh_frequency)
+    periods, frequency = repeats or KEPT, pair.mesh_frequency
+    finer = math.ceil(FINEST / (LOOKS * frequency * fastest(pair, level)))
+    looks = LOOKS * finer
+    times = np.arange(periods * looks + 1) / (looks * frequency)
     made = _marched(pair, level, times, state, clock)
     if len(made.states) < len(times):
         return None
     delta = made.delta[:-1]
     for shorter in range(1, periods if repeats else 1):
-        apart = delta[shorter * LOOKS :] - delta[: -shorter * LOOKS]
+        apart = delta[shorter * looks :] - delta[: -shorter * looks]
         if np.max(np.abs(apart)) <= REPEATED * np.max(np.abs(delta)):
             repeats = shorter
             break
-    series = Orbit(pair.mesh_frequency, np.fft.rfft(delta)[::periods][: LOOKS // 2] / delta.size)
+    series = Orbit(frequency, np.fft.rfft(delta)[::periods][: looks // 2] / delta.size)
     return Motion(
         rms=float(delta.std()),
         least=float(delta.min()),
@@ -296,6 +299,6 @@ def _told(pair: MovingPair, level: str, state: Array, repeats: int, clock: Clock
         repeats=repeats,
         jams=made.jammed is not None,
         state=made.states[-1],
-        delta=delta[: (repeats or KEPT) * LOOKS],
+        delta=delta[: (repeats or KEPT) * looks : finer],
         series=series,
     )
