@@ -8,11 +8,13 @@ import pytest
 
 from gearopt.bench.wave_design import DEMAND, STARTS
 from gearopt.formulations.strain_wave import sampled
-from gearopt.formulations.strain_wave.box_bounds import least_used, proof
+from gearopt.formulations.strain_wave.box_bounds import RISE, least_used, proof
 from gearopt.formulations.strain_wave.demand import FREE
 from gearopt.formulations.strain_wave.exchange import exchange
 from gearopt.formulations.strain_wave.impossible import least_factor, nearest, told
 from gearopt.optimise.clock import Clock
+from gearopt.physics.strain_wave.gearing import WAVES, StrainWave
+from gearopt.physics.strain_wave.neutral_curve import neutral_curve, radii
 
 
 def carrying(torque_Nm):
@@ -37,6 +39,7 @@ def test_bounds_of_random_boxes():
         within = used["outer_radius"] <= 1.0
         for (name, *kept), bound in least_used(own).items():
             assert (used[name][within | (not kept)] >= bound - 1e-12).all(), name
+        assert least_used(own)[("ratcheting",)] > 0.3 * used["ratcheting"].min()
     one = dict(zip(FREE, STARTS[0], strict=True))
     of_one = least_used(replace(DEMAND, ranges={n: (v, v) for n, v in one.items()}))
     assert of_one[("outer_radius",)] == pytest.approx((40.5 + 0.5 * 1.75 + 3.0) / 45.0, rel=1e-12)
@@ -45,10 +48,28 @@ def test_bounds_of_random_boxes():
     assert of_one[("rim_fatigue",)] == pytest.approx(1.5 * shear / 230.0, rel=1e-12)
 
 
+@pytest.mark.slow
+def test_neutral_curves_rise_no_faster_than_the_lemma_says():
+    """Within 0.3 rad of the major axis, at the fewest teeth and the largest deflection of files."""
+    angles, steepest = np.linspace(-0.3, 0.0, 61), 0.0
+    for wave in WAVES:
+        for wrap in np.radians((1.0, 5.0, 30.0, 80.0) if wave == "discs" else (30.0,)):
+            own = StrainWave(1.0, 60, addendum=0.9, deflection=2.0, wave=wave, wrap=float(wrap))
+            curve = neutral_curve(own)
+            rho, slope, _, _ = radii(curve, angles)
+            assert (rho >= curve.radius).all()
+            steepest = max(steepest, float(np.abs(slope).max() / 2.0))
+    assert 1.3 < steepest < RISE
+
+
 def test_what_no_corner_of_the_ranges_reaches_is_proven():
     assert proof(DEMAND) is None
     found = proof(carrying(1000.0))
-    assert found["conflict"] == ["rim_fatigue", "outer_radius"] and "118.2 %" in found["sentence"]
+    assert found["conflict"] == ["ratcheting"]
+    used = least_used(carrying(1000.0))
+    assert used[("rim_fatigue", "outer_radius")] == pytest.approx(1.182, abs=1e-3)
+    assert 1.0 < used[("ratcheting", "outer_radius")] < 3000.0 / 742.6  # N m, what is found at best
+    assert proof(carrying(742.6 / 3.0)) is None
     assert proof(replace(DEMAND, outer_radius=30.0))["conflict"][0] == "outer_radius"
     never = replace(DEMAND, ranges={**DEMAND.ranges, "addendum": (1.3, 1.4)})
     assert proof(never)["conflict"] == ["minor_axis"]
