@@ -96,12 +96,16 @@ def solved(shared):
 
 @pytest.fixture(scope="session", autouse=True)
 def compiled_once(shared, worker_id):
-    """A kernel that several workers need is compiled by the first; the others wait and load it."""
+    """A kernel that several workers need is compiled by the first; the others wait and load it.
+
+    None is run uncompiled meanwhile: some test needs its machine code.
+    """
+    from gearopt.optimise import kernels
+
+    kernels.PATIENCE = 0.0
     if worker_id == "master":
         return
     from numba.core.dispatcher import Dispatcher
-
-    from gearopt.optimise import kernels
 
     compile_now, within = Dispatcher.compile, []
 

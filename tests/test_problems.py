@@ -3,6 +3,7 @@
 import json
 import tomllib
 from decimal import Decimal
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -93,6 +94,7 @@ SI = {  # of numbers as a source prints them: their suffix, its value, the suffi
 DIGIT = {"objective": 0.06, "sizing": 0.006}  # the values are printed to tenths and hundredths
 
 
+@cache
 def content_of(path):
     return tomllib.loads(path.read_text(encoding="utf-8"))
 
