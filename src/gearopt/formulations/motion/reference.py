@@ -90,7 +90,8 @@ def _smooth(
     leaves.terminal, leaves.direction = True, 1.0  # type: ignore[attr-defined]
     events = leaves if model.pair["backlash"][0] < math.inf else None
     given = {"t_eval": np.union1d(asked, span[1]), "events": events}
-    return solve_ivp(rate, span, now, **given, **tolerances)
+    begun = np.ascontiguousarray(now)  # for other layouts a kernel is compiled once more
+    return solve_ivp(rate, span, begun, **given, **tolerances)
 
 
 def cvodes(pair: MovingPair, level: str, times: Array, rtol: float) -> Any:
