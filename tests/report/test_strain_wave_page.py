@@ -11,6 +11,8 @@ from gearopt.formulations.strain_wave.wave_report import WaveDesign
 from gearopt.optimise.typed import typed
 from gearopt.report.kinds.strain_wave import cutter, moving, numbers, search, shift, tiles, warns
 from gearopt.report.measures import METRIC
+from gearopt.report.pages.frame import templates
+from gearopt.report.pages.row import Row
 from gearopt.report.pages.wave_motion import drawn, running
 
 
@@ -125,8 +127,10 @@ def test_a_cutter_never_shrinks_and_fits_a_sheet_by_default(result, found):
     told = result.report | {"cutter_drawing": {"scale": None, "grid_mm": 0.05}}
     narrow = cutter(replace(result, report=told), METRIC).drawings[0]
     assert "50:1" in narrow.caption and narrow.width / 96.0 * 25.4 < 180.0
-    page = result.to_html()
-    assert page.count('class="true wide"') == 1 and "@page sheet" in page
+    row = templates().get_template("row.html").module.row
+    shown = [row(Row([one])) for one in (drawn_wide, narrow)]
+    assert 'class="true wide"' in shown[0] and "@page sheet" in shown[0]
+    assert 'class="true"' in shown[1] and "@page" not in shown[1]
     numbers_at = re.findall(r'<text class="size"[^>]*>(-?[0-9.]+)</text>', narrow.svg)
     assert {"0.000", "0.500", "-0.500"} <= set(numbers_at)
 
@@ -168,4 +172,4 @@ def test_a_cutter_with_a_cusp_and_teeth_that_cut_are_warned_of(result):
     first, second = warns(own)
     assert "cut each other by 3" in first and "has a cusp" in second
     assert not cutter(own, METRIC).drawings
-    assert "cusp" in own.to_html()
+    assert "would have a cusp" in cutter(own, METRIC).words[0]
