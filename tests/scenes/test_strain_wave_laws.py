@@ -100,6 +100,7 @@ def test_few_involutes_and_many_arcs_touch_but_arcs_press_harder(name, solved):
         ('"double arc"', '"double arc"\nthickness = "0.1 mm"', "teeth.thickness"),
         ('"double arc"', '"double arc"\nthickness = "2 mm"', "teeth.thickness"),
         ('"double arc"', '"double arc"\ntangent = "2 mm"', "teeth.tangent"),
+        ("deflection = 1\n", "deflection = 0.3\n", "gears.deflection"),
         ('tool_angle = "20 deg"', 'tool_angle = "25 deg"', "cutter.tool_angle"),
     ],
 )

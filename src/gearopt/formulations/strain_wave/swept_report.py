@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -93,10 +94,12 @@ def swept_tooth(gearing: StrainWave, law: Law) -> Profile:
     return double_arc(gearing, law).profile(low, high)
 
 
+@lru_cache(maxsize=2)
 def swept_gearing(gearing: StrainWave, law: Law) -> SweptGearing:
     """Return a gearing by its law; the pressure angle of half a locus is that of its middle.
 
-    ValueError as of `swept_tooth`, and where no flanks are conjugate.
+    ValueError as of `swept_tooth`, and where no flanks are conjugate. Kept: a file is looked at as
+    it is read, and again as it is solved.
     """
     tooth = swept_tooth(gearing, law)
     if law.name == HALF_LOCUS:

@@ -147,10 +147,7 @@ def _given(scene: Scene) -> tuple[WaveDesign, dict[str, float]]:
     """Return the design of a gearing that is given, and what it uses of every limit."""
     demand = scene.demand()
     if not scene.involute:
-        try:
-            swept = swept_gearing(scene.gearing(), scene.law())
-        except ValueError as reason:
-            raise SolveError(f"{reason}: change deflection or addendum of [gears]") from None
+        swept = swept_gearing(scene.gearing(), scene.law())
         design = described_by_law(demand, swept, scene.law(), scene.tool())
         return design, used_by_law(demand, swept)
     made = design_of(demand, scene.start())

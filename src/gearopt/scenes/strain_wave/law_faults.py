@@ -7,6 +7,7 @@ from gearopt.formulations.strain_wave.swept_report import (
     DOUBLE_ARC,
     Law,
     double_arc,
+    swept_gearing,
     swept_tooth,
 )
 from gearopt.physics.strain_wave.circular_arc import DoubleArc, tooth_heights
@@ -77,6 +78,14 @@ def law_fault(gearing: StrainWave, law: Law) -> Fault | None:
     if tip < least:
         rule = f"is too small: the tip would be {tip:.4g} mm thick, at least {least:.4g} mm"
         return rule, ("teeth", "thickness"), _mm(law.thickness + least - tip)
+    try:
+        swept_gearing(gearing, law)
+    except ValueError:
+        return (
+            "makes flanks that are conjugate at no pose of the wave",
+            ("gears", "deflection"),
+            None,
+        )
     return None
 
 
