@@ -51,7 +51,7 @@ def posed(pair, elements, points, width, periods=1):
             drag=pair.drag,
             shaken=lambda phase: shaken(pair, periods * phase),
         )
-        pieces = [Piece(1.0 / periods, elements, stiffness)] * periods
+        pieces = [Piece(1.0 / periods, np.linspace(0.0, 1.0, elements + 1), stiffness)] * periods
         made = collocated(moving, pieces, points, x, Timing(row.period, 1.0))
         each = list(zip(made.weights, made.delta, strict=True))
         equal = {name: tuple(1.0 + r for r in rows) for name, rows in made.rows.items()}

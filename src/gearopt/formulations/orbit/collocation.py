@@ -9,6 +9,7 @@ Norsett and Wanner, Solving Ordinary Differential Equations I, II.7).
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -36,11 +37,14 @@ def gauss(count: int) -> Gauss:
 
 
 class Piece(NamedTuple):
-    """A part of the period: its share of it, its elements, and k [N/mm] at a share of the part."""
+    """A part of the period: its share of it, and k [N/mm] at a share of the part.
+
+    ends: shares of the part, from 0 to 1, between which its elements lie.
+    """
 
     length: Any
-    elements: int
-    stiffness: Callable[[float], Any]
+    ends: Sequence[Any]
+    stiffness: Callable[[Any], Any]
 
 
 @dataclass(frozen=True)
@@ -112,16 +116,16 @@ def collocated(
     ends: list[Any] = []
     delta: list[Any] = []
     weights: list[Any] = []
-    count, e, begun = sum(p.elements for p in pieces), 0, 0.0
+    count, e, begun = sum(len(p.ends) - 1 for p in pieces), 0, 0.0
     for piece in pieces:
-        share = piece.length / piece.elements
-        for within in range(piece.elements):
+        for low, high in pairwise(piece.ends):
+            share = piece.length * (high - low)
             q, v = ([block[e * n + i] for i in range(n)] for block in (x.places, x.speeds))
             bends = [x.bends[e * size + i] for i in range(size)]
             element = _element(method, share * timing.period, q, v, bends)
             for j, c in enumerate(method.points):
-                k = piece.stiffness((within + float(c)) / piece.elements)
-                phase = begun + share * (within + float(c))
+                at = low + float(c) * (high - low)
+                k, phase = piece.stiffness(at), begun + piece.length * at
                 motion += _motion(moving, k, element.stages[j], timing.rate, phase)
                 delta.append(element.stages[j][0][n // 2])
                 weights.append(share * float(method.weights[j]))
