@@ -34,9 +34,12 @@ def shaken(pair, phase):
     )
 
 
-def posed(pair, elements, points, width, periods=1):
-    """Return the problem of the RMS of a motion that repeats after so many periods."""
-    count = elements * periods
+def posed(pair, ends, points, width, periods=1):
+    """Return the problem of the RMS of a motion that repeats after so many periods.
+
+    ends: shares of a period between which elements lie.
+    """
+    count = (len(ends) - 1) * periods
 
     def block(x, p, row):
         def stiffness(share):
@@ -51,7 +54,7 @@ def posed(pair, elements, points, width, periods=1):
             drag=pair.drag,
             shaken=lambda phase: shaken(pair, periods * phase),
         )
-        pieces = [Piece(1.0 / periods, np.linspace(0.0, 1.0, elements + 1), stiffness)] * periods
+        pieces = [Piece(1.0 / periods, ends, stiffness)] * periods
         made = collocated(moving, pieces, points, x, Timing(row.period, 1.0))
         each = list(zip(made.weights, made.delta, strict=True))
         equal = {name: tuple(1.0 + r for r in rows) for name, rows in made.rows.items()}
@@ -84,9 +87,9 @@ def at_phase_zero(pairs, periods=300):
     return state
 
 
-def started(problem, pair, elements, points, state, periods=1):
+def started(problem, pair, ends, points, state, periods=1):
     """Return the problem with a simulated motion as its guess."""
-    edges = np.linspace(0.0, periods, elements * periods + 1)
+    edges = np.append((np.arange(periods)[:, None] + ends[:-1]).ravel(), periods)
     inner = np.concatenate([a + (b - a) * gauss(points).points for a, b in pairwise(edges)])
     marks, back = np.unique(np.concatenate([edges, inner]), return_inverse=True)
     times = timeline(pair, marks / pair.mesh_frequency, False)
@@ -98,3 +101,13 @@ def started(problem, pair, elements, points, state, periods=1):
     mean = [1e3 * delta.mean()]
     whole = [[1e3 * delta.std()], mean, first[:, 0], first[:, 1], bends]
     return problem.starting(np.concatenate(whole))
+
+
+def partings(pair, state):
+    """Return the phases at which teeth part and meet on the drive flank."""
+    phases = np.linspace(0.0, 1.0, 4001)
+    times = timeline(pair, phases / pair.mesh_frequency, False)
+    made = march(pair, "fixed", times, "rk8", 0.01 / pair.mesh_frequency, state)
+    delta, rate = made.states.T
+    k = np.flatnonzero((delta[:-1] < 0.0) != (delta[1:] < 0.0))
+    return phases[k] - delta[k] / rate[k] * pair.mesh_frequency

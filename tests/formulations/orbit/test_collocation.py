@@ -1,10 +1,11 @@
 """Collocated motions against closed forms, an independent program's table, and their orders."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
-from collocated_oscillator import at_phase_zero, oscillator, posed, started
+from collocated_oscillator import at_phase_zero, oscillator, partings, posed, started
 
 from gearopt.formulations.orbit.collocation import gauss
 from gearopt.optimise.solve import solve
@@ -14,13 +15,14 @@ PARTING = 0.22472379317  # RMS at W = 0.75 by simulation; 0.2247238 of an indepe
 
 
 def reached(pair, elements, points, width, state=None, periods=1):
-    """Return the RMS, delta at element starts, and the result of a collocated motion."""
+    """Return the RMS of a collocated motion, and delta at element starts.
+
+    elements: equal ones of a period, or the shares of it at which they end.
+    """
     state = at_phase_zero([pair]) if state is None else state
-    made = solve(
-        started(
-            posed(pair, elements, points, width, periods), pair, elements, points, state, periods
-        )
-    )
+    ends = np.linspace(0.0, 1.0, elements + 1) if isinstance(elements, int) else elements
+    problem = posed(pair, ends, points, width, periods)
+    made = solve(started(problem, pair, ends, points, state, periods))
     assert made.status in ("stationary", "feasible")
     places = next(np.array(v) for k, v in made.design.items() if "places" in k)
     return 1e-3 * made.value, 1e-3 * places
@@ -81,3 +83,18 @@ def test_published_parameters_and_two_periods():
     once = reached(pair, 60, 3, 0.3, state)[0]
     assert once == pytest.approx(0.09033, abs=1e-5)
     assert reached(pair, 30, 3, 0.3, state, 2)[0] == pytest.approx(once, rel=2e-3)
+
+
+@pytest.mark.slow
+def test_ends_of_elements_where_teeth_part():
+    """Elements that end where teeth part and meet have the order 6 again, at any corner."""
+    pair = oscillator(0.05, 0.75, (0.05,))
+    state = at_phase_zero([oscillator(0.05, w, (0.05,)) for w in DOWN])
+    moments, errors = partings(pair, state), []
+    assert len(moments) == 2
+    for count in (3, 6):
+        marks = [0.0, *moments, 1.0]
+        parts = [np.linspace(a, b, count + 1)[:-1] for a, b in pairwise(marks)]
+        ends = np.append(np.concatenate(parts), 1.0)
+        errors.append(abs(reached(pair, ends, 3, 0.01, state)[0] / PARTING - 1.0))
+    assert errors[0] / errors[1] > 2.0**5 and errors[1] < 1e-6

@@ -93,7 +93,7 @@ def test_a_limit_of_the_multiplier_that_is_active():
     assert growth(free, loose.point) == pytest.approx(0.87589, abs=1e-4)
     assert growth(task, held.point) == pytest.approx(0.87, abs=2e-5)
     assert loose.objective < held.objective < 6.6
-    made = solve(held.problem.starting(held.outcome.x), "exchange")
+    made = solve(held.problem.starting(held.whole), "screened")
     assert made.status == "stationary"  # with the limit as it is at this point, to first order
 
 

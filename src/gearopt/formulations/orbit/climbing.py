@@ -44,19 +44,24 @@ class Climbed(NamedTuple):
     @property
     def point(self) -> Array:
         """The design (5,)."""
-        return _point(self.outcome)[:5]
+        return self.whole[:5]
+
+    @property
+    def whole(self) -> Array:
+        """The point of the problem: the design with its motions."""
+        return _point(self.outcome)
 
 
 def posed(task: Task, methods: dict[str, Any] | None = None) -> Problem:
     """Return the problem of a task: with collocated motions where teeth may part."""
-    own = {"exchange": _guess} if methods is None else methods
+    own = {"screened": _guess} if methods is None else methods
     if task.backlash is None:
         return orbit_text.problem(task, own)
     return parting_text.problem(task, own)
 
 
 def _guess(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-    """Return the guess as it is: what an exchange has found, to be certified."""
+    """Return the guess as it is: what a search has found, to be certified."""
     return Outcome(problem.bounds()[2], evaluations=1)
 
 

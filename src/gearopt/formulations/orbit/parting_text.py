@@ -62,30 +62,19 @@ def elements(task: Task) -> list[int]:
     return [max(LEAST, round(task.elements * s / shares.sum())) for s in shares]
 
 
-def even(task: Task) -> Array:
-    """Return where elements of equal lengths end within their pieces, (inner ends,)."""
-    inner = [np.arange(1, count) / count for count in elements(task)]
-    return np.tile(np.concatenate(inner), task.periods)
-
-
-def pieces(task: Task, ratio: Any, ramp: Any, single: Any, inner: Sequence[Any]) -> list[Piece]:
-    """Return the pieces of all periods of a motion, each a share of the whole.
-
-    inner: where elements end within them, as `even` has it.
-    """
+def pieces(task: Task, ratio: Any, ramp: Any, single: Any) -> list[Piece]:
+    """Return the pieces of all periods of a motion, each a share of the whole."""
     one, two = single, (1.0 + PAIR_SHARE) * single
-    sides = [(one, two), (two, two), (two, one), (one, one)] * task.periods
-    found, left = [], list(inner)
-    for length, count, (low, high) in zip(
-        lengths(ratio, ramp) * task.periods, elements(task) * task.periods, sides, strict=True
-    ):
+    ends = [(one, two), (two, two), (two, one), (one, one)]
+    found = []
+    for length, count, (low, high) in zip(lengths(ratio, ramp), elements(task), ends, strict=True):
 
-        def stiffness(share: Any, low: Any = low, high: Any = high) -> Any:
+        def stiffness(share: float, low: Any = low, high: Any = high) -> Any:
             return low + share * (high - low)
 
-        ends, left = [0.0, *left[: count - 1], 1.0], left[count - 1 :]
-        found.append(Piece(length / task.periods, ends, stiffness))
-    return found
+        shares = [k / count for k in range(count + 1)]
+        found.append(Piece(length / task.periods, shares, stiffness))
+    return found * task.periods
 
 
 def moving(task: Task, stiffness: Any, made: Parts, width: Any) -> Moving:
@@ -97,20 +86,14 @@ def moving(task: Task, stiffness: Any, made: Parts, width: Any) -> Moving:
     return Moving(made.mesh_mass, task.load, made.mesh_damping, backlash, width, axes)
 
 
-def problem(
-    task: Task, methods: dict[str, Any] | None = None, inner: Array | None = None
-) -> Problem:
+def problem(task: Task, methods: dict[str, Any] | None = None) -> Problem:
     """Return the problem with the motion at every speed in E elements of S points.
-
-    inner (speeds, inner ends): where elements end; None: `even`.
 
     minimise the largest measure over the speeds; rows of a speed: equations of motion at every
     point and ends of elements (equal), the mean (equal), the measure under the objective. Its
     parameter `width` [um] rounds the corner where teeth part.
     """
     top = Var(task.measure, "um", 1e-3, LARGEST, 20.0, log=True, search=True)
-    cut = np.tile(even(task), (len(task.speeds_rpm), 1)) if inner is None else inner
-    names = [f"end_{k}" for k in range(cut.shape[1])]
 
     def evaluate(x: Any, p: Any) -> Terms:
         return Terms({task.measure: getattr(x, task.measure)}, limits(task, x, p))
@@ -119,7 +102,7 @@ def problem(
         made = parts(task, x.bearing_stiffness, x.contact_ratio, x.face_width, x.rim)
         found = collocated(
             moving(task, x.bearing_stiffness, made, p.width),
-            pieces(task, x.contact_ratio, x.ramp, made.single, [getattr(row, n) for n in names]),
+            pieces(task, x.contact_ratio, x.ramp, made.single),
             POINTS,
             x,
             Timing(row.period, rate(task)),
@@ -131,7 +114,6 @@ def problem(
 
     omega = 2.0 * math.pi * task.teeth / 60.0 * np.array(task.speeds_rpm)
     rows = {"period": 2.0 * math.pi * task.periods * rate(task) / omega}
-    rows |= zip(names, cut.T, strict=True)
     corner = Param("width", "um", WIDTHS[-1] * squeezed(task))
     given = (*parameters(task), corner)
     repeat = Repeat("speed", _of_a_speed(task), rows, motion)
@@ -174,11 +156,10 @@ def start(task: Task, whole: Problem, point: Array, motions: Sequence[Motion]) -
     """Return the point of the whole problem of a design (5,) and its motions, one a speed."""
     kb, ratio, ramp, width, rim = (float(v) for v in point)
     made = parts(task, kb, ratio, width, rim)
+    cut = pieces(task, ratio, ramp, made.single)
     law = moving(task, kb, made, float(np.ravel(whole.parameters[-1].value)[0]))
     pairs = [pair_of(task, point, speed) for speed in task.speeds_rpm]
-    inner = np.array([v for n, v in whole.repeats[0].data.items() if n != "period"]).T
-    cuts = [pieces(task, ratio, ramp, made.single, row) for row in inner]
-    rows = [_row(task, *each, law) for each in zip(pairs, motions, cuts, strict=True)]
+    rows = [_row(task, *each, cut, law) for each in zip(pairs, motions, strict=True)]
     low, high, _ = whole.bounds()
     value = max(size(task, motion) for motion in motions)
     return np.asarray(np.clip(np.concatenate([point, [value], *rows]), low, high))
@@ -210,37 +191,3 @@ def _row(task: Task, pair: MovingPair, motion: Motion, cut: Sequence[Piece], law
     if task.measure == "peak_to_peak":
         own.append([inner[:, 1].min(), inner[:, 1].max()])
     return np.concatenate(own)
-
-
-def fitted(task: Task, point: Array, motions: Sequence[Motion]) -> Array:
-    """Return `even` with the nearest ends moved to where teeth part and meet, (speeds, ends)."""
-    _, ratio, ramp, _, _ = (float(v) for v in point)
-    starts = np.cumsum([0.0, *lengths(ratio, ramp) * task.periods])
-    counts = elements(task) * task.periods
-    firsts = np.cumsum([0, *(count - 1 for count in counts)])
-    found = np.tile(even(task), (len(motions), 1))
-    for row, motion, speed in zip(found, motions, task.speeds_rpm, strict=True):
-        free = np.ones(len(row), bool)
-        for moment in _moments(task, pair_of(task, point, speed), motion):
-            k = int(np.clip(np.searchsorted(starts, moment) - 1, 0, len(counts) - 1))
-            share = (moment - starts[k]) / (starts[k + 1] - starts[k])
-            own = np.arange(firsts[k], firsts[k + 1])
-            own = own[free[own]]
-            if own.size:
-                nearest = own[np.argmin(np.abs(row[own] - share))]
-                row[nearest], free[nearest] = share, False
-        for low, high in pairwise(firsts):
-            row[low:high].sort()
-    return found
-
-
-def _moments(task: Task, pair: MovingPair, motion: Motion) -> Array:
-    """Return the mesh periods after which teeth part or meet, rising."""
-    assert task.backlash is not None
-    looks = np.linspace(0.0, task.periods, 1024 * task.periods + 1)
-    delta, found = marched(pair, looks, motion.state)[:, 1], []
-    for flank in (0.0, task.backlash):
-        k = np.flatnonzero((delta[:-1] < flank) != (delta[1:] < flank))
-        at = looks[k] + (flank - delta[k]) / (delta[k + 1] - delta[k]) * (looks[k + 1] - looks[k])
-        found.append(at)
-    return np.sort(np.concatenate(found))

@@ -9,13 +9,13 @@ from gearopt.formulations.dynamics.chosen import chosen
 from gearopt.formulations.dynamics.dynamics_design import Chosen
 from gearopt.formulations.orbit.climbing import NEAR, posed
 from gearopt.formulations.orbit.impossible import impossible, limited
-from gearopt.formulations.orbit.least_vibration import exchange, methods
+from gearopt.formulations.orbit.least_vibration import Exchanged, exchange, least, methods
 from gearopt.formulations.orbit.task import MICRO, VARIABLES, Task
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.explaining.explain import THERE
 from gearopt.optimise.explaining.explanation import Remedies, Remedy
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Result
+from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.solve import run
 from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.scenes.dynamics.scene import Scene
@@ -40,23 +40,17 @@ def optimised(
     before: the pair of the file, to compare with. No design: the result says why.
     """
     assert scene.optimise is not None
-    task, never = scene.task, impossible(scene.task) is not None
-    made = None
-    if scene.optimise.exchange and ask.method is None and not never:
+    task, made = scene.task, None
+    if impossible(task) is not None:
+        result, _ = run(whole_problem(task), "screened", clock.left, ask.seed, clock.watch)
+    elif ask.method is None:
         inner = Clock(ask.budget, of_others(ask.watch), clock.start)
-        made = exchange(task, inner, ask.seed)
+        made = (exchange if scene.optimise.exchange else least)(task, inner, ask.seed)
+        task = task if made is None else made.task
+        result = _certified(task, made, inner, ask)
         clock.stopped = inner.stopped
-    if made is None:
-        method = "screened" if never else ask.method
-        problem = whole_problem(task)
-        result, _ = run(problem, method, clock.left, ask.seed, clock.watch, ask.gap)
     else:
-        task, found = made.task, made.best
-        assert found.outcome.x is not None
-        problem = found.problem.starting(found.outcome.x)
-        result, _ = run(problem, "exchange", clock.left, ask.seed, clock.watch, ask.gap)
-        if inner.stopped:
-            result = replace(result, status="limit")
+        result, _ = run(whole_problem(task), ask.method, clock.left, ask.seed, clock.watch, ask.gap)
     result = replace(result, name="dynamics", seconds=clock.seconds)
     if result.status == "infeasible":
         ways = {"ways_out": asdict(_ways_out(scene, task, clock))}
@@ -66,6 +60,18 @@ def optimised(
     values = tuple(float(v) for v in list(result.design.values())[: len(VARIABLES)])
     best = chosen(task, values, before, made.rounds if made else ())
     return _judged(result, best, task), best, task
+
+
+def _certified(task: Task, made: Exchanged | None, clock: Clock, ask: Ask) -> Result:
+    """Return the certified result of a search, which has spent a clock."""
+    if made is None:
+        nothing = Outcome(None, not clock.stopped, message="no start led to a design")
+        problem = posed(task, {"screened": lambda *_: nothing})
+    else:
+        problem = made.best.problem.starting(made.best.whole)
+    result, _ = run(problem, "screened", seed=ask.seed, gap=ask.gap)
+    status = "limit" if clock.stopped else result.status
+    return replace(result, status=status, evaluations=clock.evaluations)
 
 
 def _judged(result: Result, best: Chosen, task: Task) -> Result:
