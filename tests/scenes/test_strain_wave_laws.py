@@ -72,6 +72,7 @@ def test_sections_of_a_law(name, solved):
     mesh = moving(result, METRIC)
     assert mesh.figures[0].layout["shapes"][0]["x1"] > 20.0
     assert shift(result, METRIC) is None
+    assert any("touches at two points" in words for words in result.report["assumptions"])
     rows = {row[0] for row in numbers(result, METRIC).tables[0].rows}
     assert "thickness at half the height [mm]" in rows and "base diameter [mm]" not in rows
     names = [t.name for t in cutter(result, METRIC).tables]

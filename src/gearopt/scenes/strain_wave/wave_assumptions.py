@@ -26,6 +26,11 @@ def assumptions(scene: Scene, made: WaveDesign) -> list[str]:
         "which is taken as the nearest conjugate point.",
         _mesh_torque(scene),
     ]
+    if not scene.involute:
+        model.append(
+            "Teeth by a law: a tooth that touches at two points carries at that which presses "
+            "harder; ratcheting is by the pressure angle of the flank's middle."
+        )
     limits = (
         f"Limits of every gearing: lands and root spaces of {LAND:g} modules, tip circle "
         f"{100.0 * (OUTSIDE_BASE - 1.0):.2g} % outside the base circle, {ROOM:g} modules between "
