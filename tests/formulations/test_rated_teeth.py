@@ -47,7 +47,7 @@ def test_the_best_of_one_stage_is_that_of_all_candidates(face, helix, options):
     assert safe(train, 0, made[0], train.torque)
 
 
-@pytest.mark.parametrize("options, modules", [(by("agma"), (4, 6)), (by("iso"), (7, 9))])
+@pytest.mark.parametrize("options, modules", few([(by("agma"), (4, 6)), (by("iso"), (7, 9))], 1))
 def test_no_narrower_width_carries(options, modules):
     """Of every pair of a stage, each width on a fine grid below the one found is rated unsafe."""
     choice = {"pinion_teeth": (20, 21), "modules": MODULES[slice(*modules)], "helix": 0.3}

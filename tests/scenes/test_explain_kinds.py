@@ -113,6 +113,7 @@ def test_compound_says_where_other_teeth_are_nearest(train):
         assert ((other["driver_teeth"], other["driven_teeth"]) == teeth) == bool(same)
 
 
+@pytest.mark.slow
 def test_compound_prices_the_first_wider_range_that_gains(train):
     most = by_key(train)["train.teeth[2]"]
     assert most.price == pytest.approx(-0.80923, abs=1e-5)  # as docs/explain.md tells it

@@ -11,6 +11,7 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from campaigns import few
 
 import gearopt
 from gearopt.errors import SceneError, SolveError
@@ -168,9 +169,7 @@ def test_words_without_a_proof_say_so():
     assert result.report["notes"][0].startswith("Best known, not proven")
 
 
-@pytest.mark.parametrize(
-    "method", ["sa", "ipopt", "annealing", pytest.param("nsga2", marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("method", few(["sa", "ipopt", "annealing", "nsga2"], 2))
 def test_every_method_is_held_against_the_bound(method):
     short = gearopt.Budget(evaluations=4_000)
     result = gearopt.solve(PROBLEMS / "six_cylinders_one_layer.toml", method=method, budget=short)
