@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from campaigns import few
 
 from gearopt.formulations import sizing
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
@@ -139,12 +140,7 @@ def test_impossible_requests_are_proven_and_named(tolerance):
 
 @pytest.mark.parametrize(
     ("power_kW", "speed_rpm"),
-    [
-        (1e-3, 3000.0),
-        pytest.param(8.0, 3520.0, marks=pytest.mark.slow),
-        pytest.param(1e3, 1500.0, marks=pytest.mark.slow),
-        (2e4, 600.0),
-    ],
+    few([(1e-3, 3000.0), (8.0, 3520.0), (1e3, 1500.0), (2e4, 600.0)], 1),
 )
 def test_one_watt_to_20_megawatts_from_20_random_starts(power_kW, speed_rpm):
     """Starts e^N(0, 2) times 1 (not the guess), with module limits and wheels 5 % too large."""

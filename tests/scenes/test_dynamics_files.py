@@ -87,6 +87,7 @@ def test_what_teeth_that_part_cannot_be_limited_by_is_refused(line):
     assert wrong.value.key == f"optimise.{line.split()[0]}"
 
 
+@pytest.mark.slow
 def test_a_mass_that_no_pair_of_the_ranges_has(tmp_path):
     """The lightest weighs 1.3406 kg: 8 mm wide, rims of 0.6."""
     path = tmp_path / "light.toml"
