@@ -348,6 +348,7 @@ def test_version_and_ascii_terminals():
     assert done.returncode == 0 and "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 def test_six_stages_fit_a_terminal_of_80_columns(here, solved, tmp_path, monkeypatch):
     (kept := tmp_path / "kept.json").write_text(solved("six_stages").to_json(), encoding="utf-8")
     for name, value in (("COLUMNS", "80"), ("FORCE_COLOR", "1"), ("TERM", "xterm")):

@@ -91,10 +91,8 @@ def test_a_train_is_feasible_by_its_own_text(options):
 CARBURISED = (Steel("carburised", 2),) * 2
 
 
-@pytest.mark.parametrize(
-    "objective",
-    few(["cost", "gear_volume", "mass", "total_length"], 1),
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("objective", ["cost", "gear_volume", "mass", "total_length"])
 def test_the_best_material_is_that_of_all_of_them(objective):
     """Options alone, one after the other; a dear steel that is stronger, a light one."""
     made = (

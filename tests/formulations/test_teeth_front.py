@@ -60,7 +60,8 @@ def test_the_front_of_two_stages_equals_brute_force(face, names):
     assert same(train, front_of(train)) >= 2
 
 
-@pytest.mark.parametrize(("face", "names"), few([("free", TWO[1]), ("stepped", THREE)], 1))
+@pytest.mark.slow
+@pytest.mark.parametrize(("face", "names"), [("free", TWO[1]), ("stepped", THREE)])
 def test_the_front_of_three_stages_equals_brute_force(face, names):
     train = train_of(3, face, names)
     assert same(train, front_of(train)) >= 6

@@ -307,16 +307,12 @@ wheel_diameter = "300 mm"
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("stage", "key", "easier"),
     [
-        pytest.param('module = "4 mm"', "stage[1].module", "smaller", marks=pytest.mark.slow),
-        pytest.param(
-            "pinion_teeth = 30\nmodule = ['2 mm', '8 mm']\nwheel_teeth = [100, 120]",
-            "",
-            "",
-            marks=pytest.mark.slow,
-        ),
+        ('module = "4 mm"', "stage[1].module", "smaller"),
+        ("pinion_teeth = 30\nmodule = ['2 mm', '8 mm']\nwheel_teeth = [100, 120]", "", ""),
         ('face_width = "400 mm"', "stage[1].face_width", "smaller"),
     ],
     ids=["module", "teeth", "face width"],

@@ -226,11 +226,12 @@ def test_what_was_tried_is_said_where_nothing_helps():
     assert status(Scene.model_validate(content)) == "optimal"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "key"),
     [
         (f"[[keep_out]]\n{BLOCK}[[keep_out]]\n{BLOCK}", "keep_out[2]"),
-        pytest.param(f"[[keep_out]]\n{BLOCK}{POST}", "keep_out[2].y", marks=pytest.mark.slow),
+        (f"[[keep_out]]\n{BLOCK}{POST}", "keep_out[2].y"),
     ],
 )
 def test_a_keep_out_is_left_out_beside_another_change_of_keep_outs(text, key):
