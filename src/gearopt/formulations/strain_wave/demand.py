@@ -149,7 +149,12 @@ def slipping(demand: Demand, gearing: StrainWave, tip: Contact) -> Any:
 
 def fatigue(demand: Demand, gearing: StrainWave, curve: NeutralCurve) -> Any:
     """Return the utilisation of the rim's fatigue strength."""
+    strengths = demand.bending_limit, demand.shear_limit
+    return rim_utilisation(rim_of(demand, gearing, curve), strengths, demand.safety)
+
+
+def rim_of(demand: Demand, gearing: StrainWave, curve: NeutralCurve) -> tuple[Any, Any]:
+    """Return the alternating bending and the shear stress [MPa] of the rim."""
     duty = demand.duty
-    apex, _ = curvature(curve, 0.0)
-    stresses = rim_stresses(gearing, apex, duty.torque, duty.moduli[0], demand.notch, duty.cup.wall)
-    return rim_utilisation(stresses, (demand.bending_limit, demand.shear_limit), demand.safety)
+    bent = curvature(curve, 0.0)[0], curvature(curve, 0.5 * math.pi)[0]
+    return rim_stresses(gearing, bent, duty.torque, duty.moduli[0], demand.notch, duty.cup.wall)

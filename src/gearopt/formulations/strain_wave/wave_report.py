@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.strain_wave.cutter_report import Cutter, CutterDesign, cutter_of
-from gearopt.formulations.strain_wave.demand import Demand, limits, slipping
+from gearopt.formulations.strain_wave.demand import Demand, limits, rim_of, slipping
 from gearopt.formulations.strain_wave.duty import (
     Duty,
     equal_pressure,
@@ -34,8 +34,7 @@ from gearopt.physics.strain_wave.clearance import tooth_clearances as clearances
 from gearopt.physics.strain_wave.conjugate import Flank, contact, least_deflection
 from gearopt.physics.strain_wave.cutter import blank_profile
 from gearopt.physics.strain_wave.gearing import StrainWave
-from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, curvature, radii
-from gearopt.physics.strain_wave.strength import rim_stresses
+from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, radii
 from gearopt.physics.strain_wave.tooth_motion import motion
 
 Columns = tuple[float, ...]
@@ -250,8 +249,7 @@ def sizes_of(demand: Demand, gearing: StrainWave, curve: NeutralCurve) -> dict[s
     """Return the sizes of a gearing and the stresses of its rim, of teeth of any law."""
     duty = demand.duty
     major, minor = (float(radii(curve, angle)[0]) for angle in (0.0, 0.5 * math.pi))
-    apex, wall = curvature(curve, 0.0)[0], duty.cup.wall
-    bending, shear = rim_stresses(gearing, apex, duty.torque, duty.moduli[0], demand.notch, wall)
+    bending, shear = rim_of(demand, gearing, curve)
     return {
         "ratio": float(gearing.ratio),
         "flexspline_teeth": int(gearing.teeth),

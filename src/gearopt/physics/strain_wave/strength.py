@@ -36,16 +36,22 @@ def equal_share(torque: Any, arm: Any, pairs: Any) -> Any:
 
 
 def rim_stresses(
-    gearing: StrainWave, apex_curvature: Any, torque: Any, modulus: Any, notch: Any, wall: Any
+    gearing: StrainWave,
+    curvatures: tuple[Any, Any],
+    torque: Any,
+    modulus: Any,
+    notch: Any,
+    wall: Any,
 ) -> tuple[Any, Any]:
     """Return the alternating bending and the shear stress of the flexspline [MPa].
 
-    sigma_a = Y E (h/2)(kappa_0 - 1/R_m), tau = Y T/(2 pi R_m^2 t). apex_curvature kappa_0 [1/mm] of
-    the neutral curve on the major axis; torque T [N mm]; modulus E [MPa]; notch Y >= 1: of teeth
-    and fillets, a guess; wall t over h: thickness of the cup's wall. Source: thin rings and tubes.
+    sigma_a = Y E (h/2)(kappa_0 - kappa_1)/2, half of what a fibre goes through in a turn of the
+    wave, tau = Y T/(2 pi R_m^2 t). curvatures kappa_0, kappa_1 [1/mm] of the neutral curve on the
+    major and minor axis; torque T [N mm]; modulus E [MPa]; notch Y >= 1: of teeth and fillets, a
+    guess; wall t over h: thickness of the cup's wall. Source: thin rings and tubes.
     """
     radius, rim = gearing.neutral_radius, gearing.rim
-    bending = notch * modulus * 0.5 * rim * (apex_curvature - 1.0 / radius)
+    bending = notch * modulus * 0.25 * rim * (curvatures[0] - curvatures[1])
     shear = notch * torque / (2.0 * math.pi * radius**2 * wall * rim)
     return bending, shear
 
