@@ -119,6 +119,31 @@ def test_a_tool_of_a_least_radius(least):
     assert (far.max(), far.min()) == pytest.approx((round_.deviation, -round_.deviation), rel=1e-6)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("least", [50.0, 5e4])
+def test_a_tool_flatter_than_the_edge_of_a_pinion_type_cutter(least):
+    """R 1.4 to 3 mm: Gauss's steps with scipy's linear programs for an arc of this radius."""
+    points = edge("base", 51, 15.0)
+    found = arc_of_cones(points, arc_edge(points), least)
+    z = np.array(points.x) + 1j * np.array(points.y)
+    turn = (z[-1] - z[0]) / abs(z[-1] - z[0])
+    z = (z - z[0]) / turn * 1j  # the chord along the imaginary axis
+    side = np.sign(((found.centre.x + 1j * found.centre.y - points.x[0] - 1j * points.y[0])
+                    / turn * 1j).real)  # fmt: skip
+    centre = side * least + z.imag.mean() * 1j
+    for _ in range(20):
+        away = z - centre
+        lean = away / abs(away)
+        rows = np.stack([lean.real, lean.imag * least], axis=1)
+        left, ones = abs(away) - least, np.ones((len(z), 1))
+        limits = np.block([[-rows, -ones], [rows, -ones]])
+        step = linprog([0, 0, 1], limits, np.concatenate([-left, left]), bounds=[(None, None)] * 3)
+        centre += step.x[0] + 1j * least * step.x[1]
+    assert found.radius == pytest.approx(least, rel=1e-9)
+    assert found.deviation == pytest.approx(abs(abs(z - centre) - least).max(), rel=1e-6)
+    assert found.deviation < straight_edge(points).deviation
+
+
 def test_no_arc_of_any_radius_deviates_less():
     """With a radius given the best arc is a straight line through heights less that arc's."""
     points = edge("base", 31)

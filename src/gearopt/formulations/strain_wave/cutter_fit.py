@@ -20,7 +20,9 @@ from gearopt.physics.strain_wave.vectors import Vector
 UM = 1e3  # 1 mm in um: deviations are posed in um
 ROUNDS = 30  # of weights or linearisations, at most
 SETTLED = 1e-9  # relative change of weights that ends them
-MILLIONTH = 1e-6  # of half a chord: unit of an arc's deviation
+MILLIONTH = 1e-6  # of half a chord: unit of the deviation of arcs by linear programs
+STILL = 1e-5  # of the deviation, by which a move of the centre may still change it
+LEAST_UNIT = 1e-9  # of half a chord: least unit of that of arcs by cones
 
 
 @dataclass(frozen=True)
@@ -138,7 +140,7 @@ def arc_edge(points: Vector) -> ArcEdge:
 def arc_cones(points: Vector, centre: Vector, least: float = 0.0) -> Conic:
     """Pose |p_i - c| <= R + e, R - e <= the linearised |p_i - c| and R >= R_min: cones.
 
-    centre: where c is linearised. points, centre and least R_min in half lengths; e in millionths.
+    centre: where c is linearised. points, centre and least R_min in half lengths; e in `_unit_of`.
     With u_i from the centre to the points at distances l_i, c moved by d and R - R_0 = a - u_0.d,
     R_0 and u_0 of the middle point, the rows are (u_i x d)^2/(l_i + R + e - u_i.d) <= R_0 - l_i + a
     + e + (u_i - u_0).d: without a difference of lengths that are nearly equal, as those of a flat
@@ -149,8 +151,8 @@ def arc_cones(points: Vector, centre: Vector, least: float = 0.0) -> Conic:
     unit = away * (1.0 / far)
     middle = len(far) // 2
     r0, u0 = float(far[middle]), unit[middle]
-    lean = unit - u0
-    units = MILLIONTH * r0, MILLIONTH * r0**2  # of d across and along u_0
+    lean, small = unit - u0, _unit_of(far)
+    units = small * r0, small * r0**2  # of d across and along u_0
 
     def evaluate(x: Any, p: Any) -> Terms:
         import cvxpy as cp
@@ -158,13 +160,13 @@ def arc_cones(points: Vector, centre: Vector, least: float = 0.0) -> Conic:
         across, along = x.across * units[0], x.along * units[1]
         dx, dy = along * u0.x - across * u0.y, along * u0.y + across * u0.x
         off = (r0 - far) + lean.x * dx + lean.y * dy
-        a, e = MILLIONTH * x.a, MILLIONTH * x.e
-        aside = (unit.x * dy - unit.y * dx) / math.sqrt(2.0 * MILLIONTH * r0)
+        a, e = small * x.a, small * x.e
+        aside = (unit.x * dy - unit.y * dx) / math.sqrt(2.0 * small * r0)
         radius = r0 + a - along
         sums = (far + radius + e - unit.x * dx - unit.y * dy) / (2.0 * r0)
-        room = (off + a + e) / MILLIONTH
+        room = (off + a + e) / small
         outside = [1.0 + cp.quad_over_lin(aside[i], sums[i]) - room[i] for i in range(len(far))]
-        inside = 1.0 + (off + a - e) / MILLIONTH
+        inside = 1.0 + (off + a - e) / small
         rows = {"outside": cp.hstack(outside), "inside": inside}
         if least:
             rows["least_radius"] = 1.0 + (least - radius) / r0
@@ -183,22 +185,39 @@ def arc_of_cones(points: Vector, start: ArcEdge, least_radius: float = 0.0) -> A
     turned, half, (origin, lean) = _normal_form(points)
     least, middle = least_radius / half, turned[len(turned.x) // 2]
     centre = (start.centre - origin).turned(-lean) * (1.0 / half)
-    centre = middle + (centre - middle) * max(1.0, least_radius / start.radius)
+    if least_radius > start.radius:
+        centre = _centre_of(turned, math.copysign(least, centre.y))
     rounds, settled = 0, False
     while not settled and rounds < ROUNDS:
         rounds += 1
         result = solve(arc_cones(turned, centre, least))
         if not result.design:
             raise SolveError(f"no arc by cones: {result.message}")
-        away = middle - centre
+        away, small = middle - centre, _unit_of((turned - centre).length)
         r0 = away.length
-        across, along = (float(result.design[k]) * MILLIONTH * r0 for k in ("across", "along"))
+        across, along = (float(result.design[k]) * small * r0 for k in ("across", "along"))
         moved = Vector(along * r0, across).turned(away.angle)
         centre = centre + moved
-        settled = bool(moved.length < SETTLED * r0 * r0)
-    radius = float(r0 - along * r0 + float(result.design["a"]) * MILLIONTH)
+        settled = math.hypot(across, along) < STILL * small * r0
+    radius = float(r0 - along * r0 + float(result.design["a"]) * small)
     deviation = float(np.abs((turned - centre).length - radius).max()) * half
     return ArcEdge(radius * half, origin + centre.turned(lean) * half, deviation, rounds, result)
+
+
+def _centre_of(points: Vector, radius: float) -> Vector:
+    """Return the centre of an arc of a radius near points in normal form, by a linear program.
+
+    The straight edge nearest to what the arc's bulge leaves. radius < 0: below the chord.
+    """
+    bulge = points.x**2 / (radius + math.copysign(1.0, radius) * np.sqrt(radius**2 - points.x**2))
+    line = straight_edge(Vector(points.x, points.y - bulge))
+    normal = Vector(math.sin(line.angle), math.cos(line.angle))
+    return normal * radius + Vector(0.0, line.offset)
+
+
+def _unit_of(far: Any) -> float:
+    """Return the unit of an arc's deviation: how far distances from its centre differ."""
+    return max(float(np.abs(far - far[len(far) // 2]).max()), LEAST_UNIT)
 
 
 def _span(x: Any) -> tuple[float, float]:
