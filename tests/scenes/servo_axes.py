@@ -332,7 +332,8 @@ def fits_on_a_grid(axis, train, degrees=3.0):
     good = apart >= first + hub
     width, height = (sides[k] + sides[k + 2] for k in (0, 1))
     slack = last * (1.0 - math.cos(half / 180.0))  # the sector's rim between its points
-    good &= (width + 2 * slack <= axis.box[0]) & (height + 2 * slack <= axis.box[1])
+    room_for = [float(side) for side in axis.box]  # fractions would be compared one by one
+    good &= (width + 2 * slack <= room_for[0]) & (height + 2 * slack <= room_for[1])
     return bool(good.any())
 
 
