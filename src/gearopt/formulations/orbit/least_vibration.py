@@ -136,7 +136,7 @@ def exchange(task: Task, clock: Clock, seed: int) -> Exchanged | None:
         task = _wider(_finer(task, best.point, peaks), again if met else peaks[0])
         again = np.empty(0) if met else again
         pool = narrowed(task, np.vstack([nearest, best.point, pool]), clock, rng, AROUND)
-        points = starts(task, np.vstack([nearest, best.point, pool]), clock)
+        points = np.vstack([nearest, best.point, starts(task, pool, clock)])
 
 
 def dense(task: Task) -> Array:
