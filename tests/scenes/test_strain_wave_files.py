@@ -10,13 +10,13 @@ from gearopt.errors import SceneError, SolveError
 from gearopt.formulations.strain_wave.duty import equal_pressure, loads_at
 from gearopt.formulations.strain_wave.exchange import design_of
 from gearopt.formulations.strain_wave.range_ends import RangeEnd
-from gearopt.formulations.strain_wave.wave_report import WaveDesign
+from gearopt.formulations.strain_wave.wave_report import Deflected, WaveDesign
 from gearopt.optimise.typed import typed
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.strain_wave import EXAMPLE, compared, explain, model, objectives, several
 from gearopt.scenes.strain_wave.example import FROM_DUTY
-from gearopt.scenes.strain_wave.wave_assumptions import assumptions, range_notes
+from gearopt.scenes.strain_wave.wave_assumptions import assumptions, notes, range_notes
 from gearopt.scenes.strain_wave.ways_out import costs
 
 
@@ -53,6 +53,18 @@ def test_other_deflections_of_the_same_teeth(solved):
     found = {d["deflection"]: 1e3 * d["least_clearance_mm"] for d in rows}
     assert found == pytest.approx({0.95: 5.56, 0.98: 3.16, 1.02: -3.33, 1.05: -8.55}, abs=6e-3)
     assert found[0.95] == pytest.approx(5.61, abs=0.06)
+
+
+def test_a_deflection_without_play_is_told(solved):
+    """Of the base case a smaller deflection has backlash; 15.4 and 4.6 um are cut by the best."""
+    base = typed(WaveDesign, solved("strain_wave_base").design)
+    assert not any("exact" in note for note in notes(base))
+    less, more = (
+        Deflected(deflection=w, least_clearance_mm=g)
+        for w, g in ((0.98, -0.0154), (1.02, -0.00464))
+    )
+    (told,) = [n for n in notes(replace(base, deflections=(less, more))) if "exact" in n]
+    assert told.endswith("by 15.4 µm at 0.98 modules and 4.64 µm at 1.02 modules.")
 
 
 def test_what_is_assumed_is_told_until_it_is_given(solved):

@@ -41,6 +41,11 @@ def test_bounds_of_random_boxes():
             assert (used[name][within | (not kept)] >= bound - 1e-12).all(), name
         assert least_used(own)[("ratcheting",)] > 0.3 * used["ratcheting"].min()
     one = dict(zip(FREE, STARTS[0], strict=True))
+    shifted = {n: (v, v) for n, v in one.items()} | {"profile_shift": (-2.0, -2.0)}
+    fixed, wide = (
+        replace(DEMAND, ranges={**shifted, "module": ends}) for ends in ((0.5, 0.5), (0.4, 0.5))
+    )  # outside the largest root lies the largest base circle of negative shifts
+    assert least_used(wide)[("ratcheting",)] <= least_used(fixed)[("ratcheting",)]
     of_one = least_used(replace(DEMAND, ranges={n: (v, v) for n, v in one.items()}))
     assert of_one[("outer_radius",)] == pytest.approx((40.5 + 0.5 * 1.75 + 3.0) / 45.0, rel=1e-12)
     assert of_one[("minor_axis",)] == pytest.approx(1.3 / 2.0, rel=1e-12)

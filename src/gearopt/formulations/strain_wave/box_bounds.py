@@ -81,7 +81,8 @@ def _ratcheting(demand: Demand, low: Ends, high: Ends, root: float) -> float:
     if angle <= 0.0:
         return 0.0
     module = min(high["module"], root / (half + above + clear))
-    base = min(high["module"] * half, root - low["module"] * (above + clear))
+    beyond = min(ends["module"] * (above + clear) for ends in (low, high))
+    base = min(high["module"] * half, root - beyond)  # shifts may be negative
     arm = base * math.cos(low["pressure_angle"])
     most = 4.0 * arm * demand.radial_stiffness * high["addendum"] * module / math.tan(angle)
     return demand.ratchet_factor * demand.duty.torque / most

@@ -30,6 +30,7 @@ ROUNDING = 1e-12  # of two values of the objective
 SMALLER = 1e-2  # of the objective's scale at first: less, and Ipopt continues from where it ended
 AGAIN = 6  # times at most
 STUCK = 1e-6  # violation at which Ipopt's end point counts as not solved
+UNTOLD = ("Solve_Succeeded", "User_Requested_Stop")  # ends that the status says in words
 
 FROM_GUESS = True  # it begins at the guess, or where a caller starts it
 RANDOM = False
@@ -138,7 +139,7 @@ def run(
         raise following.raised
     lost = _lost(problem, shape, point, following)
     best = following.best if clock.stopped or lost else point.y
-    message = "" if point.status == "Solve_Succeeded" else f"Ipopt: {point.status}"
+    message = "" if point.status in UNTOLD else f"Ipopt: {point.status}"
     return Outcome(
         None if best is None else np.clip(shape.to_x(best), lower, upper),
         finished=not clock.stopped,

@@ -50,6 +50,10 @@ SAMPLERS = ("annealing", "nsga2")
 NOTHING = "the gearing is given, so that nothing is chosen"
 UNPROVEN = "numbers are not solved again, because the answer is not certified as stationary"
 NEAREST = "What the size reaches where its largest excess is smallest: {}."
+NO_FLANK = (
+    "No gearing was found whose teeth are conjugate from root to tip: "
+    "a greater deflection or pressure angle brings contact."
+)
 NO_SLOPES: Mapping[str, float] = MappingProxyType({})
 HIDDEN = (
     "Teeth cut each other by {:.3g} µm between the poses that the method looked at: "
@@ -86,7 +90,8 @@ def solve(scene: Scene, ask: Ask) -> Result:
 def _without_design(scene: Scene, found: Exchanged, result: Result, clock: Clock) -> Result:
     """Return why nothing was found: what is asked and what is there, and what would do."""
     if found.nearest is None:
-        return result
+        flankless = result.status == "failed" and not clock.over
+        return replace(result, message=NO_FLANK) if flankless else result
     short = NEAREST.format("; ".join(told(scene.demand(), found.nearest)))
     ways = ways_out(scene, found, clock)
     if result.status == "infeasible":  # the message is the proof

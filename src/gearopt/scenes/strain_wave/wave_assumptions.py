@@ -169,7 +169,19 @@ def notes(made: WaveDesign) -> list[str]:
         )
     else:
         found.append("No teeth interfere at any pose of the whole wave.")
+        found += _without_play(made)
     return found
+
+
+def _without_play(made: WaveDesign) -> list[str]:
+    """Return that teeth cut each other on wave generators a little smaller, too, if they do."""
+    near = [d for d in made.deflections if abs(d.deflection - made.deflection) < 0.03]
+    if not near or max(d.least_clearance_mm for d in near) > -1e-6:
+        return []
+    each = " and ".join(
+        f"{-1e3 * d.least_clearance_mm:.3g} µm at {d.deflection:.4g} modules" for d in near
+    )
+    return [f"The deflection must be exact: otherwise teeth cut each other, by {each}."]
 
 
 def _name(name: str) -> str:
