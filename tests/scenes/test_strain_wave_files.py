@@ -161,6 +161,16 @@ def test_no_contact_is_refused_with_the_deflection_that_it_takes():
     assert scene(low.replace("deflection = 0.8", f"deflection = {enough}"))
 
 
+def test_a_flank_without_conjugate_points_is_refused_with_an_angle_that_has_them():
+    flat = EXAMPLE.replace('pressure_angle = "20 deg"', 'pressure_angle = "6 deg"')
+    flat = flat.replace("profile_shift = 0.9", "profile_shift = -0.978")
+    flat = flat.replace("deflection = 1", "deflection = 1.073")
+    with pytest.raises(SceneError, match="no conjugate point at some radius") as wrong:
+        scene(flat)
+    angle = str(wrong.value).rpartition("Write pressure_angle = ")[2]
+    assert scene(flat.replace('"6 deg"', angle))
+
+
 @pytest.mark.parametrize(
     ("old", "new", "place"),
     [

@@ -16,6 +16,7 @@ from gearopt.physics.strain_wave.gearing import StrainWave
 
 THINNEST = 0.05  # modules that a tooth's tip is thick at least
 ANGLES = (20, 25, 30, 35, 40)  # degrees that are tried instead
+ADDENDA = (0.8, 0.7, 0.6, 0.5, 0.4, 0.3)  # modules that are tried instead
 HIGHER, TRIED = 0.01, 60  # modules between deflections that are tried instead, and how many
 Fault = tuple[str, tuple[str, str], str | float | None]  # rule, place, and what to write there
 
@@ -31,11 +32,12 @@ def contact_fault(gearing: StrainWave) -> Fault | None:
     tried = (first + HIGHER * k for k in range(TRIED))
     enough = (w for w in tried if flank(replace(gearing, deflection=w), 41).complete.all())
     write, place = next(enough, None), ("gears", "deflection")
-    if write is not None:
-        write = round(write, 2)
+    rule = "gives the flank no conjugate point at some radius"
+    if write is None:
+        return _shorter_or_steeper(gearing, rule)
+    write = round(write, 2)
     if own >= least:
-        rule = "gives the flank no conjugate point at some radius"
-        return rule, place if write else ("gears", "addendum"), write
+        return rule, place, write
     arcs = existence(gearing)
     beyond = math.degrees(min(abs(end) for arc in arcs for end in arc)) if arcs else 90.0
     where = f"from {beyond:.1f} degrees of the wave on" if arcs else "nowhere on the wave"
@@ -44,6 +46,18 @@ def contact_fault(gearing: StrainWave) -> Fault | None:
         f"centre enters the base circle; contact exists {where}"
     )
     return rule, place, write
+
+
+def _shorter_or_steeper(gearing: StrainWave, rule: str) -> Fault:
+    """Return a fault with an addendum, else a pressure angle, that gives a flank, if any does."""
+    own, angle = float(gearing.addendum), math.degrees(gearing.pressure_angle)
+    for addendum in (a for a in ADDENDA if a < own):
+        if flank(replace(gearing, addendum=addendum), 41).complete.all():
+            return rule, ("gears", "addendum"), addendum
+    for degrees in (a for a in ANGLES if a > angle):
+        if flank(_steeper(gearing, degrees), 41).complete.all():
+            return rule, ("gears", "pressure_angle"), f"{degrees} deg"
+    return rule, ("gears", "addendum"), None
 
 
 def _never(gearing: StrainWave) -> Fault:
