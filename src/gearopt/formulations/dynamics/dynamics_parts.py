@@ -102,6 +102,7 @@ def response(
     later = len(times) // 2
     steady = delta[later:] - delta[later:].mean()
     lines, amplitude = _spectrum(steady, times[1] - times[0])
+    digits = max(7, 2 - math.floor(math.log10(error)))  # more than the error that is asked
     return Response(
         method=made.method,
         error=made.error,
@@ -112,9 +113,9 @@ def response(
         rms_mm=float(steady.std()),
         peak_to_peak_mm=float(np.ptp(delta[later:])),
         highest_mm=float(delta.max()),
-        time_ms=columns(MILLI * times),
-        deformation_mm=columns(delta, 7),
-        axes_mm=tuple(columns(c, 7) for c in _axes(pair, level, made.motion.states)),
+        time_ms=columns(MILLI * times, 15),
+        deformation_mm=columns(delta, digits),
+        axes_mm=tuple(columns(c, digits) for c in _axes(pair, level, made.motion.states)),
         frequency_Hz=columns(lines),
         amplitude_mm=columns(amplitude, 5),
         jammed_ms=None if made.motion.jammed is None else MILLI * made.motion.jammed,

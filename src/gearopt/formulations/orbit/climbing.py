@@ -5,6 +5,7 @@ it is collocated; the design is then simulated over rising and falling speeds, a
 there counts.
 """
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -58,6 +59,12 @@ def posed(task: Task, methods: dict[str, Any] | None = None) -> Problem:
     if task.backlash is None:
         return orbit_text.problem(task, own)
     return parting_text.problem(task, own)
+
+
+def begun(task: Task, point: Sequence[float]) -> Problem:
+    """Return the problem of a mesh in contact whose guess is a design (5,) with its own motions."""
+    whole = posed(task, {})
+    return whole.starting(orbit_text.start(task, whole, np.clip(point, *task.box())))
 
 
 def _guess(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:

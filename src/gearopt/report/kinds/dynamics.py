@@ -12,7 +12,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report import dynamics_plots as plots
 from gearopt.report.answer import assumptions, limits, progress, summary
-from gearopt.report.explained import remedies
+from gearopt.report.explained import remedies, sensitivities
 from gearopt.report.kinds import Kind
 from gearopt.report.kinds.generic import FIRST
 from gearopt.report.measures import Measures
@@ -270,8 +270,8 @@ def rest(result: Result, measures: Measures) -> Section | None:
 
 SECTIONS = (chosen, motion, speeds, stability, rest)
 KIND = Kind(
-    sections=(*FIRST, *SECTIONS, limits, progress, assumptions),
-    terminal=(rest, stability, motion, speeds, chosen, limits, remedies, summary),
+    sections=(*FIRST, *SECTIONS, limits, sensitivities, progress, assumptions),
+    terminal=(rest, stability, motion, speeds, chosen, limits, sensitivities, remedies, summary),
     tiles=tiles,
     decides=decides,
     warns=warns,

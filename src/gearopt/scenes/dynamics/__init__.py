@@ -11,12 +11,20 @@ from gearopt.formulations.motion.stability import UNSTABLE
 from gearopt.formulations.orbit.task import pair_of
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
 from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.scenes.dynamics.example import EXAMPLE
-from gearopt.scenes.dynamics.optimised import BEST, optimised, told, whole_problem
+from gearopt.scenes.dynamics.optimised import (
+    BEST,
+    beside,
+    optimised,
+    resolvable,
+    told,
+    whole_problem,
+)
 from gearopt.scenes.dynamics.scene import Scene, wave_of
 from gearopt.scenes.dynamics.warnings import warnings
 from gearopt.scenes.explaining.default import explained, of_report
@@ -25,6 +33,10 @@ from gearopt.scenes.reading.ask import Ask, without_method
 __all__ = ["EXAMPLE", "Scene", "compared", "explain", "idle", "model", "solve"]
 METHODS = ("screened",)  # its own
 HARMONICS = 20  # of a motion at the pair's own speed
+ONCE = (
+    "numbers are solved again only where teeth stay in contact, without a limit of the multiplier, "
+    "and the answer is locally optimal"
+)
 NOTHING = "the file has no table [optimise], so that nothing is chosen"
 
 
@@ -71,16 +83,21 @@ def _least(scene: Scene, ask: Ask, before: MovingPair, clock: Clock) -> Result:
 
 
 def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
-    """Return what every number does to the answer, and what makes an impossible file possible."""
+    """Return what every number does to the answer, and what makes an impossible file possible.
+
+    Numbers are solved again from the answer, over its speeds, where teeth stay in contact.
+    """
     result = result or solve(scene, ask.half)
     if "ways_out" in result.report:
         return of_report(result)
     clock = Clock(ask.budget, of_others(ask.watch))
+    if scene.optimise is not None and not resolvable(scene, result):
+        return Explanation(result, (), (), binding(result), (), ONCE, clock.seconds)
 
     def answer(other: Scene) -> Result:
         return solve(other, replace(ask, budget=clock.left, watch=clock.watch))
 
-    return explained(scene, result, clock, answer, lambda other: model(other, "").problem)
+    return explained(scene, result, clock, answer, lambda other: beside(scene, other, result))
 
 
 def _design(scene: Scene, pair: MovingPair, level: str, clock: Clock) -> DynamicsDesign:

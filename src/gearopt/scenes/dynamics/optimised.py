@@ -7,7 +7,7 @@ from pydantic import ValidationError
 
 from gearopt.formulations.dynamics.chosen import chosen
 from gearopt.formulations.dynamics.dynamics_design import Chosen
-from gearopt.formulations.orbit.climbing import NEAR, posed
+from gearopt.formulations.orbit.climbing import NEAR, begun, posed
 from gearopt.formulations.orbit.impossible import impossible, limited
 from gearopt.formulations.orbit.least_vibration import Exchanged, exchange, least, methods
 from gearopt.formulations.orbit.task import MICRO, VARIABLES, Task
@@ -32,6 +32,26 @@ def whole_problem(task: Task) -> Problem:
     return posed(task, methods(task))
 
 
+def resolvable(scene: Scene, result: Result) -> bool:
+    """Return whether a changed file can be solved from the answer of this one."""
+    task = scene.task
+    return result.status == "stationary" and task.backlash is None and task.most_growth is None
+
+
+def beside(scene: Scene, other: Scene, result: Result) -> Problem:
+    """Return the problem of a changed file over the speeds of an answer, which is its guess.
+
+    Where the range of speeds changes, those of the answer are stretched to it.
+    """
+    best, task, own = result.design["chosen"], other.task, scene.task.speeds_rpm
+    if len(task.speeds_rpm) == len(own):
+        low, high = task.speeds_rpm[0], task.speeds_rpm[-1]
+        stretch = (high - low) / (own[-1] - own[0])
+        moved = tuple(low + stretch * (speed - own[0]) for speed in best["speed_rpm"])
+        task = replace(task, speeds_rpm=moved, harmonics=best["harmonics"])
+    return begun(task, [best[name] for name in BEST])
+
+
 def optimised(
     scene: Scene, ask: Ask, before: MovingPair, clock: Clock
 ) -> tuple[Result, Chosen | None, Task]:
@@ -54,7 +74,7 @@ def optimised(
     result = replace(result, name="dynamics", seconds=clock.seconds)
     if result.status == "infeasible":
         ways = {"ways_out": asdict(_ways_out(scene, task, clock))}
-        return replace(result, report=result.report | ways), None, task
+        return replace(result, report=result.report | ways, seconds=clock.seconds), None, task
     if result.value is None:
         return result, None, task
     values = tuple(float(v) for v in list(result.design.values())[: len(VARIABLES)])
