@@ -115,7 +115,7 @@ def test_a_tool_of_a_least_radius(least):
     assert round_.result.status == "optimal" and round_.radius == pytest.approx(least, rel=1e-9)
     left = line.deviation * (1.0 - found.radius / least)
     assert round_.deviation == pytest.approx(left, rel=0.01)
-    far = (points - round_.centre).length - least
+    far = (points - round_.centre).length - round_.radius
     assert (far.max(), far.min()) == pytest.approx((round_.deviation, -round_.deviation), rel=1e-6)
 
 
