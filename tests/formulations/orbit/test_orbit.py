@@ -8,9 +8,9 @@ from least_vibration_task import BEST, HEAVY, LEAST, REFERENCE, SPEEDS, TASK
 
 from gearopt.formulations.motion.balance import linear_orbit
 from gearopt.formulations.motion.stability import multipliers
-from gearopt.formulations.orbit.climbing import climb, growth, posed
+from gearopt.formulations.orbit.climbing import climb, growth, posed, short_of_limit
 from gearopt.formulations.orbit.least_vibration import exchange, methods
-from gearopt.formulations.orbit.orbit_text import problem, reduced, start
+from gearopt.formulations.orbit.orbit_text import problem, reduced, start, with_cuts
 from gearopt.formulations.orbit.task import pair_of, worst
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
@@ -95,6 +95,14 @@ def test_a_limit_of_the_multiplier_that_is_active():
     assert loose.objective < held.objective < 6.6
     made = solve(held.problem.starting(held.whole), "screened")
     assert made.status == "stationary"  # with the limit as it is at this point, to first order
+
+
+def test_straight_rows_may_end_short_of_a_limit():
+    """0.9024 under a limit of 0.905 left 10 % of the RMS to a random search."""
+    free = posed(replace(TASK, most_growth=0.905))
+    held = with_cuts(free, [(np.ones(5), 2.0)])
+    assert short_of_limit(held, 0.905, 0.9024)
+    assert not short_of_limit(held, 0.905, 0.90499) and not short_of_limit(free, 0.905, 0.9024)
 
 
 def test_a_limit_of_the_multiplier_that_no_start_meets():

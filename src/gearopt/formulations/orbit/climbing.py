@@ -28,6 +28,7 @@ FINE = 40  # harmonics of the judge of a mesh in contact
 AGAIN = 3  # runs from the motions that a design really has
 GROWTHS = 91  # speeds at which the multipliers of a design are looked at
 STEP = 1e-4  # of a range: differences of the largest multiplier
+SHORT = 1e-4  # of its limit, by which straight rows may hold it below
 WITHIN = 1e-5  # by which the largest multiplier may exceed its limit
 
 
@@ -132,6 +133,15 @@ def _as_it_is(task: Task, problem: Problem, point: Array) -> Climbed | None:
     found = Outcome(orbit_text.start(task, problem, point), evaluations=1)
     value = certify(problem, found, 0.0).objective
     return None if value is None else Climbed(problem, found, value, value)
+
+
+def short_of_limit(problem: Problem, most: float, value: float) -> bool:
+    """Return whether rows in the place of the limit hold the largest multiplier below it.
+
+    They are straight, the limit is not: a design between both may be better.
+    """
+    rows = next((p.value for p in problem.parameters if p.name == "offsets"), ())
+    return bool(np.any(np.ravel(rows) != 1.0)) and value < (1.0 - SHORT) * most
 
 
 def growth(task: Task, point: Array) -> float:
