@@ -128,12 +128,15 @@ def exchange(task: Task, clock: Clock, seed: int) -> Exchanged | None:
         lowest, nearest = min(known, key=lambda one: one[0])
         best, highest = ends[0], float(judged[0].max())
         rounds.append(_round(task, best, highest))
-        met = highest <= min((1.0 + NEAR) * best.objective, (1.0 + SAME) * lowest)
-        last = Exchanged(task, best, tuple(rounds), met)
-        if (met and not again.size) or len(rounds) == ROUNDS or clock.over:
-            return last
+        near = highest <= (1.0 + NEAR) * best.objective
+        met = near and highest <= (1.0 + SAME) * lowest
         peaks = _peaks(grid, judged[0], best.objective)
-        task = _wider(_finer(task, best.point, peaks), again if met else peaks[0])
+        wider = _wider(_finer(task, best.point, peaks), again if met else peaks[0])
+        met |= near and wider == task  # there is no speed left to add
+        last = Exchanged(task, best, tuple(rounds), met)
+        if (met and not again.size) or wider == task or len(rounds) == ROUNDS or clock.over:
+            return last
+        task = wider
         again = np.empty(0) if met else again
         pool = narrowed(task, np.vstack([nearest, best.point, pool]), clock, rng, AROUND)
         points = np.vstack([nearest, best.point, starts(task, pool, clock)])
@@ -157,10 +160,11 @@ def _round(task: Task, best: Climbed, highest: float) -> dict[str, Any]:
 
 
 def _peaks(grid: Array, judged: Array, objective: float) -> tuple[Array, Array]:
-    """Return speeds and measures of the peaks above an objective."""
+    """Return speeds and measures of the peaks above an objective, and of the highest of all."""
     padded = np.concatenate([[-np.inf], judged, [-np.inf]])
     peak = (judged >= padded[:-2]) & (judged >= padded[2:])
     peak &= judged > (1.0 + 0.5 * NEAR) * objective
+    peak[judged.argmax()] = True
     return grid[peak], judged[peak]
 
 
