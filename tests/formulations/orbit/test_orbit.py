@@ -8,9 +8,9 @@ from least_vibration_task import BEST, HEAVY, LEAST, REFERENCE, SPEEDS, TASK
 
 from gearopt.formulations.motion.balance import linear_orbit
 from gearopt.formulations.motion.stability import multipliers
-from gearopt.formulations.orbit.climbing import climb, growth, posed, short_of_limit
+from gearopt.formulations.orbit.climbing import climb, growth, posed
 from gearopt.formulations.orbit.least_vibration import exchange, methods
-from gearopt.formulations.orbit.orbit_text import problem, reduced, start, with_cuts
+from gearopt.formulations.orbit.orbit_text import problem, reduced, start
 from gearopt.formulations.orbit.task import pair_of, worst
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
@@ -92,17 +92,26 @@ def test_a_limit_of_the_multiplier_that_is_active():
     loose, held = (climb(one, posed(one), begun, clock) for one in (free, task))
     assert growth(free, loose.point) == pytest.approx(0.87589, abs=1e-4)
     assert growth(task, held.point) == pytest.approx(0.87, abs=2e-5)
-    assert loose.objective < held.objective < 6.6
+    assert loose.objective < held.objective < 6.485
     made = solve(held.problem.starting(held.whole), "screened")
-    assert made.status == "stationary"  # with the limit as it is at this point, to first order
+    assert made.value == pytest.approx(held.objective)  # within its limits
 
 
-def test_straight_rows_may_end_short_of_a_limit():
-    """0.9024 under a limit of 0.905 left 10 % of the RMS to a random search."""
-    free = posed(replace(TASK, most_growth=0.905))
-    held = with_cuts(free, [(np.ones(5), 2.0)])
-    assert short_of_limit(held, 0.905, 0.9024)
-    assert not short_of_limit(held, 0.905, 0.90499) and not short_of_limit(free, 0.905, 0.9024)
+@pytest.mark.slow
+def test_no_design_near_one_at_the_limit_of_the_multiplier_is_better():
+    """Linear approximations alone would end at 0.9024, 11 % above."""
+    task = replace(TASK, harmonics=6, most_growth=0.905)
+    held = climb(task, posed(task), BEST.clip(*task.box()), Clock())
+    assert growth(task, held.point) == pytest.approx(0.905, abs=2e-5)
+    low, high = task.box()
+    moves = np.random.default_rng(3).normal(size=(800, 5)) * (high - low)
+    moves[:, 1:3] = 0.0  # the limits on the ramp leave no other
+    scales = np.repeat(np.logspace(-4, -1, 4), 200)[:, None]
+    near = (held.point + scales * moves).clip(low, high)
+    rated = reduced(replace(task, most_growth=None)).batch(near)
+    fit = (rated.G.max(axis=1) <= 1.0) & (rated.F[:, 0] < (1.0 - 1e-4) * held.objective)
+    assert all(growth(task, point) > 0.905 for point in near[fit])
+    assert fit.sum() > 20
 
 
 def test_a_limit_of_the_multiplier_that_no_start_meets():

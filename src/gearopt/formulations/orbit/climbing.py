@@ -12,7 +12,7 @@ import numpy as np
 
 from gearopt.formulations.motion.stability import largest
 from gearopt.formulations.orbit import orbit_text, parting_text
-from gearopt.formulations.orbit.orbit_text import CUTS, with_cuts
+from gearopt.formulations.orbit.orbit_text import PEAKS, Cut, with_cuts
 from gearopt.formulations.orbit.settled import size, worst_motions
 from gearopt.formulations.orbit.task import Task, pair_of, worst
 from gearopt.optimise.certificate import certify
@@ -28,7 +28,10 @@ FINE = 40  # harmonics of the judge of a mesh in contact
 AGAIN = 3  # runs from the motions that a design really has
 GROWTHS = 91  # speeds at which the multipliers of a design are looked at
 STEP = 1e-4  # of a range: differences of the largest multiplier
-SHORT = 1e-4  # of its limit, by which straight rows may hold it below
+REACH, SHORTEST = 0.25, 1e-5  # of the ranges: steps within a limit of the multiplier
+WORTH = 1.25  # of the best objective so far: designs up to there are led on within the limit
+CORRECTED = 3  # approximations of one step
+GAIN = 1e-5  # of the objective: less is none
 WITHIN = 1e-5  # by which the largest multiplier may exceed its limit
 
 
@@ -108,21 +111,72 @@ def _contact(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbe
 def _steadied(task: Task, problem: Problem, found: Climbed, clock: Clock) -> Climbed | None:
     """Return the optimum within the limit of the multiplier; None where none was found.
 
-    The largest multiplier is no text of the problem. Where a design exceeds the limit, the linear
-    approximation there becomes a row of the problem beside those before, which is solved again.
+    The largest multiplier is no text of the problem. Where a design exceeds the limit, linear
+    approximations there become rows of the problem beside those before, which is solved again.
     """
-    assert task.most_growth is not None
-    most, cuts = task.most_growth, list[tuple[Array, float]]()
-    while (value := growth(task, found.point)) > most + WITHIN:
-        if len(cuts) == CUTS or clock.over:
-            return None
-        slopes = growth_slopes(task, found.point, value)
-        cuts.append((slopes, most - value + float(slopes @ found.point)))
-        made = _contact(task, with_cuts(problem, cuts), found.point, clock)
+    cuts = list[Cut]()
+    while growth(task, found.point) > _most(task) + WITHIN:
+        cuts += _tangents(task, found.point)[:1]
+        made = None
+        if len(cuts) <= PEAKS and not clock.over:
+            made = _contact(task, with_cuts(problem, cuts), found.point, clock)
         if made is None:
             return None
         found = made
-    return found
+    worth = found.objective < WORTH * clock.best
+    return _improved(task, problem, found, clock) if cuts and worth else found
+
+
+def _improved(task: Task, problem: Problem, best: Climbed, clock: Clock) -> Climbed:
+    """Return the best design that steps within the limit of the multiplier lead to.
+
+    A step is the optimum under the linear approximations at the design, for all speeds at which its
+    multiplier is near the limit, in a region that shrinks where they fail. The design's problem has
+    those at the design itself, without a region.
+    """
+    low, high = task.box()
+    units, reach = np.eye(5) / (high - low), REACH
+    while reach > SHORTEST and not clock.over:
+        region = [
+            (sign * unit, reach + sign * float(unit @ best.point))
+            for unit in units
+            for sign in (1.0, -1.0)
+        ]
+        made: Climbed | None = best
+        for _ in range(CORRECTED):  # a step that ends beyond the limit is taken again from there
+            assert made is not None
+            rows = [*_tangents(task, made.point), *region]
+            made = _contact(task, with_cuts(problem, rows), made.point, clock)
+            if made is None or growth(task, made.point) <= _most(task) + WITHIN:
+                break
+        within = made is not None and growth(task, made.point) <= _most(task) + WITHIN
+        if made is not None and within and made.objective < (1.0 - GAIN) * best.objective:
+            best = made
+        else:
+            reach /= 4.0
+    return best._replace(problem=with_cuts(problem, _tangents(task, best.point)))
+
+
+def _tangents(task: Task, point: Array) -> list[Cut]:
+    """Return linear approximations of the limit on the multiplier at a design.
+
+    Of the speeds at which it has its highest peaks, the highest first.
+    """
+    growths, slopes = _growths(task, point), growth_slopes(task, point)
+    padded = np.concatenate([[-np.inf], growths, [-np.inf]])
+    peaks = np.flatnonzero((growths >= padded[:-2]) & (growths > padded[2:]))
+    highest = peaks[np.argsort(-growths[peaks], kind="stable")][:PEAKS]
+    rooms = _most(task) - growths[highest]
+    rooms = np.where(np.abs(rooms) <= WITHIN, np.maximum(rooms, 0.0), rooms)
+    return [
+        (slopes[:, k], float(room + slopes[:, k] @ point))
+        for k, room in zip(highest, rooms, strict=True)
+    ]
+
+
+def _most(task: Task) -> float:
+    assert task.most_growth is not None
+    return task.most_growth
 
 
 def _as_it_is(task: Task, problem: Problem, point: Array) -> Climbed | None:
@@ -135,29 +189,25 @@ def _as_it_is(task: Task, problem: Problem, point: Array) -> Climbed | None:
     return None if value is None else Climbed(problem, found, value, value)
 
 
-def short_of_limit(problem: Problem, most: float, value: float) -> bool:
-    """Return whether rows in the place of the limit hold the largest multiplier below it.
-
-    They are straight, the limit is not: a design between both may be better.
-    """
-    rows = next((p.value for p in problem.parameters if p.name == "offsets"), ())
-    return bool(np.any(np.ravel(rows) != 1.0)) and value < (1.0 - SHORT) * most
-
-
 def growth(task: Task, point: Array) -> float:
     """Return the largest Floquet multiplier of a design in contact over all speeds."""
+    return float(_growths(task, point).max())
+
+
+def _growths(task: Task, point: Array) -> Array:
     speeds = np.linspace(task.speeds_rpm[0], task.speeds_rpm[-1], GROWTHS)
     pair = pair_of(task, point, float(speeds[0]))
-    return float(np.max(largest(linear(pair, "line"), pair.wave, task.teeth * speeds / 60.0)))
+    return largest(linear(pair, "line"), pair.wave, task.teeth * speeds / 60.0)
 
 
-def growth_slopes(task: Task, point: Array, value: float) -> Array:
-    """Return derivatives of `growth` (5,) at a design, by differences into the ranges."""
+def growth_slopes(task: Task, point: Array) -> Array:
+    """Return derivatives of the multipliers (5, GROWTHS) by the design, into the ranges."""
     low, high = task.box()
     step = STEP * (high - low)
     step = np.where(point + step > high, -step, step)
-    moved = [point + one for one in np.diag(step)]
-    return np.array([growth(task, at) - value for at in moved]) / np.where(step, step, np.inf)
+    own = _growths(task, point)
+    moved = [_growths(task, point + one) - own for one in np.diag(step)]
+    return np.array(moved) / np.where(step, step, np.inf)[:, None]
 
 
 def _parting(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbed | None:

@@ -26,7 +26,9 @@ from gearopt.optimise.terms import Array, Param, Repeat, Terms, Var
 
 LARGEST = 1000.0  # um, of any coefficient of delta: the end of a search
 LOGARITHMIC = ("bearing_stiffness", "face_width")
-CUTS = 8  # linear limits in the place of one of the multiplier
+PEAKS = 8  # speeds whose multipliers are approximated by linear limits
+CUTS = PEAKS + 10  # linear limits in the place of one of the multiplier, with those of a region
+Cut = tuple[Array, float]  # slopes (5,) and offset
 
 
 def shared(task: Task) -> tuple[Var, ...]:
@@ -124,7 +126,7 @@ def _cut(x: Any, p: Any) -> tuple[Any, ...]:
     )
 
 
-def with_cuts(problem: Problem, cuts: Sequence[tuple[Array, float]]) -> Problem:
+def with_cuts(problem: Problem, cuts: Sequence[Cut]) -> Problem:
     """Return the problem with rows slopes . x <= offset, (5,) and a float each, CUTS at most."""
     slopes, offsets = np.zeros((CUTS, 5)), np.ones(CUTS)
     for k, (slope, offset) in enumerate(cuts):
