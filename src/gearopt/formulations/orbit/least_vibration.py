@@ -111,7 +111,7 @@ def exchange(task: Task, clock: Clock, seed: int) -> Exchanged | None:
     """Solve, look at all speeds between the first and the last, add the worst, and solve again.
 
     Until the dense maximum is the objective within NEAR, and no design that was met on the way has
-    a lower one. None where no design was found.
+    a lower one or no speed is left to add. None where no design was found.
     """
     grid = dense(task)
     rng, pool = np.random.default_rng(seed), screened(task, clock, seed)
