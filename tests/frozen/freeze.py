@@ -1,0 +1,217 @@
+"""Keep all answers of a tree: `python tests/frozen/freeze.py OUT`, before a change of structure.
+
+Every file of problems/, every example and seeded variants of a kind are solved (given gears:
+rated) without a limit of time, and one JSON file a case holds what the result says, floats in hex,
+with the text of the terminal and all tables. `compare.py A B` holds two of these folders against
+each other. With --explain the explanations of impossible variants are kept instead.
+
+A run that is not over in LONGEST seconds is made again with the number of evaluations that it had
+after FIRST seconds; that number stands in OUT/evaluations.json, which a later run is given by
+--evaluations, since shares of time are not repeatable.
+"""
+
+import argparse
+import json
+import random
+import re
+import shutil
+import tempfile
+import time
+import tomllib
+from decimal import Decimal
+from pathlib import Path
+
+import gearopt
+from gearopt.errors import GearoptError
+from gearopt.report import shown
+from gearopt.scenes.reading.load import examples
+from gearopt.scenes.reading.toml import toml_text
+
+PROBLEMS = Path(__file__).parents[2] / "problems"
+LONGEST, FIRST = 60.0, 20.0  # s of a run without a limit; s after which its evaluations are counted
+VARIANTS = 30  # of a kind, every third with a number divided by SHARPER
+SHARPER = 4
+NUMBER = re.compile(r"^\s*(\d+(?:\.\d+)?)(?=\D*$)")
+TRANSIENT = {"seconds", "versions", "gearopt", "ways_out", "file", "file_sha256"}
+
+
+def numbers(table, path=()):
+    """The places of all numbers and quantities of a file's tables."""
+    for key, value in table.items() if isinstance(table, dict) else enumerate(table):
+        if isinstance(value, dict | list):
+            yield from numbers(value, (*path, key))
+        elif isinstance(value, Decimal) or isinstance(value, str) and NUMBER.match(value):
+            yield (*path, key)
+
+
+def scaled(value, factor):
+    """A number or a quantity's text times a factor, in four digits."""
+    if isinstance(value, str):
+        return NUMBER.sub(lambda m: f"{float(m[1]) * factor:.4g}", value, count=1)
+    return Decimal(f"{float(value) * factor:.4g}")
+
+
+def variants(kind, texts):
+    """Files of a kind: each a file of the kind with some numbers a little larger or smaller.
+
+    Every third has one number divided by SHARPER, so that many of these are impossible.
+    """
+    rng, tried = random.Random(f"1 {kind}"), 0
+    kept = {}
+    while len(kept) < VARIANTS and tried < 20 * VARIANTS:
+        tried += 1
+        content = tomllib.loads(rng.choice(texts), parse_float=Decimal)
+        tables = {k: v for k, v in content.items() if isinstance(v, dict | list)}
+        places = [p for p in numbers(tables) if p[0] != "x-expected"]
+        for path in rng.sample(places, min(3, len(places))):
+            moved(content, path, rng.uniform(0.8, 1.25))
+        if len(kept) % 3 == 2:
+            moved(content, rng.choice(places), 1.0 / SHARPER)
+        text = written(content)
+        if readable(text):
+            kept[f"{kind}-{len(kept) + 1:02d}"] = text
+    return kept
+
+
+def moved(content, path, factor):
+    """Change the number at a place of tables by a factor."""
+    *above, last = path
+    for step in above:
+        content = content[step]
+    content[last] = scaled(content[last], factor)
+
+
+def written(content, names=()):
+    """Tables as TOML."""
+    plain = {k: v for k, v in content.items() if not isinstance(v, dict) and not rows(v)}
+    lines = [f"{k} = {toml_text(v)}" for k, v in plain.items()]
+    for key, value in content.items():
+        if isinstance(value, dict):
+            place = (*names, key)
+            lines += [f"[{'.'.join(place)}]", written(value, place)]
+        elif rows(value):
+            place = (*names, key)
+            for row in value:
+                lines += [f"[[{'.'.join(place)}]]", written(row, place)]
+    return "\n".join(lines)
+
+
+def rows(value):
+    """Whether a value is a list of tables."""
+    return isinstance(value, list) and value != [] and all(isinstance(v, dict) for v in value)
+
+
+def readable(text):
+    """Whether the reader takes a file's text; files that it names stand in problems/."""
+    with tempfile.NamedTemporaryFile("w", dir=PROBLEMS, suffix=".toml") as file:
+        file.write(text)
+        file.flush()
+        try:
+            gearopt.load(file.name)
+        except GearoptError:
+            return False
+    return True
+
+
+def cases():
+    """Name and text of every file that is kept."""
+    texts = {p.stem: p.read_text(encoding="utf-8") for p in sorted(PROBLEMS.glob("*.toml"))}
+    texts |= {f"example-{name.replace(' ', '-')}": text for name, text in examples().items()}
+    by_kind = {}
+    for text in texts.values():
+        by_kind.setdefault(tomllib.loads(text)["kind"], []).append(text)
+    for kind, files in sorted(by_kind.items()):
+        texts |= variants(kind, files)
+    return texts
+
+
+def asked(path, budget, watch):
+    """The result of a file: of one that only rates given gears its rating."""
+    content = tomllib.loads(path.read_text(encoding="utf-8"))
+    if content["kind"] == "drive" and "rating" in content and "limits" not in content:
+        return gearopt.rate(path)
+    return gearopt.solve(path, budget=budget, watch=watch)
+
+
+def answered(path, counts):
+    """The result of a file without a limit of time, or with a number of evaluations."""
+    name = path.stem
+    if name in counts:
+        return asked(path, gearopt.Budget(evaluations=counts[name]), None)
+    begun, spent = time.perf_counter(), [0]
+
+    def watch(event):
+        late = time.perf_counter() - begun
+        if late < FIRST:
+            spent[0] = event.evaluations
+        return late < LONGEST
+
+    result = asked(path, None, watch)
+    if time.perf_counter() - begun < LONGEST:
+        return result
+    counts[name] = max(1, spent[0])
+    return answered(path, counts)
+
+
+def kept(value):
+    """Plain data with floats in hex, without what differs from run to run."""
+    if isinstance(value, dict):
+        return {k: kept(v) for k, v in value.items() if k not in TRANSIENT}
+    if isinstance(value, list | tuple):
+        return [kept(v) for v in value]
+    return value.hex() if isinstance(value, float) else value
+
+
+def record(result):
+    """What is kept of a result: all that it says, the terminal's text and every table."""
+    tables = {name: kept(result.table(name)) for name in result.tables}
+    text = re.sub(r"\d+(?:\.\d+)? m?s\b", "TIME", str(shown.lines(result)))
+    return kept(result.to_dict()) | {"terminal": text.splitlines(), "tables": tables}
+
+
+def explained(path):
+    """What is kept of an explanation: conflict, remedies with their changes, CPU seconds."""
+    begun = time.process_time()
+    explanation = gearopt.explain(path)
+    seconds = time.process_time() - begun
+    plain = explanation.to_dict()
+    plain["result"] = plain["result"] and {"status": plain["result"]["status"]}
+    return kept(plain) | {"cpu": seconds}
+
+
+def main():
+    """Freeze all cases into a folder."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--evaluations", type=Path, help="evaluations.json of an earlier run")
+    parser.add_argument("--explain", action="store_true", help="explanations of impossible files")
+    parser.add_argument("--only", default="", help="regular expression of the cases' names")
+    given = parser.parse_args()
+    given.out.mkdir(parents=True, exist_ok=True)
+    counts = json.loads(given.evaluations.read_text()) if given.evaluations else {}
+    with tempfile.TemporaryDirectory() as folder:
+        shutil.copytree(PROBLEMS, folder, dirs_exist_ok=True)
+        for name, text in cases().items():
+            if not re.search(given.only, name):
+                continue
+            path = Path(folder) / f"{name}.toml"
+            path.write_text(text, encoding="utf-8")
+            begun = time.process_time()
+            try:
+                answer = answered(path, counts)
+                held = record(answer)
+                if given.explain:
+                    if answer.status != "infeasible":
+                        continue
+                    held = explained(path)
+            except GearoptError as reason:
+                held = {"refused": str(reason).replace(folder, "")}
+            seconds = time.process_time() - begun
+            print(f"{name:<32} {held.get('status', '')!s:<12} {seconds:7.2f} s", flush=True)
+            held |= {"toml": text, "cpu": seconds if "cpu" not in held else held["cpu"]}
+            (given.out / f"{name}.json").write_text(json.dumps(held, indent=1), encoding="utf-8")
+    (given.out / "evaluations.json").write_text(json.dumps(counts, indent=1), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
