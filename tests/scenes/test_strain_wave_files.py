@@ -7,11 +7,13 @@ import pytest
 
 import gearopt
 from gearopt.errors import SceneError, SolveError
-from gearopt.formulations.strain_wave.duty import equal_pressure, loads_at
+from gearopt.formulations.strain_wave.duty import equal_pressure, loads_at, pressures
 from gearopt.formulations.strain_wave.exchange import design_of
 from gearopt.formulations.strain_wave.range_ends import RangeEnd
-from gearopt.formulations.strain_wave.wave_report import Deflected, WaveDesign
+from gearopt.formulations.strain_wave.wave_report import Deflected, WaveDesign, used
 from gearopt.optimise.typed import typed
+from gearopt.report.measures import METRIC
+from gearopt.report.wave_tables import loads
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.strain_wave import EXAMPLE, compared, explain, model, objectives, several
@@ -132,6 +134,52 @@ def test_ends_of_ranges_are_told_with_what_decides():
     assert "deflection 0.97 (least, assumed) and rim 1.4 mm (largest, of [design])" in first
     assert "2.5 MPa by deflection and 0.16 MPa by rim: deflection counts most" in second
     assert range_notes(own, ()) == []
+
+
+def test_a_gearing_of_another_modulus_carries_loads_in_proportion_to_it():
+    """Dimensions: all stiffnesses and the torque r times as great, all strains are the same."""
+    part = 70.0 / 206.0
+    soft = EXAMPLE.replace('"100 N m"', f'"{100.0 * part!r} N m"')
+    soft += '[material]\nelastic_modulus = "70 GPa"\n'
+    own, steel = scene(soft), scene(EXAMPLE)
+    made = design_of(steel.demand(), steel.start())
+    (teeth, less), (_, more) = (loads_at(one.loads(), made) for one in (own, steel))
+    assert less.windup == pytest.approx(more.windup, rel=1e-12)
+    assert less.forces == pytest.approx(part * more.forces, rel=1e-12)
+    stresses = [
+        pressures(one.loads(), made, teeth, one_load)
+        for one, one_load in ((own, less), (steel, more))
+    ]
+    assert stresses[0] == pytest.approx(part * stresses[1], rel=1e-12)
+    slow, fast = (used(one.demand(), made) for one in (own, steel))
+    assert slow["ratcheting"] == pytest.approx(fast["ratcheting"], rel=1e-12)
+    assert set(fast) - set(slow) == {"rim_fatigue"}  # no fatigue limit of such a material is known
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        (FROM_DUTY, "material.bending_limit"),
+        (EXAMPLE + '[material]\nbending_limit = "100 MPa"\n', "material.shear_limit"),
+        (EXAMPLE + "[design]\nsafety = 2\n", "material.bending_limit"),
+    ],
+)
+def test_fatigue_limits_of_steel_are_not_assumed_of_another_material(text, key):
+    soft = '[material]\nelastic_modulus = "70 GPa"\n'
+    text = text.replace("\n[material]\n", f"\n{soft}")
+    text = text if soft in text else text + soft
+    with pytest.raises(SceneError, match="no steel") as refused:
+        scene(text)
+    assert key in str(refused.value)
+
+
+@pytest.mark.parametrize(("rim", "told"), [("rigid", "teeth alone"), ("elastic", "teeth, rim")])
+def test_the_windup_says_of_which_parts_it_is(solved, rim, told):
+    found = typed(WaveDesign, solved("strain_wave_base").design)
+    found = replace(found, elastic_rim=rim == "elastic")
+    rows = {row[0]: row[1] for row in loads(found, METRIC).rows}
+    assert next(v for k, v in rows.items() if "windup" in k and told in k) == found.windup_mrad
+    assert any("windup" in note and told in note for note in notes(found))
 
 
 @pytest.mark.parametrize(("line", "held"), [("", 1.0125), ('torque_of = "output"', 1.0)])

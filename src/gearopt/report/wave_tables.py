@@ -47,11 +47,12 @@ def sizes(found: WaveDesign, measures: Measures) -> Table:
 def loads(found: WaveDesign, measures: Measures) -> Table:
     """Return what the gearing carries and how hard it is loaded, as names and values."""
     stress = measures.unit("MPa")
+    winds = "teeth, rim and cup" if found.elastic_rim else "the teeth alone, rim rigid"
     rows: list[list[Any]] = [
         ["conjugate pairs per lobe and flank", found.pairs_in_contact],
         ["teeth that carry, per lobe", found.carrying_teeth],
         ["the same, as if equally loaded", found.effective_teeth],
-        ["windup [mrad]", found.windup_mrad],
+        [f"windup of {winds} [mrad]", found.windup_mrad],
         [f"pressure, shared loads [{stress}]", cell(found.shared_pressure_MPa, "MPa", measures)],
         [f"pressure, equal loads [{stress}]", cell(found.equal_pressure_MPa, "MPa", measures)],
         [

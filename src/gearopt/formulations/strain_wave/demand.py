@@ -64,6 +64,12 @@ class Demand:
             teeth=self.teeth, clearance=self.clearance, wave=self.wave, wrap=self.wrap, **own
         )
 
+    @property
+    def unasked(self) -> tuple[str, ...]:
+        """Limits that are infinite: nothing is asked."""
+        known = {"rim_fatigue": self.bending_limit, "outer_radius": self.outer_radius}
+        return tuple(name for name, most in known.items() if math.isinf(most))
+
     def radius_needed(self, gearing: StrainWave) -> Any:
         """Return the outer radius [mm] that a gearing needs."""
         return gearing.root_radius + self.shell
@@ -131,7 +137,7 @@ def common_limits(
     """
     names = ("flexspline_land", "flexspline_space", "spline_land")
     thin = {k: 1.0 + LAND - v / gearing.module for k, v in zip(names, widths, strict=True)}
-    return {
+    found = {
         "pairs": demand.pairs / pairs,
         "rim_fatigue": fatigue(demand, gearing, curve),
         "ratcheting": demand.ratchet_factor * demand.duty.torque / slips,
@@ -139,6 +145,7 @@ def common_limits(
         **thin,
         "minor_axis": (ROOM + 2.0 * gearing.addendum) / (2.0 * gearing.deflection),
     }
+    return {name: used for name, used in found.items() if name not in demand.unasked}
 
 
 def slipping(demand: Demand, gearing: StrainWave, tip: Contact) -> Any:

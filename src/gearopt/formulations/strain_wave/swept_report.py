@@ -193,8 +193,6 @@ def used_by_law(demand: Demand, made: SweptGearing) -> dict[str, float]:
     widths = *flexspline_widths(gearing, tooth[0], tooth[-1]), mesh.spline_land
     slips = _slips(demand, gearing)
     found = common_limits(demand, gearing, mesh.curve, made.pairs, slips, widths)
-    if not math.isfinite(demand.outer_radius):
-        del found["outer_radius"]
     least, _ = _least(mesh)
     if least < -TOUCH:
         found["interference"] = 1.0 - least / float(gearing.module)

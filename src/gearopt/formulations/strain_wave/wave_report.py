@@ -100,6 +100,7 @@ class WaveDesign:
     relative_curvature: contacts by the tooth's angle on the wave, with heights over the neutral
     curve, half thicknesses of the tooth, radius on the circular spline, radii of curvature.
     wave_major, wave_minor: diameters of the wave generator inside the flexspline's rim.
+    elastic_rim: whether teeth share the load, and wind up, on a rim that yields.
     touching: stretches of the wave on which flanks are conjugate. tooth: the flank from root to
     tip, height and half thickness; space: that of the circular spline from its tip, across from the
     middle of the space and out from the axis. wave: clearances of a tooth by its angle; load: what
@@ -121,6 +122,7 @@ class WaveDesign:
     clearance: float
     deflection: float
     rim_mm: float
+    elastic_rim: bool = False
     wave_generator: str
     wrap_angle_deg: float
     face_width_mm: float
@@ -224,8 +226,6 @@ def used(demand: Demand, made: Flank) -> dict[str, float]:
     angle = np.linspace(made.contacts.motion.angle[0], made.contacts.motion.angle[-1], COUNT)
     at = [contact(made.gearing, motion(made.gearing, made.curve, p)) for p in angle]
     found = limits(demand, made.gearing, made.curve, at)
-    if not math.isfinite(demand.outer_radius):
-        del found["outer_radius"]
     least = interference(made, STEP_DEG)
     clear = 0.0 if least.free else least.gap
     flat = {k: float(max(v) if isinstance(v, tuple) else v) for k, v in found.items()}
@@ -261,6 +261,7 @@ def sizes_of(demand: Demand, gearing: StrainWave, curve: NeutralCurve) -> dict[s
         "clearance": float(gearing.clearance),
         "deflection": round(float(gearing.deflection), DIGITS),
         "rim_mm": float(gearing.rim),
+        "elastic_rim": duty.elastic,
         "wave_generator": gearing.wave,
         "wrap_angle_deg": math.degrees(gearing.wrap) if gearing.wave == "discs" else 0.0,
         "face_width_mm": duty.face_width,

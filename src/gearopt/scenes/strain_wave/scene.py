@@ -31,8 +31,10 @@ from gearopt.scenes.strain_wave.wave_tables import (
 from gearopt.units import Quantity
 
 STEEL = 206e3  # MPa
-PAIR = 1e4  # N/mm per mm of face width: a stiffness of 10 N/(mm um), assumed
-RATCHET = 300.0  # N/mm per mm of face width, assumed
+STEELS = (0.9, 1.1)  # times STEEL: moduli of which a steel's fatigue limits are assumed
+STEEL_LIMITS = (400.0, 230.0)  # MPa: fatigue limits of the rim in bending and shear, assumed
+PAIR = 1e4  # N/mm per mm of face width: a stiffness of 10 N/(mm um), of steel, assumed
+RATCHET = 300.0  # N/mm per mm of face width, of steel, assumed
 USED = 3.5  # modules that shift, addendum and clearance of a usual gearing add to its diameter
 START = {
     "profile_shift": 0.9,
@@ -83,6 +85,19 @@ class Scene(Table):
             if getattr(self.gears, name) is not None and getattr(self.design, name) is not None:
                 rule = f"changes nothing: [gears] gives {name}"
                 raise refuse(rule, at=("design", name), action="remove")
+        return self
+
+    @model_validator(mode="after")
+    def _with_fatigue_limits(self) -> "Scene":
+        """Refuse a material other than steel without the fatigue limits that something asks."""
+        names = ("bending_limit", "shear_limit")
+        asks = self.limited or "safety" in self.design.model_fields_set
+        asks = asks or any(getattr(self.material, name) is not None for name in names)
+        for name in names if asks and not self.steel else ():
+            if getattr(self.material, name) is None:
+                rule = f"is missing: {1e-3 * self.modulus:.4g} GPa is no steel, whose is assumed"
+                write = "Write the fatigue limit of the material"
+                raise refuse(rule, write, ("material", name), "tell")
         return self
 
     @model_validator(mode="after")
@@ -145,6 +160,28 @@ class Scene(Table):
         return 6.0 * self.gears.module.value
 
     @property
+    def modulus(self) -> float:
+        """Modulus of elasticity E [MPa]."""
+        return _or(self.material.elastic_modulus, STEEL)
+
+    @property
+    def steel(self) -> bool:
+        """Whether the material is as stiff as steel, whose fatigue limits are assumed."""
+        return STEELS[0] <= self.modulus / STEEL <= STEELS[1]
+
+    @property
+    def pair_stiffness(self) -> float:
+        """Stiffness of two teeth in contact [N/mm]; what is assumed is in proportion to E."""
+        usual = PAIR * self.face_width * self.modulus / STEEL
+        return 1.0 / _or(self.sharing.pair_compliance, 1.0 / usual)
+
+    @property
+    def radial_stiffness(self) -> float:
+        """Stiffness of the flexspline against ratcheting [N/mm], assumed in proportion to E."""
+        usual = RATCHET * self.face_width * self.modulus / STEEL
+        return 1.0 / _or(self.design.radial_compliance, 1.0 / usual)
+
+    @property
     def face_width(self) -> float:
         """Face width b [mm]."""
         if self.gears.face_width is not None:
@@ -166,18 +203,16 @@ class Scene(Table):
 
     def loads(self) -> Duty:
         """Return torque, width, materials and elasticity."""
-        modulus = _or(self.material.elastic_modulus, STEEL)
-        poisson, width = float(self.material.poisson_ratio), self.face_width
+        modulus, poisson, width = self.modulus, float(self.material.poisson_ratio), self.face_width
         asked = self.sharing
         length = _or(asked.cup_length, 3.0 * width)
         cup = Cup(float(asked.wall_over_rim), length, modulus, poisson)
-        stiffness = 1.0 / _or(asked.pair_compliance, 1.0 / (PAIR * width))
         return Duty(
             self.duty.torque.value,
             width,
             (modulus, modulus),
             (poisson, poisson),
-            stiffness,
+            self.pair_stiffness,
             cup,
             asked.rim == "elastic",
             1.0 if asked.torque_of == OUTPUT else 1.0 + 1.0 / self.duty.ratio,
@@ -187,6 +222,7 @@ class Scene(Table):
         """Return what the gearing must meet, and the ranges of what is chosen."""
         asked, diameter = self.design, self.duty.outer_diameter
         wrap = self.wave_generator.wrap_angle
+        usual = STEEL_LIMITS if self.steel else (math.inf, math.inf)
         return Demand(
             teeth=2 * self.duty.ratio,
             duty=self.loads(),
@@ -196,11 +232,11 @@ class Scene(Table):
             wave=self.wave_generator.shape,
             wrap=math.radians(30.0) if wrap is None else wrap.value,
             clearance=float(self.gears.clearance),
-            bending_limit=_or(self.material.bending_limit, 400.0),
-            shear_limit=_or(self.material.shear_limit, 230.0),
+            bending_limit=_or(self.material.bending_limit, usual[0]),
+            shear_limit=_or(self.material.shear_limit, usual[1]),
             safety=float(asked.safety),
             notch=float(asked.notch),
-            radial_stiffness=1.0 / _or(asked.radial_compliance, 1.0 / (RATCHET * self.face_width)),
+            radial_stiffness=self.radial_stiffness,
             ratchet_factor=float(asked.ratcheting),
             pairs=float(asked.pairs),
             keys={name: f"design.{name}" for name in FREE if getattr(self.gears, name) is None},

@@ -14,7 +14,12 @@ from gearopt.formulations.strain_wave.demand import (
 from gearopt.formulations.strain_wave.range_ends import WIDER, RangeEnd
 from gearopt.formulations.strain_wave.swept_report import DOUBLE_ARC
 from gearopt.formulations.strain_wave.wave_report import INVOLUTE, WaveDesign
-from gearopt.scenes.strain_wave.scene import PAIR, RATCHET, Scene
+from gearopt.scenes.strain_wave.scene import STEEL, Scene
+
+NOT_JUDGED = (
+    "Not judged: fatigue of the rim, as [material] has no fatigue limits; those that are assumed "
+    "are of steel."
+)
 
 
 def assumptions(scene: Scene, made: WaveDesign) -> list[str]:
@@ -36,9 +41,10 @@ def assumptions(scene: Scene, made: WaveDesign) -> list[str]:
         f"{100.0 * (OUTSIDE_BASE - 1.0):.2g} % outside the base circle, {ROOM:g} modules between "
         "the tips on the minor axis."
     )
-    assumed = [*_sizes(scene, made), *_materials(scene, scene.demand()), *_sharing(scene, made)]
+    assumed = [*_sizes(scene, made), *_materials(scene, scene.demand()), *_sharing(scene)]
     ranges = list(_ranges(scene)) if scene.limited else []
-    return [*model, limits, *(f"Assumed: {words}." for words in (*assumed, *ranges))]
+    found = [*model, limits, *(f"Assumed: {words}." for words in (*assumed, *ranges))]
+    return found if math.isfinite(scene.demand().bending_limit) else [*found, NOT_JUDGED]
 
 
 def _mesh_torque(scene: Scene) -> str:
@@ -84,9 +90,9 @@ def _materials(scene: Scene, demand: Demand) -> Iterator[str]:
         yield f"a modulus of elasticity of {1e-3 * demand.duty.moduli[0]:.4g} GPa"
     if "poisson_ratio" not in steel.model_fields_set:
         yield f"Poisson's ratio {demand.duty.poissons[0]:g}"
-    if steel.bending_limit is None:
+    if scene.steel and steel.bending_limit is None:
         yield f"a fatigue limit of the rim of {demand.bending_limit:g} MPa in bending"
-    if steel.shear_limit is None:
+    if scene.steel and steel.shear_limit is None:
         yield f"a fatigue limit of the rim of {demand.shear_limit:g} MPa in shear"
     if "notch" not in asked.model_fields_set:
         yield f"a notch factor of {demand.notch:g} of the teeth on the rim"
@@ -98,17 +104,16 @@ def _materials(scene: Scene, demand: Demand) -> Iterator[str]:
         yield f"at least {demand.pairs:g} conjugate pair in the mean"
 
 
-def _sharing(scene: Scene, made: WaveDesign) -> Iterator[str]:
+def _sharing(scene: Scene) -> Iterator[str]:
     """Yield stiffnesses of which the file says nothing."""
     sharing = scene.sharing
+    by_modulus = "" if scene.modulus == STEEL else ", in proportion to the modulus of elasticity"
     if sharing.pair_compliance is None:
-        stiffness = PAIR * made.face_width_mm
-        yield f"a stiffness of {stiffness:.3g} N/mm of a pair of teeth"
+        yield f"a stiffness of {scene.pair_stiffness:.3g} N/mm of a pair of teeth{by_modulus}"
     if scene.design.radial_compliance is None:
-        stiffness = RATCHET * made.face_width_mm
         yield (
-            f"ratcheting by a radial stiffness of {stiffness:.3g} N/mm, a model that is not "
-            "published"
+            f"ratcheting by a radial stiffness of {scene.radial_stiffness:.3g} N/mm{by_modulus}, "
+            "formula not checked against any source"
         )
     if "wall_over_rim" not in sharing.model_fields_set:
         yield f"a wall of the cup {float(sharing.wall_over_rim):g} times as thick as the rim"
@@ -157,6 +162,7 @@ def notes(made: WaveDesign) -> list[str]:
     found = [
         f"{made.pairs_in_contact:.3f} pairs of teeth per lobe and flank are conjugate in the mean; "
         f"{carry}, as if {made.effective_teeth:.2f} carried alike.",
+        _windup(made),
     ]
     if made.least_clearance_mm < -1e-9:
         found.append(
@@ -171,6 +177,20 @@ def notes(made: WaveDesign) -> list[str]:
         found.append("No teeth interfere at any pose of the whole wave.")
         found += _without_play(made)
     return found
+
+
+def _windup(made: WaveDesign) -> str:
+    """Return which parts wind up, and which are taken as rigid."""
+    if made.elastic_rim:
+        return (
+            f"The windup of {made.windup_mrad:.3g} mrad is of teeth, rim and cup: wave generator, "
+            "bearings and shafts are rigid here, so that a whole gearing winds up further."
+        )
+    return (
+        f"The windup of {made.windup_mrad:.3g} mrad is of the teeth alone: everything else is "
+        'rigid, so that a whole gearing winds up many times as far. [sharing] rim = "elastic" '
+        "adds rim and cup."
+    )
 
 
 def _without_play(made: WaveDesign) -> list[str]:
