@@ -153,13 +153,13 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "servo_gimbal_impossible": "No train is so accurate: what to write instead.",
     },
     "A compound train": {
-        "sandgren_train": "Four numbers of teeth nearest to a ratio, proven in rationals.",
+        "sandgren_train": "Four numbers of teeth nearest to 1/6.931, proven in rationals.",
     },
 }
 KINDS = {  # of a file: the page about it, and what is minimised
     "drive": ("drive.md", lambda file: _of_drive(file)),
     "packing": ("packing.md", lambda file: file.get("objective", {}).get("minimise", "volume")),
-    "compound": ("compound.md", lambda file: "squared_error"),
+    "compound": ("compound.md", lambda file: file["train"].get("minimise", "ratio_error")),
     "servo": ("servo.md", lambda file: _of_servo(file)),
     "pair": ("pair.md", lambda file: _of_pair(file)),
     "strain_wave": ("strain_wave.md", lambda file: "pressure"),
@@ -171,6 +171,7 @@ UNITS = {  # as keys of a result have them
     "volume": "mm3",
     "area": "mm2",
     "squared_error": "",
+    "ratio_error": "",
     "pressure": "MPa",
     "inertia": "kg_m2",
     "mass": "kg",

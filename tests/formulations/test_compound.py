@@ -8,23 +8,41 @@ from itertools import product
 import numpy as np
 import pytest
 
-from gearopt.formulations.compound import Compound, nearest, problem, wider
+from gearopt.formulations.compound import ERROR, SQUARED, Compound, nearest, problem, wider
 from gearopt.optimise.pareto.pareto import found
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 
 
-def enumerated(ratio, low, high):
+def enumerated(ratio, low, high, goal=ERROR):
     """The least miss and the teeth that tie goes to: fewest, then smallest; all in fractions."""
     pairs = list(multisets(range(low, high + 1), 2))
+
+    def miss(drivers, driven):
+        if goal == SQUARED:
+            return (1 / ratio - Fraction(drivers, driven)) ** 2
+        return abs(Fraction(driven, drivers) / ratio - 1)
+
     return min(
-        (abs(1 / ratio - Fraction(a * b, c * d)), a + b + c + d, (a, b, c, d))
+        (miss(a * b, c * d), a + b + c + d, (a, b, c, d))
         for (a, b), (c, d) in product(pairs, pairs)
     )
 
 
+def test_nearest_is_nearest_in_the_ratio_itself():
+    """2.15625 is 2.10 % off, 2.25, which is nearer in 1/ratio, 2.16 %."""
+    for goal, teeth, ratio in (
+        (ERROR, [16, 16, 23, 24], Fraction(69, 32)),
+        (SQUARED, [16, 16, 24, 24], Fraction(9, 4)),
+    ):
+        train = Compound(Fraction("2.2025"), (16, 24), goal)
+        result = solve(problem(train))
+        assert result.status == "optimal" and result.design["teeth"] == teeth
+        assert result.value == pytest.approx(float(train.miss(1 / ratio)), rel=1e-14)
+
+
 def test_sandgrens_optimum():
-    result = solve(problem(Compound(Fraction(6931, 1000), (12, 60))))
+    result = solve(problem(Compound(Fraction(6931, 1000), (12, 60), SQUARED)))
     assert result.status == "optimal" and result.gap < 1e-15
     exact = (Fraction(1000, 6931) - Fraction(16 * 19, 43 * 49)) ** 2
     assert result.value == pytest.approx(float(exact), rel=1e-15)
@@ -37,40 +55,39 @@ def test_it_is_what_full_enumeration_finds(seed):
     rng = np.random.default_rng(seed)
     low = int(rng.integers(5, 15))
     high = low + int(rng.integers(0, 9))
-    ratio = Fraction(int(rng.integers(1, 10_000)), int(rng.integers(1, 5_000)))
-    error, teeth, _, done = nearest(Compound(ratio, (low, high)))
-    least, _, best = enumerated(ratio, low, high)
+    ratio, goal = Fraction(*map(int, rng.integers(1, (10_000, 5_000)))), (ERROR, SQUARED)[seed % 2]
+    error, teeth, _, done = nearest(Compound(ratio, (low, high), goal))
+    least, _, best = enumerated(ratio, low, high, goal)
     assert done and (error, teeth) == (least, best)
 
 
 @pytest.mark.parametrize(("high", "seed"), [*product((8, 11, 14), range(4))])
 def test_ties_on_both_sides_are_decided_exactly(high, seed):
-    """1/u just between two products: above and below miss by the same, or by 1e-30 more."""
+    """u just between two ratios: above and below miss by the same, or by 1e-30 more."""
     rng, low = np.random.default_rng(seed), 5
     z = range(low, high + 1)
     products = sorted({Fraction(a * b, c * d) for a, b, c, d in product(z, repeat=4)})
     k = int(rng.integers(0, len(products) - 1))
     for shift in (Fraction(0), Fraction(1, 10**30), -Fraction(1, 10**30)):
-        ratio = 1 / ((products[k] + products[k + 1]) / 2 + shift)
+        ratio = (products[k] + products[k + 1]) / 2 + shift
         error, teeth, _, _ = nearest(Compound(ratio, (low, high)))
         least, _, best = enumerated(ratio, low, high)
         assert (error, teeth) == (least, best)
         if shift:
             a, b, c, d = teeth
-            assert Fraction(a * b, c * d) == products[k + (shift > 0)]
+            assert Fraction(c * d, a * b) == products[k + (shift > 0)]
 
 
 @pytest.mark.parametrize("seed", range(30))
 def test_the_text_loses_no_digit(seed):
     """Where the products nearly cancel, and of ratios of up to forty digits."""
     rng = np.random.default_rng(seed)
-    train = Compound(Fraction(1), (5, 400))
     a, b, c, d = teeth = tuple(int(z) for z in rng.integers(5, 401, 4))
     near = Fraction(c * d, a * b) * (1 + Fraction(1, 10 ** int(rng.integers(2, 40))))
     for ratio in (near, Fraction(c * d, a * b), Fraction(int(rng.integers(1, 10**9)), 1000)):
-        train = Compound(ratio, (5, 400))
+        train = Compound(ratio, (5, 400), (ERROR, SQUARED)[seed % 2])
         found = problem(train).batch(np.array([teeth], float)).F[0, 0]
-        exact = float(train.miss(teeth) ** 2)
+        exact = float(train.miss(Fraction(a * b, c * d)))
         assert found == pytest.approx(exact, rel=2e-14, abs=0.0)
 
 
@@ -82,8 +99,9 @@ def test_a_ratio_of_many_digits_is_proven(digits):
     train = Compound(ratio, (12, 60))
     result = solve(problem(train))
     assert result.status == "optimal" and result.gap < 1e-14
-    miss = train.miss(tuple(result.design["teeth"]))
-    assert result.value == pytest.approx(float(miss**2), rel=1e-14, abs=0.0)
+    a, b, c, d = result.design["teeth"]
+    miss = train.miss(Fraction(a * b, c * d))
+    assert result.value == pytest.approx(float(miss), rel=1e-14, abs=0.0)
 
 
 @pytest.mark.parametrize("power", [6, 9, 12, 20, 30])
@@ -93,7 +111,8 @@ def test_a_ratio_that_is_nearly_met_is_proven(power):
     train = Compound(ratio, (12, 60))
     result = solve(problem(train))
     assert result.status == "optimal" and result.gap < 1e-13 and result.value > 0.0
-    assert result.value == pytest.approx(float(train.miss((13, 17, 31, 47)) ** 2), rel=1e-13, abs=0)
+    miss = train.miss(Fraction(13 * 17, 31 * 47))
+    assert result.value == pytest.approx(float(miss), rel=1e-13, abs=0)
 
 
 def test_a_ratio_that_can_be_met_is_met_exactly():
@@ -147,16 +166,16 @@ def test_the_front_of_error_and_largest_gear_is_that_of_all_trains(seed):
     for most in range(low, high + 1):
         miss = enumerated(ratio, low, most)[0]
         if best is None or miss < best:
-            wanted.append((float(miss**2), most))
+            wanted.append((float(miss), most))
             best = miss
-    names = ("squared_error", "largest_gear")
+    names = ("ratio_error", "largest_gear")
     made = found(problem(Compound(ratio, (low, high)), names), names, {})
     assert made.complete and made.values == pytest.approx(np.array(wanted)[::-1], rel=1e-9)
 
 
 def test_the_front_of_sandgrens_train_ends_in_his_optimum():
     names = ("squared_error", "largest_gear")
-    train = problem(Compound(Fraction(6931, 1000), (12, 60)), names)
+    train = problem(Compound(Fraction(6931, 1000), (12, 60), SQUARED), names)
     made = found(train, names, {})
     assert made.complete and made.values[0] == pytest.approx([2.7008571e-12, 49.0], rel=1e-8)
     assert made.values[-1] == pytest.approx([(1000 / 6931 - 1.0) ** 2, 12.0], rel=1e-12)

@@ -139,7 +139,7 @@ def test_a_claimed_bound_of_zero_is_judged_by_the_scale():
 
 
 def train(ratio, teeth=(12, 60)):
-    return compound.problem(compound.Compound(Fraction(ratio), teeth))
+    return compound.problem(compound.Compound(Fraction(ratio), teeth, compound.SQUARED))
 
 
 def test_errors_of_whole_teeth_are_small_by_nature():

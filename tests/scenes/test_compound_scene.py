@@ -1,15 +1,20 @@
 """A compound train's answer: what it achieves is said first, most of all where that is little."""
 
+import re
 from fractions import Fraction
 from io import StringIO
+from pathlib import Path
 
 import pytest
 from rich.console import Console
 
 import gearopt
+from gearopt.errors import SceneError
 from gearopt.report.pages.result import page
 from gearopt.report.terminal import show
 from gearopt.scenes.reading.load import read
+
+PROBLEMS = Path(__file__).parents[2] / "problems"
 
 
 def solved(ratio, teeth=(12, 60), **kind):
@@ -114,11 +119,54 @@ def test_other_methods_say_the_same_first_and_no_more_than_they_prove():
     told = printed(result)[0]
     assert "out of reach of 12 to 60 teeth" in told and "proven nearest" not in told
     teeth = (*result.design["driver_teeth"], *result.design["driven_teeth"])
-    miss = Fraction(1, 1000) - Fraction(teeth[0] * teeth[1], teeth[2] * teeth[3])
-    assert result.value == float(miss**2)
+    assert result.value == float(1 - Fraction(teeth[2] * teeth[3], teeth[0] * teeth[1]) / 1000)
 
 
 def test_the_value_is_that_of_fractions():
     result = solved("6.931")
-    assert result.value == float((Fraction(1000, 6931) - Fraction(16 * 19, 43 * 49)) ** 2)
+    assert result.value == float(1 - Fraction(43 * 49, 16 * 19) / Fraction("6.931"))
     assert result.value == result.bound and result.gap == 0.0
+
+
+def test_a_ratio_may_be_a_fraction_and_is_read_exactly():
+    """127/120 is the inch thread of a metric lathe, and no decimal."""
+    result = solved('"127/120"', (10, 127))
+    assert printed(result)[0].startswith("Two pairs: ratio 1.058333333 exactly; proven nearest")
+    assert result.value == 0.0 and result.design["ratio_error_percent"] == 0.0
+    off = solved("1.0583333333333333333", (10, 127))  # 20 digits: not the fraction
+    assert off.value == pytest.approx(
+        float(Fraction(127, 120) * Fraction("1e20") % 1) / 1.0583333e20
+    )
+    key = gearopt.explain(read(BY_SQUARES.encode())[1]).influences[0]
+    assert (key.key, key.value) == ("train.ratio", "127/120")
+
+
+@pytest.mark.parametrize("name", ["three_stage", "servo_gimbal", "sandgren_train"])
+def test_every_kind_reads_a_fraction_where_it_reads_a_ratio(name):
+    text = (PROBLEMS / f"{name}.toml").read_text().replace("output_speed =", "ratio =")
+
+    def with_ratio(value):
+        return read(re.sub(r"(?m)^ratio = .*", f"ratio = {value}", text).encode())[1]
+
+    table = "duty" if name == "three_stage" else "train"
+    for written in ('"1270/120"', '" 127 / 12"'):
+        held = getattr(with_ratio(written), table).ratio
+        assert held in (Fraction(127, 12), (Fraction(127, 12),) * 2)
+    for wrong in ('"127/0"', '"1/0.5"', '"-1/2"', '"127:120"', '"9/00"'):
+        with pytest.raises(SceneError, match="ratio"):
+            with_ratio(wrong)
+
+
+BY_SQUARES = """
+gearopt = 1
+kind = "compound"
+[train]
+ratio = "127/120"
+teeth = [16, 24]
+minimise = "squared_error"
+"""
+
+
+def test_the_headline_names_the_error_that_is_least():
+    scene = read(BY_SQUARES.encode())[1]
+    assert "; proven nearest in 1/ratio" in printed(gearopt.solve(scene))[0]

@@ -1,7 +1,8 @@
 """A compound train of two pairs whose ratio comes nearest to a given one: four numbers of teeth.
 
-Minimise (1/u - z1 z2/(z3 z4))^2 over teeth in a range. Posed by Sandgren (J. Mech. Des. 112, 1990)
-with u = 6.931 and 12 to 60 teeth, where it is a standard case of discrete optimisation.
+Minimise |i/u - 1|, i = z3 z4/(z1 z2), over teeth in a range; or (1/u - 1/i)^2, as Sandgren posed it
+(J. Mech. Des. 112, 1990) with u = 6.931 and 12 to 60 teeth, a standard case of discrete
+optimisation. The two may differ in what is nearest where the error is not small.
 """
 
 import math
@@ -20,7 +21,7 @@ from gearopt.optimise.terms import Terms, Var
 
 RANDOM = False
 COUNTS = "pair of numbers of teeth matched"
-MISS, LARGEST = "squared_error", "largest_gear"  # objectives; the teeth of the largest gear
+ERROR, SQUARED, LARGEST = "ratio_error", "squared_error", "largest_gear"  # objectives
 PAIRS = "all ratios of one pair were matched with the nearest of the other, in rational arithmetic"
 LOOK = 500  # pairs between two checks of clock and watcher: some 10 ms
 BASE = 2**24  # a digit of the ratio times two numbers of teeth is a whole number that doubles hold
@@ -28,10 +29,14 @@ BASE = 2**24  # a digit of the ratio times two numbers of teeth is a whole numbe
 
 @dataclass(frozen=True)
 class Compound:
-    """The ratio u > 0 to come near to, and the minimum and maximum number of teeth of any gear."""
+    """The ratio u > 0 to come near to, and the minimum and maximum number of teeth of any gear.
+
+    goal: ERROR, |i/u - 1|, or SQUARED, (1/u - 1/i)^2.
+    """
 
     ratio: Fraction
     teeth: tuple[int, int]
+    goal: str = ERROR
 
     @property
     def reach(self) -> tuple[Fraction, Fraction]:
@@ -39,20 +44,24 @@ class Compound:
         low, high = self.teeth
         return Fraction(low, high) ** 2, Fraction(high, low) ** 2
 
-    def miss(self, teeth: tuple[int, ...]) -> Fraction:
-        """|1/u - z1 z2/(z3 z4)|, exactly."""
-        z1, z2, z3, z4 = teeth
-        return abs(1 / self.ratio - Fraction(z1 * z2, z3 * z4))
+    def miss(self, inverse: Fraction) -> Fraction:
+        """Return the objective of a train of this 1/i, exactly."""
+        if self.goal == SQUARED:
+            return (1 / self.ratio - inverse) ** 2
+        return abs(1 / (inverse * self.ratio) - 1)
 
 
-def problem(train: Compound, names: Sequence[str] = (MISS,)) -> Problem:
+def problem(train: Compound, names: Sequence[str] = ()) -> Problem:
     """Return the problem of a train; variables: teeth of the drivers z1, z2 and the driven z3, z4.
 
-    names: of MISS and LARGEST; `exact` proves the best train, or of both the whole front.
+    names: of its goal (by default) and LARGEST; `exact` proves the best train, or of both the whole
+    front.
 
-    With u = p/q the text is ((q z3 z4 - p z1 z2)/(p z3 z4))^2, its whole numerator summed by the
-    digits of p and q, the highest first: no digit is lost where the two products nearly cancel.
+    With u = p/q the text is |q z3 z4 - p z1 z2|/(p z1 z2), or ((q z3 z4 - p z1 z2)/(p z3 z4))^2.
+    The whole numerator is summed by the digits of p and q, the highest first: no digit is lost
+    where the two products nearly cancel.
     """
+    names = names or (train.goal,)
     low, high = train.teeth
     p, q = train.ratio.numerator, train.ratio.denominator
     digits = list(zip(*_digits(q, p), strict=True))
@@ -63,12 +72,13 @@ def problem(train: Compound, names: Sequence[str] = (MISS,)) -> Problem:
         for for_driven, for_drivers in digits:
             rest = rest * BASE + (for_driven * driven - for_drivers * drivers)
         largest = np.maximum(np.maximum(z1, z2), np.maximum(z3, z4)) if LARGEST in names else 0.0
-        goals = {MISS: (rest / (float(p) * driven)) ** 2, LARGEST: largest}
+        error, squared = abs(rest / (float(p) * drivers)), (rest / (float(p) * driven)) ** 2
+        goals = {ERROR: error, SQUARED: squared, LARGEST: largest}
         return Terms({name: goals[name] for name in names})
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Match every pair with the two nearest ratios of the other pair; no other is nearer."""
-        error, best, looked, done = nearest(train, budget, watch)
+        miss, best, looked, done = nearest(train, budget, watch)
         x = np.array(best, float)
         if not done:
             return Outcome(x, finished=False, evaluations=looked, message="stopped early")
@@ -78,7 +88,7 @@ def problem(train: Compound, names: Sequence[str] = (MISS,)) -> Problem:
         )
         proof = {"method": "exhausted", "arithmetic": "rational", "pairs_matched": looked}
         proof |= {"sentence": words}
-        return Outcome(x, bound=float(error**2), proof=proof, evaluations=looked)
+        return Outcome(x, bound=float(miss), proof=proof, evaluations=looked)
 
     def front(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Match the pairs of fewer and fewer teeth; the seed changes nothing."""
@@ -131,27 +141,28 @@ def _digits(*numbers: int) -> list[list[float]]:
 def nearest(
     train: Compound, budget: Budget | None = None, watch: Watch | None = None
 ) -> tuple[Fraction, tuple[int, ...], int, bool]:
-    """Return the exact minimum of |1/u - z1 z2/(z3 z4)|, its teeth, the pairs matched, whether all.
+    """Return the exact minimum of the goal, its teeth, the pairs matched, whether all.
 
     The ratios of one pair are sorted once; of the other pair's, only the neighbours of what is
-    missing count. Ties go to the fewest teeth, then to the smallest numbers.
+    missing count, as the goal falls up to it and rises beyond. Ties go to the fewest teeth, then to
+    the smallest numbers.
     """
     clock = Clock(budget or Budget(), watch)
     pairs, whole = _pairs(train, clock)
     ratios, target = sorted(sorted(pairs, key=float)), 1 / train.ratio  # floats are compared faster
-    best: tuple[Fraction, int, tuple[int, ...]] = (target + train.teeth[1] ** 2, 0, ())
+    best: tuple[Fraction, int, tuple[int, ...]] = (train.miss(ratios[0] ** 2) + 1, 0, ())
     place = len(ratios)
     for looked, first in enumerate(ratios, 1):
         missing = target / first
         while place and ratios[place - 1] >= missing:
             place -= 1
         for second in ratios[max(0, place - 1) : place + 1]:
-            miss = abs(target - first * second)
+            miss = train.miss(first * second)
             if miss <= best[0]:
                 (a, c), (b, d) = pairs[first], pairs[second]
                 teeth = (*sorted((a, b)), *sorted((c, d)))
                 best = min(best, (miss, sum(teeth), teeth))
-                clock.best = float(best[0] ** 2)
+                clock.best = float(best[0])
         clock.evaluations = looked
         if (looked % LOOK == 0 or looked == clock.budget.evaluations) and not clock.tell():
             break

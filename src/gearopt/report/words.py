@@ -161,7 +161,7 @@ def certainty(result: Result) -> tuple[str, str]:
     if result.status == "optimal" and (result.gap or 0.0) > EXACT:
         words = f"proven within {100 * (result.gap or 0.0):.2g} % of the optimum"
     if "achieved" in result.report:  # something is come near to
-        words = words.replace("optimal", "nearest")
+        words = words.replace("optimal", result.report.get("best", "nearest"))
     return words, colour
 
 

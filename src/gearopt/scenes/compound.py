@@ -19,7 +19,7 @@ from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.reading.ask import Ask, unseeded
-from gearopt.scenes.reading.fields import Table, number, whole, words
+from gearopt.scenes.reading.fields import Table, choice, speed_ratio, whole, words
 from gearopt.scenes.reading.lists import span
 
 __all__ = [
@@ -35,6 +35,10 @@ __all__ = [
 MIN_TEETH, MAX_TEETH = 5, 400  # teeth of a gear that a file may ask for
 METHODS = ("exact",)  # its own
 ASSUMED = "Numbers of teeth alone: modules, centre distances and loads are not considered."
+NEAREST = {  # by objective: how the nearest ratio is said, and what that is
+    compound.ERROR: ("nearest", "relative error of the ratio, |achieved/asked - 1|"),
+    compound.SQUARED: ("nearest in 1/ratio", "squared error of 1/ratio, (1/asked - 1/achieved)^2"),
+}
 EXAMPLE = """\
 gearopt = 1
 kind = "compound"
@@ -43,17 +47,24 @@ title = "A compound train of 6.931 to 1"
 [train]
 ratio = 6.931                  # input over output speed
 teeth = [12, 60]               # of any of the four gears
+minimise = "ratio_error"       # or squared_error, of 1/ratio, as Sandgren posed it
 """
 
 
 class Train(Table):
     """The train: two pairs in series, the second driver on the shaft of the first driven gear."""
 
-    ratio: Annotated[Fraction, number(6.931, 0, 10**6)] = Field(
-        description="Ratio to come near to, input over output speed"
+    ratio: Annotated[Fraction, speed_ratio(6.931, 0)] = Field(
+        description="Ratio to come near to, input over output speed; exactly as written, also as a "
+        'fraction such as "127/120"'
     )
     teeth: Annotated[tuple[int, int], span(whole(12, MIN_TEETH, MAX_TEETH), [12, 60])] = Field(
         description="Minimum and maximum teeth of any gear"
+    )
+    minimise: Annotated[str, choice(compound.ERROR, compound.SQUARED)] = Field(
+        compound.ERROR,
+        description="ratio_error: the relative error of the ratio, |achieved/asked - 1|; "
+        "squared_error: (1/asked - 1/achieved)^2, as in Sandgren's problem",
     )
 
 
@@ -88,9 +99,10 @@ def solve(scene: Scene, ask: Ask) -> Result:
     train, teeth = _train(scene), tuple(round(float(z)) for z in outcome.x)
     z1, z2, z3, z4 = teeth
     ratio = Fraction(z3 * z4, z1 * z2)
-    value = float(train.miss(teeth) ** 2)  # rational until here
+    value = float(train.miss(1 / ratio))  # rational until here
     lowest, highest = train.reach
     within = lowest <= train.ratio <= highest
+    best, measured = NEAREST[train.goal]
     reach = {
         "ratio": float(train.ratio),
         "teeth": list(train.teeth),
@@ -105,7 +117,12 @@ def solve(scene: Scene, ask: Ask) -> Result:
         gap=0.0 if result.bound == value else result.gap,
         design=_design(train, outcome.x),
         message=" ".join(filter(None, (_out_of_reach(train, reach), result.message))),
-        report={"assumptions": [ASSUMED], "achieved": _achieved(train, ratio), "reach": reach},
+        report={
+            "assumptions": [ASSUMED, f"Nearest is the train of minimum {measured}."],
+            "achieved": _achieved(train, ratio),
+            "best": best,
+            "reach": reach,
+        },
     )
 
 
@@ -126,7 +143,7 @@ def _design(train: compound.Compound, x: Array) -> dict[str, Any]:
 
 def objectives(scene: Scene) -> dict[str, str]:
     """Return what a front of the train may minimise: name and unit."""
-    return {compound.MISS: "", compound.LARGEST: ""}
+    return {scene.train.minimise: "", compound.LARGEST: ""}
 
 
 def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
@@ -185,4 +202,4 @@ def model(scene: Scene, method: str) -> Model:
 
 
 def _train(scene: Scene) -> compound.Compound:
-    return compound.Compound(scene.train.ratio, scene.train.teeth)
+    return compound.Compound(scene.train.ratio, scene.train.teeth, scene.train.minimise)

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from gearopt import units
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.flaws import flaws
-from gearopt.scenes.reading.fields import Table, number, quantity, refuse
+from gearopt.scenes.reading.fields import Table, number, quantity, refuse, speed_ratio
 from gearopt.units import Quantity
 
 
@@ -27,8 +27,8 @@ class Duty(Table):
     output_speed: Annotated[Quantity | None, quantity("speed", "66.5 rpm")] = Field(
         None, description="Speed of the output shaft (or give ratio)"
     )
-    ratio: Annotated[Fraction | None, number(20, 1, 10**6)] = Field(
-        None, description="Total ratio, input over output speed"
+    ratio: Annotated[Fraction | None, speed_ratio(20, 1)] = Field(
+        None, description='Total ratio, input over output speed; also as a fraction, "127/120"'
     )
     ratio_tolerance: Annotated[Fraction, number("1 %", 0, Fraction(1, 2), True, True)] = Field(
         default_factory=lambda: Fraction(1, 100),

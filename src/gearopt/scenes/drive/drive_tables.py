@@ -20,6 +20,7 @@ from gearopt.scenes.reading.fields import (
     number,
     quantity,
     refuse,
+    speed_ratio,
     truth,
     whole,
 )
@@ -50,7 +51,7 @@ AIM = choice(
     },
 )
 OVER_MODULE = span(number(10, 0, 1000), [8, 14])
-RATIOS = span(number(5, 1, 10**6), [1, 10])
+RATIOS = span(speed_ratio(5, 1), [1, 10])
 
 Proportion = Annotated[tuple[Fraction, Fraction] | None, PROPORTION]
 Ratios = Annotated[tuple[Fraction, Fraction] | None, RATIOS]
@@ -281,7 +282,7 @@ class Objective(Table):
     )
 
 
-EACH_RATIO = several(number(5, 1, 10**6), [4.96, 4.36])
+EACH_RATIO = several(speed_ratio(5, 1), [4.96, 4.36])
 EACH_PINION = several(TOOTH_COUNT, [23, 25])
 EACH_MODULE = several(MODULE, ["2 mm", "3 mm"])
 

@@ -171,13 +171,23 @@ def written(value: Any, path: Path) -> Any:
     if isinstance(value, Quantity):
         return f"{exact(value.number)} {value.unit}".rstrip()
     if isinstance(value, Fraction):
-        return exact(value)
+        return exact(value) if _is_decimal(value) or not _is_ratio(path) else str(value)
     if isinstance(value, tuple):
         ends: list[Any] = [written(v, path) for v in value]
         if len(ends) == 2 and value[0] == value[1]:
             return ends[0]
         return ends[::-1] if in_reverse(value, path) else ends
     return value
+
+
+def _is_ratio(path: Path) -> bool:
+    """Return whether `speed_ratio` reads what stands at a place: fractions too."""
+    return any(name in ("ratio", "stage_ratio", "stage_ratios") for name in path[-2:])
+
+
+def _is_decimal(value: Fraction) -> bool:
+    """Return whether a fraction has finitely many decimals."""
+    return bool(10 ** value.denominator.bit_length() % value.denominator == 0)
 
 
 def eased(value: Any, factor: float, direction: int) -> Any:

@@ -26,6 +26,7 @@ BEYOND = "is out of any sensible range (1e-30 to 1e30)"
 # A comma before three digits may separate thousands, so it is not taken for a decimal one.
 _NUMBER = r"(\+?[0-9]*(?:\.|,(?![0-9]{3}(?![0-9])))?[0-9]+(?:[eE][+-]?[0-9]{1,3})?)"
 _THOUSANDS = re.compile(r"\s*([0-9]{1,3}),([0-9]{3})\s*(|[A-Za-z][\w ^/*]*)\s*", re.ASCII)
+_FRACTION = re.compile(r"\s*([0-9]{1,30})\s*/\s*([0-9]{1,30})\s*", re.ASCII)
 _SLIP = re.compile(rf"\s*{_NUMBER}\s*((?![eE][+-]?[0-9])[^\s\d.,].*?|1/\S+)?\s*")
 
 
@@ -154,11 +155,20 @@ def quantity(
 
 
 def number(
-    example: Any, minimum: int, maximum: int | Fraction, percent: bool = False, zero: bool = False
+    example: Any,
+    minimum: int,
+    maximum: int | Fraction,
+    percent: bool = False,
+    zero: bool = False,
+    fraction: bool = False,
 ) -> Reads:
-    """Read a pure number, kept exactly as a fraction; percent: "1 %" is read too."""
+    """Read a pure number, kept exactly as a fraction.
+
+    percent: "1 %" is read too; fraction: "127/120" too.
+    """
     above = f"between {minimum} and" if minimum or zero else "above 0 and at most"
     sort = 'a number or a percentage such as "1 %"' if percent else "a number"
+    sort += ' or a fraction such as "127/120"' if fraction else ""
 
     def inside(found: Fraction) -> bool:
         return minimum <= found <= maximum and (found > 0 or zero)
@@ -166,7 +176,11 @@ def number(
     def read(value: Any, example: Any) -> Fraction:
         if isinstance(value, Fraction):
             return value
-        if isinstance(value, str):
+        if fraction and isinstance(value, str) and (parts := _FRACTION.fullmatch(value)):
+            if not int(parts[2]):
+                raise refuse("is divided by zero")
+            found = Fraction(int(parts[1]), int(parts[2]))
+        elif isinstance(value, str):
             try:
                 found = units.parse(value, "fraction").exact[0]
             except ValueError:
@@ -194,7 +208,15 @@ def number(
     if percent:
         text = {"type": "string", "pattern": r"^\s*[0-9.]+([eE][+-]?[0-9]+)?\s*%?\s*$"}
         schema = {"anyOf": [schema, text]}
+    if fraction:
+        text = {"type": "string", "pattern": r"^\s*[0-9]+\s*/\s*[0-9]+\s*$"}
+        schema = {"anyOf": [schema, text]}
     return Reads(read, example, schema)
+
+
+def speed_ratio(example: Any, minimum: int) -> Reads:
+    """Read a ratio of speeds up to a million, exactly: a number, or a fraction as "127/120"."""
+    return number(example, minimum, 10**6, fraction=True)
 
 
 def whole(example: int, minimum: int, maximum: int) -> Reads:

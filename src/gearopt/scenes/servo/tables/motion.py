@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from gearopt import units
 from gearopt.formulations.servo.ratio import Drive, ServoDuty
-from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse
+from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, speed_ratio
 from gearopt.units import Quantity
 
 FRICTION = quantity("torque", "0.003 N m", zero=True)
@@ -75,7 +75,7 @@ class Duty(Table):
     frequency: Annotated[Quantity | None, quantity("frequency", "2 Hz")] = Field(
         None, description="Frequency of a swing"
     )
-    ratio: Annotated[Fraction | None, number(48, 0, 10**6)] = Field(
+    ratio: Annotated[Fraction | None, speed_ratio(48, 0)] = Field(
         None, description="A total ratio to compare with the best one, without any gears"
     )
 

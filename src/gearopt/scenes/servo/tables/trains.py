@@ -17,6 +17,7 @@ from gearopt.scenes.reading.fields import (
     number,
     quantity,
     refuse,
+    speed_ratio,
     truth,
     whole,
 )
@@ -36,8 +37,8 @@ AIMS = {goal.word.replace(" ", "_"): goal for goal in GOALS.values()}  # by the 
 class Train(Table):
     """Two stages of spur gears whose teeth and modules are chosen."""
 
-    ratio: Annotated[tuple[Fraction, Fraction], span(number(48, 1, 10**6), 48, single=True)] = (
-        Field(description="Total ratio, motor over load speed; or a range [minimum, maximum]")
+    ratio: Annotated[tuple[Fraction, Fraction], span(speed_ratio(48, 1), 48, single=True)] = Field(
+        description="Total ratio, motor over load speed; or a range [minimum, maximum]"
     )
     ratio_tolerance: Annotated[
         Fraction | None, number("1 %", 0, Fraction(1, 2), percent=True, zero=True)
