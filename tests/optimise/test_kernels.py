@@ -1,6 +1,9 @@
 """Compiled kernels are kept between runs, and never stale."""
 
 import gc
+import importlib.util
+import os
+import resource
 import subprocess
 import sys
 import textwrap
@@ -8,7 +11,7 @@ import textwrap
 import numba
 import pytest
 
-from gearopt.optimise.kernels import COMPILING, compiled
+from gearopt.optimise.kernels import COMPILING, compiled, say
 
 PROGRAM = """
 import sys
@@ -76,3 +79,63 @@ def test_a_watcher_hears_of_every_function_and_may_end_the_compiling():
     assert compiled(work, (quarter,), lambda event: True) and values == [2.0]
     assert compiled(work, (quarter,), lambda event: pytest.fail("nothing is left to compile"))
     assert gc.isenabled() and len(quarter.signatures) == len(half.signatures) == 1
+
+
+DOUBLE = """
+from gearopt.optimise.jit_kernel import entry
+
+@entry
+def double(x):
+    return 2.0 * x
+"""
+
+
+@pytest.fixture
+def doubled(tmp_path, monkeypatch, caplog):
+    """doubled(): what a kernel, read anew, makes of 1.5, whether it was loaded, what was said."""
+    source = tmp_path / "double_kernel.py"
+    source.write_text(DOUBLE)
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "cache"))
+
+    def value():
+        spec = importlib.util.spec_from_file_location("double_kernel", source)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        say.cache_clear()
+        caplog.clear()
+        found = module.double(1.5)
+        return found, sum(module.double.stats.cache_hits.values()) == 1, caplog.messages
+
+    return value
+
+
+def test_damaged_machine_code_is_compiled_again(doubled, tmp_path):
+    """Truncated, emptied, of random bytes, one bit turned: numba alone fails or runs it."""
+    assert doubled() == (3.0, False, [])
+    files = sorted((tmp_path / "cache").rglob("*.nb?"))
+    assert [file.suffix for file in files] == [".nbc", ".nbi"]
+    for file, damage in (
+        (files[0], lambda data: data[: len(data) // 2]),
+        (files[0], lambda data: data[:900] + bytes([data[900] ^ 16]) + data[901:]),
+        (files[0], lambda data: b""),
+        (files[1], lambda data: os.urandom(len(data))),
+        (files[1], lambda data: data[:40]),
+    ):
+        assert doubled() == (3.0, True, [])
+        file.write_bytes(damage(file.read_bytes()))
+        value, loaded, (words,) = doubled()
+        assert value == 3.0 and not loaded
+        assert words == f"kept machine code is damaged ({file}) and is compiled again"
+
+
+def test_a_kernel_that_cannot_be_kept_is_compiled_in_every_run(doubled, tmp_path):
+    usual = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, usual[1]))  # as on a full disk
+    try:
+        value, loaded, words = doubled()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, usual)
+    assert value == 3.0 and not loaded and len(words) == 1
+    assert f"cannot be kept in {tmp_path / 'cache'} (File too large)" in words[0]
+    (tmp_path / "cache").mkdir(exist_ok=True)
+    assert doubled() == (3.0, False, []) and doubled() == (3.0, True, [])

@@ -5,9 +5,9 @@ import json
 import os
 import subprocess
 import sys
+import threading
 from collections import Counter
 from decimal import Decimal
-from pathlib import Path
 from random import Random
 
 import jsonschema
@@ -17,8 +17,10 @@ from mutations import MUTATIONS
 from scene_files import BASES, ELEVATOR, mended, parse
 from scrambles import SCRAMBLES
 
+from gearopt.cli import reporting
 from gearopt.errors import SceneError
 from gearopt.scenes.drive import EXAMPLE
+from gearopt.scenes.reading import files
 from gearopt.scenes.reading.load import load, read
 from gearopt.scenes.reading.schema import json_schema
 
@@ -213,13 +215,48 @@ def test_paths_that_are_no_file_name_one(tmp_path):
 
 
 def test_an_unreadable_file_is_refused(tmp_path, monkeypatch):
-    def denied(self):
+    def denied(path, flags):
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(Path, "read_bytes", denied)
+    monkeypatch.setattr(os, "open", denied)
     with pytest.raises(SceneError, match="cannot be read .Permission denied.. Check") as wrong:
         load(tmp_path / "mine.toml")
     assert wrong.value.fix is None
+
+
+def sparse(path):
+    """A file of 6 GB without a block on the disk."""
+    with path.open("wb") as file:
+        file.truncate(6_000_000_000)
+    return path
+
+
+@pytest.mark.parametrize("command", ["solve", "report"])
+def test_no_file_is_read_beyond_a_limit(command, here, tmp_path, monkeypatch):
+    """Endless or 6 GB: read whole, the process would end for lack of memory."""
+    monkeypatch.setattr(reporting, "LARGEST_KEPT", 1_000_000)
+    for path in ("/dev/zero", sparse(tmp_path / "large")):
+        done = here(command, path)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1
+        assert f"gearopt: {path}: is larger than a " in done.stderr
+
+
+def test_a_pipe_is_a_file(tmp_path, monkeypatch):
+    """Named, with a writer that comes late; one without is refused; unnamed, as `<(...)` is."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    writer = threading.Timer(0.05, lambda: pipe.write_text(ELEVATOR))
+    writer.start()
+    assert load(pipe).kind == "drive"
+    writer.join()
+    monkeypatch.setattr(files, "PIPE_SECONDS", 0.02)
+    with pytest.raises(SceneError, match="nothing comes from this pipe in 0.02 s"):
+        load(pipe)
+    end, begin = os.pipe()
+    os.write(begin, ELEVATOR.encode())
+    os.close(begin)
+    assert load(f"/dev/fd/{end}").kind == "drive"
+    os.close(end)
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,7 @@ from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result, loads
 from gearopt.report.command import again
 from gearopt.report.measures import METRIC, SYSTEMS, Measures
+from gearopt.scenes.reading.files import LARGEST_KEPT, first_bytes
 
 LONGEST = 200  # characters shown of what is wrong with a file
 Kept = Result | Comparison | Front
@@ -179,7 +180,10 @@ def _make(folder: Path) -> None:
 def _read(file: Path) -> Kept:
     """Return what was kept from its file; GearoptError for anything else."""
     try:
-        data = loads(file.read_text(encoding="utf-8"))
+        text = first_bytes(file, LARGEST_KEPT)
+        if len(text) > LARGEST_KEPT:
+            raise ValueError(f"is larger than a kept result, at most {LARGEST_KEPT:,} bytes")
+        data = loads(text.decode("utf-8-sig"))
         if isinstance(data, dict) and "comparison" in data:
             return Comparison.from_dict(data)
         if isinstance(data, dict) and "front" in data:

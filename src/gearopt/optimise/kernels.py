@@ -26,6 +26,7 @@ PATIENCE = (
     3.0  # s that a process runs kernels uncompiled; compiling those of layouts takes twice that
 )
 ROOM = 70_000  # words of a frame: Python then takes 1 MB for it and all frames that it calls
+CHECKSUM = 32  # bytes at the end of a file of machine code: SHA-256 of those before
 _SOURCES = Path(__file__).parents[1]
 
 
@@ -172,8 +173,30 @@ def plain(entry: Any) -> Callable[..., Any]:
 
 def _kept(entry: Any) -> bool:
     """Return whether the machine code of a kernel is at hand."""
-    name = f"{entry.py_func.__module__.rsplit('.', 1)[-1]}.{entry.py_func.__name__}-*.nbi"
-    return bool(entry.signatures) or any((_folder() / _key()).rglob(name))
+    name = f"{entry.py_func.__module__.rsplit('.', 1)[-1]}.{entry.py_func.__name__}-*.nb[ci]"
+    files = [] if entry.signatures else list((_folder() / _key()).rglob(name))
+    return bool(entry.signatures or files) and all(map(sound, files))
+
+
+def sound(path: str | Path) -> bool:
+    """Return whether a file of machine code is there and ends with its checksum."""
+    try:
+        data = Path(path).read_bytes()
+    except FileNotFoundError:
+        return False
+    except OSError as refused:
+        say(f"kept machine code cannot be read ({path}: {refused.strerror})")
+        return False
+    if hashlib.sha256(data[:-CHECKSUM]).digest() == data[-CHECKSUM:]:
+        return True
+    say(f"kept machine code is damaged ({path}) and is compiled again")
+    return False
+
+
+@cache
+def say(words: str) -> None:
+    """Say something once in a process, on a terminal and elsewhere."""
+    logger.warning(words)
 
 
 class _Ended(Exception):

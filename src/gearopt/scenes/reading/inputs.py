@@ -12,7 +12,9 @@ from gearopt.errors import SceneError
 from gearopt.optimise.result import Result
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Opened, Reads, refuse
-from gearopt.scenes.reading.load import load, scene_module
+from gearopt.scenes.reading.files import LARGEST_FILE, LARGEST_KEPT, first_bytes
+from gearopt.scenes.reading.load import read as read_scene
+from gearopt.scenes.reading.load import scene_module
 
 
 @dataclass(frozen=True)
@@ -61,17 +63,17 @@ def result_of(kind: str) -> Reads:
         path = before[-1].parent / value if before else Path(value)
         if path.resolve() in before:
             raise wrong("is a file that needs this one as its input")
+        kept = path.suffix == ".json"
         try:
-            data = path.read_bytes()
+            data = first_bytes(path, LARGEST_KEPT if kept else LARGEST_FILE)
         except (OSError, ValueError):
             raise wrong("is not a file that can be read") from None
         what: Result | BaseModel
-        if path.suffix == ".json":
+        if kept:
             what = result = _kept(data, wrong)
             found = result.scene or "a problem of one's own"
         else:
-            loaded = load(path, before=before)
-            what, found = loaded.scene, loaded.kind
+            found, what = read_scene(data, str(path), before)
         if found != kind:
             raise wrong(f"is of kind {found}, not {kind}")
         return Input(value, hashlib.sha256(data).hexdigest(), kind, what)
@@ -80,6 +82,8 @@ def result_of(kind: str) -> Reads:
 
 
 def _kept(data: bytes, wrong: Any) -> Result:
+    if len(data) > LARGEST_KEPT:
+        raise wrong(f"is larger than a kept result, which has at most {LARGEST_KEPT:,} bytes")
     try:
         result = Result.from_json(data.decode("utf-8-sig"))
     except (UnicodeDecodeError, json.JSONDecodeError):

@@ -19,6 +19,7 @@ import gearopt.scenes
 from gearopt.errors import Fix, SceneError, SolveError, together
 from gearopt.scenes.reading.changes import as_written, changed
 from gearopt.scenes.reading.fields import Opened, near
+from gearopt.scenes.reading.files import LARGEST_FILE, first_bytes
 from gearopt.scenes.reading.not_yet import kind_called
 from gearopt.scenes.reading.remedy import translate, wrong_name, wrong_value
 from gearopt.scenes.reading.toml import cut, dotted
@@ -27,7 +28,6 @@ FORMAT = 1
 SHARED = {"reading", "explaining", "parts"}  # of `gearopt.scenes`, what is no kind
 HEAD = ("gearopt", "kind")  # keys of every file
 TABLES = "<tables>"  # from Python, in messages
-LARGEST_FILE = 1_000_000  # bytes
 DEEPEST_KEY = r"(?:[\w-]\s*\.\s*){6000}"  # tomllib's time grows with the square: 1 s at 5000
 
 
@@ -120,10 +120,10 @@ def load(
 
 
 def _bytes(path: str | Path) -> bytes:
-    """Return what a file holds; SceneError where it cannot be read."""
+    """Return what a file holds, one byte beyond the limit at most; SceneError says why not."""
     file = str(path)
     try:
-        return Path(path).read_bytes()
+        return first_bytes(path, LARGEST_FILE)
     except IsADirectoryError:
         raise SceneError(file, "", "", "is a directory, not a file", _name_a_file(path)) from None
     except FileNotFoundError:
@@ -231,6 +231,9 @@ def _pop(content: dict[str, Any], name: str, file: str, errors: list[SceneError]
 
 
 def _parse(data: bytes, file: str) -> dict[str, Any]:
+    if len(data) > LARGEST_FILE:
+        rule = f"is larger than a problem file, which has at most {LARGEST_FILE:,} bytes"
+        raise SceneError(file, "", "", rule, _name_a_file(file))
     try:
         text = data.decode("utf-8-sig")  # Windows editors put a byte-order mark first
     except UnicodeDecodeError as wrong:
@@ -240,9 +243,6 @@ def _parse(data: bytes, file: str) -> dict[str, Any]:
     if "\0" in text:
         rule = "has a NUL byte, as UTF-16 text and binary files have"
         raise SceneError(file, "", "", rule, "Save it with the encoding UTF-8")
-    if len(data) > LARGEST_FILE:
-        rule = f"has {len(data):,} bytes; a problem file has at most {LARGEST_FILE:,}"
-        raise SceneError(file, "", "", rule, _name_a_file(file))
     if re.search(DEEPEST_KEY, text):
         raise _too_deep(file)
     try:
