@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,6 +17,8 @@ from gearopt.optimise.result import Budget, Outcome
 F, STRESS, SAFETY = 1.0e4, 100.0, 1.5
 NEEDED = math.sqrt(4 * F * SAFETY / (math.pi * STRESS))  # 13.82 mm
 
+STEEL = Param("stress", "MPa", STRESS, role="data")
+
 
 def bar(most=10.0, power=1.0, role="limit"):
     """The safety factor enters the row to a power; d <= most is written as a bound."""
@@ -26,7 +29,7 @@ def bar(most=10.0, power=1.0, role="limit"):
 
     parameters = (
         Param("safety", "", SAFETY ** (1 / power), role=role, key="limits.safety"),
-        Param("stress", "MPa", STRESS, role="data"),
+        STEEL,
     )
     variables = (Var("d", "mm", 1.0, most, min(5.0, most), log=True),)
     return Problem("bar", variables, parameters, evaluate)
@@ -60,6 +63,9 @@ def test_a_bound_and_a_safety_factor_that_enters_squared():
     assert even["stress"].bound == pytest.approx(ratio, rel=1e-9)
     for remedy in found.remedies:
         assert remedy.verified == {"with": "optimal", "with_less": "infeasible"}
+    keyless = replace(bar(power=2.0), parameters=(Param("safety", "", 1.2, role="limit"), STEEL))
+    found = {r.what: r.changes[0].key for r in explain(keyless).remedies}
+    assert found["stress"] == "safety"  # the number to write, not its row
 
 
 def test_a_row_without_a_parameter_is_relaxed_itself():

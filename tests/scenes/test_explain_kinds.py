@@ -22,6 +22,7 @@ from gearopt.optimise.result import Outcome
 from gearopt.optimise.solve import solve as solve_problem
 from gearopt.scenes.explaining import default
 from gearopt.scenes.explaining.default import explain
+from gearopt.scenes.explaining.influences import NEAR
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, number, quantity, whole
 from gearopt.scenes.reading.load import kind_of, read, scene_module
@@ -261,6 +262,19 @@ def test_a_further_kind_tells_slopes_of_its_whole_numbers():
     assert slopes["bar.safety"] == pytest.approx((1.0, 1.0, 1.0), rel=1e-3)
     assert slopes["bar.stress"] == pytest.approx((-1.0, -1.0, -1.0), rel=1e-3)
     assert slopes["bar.diameter"] == pytest.approx((0.0, 0.0, 0.0), abs=1e-3)
+    assert found.message == ""  # 6 bars are needed from 125 to 150 mm2
+
+
+@pytest.mark.slow
+def test_a_mixed_kind_says_where_other_whole_numbers_are_needed():
+    """5 bars of up to 5.29151 mm carry 140.0004 mm2 and no more."""
+    near = FILE["bar"] | {"most": 8, "safety": Decimal("1.4"), "diameter": "5.29151 mm"}
+    found = explain(KIND, Bars.model_validate({"bar": near}), Ask())
+    low, high = re.search(r"bar.safety from ([\d.]+) to ([\d.]+)", found.message).groups()
+    assert float(high) == pytest.approx(5 * 5.29151**2 / 100, rel=1e-7)
+    assert float(low) == pytest.approx(1.4 * (1.0 - NEAR))
+    (one,) = (i for i in found.influences if i.key == "bar.safety")
+    assert one.sensitivity == pytest.approx(1.0, rel=1e-3)
 
 
 AXIS = """

@@ -27,7 +27,7 @@ class Handle:
     index among parameter values, inequality rows or columns. value, unit, key: what stands there
     now. direction: +1 where a larger value is easier, -1 where a smaller one is. rows: names of
     the rows it governs. given: a value that the user fixed, no limit. reach: the largest factor by
-    which it may move. whole: it is written as an integer.
+    which it may move. whole: it is written as an integer. parameter: its name, of a row's number.
     """
 
     name: str
@@ -41,6 +41,7 @@ class Handle:
     given: bool = False
     reach: float = REACH
     whole: bool = False
+    parameter: str = ""
 
     @property
     def family(self) -> str:
@@ -49,8 +50,8 @@ class Handle:
 
     @property
     def label(self) -> str:
-        """Return where it is written: its key, else its name."""
-        return self.key or self.name
+        """Return where it is written: its key, else its parameter, else its name."""
+        return self.key or self.parameter or self.name
 
     def relaxed(self, factor: float) -> float:
         """Return the value to write for a factor >= 1."""
@@ -121,7 +122,9 @@ def _parameters(problem: Problem) -> tuple[list[Handle], set[int]]:
             name = names[0] if alone else label
             sign = -ways.pop()
             unit, given = parameter.unit, role == "given"
-            found.append(Handle(name, PARAM, place, value, sign, unit, key, names, given))
+            found.append(
+                Handle(name, PARAM, place, value, sign, unit, key, names, given, parameter=label)
+            )
             governed |= set(touched.tolist())
         start += parameter.size
     return found, governed

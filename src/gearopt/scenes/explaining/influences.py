@@ -9,8 +9,10 @@ from typing import Any
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import EASE, slope
 from gearopt.optimise.explaining.explanation import Influence
+from gearopt.optimise.explaining.repair import CERTAIN
 from gearopt.optimise.explaining.sensitivity import Sensitivities
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Array
 from gearopt.scenes.explaining.numbers import FIRST, Number, Path, eased, moved, times
 from gearopt.units import Quantity
@@ -20,6 +22,7 @@ NEAR = 1e-4  # relative, of the re-solves: small enough for most choices to stay
 NEAREST = 1e-10  # relative change of a number below which it is not asked whether they do
 HALVINGS = 12  # of the logarithm of the change up to which they do
 SAME = 1e-9  # relative: objectives that are equal
+SOLVED = 1e-7  # relative: the same of what was solved to GAP
 FARTHEST = 64  # whole steps up to which the first that makes a difference is sought
 
 Solved = Callable[[Any], float | None]  # a changed scene -> its objective; None: no design
@@ -68,7 +71,8 @@ class Basis:
     def kept(self, scene: Any, number: Number) -> tuple[float, float]:
         """Return how far a number may fall and rise, up to a part `step`, until the point changes.
 
-        That is where whole numbers or choices are others; of a point that is held. 0: at once.
+        That is where whole numbers or choices are others; real-valued variables are chosen anew.
+        0: at once.
         """
 
         def same(change: float) -> bool:
@@ -78,8 +82,8 @@ class Basis:
             )
             if other is None or solved is None or self.posed is None or self.point is None:
                 return True  # no design, which the sensitivities show
-            held = float(self.posed(other).batch(self.point[None]).F[0, 0])
-            return bool(abs(held - solved) <= SAME * abs(held))
+            held, tie = self._of_same(other)
+            return held is not None and bool(abs(held - solved) <= tie * abs(held))
 
         def far(way: int) -> float:
             low, high = NEAREST, self.step
@@ -91,6 +95,20 @@ class Basis:
             return low if low > NEAREST else 0.0
 
         return far(-1), far(1)
+
+    def _of_same(self, scene: Any) -> tuple[float | None, float]:
+        """Return the objective of a changed file with the whole numbers and choices of the point.
+
+        None where no minimum over the others is certain. With the relative difference of values
+        that counts as none.
+        """
+        assert self.posed is not None and self.point is not None
+        problem = self.posed(scene)
+        lower, upper, _ = problem.bounds()
+        if (lower == upper).all():
+            return float(problem.batch(self.point[None]).F[0, 0]), SAME
+        found = solve(problem.starting(self.point), "ipopt")
+        return (found.value if found.status in CERTAIN else None), SOLVED
 
 
 def _times(scene: Any, number: Number, factor: float) -> Any:
