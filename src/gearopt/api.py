@@ -70,7 +70,7 @@ def solve(
 ) -> Result:
     """Return the certified answer to a problem file, its tables or scene, or a problem of your own.
 
-    changes: of a file, as in `load`; `Result.asked` holds the tables with them.
+    changes: of a file, as in `load`; `Result.asked` holds the tables with them, to solve again.
     method: by default the scene's or problem's own. budget: seconds and evaluations. watch(event)
     returns False to stop the run. gap: relative gap to our bound that is enough, so that a search
     may end there; None: none is, and 1e-6 is called optimal. top: so many next best answers too
@@ -331,7 +331,8 @@ def pareto(
     """Return the Pareto front of two or three objectives: the designs that no other beats.
 
     changes: of a file, as in `load`.
-    objectives: names, those of `objectives(what)`; of a Problem by default those it minimises.
+    objectives: names; without them the error lists those of a file, and of a Problem all that it
+    minimises are taken.
     most: largest values of interest by name, in the units of the objectives. method: exact (all
     designs of whole teeth, proven), epsilon (real-valued sizes, point by point), nsga2, annealing
     or hybrid; by default the one that proves most. points: sought, where a method has a choice: 60,
@@ -381,10 +382,11 @@ def _opened(what: File, changes: Changes) -> tuple[BaseModel, Any, dict[str, Any
     if isinstance(what, BaseModel):
         from gearopt.scenes.explaining.numbers import content
 
-        kind, tables = kind_of(what), content(what)
+        kind = kind_of(what)
+        tables = {"gearopt": FORMAT, "kind": kind, **content(what)}
         if not changes:
             return what, scene_module(kind), {"scene": kind, "asked": bare(tables), "options": {}}
-        what = {"gearopt": FORMAT, "kind": kind, **tables}
+        what = tables
     loaded = load_file(what, changes)
     names: dict[str, Any] = {
         "scene": loaded.kind,

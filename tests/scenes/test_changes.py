@@ -93,7 +93,7 @@ def test_a_result_says_what_was_changed():
     assert "changes" not in plain.options
     expected = plain.asked | {"duty": plain.asked["duty"] | {"power": "9 kW"}}
     assert result.asked == expected | {"stage": [{WIDTH: 0.6}, {WIDTH: 0.7}]}
-    own = gearopt.solve({"gearopt": 1, "kind": result.scene, **result.asked})
+    own = gearopt.solve(result.asked)
     assert own.file is None and own.file_sha256 is None and own.design == result.design
     assert gearopt.Result.from_json(result.to_json()) == pickle.loads(pickle.dumps(result))
     loaded = gearopt.solve(gearopt.load(ELEVATOR), changes)

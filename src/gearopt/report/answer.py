@@ -47,7 +47,7 @@ CHECKS = {  # of a certificate: what each number is
     "complementarity": "largest product of multiplier and slack, relative",
     "scale": "of the objective, which is zero: the gap is relative to it",
 }
-SENTENCES = ("title", "source")  # keys of a file that are sentences
+ELSEWHERE = ("gearopt", "kind", "title", "source")  # keys of a file that stand at other places
 EARLIEST = 1e-4  # s; the logarithmic axis begins here at the earliest
 
 
@@ -253,7 +253,7 @@ def assumptions(result: Result, measures: Measures) -> Section | None:
 
 def asked(result: Result, measures: Measures) -> Section | None:
     """Return the file's tables as it has them; None where there was no file."""
-    asked = {key: value for key, value in result.asked.items() if key not in SENTENCES}
+    asked = {key: value for key, value in result.asked.items() if key not in ELSEWHERE}
     if not asked:
         return None
     source = result.asked.get("source")

@@ -115,8 +115,9 @@ def load(
     if changes:
         name += " (changed)"
         content = changed(content, changes, name)
+    asked = _asked(content)
     kind, scene = _scene(content, name, (*before, folder.resolve()))
-    return Loaded(scene, kind, _asked(content), file, digest, bare(as_written(changes)))
+    return Loaded(scene, kind, asked, file, digest, bare(as_written(changes)))
 
 
 def _bytes(path: str | Path) -> bytes:
@@ -143,8 +144,8 @@ def _from_python(tables: Mapping[str, Any], name: str) -> dict[str, Any]:
 
 
 def _asked(content: dict[str, Any]) -> dict[str, Any]:
-    """Return what a file asks for, as JSON holds it: without its head and the user's own tables."""
-    return {k: bare(v) for k, v in content.items() if k not in HEAD and not k.startswith("x-")}
+    """Return what a file asks for, as JSON holds it, without the user's own tables."""
+    return {k: bare(v) for k, v in content.items() if not k.startswith("x-")}
 
 
 def bare(value: Any) -> Any:
