@@ -1,13 +1,15 @@
 """The public names are those of `__all__`, each documented."""
 
+import copy
 import inspect
+import pickle
 import subprocess
 import sys
 
 import pytest
 
 import gearopt
-from gearopt import api
+from gearopt import Param, Problem, SceneError, Terms, Var, api
 from gearopt.optimise.result import Budget
 
 
@@ -31,3 +33,36 @@ def test_a_name_is_imported_when_it_is_asked_for():
 def test_public_names_are_documented():
     for name in gearopt.__all__:
         assert inspect.getdoc(getattr(gearopt, name)), name
+
+
+def other_than(what):
+    """It as another process gets it, and its deep copy."""
+    return pickle.loads(pickle.dumps(what)), copy.deepcopy(what)
+
+
+def test_errors_reach_other_processes_whole():
+    """A pool of processes hangs on an error that cannot be unpickled."""
+    with pytest.raises(SceneError) as wrong:
+        gearopt.load({"gearopt": 1, "kind": "drive", "duty": {"power": "7 kg"}, "gaers": {}})
+    assert len(wrong.value.errors) > 2
+    for other in other_than(wrong.value):
+        assert str(other) == str(wrong.value) and other.fix == wrong.value.fix
+        assert [vars(e).keys() for e in other.errors] == [
+            vars(e).keys() for e in wrong.value.errors
+        ]
+        assert [e.key for e in other.errors] == [e.key for e in wrong.value.errors]
+
+
+def text(x, p):
+    return Terms({"cost": x.a + p.k / x.a})
+
+
+def test_problems_that_were_solved_are_copied_and_reach_other_processes():
+    """What was traced is left behind: casadi's expressions cannot be copied."""
+    problem = Problem("own", (Var("a", "", 0.1, 9.0, 1.0),), (Param("k", "", 1.0),), text)
+    found = gearopt.solve(problem.at(k=4.0))
+    assert found.value == pytest.approx(4.0, rel=1e-12)
+    for other in other_than(problem):
+        assert other == problem and not other.memo
+        assert gearopt.solve(other.at(k=4.0)).value == found.value
+    assert all(other == found for other in other_than(found))

@@ -70,6 +70,11 @@ class SceneError(GearoptError):
             lines[self.SHOWN :] = [f"{self._name()}: and {left} more"]
         super().__init__("\n".join(lines))
 
+    def __reduce__(self) -> tuple[type, tuple[object, ...]]:
+        """What copies and other processes build it from: its text alone would not do."""
+        place = self.file, self.key, self.value
+        return SceneError, (*place, self.rule, self.remedy, self.fix, self.errors[1:])
+
     def _name(self) -> str:
         return "".join(c if c.isprintable() else "?" for c in self.file)
 

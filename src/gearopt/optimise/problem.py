@@ -6,7 +6,7 @@ The same text is run by numpy on whole populations (`Problem.batch`), traced onc
 
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -61,6 +61,11 @@ class Batch(NamedTuple):
     report: dict[str, Array]
 
 
+def declared(problem: Any) -> tuple[type, tuple[Any, ...]]:
+    """Return the class of a problem and the arguments it was made from."""
+    return type(problem), tuple(getattr(problem, f.name) for f in fields(problem) if f.init)
+
+
 @dataclass(frozen=True)
 class Problem:
     """An optimisation problem: minimise one term under limits <= 1 and equal rows = 1.
@@ -72,7 +77,8 @@ class Problem:
     vectorised: the text also takes arrays (N,) of N points for its scalars; where it does not say
     so, gearopt finds out whether it may (`evaluation`). relaxed: a continuous problem whose limits
     every point of this one meets, with the keys of a file at its parameters: what `explain` takes
-    for the limits and their conflict.
+    for the limits and their conflict. It goes to other processes as it was declared, if its text is
+    a function that they can import.
     """
 
     name: str
@@ -107,6 +113,10 @@ class Problem:
             raise ValueError(f"problem {self.name}: parameter {twice!r} is declared twice")
         if not names:
             raise ValueError(f"problem {self.name} has no variables")
+
+    def __reduce__(self) -> tuple[type, tuple[Any, ...]]:
+        """What copies and other processes build it from: all but what was traced and built."""
+        return declared(self)
 
     def _sharing(self, **changes: Any) -> "Problem":
         """Return the problem with other fields; what was traced and built is kept."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.optimise.evaluation import blaming
-from gearopt.optimise.problem import Batch, Problem, Row, Rows, one_objective
+from gearopt.optimise.problem import Batch, Problem, Row, Rows, declared, one_objective
 from gearopt.optimise.terms import Array, Named, Number, Param, Terms, Var, checked, flat, spread
 
 
@@ -58,6 +58,10 @@ class Conic:
 
     def __post_init__(self) -> None:
         _ = self._declared
+
+    def __reduce__(self) -> tuple[type, tuple[Any, ...]]:
+        """What copies and other processes build it from: all but what was canonicalised."""
+        return declared(self)
 
     @cached_property
     def _declared(self) -> Problem:
