@@ -9,6 +9,7 @@ import typer
 
 import gearopt
 from gearopt import Front
+from gearopt.cli.app import told
 from gearopt.cli.reporting import report
 from gearopt.errors import GearoptError
 from gearopt.optimise.pareto.front import FrontPoint, Growth, Impossible, Objective
@@ -126,6 +127,40 @@ def test_many_edits_of_kept_files(kind, seed, kept, tmp_path, capsys):
     rng = random.Random(100 + seed)
     for _ in range(25):
         assert held(edited(kept[kind], rng), tmp_path, capsys)
+
+
+CODES = "\x1b]0;x\x07\x9b31m\u202e\u2066\x00\r"  # of terminals: title, colour, direction, bell
+
+
+@pytest.mark.parametrize("kind", ("drive", "servo", "packing", "comparison", "front", "impossible"))
+def test_codes_for_terminals_do_not_reach_them(kind, kept, tmp_path, capsys):
+    """In texts and keys at whatever place; a message of refusal goes the way of all messages."""
+    rng, path, shown = random.Random(kind), tmp_path / "kept.json", 0
+    for _ in range(12):
+        data = json.loads(json.dumps(kept[kind]))
+        *way, last = rng.choice(list(places(data)))
+        at = data
+        for key in way:
+            at = at[key]
+        value = at.pop(last)
+        if isinstance(at, list):
+            at.insert(last, f"{CODES}{value}")
+        elif isinstance(value, str):
+            at[last] = f"{value}{CODES}"
+        else:
+            at[f"{last}{CODES}"] = value
+        path.write_text(json.dumps(data), encoding="utf-8")
+        try:
+            report(path)
+        except (GearoptError, typer.Exit) as ended:
+            said = capsys.readouterr().out + (
+                told(ended) if isinstance(ended, GearoptError) else ""
+            )
+        else:
+            said = capsys.readouterr().out
+        assert said and not set(CODES) - set("]0;x31m") & set(said)
+        shown += "gearopt: " not in said
+    assert shown or kind == "comparison"
 
 
 SET = [

@@ -104,11 +104,21 @@ def test_csv_holds_the_numbers_in_full(elevator):
 
 
 def test_csv_of_odd_words_reads_back():
-    odd = ['a "quoted", one', "two\nlines", "=1+1", "ä³"]
+    odd = ['a "quoted", one', "two\nlines", "1=1", "ä³"]
     table = Table("odd, name [mm]", ("x", "y"), [(word, 0.1) for word in odd])
     assert rows(table.csv())[1:] == [[word, "0.1"] for word in odd]
     assert table.stem == "odd-name-mm"
     assert unquote(table.link).endswith(table.csv())
+
+
+def test_no_text_of_a_csv_is_a_formula():
+    """A spreadsheet computes what begins so, and `HYPERLINK` sends it away."""
+    texts = ('=HYPERLINK("http://x")', "+1+1", "-1+1", "@SUM(1)", "\t=1", "\r=1", " =1", "\uff1d1")
+    kept = ("-3.5", "+1e-3", "a=b", -3.5, -1, 1e-300)
+    table = Table("odd", ("=x", "y"), [(k, value) for k, value in enumerate((*texts, *kept))])
+    heads, *found = csv.reader(io.StringIO(table.csv(), newline=""))
+    assert heads == ["'=x", "y"]
+    assert [row[1] for row in found] == [*(f"'{text}" for text in texts), *map(str, kept)]
 
 
 def test_every_table_has_its_csv_and_names_do_not_meet(elevator):

@@ -12,6 +12,7 @@ from gearopt.cli.watching import unbroken
 from gearopt.errors import GearoptError
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
+from gearopt.report.screen import Screen, harmless
 
 HELP = "\n\n".join(
     (
@@ -105,7 +106,7 @@ def front_code(front: Front) -> int:
 
 def told(wrong: GearoptError) -> str:
     """Return a line for every mistake that an error names."""
-    return "\n".join(f"gearopt: {line}" for line in str(wrong).splitlines())
+    return "\n".join(f"gearopt: {harmless(line)}" for line in str(wrong).splitlines())
 
 
 def print_whole(text: str, end: str = "\n") -> None:
@@ -116,8 +117,8 @@ def print_whole(text: str, end: str = "\n") -> None:
 
 def console() -> Console:
     """Return the terminal; wide where it is a pipe."""
-    found = Console(highlight=False)
-    return found if found.is_terminal else Console(highlight=False, width=110)
+    found = Screen(highlight=False)
+    return found if found.is_terminal else Screen(highlight=False, width=110)
 
 
 def numbers(option: str, pairs: list[str]) -> dict[str, float]:

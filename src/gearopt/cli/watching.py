@@ -16,6 +16,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Event, Watch
 from gearopt.optimise.scale import gap
 from gearopt.report.measures import METRIC, Measures
+from gearopt.report.screen import Screen
 
 PATIENCE = 0.5  # seconds of a run without a line about it
 PAUSE = 0.2  # seconds between one line and the next
@@ -44,7 +45,7 @@ def following(
     second, whether or not the run has anything to report. limit: seconds that it may take.
     """
     stopped = False
-    screen = Console(stderr=True, highlight=False)
+    screen = Screen(stderr=True, highlight=False)
     line = _Line(limit)
     status = screen.status(line) if screen.is_terminal and not quiet else None
     begin = threading.Timer(PATIENCE, status.start) if status is not None else None

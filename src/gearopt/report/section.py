@@ -19,6 +19,9 @@ from gearopt.report.pages.row import Row
 from gearopt.report.pages.sheet import Drawing
 from gearopt.report.words import number, share
 
+# What spreadsheets take for formulas (wide signs in East Asian ones), unless it is a number.
+FORMULA = re.compile(r"\s*[=+\-@\uff1d\uff0b\uff0d\uff20]|[\t\r\n]")
+NUMBER = re.compile(r"[+-]?[0-9]*\.?[0-9]+([eE][+-]?[0-9]+)?")
 LONG = 24  # rows; a longer table may break between rows when it is printed
 
 
@@ -187,8 +190,8 @@ class Table:
         writer = csv.writer(text, lineterminator="\r\n")
         heads, rows = self.values
         if any(heads):
-            writer.writerow(heads)
-        writer.writerows([_plain(value) for value in row] for row in rows)
+            writer.writerow(map(_csv, heads))
+        writer.writerows(map(_csv, row) for row in rows)
         return text.getvalue()
 
     @property
@@ -259,6 +262,14 @@ def percent(used: float | None) -> Cell:
     if used is None:
         return Cell(None, "")
     return Cell(100.0 * used, share(used), min(1.0, max(0.0, used)))
+
+
+def _csv(value: Any) -> Any:
+    """Return a value as CSV holds it: before a text that a spreadsheet would compute stands a '."""
+    text = _plain(value)
+    if not isinstance(text, str) or NUMBER.fullmatch(text) or not FORMULA.match(text):
+        return text
+    return f"'{text}"
 
 
 def _plain(value: Any) -> Any:

@@ -20,6 +20,7 @@ from gearopt.report.answer import WAYS, decided
 from gearopt.report.explained import of_influences
 from gearopt.report.kinds import kind_of
 from gearopt.report.measures import METRIC, SYSTEMS, Measures, gap_percent
+from gearopt.report.screen import harmless
 from gearopt.report.section import Table
 from gearopt.report.words import (
     EXACT,
@@ -56,7 +57,12 @@ def lines(result: Result) -> str:
         rows += filter(None, [result.message or proof])
     for remedy in result.report.get("ways_out", {}).get("remedies", ())[:1]:
         rows.append(f"possible with {' and '.join(map(edit, remedy['changes']))}")
-    return "\n  ".join(cut(row, LONGEST) for row in rows)
+    return _joined(rows)
+
+
+def _joined(rows: Sequence[str]) -> str:
+    """Return the lines of an answer, as a terminal may print them."""
+    return "\n  ".join(harmless(cut(row, LONGEST)) for row in rows)
 
 
 def _head(result: Result) -> str:
@@ -128,7 +134,7 @@ def explained_lines(found: Explanation) -> str:
         largest = sorted(slopes, key=lambda key: -abs(slopes[key]))[:MOST]
         words = ", ".join(f"{key} {slopes[key]:+.4g}" for key in largest)
         rows.append(f"sensitivities: {words}")
-    return "\n  ".join(rows)
+    return _joined(rows)
 
 
 def _names(found: Explanation, limits: Sequence[str]) -> str:
@@ -146,7 +152,7 @@ def compared_lines(found: Comparison) -> str:
     for group in found.groups:
         rows.append(comparison_words.reference(group))
         rows += (f"{row.method}: {comparison_words.verdict(group, row)}" for row in group.rows)
-    return "\n  ".join(rows)
+    return _joined(rows)
 
 
 def fragment(result: Result) -> str:
@@ -184,7 +190,7 @@ def front_lines(found: Front) -> str:
     """Return what was found of a Pareto front, how sure it is, and the designs picked."""
     rows = [f"{front.title(found)}: {front.verdict(found)[0]}"]
     rows += [*front.decided(found), *front.picked(found)]
-    return "\n  ".join(cut(row, LONGEST) for row in rows)
+    return _joined(rows)
 
 
 def front_fragment(found: Front) -> str:
