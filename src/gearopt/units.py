@@ -112,7 +112,8 @@ OFFSETS = {"degF": Fraction(-32)}  # of a unit whose zero is another
 
 # unit -> other ways to write it, read as that unit
 SPELLINGS: dict[str, tuple[str, ...]] = {
-    "rpm": ("U/min", "r/min", "rev/min"),
+    "rpm": ("U/min", "r/min", "rev/min", "Upm", "UPM", "upm"),
+    "PS": ("cv", "ch"),
     "1/min": ("min^-1", "min-1", "min\u207b\u00b9", "/min"),
     "1/s": ("s^-1", "s-1", "s\u207b\u00b9", "U/s", "r/s", "rev/s"),
     "deg": ("\u00b0", "\u00ba", "degree", "degrees"),  # the raised o is taken for a degree sign
@@ -123,7 +124,7 @@ SPELLINGS: dict[str, tuple[str, ...]] = {
     "um/kN": ("\u00b5m/kN", "\u03bcm/kN"),
     "um/N": ("\u00b5m/N", "\u03bcm/N"),
     "in": ("inch", "inches"),
-    "1/in": ("/in", "in^-1", "in\u207b\u00b9", "DP"),
+    "1/in": ("/in", "in^-1", "in\u207b\u00b9", "DP", "dp", "1/inch", "/inch"),
     "HB": ("HBW", "HBS", "BHN"),
     "h": ("hours", "hour", "hr", "hrs"),
     "degC": ("\u00b0C", "\u2103", "C"),

@@ -148,7 +148,7 @@ def test_other_files_stand_in_the_working_directory(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("changes", "key", "words"),
     [
-        ({"duty.pwoer": "9 kW"}, "duty.pwoer", "unknown key; known here: power"),
+        ({"duty.pwoer": "9 kW"}, "duty.pwoer", "unknown key beside power, which"),
         ({"duty.power": 9}, "duty.power", 'Write power = "9 kW"'),
         ({"duty.power": "9 kw"}, "duty.power", 'Write power = "9 kW"'),
         ({"layuot.shaft_stress": "40 MPa"}, "layuot", "Did you mean layout?"),

@@ -40,7 +40,8 @@ NO_FIX = (
     "has a whole number of",
     "has a NUL",
     "has a comma, which may separate thousands or decimals",
-    "is not supported yet",
+    "has another name here",
+    "is not a key here",
 )
 VALIDATOR = jsonschema.Draft202012Validator(json_schema("drive"))
 

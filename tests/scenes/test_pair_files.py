@@ -66,10 +66,13 @@ WRONG = [
     ({"sharing.loads": [1, 1]}, r"names a load twice\. Write loads = \[1\.0\]"),
     ({"sharing.loads": []}, r"loads = \[\]: is empty"),
     ({"sharing.error": 5}, r"error = 5: is not above 0 and at most 1\. Write error = \"5 %\""),
-    ({"sharing.load": [1]}, r"sharing\.load = .*Here it is called loads, in \[sharing\]"),
+    ({"sharing.load": [1]}, r"sharing\.load = .*Write loads, in \[sharing\]"),
     ({"sharing.positions": 3}, "positions = 3: is not a whole number from 12 to 5000"),
-    ({"stage.face_widht": "3 mm"}, r"stage\[1\]\.face_widht: unknown key. Did you mean face_width"),
-    ({"layout": {}}, "layout = .*is not supported yet.*kind = .drive. with one"),
+    (
+        {"stage.face_widht": "3 mm"},
+        r"stage\[1\]\.face_widht = .* beside face_width, which may be meant. Remove it",
+    ),
+    ({"layout": {}}, "layout = .*is not a key here.*kind = .drive. with one"),
 ]
 
 

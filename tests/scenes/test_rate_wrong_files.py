@@ -122,7 +122,7 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         "overload_factor",
         "application_factor",
         "rating.application_factor = 1.25",
-        "Nearest: overload_factor of [rating]",
+        "Write overload_factor, in [rating]",
     ),
     "one J": (
         GIVEN,
@@ -165,7 +165,7 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         "# helix_angle",
         'wheel_hand = "right"\n# helix_angle',
         'stage[1].wheel_hand = "right"',
-        "Here it is called pinion_hand, in a [[stage]]; the wheel has the other hand",
+        "Write pinion_hand, in a [[stage]]; the wheel has the other hand",
     ),
     "wheel with fewer teeth": (
         "wheel_teeth = 60",
@@ -196,13 +196,13 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         GIVEN,
         "[rating.given]\nY_J = 0.3\n#",
         "rating.given.Y_J = 0.3",
-        "Here it is called J, in [rating.given]",
+        "Write J, in [rating.given]",
     ),
     "teeth in the table of the pinion": (
         "profile_shift = 0.2",
         "teeth = 20",
         "stage[1].pinion.teeth = 20",
-        "Here it is called pinion_teeth",
+        "Write pinion_teeth",
     ),
     "no rating": (RATING, "", "limits", "to rate given gears, write a table [rating]"),
 }

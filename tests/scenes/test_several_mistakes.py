@@ -10,8 +10,10 @@ from mutations import typo
 from scene_files import BASES, keys, parse, put, rename
 
 from gearopt.errors import SceneError
-from gearopt.scenes.reading.load import read, scene_module
-from gearopt.scenes.reading.not_yet import CALLED, NEAREST
+from gearopt.scenes.reading.absent import absent, option
+from gearopt.scenes.reading.called import CALLED
+from gearopt.scenes.reading.load import kinds, read, scene_module
+from gearopt.scenes.reading.not_yet import NEAREST
 from gearopt.scenes.reading.remedy import tables
 from gearopt.scenes.reading.toml import dotted
 
@@ -45,13 +47,12 @@ Write power = "7.5 kW"
 gearopt: wrong.toml: duty.input_sped: unknown key. Did you mean input_speed?
 gearopt: wrong.toml: duty.output_speed = "66,5 rpm": has a comma: the decimal sign is a \
 point. Write output_speed = "66.5 rpm"
-gearopt: wrong.toml: bearings = {life = "20000 h"}: is not supported yet. Nearest: \
+gearopt: wrong.toml: bearings = {life = "20000 h"}: is not a key here. Nearest: \
 bearing_diameters and bearing_widths of [layout]
 gearopt: wrong.toml: gears.helix_angle = "95 deg": is above 45 deg. Write, for example, \
 helix_angle = "25 deg"
-gearopt: wrong.toml: stage[1].material = "16MnCr5": is not supported yet. Nearest: treatment, \
-grade and hardness in [gears] or [stage.pinion], for a [rating], which limits sizes where [limits] \
-has no k_factor
+gearopt: wrong.toml: stage[1].material = "16MnCr5": is not a key here. Nearest: treatment, grade \
+and hardness of a gear, or tables [[material]] to choose from, with a [rating]
 gearopt: wrong.toml: limits.k_factor = "2 N": has the unknown unit N; units of stress: MPa, Pa, \
 kPa, GPa, bar, N/mm^2, psi, ksi. Write, for example, k_factor = "2.07 MPa"
 gearopt: wrong.toml: limits.pinion_teeth: is missing. Write, for example, pinion_teeth = [20, 40]
@@ -151,8 +152,8 @@ def test_the_command_refuses_random_mistakes(here, tmp_path):
         ("stage[1]", "addendum_modification = 0.5", "profile_shift, in [stage.pinion]"),
         ("gears", "gear_quality = 6", 'kind = "servo"'),
         ("limits", "safety_factor = 1.5", "minimum_bending_safety"),
-        ("duty", "application_factor = 1.25", "multiply it by the factor"),
-        ("gears", 'lubricant = "VG 220"', "scuffing is not checked"),
+        ("duty", "service_factor = 1.25", "multiply duty.power by the factor"),
+        ("gears", 'lubricant = "VG 220"', "oil_grade of [rating.iso6336]"),
         ("gears", 'steel = "16MnCr5"', "treatment, grade and hardness"),
         ("duty", 'output-torque = "900 N m"', "power is torque times angular speed"),
     ],
@@ -161,18 +162,18 @@ def test_what_is_not_supported_yet_names_what_stands_nearest(table, line, said):
     head = "[[stage]]" if table.startswith("stage") else f"[{table}]"
     (wrong,) = mistakes(BASES["elevator"].replace(head, f"{head}\n{line}", 1)).errors
     name = line.split(" = ")[0]
-    assert (wrong.key, wrong.rule) == (f"{table}.{name}", "is not supported yet")
+    assert (wrong.key, wrong.rule) == (f"{table}.{name}", "is not a key here")
     assert said in wrong.remedy and wrong.fix is None
 
 
 def test_the_letters_of_the_field_are_told_their_keys():
     text = BASES["elevator"].replace("[gears]", '[gears]\nbeta = "20 deg"\nnumber_of_stages = 2')
     first, second = mistakes(text).errors
-    assert first.remedy == "Here it is called helix_angle, in [gears]" and first.fix is None
-    assert second.remedy == "Here it is called stages, at the top of the file"
+    assert first.remedy == "Write helix_angle, in [gears]" and first.fix is None
+    assert second.remedy == "Write stages, at the top of the file"
     scene = scene_module("drive").Scene
     known = {*scene.model_fields, *(k for _, t in tables(scene) for k in t.model_fields)}
-    for names, there in CALLED["drive"].items():
+    for there, names in CALLED["drive"].items():
         assert there.split(",")[0].split(" ")[0] in known and not known & set(names.split())
 
 
@@ -182,7 +183,7 @@ def test_every_key_of_what_stands_nearest_is_known(kind, names):
     scene = scene_module(kind).Scene
     held = {title.strip("[]"): table for title, table in tables(scene)}
     known = {*scene.model_fields, *(k for t in held.values() for k in t.model_fields)}
-    known |= {"gear_volume", "sum_of_centre_distances"}  # values
+    known |= {"gear_volume", "sum_of_centre_distances", "mesh_loss"}  # values
     way = NEAREST[kind][names]
     assert set(re.findall(r"\b[a-z]+(?:_[a-z]+)+\b", way)) <= known
     assert {t for t in re.findall(r"\[([a-z_.]+)\]", way)} <= held.keys()
@@ -193,8 +194,8 @@ def test_every_key_of_what_stands_nearest_is_known(kind, names):
 @pytest.mark.parametrize(
     ("head", "line", "said"),
     [
-        ("[motor]", 'max_speed = "800 rad/s"', "Here it is called speed_limit, in [motor]"),
-        ("[train]", 'backlash = "0.1 mm"', "Here it is called minimum_backlash, in a [[mesh]], "),
+        ("[motor]", 'max_speed = "800 rad/s"', "Write speed_limit, in [motor]"),
+        ("[train]", 'backlash = "0.1 mm"', "Write minimum_backlash, in a [[mesh]], "),
         ("", '[backlash]\nerror = "1 arcmin"', "or, at the output, error, in [accuracy]"),
     ],
 )
@@ -225,6 +226,84 @@ def test_weight_is_mass_and_volume_is_asked_back():
     assert wrong.fix is None and "gear_volume" in wrong.remedy and "box_volume" in wrong.remedy
     (wrong,) = mistakes(base.replace('"weight"', '"centre_distance"')).errors
     assert "sum_of_centre_distances" in wrong.remedy
+
+
+@pytest.mark.parametrize(
+    ("head", "line", "said"),
+    [
+        ("[gears]", "planets = 3", "= 3: planetary gear sets are not supported. Remove it"),
+        ("[[stage]]", "sun_teeth = 20", "= 20: planetary gear sets are not supported. Remove it"),
+        ("[duty]", "K_A = 1.25", "has another name here. Write overload_factor, in [rating]"),
+        ("[limits]", "SFmin = 1.4", "Write minimum_bending_safety, in [rating]"),
+        ("[gears]", "micropitting = 1", "micropitting (ISO/TS 6336-22) is not rated. Remove it"),
+        ("[limits]", "minimum_scuffing_safety = 1.2", "is not rated. Remove it"),
+        ("[gears]", 'shaft_diameter = "30 mm"', "Write shaft_diameters, in [layout]"),
+        ("[gears]", 'Lagerabstand = "90 mm"', "is not a key here. It follows from the layout"),
+        ("[gears]", "KHbeta = 1.2", "Write K_Hbeta, in [rating.iso6336.given]"),
+        ("[gears]", 'Achsabstand = "90 mm"', "Nearest: centre_distance of a [[stage]]"),
+        ("[[stage]]", 'center_distance = "90 mm"', "Write centre_distance, in a [[stage]]"),
+        ("[[stage]]", "pinion_tooth = 20", "unknown key. Did you mean pinion_teeth?"),
+        ("[gears]", 'k_faktor = "2 MPa"', "unknown key; known here: "),
+        ("[limits]", 'k_faktor = "2 MPa"', "Write k_factor, in [limits]"),
+        ("[duty]", 'powr = "2 kW"', "unknown key beside power, which may be meant. Remove it"),
+        ("[duty]", 'method = "ipopt"', "run `gearopt solve FILE --method NAME`"),
+        ("[[stage]]", 'module = "7 in"', 'is a module of 177.8 mm. Write "7 1/in" for a diametral'),
+        ("[[stage]]", 'diametral_pitch = "8 DP"', "Write diametral_pitch = 8, without a unit"),
+        ("[[stage]]", "pinion_teeth = -20", "Write pinion_teeth = 20"),
+    ],
+)
+def test_terms_of_the_field_are_answered_by_their_meaning(head, line, said):
+    (wrong,) = mistakes(BASES["elevator"].replace(head, f"{head}\n{line}", 1)).errors
+    assert said in str(wrong)
+
+
+@pytest.mark.parametrize(
+    ("written", "said"),
+    [
+        ('input_speed = "1.450 U/min"', 'Write "1450 rpm" or "1.450 rpm"'),
+        ('input_speed = "1.450,5 U/min"', 'Write input_speed = "1450.5 rpm"'),
+        ('input_speed = "1\'450 rpm"', 'Write input_speed = "1450 rpm"'),
+        ("ratio = 0.333", "input and output exchanged. Write ratio = 3.003"),
+        ('ratio = "1:20"', "input and output exchanged. Write ratio = 20"),
+        ('ratio = "20:1"', "is written with a colon. Write ratio = 20"),
+        ("ratio = 0.0000001", "is not between 1 and 1000000"),
+    ],
+)
+def test_numbers_are_answered_as_they_were_meant(written, said):
+    base = BASES["elevator"].replace('output_speed = "66.5 rpm"', "ratio = 20")
+    name = written.split(" =")[0]
+    (wrong,) = mistakes(re.sub(rf"(?m)^{name} = .*$", written, base, count=1)).errors
+    assert said in str(wrong)
+
+
+@pytest.mark.parametrize(
+    ("kind", "gears"),
+    [
+        ("planetary", "planetary gear sets"),
+        ("Planetengetriebe", "planetary gear sets"),
+        ("worm_drive", "worm gears"),
+        ("bevel", "bevel and hypoid gears"),
+        ("rack", "racks"),
+        ("cycloidal_gearbox", "cycloidal gears"),
+    ],
+)
+def test_gears_that_no_kind_has_are_named_with_the_kinds(kind, gears):
+    (wrong,) = mistakes(BASES["elevator"].replace('"drive"', f'"{kind}"')).errors
+    assert (wrong.key, wrong.rule) == ("kind", f"{gears} are not supported") and wrong.fix is None
+    assert all(re.search(rf"\b{name}\b", wrong.remedy) for name in kinds())
+
+
+def test_no_key_of_a_file_is_called_absent():
+    for kind in kinds():
+        scene = scene_module(kind).Scene
+        known = {*scene.model_fields, *(k for _, t in tables(scene) for k in t.model_fields)}
+        assert not [key for key in known if absent(key) or option(key)]
+
+
+def test_files_of_other_formats_are_named():
+    rexs = '<?xml version="1.0"?>\n<!-- by a program -->\n<model version="1.4"></model>'
+    for text, form in ((rexs, "a REXS model (XML)"), ("<html>", "XML or HTML"), ("{}", "JSON")):
+        assert mistakes(text).rule == f"is {form}, not a problem file"
 
 
 def test_a_comma_in_a_bare_number_is_named():

@@ -27,7 +27,7 @@ class Duty(Table):
     output_speed: Annotated[Quantity | None, quantity("speed", "66.5 rpm")] = Field(
         None, description="Speed of the output shaft (or give ratio)"
     )
-    ratio: Annotated[Fraction | None, speed_ratio(20, 1)] = Field(
+    ratio: Annotated[Fraction | None, speed_ratio(20, 1, total=True)] = Field(
         None, description='Total ratio, input over output speed; also as a fraction, "127/120"'
     )
     ratio_tolerance: Annotated[Fraction, number("1 %", 0, Fraction(1, 2), True, True)] = Field(

@@ -38,6 +38,10 @@ WHEEL_TEETH = advised(
     whole(100, 5, 100_000),
     {r"-\d+": "Internal gears are not supported yet; numbers of external teeth are above zero"},
 )
+PITCH = advised(
+    number(10, 0, 2000),
+    {r"([\d.]+) *(?:1?/in|1/inch|dp|in\^-1)": r"Write diametral_pitch = \1, without a unit"},
+)
 PROPORTION = span(number(0.6, 0, 10), [0.3, 0.6], single=True)
 AIM = choice(
     *OBJECTIVES,
@@ -47,6 +51,8 @@ AIM = choice(
         '"box_volume" in a table [layout]',
         "size": 'Write "gear_volume" or "total_length" for that of the gears; for that of the box '
         'minimise = "box_volume" in a table [layout]',
+        "efficiency": 'Write "mesh_loss"',
+        "losses": 'Write "mesh_loss"',
         "centre_distance": 'Write "sum_of_centre_distances", of all stages',
     },
 )
@@ -130,7 +136,7 @@ class StageTable(Loaded):
     module: Annotated[Lengths | None, span(MODULE, "2 mm", single=True)] = Field(
         None, description="Normal module: fixed, or a range; or a diametral pitch in 1/in"
     )
-    diametral_pitch: Annotated[Fraction | None, number(10, 0, 2000)] = Field(
+    diametral_pitch: Annotated[Fraction | None, PITCH] = Field(
         None, description="Normal diametral pitch in 1/in, fixed, instead of module"
     )
     pinion_teeth: Annotated[tuple[int, int] | None, span(TOOTH_COUNT, 21, single=True)] = Field(

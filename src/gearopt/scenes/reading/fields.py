@@ -6,10 +6,9 @@ exactly as written (int or Decimal).
 """
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal
-from difflib import get_close_matches
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ from pydantic import BaseModel, ConfigDict
 from pydantic_core import PydanticCustomError, core_schema
 
 from gearopt import units
+from gearopt.scenes.reading.near import near
 from gearopt.units import Quantity
 
 LARGEST = Fraction(10) ** 30  # of any number in a file: beyond it lies a slip, not a gear
@@ -25,8 +25,15 @@ SMALLEST = 1 / LARGEST
 BEYOND = "is out of any sensible range (1e-30 to 1e30)"
 # A comma before three digits may separate thousands, so it is not taken for a decimal one.
 _NUMBER = r"(\+?[0-9]*(?:\.|,(?![0-9]{3}(?![0-9])))?[0-9]+(?:[eE][+-]?[0-9]{1,3})?)"
-_THOUSANDS = re.compile(r"\s*([0-9]{1,3}),([0-9]{3})\s*(|[A-Za-z][\w ^/*]*)\s*", re.ASCII)
+_THOUSANDS = re.compile(r"\s*([0-9]{1,3})([,.])([0-9]{3})\s*(|[A-Za-z][\w ^/*]*)\s*", re.ASCII)
 _FRACTION = re.compile(r"\s*([0-9]{1,30})\s*/\s*([0-9]{1,30})\s*", re.ASCII)
+_DIGITS = r"([0-9]{1,9}(?:\.[0-9]{1,9})?)"
+_QUOTIENT = re.compile(rf"\s*{_DIGITS}\s*(?:([:/])\s*{_DIGITS})?\s*", re.ASCII)
+_GROUPS = re.compile(  # 1 450, 1'450, 1.450,5 and 1,450.5: what separates thousands is certain
+    r"\s*([0-9]{1,3}(?:(?:[ '\u2019\u202f\u00a0][0-9]{3})+(?![0-9])"
+    r"|(?:\.[0-9]{3})+(?=,)|(?:,[0-9]{3})+(?=\.)))([.,][0-9]+)?\s*([^\s\d.,].*)"
+)
+_GERMAN = {"U/min": "rpm", "U/s": "1/s"}  # units of those who separate thousands by a point
 _SLIP = re.compile(rf"\s*{_NUMBER}\s*((?![eE][+-]?[0-9])[^\s\d.,].*?|1/\S+)?\s*")
 
 
@@ -136,12 +143,13 @@ def quantity(
             raise refuse(f"is a bare number: {dimension} needs a unit ({names})", right)
         if not isinstance(value, str):
             raise refuse(f"is not a text with a number and a unit of {dimension} ({names})")
+        if two := thousands(value):
+            sign = "comma" if "," in value else "point"
+            rule = f"has a {sign}, which may separate thousands or decimals"
+            raise refuse(rule, f'Write "{two[0]}" or "{two[1]}"', action="tell")
         try:
             found = units.parse(value, dimension)
         except ValueError as reason:
-            if two := thousands(value):
-                rule = "has a comma, which may separate thousands or decimals"
-                raise refuse(rule, f'Write "{two[0]}" or "{two[1]}"', action="tell") from None
             raise refuse(str(reason), usable(meant(value, dimension, usual))) from None
         if rule := fault(found):
             raise refuse(rule, usable(value.strip().removeprefix("-")))
@@ -214,9 +222,37 @@ def number(
     return Reads(read, example, schema)
 
 
-def speed_ratio(example: Any, minimum: int) -> Reads:
-    """Read a ratio of speeds up to a million, exactly: a number, or a fraction as "127/120"."""
-    return number(example, minimum, 10**6, fraction=True)
+INCREASER = (
+    "is below 1: gearopt sizes reducers, and a loss-free speed increaser has the same gears with "
+    "input and output exchanged"
+)
+
+
+def speed_ratio(example: Any, minimum: int, total: bool = False) -> Reads:
+    """Read a ratio of speeds up to a million, exactly: a number, or a fraction as "127/120".
+
+    total: that of a drive; where it is below 1, that of the drive with its ends exchanged is told.
+    """
+    item = number(example, minimum, 10**6, fraction=True)
+
+    def read(value: Any, example: Any) -> Fraction:
+        try:
+            ratio: Fraction = item.reader(value, example)
+        except PydanticCustomError:
+            parts = _QUOTIENT.fullmatch(str(value)[:80])
+            above, below = (Fraction(p or 1) for p in (parts.group(1, 3) if parts else "00"))
+            if parts is None or not above or not below:
+                raise
+            if above < below <= 10**6 * above and total:
+                raise refuse(INCREASER, Decimal(f"{float(below / above):.5g}")) from None
+            if parts[2] != ":":
+                raise
+            ratio = above / below
+            write = ratio.numerator if ratio.denominator == 1 else str(ratio)
+            raise refuse("is written with a colon", write) from None
+        return ratio
+
+    return Reads(read, item.example, item.schema)
 
 
 def whole(example: int, minimum: int, maximum: int) -> Reads:
@@ -231,7 +267,8 @@ def whole(example: int, minimum: int, maximum: int) -> Reads:
         if isinstance(value, bool) or not isinstance(value, int):
             raise refuse("is not a whole number")
         if not minimum <= value <= maximum:
-            meant = minimum if value < minimum else None  # the largest is no sensible proposal
+            meant = minimum if 0 <= value < minimum else None  # the largest is no sensible one
+            meant = -value if minimum <= -value <= maximum else meant
             raise refuse(f"is not a whole number from {minimum} to {maximum}", meant)
         return value
 
@@ -267,7 +304,8 @@ def choice(
 def advised(item: Reads, ways: dict[str, str]) -> Reads:
     """Read an item; what is refused and matches a pattern is told what its sentence says.
 
-    ways: regular expressions of whole values as text, in any case; the first that fits counts.
+    ways: regular expressions of whole values as text, in any case; the first that fits counts, and
+    its groups stand in the sentence as in `re.Match.expand`.
     """
 
     def read(value: Any, example: Any) -> Any:
@@ -275,8 +313,8 @@ def advised(item: Reads, ways: dict[str, str]) -> Reads:
             return item.reader(value, example)
         except PydanticCustomError as wrong:
             text = str(value)[:80].strip() if isinstance(value, str | int) else ""
-            fits = (way for known, way in ways.items() if re.fullmatch(known, text, re.IGNORECASE))
-            if (way := next(fits, None)) is None:
+            tried = ((re.fullmatch(known, text, re.IGNORECASE), way) for known, way in ways.items())
+            if (way := next((fits.expand(way) for fits, way in tried if fits), None)) is None:
                 raise
             raise refuse((wrong.context or {})["rule"], way, action="tell") from None
 
@@ -310,26 +348,23 @@ def words() -> Reads:
     return Reads(read, "a text", {"type": "string", "maxLength": 1000})
 
 
-def near(word: str, names: Iterable[str]) -> str | None:
-    """Return the name that a word was probably meant to be, in any case; None if none is close.
-
-    A word that only one name begins with is that one.
-    """
-    plain = {name.lower(): name for name in names}
-    found = get_close_matches(re.sub(r"[-\s]+", "_", word[:80].lower()), plain, n=1)
-    begun = [name for name in plain if len(word) > 2 and name.startswith(f"{word.lower()} ")]
-    return plain[found[0]] if found else plain[begun[0]] if len(begun) == 1 else None
-
-
 def thousands(text: str) -> tuple[str, str] | None:
-    """Return both readings of "1,450 rpm", whose comma may part thousands; None without one."""
+    """Return both readings of "1,450 rpm", whose comma may separate thousands; None without one.
+
+    A point may do so only beside a German unit, as in "1.450 U/min".
+    """
     match = _THOUSANDS.fullmatch(text[:80])
-    unit = f" {match[3]}".rstrip() if match else ""
-    return match and (f"{match[1]}{match[2]}{unit}", f"{match[1]}.{match[2]}{unit}")
+    if match is None or (match[2] == "." and match[4].strip() not in _GERMAN):
+        return None
+    unit = f" {_GERMAN.get(match[4].strip(), match[4])}".rstrip()
+    return f"{match[1]}{match[3]}{unit}", f"{match[1]}.{match[3]}{unit}"
 
 
 def meant(text: str, dimension: str, usual: str) -> str:
-    """Return a text with its decimal comma and its unit put right; "" where that cannot be done."""
+    """Return a text with its separators and its unit put right; "" where that cannot be done."""
+    if groups := _GROUPS.fullmatch(text[:80]):
+        digits, rest, word = groups.groups("")
+        text = f"{re.sub('[^0-9]', '', digits)}{rest} {word}"
     match = _SLIP.fullmatch(text[:80])
     if match is None:
         return ""

@@ -6,7 +6,8 @@ from typing import Any
 
 from pydantic_core import PydanticCustomError
 
-from gearopt.scenes.reading.fields import Reads, near, refuse
+from gearopt.scenes.reading.fields import Reads, refuse
+from gearopt.scenes.reading.near import near
 from gearopt.units import Quantity
 
 

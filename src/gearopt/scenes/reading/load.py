@@ -17,16 +17,24 @@ from pydantic import BaseModel, ValidationError
 
 import gearopt.scenes
 from gearopt.errors import Fix, SceneError, SolveError, together
+from gearopt.scenes.reading.absent import KINDS_ARE, absent_kind
+from gearopt.scenes.reading.called import kind_called
 from gearopt.scenes.reading.changes import as_written, changed
-from gearopt.scenes.reading.fields import Opened, near
+from gearopt.scenes.reading.fields import Opened
 from gearopt.scenes.reading.files import LARGEST_FILE, first_bytes
-from gearopt.scenes.reading.not_yet import kind_called
+from gearopt.scenes.reading.near import near
 from gearopt.scenes.reading.remedy import translate, wrong_name, wrong_value
-from gearopt.scenes.reading.toml import cut, dotted
+from gearopt.scenes.reading.toml import cut, dotted, short
 
 FORMAT = 1
 SHARED = {"reading", "explaining", "parts"}  # of `gearopt.scenes`, what is no kind
 HEAD = ("gearopt", "kind")  # keys of every file
+FORMATS = {  # beginnings of files of other formats
+    r"\s*<(\?xml[\s\S]*?>\s*(<!--[\s\S]*?-->\s*)*<)?model\b": "a REXS model (XML)",
+    r"\s*<": "XML or HTML",
+    r"\s*\{": "JSON",
+}
+NOT_TOML = "Write the gears into a file in TOML: `gearopt new drive` prints one to start from"
 TABLES = "<tables>"  # from Python, in messages
 DEEPEST_KEY = r"(?:[\w-]\s*\.\s*){6000}"  # tomllib's time grows with the square: 1 s at 5000
 
@@ -209,11 +217,15 @@ def _head(content: dict[str, Any], file: str) -> tuple[str, list[SceneError]]:
         return kind, errors
     name = kind if isinstance(kind, str) else ""
     meant = near(name, kinds())
+    if not meant and (lacking := absent_kind(name)):
+        errors.append(SceneError(file, "kind", short(name), lacking, KINDS_ARE))
+        return "", errors
     likely = meant or _likely(content, kind_called(name))
     known = f"is not a known kind (known: {', '.join(kinds())})"
     rule = "is missing" if kind is None else known
-    errors.append(wrong_value(file, "kind", kind, rule, likely))
     sure = meant or not content.keys().isdisjoint(scene_module(likely).Scene.model_fields)
+    guessed = not sure and kind_called(name) is None
+    errors.append(wrong_value(file, "kind", kind, rule, likely, sample=guessed))
     return likely if sure else "", errors
 
 
@@ -244,6 +256,10 @@ def _parse(data: bytes, file: str) -> dict[str, Any]:
     if "\0" in text:
         rule = "has a NUL byte, as UTF-16 text and binary files have"
         raise SceneError(file, "", "", rule, "Save it with the encoding UTF-8")
+    if form := next(
+        (name for begin, name in FORMATS.items() if re.match(begin, text[:2000])), None
+    ):
+        raise SceneError(file, "", "", f"is {form}, not a problem file", NOT_TOML)
     if re.search(DEEPEST_KEY, text):
         raise _too_deep(file)
     try:

@@ -1,11 +1,32 @@
 """Modules in problem files: in mm, or as diametral pitches in 1/in; and their standard series."""
 
+from typing import Any
+
 from gearopt.physics.gears import DIAMETRAL_PITCHES, MODULES
-from gearopt.scenes.reading.fields import Reads, quantity
+from gearopt.scenes.reading.fields import Reads, quantity, refuse
 from gearopt.scenes.reading.lists import either
 from gearopt.units import Quantity
 
-MODULE = quantity("module", "2 mm")
+LARGEST_IN_INCHES = 25.4  # mm; beyond it the number is a diametral pitch
+
+
+def module() -> Reads:
+    """Read a normal module, or a diametral pitch; one of many inches is asked back."""
+    length = quantity("module", "2 mm", "1 m")
+
+    def read(value: Any, example: Any) -> Quantity:
+        found: Quantity = length.reader(value, example)
+        if found.unit in ("in", "ft") and found.value > LARGEST_IN_INCHES:
+            number = f"{float(found.number):.12g}"
+            rule = f"is a module of {found.value:.4g} mm"
+            way = f'Write "{number} 1/in" for a diametral pitch of {number}'
+            raise refuse(rule, way, action="tell")
+        return found
+
+    return Reads(read, length.example, length.schema)
+
+
+MODULE = module()
 FAMILIES = (("ISO 54 I", "ISO 54 I+II"), ("DP coarse", "DP coarse+fine"))  # the larger one last
 SERIES: dict[str, tuple[Quantity, ...]] = {
     **{name: tuple(Quantity(m, "mm", "module") for m in s) for name, s in MODULES.items()},

@@ -1,43 +1,64 @@
 """Keys that a gear engineer expects: what stands nearest to those that no kind knows yet.
 
-Those that are called otherwise here are named too.
-
 A key is found by its name in any table of a file, also where another table has a key of that name
 with another meaning, as the deviation `centre_distance` of a servo train's [[mesh]].
 """
 
-import re
+from gearopt.scenes.reading.absent import looked_up
 
-FACTORS = "application_factor service_factor overload_factor k_a ka"
+FACTORS = "service_factor load_factor betriebsfaktor"
 MATERIAL = (
-    "material materials pinion_material wheel_material gear_material steel hardness "
-    "surface_hardness heat_treatment yield_strength tensile_strength"
+    "material materials pinion_material wheel_material gear_material steel hardness werkstoff "
+    "surface_hardness heat_treatment yield_strength tensile_strength haerte"
 )
 SAFETY = (
     "safety_factor safety_factors safety s_h s_f minimum_safety contact_safety bending_safety "
-    "safety_factor_contact safety_factor_bending"
+    "safety_factor_contact safety_factor_bending required_safety sicherheit sicherheiten"
 )
 STRESS = (
     "allowable_stress allowable_stresses contact_stress hertz_stress hertzian_stress sigma_hlim "
     "sigma_flim sigma_h_lim sigma_f_lim sigma_h sigma_f endurance_limit tooth_root_stress "
-    "root_stress hertzian_pressure contact_pressure"
+    "root_stress hertzian_pressure contact_pressure allowable_bending_stress "
+    "allowable_contact_stress zulaessige_spannung hertz"
 )
 CENTRES = (
-    "centre_distance center_distance centre_distances center_distances axis_distance shaft_distance"
+    "centre_distance center_distance centre_distances center_distances axis_distance "
+    "shaft_distance achsabstand maximum_centre_distance maximum_center_distance"
 )
 SHIFT = (
     "profile_shift profile_shifts profile_shift_coefficient profile_shift_coefficients "
     "addendum_modification x1 x2"
 )
-QUALITY = "quality accuracy grade gear_quality accuracy_grade quality_grade iso_grade agma_quality"
-OIL = "lubricant lubrication oil viscosity oil_temperature temperature scuffing"
-LOSS = "efficiency mesh_efficiency friction_coefficient"
-LIFE = "life lifetime service_life life_hours operating_hours load_cycles cycles load_spectrum"
-RACK = "addendum dedendum addendum_coefficient dedendum_coefficient tip_radius rack tool profile"
-SHAPE = "gear_type gear_types internal ring_gear planetary planets bevel worm hypoid crossed_axes"
+QUALITY = (
+    "quality accuracy grade gear_quality accuracy_grade quality_grade iso_grade agma_quality "
+    "iso_quality_grade din_quality verzahnungsqualitaet qualitaet flankenqualitaet"
+)
+OIL = (
+    "lubricant lubrication oil viscosity oil_temperature temperature schmierstoff schmierung oel "
+    "viskositaet oil_type"
+)
+LOSS = "efficiency mesh_efficiency friction_coefficient wirkungsgrad eta mu"
+LIFE = (
+    "life lifetime service_life life_hours operating_hours load_cycles cycles load_spectrum "
+    "load_case load_cases duty_cycle lebensdauer lastkollektiv lastwechsel n_l"
+)
+RACK = (
+    "addendum dedendum addendum_coefficient dedendum_coefficient tip_radius rack tool profile "
+    "basic_rack reference_profile bezugsprofil h_ap h_fp rho_fp"
+)
+SHAPE = "gear_type gear_types"
 BODY = "rim_thickness web_thickness web hub_diameter bore bore_diameter lightening_holes"
-BEARINGS = "bearing bearings bearing_life bearing_type"
-CONTACT = "contact_ratio transverse_contact_ratio overlap_ratio noise"
+BEARINGS = "bearing bearings bearing_type lager"
+SPANS = "bearing_distance bearing_span bearing_spacing bearing_positions lagerabstand"
+DIAMETERS = (
+    "reference_diameter pitch_diameter base_diameter tip_diameter root_diameter outside_diameter "
+    "d1 d2 d_a1 d_a2 d_f1 d_f2 d_b1 d_b2 kopfkreisdurchmesser fusskreisdurchmesser "
+    "teilkreisdurchmesser"
+)
+CONTACT = (
+    "contact_ratio transverse_contact_ratio overlap_ratio noise profilueberdeckung "
+    "sprungueberdeckung eps_alpha eps_beta"
+)
 MONEY = "cost price costs budget maximum_cost"
 
 KEYS = frozenset(  # of the names above, those that a drive has as keys
@@ -55,43 +76,49 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
     "drive": {
         _but_keys(CENTRES): "Nearest: centre_distance of a [[stage]], or objective.minimise = "
         '"sum_of_centre_distances", or a [[place]] beside [layout], which says where a shaft is',
-        _but_keys(MATERIAL + " " + STRESS): "Nearest: treatment, grade and hardness in [gears] or "
-        "[stage.pinion], for a [rating], which limits sizes where [limits] has no k_factor",
+        _but_keys(MATERIAL + " " + STRESS): "Nearest: treatment, grade and hardness of a gear, or "
+        "tables [[material]] to choose from, with a [rating]",
         SAFETY: "Nearest: minimum_bending_safety and minimum_contact_safety of [rating], which "
         "limit sizes where [limits] has no k_factor and unit_load",
-        _but_keys(
-            FACTORS
-        ): "Nearest: overload_factor of [rating]; of sizes duty.power: multiply it by the factor",
+        FACTORS: "Nearest: overload_factor of [rating]; without one multiply duty.power by the "
+        "factor",
         _but_keys(SHIFT): "Nearest: profile_shift, in [stage.pinion] and [stage.wheel]",
         _but_keys(
             QUALITY
         ): "Nearest: quality of [rating], or accuracy_grade of [rating.iso6336]; or kind = "
         '"servo", which counts deviations and grades of gears',
-        _but_keys(
-            OIL
-        ): "Nearest: oil_viscosity and temperature of [rating]; scuffing is not checked",
+        _but_keys(OIL): "Nearest: oil_viscosity and temperature of [rating], or oil_grade of "
+        "[rating.iso6336]",
         _but_keys(
             LOSS
-        ): "Nearest: friction_coefficient or oil_viscosity of [rating]; sizes are those of "
-        "loss-free gears",
+        ): "Nearest: friction_coefficient or oil_viscosity of [rating], or objective.minimise = "
+        '"mesh_loss"; sizes are those of loss-free gears',
         _but_keys(LIFE): "Nearest: life of [rating], and tables [[load]]",
         _but_keys(
             RACK
         ): "Nearest: addendum, tool_addendum and tool_tip_radius, in [gears], [stage.pinion] or "
         "[stage.wheel]",
-        SHAPE: "Drives have external spur or helical gears on parallel shafts. Nearest: "
-        "gears.helix_angle",
+        SHAPE: "Drives have external gears on parallel shafts: helix_angle of [gears] says whether "
+        "spur or helical",
         _but_keys(
             BODY
         ): "Nearest: rim_over_module, web_over_face_width, bore and hub_over_bore, in [gears], "
         "[stage.pinion] or [stage.wheel]; holes in webs are not counted",
         BEARINGS: "Nearest: bearing_diameters and bearing_widths of [layout]",
-        "backlash flank_clearance": "Nearest: thickness_allowance of a gear and centre_distance "
-        'of a [[stage]]; kind = "servo" counts backlash and its causes',
+        SPANS: "It follows from the layout. Nearest: span of [layout], which says whether shafts "
+        "reach from wall to wall",
+        DIAMETERS: "It follows from module, teeth and profile_shift. Nearest: wheel_diameter of "
+        "[limits], the largest that is allowed; addendum and tip_alteration of a gear",
+        "backlash flank_clearance normal_backlash circumferential_backlash j_bn j_wt": "Nearest: "
+        "thickness_allowance of a gear and centre_distance of a [[stage]]; kind = "
+        '"servo" counts backlash and its causes',
         CONTACT: "The contact ratio is reported. Nearest: gears.helix_angle, which raises it",
-        MONEY: 'Nearest: objective.minimise = "mass", or "gear_volume"',
-        "torque input_torque output_torque": "Nearest: duty.power and input_speed: power is torque "
-        "times angular speed",
+        MONEY: 'Nearest: objective.minimise = "cost", with the price of every [[material]]',
+        "transverse_module m_t stirnmodul circular_pitch p_t p_n teilung": "Nearest: module, the "
+        "normal one: the transverse module times the cosine of helix_angle, or normal pitch over "
+        "pi",
+        "torque input_torque output_torque drehmoment antriebsmoment abtriebsmoment t1 t2 t_1 "
+        "t_2": "Nearest: duty.power and input_speed: power is torque times angular speed",
         "weight mass maximum_mass max_mass maximum_weight max_weight": "Nearest: "
         'objective.minimise = "mass", with its density',
         "depth length width height size": "Nearest: largest_width, largest_height and "
@@ -135,6 +162,22 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
         "orientation rotation axis tilt": "All axes are upright. Nearest: at of a [[cylinder]], "
         "which fixes its place",
     },
+    "strain_wave": {
+        "speed power input_speed output_speed rpm": "The gearing is loaded at rest. Nearest: "
+        "torque of [duty]",
+        "flexspline_teeth circular_spline_teeth number_of_teeth zaehnezahl": "They follow from "
+        "ratio of [duty]: the flexspline has twice as many teeth, the circular spline two more",
+        "helix_angle beta": "The teeth are straight. Nearest: face_width of [gears]",
+    },
+    "dynamics": {
+        "module helix_angle face_width profile_shift number_of_teeth": "Nearest: pair of [mesh], a "
+        "file of kind pair, whose teeth give the stiffness; or stiffness and wave of [mesh]",
+        "friction friction_coefficient": "Friction of teeth is not modelled. Nearest: damping of "
+        "[mesh]",
+        "transmission_error static_transmission_error": "The mesh is excited by its stiffness "
+        "alone. Nearest: wave of [mesh]",
+        "dt step time_step": "Nearest: error of [simulate], which sets the steps",
+    },
 }
 
 NEAREST["pair"] = NEAREST["drive"] | {
@@ -144,90 +187,15 @@ NEAREST["pair"] = NEAREST["drive"] | {
     "which is laid out, and sized by the rules of processes; a pair's contact is computed here",
     "stages number_of_stages num_stages stage_count": 'A pair is one. Nearest: kind = "drive"',
     SHAPE: "A pair has external spur gears, as the models of its contact are plane",
-    BEARINGS: "Shafts and bearings are rigid here. Nearest: bore of a gear, where it is held",
+    **dict.fromkeys(
+        (BEARINGS, SPANS, "shaft_diameter shaft_diameters wellendurchmesser"),
+        "Shafts and bearings are rigid here. Nearest: bore of a gear, where it is held",
+    ),
     "crowning lead_crowning helix_modification": "Plane models have no crowning: nothing varies "
     "across the face width",
 }
 
-CALLED: dict[str, dict[str, str]] = {  # kind -> other names of its keys -> what they are called
-    "drive": {
-        "z1 z_1 teeth_1 pinion.z pinion.teeth": "pinion_teeth, in a [[stage]] or [limits]",
-        "z2 z_2 teeth_2 wheel.z wheel.teeth": "wheel_teeth, in a [[stage]] or [limits]",
-        "m m_n mn normal_module": "module, in a [[stage]] or [limits]",
-        "b b1 b2 tooth_width facewidth": "face_width, in a [[stage]]",
-        "i u": "ratio in [duty], stage_ratio in a [[stage]]",
-        "beta": "helix_angle, in [gears]",
-        "alpha alpha_n": "pressure_angle, in [gears]",
-        "p_nd pnd dp": "diametral_pitch, in a [[stage]]",
-        "x1 x2 x_1 x_2 pinion.x wheel.x": "profile_shift, in [stage.pinion] and [stage.wheel]",
-        "q_v qv agma_quality": "quality, in [rating]",
-        "a_v av": "accuracy, in [rating]",
-        "hours required_life": "life, in [rating]",
-        "s_f_min s_fmin sf_min": "minimum_bending_safety, in [rating]",
-        "s_h_min s_hmin sh_min": "minimum_contact_safety, in [rating]",
-        "backup_ratio m_b": "rim_thickness, of a gear: the ratio is computed",
-        "y_j": "J, in [rating.given]",  # symbols of 2101
-        "z_i": "I, in [rating.given]",
-        "k_h": "K_m, in [rating.given]",
-        "z_e": "C_p, in [rating.given]",
-        "k_hb k_h_beta khbeta": "K_Hbeta, in [rating.iso6336.given]",  # of ISO 6336
-        "k_fb k_f_beta kfbeta": "K_Fbeta, in [rating.iso6336.given]",
-        "k_ha k_h_alpha khalpha": "K_Halpha, in [rating.iso6336.given]",
-        "k_fa k_f_alpha kfalpha": "K_Falpha, in [rating.iso6336.given]",
-        "z_epsilon": "Z_eps, in [rating.iso6336.given]",
-        "z_b z_d": "Z_BD, in [rating.iso6336.given]",
-        "y_drelt y_delta_rel_t": "Y_deltarelT, in [rating.iso6336.given]",
-        "y_rrel y_r_rel_t": "Y_RrelT, in [rating.iso6336.given]",
-        "nu_40 nu40": "oil_grade, in [rating.iso6336]",
-        "z_r": "C_f, in [rating.given]",
-        "z_w": "C_H, in [rating.given]",
-        "y_z": "K_R, in [rating.given]",
-        "y_theta": "K_T, in [rating.given]",
-        "sigma_fp": "s_at, in [rating.given]",
-        "sigma_hp": "s_ac, in [rating.given]",
-        "hand wheel_hand helix_hand hand_of_helix": "pinion_hand, in a [[stage]]; the wheel has "
-        "the other hand",
-        "p": "power, in [duty]",
-        "n1 n_1 n_in rpm speed input_rpm": "input_speed, in [duty]",
-        "n2 n_2 n_out output_rpm": "output_speed, in [duty]",
-        "number_of_stages num_stages stage_count": "stages, at the top of the file",
-    },
-    "servo": {
-        "max_speed maximum_speed": "speed_limit, in [motor]",
-        "backlash flank_clearance": "minimum_backlash, in a [[mesh]], or, at the output, error, in "
-        "[accuracy]",
-    },
-}
-
-CALLED["pair"] = CALLED["drive"] | {
-    "sharing.load": "loads, in [sharing]",
-    "c12 sharing.c12": "coupling, in [sharing]",
-    "model sharing.model stiffness": "level, in [sharing]",
-    "steps sharing.steps phases": "positions, in [sharing]",
-}
-
-KINDS = {
-    "gearbox gear_box gear_unit transmission reducer speed_reducer gear_reducer": "drive",
-    "gear_pair spur_pair spur_gears mesh": "pair",
-}
-
-
-def kind_called(name: str) -> str | None:
-    """Return the kind of file that another name stands for; None of any other name."""
-    return _found({"": KINDS}, "", name)
-
-
-def called(kind: str, name: str) -> str | None:
-    """Return what a key with another name is called here, and where; None of any other name."""
-    return _found(CALLED, kind, name)
-
 
 def nearest(kind: str, name: str) -> str | None:
-    """Return what stands nearest to a key that is not supported yet; None of any other name."""
-    return _found(NEAREST, kind, name)
-
-
-def _found(table: dict[str, dict[str, str]], kind: str, name: str) -> str | None:
-    plain = re.sub(r"[-\s]+", "_", name[:80].strip().lower())
-    found = (way for names, way in table.get(kind, {}).items() if plain in names.split())
-    return next(found, None)
+    """Return what stands nearest to a key that a kind does not have; None of any other name."""
+    return looked_up({way: names for names, way in NEAREST.get(kind, {}).items()}, name)

@@ -9,9 +9,14 @@ from typing import Any, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from gearopt.errors import Fix, SceneError
-from gearopt.scenes.reading.fields import Reads, near
-from gearopt.scenes.reading.not_yet import called, nearest
+from gearopt.scenes.reading.absent import absent, option, plain
+from gearopt.scenes.reading.called import called
+from gearopt.scenes.reading.fields import Reads
+from gearopt.scenes.reading.near import near
+from gearopt.scenes.reading.not_yet import nearest
 from gearopt.scenes.reading.toml import cut, dotted, short, toml_text
+
+OTHER_NAME = "has another name here"
 
 
 def wrong_value(
@@ -142,11 +147,18 @@ def _unknown(
     """Return the error for an unknown key: what it may mean, where it belongs, or what is known."""
     value, _ = _lookup(content, place)
     name, key, shown = str(place[-1]), dotted(place), cut(dotted(place), 80)
-    if way := nearest(kind, name):
-        return SceneError(file, shown, short(value), "is not supported yet", way)
     above = next((part for part in reversed(place[:-1]) if isinstance(part, str)), "")
-    if there := called(kind, f"{above}.{name}") or called(kind, name):
-        return SceneError(file, shown, short(value), "unknown key", f"Here it is called {there}")
+    there = called(kind, f"{above}.{name}")
+    if there is None and (way := nearest(kind, name)):
+        return SceneError(file, shown, short(value), "is not a key here", way)
+    if there := there or called(kind, name):
+        return SceneError(file, shown, short(value), OTHER_NAME, f"Write {there}")
+    if given := option(name):
+        rule = "is an option of the command, not a key of the file"
+        way = f"Remove it and run `gearopt solve FILE {given}`"
+        return SceneError(file, shown, short(value), rule, way, Fix("remove", key))
+    if lacking := absent(name):
+        return SceneError(file, shown, short(value), lacking, "Remove it", Fix("remove", key))
     what = "unknown table" if isinstance(_first(value), dict) else "unknown key"
     if homes := _homes(model, name):
         rule = f"{what} here; it belongs {' or '.join(homes)}"
@@ -155,6 +167,12 @@ def _unknown(
         return SceneError(
             file, shown, "", what, f"Did you mean {meant}?", Fix("rename", key, meant)
         )
+    if there := _other_spelling(model, name):
+        return SceneError(file, shown, short(value), OTHER_NAME, f"Write {there}")
+    taken = _near_name(model, content, place, taken=True)
+    if taken is not None:
+        rule = f"{what} beside {taken}, which may be meant"
+        return SceneError(file, shown, short(value), rule, "Remove it", Fix("remove", key))
     rule = f"{what}; known here: {', '.join(_table_at(model, place[:-1]).model_fields)}"
     own = " (tables of your own are named [x-...])" if len(place) == 1 else ""
     return SceneError(file, shown, "", rule, f"Remove it{own}", Fix("remove", key))
@@ -164,6 +182,16 @@ def _homes(model: type[BaseModel], name: str) -> list[str]:
     """Return the places where a key of this name is known."""
     homes = ["at the top of the file"] if name in model.model_fields else []
     return homes + [f"in {title}" for title, table in tables(model) if name in table.model_fields]
+
+
+def _other_spelling(model: type[BaseModel], name: str) -> str | None:
+    """Return the key that differs from a name in case and separators alone, and its tables."""
+    homes: dict[str, list[str]] = {}
+    for title, table in tables(model):
+        for key in table.model_fields:
+            if plain(key) == plain(name):
+                homes.setdefault(key, []).append(title)
+    return next((f"{key}, in {' or '.join(titles)}" for key, titles in homes.items()), None)
 
 
 def tables(model: type[BaseModel], above: str = "") -> Iterator[tuple[str, type[BaseModel]]]:
@@ -176,16 +204,19 @@ def tables(model: type[BaseModel], above: str = "") -> Iterator[tuple[str, type[
 
 
 def _near_name(
-    model: type[BaseModel], content: dict[str, Any], place: tuple[Any, ...]
+    model: type[BaseModel], content: dict[str, Any], place: tuple[Any, ...], taken: bool = False
 ) -> str | None:
-    """Return an unused name close to the last of a place that takes the table or value there."""
+    """Return a name close to the last of a place that takes the table or value there.
+
+    taken: whether the name is one that the table has already, or one that it lacks.
+    """
     value, found = _lookup(content, place)
     parent, _ = _lookup(content, place[:-1])
     fields = _table_at(model, place[:-1]).model_fields
     fitting = [f for f in fields if _fits(value, table_of(fields[f].annotation))]
     if not found or isinstance(place[-1], int) or place[-1] in fitting:
         return None
-    return near(place[-1], [f for f in fitting if f not in parent])
+    return near(place[-1], [f for f in fitting if (f in parent) == taken])
 
 
 def _fits(value: Any, table: type[BaseModel] | None) -> bool:
