@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 from relief_pairs import COUPLING, mesh
+from scipy.optimize import linprog
 
 from gearopt.formulations.relief.free_form import Profile, Shape, free_problem
 from gearopt.formulations.relief.free_search import Program
@@ -81,6 +82,30 @@ def test_bound_of_complete_contact_without_a_shape():
     assert most == pytest.approx(0.9962, abs=6e-5)  # as published
     found = solve(free_problem(made, Shape(convex=False, complete=True)), "exact")
     assert 1e3 * found.value >= most - 1e-9
+
+
+def test_no_convex_relief_that_ends_at_the_middle_is_below_the_bound():
+    """The middle lies between positions: hinges there, by another program, reach the same value."""
+    made = mesh(steps=9, exact=True)
+    path, present = made.cycle.path, made.cycle.present
+    middle = 0.5 * (path.start + path.end)
+    s = np.where(present, made.cycle.positions, middle)
+    ends = np.append(middle, made.cycle.positions[present])
+    ramps = [np.copysign(1.0, e - middle) * (s - e) for e in ends]
+    ramps = np.clip([*ramps, middle - s], 0.0, None)  # from the middle both ways
+    stiffness = np.where(present, 1.0 / (made.compliances - COUPLING), 0.0)
+    share = stiffness / stiffness.sum(axis=1, keepdims=True)
+    slopes, stays = (ramps * share).sum(axis=-1).T, made.loads[0] / stiffness.sum(axis=1)
+    one, none = np.ones((len(s), 1)), np.zeros((len(s), 1))
+    rows = np.block([[slopes, -one, none], [-slopes, none, one]])  # between highest and lowest
+    cost = np.append(np.zeros(len(ramps)), [1.0, -1.0])
+    bounds = [(0.0, None)] * len(ramps) + [(None, None)] * 2
+    found = linprog(cost, rows, np.concatenate([-stays, stays]), bounds=bounds)
+    weights = found.x[: len(ramps)]
+    removed = np.where(present, np.tensordot(weights, ramps, 1), np.inf)
+    reached = made.criteria(removed).peak_to_peak.max()
+    found = solve(free_problem(made), "exact")
+    assert found.bound <= reached == pytest.approx(found.value, rel=1e-6)
 
 
 def test_more_than_two_pairs_are_refused():

@@ -1,7 +1,7 @@
 """The relief of a spur pair for its report: both flanks, what it does at every load, and rules."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -105,13 +105,15 @@ class PairRelief:
 class Removed:
     """What is removed from both flanks [mm] at the contacts (p, n) of a mesh; 0 where none is.
 
-    lengths [mm] on the line of action; exponent of both, None of a shape of its own.
+    lengths [mm] on the line of action; exponent of both, None of a shape of its own, whose points
+    (3, m) are positions and what is removed there from pinion and wheel [mm].
     """
 
     pinion: Array
     wheel: Array
     lengths: tuple[float, float]
     exponent: float | None
+    points: Array | None = None
 
     @classmethod
     def of(cls, mesh: Mesh, reliefs: tuple[Relief, Relief]) -> "Removed":
@@ -129,27 +131,29 @@ class Removed:
         Beyond the middle of the path it is the pinion's, before it the wheel's.
         """
         s, middle = profile.points, profile.middle
-        at = np.where(profile.place >= 0, removed[profile.place], 0.0)
-        first = profile.place >= middle
+        beyond = np.arange(len(s)) >= middle
+        points = np.stack([s, np.where(beyond, removed, 0.0), np.where(beyond, 0.0, removed)])
         rising = np.flatnonzero(removed > LEAST)
         later, sooner = rising[rising > middle], rising[rising < middle]
         lengths = (
             float(s[-1] - s[later[0] - 1]) if len(later) else 0.0,
             float(s[sooner[-1] + 1] - s[0]) if len(sooner) else 0.0,
         )
-        return cls(np.where(first, at, 0.0), np.where(first, 0.0, at), lengths, None)
+        there = profile.place >= 0
+        pinion, wheel = (np.where(there, flank[profile.place], 0.0) for flank in points[1:])
+        return cls(pinion, wheel, lengths, None, points)
 
     def on(self, mesh: Mesh, other: Mesh) -> "Removed":
         """Return the same at the contacts of another mesh of the gears, free shapes by lines."""
-        if self.exponent is not None:
+        if self.points is None:
+            assert self.exponent is not None
             ends = zip(self.amounts(mesh), self.lengths, strict=True)
             first, second = (Relief(*end, self.exponent) for end in ends)
             return Removed.of(other, (first, second))
-        there, along = other.cycle.present, mesh.cycle.along
-        s, at = along(mesh.cycle.positions), np.where(there, other.cycle.positions, 0.0)
-        rows = (np.interp(at, s, along(flank)) for flank in (self.pinion, self.wheel))
-        pinion, wheel = (np.where(there, row, 0.0) for row in rows)
-        return Removed(pinion, wheel, self.lengths, None)
+        there, (s, *flanks) = other.cycle.present, self.points
+        at = np.where(there, other.cycle.positions, 0.0)
+        pinion, wheel = (np.where(there, np.interp(at, s, flank), 0.0) for flank in flanks)
+        return replace(self, pinion=pinion, wheel=wheel)
 
     def separations(self, mesh: Mesh) -> Array:
         """Return the sum of both at each contact [mm], infinite where there is none."""
@@ -187,13 +191,40 @@ def described(
 def finer(made: PairMesh, removed: Removed, loads: Sequence[float]) -> Array:
     """Return the peak-to-peak (l,) [mm] at loads on ten times as many positions of the gears.
 
-    A relief that was chosen on some positions strays a little further between them.
+    Those where reliefs begin and where they part a pair of teeth are among them: kinks of the
+    transmission error, which a relief that was chosen on some positions has between them.
     """
     mesh = made.of_loads(loads)
-    places = cycle(mesh.cycle.path, FINER * len(mesh.cycle.travels))
-    fine = Mesh.of(places, made.compliance, mesh.coupling, mesh.loads)
-    there = fine.criteria(removed.on(mesh, fine).separations(fine)).peak_to_peak
+    path, (pinion, wheel) = mesh.cycle.path, removed.lengths
+    kinks = np.array([path.end - pinion, path.start + wheel])
+    for _ in range(2):
+        places = cycle(path, FINER * len(mesh.cycle.travels), also=kinks)
+        fine = Mesh.of(places, made.compliance, mesh.coupling, mesh.loads)
+        apart = removed.on(mesh, fine).separations(fine)
+        kinks = np.append(kinks, _partings(fine, apart))
+    there = fine.criteria(apart).peak_to_peak
     return np.maximum(there, mesh.criteria(removed.separations(mesh)).peak_to_peak)
+
+
+def _partings(mesh: Mesh, apart: Array) -> Array:
+    """Return positions (k,) [mm] at which a pair on the path comes into contact or leaves it.
+
+    There its separation is the depth of the others alone, which has no kink, as its gap has.
+    """
+    found, loads = [np.zeros(0)], np.array(mesh.loads)[:, None]
+    for pair, s in enumerate(mesh.cycle.positions.T):
+        others = apart.copy()
+        others[:, pair] = np.inf
+        depth = mesh.sharing(others).approach - mesh.coupling * loads
+        there = np.isfinite(depth) & np.isfinite(apart[:, pair])
+        lacks = np.full(depth.shape, np.nan)
+        np.subtract(apart[:, pair], depth, out=lacks, where=there)
+        before, after = lacks[:, :-1], lacks[:, 1:]
+        crossed = before * after < 0.0
+        part = before[crossed] / (before[crossed] - after[crossed])
+        ends = (np.broadcast_to(end, crossed.shape)[crossed] for end in (s[:-1], s[1:]))
+        found.append((1.0 - part) * next(ends) + part * next(ends))
+    return np.concatenate(found)
 
 
 def break_even(made: PairMesh, removed: Removed, loads: Sequence[float]) -> float | None:

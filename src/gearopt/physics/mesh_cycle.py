@@ -62,11 +62,12 @@ class Cycle:
         return met
 
 
-def cycle(path: ContactPath, steps: int = 48, exact: bool = True) -> Cycle:
+def cycle(path: ContactPath, steps: int = 48, exact: bool = True, also: Any = ()) -> Cycle:
     """Return the positions of all pairs at `steps` travels of a base pitch and at break points.
 
-    exact: with both sides of every break point; without, the grid alone, as sampled programs have
-    it. Where the contact ratio is n + r, n + 1 pairs touch for a travel of r and n for the rest.
+    also: positions s [mm] at which a pair is met, too, such as where a relief begins. exact: with
+    both sides of every break point; without, the grid alone, as sampled programs have it. Where the
+    contact ratio is n + r, n + 1 pairs touch for a travel of r and n for the rest.
     ValueError where it is below 1: there is no continuous contact.
     """
     ratio = float(path.transverse_ratio)
@@ -74,7 +75,8 @@ def cycle(path: ContactPath, steps: int = 48, exact: bool = True) -> Cycle:
         raise ValueError(f"a contact ratio of {ratio:.6g} gives no continuous contact")
     whole = int(np.floor(ratio + NARROW))
     rest = max(ratio - whole, 0.0)
-    grid = np.arange(steps) / steps
+    more = (np.asarray(also, float) - path.start) / path.base_pitch % 1.0
+    grid = np.union1d(np.arange(steps) / steps, more)
     if not exact:
         count = np.where(grid <= rest + NARROW, whole + 1, whole)
         return _cycle(path, grid, count)

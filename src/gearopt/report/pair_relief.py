@@ -44,7 +44,7 @@ def decides(found: PairRelief) -> str:
     """Return what the relief is and what it gains."""
     first, second = (amount(f.amount_mm, "um", METRIC) for f in (found.pinion, found.wheel))
     none, best = found.rows[0], found.rows[-1]
-    said = f"{_value(found, best.value)} instead of {_value(found, none.value)}"
+    said = f"{_value(found, best.value)}{_strays(found)} instead of {_value(found, none.value)}"
     at = f"{100.0 * found.loads[0]:g} % of the torque"
     if len(found.loads) > 1:
         at = f"the worst of {len(found.loads)} loads"
@@ -52,6 +52,13 @@ def decides(found: PairRelief) -> str:
         f"{first} off the pinion's tips and {second} off the wheel's: {CRITERIA[found.minimise]} "
         f"{said} at {at}"
     )
+
+
+def _strays(found: PairRelief) -> str:
+    """Return the largest peak-to-peak on more positions of the gears, where it is larger."""
+    if found.minimise != "peak_to_peak" or not _finer(found):
+        return ""
+    return f" ({amount(max(found.finer_mm), 'um', METRIC)} on ten times as many positions)"
 
 
 def _value(found: PairRelief, value: float) -> str:

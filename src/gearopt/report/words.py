@@ -160,6 +160,8 @@ def certainty(result: Result) -> tuple[str, str]:
         words = "impossible with these gears, proven"
     if result.status == "optimal" and (result.gap or 0.0) > EXACT:
         words = f"proven within {100 * (result.gap or 0.0):.2g} % of the optimum"
+    if result.status == "optimal" and "on" in result.proof:
+        words = f"{words} {result.proof['on']}"
     if "achieved" in result.report:  # something is come near to
         words = words.replace("optimal", result.report.get("best", "nearest"))
     return words, colour

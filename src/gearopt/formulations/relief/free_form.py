@@ -1,9 +1,9 @@
 """The best relief of any shape: what is removed at every sampled point of the path of contact.
 
 The shape falls from the start of the path to its middle and rises from there to its end, and may
-have to be convex on either side, as linear, parabolic and power reliefs are: the least value of all
-such shapes bounds that of every relief of amount, length and exponent >= 1 that does not reach
-beyond the sampled point nearest to the middle.
+have to be convex on either side, as linear, parabolic and power reliefs are. The middle itself is
+one of the points: the least value of all such shapes at the positions of the gears bounds that of
+every convex relief of both tips that ends at the middle or before.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from gearopt.formulations.relief.meshing import Mesh
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var
 
-SAME = 1e-9  # mm: positions that are one point of the path
+SAME = 1e-11  # mm: positions that are one point; between them a shape changes by less than 1e-10 um
 UNIT = 1e-3  # mm: of rows of shape and contact
 
 
@@ -39,7 +39,8 @@ class Shape:
 class Profile:
     """The sampled points of a path and where the pairs of a mesh are on it.
 
-    points s (m,) [mm] in order; place (p, n): number of the point of each contact, -1 without one.
+    points s (m,) [mm] in order, the middle of the path among them; place (p, n): number of the
+    point of each contact, -1 without one.
     ValueError for contact ratios of 2 and more, of which a relief may end beyond a third pair.
     """
 
@@ -54,6 +55,7 @@ class Profile:
     def points(self) -> Array:
         """Positions s (m,) [mm]."""
         met = self.mesh.cycle.along(self.mesh.cycle.positions)
+        met = np.sort(np.append(met, self._centre))
         return np.asarray(met[np.diff(met, prepend=-np.inf) > SAME])
 
     @cached_property
@@ -65,9 +67,13 @@ class Profile:
 
     @cached_property
     def middle(self) -> int:
-        """Number of the point that is nearest to the middle of the path."""
+        """Number of the middle of the path among the points."""
+        return int(np.abs(self.points - self._centre).argmin())
+
+    @property
+    def _centre(self) -> float:
         path = self.mesh.cycle.path
-        return int(np.abs(self.points - 0.5 * (path.start + path.end)).argmin())
+        return float(0.5 * (path.start + path.end))
 
     @cached_property
     def rows(self) -> Array:

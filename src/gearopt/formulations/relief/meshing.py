@@ -63,6 +63,11 @@ class Mesh:
         """Return the mesh with compliances from a function of positions s [mm]."""
         return cls(cycle, cycle.compliances(compliance), coupling, tuple(map(float, loads)))
 
+    @property
+    def sampled(self) -> str:
+        """Where values are computed, as proofs on these positions name it."""
+        return f"at {len(self.cycle.travels)} positions of the gears"
+
     @cached_property
     def from_tips(self) -> tuple[Array, Array]:
         """Distances (p, n) [mm] of contacts from the tips of pinion and wheel, on their path.
