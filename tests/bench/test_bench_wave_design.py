@@ -15,10 +15,10 @@ def test_samplers_stay_above_the_exchange_and_tell_what_cuts(monkeypatch):
     assert "wave_design" in names()
     annealing, evolution, front = wave_design.run(2)
     for row in (annealing, evolution):
-        assert row["found"] == 2 and row["cutting"] <= 2
+        assert row["found"] + row["cutting"] == 2 and row["found"] > 0  # what cuts is no answer
         assert 92.5 < row["pressure_MPa"] <= row["worst_MPa"] < 140.0
         assert (row["cutting"] > 0) == (row["least_gap_um"] < -0.01)
-    assert front["found"] > 20 and front["cutting"] < front["found"]
+    assert front["found"] > 20 and front["cutting"] == 0
     least, worst = (float(v.strip("()")) for v in front["volume"].split())
     assert 400.0 < least <= worst < 700.0
     most, fewest = (float(v.strip("()")) for v in front["teeth"].split())

@@ -79,8 +79,9 @@ def _sampled(method: str, seeds: int) -> dict[str, Any]:
         clock = Clock()
         result, outcome = solve_raw(posed, method, Budget(evaluations=EVALUATIONS), seed=seed)
         seconds.append(clock.seconds)
-        if result.value is not None and outcome.x is not None:
+        if result.value is not None:
             values.append(result.value)
+        if outcome.x is not None:
             gaps.append(sampled.hidden(DEMAND, outcome.x[: len(FREE)]))
     return _row(f"{method}, {seeds} seeds", "feasible", values, gaps, seconds, EVALUATIONS)
 

@@ -77,8 +77,9 @@ class Problem:
     vectorised: the text also takes arrays (N,) of N points for its scalars; where it does not say
     so, gearopt finds out whether it may (`evaluation`). relaxed: a continuous problem whose limits
     every point of this one meets, with the keys of a file at its parameters: what `explain` takes
-    for the limits and their conflict. It goes to other processes as it was declared, if its text is
-    a function that they can import.
+    for the limits and their conflict. exact_limits(x) -> {name: utilisation}, of limits that a
+    search sees only roughly: an answer is judged by them, too, and reported with them. It goes to
+    other processes as it was declared, if its text is a function that they can import.
     """
 
     name: str
@@ -89,6 +90,7 @@ class Problem:
     methods: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
     vectorised: bool = False
     relaxed: "Problem | None" = None
+    exact_limits: Callable[[Array], Mapping[str, float]] | None = None
     memo: dict[Any, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:

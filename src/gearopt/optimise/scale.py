@@ -139,6 +139,7 @@ RUNAWAY = 1e9  # a variable without a bound that moves this factor from its gues
 def violation(problem: Problem | Conic, x: Array, batch: Batch) -> tuple[float, str]:
     """Return the largest violation of rows, bounds and discreteness, and the name of its row.
 
+    Of rows and of the limits that the problem looks at more closely (`exact_limits`).
     That of a bound is relative to the variable's own scale, of a value to that or to 1.
     """
     lower, upper, _ = problem.bounds()
@@ -157,7 +158,10 @@ def violation(problem: Problem | Conic, x: Array, batch: Batch) -> tuple[float, 
         ]
     )
     worst = int(amounts.argmax())  # the first NaN; at least 0, that of a value that is met
-    return float(amounts[worst]), names[worst]
+    found = float(amounts[worst]), names[worst]
+    if isinstance(problem, Conic) or problem.exact_limits is None or math.isnan(found[0]):
+        return found
+    return max(found, *((used - 1.0, name) for name, used in problem.exact_limits(x).items()))
 
 
 def _distance(variable: Any, value: float, unit: float) -> float:

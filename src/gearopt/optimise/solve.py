@@ -224,7 +224,9 @@ def limits(problem: Problem | Conic, x: Array) -> dict[str, float]:
     """Return utilisation of every user limit at a point."""
     rows = problem.batch(x[None]).G[0]
     named = zip(problem.rows.inequalities, rows, strict=True)
-    return {row.name: float(v) for row, v in named if row.kind == "limits"}
+    found = {row.name: float(v) for row, v in named if row.kind == "limits"}
+    exact = None if isinstance(problem, Conic) else problem.exact_limits
+    return found if exact is None else found | dict(exact(x))
 
 
 def report(problem: Problem | Conic, x: Array) -> dict[str, Any]:

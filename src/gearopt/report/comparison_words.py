@@ -138,10 +138,11 @@ def verdict(group: Group, row: Row) -> str:
     if _impossible(row):
         return "proves that no design meets the limits"
     ended = any(run.status == "limit" for run in sample.runs)
+    why = _why(sample)
     if s.without == s.seeds and not row.random:
-        return "no feasible point" + (" before the time ended its one run" if ended else "")
+        return f"no feasible point{' before the time ended its one run' if ended else ''}{why}"
     if s.without == s.seeds:
-        return f"no feasible point in any of {s.seeds} seeds"
+        return f"no feasible point in any of {s.seeds} seeds{why}"
     than = "proven optimum" if _closed(group) else "bound" if group.proven else "best known"
     reaches, apart = f"reaches the {than}", f"% above the {than}"
     if group.front:
@@ -151,13 +152,20 @@ def verdict(group: Group, row: Row) -> str:
         if s.median_gap is not None and s.median_gap <= TIGHT:
             return f"{reaches} in {s.seconds:.2g} s, {once}"
         return f"{percent(s.median_gap)} {apart}, {once}"
-    missed = f", {s.without} without a feasible point" if s.without else ""
+    missed = f", {s.without} without a feasible point{why}" if s.without else ""
     close = f"{round(s.close * s.seeds)} of {s.seeds} seeds within 0.1 %{missed}"
     if s.median_gap is None:
         return f"no feasible point in the median seed; {close}"
     if s.median_gap <= TIGHT:
         return f"{reaches} in the median seed, {s.seconds:.2g} s; {close}"
     return f"median {percent(s.median_gap)} {apart}, {close}"
+
+
+def _why(sample: Sample) -> str:
+    """Return in brackets what the first run without a feasible point says, "" for nothing."""
+    told = (r.message for r in sample.runs if r.objective is None and r.message)
+    message = next(told, "").partition(". ")[0].rstrip(".")
+    return f" ({message})" if message else ""
 
 
 def ended(found: Comparison, row: Row) -> str:

@@ -1,7 +1,7 @@
 """The design problem for samplers: whole populations, interference looked for at some poses.
 
-What lies between these poses stays hidden: `exchange` looks at all of them, and `hidden` tells what
-a sampled design hides.
+What lies between these poses stays hidden to the search. An answer is judged at all poses, by
+`hidden`; `exchange` looks at all of them as it searches.
 """
 
 import math
@@ -73,8 +73,16 @@ def problem(
         goals = {name: _given(goals[name], shape) for name in names}
         return Terms(goals, {name: _given(v, shape) for name, v in found.items()})
 
+    def exact(x: Array) -> dict[str, float]:
+        return {"interference": 1.0 + (CUTTING - hidden(demand, x[: len(FREE)])) / GAP_UNIT}
+
     return Problem(
-        "strain wave gearing, sampled", free_variables(demand, start), (), evaluate, vectorised=True
+        "strain wave gearing, sampled",
+        free_variables(demand, start),
+        (),
+        evaluate,
+        vectorised=True,
+        exact_limits=exact,
     )
 
 

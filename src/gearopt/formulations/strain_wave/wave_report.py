@@ -19,7 +19,7 @@ from gearopt.formulations.strain_wave.duty import (
     pressures,
     shared_pressure,
 )
-from gearopt.formulations.strain_wave.exchange import STEP_DEG, stretched
+from gearopt.formulations.strain_wave.exchange import CUTTING, STEP_DEG, stretched
 from gearopt.formulations.strain_wave.range_ends import RangeEnd
 from gearopt.formulations.strain_wave.shift import (
     ShiftPoint,
@@ -227,10 +227,9 @@ def used(demand: Demand, made: Flank) -> dict[str, float]:
     at = [contact(made.gearing, motion(made.gearing, made.curve, p)) for p in angle]
     found = limits(demand, made.gearing, made.curve, at)
     least = interference(made, STEP_DEG)
-    clear = 0.0 if least.free else least.gap
     flat = {k: float(max(v) if isinstance(v, tuple) else v) for k, v in found.items()}
-    if clear < 0.0:
-        flat["interference"] = 1.0 - clear / float(made.gearing.module)
+    if least.gap < CUTTING:
+        flat["interference"] = 1.0 - least.gap / float(made.gearing.module)
     return {k: v for k, v in flat.items() if k not in GUARDS or v > 1.0}
 
 

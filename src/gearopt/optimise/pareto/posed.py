@@ -82,6 +82,7 @@ def posed(
             problem.repeats,
             methods=problem.methods if len(minimise) > 1 else {},
             vectorised=problem.vectorised,
+            exact_limits=problem.exact_limits,
         )
     return moved(made, limits)
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.formulations.strain_wave.cutter_report import CutterDesign
+from gearopt.formulations.strain_wave.exchange import CUTTING
 from gearopt.formulations.strain_wave.wave_report import INVOLUTE, WaveDesign
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
@@ -40,7 +41,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     if (found := design_of(result)) is None:
         return []
     equal = amount(found.equal_pressure_MPa, "MPa", measures)
-    touching = found.least_clearance_mm >= -1e-9
+    touching = found.least_clearance_mm >= CUTTING
     least = max(0.0, found.least_clearance_mm) if touching else found.least_clearance_mm
     return [
         Tile(
@@ -92,7 +93,7 @@ def warns(result: Result) -> Sequence[str]:
     if (found := design_of(result)) is None:
         return ()
     told = []
-    if found.least_clearance_mm < -1e-6:
+    if found.least_clearance_mm < CUTTING:
         told.append(
             f"Teeth cut each other by {-1e3 * found.least_clearance_mm:.3g} µm, at "
             f"{found.least_clearance_at_deg:.3g}° of the wave: loads and pressures do not count."

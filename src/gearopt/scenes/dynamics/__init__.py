@@ -191,9 +191,8 @@ def compared(scene: Scene) -> tuple[str, ...]:
 
 def model(scene: Scene, method: str) -> Model:
     """Return the problem on the speeds of the file; SolveError without [optimise]."""
-    return Model(
-        whole_problem(_to_optimise(scene).task), "Bearings, contact ratio, ramp, width and rim"
-    )
+    words = "Bearings, contact ratio, ramp, width and rim, at the speeds of the file alone"
+    return Model(whole_problem(_to_optimise(scene).task), words)
 
 
 def _to_optimise(scene: Scene) -> Scene:

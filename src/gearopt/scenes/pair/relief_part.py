@@ -210,9 +210,9 @@ def model(scene: Scene, made: PairMesh) -> Model:
     unit = _unit(scene.relief.minimise)
     if scene.relief.free:
         problem = _free_problem(scene.relief, made.of_loads(loads_of(scene)))
-        return Model(problem, "Relief of any convex shape", unit)
+        return Model(problem, "Relief of any convex shape, at computed positions", unit)
     problem = _posed(scene.relief, *_meshed(scene, made))
-    return Model(problem, "Amounts and lengths of relief of both gears", unit)
+    return Model(problem, "Amounts and lengths of relief, at computed positions", unit)
 
 
 def objectives(scene: Scene) -> dict[str, str]:

@@ -9,7 +9,7 @@ from typing import Any
 from gearopt.errors import SolveError
 from gearopt.formulations.strain_wave import sampled
 from gearopt.formulations.strain_wave.demand import FREE, PRESSURE, VOLUME
-from gearopt.formulations.strain_wave.exchange import Exchanged, design_of, exchange
+from gearopt.formulations.strain_wave.exchange import CUTTING, Exchanged, design_of, exchange
 from gearopt.formulations.strain_wave.impossible import told
 from gearopt.formulations.strain_wave.range_ends import ends_of, slopes_of
 from gearopt.formulations.strain_wave.sampled import SHARE
@@ -56,8 +56,8 @@ NO_FLANK = (
 )
 NO_SLOPES: Mapping[str, float] = MappingProxyType({})
 HIDDEN = (
-    "Teeth cut each other by {:.3g} µm between the poses that the method looked at: "
-    "--method exchange looks at all."
+    "The best design that was found cuts its teeth, by {:.3g} µm between the poses that the method "
+    "looked at: --method exchange looks at all."
 )
 
 
@@ -83,8 +83,10 @@ def solve(scene: Scene, ask: Ask) -> Result:
     shown = _with(scene, result, found.design, numbers, slopes, _rounds(found))
     if found.clear:
         return shown
-    message = "Stopped before all poses kept clear: teeth interfere."
-    return replace(shown, status="limit", message=f"{message} {shown.message}".strip())
+    message = f"Stopped before all poses kept clear: teeth interfere. {shown.message}".strip()
+    excess = max(shown.limits.values()) - 1.0
+    certificate = {**shown.certificate, "feasibility": excess}
+    return replace(shown, status="limit", certificate=certificate, message=message)
 
 
 def _without_design(scene: Scene, found: Exchanged, result: Result, clock: Clock) -> Result:
@@ -115,16 +117,16 @@ def _rounds(found: Exchanged) -> list[RoundRow]:
 
 
 def _sampled(scene: Scene, ask: Ask) -> Result:
-    """Choose by annealing or NSGA-II, which look at some poses; tell what they hide."""
+    """Choose by annealing or NSGA-II, which look at some poses; the answer is judged at all."""
     problem = sampled.problem(scene.demand(), scene.start())
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
-    if result.value is None or outcome.x is None:
+    if outcome.x is None:
         return result
-    result = replace(result, message="")
+    least = sampled.hidden(scene.demand(), outcome.x[: len(FREE)])
+    if result.value is None:
+        return replace(result, message=HIDDEN.format(-1e3 * least)) if least < CUTTING else result
     made = design_of(scene.demand(), outcome.x[: len(FREE)])
-    shown = _with(scene, result, made, outcome.x)
-    least = shown.design["least_clearance_mm"]
-    return replace(shown, message=HIDDEN.format(-1e3 * least) if least < -1e-6 else "")
+    return _with(scene, replace(result, message=""), made, outcome.x)
 
 
 def _evaluated(scene: Scene, ask: Ask) -> Result:
@@ -171,7 +173,7 @@ def _with(
     demand = scene.demand()
     ends = ends_of(demand.ranges, numbers[: len(FREE)], slopes)
     design = replace(described(demand, made, scene.tool(), rounds), range_ends=ends)
-    return _shown(scene, result, design, used(demand, made) | _cut(result))
+    return _shown(scene, result, design, _cut(result) | used(demand, made))
 
 
 def _shown(scene: Scene, result: Result, design: WaveDesign, limits: dict[str, float]) -> Result:
@@ -229,13 +231,13 @@ def compared(scene: Scene) -> tuple[str, ...]:
 
 
 def model(scene: Scene, method: str) -> Model:
-    """Return the problem of a method: clear at all poses, or sampled at some."""
+    """Return the problem of a method, whose answers are judged at all poses."""
     _to_choose(scene)
     demand, start = scene.demand(), scene.start()
-    if method in SAMPLERS:
-        return Model(sampled.problem(demand, start), "Interference at poses of 0.75 deg", "MPa")
-    problem = sampled.limited(demand, start, PRESSURE, {})
-    return Model(problem, "Interference at all poses", "MPa")
+    problem = sampled.problem(demand, start)
+    if method not in SAMPLERS:
+        problem = sampled.limited(demand, start, PRESSURE, {})
+    return Model(problem, "No teeth cut each other at any pose of the wave", "MPa")
 
 
 def objectives(scene: Scene) -> dict[str, str]:

@@ -11,6 +11,7 @@ from gearopt.formulations.strain_wave.demand import (
     UNITS,
     Demand,
 )
+from gearopt.formulations.strain_wave.exchange import CUTTING
 from gearopt.formulations.strain_wave.range_ends import WIDER, RangeEnd
 from gearopt.formulations.strain_wave.swept_report import DOUBLE_ARC
 from gearopt.formulations.strain_wave.wave_report import INVOLUTE, WaveDesign
@@ -164,7 +165,7 @@ def notes(made: WaveDesign) -> list[str]:
         f"{carry}, as if {made.effective_teeth:.2f} carried alike.",
         _windup(made),
     ]
-    if made.least_clearance_mm < -1e-9:
+    if made.least_clearance_mm < CUTTING:
         found.append(
             f"Teeth cut each other by {-1e3 * made.least_clearance_mm:.3g} µm where the wave is at "
             f"{made.least_clearance_at_deg:.4g} degrees."
@@ -196,7 +197,7 @@ def _windup(made: WaveDesign) -> str:
 def _without_play(made: WaveDesign) -> list[str]:
     """Return that teeth cut each other on wave generators a little smaller, too, if they do."""
     near = [d for d in made.deflections if abs(d.deflection - made.deflection) < 0.03]
-    if not near or max(d.least_clearance_mm for d in near) > -1e-6:
+    if not near or max(d.least_clearance_mm for d in near) > CUTTING:
         return []
     each = " and ".join(
         f"{-1e3 * d.least_clearance_mm:.3g} µm at {d.deflection:.4g} modules" for d in near

@@ -124,7 +124,7 @@ def posed(scene: Scene, method: str, sized: Result) -> Model:
         raise SolveError(" ".join(wrong))
     layout.ready()  # what is compared is machine code
     words = "Layout by four sides" if method in layout.GRADIENT else "Layout by link angles"
-    return Model(layout.problem(box, method), words, box.unit)
+    return Model(layout.problem(box, method), f"{words}, of gears that were chosen first", box.unit)
 
 
 def _impossible(
