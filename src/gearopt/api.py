@@ -19,7 +19,7 @@ from gearopt.optimise.comparing.fronts import compare_fronts
 from gearopt.optimise.comparing.runs import EVALUATIONS, SECONDS, SEEDS, Follow, Model, Plan
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explaining.explanation import Explanation, Remedy
-from gearopt.optimise.options import check, named
+from gearopt.optimise.options import check, in_turn, named
 from gearopt.optimise.own_problems import solve_own
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.pareto.pareto import traders
@@ -54,7 +54,7 @@ def load(what: File, changes: Changes = None) -> BaseModel:
     return _opened(what, changes)[0]
 
 
-@named
+@in_turn
 def solve(
     what: File | Problem | Conic,
     changes: Changes = None,
@@ -78,7 +78,8 @@ def solve(
     of the file, as `explain` does. start: of a Problem, values by name of the variable from which
     ipopt, multistart and annealing begin instead of the guess. SceneError for a wrong file or
     change, SolveError where the method does not fit, or an option changes nothing, ValueError for
-    an option of another sort. Not thread-safe.
+    an option of another sort. Of several threads one
+    solves at a time, and its budget begins then.
     """
     check(method=method, budget=budget, seed=seed, watch=watch, gap=gap, top=top, prices=prices)
     check(start=start)
@@ -113,7 +114,7 @@ def solve(
     return _named(result, **names | {"options": asked | names["options"]})
 
 
-@named
+@in_turn
 def rate(what: File, changes: Changes = None) -> Result:
     """Return the rating of the gears that a problem file gives: the table [rating] says by what.
 
@@ -130,7 +131,7 @@ def rate(what: File, changes: Changes = None) -> Result:
     return _named(result, **names)
 
 
-@named
+@in_turn
 def explain(
     what: File | Problem | Conic,
     changes: Changes = None,
@@ -140,11 +141,10 @@ def explain(
 ) -> Explanation:
     """Explain why the answer to a file, a scene or a problem is what it is.
 
-    changes: of a file, as in `load`.
-    Possible: the limits that bind, and the sensitivity to every number of the file (to every
-    parameter, and bound with a key, of a problem). Impossible: the limits in conflict, and
-    remedies that were tried: what to write instead. SceneError and SolveError as in
-    `solve`; a problem with discrete variables needs an exact method of its own.
+    changes: of a file, as in `load`. Possible: the limits that bind, and the sensitivity to every
+    number of the file (to every parameter, and bound with a key, of a problem). Impossible: the
+    limits in conflict, and remedies that were tried: what to write instead. SceneError and
+    SolveError as in `solve`; a problem with discrete variables needs an exact method of its own.
     """
     from gearopt.optimise.explaining.explain import explain as explain_problem
 
@@ -212,7 +212,7 @@ def _explained(module: Any, scene: Any, ask: Ask, result: Result | None = None) 
 DEFAULT = ("ipopt", "annealing", "nsga2")  # compared beside exact algorithms where none are named
 
 
-@named
+@in_turn
 def compare(
     what: File | Problem | Conic,
     changes: Changes = None,
@@ -314,7 +314,7 @@ def _traded(
     return lambda method: module.several(scene, chosen, method), chosen, about | title
 
 
-@named
+@in_turn
 def pareto(
     what: File | Problem | Conic,
     changes: Changes = None,
@@ -345,9 +345,8 @@ def pareto(
     pose, _, about = _traded(what, changes, objectives)
     posed = pose(method)
     options: dict[str, Any] = {"method": method, "seconds": budget.seconds, "points": points}
-    options |= {"most": most}
-    options |= {"weights": weights, "seed": seed} | about.get("options", {})
-    about["options"] = options
+    options |= {"most": most, "weights": weights, "seed": seed}
+    about["options"] = options | about.get("options", {})
     return solved(posed, most, method, points, weights, budget, seed, watch, **about)
 
 
@@ -382,11 +381,10 @@ def _opened(what: File, changes: Changes) -> tuple[BaseModel, Any, dict[str, Any
     if isinstance(what, BaseModel):
         from gearopt.scenes.explaining.numbers import content
 
-        kind = kind_of(what)
-        tables = {"gearopt": FORMAT, "kind": kind, **content(what)}
+        scene, kind = what, kind_of(what)
+        what = {"gearopt": FORMAT, "kind": kind, **content(scene)}
         if not changes:
-            return what, scene_module(kind), {"scene": kind, "asked": bare(tables), "options": {}}
-        what = tables
+            return scene, scene_module(kind), {"scene": kind, "asked": bare(what), "options": {}}
     loaded = load_file(what, changes)
     names: dict[str, Any] = {
         "scene": loaded.kind,

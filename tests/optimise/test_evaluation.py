@@ -2,12 +2,15 @@
 
 import logging
 import math
+import time
+from threading import Thread
 
 import numpy as np
 import pytest
 
 import gearopt
 from gearopt.errors import SolveError
+from gearopt.optimise import deadline
 from gearopt.optimise.evaluation import elementwise
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
@@ -232,3 +235,46 @@ def test_norm_and_sum_are_proven_on_their_tapes():
 
     result = gearopt.solve(problem(text))
     assert result.status == "optimal" and result.value == pytest.approx(0.75, rel=1e-8)
+
+
+@pytest.mark.parametrize("method", [None, "annealing"])
+def test_a_simulation_that_waits_for_a_number_is_ended_on_symbols(method, monkeypatch):
+    """It steps to t = 1 by a width that is NaN on symbols: no comparison with NaN ends a loop."""
+    monkeypatch.setattr(deadline, "SHORTEST", 0.05)
+
+    def simulated(x, p):
+        t, y = 0.0, 1.0
+        while not t >= 1.0:
+            y, t = y - 0.1 * x.w * y, t + 0.1 * math.exp(1e-6 * x.w)
+        return Terms({"y": (y - 0.2) ** 2})
+
+    own, began = problem(simulated, size=1), time.perf_counter()
+    if method is None:
+        with pytest.raises(SolveError, match=r"line \d+ .*has not ended .*annealing and nsga2"):
+            gearopt.solve(own, budget=Budget(seconds=0.1))
+    else:
+        found = gearopt.solve(own, method=method, budget=Budget(seconds=0.15))
+        assert found.value < 0.1 and found.message.count("has not ended") == 1
+    assert time.perf_counter() - began < 1.0
+
+
+def test_threads_take_turns():
+    inside, most = [], []
+
+    def text(x, p):
+        inside.append(1)
+        most.append(len(inside))
+        time.sleep(1e-3)
+        inside.pop()
+        return Terms({"f": (x.w - p.c) ** 2})
+
+    own, found = problem(text, 1, (Param("c", "", 1.0),)), {}
+
+    def work(c):
+        found[c] = gearopt.solve(own.at(c=c)).design["w"]
+
+    threads = [Thread(target=work, args=(c,)) for c in (1.0, 2.0, 3.0)]
+    for step in (Thread.start, Thread.join):
+        for thread in threads:
+            step(thread)
+    assert found == {c: pytest.approx(c) for c in (1.0, 2.0, 3.0)} and max(most) == 1

@@ -172,7 +172,9 @@ def _local(
     try:
         shape = _shape(problem)
     except SolveError as untraced:  # without derivatives no more than a feasible point is certain
-        message = f"{before.message} No bound, no optimality conditions: {untraced}".lstrip()
+        said = str(untraced) in before.message
+        why = "No bound, no optimality conditions" + ("" if said else f": {untraced}")
+        message = ". ".join(filter(None, [before.message.rstrip("."), why]))
         return replace(before, message=message)
     points = _points(problem, shape, outcome)
     if not points:

@@ -9,6 +9,7 @@ wrong, and what to write instead.
 
 import functools
 import logging
+import time
 import traceback
 import warnings
 from collections.abc import Callable, Iterator
@@ -37,6 +38,11 @@ SYMBOLS = (  # what exceptions of texts run on symbols say, and the remedy
         "truth value",
         "It asks which of two quantities is greater (if, max, np.max, sorted): write np.maximum "
         "or np.where, or a further variable t with defines={'over': (a / t, b / t)}",
+    ),
+    (
+        "has not ended",
+        "A simulation that waits for numbers runs on no symbols: the methods annealing and nsga2 "
+        "take the text as it is",
     ),
     (
         "",
@@ -274,6 +280,16 @@ def sample(problem: "Problem", count: int) -> Array:
         elif variable.integer:
             points[:, k] = np.rint(points[:, k])
     return points
+
+
+def seconds(problem: "Problem", repeat: Repeat | None) -> float:
+    """Return the seconds that a text takes on floats, at the guess."""
+    start = sum(v.size for v in problem.variables)
+    guess = sample(problem, 1)[0]
+    width = repeat.width if repeat else 0
+    began = time.perf_counter()
+    at(problem, repeat, guess[:start], guess[start : start + width], 0)
+    return time.perf_counter() - began
 
 
 def _one_by_one(problem: "Problem", repeat: Repeat | None, shared: Array, own: Array) -> Terms:

@@ -5,6 +5,7 @@ from difflib import get_close_matches
 from functools import wraps
 from inspect import signature
 from numbers import Integral
+from threading import RLock
 from typing import Any, ParamSpec, TypeVar
 
 from gearopt.optimise.result import Budget, is_number
@@ -71,6 +72,20 @@ def named(call: Callable[P, R]) -> Callable[P, R]:
         return call(*args, **options)
 
     return checked
+
+
+_TURN = RLock()  # casadi's symbols and numba's first calls are of one thread at a time
+
+
+def in_turn(call: Callable[P, R]) -> Callable[P, R]:
+    """Return a `named` function of which one thread runs one at a time."""
+
+    @wraps(call)
+    def alone(*args: P.args, **options: P.kwargs) -> R:
+        with _TURN:
+            return call(*args, **options)
+
+    return named(alone)
 
 
 def _meant(name: str, known: list[str]) -> str:

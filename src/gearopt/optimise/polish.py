@@ -15,6 +15,7 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.optimise.box import allowed_values
 from gearopt.optimise.clock import Clock
+from gearopt.optimise.deadline import until
 from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome
@@ -23,6 +24,7 @@ from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 
 SHARE, MOST = 0.1, 500  # of a budget is kept; evaluations at the most
+TRACED = 0.3  # of a budget at the most is for a tape; the sampler needs none
 STARTS = 5  # points of the sampler to polish, of different discrete values
 RUNS = 60  # of Ipopt at the most
 ITERATIONS = 2000  # of all runs at the most, where the budget names no evaluations
@@ -59,8 +61,10 @@ def sampling(clock: Clock, polished: bool) -> tuple[Clock, int | None]:
 
 
 def prepared(problem: Problem, clock: Clock) -> Polish:
-    """Return the polish of a run: the text is traced here, within its budget."""
-    return Polish(problem, clock, _obstacle(problem))
+    """Return the polish of a run: the text is traced here, within a part of its budget."""
+    left = clock.left.seconds
+    with until(None if left is None else TRACED * left):
+        return Polish(problem, clock, _obstacle(problem))
 
 
 def _obstacle(problem: Problem) -> str | None:

@@ -268,11 +268,18 @@ class Problem:
         return Rows(tuple(objectives), tuple(limits), tuple(equal))
 
     def traced(self) -> "Traced":
-        """Return the text as casadi functions, traced once."""
+        """Return the text as casadi functions, traced once; SolveError where it cannot be."""
         from gearopt.optimise.tape import trace
 
+        if (refused := self.memo.get("not traced")) is not None:
+            raise SolveError(str(refused)) from refused.__cause__
         if "traced" not in self.memo:
-            self.memo["traced"] = trace(self)
+            try:
+                self.memo["traced"] = trace(self)
+            except SolveError as reason:
+                if isinstance(reason.__cause__, TimeoutError):  # not to wait once more
+                    self.memo["not traced"] = reason
+                raise
         found: Traced = self.memo["traced"]
         return found
 

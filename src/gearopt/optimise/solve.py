@@ -14,6 +14,7 @@ from gearopt.optimise.box import check_discrete
 from gearopt.optimise.certificate import Verdict, certify
 from gearopt.optimise.clock import Clock, of_problem
 from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.deadline import until
 from gearopt.optimise.own_methods import back_ends, run_method
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch, versions
@@ -38,7 +39,7 @@ def solve(
     method: a name of `problem.methods` or of a back end in `optimise/solvers`; by default the
     problem's own exact algorithm, else ipopt for a Problem and conic for a Conic. gap: relative gap
     to our bound that is called optimal. SolveError where the method does not fit the problem, or
-    the problem has several objectives. Not thread-safe.
+    the problem has several objectives. Not thread-safe (`gearopt.solve` is).
     """
     one_objective(problem.name, problem.rows.objectives)
     return run(problem, method, budget, seed, watch, gap)[0]
@@ -61,8 +62,9 @@ def run(
     clock = Clock()
     follow = of_problem(watch, problem)
     call = method_of(problem, name)
-    outcome = run_method(call, problem, name, budget or Budget(), seed, follow)
-    verdict = judge(problem, name, outcome, gap)
+    with until((budget or Budget()).seconds):
+        outcome = run_method(call, problem, name, budget or Budget(), seed, follow)
+        verdict = judge(problem, name, outcome, gap)
     return _result(problem, name, outcome, verdict, clock.seconds, seed), outcome
 
 

@@ -17,7 +17,8 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise.evaluation import blaming, called, quiet, remedy, sample, text_of
+from gearopt.optimise.deadline import allowed, within
+from gearopt.optimise.evaluation import blaming, called, quiet, remedy, sample, seconds, text_of
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import SECTIONS, Array, Repeat, Terms, Var, checked, flat, flatten
 
@@ -131,7 +132,8 @@ def _block(problem: Problem, repeat: Repeat | None) -> Block:
     scalars = [ca.vertsplit(v) if v.numel() else [] for v in (shared, own, p, data)]
     row = dict(zip(repeat.data, scalars[3], strict=True)) if repeat else {}
     try:
-        with blaming(text, where, "traced"), quiet():
+        limit = allowed(seconds(problem, repeat))
+        with blaming(text, where, "traced"), quiet(), within(limit):
             terms = called(problem, repeat, scalars[0], scalars[1], row, scalars[2])
             terms = checked(_split(terms), where)
             f, g, h = _columns(terms)

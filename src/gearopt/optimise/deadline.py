@@ -1,0 +1,78 @@
+"""How long a user's text may run on symbols: as long as its budget, and no simulation for ever.
+
+A text that waits for a number (the next step of an integration) may wait for ever on symbols, which
+are no numbers. It is ended by an exception in its own thread.
+"""
+
+import ctypes
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+
+SLOWEST = 1000.0  # times the text on floats: tapes of large texts took up to 100 times
+LONGEST = 5.0  # s, of a text that is fast on floats
+SHORTEST = 0.5  # s, of what is left of a budget: most tapes take some hundredths
+AGAIN = 0.2  # s; a bare `except` in casadi may have stopped the exception
+_END: ContextVar[float | None] = ContextVar("end of the budget", default=None)
+
+
+class _Late(BaseException):
+    """Ends a text from outside; no `except Exception` of the text stops it."""
+
+
+@contextmanager
+def until(seconds: float | None) -> Iterator[None]:
+    """Let texts within run on symbols for so many seconds from now, None: those around it."""
+    end = _END.get()
+    if seconds is not None:
+        now = time.perf_counter() + seconds
+        end = now if end is None else min(end, now)
+    token = _END.set(end)
+    try:
+        yield
+    finally:
+        _END.reset(token)
+
+
+def allowed(on_floats: float) -> float:
+    """Return the seconds that a text may take on symbols; on_floats: those that it takes there."""
+    most, end = max(LONGEST, SLOWEST * on_floats), _END.get()
+    return most if end is None else min(most, max(SHORTEST, end - time.perf_counter()))
+
+
+@contextmanager
+def within(seconds: float) -> Iterator[None]:
+    """Raise TimeoutError from what has not ended after so many seconds, with its line."""
+    thread, ended, lock = threading.get_ident(), threading.Event(), threading.Lock()
+    late = threading.Event()
+
+    def wait() -> None:
+        pause = seconds
+        while not ended.wait(pause):
+            with lock:
+                if not ended.is_set():
+                    late.set()
+                    _raise(thread, ctypes.py_object(_Late))
+            pause = AGAIN
+
+    threading.Thread(target=wait, daemon=True).start()
+    try:
+        try:
+            yield
+        finally:
+            with lock:
+                ended.set()
+                _raise(thread, None)  # what is not raised yet
+    except (_Late, Exception) as stopped:
+        ended.set()
+        if not late.is_set():
+            raise
+        words = f"it has not ended after {seconds:.2g} s"
+        raise TimeoutError(words).with_traceback(stopped.__traceback__) from None
+
+
+def _raise(thread: int, what: "ctypes.py_object[type[_Late]] | None") -> None:
+    """Raise an exception in a thread at its next instruction; None takes it back."""
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), what)
