@@ -11,7 +11,7 @@ from gearopt.formulations.servo.ratio.secant_bound import convex_bound
 from gearopt.formulations.servo.split import core, staged
 from gearopt.optimise import tape
 from gearopt.optimise.solve import solve
-from gearopt.physics.servo_drive import load_acceleration, rms_torque, shortest_move_time
+from gearopt.physics.servo_drive import load_acceleration, rms_torque
 
 METHODS = ("exact", "ipopt", "gp")
 J_L, J_M = 19.8, 8.6e-3  # t mm2: 1.98e-2 and 8.6e-6 kg m2
@@ -90,24 +90,57 @@ def test_moves_known_independently_by_three_methods(turn, ratio, seconds):
     assert gp.value == pytest.approx(exact.value, rel=1e-9)
 
 
+def bang_bang(drive, angle, n):
+    """The time of a move at a ratio: torque, no torque at the speed limit, torque reversed.
+
+    Newton's laws of rotor and load, with the torque at the train's output between them, give both
+    ramps; the time is the least over the speed that is reached.
+    """
+    ramps = []
+    for sign, eta in ((1.0, drive.efficiency), (-1.0, 1.0)):
+        rotor = [n * drive.inertia, 1.0 / (eta * n)]  # of the load's acceleration and that torque
+        forces = sign * drive.torque - drive.motor_friction, -drive.load_friction
+        alone = np.linalg.solve([rotor, [drive.load_inertia, -1.0]], forces)
+        ramps.append(sign * alone[0])
+    a, d = ramps
+    if not a > 0.0:
+        return math.inf
+    most = min(math.sqrt(2.0 * angle / (1.0 / a + 1.0 / d)), drive.speed_limit / n)
+    v = most * np.linspace(0.01, 1.0, 200)
+    return float(np.min(v / a + v / d + (angle - 0.5 * v**2 * (1.0 / a + 1.0 / d)) / v))
+
+
+def test_a_move_brakes_with_friction_too():
+    """0.1 N m at 6000 rpm at most, 2 N m of friction: ramps that are alike would take 0.37147 s."""
+    axis = Drive(50.0, 5.5e-3, torque=100.0, load_friction=2000.0, speed_limit=200.0 * math.pi)
+    turn = math.radians(120.0)
+    result = solve(move(axis, turn))
+    assert result.status == "optimal" and result.gap < 1e-9
+    assert result.value == pytest.approx(0.33643, abs=6e-6)
+    assert result.design["ratio"] == pytest.approx(62.51, abs=6e-3)
+    assert result.value == pytest.approx(bang_bang(axis, turn, result.design["ratio"]), rel=1e-13)
+
+
 @pytest.mark.parametrize("turn", [0.5, 5.0, 50.0, 500.0])
-def test_a_move_with_load_friction_is_that_of_brent(turn):
+@pytest.mark.parametrize("friction", [0.0, F_L])
+def test_a_move_is_the_best_of_all_bang_bang_motions(turn, friction):
     from scipy.optimize import minimize_scalar
 
-    drive = replace(REAL, efficiency=0.85, speed_limit=800.0)
-
-    def time(log_ratio):
-        n = math.exp(log_ratio)
-        a = load_acceleration(n, J_L, J_M, 47.0, F_L, 0.85)
-        return shortest_move_time(turn, 800.0 / n, a)
-
-    least = math.log(1.01 * F_L / (0.85 * 47.0))
-    found = minimize_scalar(time, bounds=(least, 6.0), method="bounded", options={"xatol": 1e-10})
-    exact, ipopt = (solve(move(drive, turn), m) for m in ("exact", "ipopt"))
+    drive = replace(REAL, load_friction=friction, efficiency=0.85, speed_limit=800.0)
+    least = math.log(1.01 * friction / (0.85 * 47.0)) if friction else 0.0
+    found = minimize_scalar(
+        lambda log_ratio: bang_bang(drive, turn, math.exp(log_ratio)),
+        bounds=(least, 6.0),
+        method="bounded",
+        options={"xatol": 1e-10},
+    )
+    problem = move(drive, turn)
+    assert tape.kinds(problem).log_convex
+    exact, ipopt, gp = (solve(problem, m) for m in METHODS)
     assert exact.status == ipopt.status == "optimal"
     assert exact.value == pytest.approx(found.fun, rel=1e-12)
-    assert exact.value <= found.fun * (1.0 + 1e-15)
     assert ipopt.value == pytest.approx(exact.value, rel=1e-11)
+    assert gp.value == pytest.approx(exact.value, rel=1e-9)
 
 
 def test_swinging_duty_known_independently():

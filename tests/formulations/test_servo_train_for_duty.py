@@ -81,8 +81,10 @@ def worth(duty, n, gears):
         return math.inf
     if duty.motion == "acceleration":
         return 1.0 / a
-    v = min(math.sqrt(a * duty.angle), own.speed_limit / n)
-    return duty.angle / v + v / a
+    held = n * (own.torque + own.motor_friction) + own.load_friction  # which brake
+    both = 1.0 / a + (own.load_inertia + n * n * rotor) / held
+    v = min(math.sqrt(2.0 * duty.angle / both), own.speed_limit / n)
+    return duty.angle / v + 0.5 * v * both
 
 
 def full_enumeration(train):

@@ -59,8 +59,10 @@ class Duty:
         if self.motion == "acceleration":
             return 1.0 / a
         angle = math.radians(self.turn)
-        top = min(math.sqrt(a * angle), self.speed / n)
-        return angle / top + top / a
+        braking = n * (self.torque + self.own_friction) + self.friction
+        both = 1.0 / a + (self.load + n * n * rotor) / braking
+        top = min(math.sqrt(2.0 * angle / both), self.speed / n)
+        return angle / top + 0.5 * top * both
 
 
 def random_case(seed):

@@ -130,8 +130,10 @@ def test_speed_of_the_motor_in_a_move():
     one = result.design["ratio"]["chosen"]
     n, gears = one["total_ratio"], one["gear_inertia_kg_m2"]
     a = law(n, gears)
-    peak = math.sqrt(a * math.pi / 2)
-    assert peak < 800.0 / n and one["value"] == pytest.approx(2 * math.sqrt(math.pi / 2 / a))
+    braking = 0.053 * n + 4.3 * 0.0980665  # friction brakes too
+    both = 1.0 / a + (1.98e-2 + n * n * (8.6e-6 + gears)) / braking
+    peak = math.sqrt(math.pi / both)
+    assert peak < 800.0 / n and one["value"] == pytest.approx(math.sqrt(math.pi * both))
     assert one["motor_speed_rpm"] == pytest.approx(30 / math.pi * n * peak, rel=1e-12)
     assert one["motor_speed_used_percent"] == pytest.approx(100 * n * peak / 800, rel=1e-12)
 

@@ -43,6 +43,27 @@ def load_acceleration(
     return (efficiency * ratio * (torque - torque_slope * ratio) - load_friction) / inertia
 
 
+def load_deceleration(
+    ratio: Any,
+    load_inertia: Any,
+    motor_inertia: Any,
+    torque: Any,
+    load_friction: Any = 0.0,
+) -> Any:
+    """Return the load's deceleration (N T + F_L)/(J_L + N^2 J_M) [rad/s2] while the motor brakes.
+
+    ratio N > 0; load_inertia J_L, motor_inertia J_M [t mm2], not both 0; torque T = T_M + F_M, the
+    motor's and its friction, load_friction F_L >= 0 [N mm]. Losses of the train would help to brake
+    and are not counted. Derived from Youn, eq. (1), friction reversed.
+    """
+    return (ratio * torque + load_friction) / reflected_inertia(load_inertia, motor_inertia, ratio)
+
+
+def mean_ramp(acceleration: Any, deceleration: Any) -> Any:
+    """Return 2/(1/a + 1/d) [rad/s2], of ramps a and d: as long, together, as two ramps like it."""
+    return 2.0 / (1.0 / acceleration + 1.0 / deceleration)
+
+
 def torque_slope(stall_torque: Any, load_speed: Any, no_load_speed: Any) -> Any:
     """Return the torque b = T_s omega_L/omega_0 [N mm] that a motor loses per unit of ratio.
 
@@ -53,10 +74,11 @@ def torque_slope(stall_torque: Any, load_speed: Any, no_load_speed: Any) -> Any:
 
 
 def move_time(angle: Any, peak_speed: Any, acceleration: Any) -> Any:
-    """Return the time Theta/v + v/a [s] from rest to rest: ramps of acceleration a, top speed v.
+    """Return the time Theta/v + v/a [s] from rest to rest: two ramps of mean a, top speed v.
 
-    angle Theta [rad], peak_speed v [rad/s], acceleration a [rad/s2] of the load, all > 0, with
-    v^2 <= a Theta; at equality the speed has no flat part and t = 2 sqrt(Theta/a) is minimum.
+    angle Theta [rad], peak_speed v [rad/s], acceleration a [rad/s2] of the load, that of both ramps
+    or their `mean_ramp`, all > 0, with v^2 <= a Theta; at equality the speed has no flat part and
+    t = 2 sqrt(Theta/a) is minimum.
     """
     return angle / peak_speed + peak_speed / acceleration
 
@@ -64,7 +86,8 @@ def move_time(angle: Any, peak_speed: Any, acceleration: Any) -> Any:
 def shortest_move_time(angle: Any, speed_limit: Any, acceleration: Any) -> Any:
     """Return the minimum time [s] from rest to rest where the load's speed is limited.
 
-    angle Theta [rad], speed_limit [rad/s], acceleration a [rad/s2] of the load, all > 0.
+    angle Theta [rad], speed_limit [rad/s], acceleration a [rad/s2] of the load, that of both ramps
+    or their `mean_ramp`, all > 0.
     """
     peak = np.minimum(np.sqrt(acceleration * angle), speed_limit)
     return move_time(angle, peak, acceleration)

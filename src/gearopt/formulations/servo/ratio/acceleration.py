@@ -14,6 +14,7 @@ from gearopt.physics.servo_drive import load_acceleration, torque_slope
 
 RANDOM = False
 COUNTS = "ratio evaluated"
+ROOT = "Proof: a root of the slope, and a bound that follows from convexity alone."
 STANDING = 1e-12  # of the torque that friction leaves, where rounding decides whether it moves
 
 
@@ -163,10 +164,15 @@ def unopposed(drive: Drive, ratio: float) -> float:
     return found
 
 
-def proof() -> dict[str, Any]:
-    """Return how a closed form is proven: the law beside it, and convexity."""
-    found = {"method": "closed form", "arithmetic": "double", "bound": "log-log convexity"}
-    return found | {"sentence": CLOSED_FORM}
+def proof(root: bool = False) -> dict[str, Any]:
+    """Return how a closed form, or a root of the slope, is proven: by the law and convexity."""
+    method, words = ("root of the slope", ROOT) if root else ("closed form", CLOSED_FORM)
+    return {
+        "method": method,
+        "arithmetic": "double",
+        "bound": "log-log convexity",
+        "sentence": words,
+    }
 
 
 def impossible(reason: str) -> Outcome:

@@ -9,7 +9,7 @@ import numpy as np
 from gearopt.formulations.servo.ratio.duty import ServoDuty
 from gearopt.formulations.servo.servo_design import KG_M2, Achieved, RatioCurve
 from gearopt.optimise.solve import run
-from gearopt.physics.servo_drive import largest_acceleration
+from gearopt.physics.servo_drive import largest_acceleration, mean_ramp
 
 RPM = 30.0 / math.pi  # of a rad/s
 TIE = 1e-12  # relative: a motor that is used to the full is not overloaded by rounding
@@ -61,7 +61,8 @@ def _speeds(duty: ServoDuty, ratio: float) -> dict[str, float]:
     """Return the maximum motor speed, and how far it uses its limit; nothing at standstill."""
     speed, axis = duty.speed, duty.drive
     if duty.motion == "move":
-        peak = math.sqrt(float(duty.acceleration(ratio)) * duty.angle)
+        ramp = mean_ramp(float(duty.acceleration(ratio)), float(duty.deceleration(ratio)))
+        peak = math.sqrt(ramp * duty.angle)
         speed = min(peak, axis.speed_limit / ratio)
     if not speed:
         return {}

@@ -66,6 +66,11 @@ class Drive:
         """Return the torque [N mm] at standstill that the motor's friction leaves."""
         return self.torque - self.motor_friction
 
+    @property
+    def braking_torque(self) -> float:
+        """Return the torque [N mm] of the motor and its friction, which both brake."""
+        return self.torque + self.motor_friction
+
     def needs(self, **numbers: float) -> None:
         """Raise ValueError where a number that a duty needs is not positive and finite."""
         for name, value in numbers.items():

@@ -15,6 +15,8 @@ from gearopt.formulations.servo.servo_design import MOTIONS
 from gearopt.optimise.problem import Problem
 from gearopt.physics.servo_drive import (
     load_acceleration,
+    load_deceleration,
+    mean_ramp,
     rms_torque,
     shortest_move_time,
     torque_slope,
@@ -83,6 +85,12 @@ class ServoDuty:
         numbers = own.load_inertia, inertia, own.net_torque, own.load_friction, own.efficiency
         return load_acceleration(ratio, *numbers, self.slope)
 
+    def deceleration(self, ratio: Any, gears: Any = 0.0) -> Any:
+        """Return the load's deceleration [rad/s2] while the motor brakes; gears: see above."""
+        own = self.drive
+        numbers = own.load_inertia, own.inertia + gears, own.braking_torque, own.load_friction
+        return load_deceleration(ratio, *numbers)
+
     def value(self, ratio: Any, gears: Any = 0.0) -> Any:
         """Return what is minimised [s2/rad, s or N mm]; very large where the load does not move."""
         own = self.drive
@@ -95,7 +103,8 @@ class ServoDuty:
         found = np.maximum(self.acceleration(ratio, gears), slowest)
         if self.motion == "acceleration":
             return 1.0 / found
-        return shortest_move_time(self.angle, own.speed_limit / ratio, found)
+        ramp = mean_ramp(found, self.deceleration(ratio, gears))
+        return shortest_move_time(self.angle, own.speed_limit / ratio, ramp)
 
     def limits(self, ratio: Any, value: Any) -> dict[str, Any]:
         """Return the utilisations of the motor at a ratio; value: that of the duty there.

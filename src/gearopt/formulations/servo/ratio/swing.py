@@ -98,4 +98,4 @@ def _exact(drive: Drive, amplitude: float, angular_frequency: float) -> Outcome:
             f"at the best ratio, {ratio:.6g}, the rms torque is {1e-3 * law(ratio):.6g} N m, above "
             f"the motor's {1e-3 * drive.torque:.6g} N m"
         )
-    return Outcome(np.array([ratio]), bound=bound, proof=proof(), evaluations=6)
+    return Outcome(np.array([ratio]), bound=bound, proof=proof(root=True), evaluations=6)

@@ -87,7 +87,7 @@ def _terms(train: ServoTrain, goal: str, moved: Problem | None, x: Any, p: Any) 
     numbers = SimpleNamespace(**vars(p) | {"gear_inertia": worth["inertia"], "ratio_low": 1.0})
     duty = moved.evaluate(SimpleNamespace(**vars(x) | {"ratio": n1 * n2}), numbers)
     limits |= {name: v for name, v in duty.limits.items() if name != "ratio_low"}
-    return Terms(duty.minimise, limits, equal=equal)
+    return Terms(duty.minimise, limits, duty.defines, equal)
 
 
 def _limits(train: ServoTrain, both: Pairs, x: Any, p: Any) -> dict[str, Any]:

@@ -46,6 +46,8 @@ def moved(duty, ratio, gears):
     inverse = (load + efficiency * ratio**2 * inertia) / left
     if duty[0] == 0:
         return inverse
+    braking = ratio * (torque + 2.0 * own) + friction
+    inverse = 0.5 * (inverse + (load + ratio**2 * inertia) / braking)
     top = min(math.sqrt(angle / inverse), limit / ratio)
     return angle / top + top * inverse
 

@@ -35,6 +35,7 @@ NOTE = (
     "Inertias are seen at the motor; their ratio is that of the load to rotor and train together."
 )
 SPEEDING = " Torques are shares of the motor's while the load speeds up."
+BRAKING = " The motor brakes with all its torque too, and friction helps: the ramps are not alike."
 WITH_TRAIN = "with the chosen train's inertia"
 TICKS = (1.0, 2.0, 5.0)  # of a decade
 MARKS = (  # of what is judged beside the best ratio: colour and symbol
@@ -52,7 +53,8 @@ def section(result: Result, measures: Measures) -> Section | None:
     curve, known = _curve(found, measures), found.best is not None
     words = [_flat(found), *bound_words(report_of(result), found, measures)]
     achieved = [_achieved(found, measures)] if known else []
-    note = [NOTE + (SPEEDING if found.duty != "swing" else "")] if known else []
+    motion = (SPEEDING if found.duty != "swing" else "") + (BRAKING if found.duty == "move" else "")
+    note = [NOTE + motion] if known else []
     told = words if known else [*best_words(found, measures), *words]
     return Section(
         "Total ratio",
