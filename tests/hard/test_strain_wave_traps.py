@@ -176,7 +176,7 @@ def test_a_rim_that_leaves_no_bore_is_refused(old, new, told):
     [
         ("deflection = 1\n", "deflection = 0.1\n", "below 0.8139.*contact exists nowhere"),
         ("deflection = 1\n", "deflection = 0.7\n", "below 0.8139.*from 35.0 degrees"),
-        ("deflection = 1\n", "deflection = 0.82\n", "no conjugate point at some radius"),
+        ("deflection = 1\n", "deflection = 0.82\n", "without conjugate contact"),
         ('"20 deg"\nprofile', '"5 deg"\nprofile', "below 1.0129"),
         ('rim = "0.8 mm"', 'rim = "20 mm"', "rim.*no deflection up to 2.*Write rim = .0.8 mm"),
     ],

@@ -170,6 +170,6 @@ def test_a_cutter_with_a_cusp_and_teeth_that_cut_are_warned_of(result):
     cusp |= {"teeth": 8, "cutter_radius_mm": 2.0, "regular": False, "least_speed": -1.7}
     own = replace(result, design=result.design | {"least_clearance_mm": -0.031, "cutter": cusp})
     first, second = warns(own)
-    assert "cut each other by 3" in first and "has a cusp" in second
+    assert "overlap by 3" in first and "have a cusp" in second
     assert not cutter(own, METRIC).drawings
     assert "would have a cusp" in cutter(own, METRIC).words[0]

@@ -74,7 +74,7 @@ def test_fixed_cylinders_that_overlap_say_by_how_much_and_where_they_fit():
     text = ROW.replace('["30 mm", "10 mm"]', '["28 mm", "10 mm"]')
     error = wrong(text)
     assert error.key == "cylinder[2].at" and error.value == '["28 mm", "10 mm"]'
-    assert "2 mm are missing between large 2 and large 1" in error.rule
+    assert "the gap between large 2 and large 1 is 2 mm too small" in error.rule
     assert error.fix.value == '["30 mm", "10 mm"]'
     read(ROW.encode())
 
@@ -108,7 +108,7 @@ def test_a_remedy_is_in_the_unit_of_the_file():
     error = wrong(inches + '\n[container]\nwidth = "50 in"\nwall = "1 in"\n')
     assert error.fix.value == '"62 in"'
     error = wrong(inches.replace('["30 in", "10 in"]', '["28 in", "10 in"]'))
-    assert error.fix.value == '["30 in", "10 in"]' and "near: 2 in are missing" in error.rule
+    assert error.fix.value == '["30 in", "10 in"]' and "is 2 in too small" in error.rule
 
 
 def test_a_width_is_for_a_rectangle():
@@ -206,7 +206,7 @@ def test_a_layer_below_a_named_one_that_must_stay_empty_is_refused():
     text = NAMED.replace("layer = 2", "layer = 6").replace("most = 2", "most = 6")
     error = wrong(text)
     assert error.key == "cylinder[1].layer" and error.value == "6"
-    assert "2 cylinders have no layer of their own, and below a layer none is" in error.rule
+    assert "only 2 cylinders are free to fill layers, and every layer below it must be filled" in error.rule
     assert error.fix.value == "3"
     read(text.replace("layer = 6", "layer = 3").encode())
 
@@ -296,6 +296,6 @@ def loads(text):
 def test_words_of_a_bound_say_where_its_time_ended_it():
     result = gearopt.solve(read(NAMED.encode())[1], budget=gearopt.Budget(evaluations=50_000))
     words = " ".join(proof(result))
-    assert "Bound: 2 ways to assign the cylinders" in words and "Stopped early" not in words
+    assert "Bound of packings in layers: 2 ways to assign the cylinders" in words and "Stopped early" not in words
     early = dataclasses.replace(result, proof=packing.proof(Bound(1.0, 2, complete=False)))
     assert "Stopped early: the bound is weaker than it could be." in " ".join(proof(early))

@@ -51,7 +51,7 @@ def loads(found: WaveDesign, measures: Measures) -> Table:
     rows: list[list[Any]] = [
         ["conjugate pairs per lobe and flank", found.pairs_in_contact],
         ["teeth that carry, per lobe", found.carrying_teeth],
-        ["the same, as if equally loaded", found.effective_teeth],
+        ["equivalent number, equally loaded", found.effective_teeth],
         [f"windup of {winds} [mrad]", found.windup_mrad],
         [f"pressure, shared loads [{stress}]", cell(found.shared_pressure_MPa, "MPa", measures)],
         [f"pressure, equal loads [{stress}]", cell(found.equal_pressure_MPa, "MPa", measures)],

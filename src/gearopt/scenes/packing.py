@@ -82,8 +82,8 @@ ASSUMED = (
     "Cylinders are rigid, upright and of their nominal size; they may touch each other and walls."
 )
 UNTRIED = (
-    "the packing is followed as its numbers change; whole numbers are not tried, because it is not "
-    "proven to be the best"
+    "sensitivities are those of this arrangement; whole numbers are not tried, because the packing "
+    "is not proven to be the best"
 )
 UNPROVEN = "Best known, not proven: a smaller packing may exist, but none below the bound."
 
@@ -132,10 +132,10 @@ class Layers(Table):
     """How many layers; one without this table. A layer is as high as its highest cylinder."""
 
     most: Annotated[int | None, whole(2, 1, MAX_CYLINDERS)] = Field(
-        None, description="At most so many layers (or give exactly)"
+        None, description="At most this many layers (or give exactly)"
     )
     exactly: Annotated[int | None, whole(2, 1, MAX_CYLINDERS)] = Field(
-        None, description="Just so many layers, each with a cylinder"
+        None, description="Exactly this many layers, each with a cylinder"
     )
 
     @model_validator(mode="after")
@@ -173,13 +173,13 @@ class Scene(Table):
             raise refuse("is missing: one table [[cylinder]] per size", at=("cylinder",))
         for k, own in enumerate(self.cylinder):
             if own.at is not None and own.count > 1:
-                rule = "stands beside at, which is the place of one cylinder"
+                rule = "cannot be combined with at, which places one cylinder"
                 raise refuse(rule, 1, ("cylinder", k, "count"))
             if own.layer is not None and own.layer > self._max_layers:
                 rule = f"is above the {self._max_layers} of [layers]"
                 raise refuse(rule, self._layer_for(k), ("cylinder", k, "layer"))
         if all(own.at is not None for own in self.cylinder):
-            rule = "fixes the last free cylinder, so that nothing is left to place"
+            rule = "fixes the last free cylinder: nothing is left to place"
             raise refuse(rule, at=("cylinder", len(self.cylinder) - 1, "at"), action="remove")
         total = sum(own.count for own in self.cylinder)
         if total > MAX_CYLINDERS:
@@ -214,14 +214,14 @@ class Scene(Table):
         filled, top = len(given) + movable, max(given, default=0)
         if max(exactly, top) <= filled:
             return
-        rule = f"leaves a layer empty: {movable} cylinders have no layer of their own"
+        rule = f"leaves a layer empty: only {movable} cylinders are free to fill layers"
         edits: dict[tuple[str | int, ...], int] = _lowered(self.cylinder, filled)
         place: tuple[str | int, ...] = ("layers", "exactly")
         if exactly > filled:
             edits = {place: filled} | edits
         else:
             place = ("cylinder", next(k for k, c in enumerate(self.cylinder) if c.layer == top))
-            place, rule = (*place, "layer"), f"{rule}, and below a layer none is"
+            place, rule = (*place, "layer"), f"{rule}, and every layer below it must be filled"
         if len(edits) == 1:
             raise refuse(rule, edits[place], place)
         together = [f"{dotted(key)} = {layer}" for key, layer in edits.items()]
@@ -258,12 +258,12 @@ class Scene(Table):
             if same and missing and at:
                 names = " and ".join(plan.cylinders[k].name for k in (j, i))
                 short = f"{float(at[0].of(Fraction(missing)).number):.4g} {at[0].unit}"
-                rule = f"is too near: {short} are missing between {names}"
+                rule = f"is too near: the gap between {names} is {short} too small"
                 raise refuse(rule, _away(plan, i, j, at), ("cylinder", where[j], "at"))
         need = minimum_layers(plan)
         if need > plan.max_layers:
             key = "most" if self.layers.exactly is None else "exactly"
-            rule = f"is too few: fixed cylinders lie over one another and need {need} layers"
+            rule = f"is too few: fixed cylinders overlap in plan and need {need} layers"
             raise refuse(rule, need, ("layers", key))
 
     def plan(self) -> Plan:

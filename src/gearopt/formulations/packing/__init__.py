@@ -45,8 +45,9 @@ def proof(floor: Bound) -> dict[str, Any]:
     method = "subdivision" if floor.choices else "volume"
     ways = f"{floor.choices:,} ways" if floor.choices > 1 else "one way"
     words = (
-        f"Bound: {ways} to assign the cylinders to layers; for each the minimum plan area that "
-        "discs, pairs and triples in any order need, by subdivision of the width."
+        f"Bound of packings in layers: {ways} to assign the cylinders to layers; for each the "
+        "minimum plan area that discs, pairs and triples in any order need, by subdivision of the "
+        "width."
     )
     if not floor.complete:
         words += " Stopped early: the bound is weaker than it could be."

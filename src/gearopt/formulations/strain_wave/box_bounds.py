@@ -22,9 +22,9 @@ def proof(demand: Demand) -> dict[str, Any] | None:
     if not over:
         return None
     names = min(over, key=lambda n: (len(n), -over[n]))
-    words = f"{names[0].replace('_', ' ')} is used to {100.0 * over[names]:.4g} % at least"
-    held = f", {names[1].replace('_', ' ')} kept" if len(names) > 1 else ""
-    sentence = f"Proof: {words} by every gearing in the ranges{held}; at a corner of the ranges."
+    words = f"{names[0].replace('_', ' ')} of at least {100.0 * over[names]:.4g} % of its limit"
+    held = f" that keeps the {names[1].replace('_', ' ')}" if len(names) > 1 else ""
+    sentence = f"Proof: every gearing in the ranges{held} has a {words}, by bounds over the ranges."
     return {"method": "bounds", "conflict": list(names), "sentence": sentence}
 
 

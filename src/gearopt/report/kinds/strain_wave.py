@@ -52,13 +52,13 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
         Tile(
             "teeth that carry",
             f"{found.carrying_teeth} per lobe",
-            f"as {number(found.effective_teeth)} equally loaded; {number(found.pairs_in_contact)} "
-            "are conjugate",
+            f"equivalent to {number(found.effective_teeth)} equally loaded; "
+            f"{number(found.pairs_in_contact)} are conjugate",
         ),
         Tile(
             "least clearance over the wave",
             amount(least, "um", measures),
-            "where conjugate flanks touch" if touching else "teeth cut",
+            "where conjugate flanks touch" if touching else "interference",
         ),
         Tile(
             "outer diameter",
@@ -95,11 +95,12 @@ def warns(result: Result) -> Sequence[str]:
     told = []
     if found.least_clearance_mm < CUTTING:
         told.append(
-            f"Teeth cut each other by {-1e3 * found.least_clearance_mm:.3g} µm, at "
-            f"{found.least_clearance_at_deg:.3g}° of the wave: loads and pressures do not count."
+            f"Interference: teeth overlap by {-1e3 * found.least_clearance_mm:.3g} µm, at "
+            f"{found.least_clearance_at_deg:.3g}° from the major axis: loads and pressures are "
+            "not valid."
         )
     if found.cutter and not found.cutter.regular:
-        told.append(f"{_tool(found.cutter)} has a cusp: there is none. {_least(found.cutter)}")
+        told.append(f"No such cutter: its edge would have a cusp. {_least(found.cutter)}")
     return told
 
 
@@ -109,7 +110,7 @@ def moving(result: Result, measures: Measures) -> Section | None:
         return None
     words = (
         f"{number(found.pairs_in_contact)} pairs per lobe and flank are conjugate: their flanks "
-        "touch without load. Others come near, and elasticity closes what is left.",
+        "touch without load. Other pairs come close; elastic deformation brings them into contact.",
     )
     return Section(
         "Teeth in mesh",
@@ -201,7 +202,7 @@ def shift(result: Result, measures: Measures) -> Section | None:
         "line": {"color": "--axis", "width": 1, "dash": "dot"},
     }
     plot["shapes"] = [mark]
-    caption = "Pressure by the profile shift, all else as it is; dotted: this gearing."
+    caption = "Pressure against profile shift, all else unchanged; dotted: this gearing."
     return Section(
         "Pressure against profile shift",
         words=_ends_of_shift(found),
@@ -212,15 +213,14 @@ def shift(result: Result, measures: Measures) -> Section | None:
 
 def _ends_of_shift(found: WaveDesign) -> list[str]:
     """Return what ends a search over the profile shift."""
-    words = ["The pressure has no least value over the profile shift: other limits end the search."]
+    words = ["The pressure has no minimum over the profile shift: other limits end the search."]
     if found.shift_of_one_pair is not None:
         words.append(
             f"One conjugate pair always touches up to a shift of {found.shift_of_one_pair:.3f}."
         )
     if found.largest_addendum is not None:
         words.append(
-            f"With an addendum above {found.largest_addendum:.3f} modules teeth would cut each "
-            "other."
+            f"With an addendum above {found.largest_addendum:.3f} modules teeth would interfere."
         )
     return words
 
@@ -286,8 +286,8 @@ def search(result: Result, measures: Measures) -> Section | None:
     if found is None or not found.rounds:
         return None
     words = (
-        "Each round holds those passages of the flank past the tip circle clear at which teeth of "
-        "the last one cut each other; all poses are looked at.",
+        "Each round adds a limit where the flank of the last design cut the tip circle of the "
+        "circular spline; then all positions of the wave are checked again.",
     )
     return Section("Search", words=words, tables=[tables.rounds(found, measures)], half=True)
 

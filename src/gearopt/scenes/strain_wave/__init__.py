@@ -48,16 +48,16 @@ __all__ = ["EXAMPLE", "MORE_EXAMPLES", "Scene"]
 METHODS = ("exchange",)  # its own
 SAMPLERS = ("annealing", "nsga2")
 NOTHING = "the gearing is given, so that nothing is chosen"
-UNPROVEN = "numbers are not solved again, because the answer is not certified as stationary"
-NEAREST = "What the size reaches where its largest excess is smallest: {}."
+UNPROVEN = "sensitivities need a design that is certified as locally optimal, and this one is not"
+NEAREST = "The nearest design of this size reaches: {}."
 NO_FLANK = (
-    "No gearing was found whose teeth are conjugate from root to tip: "
-    "a greater deflection or pressure angle brings contact."
+    "No gearing was found whose flanks are conjugate from root to tip. "
+    "Increase the deflection or the pressure angle."
 )
 NO_SLOPES: Mapping[str, float] = MappingProxyType({})
 HIDDEN = (
-    "The best design that was found cuts its teeth, by {:.3g} µm between the poses that the method "
-    "looked at: --method exchange looks at all."
+    "Interference: the teeth of the best design found overlap by {:.3g} µm, between the positions "
+    "that this method checks. --method exchange checks all positions."
 )
 
 
@@ -83,7 +83,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     shown = _with(scene, result, found.design, numbers, slopes, _rounds(found))
     if found.clear:
         return shown
-    message = f"Stopped before all poses kept clear: teeth interfere. {shown.message}".strip()
+    message = f"Stopped before the interference was removed. {shown.message}".strip()
     excess = max(shown.limits.values()) - 1.0
     certificate = {**shown.certificate, "feasibility": excess}
     return replace(shown, status="limit", certificate=certificate, message=message)
@@ -237,7 +237,7 @@ def model(scene: Scene, method: str) -> Model:
     problem = sampled.problem(demand, start)
     if method not in SAMPLERS:
         problem = sampled.limited(demand, start, PRESSURE, {})
-    return Model(problem, "No teeth cut each other at any pose of the wave", "MPa")
+    return Model(problem, "No interference at any position of the wave", "MPa")
 
 
 def objectives(scene: Scene) -> dict[str, str]:
@@ -261,8 +261,8 @@ def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
         return Several(sampled.problem(demand, start, names), listed, drawn)
     if SHARE in names:
         raise SolveError(
-            f"{SHARE} counts teeth, which no gradient follows: --method {' or '.join(SAMPLERS)} "
-            f"samples it; {VOLUME},{PRESSURE} are found without it"
+            f"{SHARE} counts teeth and has no gradient: add --method {' or '.join(SAMPLERS)}; "
+            f"{VOLUME},{PRESSURE} need no such method"
         )
     limiting = Limiting(partial(sampled.limited, demand, start), tuple(names[1:]))
     whole = sampled.problem(demand, start, names, sampled.WHOLE)

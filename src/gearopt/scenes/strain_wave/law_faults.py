@@ -32,7 +32,7 @@ def contact_fault(gearing: StrainWave) -> Fault | None:
     tried = (first + HIGHER * k for k in range(TRIED))
     enough = (w for w in tried if flank(replace(gearing, deflection=w), 41).complete.all())
     write, place = next(enough, None), ("gears", "deflection")
-    rule = "gives the flank no conjugate point at some radius"
+    rule = "leaves a part of the flank without conjugate contact"
     if write is None:
         return _shorter_or_steeper(gearing, rule)
     write = round(write, 2)
@@ -96,7 +96,7 @@ def law_fault(gearing: StrainWave, law: Law) -> Fault | None:
         swept_gearing(gearing, law)
     except ValueError:
         return (
-            "makes flanks that are conjugate at no pose of the wave",
+            "makes flanks that are conjugate nowhere on the wave",
             ("gears", "deflection"),
             None,
         )

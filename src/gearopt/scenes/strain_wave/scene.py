@@ -79,7 +79,7 @@ class Scene(Table):
             rule = f"is missing: [gears] leaves {left} open, and what is chosen must fit into it"
             raise refuse(rule, at=("duty", "outer_diameter"), action="sample")
         if not self.limited and self.duty.outer_diameter is None and self.gears.face_width is None:
-            rule = "is missing: without an outer diameter nothing says it"
+            rule = "is missing: without it or an outer diameter the face width is unknown"
             raise refuse(rule, at=("gears", "face_width"), action="sample")
         for name in FREE:
             if getattr(self.gears, name) is not None and getattr(self.design, name) is not None:

@@ -34,8 +34,8 @@ def assumptions(scene: Scene, made: WaveDesign) -> list[str]:
     ]
     if not scene.involute:
         model.append(
-            "Teeth by a law: a tooth that touches at two points carries at that which presses "
-            "harder; ratcheting is by the pressure angle of the flank's middle."
+            "A tooth that touches at two points is taken to carry at the one of higher pressure; "
+            "ratcheting is computed with the pressure angle at the middle of the flank."
         )
     limits = (
         f"Limits of every gearing: lands and root spaces of {LAND:g} modules, tip circle "
@@ -53,12 +53,12 @@ def _mesh_torque(scene: Scene) -> str:
     held = scene.loads().reaction
     if held == 1.0:
         return (
-            "Load: the teeth carry the torque of the output, as Jun and Oh have it; the circular "
-            f"spline holds {1.0 + 1.0 / scene.duty.ratio:.5g} times as much, the input's with it."
+            "Load: the teeth carry the output torque, as in Jun and Oh; the circular spline holds "
+            f"{1.0 + 1.0 / scene.duty.ratio:.5g} times as much, as it holds the input torque, too."
         )
     return (
-        f"Load: the teeth carry what the circular spline holds, {held:.5g} times the torque of the "
-        "output: that of the input with it."
+        f"Load: the teeth carry the torque on the circular spline, {held:.5g} times the output "
+        "torque: the sum of output and input torque."
     )
 
 
@@ -159,23 +159,24 @@ def range_notes(scene: Scene, ends: Sequence[RangeEnd]) -> list[str]:
 
 def notes(made: WaveDesign) -> list[str]:
     """Return what is to be known of this gearing, in sentences."""
-    carry = "1 tooth carries" if made.carrying_teeth == 1 else f"{made.carrying_teeth} carry"
+    carry = f"{made.carrying_teeth} {'tooth' if made.carrying_teeth == 1 else 'teeth'}"
     found = [
-        f"{made.pairs_in_contact:.3f} pairs of teeth per lobe and flank are conjugate in the mean; "
-        f"{carry}, as if {made.effective_teeth:.2f} carried alike.",
+        f"On average {made.pairs_in_contact:.3f} pairs of teeth per lobe and flank are conjugate; "
+        f"under load {carry} carry, equivalent to {made.effective_teeth:.2f} with equal loads.",
         _windup(made),
     ]
     if made.least_clearance_mm < CUTTING:
         found.append(
-            f"Teeth cut each other by {-1e3 * made.least_clearance_mm:.3g} µm where the wave is at "
-            f"{made.least_clearance_at_deg:.4g} degrees."
+            f"Interference: teeth overlap by {-1e3 * made.least_clearance_mm:.3g} µm, at "
+            f"{made.least_clearance_at_deg:.4g} degrees from the major axis."
         )
     elif made.law != INVOLUTE:
         found.append(
-            "No teeth interfere: the circular spline is what the flexspline's teeth leave."
+            "No interference: the circular spline's tooth spaces are cut by the motion of the "
+            "flexspline's teeth."
         )
     else:
-        found.append("No teeth interfere at any pose of the whole wave.")
+        found.append("No interference at any position of the wave generator.")
         found += _without_play(made)
     return found
 
@@ -185,12 +186,12 @@ def _windup(made: WaveDesign) -> str:
     if made.elastic_rim:
         return (
             f"The windup of {made.windup_mrad:.3g} mrad is of teeth, rim and cup: wave generator, "
-            "bearings and shafts are rigid here, so that a whole gearing winds up further."
+            "bearings and shafts are taken as rigid, so that a real gearing winds up further."
         )
     return (
         f"The windup of {made.windup_mrad:.3g} mrad is of the teeth alone: everything else is "
-        'rigid, so that a whole gearing winds up many times as far. [sharing] rim = "elastic" '
-        "adds rim and cup."
+        "taken as rigid, so that a real gearing winds up many times as far. [sharing] rim = "
+        '"elastic" adds rim and cup.'
     )
 
 
@@ -202,7 +203,7 @@ def _without_play(made: WaveDesign) -> list[str]:
     each = " and ".join(
         f"{-1e3 * d.least_clearance_mm:.3g} µm at {d.deflection:.4g} modules" for d in near
     )
-    return [f"The deflection must be exact: otherwise teeth cut each other, by {each}."]
+    return [f"The deflection has no tolerance: teeth would overlap by {each}."]
 
 
 def _name(name: str) -> str:

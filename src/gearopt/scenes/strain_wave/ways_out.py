@@ -105,4 +105,8 @@ def costs(multipliers: Mapping[str, float]) -> str:
     for name in (n for n in LIMITS if total.get(n, 0.0) > NOTHING):
         step, part = (1e-3 / GAP_UNIT, "1 µm") if name == "interference" else (0.01, "1 %")
         words.append(f"{name.replace('_', ' ')} {total[name] * step:.3g} MPa for {part}")
-    return f"what limits cost, by multipliers: {', '.join(words)}" if words else ""
+    return (
+        f"relaxing a limit lowers the pressure by (multipliers): {', '.join(words)}"
+        if words
+        else ""
+    )
