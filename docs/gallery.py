@@ -10,6 +10,7 @@ from typing import Any
 
 from pictures import FRONTS, PICTURES, ROOM
 
+from gearopt.api import load
 from gearopt.report.measures import METRIC
 from gearopt.report.words import VERDICTS
 
@@ -266,7 +267,8 @@ def _answer(file: Mapping[str, Any]) -> str:
         if file["kind"] == "dynamics":
             return ", ".join(_moved(expected))
         return ", ".join(_rated(expected) if "governs" in expected else _contact(expected))
-    parts = [f"**{VERDICTS[expected['status']][0]}**"]
+    words = "least for these gears, sized first" if _of_gears_first(file) else ""
+    parts = [f"**{words or VERDICTS[expected['status']][0]}**"]
     name, unit = objective(file)
     if "objective" in expected:
         value = expected["objective"]
@@ -284,6 +286,11 @@ def _answer(file: Mapping[str, Any]) -> str:
         parts.append(f"limits must move by a factor of at least {expected['least_factor']:g}")
     rated = _rated(expected) if "governs" in expected else []
     return ", ".join(parts + rated)
+
+
+def _of_gears_first(file: Mapping[str, Any]) -> bool:
+    """Return whether a file asks for the box of gears that are sized before it."""
+    return "layout" in file and not file["layout"].get("together") and not load(file).given
 
 
 def _contact(expected: Mapping[str, Any]) -> list[str]:

@@ -289,7 +289,7 @@ def test_real_valued_gears_and_box_at_once():
     text = (PROBLEMS / "three_stage_together.toml").read_text(encoding="utf-8")
     result = gearopt.solve(scene(text), method="ipopt")
     assert result.status == "stationary"
-    assert 0.9 * 44_383_628 < result.value < 47_483_050  # from the gears chosen first
+    assert 0.9 * 44_383_628 < result.value < 47_483_050  # from the gears sized first
     box = result.design["layout"]["box"]
     assert box["volume_mm3"] == pytest.approx(result.value, rel=1e-6)
     assert max(result.limits.values()) <= 1.0 + 1e-7
@@ -306,11 +306,11 @@ STATIC = {  # what is added to the file, and a part of what is said
     "too near": ('[[place]]\nshaft = 2\ny = "0 mm"\nz = "100 mm"\n', "keep them 211.85 mm apart"),
     "two places": (
         '[[place]]\nshaft = 4\nz = "180 mm"\n[[place]]\nshaft = 4\nz = "100 mm"\n',
-        "Two places of shaft 4 are 79.98 mm apart",
+        "Shaft 4 has two places, 79.98 mm apart",
     ),
     "on the input": (
         '[[keep_out]]\nname = "post"\ny = ["-5 mm", "5 mm"]\nz = ["-5 mm", "5 mm"]\n',
-        "input shaft is 25.84 mm too close to post",
+        "Pinion 1 violates the clearance to post by 25.84 mm",
     ),
 }
 
@@ -416,5 +416,5 @@ def test_impossible_at_once_is_explained(small):
     )
     found = gearopt.explain(small.model_copy(update={"layout": low}))
     assert found.result.status == "infeasible"
-    assert "No gears within the limits can be laid out" in found.result.message
+    assert "No gears within the limits can be arranged" in found.result.message
     assert found.remedies[0].what == "largest_height"

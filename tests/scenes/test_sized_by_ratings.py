@@ -224,6 +224,7 @@ def test_load_limits_alone_size_real_valued_teeth_that_ratings_cannot():
     both = gearopt.solve(drive(limits=LOADS, rating=more, load=load, teeth=None))
     alone = gearopt.solve(drive(limits=LOADS, rating=None, gears=None, teeth=None))
     assert both.value == alone.value and not both.design["rating"]["safe"]
+    assert "optimal (sized by load limits alone, rated afterwards)" in repr(both).splitlines()[0]
 
 
 def test_the_best_number_of_stages_is_that_of_each():

@@ -18,10 +18,14 @@ from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import ISO_53_A, MEMBERS, Gear, GearPair, Rack
 from gearopt.physics.loads import pitch_line_velocity
 
-GEARS_FIRST = "the gears chosen first"  # of what alone a layout is proven impossible
 TOOL = ("addendum", "tool_addendum", "tool_tip_radius", "tool_protuberance")  # as in a `Rack`
 TEETH = ("profile_shift", "tip_alteration", "thickness_allowance_mm")  # as in a `Gear`
 STEEL_DENSITY = 7.85e-9  # t/mm3: EN 1991-1-1 table A.4 (to 78.5 kN/m3), Steel for Life Blue Book
+
+
+def gears_first(objective: str) -> str:
+    """Return the scope of a layout of gears that were sized before it, for their own objective."""
+    return f"gears sized first for least {objective.replace('_', ' ')}"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -32,7 +32,9 @@ def verdict(front: Front) -> tuple[str, str]:
     """Return how certain a front is, and the colour of that."""
     if not front.points and front.status != "infeasible":
         return "no design found, and no proof that there is none", "yellow"
-    return VERDICTS[front.status]
+    words, colour = VERDICTS[front.status]
+    scope = front.proof.get("scope")
+    return f"{words} ({scope})" if scope else words, colour
 
 
 def words(name: str) -> str:

@@ -20,7 +20,6 @@ from gearopt.report.measures import METRIC, Measures
 from gearopt.report.section import Cell, Table
 from gearopt.report.words import (
     REACHED,
-    VERDICTS,
     amount,
     effort,
     goal,
@@ -119,7 +118,7 @@ def show_explanation(
     """Print the explanation of a possible request (an impossible one is shown by its result)."""
     result = explanation.result
     name, unit, reached, _, _ = goal(result)
-    words, colour = VERDICTS[result.status]
+    words, colour = verdict(result)
     value = amount(reached, unit, measures)
     console.print(
         Text.assemble((title(result), "bold"), f": {name} {value}, ", (words, f"bold {colour}"))

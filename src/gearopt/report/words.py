@@ -5,7 +5,6 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from gearopt.formulations.design import GEARS_FIRST
 from gearopt.formulations.strength import laws
 from gearopt.optimise.result import Result
 from gearopt.report.measures import DIGITS, METRIC, Measures, rounded
@@ -157,19 +156,24 @@ def certainty(result: Result) -> tuple[str, str]:
     if result.status == "stationary" and result.bound is not None:
         words = "locally optimal"  # its gap is told beside
     if of_gears_first(result):
-        words = "impossible with these gears, proven"
+        return "impossible with these gears, proven", colour
+    scope = "" if result.value is None else str(result.proof.get("scope", ""))
+    these = bool(scope) and any(part.name == "gears" for part in result.parts)
+    if result.status == "optimal" and these:
+        words = "least for these gears"
     if result.status == "optimal" and (result.gap or 0.0) > EXACT:
-        words = f"proven within {100 * (result.gap or 0.0):.2g} % of the optimum"
+        of = "the least for these gears" if these else "the optimum"
+        words = f"proven within {100 * (result.gap or 0.0):.2g} % of {of}"
     if result.status == "optimal" and "on" in result.proof:
         words = f"{words} {result.proof['on']}"
     if "achieved" in result.report:  # something is come near to
         words = words.replace("optimal", result.report.get("best", "nearest"))
-    return words, colour
+    return f"{words} ({scope})" if scope else words, colour
 
 
 def of_gears_first(result: Result) -> bool:
-    """Return whether only the gears chosen first are proven impossible to lay out."""
-    return result.status == "infeasible" and result.proof.get("scope") == GEARS_FIRST
+    """Return whether only gears sized first are proven impossible to lay out."""
+    return result.status == "infeasible" and "scope" in result.proof
 
 
 def verdict(result: Result) -> tuple[str, str]:

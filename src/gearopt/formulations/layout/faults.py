@@ -16,6 +16,7 @@ from gearopt.formulations.layout.slabs import (
     arrange,
     arrangements,
     clashes,
+    largest_beside,
     orders,
 )
 from gearopt.optimise.clock import Clock
@@ -28,13 +29,13 @@ STEPS, STARTS = 5_000, 4  # short runs of annealing: most layouts that exist are
 
 
 def faults(box: Gearbox) -> list[str]:
-    """Return sentences about what is too close, too long or out of reach; none if nothing is."""
+    """Return a sentence for each clash, excess length or unreachable place; none without one."""
     return [*_axial(box), *_blocked(box), *_reach(box), *of_any_gears(box), *_sides(box)]
 
 
 def of_any_gears(box: Gearbox) -> list[str]:
     """Return those of the faults that other gears have too."""
-    return [*_motor(box), *_apart(box), *_level(box)]
+    return [*_motor(box), *_apart(box), *_level(box), *_through(box)]
 
 
 def _axial(box: Gearbox) -> Iterator[str]:
@@ -62,20 +63,23 @@ def _every(box: Gearbox) -> list[Arrangement]:
 
 
 def _blocked(box: Gearbox) -> Iterator[str]:
-    """Yield what is too close to keep-outs on the input shaft or a shaft at a given place."""
+    """Yield the bodies too close to keep-outs, on the input shaft or a shaft at a given place."""
     tried = arrangements(box)
     if clashes(box, tried[0]):  # it stands for all orders
         tried = tuple(_every(box)) if box.keep_outs else tried
     for k, keep in enumerate(box.keep_outs):
         for given in (INPUT, *box.places):
             there = max(_distance(keep, y, z) for y in given.y for z in given.z)
-            need = min(float(one.keep_apart[k, given.shaft]) for one in tried)
+            least = min(tried, key=lambda one: float(one.keep_apart[k, given.shaft]))
+            need = float(least.keep_apart[k, given.shaft])
             if need - there > TOUCH:
                 hedge = "" if given is INPUT else "at most "
                 who = "the input shaft" if given is INPUT else f"shaft {given.shaft + 1}"
+                largest = largest_beside(least.bodies[given.shaft], keep.x).name
                 yield (
-                    f"What stands on {who} is {need - there:.2f} mm too close to {keep.name}: its "
-                    f"axis is {hedge}{there:.2f} mm from it and needs {need:.2f} mm."
+                    f"{largest[0].upper()}{largest[1:]} violates the clearance to {keep.name} by "
+                    f"{need - there:.2f} mm: the axis of {who} is {hedge}{there:.2f} mm from it "
+                    f"and needs {need:.2f} mm."
                 )
 
 
@@ -140,7 +144,27 @@ def _apart(box: Gearbox) -> Iterator[str]:
         for a in given[:n]:
             near, _ = _between(a, b)
             if a.shaft == b.shaft and near > TOUCH:
-                yield f"Two places of shaft {a.shaft + 1} are {near:.2f} mm apart."
+                yield f"Shaft {a.shaft + 1} has two places, {near:.2f} mm apart."
+
+
+def _through(box: Gearbox) -> Iterator[str]:
+    """Yield places so close that two shafts through the whole box overlap, whatever their gears.
+
+    The input shaft has the same torque with any gears; of others the radius counts as none.
+    """
+    given = [] if box.partial else [INPUT, *box.places]
+    for n, b in enumerate(given):
+        for a in given[:n]:
+            first, last = sorted((a.shaft, b.shaft))
+            radii = [box.shafts[k].radius for k in (first, last)]
+            least = box.clearances.shafts + (radii[0] if first == 0 else 0.0)
+            _, far = _between(a, b)
+            if first != last and far < least - TOUCH:
+                yield (
+                    f"Shafts {first + 1} and {last + 1} pass through the whole box (span = "
+                    f'"full"), and their places are at most {far:.2f} mm apart: with their radii '
+                    f"and clearance they need {sum(radii) + box.clearances.shafts:.2f} mm."
+                )
 
 
 def _level(box: Gearbox) -> Iterator[str]:

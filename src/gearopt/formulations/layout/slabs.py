@@ -161,11 +161,7 @@ def arrange(box: Gearbox, slabs: Slabs) -> Arrangement:
                 apart[i, j] = apart[j, i] = needs[i, j].distance
     near = np.array(
         [
-            [
-                max([p.radius for p in own if _overlap(p.x, keep.x)], default=-np.inf)
-                + box.clearances.shafts
-                for own in bodies
-            ]
+            [largest_beside(own, keep.x).radius + box.clearances.shafts for own in bodies]
             for keep in box.keep_outs
         ]
     ).reshape(len(box.keep_outs), count)
@@ -203,6 +199,12 @@ def _on(box: Gearbox, k: int, start: dict[int, float], length: float) -> tuple[B
         ends = ((span[0], span[0] + wide), (span[1] - wide, span[1]))
         found += [Body(f"bearing of shaft {k + 1}", own.bearing_radius, x) for x in ends]
     return tuple(found)
+
+
+def largest_beside(bodies: tuple[Body, ...], x: Range) -> Body:
+    """Return the largest of the bodies of a shaft that overlap a range along it."""
+    none = Body("", -np.inf, x)
+    return max((p for p in bodies if _overlap(p.x, x)), key=lambda p: p.radius, default=none)
 
 
 def face_each_other(p: Body, q: Body) -> bool:

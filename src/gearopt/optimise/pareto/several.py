@@ -23,7 +23,8 @@ class Several:
     """A problem, its objectives in order, and the design of a point as its file shows it.
 
     limiting: how it is posed with one objective under limits on others, by a method of its own.
-    others: the same with other numbers of stages; the front is of all together.
+    others: the same with other numbers of stages; the front is of all together. scope: the designs
+    that it is a front of, where these are not all.
     """
 
     problem: Problem | Conic
@@ -31,6 +32,7 @@ class Several:
     drawn: Callable[[Array], Mapping[str, Any]] | None = None
     limiting: Limiting | None = None
     others: tuple["Several", ...] = ()
+    scope: str = ""
 
 
 def impossible(of: str, names: Sequence[str], none: Outcome) -> Problem:
@@ -101,7 +103,8 @@ def solved(
     made = found(posed.problem, listed, most, chosen, points, budget, seed, watch, posed.limiting)
     shown = [replace(one, most=most.get(one.name)) for one in posed.objectives]
     front = judged(posed.problem, made, shown, chosen, clock, weights, posed.drawn, **names)
-    return replace(front, seed=seed)
+    proof = {**front.proof, "scope": posed.scope} if posed.scope else front.proof
+    return replace(front, seed=seed, proof=proof)
 
 
 def _each(posed: Several, given: Mapping[str, Any], clock: Clock) -> list[Front]:

@@ -91,8 +91,8 @@ def decides(result: Result) -> str:
     gaps = clearances(result)
     full = [n for n in gaps if result.limits.get(n, 0.0) >= 1.0 - REACHED]
     walls, apart = _at_walls(found), any(part.name == "gears" for part in result.parts)
-    first = "the gears, chosen first, decide the box" if apart else "gears and box are one choice"
-    words = [f"{first}: {series_of(walls)} stand at its walls" if walls else first]
+    first = "the gears, sized first, decide the box" if apart else "gears and box are one optimum"
+    words = [f"{first}: {series_of(walls)} touch the wall clearance" if walls else first]
     words += [f"{series_of(list(map(limit_words, full)))} at the minimum clearance"] if full else []
     return "; ".join(words if apart else [*words, of_limits(result, gaps)])
 

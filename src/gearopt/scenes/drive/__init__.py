@@ -26,7 +26,7 @@ from gearopt.scenes.drive.blank_tables import BlankKeys, misfits
 from gearopt.scenes.drive.examples import EXAMPLE, MORE_EXAMPLES
 from gearopt.scenes.drive.front import advice, objectives, several, to_choose
 from gearopt.scenes.drive.rating.cut_short import bounded
-from gearopt.scenes.drive.rating.limits import check_safe
+from gearopt.scenes.drive.rating.limits import check_safe, rated_afterwards
 from gearopt.scenes.drive.rating.rated import rate, with_rating
 from gearopt.scenes.drive.rating.tables import MATERIAL, GivenTable
 from gearopt.scenes.drive.scene import PROCESSES, Scene
@@ -67,7 +67,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     result = replace(result, report=result.report | {"assumptions": assumptions(scene)})
     result = with_rating(scene, result)
     check_safe(scene, result)
-    return result
+    return rated_afterwards(scene, result)
 
 
 def _to_size(scene: Scene) -> Scene:

@@ -58,14 +58,14 @@ def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
     """Return the problem of a front; SolveError where the drive has none.
 
     With a [teeth] table it is of whole teeth, but for epsilon constraints, which are for
-    real-valued sizes. Objectives of a box are those of gears that are chosen first.
+    real-valued sizes. Objectives of a box are those of gears that are sized first.
     """
     boxed = [name for name in names if name in sides.objectives(scene)]
     if boxed:
         if len(boxed) < len(names):
             raise SolveError(
                 f"{', '.join(boxed)} of the box and objectives of the gears are no front together: "
-                "the gears are chosen first, and laid out then"
+                "the gears are sized first, and laid out then"
             )
         from gearopt.scenes.drive import bare, solve
 

@@ -17,7 +17,7 @@ from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.solve import limits, run
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
-from gearopt.scenes.drive.box.lay_out import lay_out, pairs_of, with_layout
+from gearopt.scenes.drive.box.lay_out import lay_out, others_may_fit, pairs_of, with_layout
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.reading.ask import Ask
 
@@ -28,9 +28,11 @@ Start = tuple[Slabs, tuple[GearPair, ...], tuple[float, ...]]
 
 
 def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
-    """Return the smallest box over gears and places; parts: gears chosen first; real-valued."""
+    """Return the smallest box over gears and places; parts: gears sized first; real-valued."""
     together.ready(ask.watch)
     apart = replace(lay_out(scene, replace(ask, method=None), sized), name="apart")
+    if apart.status == "infeasible" and not others_may_fit(scene, pairs_of(scene, sized)):
+        return replace(apart, name="drive")
     real = ask.method in REAL
     model = posed(scene, ask.method or "exact", apart)
     watch, events = following(in_part(ask.watch, model.unit))
@@ -58,18 +60,18 @@ def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
 
 
 def _why(result: Result, apart: Result) -> dict[str, Any]:
-    """Return the message where there is no design: that of the gears chosen first, and remedies."""
+    """Return the message where there is no design: that of the gears sized first, and remedies."""
     if result.status != "infeasible":
         return {}
-    message = apart.message or "no gears within the limits can be laid out"
+    message = apart.message or "none was found for these in time"
     ways = apart.report.get("ways_out") or {"conflict": [], "remedies": [], "message": ""}
-    words = f"No gears within the limits can be laid out. Of the gears chosen first: {message}"
+    words = f"No gears within the limits can be arranged. Of the gears sized first: {message}"
     beside = {key: apart.report[key] for key in ("nearest_layout",) if key in apart.report}
     return {"message": words, "report": {"notes": [words], "ways_out": ways} | beside}
 
 
 def posed(scene: Scene, method: str, apart: Result) -> Model:
-    """Return the problem that a method gets; apart: the layout of gears chosen first, a start."""
+    """Return the problem that a method gets; apart: the layout of gears sized first, a start."""
     assert scene.layout is not None
     train = scene.train()
     unit = scene.gearbox(pairs_of(scene, apart.parts[0])).unit

@@ -6,7 +6,7 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations import layout
-from gearopt.formulations.design import GEARS_FIRST, DriveDesign, drive_design
+from gearopt.formulations.design import DriveDesign, drive_design, gears_first
 from gearopt.formulations.layout.exact import GAP
 from gearopt.formulations.layout.faults import faults, of_any_gears
 from gearopt.formulations.layout.gearbox import Gearbox, KeepOut
@@ -61,7 +61,7 @@ def lay_out(scene: Scene, ask: Ask, sized: Result) -> Result:
     result, outcome = run(problem, ask.method, asked, ask.seed, watch, gap)
     result = replace(result, objective=result.objective | {"unit": box.unit}, parts=parts)
     if result.status == "infeasible":
-        notes = ["No angles of the links keep all distances, places and sides."]
+        notes = ["These gears cannot be arranged with these clearances and positions."]
         return _impossible(scene, sized, ask, parts, notes, result)
     if result.value is None or outcome.x is None:
         return replace(result, name="drive")
@@ -80,6 +80,8 @@ def with_layout(
     """Return a result with its gears and layout in the words of a drawing."""
     gears = drive_design(sized.design)
     found = handed(described(box, order, angles, gears), scene)
+    if any(part.name == "gears" for part in result.parts) and not scene.given:
+        result = _of_gears_first(scene, result, sized)
     before = sum(p.seconds for p in result.parts), sum(p.evaluations for p in result.parts)
     seconds, spent = before[0] + result.seconds, before[1] + result.evaluations
     last = {"seconds": seconds, "evaluations": spent, "best": result.value, "bound": result.bound}
@@ -94,11 +96,25 @@ def with_layout(
         limits=sized.limits | used(found) | _sides_used(result),
         report={
             "progress": [*steps, last],
-            "notes": [*_notes(scene, sized), *_reached(box, found)],
+            "notes": [*sized.report.get("notes", []), *_reached(box, found)],
         },
         evaluations=spent,
         seconds=seconds,
     )
+
+
+def _scope(sized: Result) -> dict[str, str]:
+    """Return the scope of whatever is proven of a layout of gears that were sized before it."""
+    return {"scope": gears_first(str(sized.objective["name"]))}
+
+
+def _of_gears_first(scene: Scene, result: Result, sized: Result) -> Result:
+    """Return a layout whose message says that it is one of gears that were sized before it."""
+    words = f"the box is that of {_scope(sized)['scope']}"
+    if scene.teeth is not None:
+        words += ": with together = true in [layout] gears and box are optimised together"
+    message = "; ".join(filter(None, (result.message, words)))
+    return replace(result, proof=result.proof | _scope(sized), message=message)
 
 
 def handed(found: LayoutDesign, scene: Scene) -> LayoutDesign:
@@ -145,31 +161,29 @@ def _impossible(
         objective = {"name": str(scene.layout and scene.layout.minimise), "value": None}
         result = replace(sized, method="data check", objective=objective, bound=None, gap=None)
         result = replace(result, status="infeasible", proof=proof, certificate={}, limits={})
-    box = scene.gearbox(pairs_of(scene, sized))
-    if others_may_fit(scene, box):
-        result = replace(result, proof=result.proof | {"scope": GEARS_FIRST})
+    if others_may_fit(scene, pairs_of(scene, sized)):
+        result = replace(result, proof=result.proof | _scope(sized))
     found, changed = remedies(scene, pairs_of(scene, sized), left)
     report = {"notes": notes, "ways_out": asdict(found)}
     if changed is not None and (drawn := _beside(scene, changed, sized, left)) is not None:
         report["nearest_layout"] = drawn
-    message = _message(scene, sized, box, notes)
+    message = _message(scene, sized, notes)
     return replace(result, design={}, parts=parts, message=message, report=report)
 
 
-def others_may_fit(scene: Scene, box: Gearbox) -> bool:
-    """Return whether a fault of these gears says nothing of others: they were chosen."""
-    return not scene.given and not of_any_gears(box)
+def others_may_fit(scene: Scene, pairs: tuple[GearPair, ...]) -> bool:
+    """Return whether a fault of gears says nothing of others: they were sized first."""
+    return not scene.given and not of_any_gears(scene.gearbox(pairs))
 
 
-def _message(scene: Scene, sized: Result, box: Gearbox, notes: list[str]) -> str:
-    """Say why there is no layout; of gears chosen first, that others may have one."""
+def _message(scene: Scene, sized: Result, notes: list[str]) -> str:
+    """Return why there is no layout; of gears sized first, that it is these that have none."""
     why = " ".join(notes)
     assert scene.layout is not None
-    if scene.layout.together or not others_may_fit(scene, box):
+    if scene.layout.together or not others_may_fit(scene, pairs_of(scene, sized)):
         return why
     least = str(sized.objective["name"]).replace("_", " ")
-    others = ": write together = true in [layout]" if scene.teeth is not None else ""
-    return f"These gears, chosen first for the least {least}, do not fit: {why} Others may{others}."
+    return f"These gears, sized first for least {least}, do not fit: {why}"
 
 
 def _beside(scene: Scene, changed: Scene, sized: Result, ask: Ask) -> dict[str, Any] | None:
@@ -209,15 +223,6 @@ def _reached(box: Gearbox, found: LayoutDesign) -> list[str]:
         for name, d in deep.items()
         if d > 0.05
     ]
-
-
-def _notes(scene: Scene, sized: Result) -> list[str]:
-    notes = list(sized.report.get("notes", []))
-    if not scene.given and not (scene.layout and scene.layout.together):
-        words = "The gears were chosen first, for their own objective"
-        more = "; with together = true in [layout] they are chosen for the box"
-        notes.append(f"{words}{'' if scene.by_ratings else more}.")
-    return notes
 
 
 def described(

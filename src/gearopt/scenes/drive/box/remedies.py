@@ -18,6 +18,7 @@ from gearopt.optimise.solve import solve
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.box.edits import Edit, edits, limits_of, switches
 from gearopt.scenes.drive.box.lay_out import others_may_fit, pairs_of
+from gearopt.scenes.drive.box.other_gears import other_gears
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.influences import Basis, influences, smooth
 from gearopt.scenes.explaining.numbers import allowed, numbers
@@ -32,9 +33,7 @@ PAIRS = 6  # that are worked out
 HALVINGS = 20  # of the size within which the file's own rules hold
 SENSITIVITY_GAP = 0.01  # gap of the proof behind a sensitivity: the polished layout is far closer
 SAME = 1e-7  # relative, of boxes that are equal
-FIRST = "this is known of the gears chosen first"
-TOGETHER = f"{FIRST}: with other gears smaller changes may do"
-APART = f"{FIRST}: with together = true in [layout] others may need less, or no change"
+FIRST = "smallest changes are those for the gears sized first: others may need less"
 TABLES = ("layout", "place", "keep_out")
 
 Pair = tuple[Edit, Edit]
@@ -120,40 +119,40 @@ def remedies(scene: Scene, pairs: tuple[GearPair, ...], ask: Ask) -> tuple[Remed
     found = sorted(moved, key=_size) + chosen
     message = ""
     if found and asked.open:
-        message = f"it is not known whether a change of {', '.join(asked.open)} alone does"
+        message = f"time ran out before it was known whether {', '.join(asked.open)} alone suffices"
     elif not found:
         both = _pairs(scene, single + choices[::-1], asked)  # of two tables the last goes first
         found = sorted(both, key=_size)
         if asked.open and not found:
-            message = "no remedy was found, and not every change could be decided"
+            message = "no remedy was found, and time ran out before every change was decided"
         elif not found:
-            none = "no change of one number or of two makes a layout possible within what is tried"
+            none = "no layout was found by changing one or two numbers within these ranges"
             message = f"{none}: {', '.join(limits_of(single + choices))}"
     if clock.over:
-        message = "the budget ended before all remedies were tried"
+        message = "time ran out before all remedies were tried"
     changed = found[0][2] if found else None
-    return _of_gears(scene, pairs, tuple(remedy for _, remedy, _ in found), message), changed
+    known = tuple(remedy for _, remedy, _ in found)
+    more, unknown = other_gears(scene, pairs, known, clock)
+    first = FIRST if known and others_may_fit(scene, pairs) else ""
+    words = "; ".join(filter(None, (message, first, unknown)))
+    return _of_gears(scene, known, more, words), changed
 
 
 def _of_gears(
-    scene: Scene, pairs: tuple[GearPair, ...], found: tuple[Remedy, ...], message: str
+    scene: Scene, found: tuple[Remedy, ...], more: tuple[Remedy, ...], message: str
 ) -> Remedies:
-    """Return remedies for one choice of gears, and what they say of others.
+    """Return remedies for one choice of gears, and more with others, which need no less.
 
     What is least for these gears need not be for others, which `together = true` allows.
     """
     assert scene.layout is not None
-    if scene.given or scene.teeth is None:
-        return Remedies((), found, message)
     if not scene.layout.together:
-        if not others_may_fit(scene, scene.gearbox(pairs)):
-            return Remedies((), found, message)
-        return Remedies((), found, "; ".join(filter(None, (message, APART))))
+        return Remedies((), (*more, *found), message)
     found = tuple(
         replace(r, verified={k: v if k == "with" else "undecided" for k, v in r.verified.items()})
         for r in found
     )
-    return Remedies((), found, "; ".join(filter(None, (message, TOGETHER))))
+    return Remedies((), (*more, *found), message)
 
 
 def _size(found: Found) -> float:
@@ -315,7 +314,7 @@ def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:
         if n.path[0] in TABLES and isinstance(n.value, Quantity) and smooth(n)
     ]
     found = tuple(influences(scene, Basis(result.value, solved, step=STEP), clock, wanted))
-    late = ", and the budget ended" if clock.over else ""
+    late = "; time ran out before all numbers were tried" if clock.over else ""
     return Explanation(
         result,
         binding=tuple(n for n, v in result.limits.items() if v > 1.0 - SAME),

@@ -1,4 +1,4 @@
-"""Fronts of the box around gears that are chosen first: width against height, and the like."""
+"""Fronts of the box around gears that are sized first: width against height, and the like."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -6,7 +6,7 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations import layout
-from gearopt.formulations.design import drive_design
+from gearopt.formulations.design import drive_design, gears_first
 from gearopt.formulations.layout import layout_front
 from gearopt.formulations.layout.faults import faults
 from gearopt.formulations.layout.gearbox import SIDES
@@ -38,8 +38,7 @@ def several(scene: Scene, names: Sequence[str], sized: Result) -> Several:
     assert scene.layout is not None
     if scene.layout.together:
         raise SolveError(
-            "a front of the box is of gears that are chosen first: write together = false in "
-            "[layout]"
+            "a front of the box is that of gears sized first: write together = false in [layout]"
         )
     if sized.value is None:
         why = sized.message or "no gears were found"
@@ -62,4 +61,6 @@ def several(scene: Scene, names: Sequence[str], sized: Result) -> Several:
         return design
 
     limiting = Limiting(lambda name, most: layout_front.limited(box, name, most), tuple(SIDES))
-    return Several(layout_front.problem(box, tuple(names)), listed, drawn, limiting)
+    scope = "" if scene.given else gears_first(str(sized.objective["name"]))
+    problem = layout_front.problem(box, tuple(names))
+    return Several(problem, listed, drawn, limiting, scope=scope)

@@ -104,14 +104,14 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
     last = within(LAST)
     chosen = tuple(choices(scene, known, lambda other: None if last.over else works(other)))
     untried = untried or last.over
-    late = "the budget ended before all remedies were tried" if clock.over else ""
-    late = late or ("not all remedies were tried in their time" if untried else "")
+    late = "time ran out before all remedies were tried" if clock.over else ""
+    late = late or ("not all remedies were tried" if untried else "")
     words = "; ".join(filter(None, (_doubts(known), late)))
     return Remedies(known.names, (*own, *chosen), words, known.any_resolves, known.unsure)
 
 
 def _doubts(known: Conflict) -> str:
-    return "" if known.names else "which requirements exclude each other was not found in its time"
+    return "" if known.names else "time ran out before the conflict was identified"
 
 
 def _with_least(found: list[Remedy], tried: bool) -> list[Remedy]:

@@ -64,7 +64,7 @@ def remedies(scene: Scene, clock: Clock) -> Remedies:
         found.append(remedy)
     if scene.teeth is not None:
         found += switches(case)
-    late = "the budget ended before all remedies were tried" if clock.over else ""
+    late = "time ran out before all remedies were tried" if clock.over else ""
     sure = scene.teeth is None and any_resolves(base, known, blamed, clock)
     return Remedies(tuple(h.name for h in blamed), tuple(found), late, sure)
 

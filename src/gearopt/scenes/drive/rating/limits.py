@@ -79,3 +79,12 @@ def check_safe(scene: Scene, result: Result) -> None:
     if found is None or not found.safe_by_all:
         why = "has no rating" if found is None else f"is unsafe: {found.governs}"
         raise CertificateError(f"the design that ratings limit {why}")
+
+
+def rated_afterwards(scene: Scene, result: Result) -> Result:
+    """Return a result whose proof names its scope, where its rating did not limit the sizes."""
+    if scene.rating is None or scene.by_ratings or scene.given or result.value is None:
+        return result
+    before = result.proof.get("scope")
+    words = ", ".join(filter(None, (before, "sized by load limits alone, rated afterwards")))
+    return replace(result, proof=result.proof | {"scope": words})
