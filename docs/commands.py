@@ -27,7 +27,8 @@ EXIT_CODES = {
     "the files are right",
     1: "`doctor`: a solver does not work on this machine",
     2: "the file or the command is wrong; a line for every mistake says where and what to write",
-    3: "proven: no design meets the limits; or a given design, evaluated, exceeds one",
+    3: "proven: no design meets the limits; or a given design, evaluated, exceeds one, or its "
+    "gears do not fit",
     4: "nothing found within the time",
     130: "interrupted before there was anything to keep, or by a second Ctrl-C",
 }

@@ -235,7 +235,8 @@ Correct programs differ in these; this one does as follows.
 14. Sizes outside ISO 1328-1 (for 1995 its nearest range is taken), x_1 + x_2 outside -0.5 to 2 in
     c', alpha_n above 25° and beta above 30° are rated, and said beside the factor.
 15. K_Fbeta is K_Hbeta of crowned teeth and of end relief. Z_W may fall below 1 against a rough
-    pinion; ship classes (IACS UR M56) take at least 1.
+    pinion; ship classes (IACS UR M56) take at least 1. It is that of a wheel: a soft pinion gains
+    nothing from a hard wheel.
 16. Annex C of part 6 has 42 levels of contact stress with their lives: all are met within the
     rounding of the stresses (0.7 %, beyond 5e7 cycles 1.8 %) but five, up to 0.8 % above static
     strength, to which the annex draws the line of Z_NT on and which end the life here. The annex

@@ -59,9 +59,15 @@ inches: `diametral_pitch = 10`, `"1.5 in"`, `"4 hp"`, `"50 ksi"`.
 ```
 {catalogue}```
 
-- **safe**: every safety factor is at least the one asked for, `minimum_bending_safety` and
-  `minimum_contact_safety` (1 by default). The exit code is 0 either way: an unsafe pair is an
-  answer too. In `--json`, `limits` holds asked for over there, here {used_value} for {used}.
+- **safe**: the gears fit, and every safety factor is at least the one asked for,
+  `minimum_bending_safety` and `minimum_contact_safety` (1 by default). The exit code is 0 either
+  way: an unsafe pair is an answer too. In `--json`, `limits` holds asked for over there, here
+  {used_value} for {used}. Gears that cannot be assembled or cannot run (backlash below zero, tips
+  that reach into roots or cut into fillets, a bore as wide as its root circle) are never safe, by
+  any standard: the reasons come first, in numbers (`misfits` in `--json`), and the exit code is 3.
+- **safe, with warnings**: what a designer may accept is said first: undercut, thin tips, a contact
+  ratio below 1.2, a backlash of more than four times the recommended least one, a face that is
+  loaded in part (K_Hbeta above 2), a ratio that is not the one asked for.
 - **S_F**, **S_H**: permissible over existing stress. S_H is of stress; of load it is its square,
   {square} here for the pinion.
 - **permissible**: the allowable stress number of the steel, s_at or s_ac, times Y_N or Z_N (and C_H

@@ -57,6 +57,8 @@ def test_not_safe_is_an_answer_too(tmp_path, here):
     assert not gearopt.rate(path).feasible
     said = here("rate", path, "--json")
     assert said.returncode == 0 and json.loads(said.stdout)["design"]["rating"]["safe"] is False
+    path.write_text(PAIR.read_text(encoding="utf-8").replace('"120.5 mm"', '"119 mm"'), "utf-8")
+    assert here("rate", path, "--json").returncode == 3  # no answer of use: they do not fit
 
 
 def test_json_comes_back_as_it_went(kept, here, tmp_path):

@@ -206,7 +206,10 @@ def test_a_layer_below_a_named_one_that_must_stay_empty_is_refused():
     text = NAMED.replace("layer = 2", "layer = 6").replace("most = 2", "most = 6")
     error = wrong(text)
     assert error.key == "cylinder[1].layer" and error.value == "6"
-    assert "only 2 cylinders are free to fill layers, and every layer below it must be filled" in error.rule
+    assert (
+        "only 2 cylinders are free to fill layers, and every layer below it must be filled"
+        in error.rule
+    )
     assert error.fix.value == "3"
     read(text.replace("layer = 6", "layer = 3").encode())
 
@@ -296,6 +299,9 @@ def loads(text):
 def test_words_of_a_bound_say_where_its_time_ended_it():
     result = gearopt.solve(read(NAMED.encode())[1], budget=gearopt.Budget(evaluations=50_000))
     words = " ".join(proof(result))
-    assert "Bound of packings in layers: 2 ways to assign the cylinders" in words and "Stopped early" not in words
+    assert (
+        "Bound of packings in layers: 2 ways to assign the cylinders" in words
+        and "Stopped early" not in words
+    )
     early = dataclasses.replace(result, proof=packing.proof(Bound(1.0, 2, complete=False)))
     assert "Stopped early: the bound is weaker than it could be." in " ".join(proof(early))

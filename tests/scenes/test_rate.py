@@ -100,6 +100,46 @@ def test_a_centre_distance_sets_the_working_angle_and_backlash():
     assert mesh["circumferential_backlash_mm"] == pytest.approx(opening, rel=1e-9)
 
 
+@pytest.mark.parametrize("standard", ["agma", "both"])
+def test_gears_that_do_not_fit_are_not_safe(standard):
+    """In 119.6 mm instead of 120: 2 a_w (inv(alpha_w) - inv(alpha)) is -0.287 mm."""
+    more = {"iso6336": {"accuracy_grade": 6}} if standard == "both" else {}
+    result = gearopt.rate(pair({"standard": standard, **more}, centre_distance="119.6 mm"))
+    found = result.design["rating"]
+    both = [found, *([found["beside"]] if standard == "both" else [])]
+    assert max(result.limits.values()) < 1.0  # strength is not the reason
+    assert not result.feasible and not any(one["safe"] for one in both)
+    assert "the backlash is -0.287 mm" in found["misfits"][0]
+    shown = str(result)
+    assert ": not safe" in shown and "The gears do not fit" in shown and ": safe" not in shown
+    assert result.certificate["feasibility"] >= 0.2865 / 3.0  # in modules
+
+
+def test_a_centre_distance_far_off_is_told_first():
+    """1.062 mm: 250 (inv(alpha_w) - inv(alpha)) less 2 x tan(alpha) m_n of x = 0.5."""
+    found = gearopt.rate(
+        pair(
+            module="2.5 mm",
+            pinion_teeth=24,
+            wheel_teeth=74,
+            centre_distance="125 mm",
+            pinion={"profile_shift": 0.5},
+        )
+    )
+    shown = " ".join(str(found).split("gear  ")[0].split())
+    assert found.feasible and ": safe, with warnings" in shown
+    assert "is 1.062 mm" in shown and "1.072 in sum, and the gears have 0.5" in shown
+    assert "contact ratio of stage 1 is small, 1.107" in shown
+
+
+@pytest.mark.parametrize(("own", "fits"), [({"bore": "55 mm"}, False), ({"bore": "40 mm"}, True)])
+def test_a_bore_wider_than_its_root_circle_does_not_fit(own, fits):
+    """Of 52.5 mm; a bore of all gears leaves a small one solid, as on a pinion shaft."""
+    found = gearopt.rate(pair(pinion=own))
+    assert found.feasible is fits and ("misfits" in found.design["rating"]) is not fits
+    assert gearopt.rate(pair(gears=own)).feasible
+
+
 def test_helix_and_pressure_angle_are_those_of_the_stage():
     """m_F = b sin beta/(pi m_n); tan alpha_t = tan alpha_n/cos beta; else those of [gears]."""
     tables = two_stages(

@@ -130,6 +130,15 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         "rating.given.J = [0.3]",
         "is not one value nor a list [pinion, wheel]. Write J = [0.3, 0.3]",
     ),
+    **{
+        f"{symbol} below 1": (
+            GIVEN,
+            f"[rating.given]\n{symbol} = 0.8\n#",
+            f"rating.given.{symbol} = 0.8",
+            "is not between 1 and 1000",
+        )
+        for symbol in ("K_o", "K_v", "K_m", "K_s", "K_B", "K_T", "C_f")
+    },
     "shares": ("# [[load]]", f"{LOADS}#", 'load[2].share = "40 %"', 'Write share = "50 %"'),
     "Y_N beside levels": (
         GIVEN,

@@ -118,7 +118,7 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         'standard = "iso6336"',
         'standard = "agma"\nquality = 8',
         "rating.iso6336",
-        'changes nothing with standard = "agma", but with "iso6336" or "both". Remove it',
+        'with standard = "agma", but with "iso6336" or "both"; nor does gears.flank_rz. Remove all',
     ),
     "web without a rim": (
         TREATMENT,
@@ -132,6 +132,38 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         "rating.iso6336.given.Z_NT",
         "follows from the levels [[load]] and cannot be given. Remove it",
     ),
+    "keys of AGMA": (
+        LIFE,
+        f'{LIFE}\nquality = 8\nmounting = "open"\ngiven = {{ K_m = 1.3 }}',
+        "rating.quality = 8",
+        'but with "agma" or "both"; nor does rating.mounting, rating.given. Remove all, or write '
+        'standard = "both"',
+    ),
+    "edition in the table of AGMA's": (
+        LIFE,
+        f'{LIFE}\nedition = "2019"',
+        'rating.edition = "2019"',
+        "that of ISO 6336 is edition of [rating.iso6336]",
+    ),
+    "strength of a gear": (
+        TREATMENT,
+        f'{TREATMENT}\nsigma_Hlim = "1500 MPa"',
+        'gears.sigma_Hlim = "1500 MPa"',
+        "sigma_Hlim, or sigma_Flim of bending, in [rating.iso6336.given]",
+    ),
+    **{
+        f"{symbol} below 1": (
+            GRADE,
+            f"{GRADE}\ngiven = {{ {symbol} = {value} }}",
+            f"rating.iso6336.given.{symbol} = {value}",
+            "is not between 1 and",
+        )
+        for symbol, value in (
+            *dict.fromkeys(("K_gamma", "K_v", "K_Hbeta", "K_Fbeta", "Y_B"), 0.15).items(),
+            ("K_Halpha", 0.99),
+            ("Z_BD", "[0.9, 1]"),
+        )
+    },
     "factor of AGMA": (
         GRADE,
         f"{GRADE}\ngiven = {{ K_m = 1.3 }}",

@@ -138,7 +138,7 @@ def rate(
     units: Units = "metric",
     as_json: Json = False,
 ) -> None:
-    """Rate given gears: stresses, safety factors, lives. Exit code 0, safe or not."""
+    """Rate given gears: stresses, safety factors, lives. Exit code 0, safe or not; 3 if unfit."""
     from gearopt.api import rate as rate_file
 
     files = checked(html, csv, units, file)

@@ -92,8 +92,9 @@ def exit_code(result: Result) -> int:
     """Return exit code of a result."""
     if result.status == "limit":
         return 4 if result.value is None and not result.given else 0
-    if result.status == "evaluated":  # a rating answers its question, safe or not
-        return 0 if result.feasible or "rating" in result.design else 3
+    if result.status == "evaluated":  # a rating of gears that fit answers its question, safe or not
+        rating = result.design.get("rating")
+        return 3 if not result.feasible and (not rating or rating.get("misfits")) else 0
     return EXIT[result.status]
 
 

@@ -5,6 +5,8 @@ Fields are keys of a result, with their units; a list is a table. Stages and sha
 
 from dataclasses import dataclass
 
+from gearopt.optimise.result import FEASIBLE
+
 
 @dataclass(frozen=True, kw_only=True)
 class GearRating:
@@ -148,11 +150,11 @@ class LoadLevel:
 class DriveRating:
     """The rating of all stages.
 
-    safe: whether every gear meets the safety factors that are asked for; life_h: the shortest of
-    all gears, None beyond the end of the curves. unverified: symbols of factors, and what else a
-    single source or memory alone has. flaws: sentences on teeth that a designer may accept, and on
-    the ratio of given gears that is not the one asked for. by: the standard in short; beside: the
-    rating by another one.
+    safe: whether every gear meets the safety factors that are asked for, and the gears fit. life_h:
+    the shortest of all gears, None beyond the end of the curves. unverified: symbols of factors,
+    and what else no second source has. misfits: sentences on gears that cannot be assembled or
+    cannot run. flaws: on what a designer may accept, and on the ratio of given gears that is not
+    the one asked for. by: the standard in short; beside: the rating by another one.
     """
 
     standard: str
@@ -172,6 +174,7 @@ class DriveRating:
     teeth: tuple[ToothGeometry, ...]
     levels: tuple[LoadLevel, ...] = ()
     unverified: tuple[str, ...] = ()
+    misfits: tuple[str, ...] = ()
     flaws: tuple[str, ...] = ()
     by: str = "AGMA"
     beside: "DriveRating | None" = None
@@ -182,6 +185,20 @@ class DriveRating:
         return (self,) if self.beside is None else (self, self.beside)
 
     @property
-    def safe_by_all(self) -> bool:
+    def met(self) -> bool:
+        """Return whether every gear meets the safety factors asked for, whether or not it fits."""
+        return all(
+            self.minimum_bending_safety <= (1.0 + FEASIBLE) * gear.bending_safety
+            and self.minimum_contact_safety <= (1.0 + FEASIBLE) * gear.contact_safety
+            for gear in self.gears
+        )
+
+    @property
+    def met_by_all(self) -> bool:
         """Return whether every gear meets the safety factors by all standards."""
+        return all(one.met for one in self.each)
+
+    @property
+    def safe_by_all(self) -> bool:
+        """Return whether the gears fit and meet the safety factors by all standards."""
         return all(one.safe for one in self.each)

@@ -43,11 +43,11 @@ def figures(result: Result) -> str:
 
 
 def warns(result: Result) -> list[str]:
-    """Return that an optimum is not safe, and flaws of teeth."""
+    """Return that an optimum is not safe, which gears do not fit, and flaws."""
     if (found := rating_of(result)) is None:
         return []
     unsafe = [] if found.safe_by_all or not result.objective else [sentence_of(found)]
-    return [*unsafe, *found.flaws]
+    return [*unsafe, *found.misfits, *found.flaws]
 
 
 def sentence_of(found: DriveRating) -> str:
@@ -62,16 +62,24 @@ def told(found: DriveRating) -> str:
 
 
 def _verdict(found: DriveRating) -> str:
+    """Return whether the gears fit, what meets the safety factors asked for, and what governs."""
+    if found.misfits:
+        return f"the gears do not fit; as to strength, {_strength(found)}"
+    return _strength(found)
+
+
+def _strength(found: DriveRating) -> str:
     """Return what meets the safety factors that are asked for and what does not; what governs."""
-    if found.safe_by_all:
+    if found.met_by_all:
         return f"all safety factors are met{_by_both(found)}; {_governs(found)}"
-    short = [(one.by, _short(one)) for one in found.each if not one.safe]
+    short = [(one.by, _short(one)) for one in found.each if not one.met]
     if found.beside is None:
         return short[0][1]
     if len(short) == 2 and short[0][1] == short[1][1]:
         return f"by {short[0][0]} and by {short[1][0]}, {short[0][1]}"
     parts = [f"by {by}, {words}" for by, words in short]
-    return "; ".join([*parts, *(f"safe by {one.by} alone" for one in found.each if one.safe)])
+    good = "met" if found.misfits else "safe"
+    return "; ".join([*parts, *(f"{good} by {one.by} alone" for one in found.each if one.met)])
 
 
 def _by_both(found: DriveRating) -> str:

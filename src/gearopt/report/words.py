@@ -153,6 +153,8 @@ def certainty(result: Result) -> tuple[str, str]:
         words = "evaluated"
     if result.name == RATING:
         words, colour = ("safe", "green") if result.feasible else ("not safe", "red")
+        if result.feasible and result.design["rating"].get("flaws"):
+            words, colour = "safe, with warnings", "yellow"
     if result.status == "stationary" and result.bound is not None:
         words = "locally optimal"  # its gap is told beside
     if of_gears_first(result):

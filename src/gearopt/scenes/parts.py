@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from gearopt import units
 from gearopt.physics.gears import GearPair
-from gearopt.physics.geometry.flaws import flaws
+from gearopt.physics.geometry.flaws import Flaw, flaws
 from gearopt.scenes.reading.fields import Table, number, quantity, refuse, speed_ratio
 from gearopt.units import Quantity
 
@@ -82,14 +82,13 @@ class Duty(Table):
         return units.quotient(self.input_speed, self.output_speed)
 
 
-def tooth_warnings(pairs: Iterable[GearPair], weaker: str = "") -> Iterator[str]:
-    """Yield a sentence for every flaw of the teeth of each stage; weaker: follows one of undercut.
-
-    Interference at an undercut gear goes without saying.
-    """
+def tooth_flaws(pairs: Iterable[GearPair]) -> Iterator[Flaw]:
+    """Yield the flaws of the teeth of every stage."""
     for k, pair in enumerate(pairs, 1):
-        found = flaws(pair, f" of stage {k}")
-        undercut = any(flaw.name == "undercut" for flaw in found)
-        for flaw in found:
-            if not (undercut and flaw.name == "interference"):
-                yield flaw.sentence + (weaker if flaw.name == "undercut" else "")
+        yield from flaws(pair, f" of stage {k}")
+
+
+def tooth_warnings(pairs: Iterable[GearPair], weaker: str = "") -> Iterator[str]:
+    """Yield a sentence for every flaw of the teeth; weaker: follows one of undercut."""
+    for flaw in tooth_flaws(pairs):
+        yield flaw.sentence + (weaker if flaw.name == "undercut" else "")

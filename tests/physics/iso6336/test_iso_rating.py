@@ -71,6 +71,8 @@ def test_soft_wheels_harden_against_hard_pinions():
     assert found.factors["Z_W"].value[0] == 1.0
     assert found.factors["Z_W"].value[1] == pytest.approx(1.1 * (3.0 / _film()) ** 0.15, rel=1e-9)
     assert found.factors["Z_W"].verified
+    soft = rate(spur(), replace(LOAD, hours=2e4), (wheel, EH)).factors["Z_W"]
+    assert soft.value == (1.0, 1.0)  # a hard wheel gives a soft pinion nothing (IACS UR M56, 2.11)
     short = rate(spur(), replace(LOAD, hours=1.0), (EH, wheel)).factors["Z_W"]
     assert not short.verified and "static" in short.remark
     both = replace(wheel, hardness=360.0), replace(wheel, hardness=240.0)

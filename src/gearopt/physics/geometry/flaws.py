@@ -1,6 +1,7 @@
-"""Flaws of the teeth of a pair by name: what stops a rating, and what a designer may accept.
+"""Flaws of the teeth of a pair by name: fatal ones, misfits, and those that a designer may accept.
 
-Of one pair of floats. `agma.refusals` has the fatal ones for arrays, as codes.
+Fatal ones stop a rating; gears with a misfit cannot be assembled or cannot run, whatever their
+strength. Of one pair of floats. `agma.refusals` has the fatal ones for arrays, as codes.
 """
 
 import math
@@ -13,35 +14,54 @@ from gearopt.physics.geometry.contact import active_root_diameters, contact_path
 from gearopt.physics.geometry.fillet import (
     NEGLIGIBLE,
     form_diameter,
+    half_angle,
     has_tip,
     largest_tip_radius,
+    profile,
     teeth_without_undercut,
     tool_tip,
     undercut_depth,
 )
-from gearopt.physics.geometry.tooth import circumferential_backlash, tip_clearances, tip_thickness
+from gearopt.physics.geometry.involute import involute
+from gearopt.physics.geometry.tooth import (
+    circumferential_backlash,
+    normal_backlash,
+    tip_clearances,
+    tip_thickness,
+)
 
 THIN_TIP = 0.2  # normal modules of tip thickness; 0.3 to 0.4 if case hardened (recommendation)
+LEAST_RATIO = 1.2  # transverse contact ratio below which ISO 6336-1 has no stiffness
+PRINTED = 0.5e-3  # mm, half a unit of the last digit of a centre distance as drawings have it
+LOOSE = 4.0  # times the recommended least backlash, from which on it is told (a rule of ours)
+ROUNDING = 1e-9  # of the module
+INTRUSION = 1e-3  # normal modules by which tips may touch fillets, less than edges are rounded by
+POINTS = 201  # of a fillet, and of the path of a tip
 
 
 @dataclass(frozen=True)
 class Flaw:
-    """A flaw by its name, said in a sentence; fatal: no geometry factor means anything then."""
+    """A flaw by its name, said in a sentence; fatal: no geometry factor means anything then.
+
+    misfit: how far gears that cannot be assembled or cannot run are from fitting, in normal
+    modules; 0 of what a designer may accept.
+    """
 
     name: str
     sentence: str
-    fatal: bool
+    fatal: bool = False
+    misfit: float = 0.0
 
 
 def flaws(pair: GearPair, of: str = "") -> tuple[Flaw, ...]:
-    """Return the flaws of a pair, fatal ones first; none of a good pair.
+    """Return the flaws of a pair, fatal ones first, then misfits; none of a good pair.
 
     of: what sentences add to what they are about, such as " of stage 1".
     """
     found = [flaw for k, gear in enumerate(pair.gears) for flaw in _of_gear(MEMBERS[k] + of, gear)]
     if not any(flaw.fatal for flaw in found):
         found += _of_pair(pair, of)
-    return tuple(sorted(found, key=lambda flaw: not flaw.fatal))
+    return tuple(sorted(found, key=lambda flaw: (not flaw.fatal, not flaw.misfit)))
 
 
 def _of_gear(member: str, gear: Gear) -> list[Flaw]:
@@ -72,10 +92,10 @@ def _of_gear(member: str, gear: Gear) -> list[Flaw]:
         found.append(Flaw("pointed tooth", text, True))
     elif thin < THIN_TIP:
         text = f"The tips of the {member} are {thin:.2f} m_n thick, below {THIN_TIP:g} m_n."
-        found.append(Flaw("thin tip", text, False))
+        found.append(Flaw("thin tip", text))
     depth = float(undercut_depth(gear)) / gear.normal_module
     if depth > NEGLIGIBLE:
-        found.append(Flaw("undercut", _undercut(member, gear, depth), False))
+        found.append(Flaw("undercut", _undercut(member, gear, depth)))
     return found
 
 
@@ -113,28 +133,105 @@ def _of_pair(pair: GearPair, of: str) -> list[Flaw]:
         text = f"Form circles leave a transverse contact ratio{of} of {ratio:.3f}, below 1."
         fatal = not ratio + pair.overlap_ratio >= 1.0
         found.append(Flaw("usable contact ratio below 1", text, fatal))
+    elif pair.overlap_ratio < 1.0 and ratio < LEAST_RATIO:
+        text = (
+            f"The contact ratio{of} is small, {ratio:.3f}: errors of the gears may take contact "
+            f"away for a moment; {LEAST_RATIO:g} is a usual minimum."
+        )
+        found.append(Flaw("small contact ratio", text))
+    if not any(flaw.fatal for flaw in found):
+        found = _backlash(pair, of) + found
     found += _interference(pair, of)
     for member, clearance in zip(MEMBERS, tip_clearances(pair), strict=True):
-        if clearance < 0.0:
+        depth = -float(clearance) / pair.normal_module
+        if depth > ROUNDING:
             text = f"The tips of the {member}{of} reach {-clearance:.3f} mm into the mate's root."
-            found.append(Flaw("no tip clearance", text, False))
-    backlash = float(circumferential_backlash(pair))
-    if backlash < -1e-3 * pair.normal_module:
-        text = f"The teeth{of} do not fit in: the backlash is {backlash:.3f} mm."
-        found.append(Flaw("no backlash", text, False))
+            found.append(Flaw("no tip clearance", text, misfit=depth))
     return found
 
 
+def _backlash(pair: GearPair, of: str) -> list[Flaw]:
+    """Return whether the teeth do not fit into their spaces, or are far too loose in them."""
+    backlash, given = float(circumferential_backlash(pair)), ""
+    if pair.working_distance is not None:
+        shifts = sum(gear.profile_shift for gear in pair.gears)
+        given = (
+            f"; without backlash the centre distance of {pair.centre_distance:.6g} mm asks for "
+            f"profile shifts of {shifts_at(pair):.3f} in sum, and the gears have {shifts:.4g}"
+        )
+    if backlash < -2.0 * math.tan(pair.working_angle) * PRINTED:
+        text = f"The teeth{of} do not fit in: the backlash is {backlash:.3f} mm{given}."
+        return [Flaw("no backlash", text, misfit=-backlash / pair.normal_module)]
+    if float(normal_backlash(pair)) > LOOSE * least_backlash(pair):
+        text = f"The backlash{of} is {backlash:.3f} mm, more than gears are made with{given}."
+        return [Flaw("large backlash", text)]
+    return []
+
+
+def shifts_at(pair: GearPair) -> float:
+    """Return x1 + x2 of nominal teeth that have no backlash at the pair's centre distance.
+
+    (inv(alpha_wt) - inv(alpha_t)) (z1 + z2)/(2 tan(alpha_n)). Source: ISO 21771:2007.
+    """
+    first = pair.pinion
+    opened = involute(pair.working_angle) - involute(first.transverse_pressure_angle)
+    teeth = pair.pinion_teeth + pair.wheel_teeth
+    return float(opened * teeth / (2.0 * math.tan(first.rack.pressure_angle)))
+
+
+def least_backlash(pair: GearPair) -> float:
+    """Return the recommended least normal backlash (2/3) (0.06 + 0.0005 a + 0.03 m_n) [mm].
+
+    Source: ISO/TR 10064-2:1996, table A.1 (m_n 1.5 to 18 mm, steel in iron housings); AGMA 2002-B88
+    has 3/2 of it.
+    """
+    distance, module = float(pair.centre_distance), float(pair.normal_module)
+    return 2.0 / 3.0 * (0.06 + 5e-4 * distance + 0.03 * module)
+
+
 def _interference(pair: GearPair, of: str) -> list[Flaw]:
-    """Return the members whose fillet the mate's tip reaches."""
+    """Return the members into whose fillet the mate's tip cuts, or at least reaches.
+
+    Where an undercut gear has no flank left to be reached, only cutting counts.
+    """
     found = []
-    rows = zip(MEMBERS, pair.gears, active_root_diameters(pair), strict=True)
-    for member, gear, active in rows:
-        form = float(form_diameter(gear))
-        if not active >= form * (1.0 - 1e-9):
+    for k, (gear, active) in enumerate(zip(pair.gears, active_root_diameters(pair), strict=True)):
+        member, form, module = MEMBERS[k], float(form_diameter(gear)), gear.normal_module
+        depth = tip_intrusion(pair, k)
+        if depth > INTRUSION * module:
+            text = (
+                f"The mate's tips cut {depth:.3f} mm into the fillets of the {member}{of}: relieve "
+                "or shorten them."
+            )
+            found.append(Flaw("interference", text, misfit=depth / module))
+        elif not (active >= form * (1.0 - ROUNDING) or undercut_depth(gear) > NEGLIGIBLE * module):
             text = (
                 f"The mate's tip reaches below the form circle of the {member}{of}, "
                 f"{form:.3f} mm: relieve or shorten the tips."
             )
-            found.append(Flaw("interference", text, False))
+            found.append(Flaw("interference", text))
     return found
+
+
+def tip_intrusion(pair: GearPair, member: int) -> float:
+    """Return how deep the corners of the mate's tips come into the teeth of a gear [mm].
+
+    Of a pair of floats that touch on one flank, in the transverse plane: the path of the corner in
+    the gear's frame against `fillet.profile`, at POINTS places. 0 of gears that run freely.
+    """
+    own, mate = pair.gears[member], pair.gears[1 - member]
+    distance, top = float(pair.centre_distance), 0.5 * float(mate.tip_diameter)
+    tip = 0.5 * float(own.tip_diameter)
+    reach = (distance**2 + top**2 - tip**2) / (2.0 * distance * top)
+    corner = np.linspace(-1.0, 1.0, POINTS) * math.acos(min(1.0, max(-1.0, reach)))
+    across, along = top * np.sin(corner), distance - top * np.cos(corner)
+    radius, turned = np.hypot(across, along), corner - float(half_angle(mate, top))
+    free = 0.5 * float(circumferential_backlash(pair)) / float(pair.working_diameters[member])
+    angle = np.arctan2(across, along) - turned * float(mate.teeth / own.teeth) + free
+    x, y = profile(own, POINTS, 2)
+    fillet = np.hypot(x, y)[:-1]
+    half = np.interp(radius, fillet, np.arctan2(x, y)[:-1])
+    flank = radius > fillet[-1]
+    half[flank] = half_angle(own, radius[flank])
+    depth = np.where(radius > fillet[0], (angle + half - math.pi / own.teeth) * radius, 0.0)
+    return max(0.0, float(np.max(depth)))

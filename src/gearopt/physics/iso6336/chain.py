@@ -222,14 +222,14 @@ def roughness(case: Case, found: Found) -> Any:
 
 
 def hardening(case: Case, found: Found) -> Any:
-    """Return Z_W of reference strength, of pinion and wheel: 1 but of the softer gear."""
+    """Return Z_W of reference strength, of pinion and wheel: 1 but of a softer wheel."""
     return tuple(hardened(case, k, False) for k in GEARS)
 
 
 def hardened(case: Case, member: int, static: bool) -> Any:
-    """Return Z_W of a gear, of static or of reference strength."""
+    """Return Z_W of a gear, static or of reference strength; 1 of a pinion (UR M56, 2.11)."""
     own, other = case.materials[member], case.materials[1 - member]
-    if own.family not in ("St", "V", "GGG") or own.hardness <= 0.0:
+    if member == 0 or own.family not in ("St", "V", "GGG") or own.hardness <= 0.0:
         return 1.0
     if other.family in SURFACE_HARDENED:
         if static:
@@ -242,7 +242,7 @@ def hardened(case: Case, member: int, static: bool) -> Any:
             case.practice.viscosity,
         )
         return contact.work_hardening_factor(own.brinell, film)
-    if static or member == 0 or other.family not in ("St", "V", "GGG") or other.hardness <= 0.0:
+    if static or other.family not in ("St", "V", "GGG") or other.hardness <= 0.0:
         return 1.0
     return contact.tempered_hardening_factor(other.brinell, own.brinell, case.pair.ratio)
 

@@ -146,7 +146,8 @@ def _face(case: Case, found: Found) -> Doubt:
         return False, "helix modification: from memory"
     if case.practice.offset:
         return False, "pinion off the middle: from memory"
-    return _stiffness(case, found)
+    sound, remark = _stiffness(case, found)
+    return sound, remark or ("above 2: one end is out of contact" if found["K_Hbeta"] > 2.0 else "")
 
 
 def _root_face(case: Case, found: Found) -> Doubt:

@@ -22,7 +22,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.assumptions import assumptions, notes
-from gearopt.scenes.drive.blank_tables import BlankKeys, misfits
+from gearopt.scenes.drive.blank_tables import BlankKeys, body_flaws
 from gearopt.scenes.drive.examples import EXAMPLE, MORE_EXAMPLES
 from gearopt.scenes.drive.front import advice, objectives, several, to_choose
 from gearopt.scenes.drive.rating.cut_short import bounded
@@ -387,7 +387,7 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
         for value, design in zip(values, designs, strict=True)
     ]
     report: dict[str, Any] = {"trains": trains} if exact and ask.top > 1 else {}
-    solid = misfits([stage.blanks for stage in train.stages], gears[0])
-    if remarks := [*notes(scene, exact), *solid, *tooth_warnings(gears[0], WEAKER)]:
+    bodies = [f.sentence for f in body_flaws([stage.blanks for stage in train.stages], gears[0])]
+    if remarks := [*notes(scene, exact), *bodies, *tooth_warnings(gears[0], WEAKER)]:
         report["notes"] = remarks
     return replace(result, name="drive", design=designs[0], report=report)

@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from gearopt.physics.blanks import HUB, Blank
 from gearopt.physics.gears import MEMBERS, GearPair
+from gearopt.physics.geometry.flaws import Flaw
 from gearopt.scenes.reading.fields import Table, number, quantity, refuse
 from gearopt.units import Quantity
 
@@ -113,22 +114,28 @@ def check_blanks(tables: Sequence[tuple[Place, BlankKeys, BlankKeys, bool]]) -> 
             raise refuse(rule, tell, at(told), "tell")
 
 
-def misfits(blanks: Sequence[tuple[Blank, Blank]], pairs: Sequence[GearPair]) -> Iterator[str]:
-    """Yield sentences about gears of a design, of floats, whose rim or bore does not fit."""
-    for k, (both, pair) in enumerate(zip(blanks, pairs, strict=True), 1):
-        for member, made, gear in zip(MEMBERS, both, pair.gears, strict=True):
-            yield from misfit(f"{member} of stage {k}", made, gear)
+def body_flaws(
+    blanks: Sequence[tuple[Blank, Blank]],
+    pairs: Sequence[GearPair],
+    bored: Sequence[tuple[bool, bool]] = (),
+) -> Iterator[Flaw]:
+    """Yield flaws of the bodies of a design, of floats: rims and bores that have no room.
 
-
-def misfit(name: str, made: Blank, gear: Any) -> Iterator[str]:
-    """Yield a sentence about a gear whose rim or bore does not fit."""
-    found = made.body(gear)
-    if made.bore and not found.bore:
-        yield (
-            f"The {name} is solid, without its bore: a hub of {made.hub:.4g} mm does not lie "
-            f"inside the root circle of {float(gear.root_diameter):.4g} mm."
-        )
-    elif made.has_rim and not found.rim_thickness:
-        inside = f"{float(made.inside(gear)):.4g} mm inside its rim"
-        hub = f" for a hub of {made.hub:.4g} mm" if made.bore else ""
-        yield f"The {name} has no web: {inside} leave no room{hub}."
+    bored: of which gears (pinion and wheel of every stage) the file has the bore. One that is as
+    wide as the root circle is a misfit there; a bore of all gears leaves small ones solid.
+    """
+    for k, (both, pair) in enumerate(zip(blanks, pairs, strict=True)):
+        for i, (member, made, gear) in enumerate(zip(MEMBERS, both, pair.gears, strict=True)):
+            name, body = f"{member} of stage {k + 1}", made.body(gear)
+            root = float(gear.root_diameter)
+            if made.bore and not body.bore:
+                text = (
+                    f"The {name} is solid, without its bore: a hub of {made.hub:.4g} mm does not "
+                    f"lie inside the root circle of {root:.4g} mm."
+                )
+                wide = (made.bore - root) / gear.normal_module if bored and bored[k][i] else 0.0
+                yield Flaw("no bore", text, misfit=max(0.0, wide))
+            elif made.has_rim and not body.rim_thickness:
+                inside = f"{float(made.inside(gear)):.4g} mm inside its rim"
+                hub = f" for a hub of {made.hub:.4g} mm" if made.bore else ""
+                yield Flaw("no web", f"The {name} has no web: {inside} leave no room{hub}.")

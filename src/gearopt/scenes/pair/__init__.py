@@ -15,7 +15,7 @@ from gearopt.optimise.pareto.several import Several
 from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
 from gearopt.scenes import drive
-from gearopt.scenes.drive.blank_tables import misfits
+from gearopt.scenes.drive.blank_tables import body_flaws
 from gearopt.scenes.drive.rating import rated
 from gearopt.scenes.explaining.default import explain as explain_scene
 from gearopt.scenes.pair import relief_part
@@ -113,7 +113,7 @@ def _evaluated(scene: Scene, ask: Ask) -> Result:
             report={
                 "notes": [
                     *rated.off_ratio(scene.drive, design),
-                    *misfits(blanks, (scene.given_pair,)),
+                    *(flaw.sentence for flaw in body_flaws(blanks, (scene.given_pair,))),
                 ]
             },
             evaluations=1,

@@ -25,7 +25,6 @@ Materials = tuple[str, str]
 UNBORED = 3.0  # root circle over the circle at which a gear without a bore is held
 BORNE = 4000.0  # MPa; from it on hardened rollers keep dents (static rating of ISO 76)
 NEAR_WHOLE = 0.02  # of a contact ratio to a whole number, where TE is discontinuous
-LEAST_RATIO = 1.2  # below which ISO 6336-1 has no stiffness, and designers do not go
 
 
 def contact_of(scene: Scene, made: PairMesh, materials: Materials) -> PairContact:
@@ -173,11 +172,6 @@ def _validity(made: PairMesh, coupling: str) -> Iterator[str]:
         if flaw.name != "interference" and not (thin and flaw.name == "thin tip"):
             yield flaw.sentence
     ratio = float(made.elastic.path.transverse_ratio)
-    if ratio < LEAST_RATIO:
-        yield (
-            f"The contact ratio of {ratio:.3f} is small: errors of the gears may take contact away "
-            f"for a moment; {LEAST_RATIO:g} is a usual minimum."
-        )
     whole = round(ratio)
     if whole > 1 and abs(ratio - whole) < NEAR_WHOLE:
         yield (

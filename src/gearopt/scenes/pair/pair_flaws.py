@@ -42,10 +42,15 @@ def check_level(pair: GearPair, level: str | None) -> None:
 
 
 def _check_flaws(pair: GearPair, own: StageTable, gears: Gears) -> None:
-    """Refuse fatal flaws of the teeth, each at the key that makes it."""
+    """Refuse fatal flaws of the teeth, and misfits, each at the key that makes it.
+
+    Interference alone is left: contact is computed where there are flanks.
+    """
     found = flaws(pair)
-    if not found or not (flaw := found[0]).fatal:
+    wrong = [f for f in found if f.fatal or f.misfit and f.name != "interference"]
+    if not wrong:
         return
+    flaw = wrong[0]
     said = f"makes gears that cannot run: {flaw.sentence[0].lower()}{flaw.sentence[1:].rstrip('.')}"
     if flaw.name in ("no root", "no involute", "pointed tooth"):
         member = next(m for m in MEMBERS if m in flaw.sentence)

@@ -16,11 +16,11 @@ SAFETY = (
     "safety_factor_contact safety_factor_bending required_safety sicherheit sicherheiten"
 )
 STRESS = (
-    "allowable_stress allowable_stresses contact_stress hertz_stress hertzian_stress sigma_hlim "
-    "sigma_flim sigma_h_lim sigma_f_lim sigma_h sigma_f endurance_limit tooth_root_stress "
-    "root_stress hertzian_pressure contact_pressure allowable_bending_stress "
-    "allowable_contact_stress zulaessige_spannung hertz"
+    "allowable_stress allowable_stresses contact_stress hertz_stress hertzian_stress sigma_h "
+    "sigma_f tooth_root_stress root_stress hertzian_pressure contact_pressure "
+    "allowable_bending_stress allowable_contact_stress zulaessige_spannung hertz"
 )
+STRENGTH = "sigma_hlim sigma_flim sigma_h_lim sigma_f_lim endurance_limit"
 CENTRES = (
     "centre_distance center_distance centre_distances center_distances axis_distance "
     "shaft_distance achsabstand maximum_centre_distance maximum_center_distance"
@@ -127,7 +127,7 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
     "servo": {
         CENTRES: "Nearest: modules and teeth of [train], which it follows from, or the box of "
         "[space]; centre_distance of a [[mesh]] is its deviation",
-        f"{MATERIAL} {STRESS}": "Nearest: bending_stress and density of [train]",
+        f"{MATERIAL} {STRESS} {STRENGTH}": "Nearest: bending_stress and density of [train]",
         SAFETY: "Nearest: bending_stress of [train]: divide what the material bears by the factor",
         FACTORS: "Nearest: output_torque of [train]: multiply it by the factor",
         SHIFT: "Nearest: pinion_teeth of [train]: with a minimum of 17 teeth a pinion of 20 deg "
@@ -147,8 +147,8 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
     "compound": {
         f"{CENTRES} module modules": 'Nearest: kind = "drive" or "servo", which have modules; here '
         "only numbers of teeth are chosen",
-        f"{MATERIAL} {STRESS} {SAFETY} power torque load face_width": 'Nearest: kind = "drive", '
-        "which has loads; here only numbers of teeth are chosen",
+        f"{MATERIAL} {STRESS} {STRENGTH} {SAFETY} power torque load face_width": "Nearest: kind = "
+        '"drive", which has loads; here only numbers of teeth are chosen',
         "stages number_of_stages idler": 'Nearest: kind = "drive", of up to six stages; a compound '
         "train has two pairs",
         "ratio_tolerance tolerance": "Nearest: train.ratio, which is met as nearly as teeth allow; "

@@ -20,6 +20,7 @@ from gearopt.scenes.drive.rating.tables import (
     with_shared,
 )
 from gearopt.scenes.reading.fields import Table, refuse
+from gearopt.scenes.reading.toml import dotted
 
 Place = tuple[Any, ...]
 NEED_HARDNESS = ("through-hardened",)  # of the life curves and the hardness ratio too
@@ -199,15 +200,21 @@ def _check_accuracy(rating: RatingTable, given: dict[str, Any]) -> None:
 
 
 def _check_standard(rating: RatingTable, gears: Gears, stages: Sequence[StageTable]) -> None:
-    """Refuse what changes nothing because its standard is not the one asked for."""
-    places = [
-        *((place, "iso6336") for place in _of_iso6336(rating, gears, stages)),
-        *((place, "agma") for place in _of_agma(rating, gears, stages)),
-    ]
-    for place, standard in places:
-        if rating.standard not in (standard, "both"):
-            rule = f'changes nothing with standard = "{rating.standard}", but with "{standard}"'
-            raise refuse(f'{rule} or "both"', at=place, action="remove")
+    """Refuse what changes nothing because its standard is not the one asked for, all at once."""
+    if rating.standard == "both":
+        return
+    idle = _of_iso6336 if rating.standard == "agma" else _of_agma
+    first, *others = [*idle(rating, gears, stages)] or [()]
+    if not first:
+        return
+    other = "iso6336" if rating.standard == "agma" else "agma"
+    rule = f'changes nothing with standard = "{rating.standard}", but with "{other}" or "both"'
+    if not others:
+        raise refuse(rule, at=first, action="remove")
+    names = ", ".join(dotted(place) for place in others)
+    raise refuse(
+        f"{rule}; nor does {names}", 'Remove all, or write standard = "both"', first, "tell"
+    )
 
 
 def _of_iso6336(rating: RatingTable, gears: Gears, stages: Sequence[StageTable]) -> Iterator[Place]:

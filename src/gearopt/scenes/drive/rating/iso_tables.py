@@ -64,6 +64,8 @@ READS = {  # by unit of a factor
     "mm": quantity("length", "8 um", "1 mm", zero=True),
     "sqrt(MPa)": quantity("elastic coefficient", "189.8 sqrt(MPa)"),
 }
+LOADS = ("K_gamma", "K_v", "K_Hbeta", "K_Fbeta", "K_Halpha", "K_Falpha", "Z_BD", "Y_B")
+LOAD = number(1.1, 1, 10**6)  # of LOADS, largest over mean or nominal: 1 or more by definition
 VG = (32, 46, 68, 100, 150, 220, 320, 460, 680, 1000)  # viscosity grades of ISO 3448
 GRADES = advised(
     each_gear(whole(6, 0, 12)),
@@ -87,7 +89,7 @@ OIL = advised(
 
 def _field(symbol: str) -> Any:
     """Return the field of a factor: a value, or one for each gear."""
-    reads = READS[CLAUSES[symbol][1]]
+    reads = LOAD if symbol in LOADS else READS[CLAUSES[symbol][1]]
     kind: Any = Fraction if CLAUSES[symbol][1] == "" else Quantity
     if symbol in PAIRED:
         kind, reads = tuple[kind, kind], each_gear(reads)

@@ -76,7 +76,7 @@ def check_safe(scene: Scene, result: Result) -> None:
     if not scene.by_ratings or result.value is None:
         return
     found = drive_design(result.design).rating
-    if found is None or not found.safe_by_all:
+    if found is None or not found.met_by_all:
         why = "has no rating" if found is None else f"is unsafe: {found.governs}"
         raise CertificateError(f"the design that ratings limit {why}")
 

@@ -1,22 +1,23 @@
 """The rating of a drive: of gears that are all given, and of those that were chosen."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.design import DriveDesign, StageDesign, drive_design, of_pairs
-from gearopt.formulations.rating import DriveRating, GearRating, MeshRating
+from gearopt.formulations.rating import DriveRating, MeshRating
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.result import FEASIBLE, Result, versions
+from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair
+from gearopt.physics.geometry.flaws import Flaw
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
 from gearopt.scenes.drive.assumptions import rating_assumptions, unused_materials
-from gearopt.scenes.drive.blank_tables import misfits
+from gearopt.scenes.drive.blank_tables import body_flaws
 from gearopt.scenes.drive.rating import gears as rated_gears
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.geometry import tooth_geometry
@@ -31,9 +32,11 @@ from gearopt.scenes.drive.rating.rows import (
     shaft_rows,
 )
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.parts import tooth_warnings
+from gearopt.scenes.parts import tooth_flaws
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.toml import dotted
+
+FULL_CONTACT = 2.0  # K_Hbeta up to which the whole face width carries load
 
 
 def rate(scene: Scene, ask: Ask) -> Result:
@@ -48,17 +51,20 @@ def rate(scene: Scene, ask: Ask) -> Result:
     clock = Clock(ask.budget, ask.watch)
     pairs = rated_gears.given_pairs(scene)
     found = rating(scene, pairs)
-    limits = utilisations(found)
     made, blanks = given_design(scene, pairs)
-    flaws = (*off_ratio(scene, made), *misfits(blanks, pairs), *found.flaws)
-    told = replace(found, flaws=flaws)
-    remarks = unused_materials(scene)
+    bored = [(s.pinion.bore is not None, s.wheel.bore is not None) for s in scene.stage]
+    geometric = (*tooth_flaws(pairs), *body_flaws(blanks, pairs, bored))
+    found = fitted(found, geometric)
+    accepted = (flaw.sentence for flaw in geometric if not flaw.misfit)
+    told = replace(found, flaws=(*off_ratio(scene, made), *accepted, *found.flaws))
+    limits, remarks = utilisations(found), unused_materials(scene)
+    excess = [*(used - 1.0 for used in limits.values()), *(flaw.misfit for flaw in geometric)]
     return Result(
         name="rating",
         status="evaluated",
         method=scene.rating.standard,
         objective={},
-        certificate={"feasibility": max(0.0, max(limits.values()) - 1.0)},
+        certificate={"feasibility": max(0.0, *excess)},
         design=untyped(replace(made, rating=told)),
         limits=limits,
         report={"assumptions": rating_assumptions(scene)} | ({"notes": remarks} if remarks else {}),
@@ -67,6 +73,15 @@ def rate(scene: Scene, ask: Ask) -> Result:
         seed=ask.seed,
         versions=versions("numpy"),
     )
+
+
+def fitted(found: DriveRating, geometric: Iterable[Flaw]) -> DriveRating:
+    """Return a rating that knows which gears do not fit, and is not safe then, by any standard."""
+    misfits = tuple(flaw.sentence for flaw in geometric if flaw.misfit)
+    if not misfits:
+        return found
+    beside = replace(found.beside, safe=False) if found.beside else None
+    return replace(found, safe=False, misfits=misfits, beside=beside)
 
 
 def given_design(
@@ -109,12 +124,16 @@ def with_rating(scene: Scene, result: Result) -> Result:
     try:
         stages = drive_design(result.design).stages
         materials = [(s.pinion_material, s.wheel_material) for s in stages]
-        found = rating(held, chosen_pairs(held, stages), materials)
+        pairs = chosen_pairs(held, stages)
+        found = fitted(rating(held, pairs, materials), tooth_flaws(pairs))
     except SolveError as reason:
         notes = [*result.report.get("notes", []), f"There is no rating: {reason}."]
         return replace(result, report=result.report | {"notes": notes})
-    found = replace(found, flaws=())  # they stand in the notes of the drive
-    return replace(result, design=result.design | {"rating": untyped(found)})
+    design = result.design | {"rating": untyped(found)}
+    if not found.misfits:  # other flaws stand in the notes of the drive
+        return replace(result, design=design)
+    notes = [note for note in result.report.get("notes", []) if note not in found.misfits]
+    return replace(result, design=design, report=result.report | {"notes": notes})
 
 
 def chosen_pairs(scene: Scene, stages: Sequence[StageDesign]) -> tuple[GearPair, ...]:
@@ -147,12 +166,30 @@ def rating(
 ) -> DriveRating:
     """Return the rating of all stages by all standards asked for; SolveError why there is none.
 
-    materials: as of `rated_meshes`; by default there was no choice.
+    materials: as of `rated_meshes`; by default there was no choice. Flaws are those of load.
     """
     assert scene.rating
     names = materials or [("", "")] * len(pairs)
     first, *others = (_by(scene, pairs, one, names) for one in STANDARDS[scene.rating.standard])
-    return replace(first, beside=replace(others[0], flaws=())) if others else first
+    first = replace(first, beside=others[0]) if others else first
+    return replace(first, flaws=tuple(_partial_contact(first)))
+
+
+def _partial_contact(found: DriveRating) -> Iterator[str]:
+    """Yield stages whose load lies on a part of the face width.
+
+    Of a straight distribution K_Hbeta reaches 2 where the line load is 0 at one end;
+    beyond, b_cal/b = 2/K_Hbeta is loaded. Source: ISO 6336-1:2006, 7.5, method C.
+    """
+    rows = [row for one in found.each for row in one.factors if row.symbol == "K_Hbeta"]
+    for row in rows:
+        if row.pinion > FULL_CONTACT:
+            yield (
+                f"Only {100.0 * FULL_CONTACT / row.pinion:.3g} % of the face width of stage "
+                f"{row.stage} carries load: K_Hbeta is {row.pinion:.4g}, and above "
+                f"{FULL_CONTACT:g} one end is out of contact. A modified helix or a narrower face "
+                "would mend it."
+            )
 
 
 def _by(
@@ -171,9 +208,9 @@ def _by(
     hours = [life_hours(mesh, k) for mesh in meshes for k in (0, 1)]
     shortest = gears[min(range(len(gears)), key=hours.__getitem__)]
     efficiency, error = _efficiency(rows)
-    return DriveRating(
+    made = DriveRating(
         standard=standard.title(asked),
-        safe=all(map(_meets(wanted), gears)),
+        safe=False,
         governs=f"{least.governs}, stage {least.stage}",
         minimum_bending_safety=wanted[0],
         minimum_contact_safety=wanted[1],
@@ -196,21 +233,9 @@ def _by(
             *dict.fromkeys(f"{r.symbol} of stage {r.stage}" for r in factors if not r.verified),
             *(standard.UNVERIFIED_SPECTRUM if scene.load else ()),
         ),
-        flaws=tuple(tooth_warnings(pairs)),
         by=standard.NAME,
     )
-
-
-def _meets(wanted: tuple[float, float]) -> Callable[[GearRating], bool]:
-    """Return whether a gear meets the safety factors asked for, within `FEASIBLE`."""
-
-    def meets(gear: GearRating) -> bool:
-        bending, contact = (
-            (1.0 + FEASIBLE) * s for s in (gear.bending_safety, gear.contact_safety)
-        )
-        return wanted[0] <= bending and wanted[1] <= contact
-
-    return meets
+    return replace(made, safe=made.met)
 
 
 def _efficiency(rows: Sequence[MeshRating]) -> tuple[float | None, float | None]:

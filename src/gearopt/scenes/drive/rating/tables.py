@@ -31,6 +31,9 @@ SURFACES = tuple(dict.fromkeys(surface for _, surface, _ in CONTACT if surface))
 FACTOR = number(1.25, 0, 1000)
 Number = Annotated[Fraction | None, FACTOR]
 Numbers = Annotated[tuple[Fraction, Fraction] | None, each_gear(FACTOR)]
+LOAD = number(1.25, 1, 1000)  # factors that by their definition only add to a load or a stress
+Load = Annotated[Fraction | None, LOAD]
+Loads = Annotated[tuple[Fraction, Fraction] | None, each_gear(LOAD)]
 Stresses = Annotated[
     tuple[Quantity, Quantity] | None, each_gear(quantity("stress", "220 MPa", "10 GPa"))
 ]
@@ -93,6 +96,14 @@ STANDARD = advised(
         "din.*": 'DIN 3990 is not supported. Nearest: standard = "iso6336"',
         "iso.*": 'Write standard = "iso6336"; [rating.iso6336] has its edition',
         ".*agma.*": 'Write standard = "agma"; edition = "D04" or "B88" says which',
+    },
+)
+
+EDITION = advised(
+    choice(*EDITIONS),
+    {
+        "2006|2019": "edition of [rating] is that of AGMA 2001; that of ISO 6336 is edition of "
+        "[rating.iso6336]",
     },
 )
 
@@ -188,18 +199,21 @@ def with_shared(own: GearTable, shared: GearKeys) -> GearTable:
 class GivenTable(Given):
     """Factors that stand in the place of computed ones; [pinion, wheel], or one for both."""
 
-    K_o: Number = Field(None, description="Overload factor")
-    K_v: Number = Field(None, description="Dynamic factor")
-    K_m: Number = Field(None, description="Load distribution factor")
+    K_o: Load = Field(None, description="Overload factor")
+    K_v: Load = Field(
+        None,
+        description="Dynamic factor, 1 or more (C_v of editions before 1995 is its reciprocal)",
+    )
+    K_m: Load = Field(None, description="Load distribution factor")
     K_R: Number = Field(None, description="Reliability factor")
-    K_T: Number = Field(None, description="Temperature factor")
-    C_f: Number = Field(None, description="Surface condition factor")
+    K_T: Load = Field(None, description="Temperature factor")
+    C_f: Load = Field(None, description="Surface condition factor")
     C_p: Annotated[Quantity | None, quantity("elastic coefficient", "190 sqrt(MPa)")] = Field(
         None, description="Elastic coefficient"
     )
     I: Number = Field(None, description="Geometry factor of pitting resistance")  # noqa: E741
-    K_s: Numbers = Field(None, description="Size factor")
-    K_B: Numbers = Field(None, description="Rim thickness factor")
+    K_s: Loads = Field(None, description="Size factor")
+    K_B: Loads = Field(None, description="Rim thickness factor")
     J: Numbers = Field(None, description="Geometry factor of bending strength")
     s_at: Stresses = Field(None, description="Allowable bending stress number")
     s_ac: Stresses = Field(None, description="Allowable contact stress number")
@@ -216,7 +230,7 @@ class RatingTable(Table):
         description="agma: ANSI/AGMA 2001 (2101) with AGMA 908; iso6336: ISO 6336; both: side by "
         "side",
     )
-    edition: Annotated[str, choice(*EDITIONS)] = Field(
+    edition: Annotated[str, EDITION] = Field(
         "D04", description="Edition of AGMA 2001: rim factors and strengths differ"
     )
     life: Annotated[Quantity | None, quantity("time", "20000 h", "1e9 h")] = Field(
