@@ -239,7 +239,7 @@ def _entry(name: str, words: str) -> str:
     for front in (one for one, it in FRONTS.items() if it.file == name):
         lines.append(f"![{file['title']}: a Pareto front]({ROOM.name}/{front}.svg)\n")
         traded = f"gearopt pareto problems/{name}.toml --objectives {FRONTS[front].objectives}"
-        words = f"{words} In the picture all designs that none beats, by `{traded}`: "
+        words = f"{words} The picture shows the Pareto front, by `{traded}`: "
         words += "[Trade-offs](trade_offs.md)."
     lines += [
         f"{words}\n",

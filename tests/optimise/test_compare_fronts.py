@@ -38,7 +38,7 @@ def test_gaps_are_the_missing_part_of_the_hypervolume_of_a_complete_front():
     found = gearopt.compare(problem, objectives="a,b", methods=("exact", "nsga2"), **SMALL)
     (group,) = found.groups
     assert group.proven and group.bound_from == "exact" and group.reference == 0.0
-    assert "3 designs that none beats, proven complete (exact)" in group.front
+    assert "the complete Pareto front of 3 designs, proven (exact)" in group.front
     for row in group.rows:
         for run in (*row.equal_evaluations.runs, *row.equal_time.runs):
             assert run.gap == run.objective == pytest.approx(0.0, abs=1e-12)

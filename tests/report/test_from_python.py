@@ -83,8 +83,8 @@ def test_the_lines_of_a_drive(solved):
     """The teeth are those that brute force and the README have."""
     assert repr(solved("elevator")).splitlines()[:4] == [
         "Two-stage elevator drive: gear volume 5,782.4 cm³, proven optimal",
-        "  K-factor of stages 1 and 2 decides the gear volume; "
-        "the ratio tolerance is used to 63 %.",
+        "  The limits on K-factor of stages 1 and 2 determine the gear volume; "
+        "ratio tolerance: 63 % used.",
         "  stage 1: m_n 2 mm, z 21/115",
         "  stage 2: m_n 3 mm, z 23/91",
     ]

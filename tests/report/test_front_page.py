@@ -98,9 +98,9 @@ def test_a_design_is_compared_with_the_pick(two):
 def test_beaten_and_impossible_points_are_grey(two):
     shown, _ = plots(two)
     first = traces(shown[0])
-    assert sorted(first["beaten by another"]["x"]) == pytest.approx([6100.0, 6200.0])
+    assert sorted(first["dominated"]["x"]) == pytest.approx([6100.0, 6200.0])
     assert first["limits without a design"]["y"] == [0.5, 0.6]
-    for name in ("beaten by another", "limits without a design"):
+    for name in ("dominated", "limits without a design"):
         assert first[name]["marker"]["color"].startswith("--axis")
     assert "proven impossible" in two and "none found" in two
     assert first["designs"]["customdata"] == [1, 2, 3]

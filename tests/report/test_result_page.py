@@ -387,7 +387,10 @@ def test_a_plain_drive_gives_a_light_page_without_plots():
     html = page(result, "gearopt solve x.toml")
     assert len(html) < 40_000 and len(drawings(html)) == 2 and figures(html) == []
     shown = text(html)
-    assert "Proven optimal: K-factor of stages 1 and 2 decides the gear volume" in shown
+    assert (
+        "Proven optimal: the limits on K-factor of stages 1 and 2 determine the gear volume"
+        in shown
+    )
     for words in ("5,782.4 cm³", "trains compared", "150.06", "5,789.2"):
         assert words in shown, words
 

@@ -185,7 +185,7 @@ def test_the_nearest_ratio_is_told(text, key, write):
     assert way.factor == pytest.approx(float(max(ratio / asked, asked / ratio)))
     words = remedy_words(found.to_dict())
     assert any("or choose" in row[0] and key in row[1] for row in words[0])
-    assert "the duty is kept" in words[1]
+    assert "keeps the duty" in words[1]
     assert "is the nearest feasible one" in words[1]
 
 

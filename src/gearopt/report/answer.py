@@ -113,7 +113,7 @@ def limits(result: Result, measures: Measures) -> Section | None:
     cells = [[words, *map(percent, values)] for words, values in rows]
     elsewhere = [limit_words(name) for name in kind_of(result).elsewhere(result)]
     table = Table("limits", heads, cells, csv_only=elsewhere)
-    words = ("At 100 % a limit is reached.",)
+    words = ("At 100 % a limit is active.",)
     return Section("Limits", words=words, tables=(table,), half=True, terminal=(table,))
 
 
@@ -170,7 +170,7 @@ def meaning(result: Result) -> str:
         )
     if status == "infeasible":
         if of_gears_first(result):
-            return "Proven: no layout of these gears meets all limits. Others were not tried."
+            return "Proven: no layout of these gears meets all limits. Other gears were not tried."
         return "Proven: no design meets all limits."
     if result.given:
         met = "meets all limits" if result.feasible else "does not meet all limits"

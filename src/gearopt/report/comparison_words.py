@@ -98,7 +98,7 @@ def reference(group: Group) -> str:
     if group.best is None:
         return f"{words}). No method found a feasible point."
     if _closed(group):
-        return f"{words}, and it is reached: the optimum is known)."
+        return f"{words}, and a feasible point attains it: the optimum is known)."
     if zero:
         above = amount(group.best - group.reference, group.unit)
         return f"{words}). The best known is {above} above it; the optimum lies between."

@@ -34,7 +34,7 @@ def lead(result: Result, own: str = "") -> str:
     if own or not result.given:
         return own or of_limits(result)
     over = _over(result.limits, has_stages(result))
-    return f"the given design exceeds {series_of(over)}" if over else of_limits(result)
+    return f"the given design exceeds {_on(over)}" if over else of_limits(result)
 
 
 def _stopped(result: Result) -> str:
@@ -52,7 +52,7 @@ def _impossible(result: Result) -> str:
     together = series_of(grouped(names, has_stages(result)))
     if unsure:
         with_ = f"cannot be met together with {_some(unsure, has_stages(result))}"
-        return f"{together} {with_} (perhaps not all of these are needed)"
+        return f"{together} {with_} (not all of these need be part of the conflict)"
     if len(names) == 1 or result.proof.get("each_alone"):
         return f"{together} cannot be met, even if all other limits are dropped"
     if ways.get("any_resolves"):
@@ -97,7 +97,7 @@ def of_limits(result: Result, shown: Collection[str] = ()) -> str:
     rest = {n: u for n, u in own.items() if n not in (*decisive, *ends) and not _is_end(n)}
     parts = [_decided(result, decisive)] if decisive else []
     parts += (
-        [f"{series_of(grouped(ends, has_stages(result)))} {_verb(ends, 'is', 'are')} reached"]
+        [f"{_on(grouped(ends, has_stages(result)), len(ends))} {_verb(len(ends))} active"]
         if ends
         else []
     )
@@ -122,17 +122,24 @@ def _stem(name: str) -> str:
 
 
 def _decided(result: Result, names: list[str]) -> str:
-    """Return that limits decide, where that is certain; else that they are reached."""
+    """Return that limits determine the optimum, where that is certain; else that they bind."""
     found = grouped(names, has_stages(result))
     if len(found) > NAMED:
         found = [*found[: NAMED - 1], f"{len(found) - NAMED + 1} other limits"]
     if result.status not in PROVEN:
-        return f"{series_of(found)} {_verb(found, 'is', 'are')} reached"
-    return f"{series_of(found)} {_verb(found, 'decides', 'decide')} the {_goal(result)}"
+        return f"{_on(found, len(names))} {_verb(len(names))} active"
+    determine = "determines" if len(names) == 1 else "determine"
+    return f"{_on(found, len(names))} {determine} the {_goal(result)}"
 
 
-def _verb(names: Sequence[str], one: str, several: str) -> str:
-    return one if len(names) == 1 else several
+def _on(words: Sequence[str], count: int | None = None) -> str:
+    """Return "the limits on ..." of limits in words; count: of limits, where words group them."""
+    several = (len(words) if count is None else count) > 1
+    return f"the limit{'s' * several} on {series_of(words)}"
+
+
+def _verb(count: int) -> str:
+    return "is" if count == 1 else "are"
 
 
 def _goal(result: Result) -> str:
@@ -141,15 +148,14 @@ def _goal(result: Result) -> str:
 
 
 def _nearest(limits: Mapping[str, float], alone: bool, staged: bool) -> list[str]:
-    """Return the limit that is nearest; alone: none is reached."""
+    """Return the limit that is nearest; alone: none is active."""
     if not limits:
         return []
     name, used = max(limits.items(), key=lambda item: item[1])
-    use = f"{'comes nearest, ' if alone else 'is '}used to {_whole(used)} %"
-    words = f"{limit_words(name, staged)} {use}"
+    limit = limit_words(name, staged)
     if alone:
-        return [f"no limit is reached, {words}"]
-    return [words] if used >= NEAR else []
+        return [f"no limit is active; the closest is {limit}, at {_whole(used)} %"]
+    return [f"{limit} is at {_whole(used)} % of its limit"] if used >= NEAR else []
 
 
 def _tolerance(result: Result) -> list[str]:
@@ -162,11 +168,11 @@ def _tolerance(result: Result) -> list[str]:
     room = 1.0 - low * ratio / asked if error < 0.0 else ratio / high / asked - 1.0
     if room <= REACHED:
         return []
-    return [f"the ratio tolerance is used to {_whole(abs(error) / 100.0 / room)} %"]
+    return [f"ratio tolerance: {_whole(abs(error) / 100.0 / room)} % used"]
 
 
 def _free(result: Result) -> str:
     """Return what is said where no limit is reported."""
     if result.status in PROVEN:
-        return f"no limit decides the {_goal(result)}, only the model itself"
-    return "no limit is reached" if result.status == "evaluated" else "a better design may exist"
+        return "no limit is active at the optimum"
+    return "no limit is active" if result.status == "evaluated" else "a better design may exist"

@@ -64,7 +64,7 @@ def of_influences(found: Mapping[str, Any], result: Result, measures: Measures =
     tables = (table,) if len(idle) < len(rows) else ()
     if idle:
         name = objective(result)[0]
-        words.append(f"Small changes of these leave the {name} as it is: {', '.join(idle)}.")
+        words.append(f"Small changes of these numbers do not change the {name}: {', '.join(idle)}.")
     terminal = (*tables, "\n".join(words))
     return Section("Sensitivities", words=words, tables=tables, half=True, terminal=terminal)
 
@@ -101,7 +101,10 @@ def influence_words(found: Mapping[str, Any], result: Result) -> list[str]:
     if not found["influences"]:
         return lines or ["No number of the file was examined."]
     if not _sloped(found):
-        return [*lines, f"Effect of a step on the {name}: solved again with each number alone."]
+        return [
+            *lines,
+            f"Change of the {name} as one number changes by a step: solved again for each.",
+        ]
     slope = f"Sensitivity of the {name}: d ln objective / d ln number, % per %"
     if any(i["sensitivity"] is not None for i in found["influences"]):
         return [*lines, f"{slope}{found.get('basis', '')}."]
@@ -151,7 +154,7 @@ def remedies(result: Result, measures: Measures) -> Section | None:
         return None  # the first sentence says it
     tables = [Table("remedies", REMEDY_HEADS, rows, words=True, left=3)] if rows else []
     if not rows and found["message"] and found["message"] in result.message:
-        sure += " No remedy was found by moving limits."  # the message stands above
+        sure += " No remedy was found by relaxing limits."  # the message stands above
     sure = measures.words(sure)
     words = [] if rows else [sure]  # of remedies `proven` says it
     return Section("Remedies", words=words, tables=tables, terminal=[*tables, sure])
@@ -164,17 +167,17 @@ def remedy_words(found: Mapping[str, Any]) -> tuple[list[list[Any]], str]:
     """
     conflict, ways, missing = found["conflict"], found["remedies"], sentence(found["message"])
     if not ways:
-        return [], missing or "No remedy was found by moving limits."
+        return [], missing or "No remedy was found by relaxing limits."
     rows = [row for way in ways for row in _rows(way)]
     words = f"Each remedy was verified: a design exists with it{_less(ways)}."
     if any(way["verified"].get("others") == "need more" for way in ways):
         words += (
-            " Smallest change: the duty is kept, and no other limit or given size, moved alone, "
-            "needs a smaller one."
+            " Smallest change that keeps the duty: any other limit or given size, changed alone, "
+            "needs a larger one."
         )
     if any(way["verified"].get("nearer") == "infeasible" for way in ways):
         words += (
-            " The ratio to choose is the nearest feasible one (within the tolerance around it "
+            " The ratio named is the nearest feasible one (within the tolerance around it "
             "others are feasible, too)."
         )
     if conflict and any(way["bound"] is not None for way in ways):

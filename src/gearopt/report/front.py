@@ -13,7 +13,7 @@ from gearopt.report.words import MODULE, number
 
 SHOWN = 24  # rows on the terminal; the page and the CSV hold all
 VERDICTS = {
-    "complete": ("complete, proven: no other design is unbeaten", "green"),
+    "complete": ("complete Pareto front, proven", "green"),
     "proven": ("every point proven", "green"),
     "not proven": ("not proven", "yellow"),
     "infeasible": ("impossible, proven", "red"),
@@ -53,16 +53,16 @@ def decided(front: Front, measures: Measures = METRIC) -> list[str]:
             for k, one in enumerate(front.objectives)
         )
         designs = "1 design" if count == 1 else f"{count:,} designs"
-        found.insert(0, f"{designs}, none beaten by another: {ends}.")
+        found.insert(0, f"{designs} on the Pareto front: {ends}.")
     if front.error is not None:
         part = f"{100.0 * front.error:.2g} % of the ranges of its objectives"
-        found.append(f"The true front is within {part} of the line through these points.")
+        found.append(f"The true front lies within {part} of the line through these points.")
     if front.impossible:
         count, proven = len(front.impossible), sum(one.proven for one in front.impossible)
         steps = "1 step was" if count == 1 else f"{count} steps were"
         found.append(
-            f"{steps} skipped, whose limits on the objectives left no design "
-            f"({proven} proven impossible)."
+            f"{steps} skipped: no design meets the limits on the objectives there "
+            f"({proven} proven)."
         )
     if front.message:
         found.append(f"{front.message[0].upper()}{front.message[1:]}.")
@@ -109,7 +109,7 @@ def _beside(front: Front, place: int) -> str:
             if before
         ]
         rows.append(f"design {other + 1}: {', '.join(changes)}")
-    return f" Next to it {'; '.join(rows)}." if rows else ""
+    return f" Its neighbours: {'; '.join(rows)}." if rows else ""
 
 
 def _change(part: float) -> str:

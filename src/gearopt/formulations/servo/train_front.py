@@ -30,7 +30,7 @@ STEPS = 1_000_000  # of the kernel between two checks of the clock
 PART, FEW = 20_000, 50  # trains that wait for the next front, at most; before the first one
 SENTENCE = (
     "Proof: all choices of teeth and modules examined, in {count:,} first stages; no other train "
-    "that meets all limits is unbeaten."
+    "that meets all limits is Pareto-optimal."
 )
 BEYOND = "no train that meets all limits has objectives within the largest values of interest"
 

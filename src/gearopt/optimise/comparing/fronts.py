@@ -274,9 +274,9 @@ def _words(method: str, made: Found, count: int) -> str:
     if not count:
         return "No method found a feasible point: there is no front."
     if made.complete:
-        return f"{start}, of that of the {designs} that none beats, proven complete ({method})."
+        return f"{start}, relative to the complete Pareto front of {designs}, proven ({method})."
     if status(made) == "proven":
         error = "" if made.error is None else f", which leave an error of {made.error:.1g} between"
         proven = f"{len(made.points)} of them each proven ({method}){error}"
-        return f"{start}, of that of {designs}, {proven}."
-    return f"{start}, of that of the best {designs} known: nothing is proven of this front."
+        return f"{start}, relative to {designs}, {proven}."
+    return f"{start}, relative to the best {designs} known: of this front nothing is proven."

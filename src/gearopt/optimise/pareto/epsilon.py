@@ -343,10 +343,11 @@ def _sentence(points: tuple[Point, ...]) -> str:
     """Return what is proven of the points."""
     count = sum(p.proven for p in points)
     if not count:
-        return "Not proven: every point is the best that was found under its limits."
+        return "Not proven: every point is the best one found under its limits."
     which = "Every point" if count == len(points) else f"{count} of {len(points)} points"
     verb = "is" if count == len(points) else "are"
-    return f"{which} {verb} proven: nothing beats it by more than {GAP:g} of its first objective."
+    by = f"by more than {GAP:g} of its first objective"
+    return f"{which} {verb} proven: no design dominates it {by}."
 
 
 def _error(points: tuple[Point, ...], logarithmic: bool) -> float:

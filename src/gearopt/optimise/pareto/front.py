@@ -57,7 +57,7 @@ class Growth:
 
 @dataclass(frozen=True)
 class Front:
-    """The designs that none beats, by the first objective.
+    """The Pareto-optimal designs, by the first objective.
 
     status: complete (proven: there is no other), proven (every point is; the front between them is
     known to `error`), not proven, infeasible (proven: no design at all), limit (stopped early).

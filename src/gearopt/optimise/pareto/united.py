@@ -39,7 +39,7 @@ def united(fronts: Sequence[Front], weights: Mapping[str, float] | None) -> Fron
         corner=tuple(map(float, corner)),
         hypervolume=whole,
         growth=() if whole is None else (Growth(seconds, spent, whole),),
-        proof={**fronts[0].proof, "sentence": f"Of each number of stages in turn. {said}"},
+        proof={**fronts[0].proof, "sentence": f"For each number of stages: {said}"},
         message="" if kept else next((f.message for f in fronts if f.message), ""),
         evaluations=spent,
         seconds=seconds,

@@ -25,7 +25,7 @@ def _pair(found: Drawn, i: int, k: int) -> Figure:
     traces = [_line(found)] if whole and len(found.points) > 1 else []
     if found.beaten:
         x, y = ([p[n] for p in found.beaten] for n in (i, k))
-        traces.append(_marks("beaten by another", x, y, {"color": f"{GREY}/0.7", "size": 5}))
+        traces.append(_marks("dominated", x, y, {"color": f"{GREY}/0.7", "size": 5}))
     if (corners := _corners(found, i, k)) and whole:
         x, y = [min(a, across[1]) for a, _ in corners], [min(b, up[1]) for _, b in corners]
         look = {"color": GREY, "size": 9, "symbol": "x-thin", "line": {"color": GREY, "width": 2}}
@@ -70,14 +70,18 @@ def _caption(found: Drawn, i: int, k: int) -> str:
     names = [found.heads[n].split(" [")[0] for n in (i, k)]
     words = f"{names[0][0].upper()}{names[0][1:]} against {names[1]}."
     if len(found.heads) > 2:
-        words += " What looks beaten here is less in the third objective."
+        words += " A point that looks dominated here is better in the third objective."
     elif len(found.points) > 1:
-        line = "chords between points" if found.curve else "the edge of what these designs reach"
+        line = (
+            "chords between points"
+            if found.curve
+            else "the boundary of what these designs dominate"
+        )
         words += f" Line: {line}."
     if found.beaten:
-        words += " Grey dots: designs that another beats."
+        words += " Grey dots: dominated designs."
     if found.corners and len(found.heads) == 2:
-        words += " Grey crosses: limits under which there is no design."
+        words += " Grey crosses: limits that no design meets."
     return words
 
 
@@ -152,7 +156,7 @@ def space(found: Drawn) -> Figure | None:
     if found.beaten:
         rows = dict(zip("xyz", map(list, zip(*found.beaten, strict=True)), strict=True))
         look = {"color": f"{GREY}/0.6", "size": 2.5}
-        grey = {"type": "scatter3d", "mode": "markers", "name": "beaten by another"}
+        grey = {"type": "scatter3d", "mode": "markers", "name": "dominated"}
         traces.insert(0, grey | rows | {"marker": look, "hoverinfo": "skip"})
     legend = {"orientation": "h", "x": 0, "y": 1.0}
     plot = LOOK | {"height": 560, "margin": margin, "scene": scene, "legend": legend}
