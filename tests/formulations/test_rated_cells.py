@@ -20,6 +20,7 @@ from rated_drives import (
 )
 
 from gearopt.formulations import rated_cells, rated_sizing, sizing, teeth
+from gearopt.formulations.gear_train import FaceWidth
 from gearopt.formulations.rated_boxes import ROWS, bounded, first_boxes, shafts_about
 from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.clock import Clock
@@ -124,6 +125,25 @@ def test_made_smaller_boxes_hold_all_designs_that_are_accepted():
     inside = (low <= point[:, 0, None] + 1e-12) & (point[:, 0, None] <= high + 1e-12)
     assert inside.all(axis=0).any(axis=0).all() and good.sum() > 100
     assert least.min() <= pair.volume[good].min()
+
+
+@pytest.mark.parametrize("slim", [F(6, 10000), F(2000)])
+def test_first_boxes_hold_face_widths_of_any_proportion(slim):
+    """A width that the file ties to 0.0006 d1 is no less possible than one tied to 0.3 d1."""
+    train = rated_drive(4, [FaceWidth(slim, slim)], pinion_teeth=(20, 40))
+    shafts = shafts_about(train, 8)
+    boxes = first_boxes(shafts, 0)
+    assert np.exp(boxes.sizes[ROWS.index("slim")]) == pytest.approx(float(slim))
+    assert len(bounded(shafts, 0, boxes)[0]) == len(boxes)
+
+
+@pytest.mark.parametrize("empty", [0, 1])
+def test_a_drive_with_a_stage_that_no_box_allows_is_impossible(empty):
+    train = rated_drive(16, [FREE, FREE])
+    stages = list(train.stages)
+    stages[empty] = replace(stages[empty], pinion_teeth=(20, 40), wheel_diameter=F(1, 1000))
+    found = run(replace(train, stages=tuple(stages)))
+    assert found.pairs is None and found.bound == found.value == math.inf
 
 
 @pytest.mark.slow

@@ -113,12 +113,14 @@ def first_boxes(shafts: Shafts, k: int) -> Boxes:
     face, last = stage.face_width, k == shafts.last
     sizes = np.empty((len(ROWS), 2))
     sizes[Z] = max(1.0, numbers["pinion_low"][k]), min(TEETH, numbers["pinion_high"][k])
-    sizes[SLIM] = max(float(face.low), SLIMMEST), min(face.widest, WIDEST)
+    slim = float(face.low) or min(SLIMMEST, SLIMMEST * face.widest)
+    wide = face.widest if math.isfinite(face.widest) else max(WIDEST, WIDEST * slim)
+    sizes[SLIM] = slim, wide
     sizes[D] = LENGTHS
     total = float(train.lowest_ratio), float(train.highest_ratio)
     sizes[END] = total if last else (1.0, 1.0)
     sizes[M] = max(numbers["module_low"][k], 1e-6), min(numbers["module_high"][k], LENGTHS[1])
-    sizes[B] = max(float(face.least), 1e-9), LENGTHS[1] * WIDEST
+    sizes[B] = max(float(face.least), 1e-9), LENGTHS[1] * wide
     if face.fixed is not None:
         sizes[B] = float(face.fixed)
     sizes[D2] = 1e-6, min(numbers["wheel_diameter"][k], LENGTHS[1] * TEETH)

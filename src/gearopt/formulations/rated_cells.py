@@ -219,6 +219,8 @@ def _path(
     """Return the boxes of the least sum through a box of a stage; None where there is none."""
     before, after = sums
     found = [place]
+    if not all(len(value) for _, value in rows):
+        return None
     for m in range(k + 1, shafts.last + 1):
         boxes, value = rows[m]
         at = rows[m - 1][0].after[found[-1]]
