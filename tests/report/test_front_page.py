@@ -167,7 +167,7 @@ def test_a_kept_front_is_reported_again(here, tmp_path):
     told = here("report", kept, "--html", html, "--csv", folder)
     assert told.returncode == 0 and "3 designs" in told.stdout
     assert html.read_text(encoding="utf-8") == page(cases.drive(), str(html))
-    names = {"front.csv", "beaten-designs.csv", "limits-without-a-design.csv", "growth.csv"}
+    names = {"front.csv", "dominated-designs.csv", "limits-without-a-design.csv", "growth.csv"}
     assert {path.name for path in folder.iterdir()} == names
     kept.write_text(cases.impossible().to_json(), encoding="utf-8")
     assert here("report", kept).returncode == 3

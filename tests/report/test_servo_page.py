@@ -398,7 +398,7 @@ def test_the_terminal_tells_all_below_100_columns(result):
     show(result, console)
     shown = console.export_text()
     for phrase in (
-        "Bore decides the inertia; error is used to 99.7 %.",
+        "The limit on bore determines the inertia; error is at 99.7 % of its limit.",
         "inertia [g cm²]",
         "tolerance [µm]",
         "0.11975  7.185  100.0",

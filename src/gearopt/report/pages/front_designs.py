@@ -130,7 +130,7 @@ def beaten(front: Front, measures: Measures) -> Table | None:
         return None
     heads = [head(one, measures) for one in front.objectives]
     rows = [_values(front, values, measures) for values in front.beaten]
-    return Table("beaten designs", heads, rows, folded=True)
+    return Table("dominated designs", heads, rows, folded=True)
 
 
 def _values(front: Front, values: Sequence[float], measures: Measures) -> list[Cell]:
