@@ -71,7 +71,7 @@ class Train(Table):
 class Scene(Table):
     """A compound gear train."""
 
-    title: Annotated[str, words()] = Field("", description="A line for the report")
+    title: Annotated[str, words()] = Field("", description="Title of the report")
     source: Annotated[str, words()] = Field(
         "", description="Where the data and the expected value come from"
     )

@@ -108,7 +108,7 @@ class CylinderTable(Table):
 
 
 class Container(Table):
-    """What holds them; it is as small as it can be."""
+    """The container, whose volume or area is minimised."""
 
     shape: Annotated[str, choice(*SHAPES)] = Field(
         "rectangle", description="Plan of the container: rectangle, square or circle"
@@ -158,7 +158,7 @@ class Aim(Table):
 class Scene(Table):
     """A packing."""
 
-    title: Annotated[str, words()] = Field("", description="A line for the report")
+    title: Annotated[str, words()] = Field("", description="Title of the report")
     source: Annotated[str, words()] = Field(
         "", description="Where the data and the expected value come from"
     )

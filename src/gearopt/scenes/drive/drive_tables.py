@@ -171,15 +171,14 @@ class StageTable(Loaded):
     centre_distance: Length = Field(
         None, description="Working centre distance; by default without backlash"
     )
-    pinion: GearTable = Field(
-        default_factory=GearTable, description="What the pinion has of its own"
-    )
-    wheel: GearTable = Field(default_factory=GearTable, description="What the wheel has of its own")
+    pinion: GearTable = Field(default_factory=GearTable, description="Data of the pinion alone")
+    wheel: GearTable = Field(default_factory=GearTable, description="Data of the wheel alone")
     given: GivenTable = Field(
         default_factory=GivenTable, description="Factors of a rating, instead of computed ones"
     )
     given_iso6336: IsoGiven = Field(
-        default_factory=IsoGiven, description="Those of a rating by ISO 6336"
+        default_factory=IsoGiven,
+        description="Factors of a rating by ISO 6336, instead of computed ones",
     )
 
     @model_validator(mode="after")
@@ -212,7 +211,7 @@ class Limits(Loaded):
     preset: Annotated[str | None, choice(*PRESETS)] = Field(
         None,
         description="K-factor and unit load that a source states: chong-lee-elevator is 300 psi "
-        "and 7000 psi. They or their source are needed, but where [rating] limits the gears",
+        "and 7000 psi. This key or the two limits are needed, unless [rating] limits the gears",
     )
     pinion_teeth: Annotated[tuple[int, int], span(TOOTH_COUNT, [20, 40])] = Field(
         description="Range of the number of pinion teeth"

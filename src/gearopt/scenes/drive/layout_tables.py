@@ -115,8 +115,12 @@ class Layout(Table):
     shaft_clearance: Clearance = _clear(
         "2 mm", "Minimum distance of a shaft or bearing from other shafts, gears and keep-outs"
     )
-    wall_clearance: Clearance = _clear("10 mm", "From the gears to the box, across the shafts")
-    axial_clearance: Clearance = _clear("10 mm", "Between slabs, and from them to the box")
+    wall_clearance: Clearance = _clear(
+        "10 mm", "Clearance from the gears to the box, across the shafts"
+    )
+    axial_clearance: Clearance = _clear(
+        "10 mm", "Clearance between slabs, and from them to the box, along the shafts"
+    )
     motor_diameter: Length = Field(
         None,
         description="A motor on the input shaft, outside the face where the output shaft leaves: "
@@ -125,7 +129,7 @@ class Layout(Table):
     split_line: Annotated[tuple[int, ...] | None, _whole_lists(several(SHAFT, [1, 3]))] = Field(
         None, description="Shafts that lie on the level split line of the housing"
     )
-    width: Length = Field(None, description="The box is made this wide, whatever it could be")
+    width: Length = Field(None, description="Width of the box, fixed")
     largest_width: Length = Field(None, description="Largest width of the box")
     largest_height: Length = Field(None, description="Largest height of the box")
     largest_length: Length = Field(None, description="Largest length of the box")
@@ -216,7 +220,7 @@ class PlaceTable(Table):
     )
     y: Where = Field(None, description="To the right of the input shaft: a place or a range")
     z: Where = Field(None, description="Above the input shaft: a place or a range")
-    tolerance: Clearance = _clear("0.01 mm", "By which y and z may be missed")
+    tolerance: Clearance = _clear("0.01 mm", "Permissible deviation from y and z")
 
     @model_validator(mode="after")
     def _somewhere(self) -> "PlaceTable":
@@ -237,11 +241,12 @@ class PlaceTable(Table):
 class KeepOutTable(Table):
     """A box that nothing on the shafts may enter; needs [layout]."""
 
-    name: Annotated[str, words()] = Field("", description="What is there, for messages")
+    name: Annotated[str, words()] = Field("", description="Name of the keep-out in messages")
     y: Side = Field(description="From left to right of the input shaft's axis")
     z: Side = Field(description="From below to above the input shaft's axis")
     x: Annotated[tuple[Quantity, Quantity] | None, span(PLACE, ["0 mm", "80 mm"])] = Field(
-        None, description="Along the shafts from the first face of the box; by default all along"
+        None,
+        description="Along the shafts from the first face of the box; by default the whole length",
     )
 
     def keep_out(self, number: int) -> KeepOut:

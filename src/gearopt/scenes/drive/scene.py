@@ -100,14 +100,14 @@ class Scene(Table):
     model_config = ConfigDict(
         json_schema_extra={"anyOf": [{"required": ["limits"]}, {"required": ["rating"]}]}
     )
-    title: Annotated[str, words()] = Field("", description="A line for the report")
+    title: Annotated[str, words()] = Field("", description="Title of the report")
     source: Annotated[str, words()] = Field(
         "", description="Where the data and the expected value come from"
     )
     duty: DriveDuty
     stages: Annotated[tuple[int, int] | None, STAGES] = Field(
         None,
-        description="Number of stages, or a range: the best of it is found, without [[stage]] "
+        description="Number of stages, or a range of which the best is found; without [[stage]] "
         "(or write one [[stage]] table per stage)",
     )
     gears: Gears = Field(default_factory=Gears)
@@ -120,7 +120,7 @@ class Scene(Table):
     limits: Limits = Field(
         None,
         validate_default=True,
-        description="Needed, but where [rating] rates gears that are all given",
+        description="Needed unless all gears are given and [rating] rates them",
     )
     teeth: Teeth | None = None
     objective: Objective = Field(default_factory=Objective)

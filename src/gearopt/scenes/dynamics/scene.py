@@ -37,7 +37,7 @@ SHAPED = ("stiffness", "depth", "duty", "ramp", "cosines", "sines", "pair")
 class Scene(Table):
     """A spur pair whose axes move on their bearings."""
 
-    title: Annotated[str, words()] = Field("", description="A line for the report")
+    title: Annotated[str, words()] = Field("", description="Title of the report")
     source: Annotated[str, words()] = Field(
         "", description="Where the data and the expected value come from"
     )

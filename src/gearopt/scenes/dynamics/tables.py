@@ -66,20 +66,20 @@ class MeshTable(Table):
         None, description="Mean mesh stiffness"
     )
     depth: Annotated[Fraction | None, number(0.5, 0, Fraction(3, 2))] = Field(
-        None, description="Of a rectangle or trapezoid: greatest less least stiffness over the mean"
+        None, description="Rectangle or trapezoid: (maximum - minimum)/mean of the stiffness"
     )
     duty: Annotated[Fraction | None, number(0.68, 0, 1)] = Field(
-        None, description="Of a rectangle or trapezoid: mean of it from 0 (one pair) to 1 (two)"
+        None, description="Rectangle or trapezoid: its mean, from 0 (one pair) to 1 (two pairs)"
     )
     ramp: Annotated[Fraction | None, number(0.1, 0, Fraction(1, 2))] = Field(
-        None, description="Of a trapezoid: part of the period over which the stiffness rises"
+        None, description="Trapezoid: share of the period in which the stiffness rises"
     )
     cosines: Annotated[
         tuple[Quantity, ...], several(quantity("stiffness", "20 kN/mm", signed=True), ["20 kN/mm"])
-    ] = Field((), description="Of a Fourier series: amplitudes of the cosines of the phase")
+    ] = Field((), description="Fourier series: amplitudes of the cosines")
     sines: Annotated[
         tuple[Quantity, ...], several(quantity("stiffness", "20 kN/mm", signed=True), ["20 kN/mm"])
-    ] = Field((), description="Of a Fourier series: amplitudes of the sines of the phase")
+    ] = Field((), description="Fourier series: amplitudes of the sines")
     pair: Annotated[Input | None, result_of("pair")] = Field(
         None, description="File of kind pair, or its kept result, whose teeth give the stiffness"
     )
@@ -89,7 +89,7 @@ class MeshTable(Table):
     backlash: Annotated[Quantity | None, quantity("length", "0.1 mm", zero=True)] = Field(
         None,
         description="Backlash along the line of action: teeth may part. Without it the mesh is a "
-        "spring that also pulls, and what parts is said",
+        "spring that also pulls, and separation is only reported",
     )
     teeth: Annotated[int, whole(30, 5, 2000)] = Field(description="Teeth of the pinion")
     speed: Annotated[Quantity | None, quantity("speed", "2000 rpm")] = Field(
@@ -101,14 +101,14 @@ class SimulateTable(Table):
     """The motion in time."""
 
     duration: Annotated[Quantity, quantity("time", "20 ms", "1000 s")] = Field(
-        description="How long"
+        description="Duration of the motion"
     )
     outputs: Annotated[int, whole(2001, 11, MOST_OUTPUTS)] = Field(
-        2001, description="Equal times at which the motion is told"
+        2001, description="Number of equally spaced output times"
     )
     error: Annotated[Fraction, number(1e-6, 0, Fraction(1, 10))] = Field(
         Fraction(1, 10**6),
-        description="Error of the deformation that is asked, relative to its largest value",
+        description="Permissible error of the deformation, relative to its largest value",
         json_schema_extra={"default": 1e-6},
     )
     start: Annotated[str, choice("rest", "equilibrium")] = Field(
@@ -129,21 +129,25 @@ class StabilityTable(Table):
         description="Range of depths of the wave",
         json_schema_extra={"default": [0.05, 0.75]},
     )
-    frequencies: Annotated[int, whole(271, 2, 2000)] = Field(271, description="Columns of the map")
-    depths: Annotated[int, whole(15, 2, 200)] = Field(15, description="Rows of the map")
+    frequencies: Annotated[int, whole(271, 2, 2000)] = Field(
+        271, description="Mesh frequencies of the map"
+    )
+    depths: Annotated[int, whole(15, 2, 200)] = Field(15, description="Depths of the map")
 
 
 class SpeedsTable(Table):
     """Periodic motions over a range of speeds."""
 
     range: Annotated[tuple[Quantity, Quantity], SPEEDS] = Field(
-        description="Speeds of the pinion, from the lowest to a higher one"
+        description="Range of speeds of the pinion"
     )
-    points: Annotated[int, whole(91, 2, 1000)] = Field(91, description="Speeds, equally far apart")
+    points: Annotated[int, whole(91, 2, 1000)] = Field(
+        91, description="Number of equally spaced speeds"
+    )
     harmonics: Annotated[int, whole(20, 1, 100)] = Field(
         20,
-        description="Harmonics of the mesh frequency in a motion, at least: more where modes ask "
-        "for them",
+        description="Minimum number of harmonics of the mesh frequency in a motion: more where "
+        "natural modes need them",
     )
 
 
@@ -154,22 +158,22 @@ class OptimiseTable(Table):
         description="Speeds of the pinion over which the vibration is judged"
     )
     points: Annotated[int, whole(16, 2, 200)] = Field(
-        16, description="Speeds to begin with, equally far apart"
+        16, description="Initial number of equally spaced speeds"
     )
     harmonics: Annotated[int, whole(10, 2, 30)] = Field(
-        10, description="Harmonics of a motion to begin with"
+        10, description="Initial number of harmonics of a motion"
     )
     minimise: Annotated[str, choice("rms", "peak_to_peak")] = Field(
-        "rms", description="Of the deformation: RMS about its mean, or peak to peak"
+        "rms", description="Vibration: RMS of the deformation about its mean, or peak to peak"
     )
     exchange: Annotated[bool, truth()] = Field(
         True, description="Whether speeds are added until the dense grid agrees"
     )
     elements: Annotated[int, whole(24, 8, 200)] = Field(
-        24, description="Of a mesh period in which motions with backlash are collocated"
+        24, description="Collocation elements per mesh period, for motions with backlash"
     )
     periods: Annotated[int, whole(1, 1, 8)] = Field(
-        1, description="Mesh periods after which motions with backlash repeat, at most"
+        1, description="Maximum period of motions with backlash, in mesh periods"
     )
     bearing_stiffness: Annotated[
         tuple[Quantity, Quantity],
@@ -185,7 +189,7 @@ class OptimiseTable(Table):
         tuple[Quantity, Quantity], span(quantity("length", "8 mm"), ["8 mm", "25 mm"])
     ] = Field(description="Face width")
     rim: Annotated[tuple[Fraction, Fraction], span(number(0.6, 0, 10), [0.6, 1.4])] = Field(
-        description="Mass and inertia of both gears over those of solid discs"
+        description="Ratio of mass and inertia of both gears to those of solid discs"
     )
     density: Annotated[Quantity, quantity("density", "7850 kg/m^3")] = Field(
         description="Density of the gears"
@@ -205,5 +209,5 @@ class OptimiseTable(Table):
         "exceed it are left out",
     )
     margin: Annotated[Quantity | None, quantity("length", "1 um", zero=True)] = Field(
-        None, description="How much the teeth stay pressed together at least: they never part"
+        None, description="Minimum compression of the mesh, so that teeth never separate"
     )

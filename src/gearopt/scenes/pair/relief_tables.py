@@ -25,7 +25,7 @@ def _amounts() -> tuple[Quantity, Quantity]:
 
 
 class ReliefTable(Table):
-    """What may be removed from the flanks towards the tips of both gears, and what for."""
+    """Tip relief of both gears: its bounds, loads and objective."""
 
     minimise: Annotated[str, AIM] = Field(
         "peak_to_peak",
@@ -34,17 +34,17 @@ class ReliefTable(Table):
         "peak_load (largest share of a pair): the worst over all loads",
     )
     loads: Annotated[tuple[Fraction, ...] | None, LOADS] = Field(
-        None, description="Loads it is made for, relative to [duty]; by default those of [sharing]"
+        None, description="Loads to design for, relative to [duty]; by default those of [sharing]"
     )
     shape: Annotated[str | Fraction, SHAPE] = Field(
         "linear",
-        description="How it grows towards the tip: linear, parabolic, an exponent from 1 on, or "
-        "free: any convex shape, point by point (for peak_to_peak)",
+        description="Shape of the relief towards the tip: linear, parabolic, an exponent of at "
+        "least 1, or free: any convex shape, point by point (for peak_to_peak)",
     )
     amount: Annotated[tuple[Quantity, Quantity], AMOUNT] = Field(
         default_factory=_amounts,
-        description="What is removed at the tip of each gear, normal to the flank: a range, or one "
-        "amount that is given",
+        description="Amount removed at the tip of each gear, normal to the flank: a range, or one "
+        "given amount",
         json_schema_extra={"default": ["0 um", "30 um"]},
     )
     length: Annotated[tuple[Fraction, Fraction] | None, LENGTH] = Field(
@@ -55,11 +55,11 @@ class ReliefTable(Table):
 
     tolerance: Annotated[Quantity | None, quantity("length", "2 um", "0.1 mm")] = Field(
         None,
-        description="How far the amounts may be off as they are ground, either way: the worst case "
-        "is told, proven, and what drawn gears have",
+        description="Tolerance of the ground amounts, up and down: the worst case is reported, "
+        "proven, beside the values of gears drawn at random",
     )
     length_tolerance: Annotated[Fraction | None, number(0.02, 0, 1)] = Field(
-        None, description="How far the lengths may be off, in base pitches; by default not at all"
+        None, description="Tolerance of the lengths, in base pitches; by default 0"
     )
     robust: Annotated[bool, truth()] = Field(
         False, description="Minimise the worst case within the tolerance, instead of the nominal"

@@ -36,7 +36,7 @@ class OneStage(Drive):
 class Scene(Table):
     """A spur pair."""
 
-    title: Annotated[str, words()] = Field("", description="A line for the report")
+    title: Annotated[str, words()] = Field("", description="Title of the report")
     source: Annotated[str, words()] = Field(
         "", description="Where the data and the expected value come from"
     )

@@ -23,8 +23,8 @@ class SharingTable(Table):
     )
     error: Annotated[Fraction | None, number("5 %", 0, 1, percent=True)] = Field(
         None,
-        description="Instead of level: the error that its stiffness may have, against finite "
-        "elements of the pairs it was measured on; the cheapest such model is taken",
+        description="Instead of level: permissible error of the stiffness, as measured against "
+        "finite elements; the cheapest model within it is taken",
     )
     plane: Annotated[str | None, choice(*PLANES)] = Field(
         None,
@@ -33,8 +33,8 @@ class SharingTable(Table):
     )
     coupling: Annotated[str | Quantity, COUPLING] = Field(
         "ring torsion",
-        description="How far the load of one tooth pair moves the flanks of the next one: a model, "
-        "or a number such as one of finite elements",
+        description="Coupling of neighbouring tooth pairs, whose load deflects each other: a "
+        "model, or a number such as one from finite elements",
     )
     loads: Annotated[tuple[Fraction, ...], LOADS] = Field(
         (Fraction(1),),

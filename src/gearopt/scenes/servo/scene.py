@@ -46,7 +46,7 @@ __all__ = ["EXAMPLE", "Scene"]  # messages show tables of the example
 class Scene(Table):
     """A servo axis: motor, two-stage spur gear train, load. Tables switch its parts on."""
 
-    title: Annotated[str, words()] = Field("", description="A line for the report")
+    title: Annotated[str, words()] = Field("", description="Title of the report")
     source: Annotated[str, words()] = Field(
         "", description="Where the data and the expected value come from"
     )

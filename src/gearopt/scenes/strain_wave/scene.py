@@ -49,7 +49,7 @@ START_RIM = 8.0 / 900.0  # of the outer diameter
 class Scene(Table):
     """A strain wave gearing."""
 
-    title: Annotated[str, words()] = Field("", description="A line for the report")
+    title: Annotated[str, words()] = Field("", description="Title of the report")
     source: Annotated[str, words()] = Field(
         "", description="Where the data and the expected value come from"
     )

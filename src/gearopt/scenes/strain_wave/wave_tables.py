@@ -33,7 +33,7 @@ class WaveDuty(Table):
         description="Reduction: half the teeth of the flexspline"
     )
     outer_diameter: Annotated[Quantity | None, quantity("length", "90 mm")] = Field(
-        None, description="Largest diameter of all; needed where gears are chosen"
+        None, description="Maximum outer diameter; needed where gears are chosen"
     )
 
 
@@ -148,7 +148,7 @@ class WaveSharing(Table):
 
     torque_of: Annotated[str, choice(SPLINE, OUTPUT)] = Field(
         SPLINE,
-        description="Whose torque the teeth carry: that which the circular spline holds, 1 + "
+        description="Torque that the teeth carry: that of the circular spline, 1 + "
         "1/ratio times the output's, or the output's, as Jun and Oh have it",
     )
     rim: Annotated[str, choice("rigid", "elastic")] = Field(
@@ -192,7 +192,9 @@ class WaveLimits(Table):
         tuple[Quantity, Quantity] | None, span(quantity("length", "0.8 mm"), ["0.4 mm", "1.4 mm"])
     ] = Field(None, description="Range of the rim")
     pairs: Annotated[Fraction, number(1, 0, 5)] = Field(
-        Fraction(1), description="Least mean conjugate pairs", json_schema_extra={"default": 1}
+        Fraction(1),
+        description="Minimum mean number of conjugate pairs",
+        json_schema_extra={"default": 1},
     )
     safety: Annotated[Fraction, number(1.5, 0, 10)] = Field(
         Fraction(3, 2),
@@ -206,7 +208,7 @@ class WaveLimits(Table):
     )
     ratcheting: Annotated[Fraction, number(3, 0, 20)] = Field(
         Fraction(3),
-        description="Torque at which teeth ratchet over that of the duty, at least",
+        description="Minimum ratio of the ratcheting torque to the torque of the duty",
         json_schema_extra={"default": 3},
     )
     radial_compliance: Annotated[Quantity | None, quantity("compliance", "333 um/kN")] = Field(
@@ -229,7 +231,7 @@ class WaveCutter(Table):
         None, description="Angle of a straight tool to hold against the best; by default 20 deg"
     )
     least_radius: Annotated[Quantity | None, quantity("length", "500 mm", "100 m")] = Field(
-        None, description="Least radius of an arc that replaces the edge; by default any"
+        None, description="Minimum radius of an arc that replaces the edge; by default any"
     )
     scale: Annotated[Fraction | None, number(100, 1, 1000)] = Field(
         None,

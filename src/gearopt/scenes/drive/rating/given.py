@@ -7,7 +7,7 @@ from gearopt.units import Quantity
 
 
 class Given(Table):
-    """Factors that stand in the place of computed ones; [pinion, wheel], or one for both."""
+    """Factors instead of computed ones; [pinion, wheel], or one value for both."""
 
     def factors(self) -> dict[str, Any]:
         """Return the given factors by symbol, as plain numbers in mm and MPa."""

@@ -45,7 +45,7 @@ NAMES = {  # of the factors
     "Z_NT": "life, contact",
     "Z_L": "lubricant",
     "Z_v": "velocity",
-    "Z_R": "roughness of the flanks",
+    "Z_R": "roughness",
     "Z_W": "work hardening",
     "sigma_Hlim": "allowable stress number",
     "Y_F": "form",
@@ -53,7 +53,7 @@ NAMES = {  # of the factors
     "Y_B": "rim thickness",
     "Y_NT": "life, bending",
     "Y_deltarelT": "relative notch sensitivity",
-    "Y_RrelT": "relative surface of the root",
+    "Y_RrelT": "relative surface",
     "Y_X": "size, bending",
     "Y_M": "mean stress",
     "sigma_Flim": "nominal stress number",
@@ -93,8 +93,8 @@ def _field(symbol: str) -> Any:
     kind: Any = Fraction if CLAUSES[symbol][1] == "" else Quantity
     if symbol in PAIRED:
         kind, reads = tuple[kind, kind], each_gear(reads)
-    text = NAMES[symbol]
-    described = f"Factor of {text}" if CLAUSES[symbol][1] == "" else text.capitalize()
+    text, comma, of = NAMES[symbol].partition(",")
+    described = text[0].upper() + text[1:] + " factor" * (symbol[0] in "KYZ") + comma + of
     return (Annotated[kind | None, reads], Field(None, description=described))
 
 
@@ -118,11 +118,11 @@ class IsoGearKeys(Table):
     )
     iso_core: Annotated[str | None, choice(*CORES)] = Field(
         None,
-        description="Core of Eh of quality MQ, in sigma_Flim: its least hardness; Jominy: and 28 "
-        "HRC or more at J = 12 mm (unverified); by default 25 HRC",
+        description="Core of case-hardened steel (Eh) of quality MQ, for sigma_Flim: its minimum "
+        "hardness; Jominy: also at least 28 HRC at J = 12 mm (unverified); by default 25 HRC",
     )
     flank_hardness: Annotated[Quantity | None, quantity("Vickers hardness", "650 HV")] = Field(
-        None, description="Vickers hardness of the flanks, of hardened ones; else from hardness"
+        None, description="Vickers hardness of hardened flanks; of others it follows from hardness"
     )
     yield_strength: Annotated[Quantity | None, quantity("stress", "600 MPa")] = Field(
         None, description="Yield point or 0.2 % proof stress, for Y_deltarelT; else estimated"

@@ -122,7 +122,7 @@ class GearKeys(BlankKeys, IsoGearKeys):
     )
     tool_protuberance: Annotated[Fraction | None, number(0.02, 0, 1, zero=True)] = Field(
         None,
-        description="How far the tool's tip juts out of its flank, in normal modules; by default 0",
+        description="Protuberance of the tool in normal modules; by default 0",
     )
     treatment: Annotated[str | None, TREATMENT] = Field(
         None, description="Heat treatment of the steel; a rating needs it"
@@ -152,7 +152,7 @@ class GearKeys(BlankKeys, IsoGearKeys):
         None, description="The load reverses, as on idlers: 0.7 of the bending strength"
     )
     contacts: Annotated[int | None, whole(1, 1, 100)] = Field(
-        None, description="Load cycles of a tooth a revolution; by default 1"
+        None, description="Load cycles of a tooth per revolution; by default 1"
     )
     quality: Annotated[Fraction | None, QUALITY] = Field(
         None,
@@ -197,7 +197,7 @@ def with_shared(own: GearTable, shared: GearKeys) -> GearTable:
 
 
 class GivenTable(Given):
-    """Factors that stand in the place of computed ones; [pinion, wheel], or one for both."""
+    """Factors instead of computed ones; [pinion, wheel], or one value for both."""
 
     K_o: Load = Field(None, description="Overload factor")
     K_v: Load = Field(
@@ -306,7 +306,9 @@ class RatingTable(Table):
     given: GivenTable = Field(
         default_factory=GivenTable, description="Factors of all stages, instead of computed ones"
     )
-    iso6336: IsoTable = Field(default_factory=IsoTable, description="What ISO 6336 asks for beside")
+    iso6336: IsoTable = Field(
+        default_factory=IsoTable, description="Further data of a rating by ISO 6336"
+    )
 
     @property
     def by_agma(self) -> bool:

@@ -257,7 +257,7 @@ class Tolerances(Table):
     )
     pitch_cost: Annotated[Fraction, number(2, 0, MOST)] = Field(
         default_factory=lambda: Fraction(1),
-        description="Cost of a pitch deviation as it is, where every other deviation costs 1",
+        description="Cost of a pitch deviation at its old value; every other deviation costs 1",
         json_schema_extra={"default": 1},
     )
     least_factor: Annotated[Fraction | None, number(0.25, 0, 1)] = Field(
@@ -268,8 +268,8 @@ class Tolerances(Table):
     )
     grades: Annotated[int | None, whole(4, 1, 8)] = Field(
         None,
-        description="Choose among grades, each sqrt(2) times the finer one: so many to either side "
-        "of the old value",
+        description="Choose among grades that differ by a factor of sqrt(2): this many finer and "
+        "coarser ones than the old value",
     )
     seed: Annotated[int, whole(0, 0, 10**9)] = Field(
         0, description="Seed of the Monte Carlo errors that show what the tolerances give"
@@ -284,7 +284,7 @@ class Tolerances(Table):
 
 
 class CostTable(Table):
-    """What one deviation costs, where it is not what [tolerances] says; one table per deviation."""
+    """The cost of one deviation, where it differs from [tolerances]; one table per deviation."""
 
     deviation: Annotated[str, choice(*WORDS)] = Field(
         description="The deviation, as [[mesh]] calls it"
@@ -293,7 +293,7 @@ class CostTable(Table):
         None, description="Its stage, from the motor on; without it that of both"
     )
     cost: Annotated[Fraction | None, number(2, 0, MOST)] = Field(
-        None, description="Its cost as it is, instead of 1 or pitch_cost"
+        None, description="Its cost at the old value, instead of 1 or pitch_cost"
     )
     exponent: Annotated[Fraction | None, number(0.5, 0, 4)] = Field(
         None, description="Its exponent, instead of that of [tolerances]"

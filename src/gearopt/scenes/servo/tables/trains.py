@@ -204,12 +204,13 @@ class Space(Table):
     )
     swept_angle: Annotated[Quantity | None, quantity("angle", "180 deg", limit="360 deg")] = Field(
         None,
-        description="Angle that the last wheel sweeps, its own sector and its travel together; by "
+        description="Angle swept by the last wheel, its sector and its travel together; by "
         "default twice its sector, as far as its teeth reach, at most 360 deg",
     )
     required: Annotated[bool, truth()] = Field(
         True,
-        description="Only trains that fit are chosen; false: the best one, whether it fits or not",
+        description="true: only trains that fit are chosen; false: the best train, even if it "
+        "does not fit",
     )
 
 
