@@ -20,7 +20,7 @@ from gearopt.physics.agma.bending import (
     seen_from_wheel,
 )
 from gearopt.physics.agma.mesh import mesh_of, pitting_factor
-from gearopt.physics.geometry.contact import contact_path, total_contact_ratio
+from gearopt.physics.geometry.contact import contact_path
 from gearopt.physics.iso6336 import (
     accuracy,
     bending_factors,
@@ -151,7 +151,8 @@ def iso_factors(pair, torque, speed):
     """K_v, K_Hbeta, K_Halpha of carburised gears of grade 8 without relief, and eps_alpha."""
     width, d = pair.face_width, pair.pinion.reference_diameter
     w = 2.0 * torque * 1.25 / (d * width)
-    ratio, total = contact_path(pair).transverse_ratio, total_contact_ratio(pair)
+    ratio = contact_path(pair).transverse_ratio
+    total = ratio + pair.overlap_ratio
     single = stiffness.single_stiffness(pair, w)
     mesh, along = stiffness.mesh_stiffness(single, ratio)
     mass = stiffness.reduced_mass(pair, (7.83e-9, 7.83e-9), (0.0, 0.0))

@@ -40,8 +40,8 @@ def test_factors_are_the_printed_ones():
 def test_the_terminal_has_the_printed_numbers():
     shown = told(cases.iso())
     rating = shown.partition("Life")[0]
-    assert re.search(r"^pinion .* 1,301\.3 .* 1\.028\d$", rating, re.M)
-    assert re.search(r"^wheel .* 1,301\.3 .* 1\.087\d$", rating, re.M)
+    assert re.search(r"^pinion .* 1,301\.3 .* 1\.028$", rating, re.M)
+    assert re.search(r"^wheel .* 1,301\.3 .* 1\.087$", rating, re.M)
     assert re.search(r"^K_Hβ +face load, contact +1\.1[56]\d\d *$", shown, re.M)
     assert re.search(r"^Z_ε +contact ratio, contact +0\.803\d+ *$", shown, re.M)
     assert re.search(r"^σ_Flim \[MPa\] .* 425 +425 +unverified$", shown, re.M)
@@ -97,7 +97,7 @@ def test_the_first_sentence_has_both_verdicts():
     assert opening(cases.both_safe()) == f"{safe}governs both."
     fails = "Not safe: by AGMA and by ISO 6336, contact of the wheel of stage 1 falls short."
     assert opening(cases.train_by_both()) == fails
-    assert "S_H 0.834 by AGMA, S_H 1.02 by ISO 6336, 1 asked for; power" in decided(cases.both())
+    assert "S_H 0.8348 by AGMA, S_H 1.028 by ISO 6336, 1 asked for; power" in decided(cases.both())
 
 
 def test_each_standard_beside_the_other_is_as_it_is_alone():
@@ -117,8 +117,8 @@ def test_each_standard_beside_the_other_is_as_it_is_alone():
 
 def test_key_figures_are_the_least_by_each_standard():
     tiles = {t.name: (t.value, t.remark) for t in sections(cases.both())[0].tiles}
-    assert tiles["least S_H, contact by AGMA"][0] == "0.834"
-    assert tiles["least S_H, contact by ISO 6336"] == ("1.02", "pinion; 1 asked for")
+    assert tiles["least S_H, contact by AGMA"][0] == "0.8348"
+    assert tiles["least S_H, contact by ISO 6336"] == ("1.028", "pinion; 1 asked for")
     assert {"least S_F, bending by AGMA", "least S_F, bending by ISO 6336"} < set(tiles)
     assert re.fullmatch(
         r"[\d,.]+ h by ISO 6336; 50,000 h asked for", tiles["life at S = 1 by AGMA"][1]

@@ -95,13 +95,13 @@ def test_the_terminal_begins_with_what_governs():
     """Power that is carried grows with the square of S_H: 4 hp 1.523^2 = 9.28 hp."""
     first, second, third, *_ = told(cases.shigley(), INCH).splitlines()
     assert first == "Shigley, example 14-4: safe"
-    assert f"{second}{third}" == (
-        "All safety factors are met; contact of the wheel governs: S_H 1.52, 1 asked for;"
-        "power capacity 9.27 hp, 4.00 hp asked for."
+    assert f"{second.rstrip()} {third}" == (
+        "All safety factors are met; contact of the wheel governs: S_H 1.522, 1 asked for; "
+        "power capacity 9.277 hp, 4.000 hp asked for."
     )
     first, *lines = told(cases.train()).splitlines()
     assert first.endswith("load spectrum: not safe")
-    assert "S_H 0.969, 1.1 asked for" in lines[0] and "30 kW asked for" in lines[1]
+    assert "S_H 0.9692, 1.1 asked for" in lines[0] and "30 kW asked for" in lines[1]
 
 
 @pytest.mark.parametrize("make", [*RATED, cases.sized])
@@ -187,8 +187,40 @@ def test_safety_factors_are_never_rounded_up():
     from gearopt.report.rating_words import safety
 
     assert [safety(v) for v in (1.1999, 1.2, 1.2 - 1e-12, 0.99999, 15.28)] == [
-        *("1.19", "1.2", "1.2", "0.999", "15.2")
+        *("1.199", "1.2", "1.2", "0.9999", "15.28")
     ]
+
+
+@pytest.mark.parametrize("make", RATED, ids=lambda f: f.__name__)
+def test_a_safety_factor_and_a_capacity_are_written_in_one_way(make):
+    """In sentences, key figures and tables, of terminal and page."""
+    from gearopt.report.rating_words import safety
+
+    result = make()
+    rating = result.design["rating"]
+    factors = {safety(g[f"{m}_safety"]) for g in rating["gears"] for m in ("bending", "contact")}
+    capacities = {safety(m["power_capacity_kW"]) for m in rating["meshes"]}
+    for shown in (told(result), text(page(result, ""))):
+        found = set(re.findall(r"S_[FH] (\d+(?:\.\d+)?)(?![\d.]| asked)", shown))
+        assert found and found <= factors
+        assert set(re.findall(r"capacity (?:\[kW\] )?(\d[\d.,]*\d)", shown)) <= capacities
+    for section in sections(result):
+        assert {t.value for t in section.tiles if t.name.startswith("least S_")} <= factors
+
+
+def test_contact_ratios_are_of_the_tip_circles_and_what_undercut_leaves_is_beside():
+    """eps_gamma = eps_alpha + eps_beta; 12 teeth of 20 degrees lose some of their flanks."""
+    plain, cut = (
+        cases.shigley(),
+        cases.rated(cases.SHIGLEY, {"pinion_teeth = 17": "pinion_teeth = 12"}),
+    )
+    for result in (plain, cut, cases.train()):
+        for mesh in result.design["rating"]["meshes"]:
+            whole, left = mesh["transverse_contact_ratio"], mesh.get("usable_contact_ratio")
+            assert mesh["total_contact_ratio"] == whole + mesh["overlap_ratio"]
+            assert (left is None) is (result is not cut) and (left or 0.0) < whole
+    left = cut.design["rating"]["meshes"][0]["usable_contact_ratio"]
+    assert f"(undercut leaves {left:.5g} of" in " ".join(told(cut).split())
 
 
 @pytest.mark.parametrize("measures", [METRIC, INCH], ids=lambda m: m.name)
@@ -293,7 +325,7 @@ def test_flaws_of_teeth_are_seen_near_the_top():
 def test_in_a_notebook_and_kept(here, tmp_path):
     result = cases.train()
     assert repr(result).startswith("Two helical stages under a load spectrum: not safe\n")
-    assert "S_H 0.969, 1.1 asked for" in result._repr_html_()
+    assert "S_H 0.9692, 1.1 asked for" in result._repr_html_()
     kept = tmp_path / "rating.json"
     kept.write_text(result.to_json(), encoding="utf-8")
     done = here("report", kept, "--html", tmp_path / "x.html", "--csv", tmp_path, "--units", "inch")

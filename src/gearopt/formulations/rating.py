@@ -59,8 +59,10 @@ class MeshRating:
 
     Of a load spectrum forces, velocity and friction are those of the level of largest force.
     governs: member and mode of the least safety, against the safety factors that are asked for;
-    power_capacity: at which it is just met. friction, efficiency: None where nothing is known of
-    the oil; the error, up or down, is that of a computed friction.
+    power_capacity: at which it is just met. Contact ratios are those of the tip circles, which the
+    standards take; usable: the transverse one that undercut leaves, None where it is all.
+    friction, efficiency: None where nothing is known of the oil; the error, up or down, is that of
+    a computed friction.
     """
 
     stage: int
@@ -75,6 +77,7 @@ class MeshRating:
     transverse_contact_ratio: float
     overlap_ratio: float
     total_contact_ratio: float
+    usable_contact_ratio: float | None
     circumferential_backlash_mm: float
     normal_backlash_mm: float
     tooth_loss_factor: float

@@ -8,7 +8,7 @@ from gearopt.formulations.rating import DriveRating, GearRating, LoadLevel
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures, rounded
 from gearopt.report.rating_symbols import SHORT, greek, of_standards, stress_words
-from gearopt.report.rating_tables import label, name, names, rows_of, single
+from gearopt.report.rating_tables import figure, label, name, names, rows_of, single
 from gearopt.report.rating_words import (
     AT_ONCE,
     LONGEST,
@@ -16,6 +16,7 @@ from gearopt.report.rating_words import (
     life,
     nearest,
     rating_of,
+    safety,
     told,
     unsure,
     unverified,
@@ -145,7 +146,7 @@ def _life(value: float | None, key: str, measures: Measures) -> Cell:
     """Return a life; None beyond the end of the curves, 0 before they begin."""
     if not value:
         return Cell(value, "beyond" if value is None else AT_ONCE)
-    return cell(value, parted(key)[1], measures)
+    return Cell(value, safety(value)) if key == "life_h" else cell(value, parted(key)[1], measures)
 
 
 def _damage(value: float | None) -> Cell:
@@ -163,7 +164,7 @@ def _told(result: Result, found: DriveRating, measures: Measures) -> list[str | 
         [
             name(found, gear),
             *[SHORT[one.by]] * named,
-            *(cell(getattr(gear, key), parted(key)[1], measures) for key in keys),
+            *(figure(getattr(gear, key), key, measures) for key in keys),
         ]
         for one, gear in _columns(found)
     ]

@@ -5,12 +5,12 @@ from dataclasses import replace
 from math import isclose
 from typing import Any
 
-from gearopt.formulations.rating import DriveRating
+from gearopt.formulations.rating import DriveRating, MeshRating
 from gearopt.optimise.result import Result
 from gearopt.report.design_tables import stage_label, tables
 from gearopt.report.measures import Measures
-from gearopt.report.rating_words import FRICTION, ROUNDING, rating_of
-from gearopt.report.section import Section, Table, cell
+from gearopt.report.rating_words import FRICTION, ROUNDING, rating_of, safety
+from gearopt.report.section import Cell, Section, Table, cell
 from gearopt.report.words import MODULE, heading, module_words, number, parted
 
 LEAST = {"governs": "governs", "power_capacity_kW": "power capacity"}
@@ -24,6 +24,7 @@ MESHES = {
     "transverse_contact_ratio": "transverse contact ratio ε_α",
     "overlap_ratio": "overlap ratio ε_β",
     "total_contact_ratio": "total contact ratio ε_γ",
+    "usable_contact_ratio": "transverse contact ratio that undercut leaves",
     "circumferential_backlash_mm": "circumferential backlash j_wt",
     "normal_backlash_mm": "normal backlash j_bn",
     "tooth_loss_factor": "tooth loss factor H_V",
@@ -113,9 +114,18 @@ def rows_of(
 ) -> Iterator[tuple[str, list[Any]]]:
     """Yield key and row of everything that is known of some item."""
     for key in words:
-        values, unit = [getattr(item, key) for item in items], parted(key, measures)[1]
+        values = [getattr(item, key) for item in items]
         if any(value is not None for value in values):
-            yield key, [label(key, words, measures), *(cell(v, unit, measures) for v in values)]
+            yield key, [label(key, words, measures), *(figure(v, key, measures) for v in values)]
+
+
+def figure(value: Any, key: str, measures: Measures) -> Any:
+    """Return a value as its sentence has it, of what is never rounded up."""
+    unit = parted(key, measures)[1]
+    if value is None or not key.endswith(("_safety", "capacity_kW")):
+        return cell(value, unit, measures)
+    text = measures.words(f"{safety(value)} kW").split()[0] if unit else safety(value)
+    return Cell(measures.of(value, unit), text)
 
 
 def _across(
@@ -176,13 +186,21 @@ def _mesh_words(found: DriveRating, stage: Mapping[str, Any], k: int, measures: 
         f"z {number(stage['pinion_teeth'])}/{number(stage['wheel_teeth'])}",
         f"b {size(stage['face_width_mm'], 'mm')}",
         f"a {size(stage['centre_distance_mm'], 'mm')}; contact ratio "
-        f"{number(mesh.total_contact_ratio)}",
+        f"{number(mesh.total_contact_ratio)}{_left(mesh)}",
         f"v {size(mesh.pitch_line_velocity_m_per_s, 'm_per_s')}; "
         f"F_t {size(mesh.tangential_force_N, 'N')}",
         f"F_r {size(mesh.radial_force_N, 'N')}",
         f"F_a {size(mesh.axial_force_N, 'N')}.",
     ]
     return ", ".join(parts)
+
+
+def _left(mesh: MeshRating) -> str:
+    """Return how much of the transverse contact ratio undercut leaves, where it leaves less."""
+    left, whole = mesh.usable_contact_ratio, mesh.transverse_contact_ratio
+    return (
+        "" if left is None else f" (undercut leaves {number(left)} of {number(whole)} transverse)"
+    )
 
 
 def teeth(result: Result, measures: Measures) -> Section | None:

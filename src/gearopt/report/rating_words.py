@@ -13,7 +13,7 @@ from gearopt.report.rating_symbols import greek, of_standards
 from gearopt.report.section import Tile
 from gearopt.report.words import counted, series_of
 
-SAFETY_DIGITS = 3  # of safety factors in sentences and key figures
+SAFETY_DIGITS = 4  # of safety factors, capacities and lives, wherever they stand
 ROUNDING = 1e-8  # relative; a safety factor so near to a shorter number is that one
 FRICTION = (  # `mesh_loss.FRICTION_ERROR`
     f"the error is that of the friction, which may be {100 * FRICTION_ERROR:.0f} % off (unverified)"
@@ -196,7 +196,7 @@ def least_safeties(results: Sequence[Result]) -> list[list[str]]:
 
 
 def safety(factor: float) -> str:
-    """Return a safety factor, or a capacity, for reading: never larger than it is."""
+    """Return a safety factor, capacity or life for reading: never larger than it is."""
     text = rounded(factor, SAFETY_DIGITS)
     near = isclose(float(text.replace(",", "")), factor, rel_tol=ROUNDING)
     return text if near else rounded(factor, SAFETY_DIGITS, way=-1)
@@ -219,12 +219,13 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     """Return least safety factors, power capacity, life and efficiency as key figures."""
     if (found := rating_of(result)) is None:
         return []
-    capacities = [measures.amount(one.power_capacity_kW, "kW") for one in found.each]
+    capacities = [measures.words(f"{safety(one.power_capacity_kW)} kW") for one in found.each]
+    asked = measures.words(f"{rounded(required(found), SAFETY_DIGITS)} kW")
     lives = [life(one.life_h) for one in found.each]
     made = [
         *(_safety_tile(one, "bending", found) for one in found.each),
         *(_safety_tile(one, "contact", found) for one in found.each),
-        _tile(found, "power capacity", capacities, measures.amount(required(found), "kW")),
+        _tile(found, "power capacity", capacities, asked),
         _tile(found, "life at S = 1", lives, life(found.required_life_h)),
     ]
     if found.efficiency_percent is not None:
@@ -255,7 +256,7 @@ def life(hours: float | None) -> str:
     """Return a life for reading; None: beyond the end of the curves, 0: before they begin."""
     if not hours:
         return f"beyond {LONGEST}" if hours is None else AT_ONCE
-    return f"{rounded(hours, SAFETY_DIGITS)} h"
+    return f"{safety(hours)} h"
 
 
 def unverified(found: DriveRating) -> list[str]:

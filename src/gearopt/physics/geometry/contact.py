@@ -77,11 +77,6 @@ def usable_path(pair: GearPair) -> ContactPath:
     return contact_path(pair, (form_diameter(pair.pinion), form_diameter(pair.wheel)))
 
 
-def total_contact_ratio(pair: GearPair) -> Any:
-    """Return eps_gamma = eps_alpha + eps_beta, the former of the `usable_path`."""
-    return usable_path(pair).transverse_ratio + pair.overlap_ratio
-
-
 @np.errstate(invalid="ignore")
 def active_root_diameters(pair: GearPair) -> tuple[Any, Any]:
     """Return the start of active profile diameters d_Nf [mm] that the mate's tip circle gives.

@@ -13,7 +13,7 @@ from gearopt.formulations.rating import (
 )
 from gearopt.physics.agma.life import LONGEST
 from gearopt.physics.gears import MEMBERS, GearPair
-from gearopt.physics.geometry.contact import total_contact_ratio
+from gearopt.physics.geometry.contact import contact_path, usable_path
 from gearopt.physics.geometry.tooth import (
     circumferential_backlash,
     helix_angle_at,
@@ -29,6 +29,7 @@ from gearopt.physics.shaft_forces import mesh_forces, rotation, rpm, train_force
 from gearopt.scenes.drive.rating.mesh import Mesh
 from gearopt.scenes.drive.scene import Scene
 
+SHORTER = 1e-6  # relative, by which a path is shorter than another
 SAME = 1e-10  # margin of load at which a capacity is found
 MOST_STEPS, FLATTEST, LARGEST = (
     100,
@@ -106,11 +107,19 @@ def mesh_row(scene: Scene, mesh: Mesh, wanted: tuple[float, float]) -> MeshRatin
         ),
         transverse_contact_ratio=float(pair.transverse_contact_ratio),
         overlap_ratio=float(pair.overlap_ratio),
-        total_contact_ratio=float(total_contact_ratio(pair)),
+        total_contact_ratio=float(pair.transverse_contact_ratio + pair.overlap_ratio),
+        usable_contact_ratio=_usable(pair),
         circumferential_backlash_mm=float(circumferential_backlash(pair)),
         normal_backlash_mm=float(normal_backlash(pair)),
         **_losses(scene, mesh),
     )
+
+
+def _usable(pair: GearPair) -> float | None:
+    """Return the transverse contact ratio between form circles, where they shorten the path."""
+    bare, left = contact_path(pair), usable_path(pair)
+    short = float(left.length) < float(bare.length) * (1.0 - SHORTER)
+    return float(left.transverse_ratio) if short else None
 
 
 def _losses(scene: Scene, mesh: Mesh) -> dict[str, Any]:
