@@ -143,7 +143,7 @@ def _shigley_spur() -> Case:
         Row("contact [psi]", (70360, 70660), _psi(found.contact_stress)),
         Row("S_H", (1.69, 1.52), found.contact_safety),
     )
-    source = "read in r3kste/pydome, `test_example_14_4`; S_F, S_H from memory"
+    source = "read in r3kste/pydome, `test_example_14_4`; S_F, S_H not checked against the print"
     return Case("Shigley, example 14-4: spur", "17/52 teeth, P 10; " + SHIGLEY, source, rows)
 
 
@@ -168,7 +168,9 @@ def _shigley_helical() -> Case:
         Row("S_H", (2.46, 2.22), found.contact_safety),
     )
     given = "17/52 teeth, P_n 10, psi 30 deg, K_s of 14-4; " + SHIGLEY
-    return Case("Shigley, example 14-5: helical", given, "from memory, recomputed", rows)
+    return Case(
+        "Shigley, example 14-5: helical", given, "not checked against the print, recomputed", rows
+    )
 
 
 def _shigley_four_to_one() -> Case:
@@ -188,7 +190,7 @@ def _shigley_four_to_one() -> Case:
         Row("J", (0.32, 0.415), (0.32, 0.415), reason=CHART.format(exact_j)),
     )
     given = "18/72 teeth, P 4, F 3.14 in, 100 hp, 1120 rpm, Q_v 6, nitralloy 320 HB grade 1, 1e9"
-    source = "inputs and S_t read in a public answer (mathworks.com, 1705755); rest from memory"
+    source = "inputs and S_t read in a public answer (mathworks.com, 1705755); rest not checked"
     return Case("Shigley, example 14-8: factors", given + " cycles, R 0.95", source, rows)
 
 
@@ -217,7 +219,9 @@ def _norton() -> Case:
     given = (
         "14/17/49 teeth, 25 deg, P 6, F 2 in, 20 hp, 2500 rpm, Q_v 6, K_m 1.6, J 0.33, 0.37, 0.46"
     )
-    return Case("Norton, example 12-6: an idler", given, "from memory, recomputed", rows)
+    return Case(
+        "Norton, example 12-6: an idler", given, "not checked against the print, recomputed", rows
+    )
 
 
 def _mott() -> Case:
@@ -238,7 +242,7 @@ def _mott() -> Case:
         Row("I of 17/41 teeth", (0.094356,), (other,), 1e-5, "the book's formula in a program"),
     )
     given = "20/70 teeth, P 8, F 1.5 in, 25 hp, 1750 rpm, Q_v 6, K_o 1.5, C_p 2300"
-    source = "inputs read in a public answer (holooly.com); values from memory, recomputed"
+    source = "inputs read in a public answer (holooly.com); values not checked, recomputed"
     return Case("Mott, example 9-1: spur", given, source, rows)
 
 

@@ -16,7 +16,7 @@ External spur and helical gears by ISO 6336, parts 1, 2, 3 and 5, method B, and 
 [gearopt rate](rate.md), and from Python by `gearopt.physics.iso6336`. `edition` is 2006 or 2019,
 tolerances are those of ISO 1328-1:1995 or 2013. The standards themselves were not read: formulas
 and values are from public programs, printed reports, rules of ship classes that repeat parts of
-them (IACS UR M56), tables and memory. What a single source or memory alone has is marked
+them (IACS UR M56) and tables. What has fewer than two sources is marked
 *unverified*, in the result too (`Rating.unverified`). Scuffing and micropitting are not rated.
 
 ```python
@@ -67,7 +67,7 @@ FORMULAS = (
     (
         "c'",
         "c'_th C_M C_R C_B cos(beta) E/E_st; times (w/100)^0.25 below w = F_t K_A/b = 100 N/mm "
-        "(*unverified*: memory; DIN 3990 is linear there)",
+        "(*unverified*: in no source at hand; DIN 3990 is linear there)",
         "part 1, 9.3",
         "`stiffness.single_stiffness`",
     ),

@@ -77,8 +77,8 @@ inches: `diametral_pitch = 10`, `"1.5 in"`, `"4 hp"`, `"50 ksi"`.
   beyond them no number is told.
 - **efficiency**: of the mesh alone, from `oil_viscosity` or `friction_coefficient`. A computed
   coefficient of friction may be {friction} % off, which is what ± stands for and is unverified.
-- **unverified**: a single source or memory alone has it, or no published value confirms it. I and J
-  of helical gears are.
+- **unverified**: at most one source has it, or no published value confirms it. I and J of helical
+  gears are.
 
 `--html page.html` adds drawings, forces, tooth geometry with span and ball measurement; `--csv
 FOLDER` writes every table; `--units inch` shows in, psi and hp.

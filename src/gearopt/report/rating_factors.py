@@ -27,7 +27,7 @@ def factors(result: Result, measures: Measures) -> Section | None:
         if found.levels
         else ""
     )
-    words = [f"A value below a pinion alone holds for its wheel, too.{level}"]
+    words = [f"A single value applies to both gears.{level}"]
     words += map(measures.words, unverified(found))
     told: list[str | Table] = []
     for one in found.each:

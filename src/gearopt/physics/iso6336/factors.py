@@ -19,6 +19,7 @@ Found = dict[str, Any]
 SHIFTS = -0.5, 2.0  # x_1 + x_2 for which c' holds. Source: part 1, 9.3 [memory]
 # angles above which results want experience. Source: IACS UR M56, 3.1, of parts 2 and 3
 PRESSURE_ANGLE, HELIX_ANGLE = math.radians(25.0) + 1e-9, math.radians(30.0) + 1e-9
+UNCHECKED = "not checked against any source"
 EXPERIENCE = "to be confirmed by experience"
 NITROCARBURISED = "NV nitrocarburised"
 RANGE = 3000.0  # mm/s of v z1/100 sqrt(u^2/(1 + u^2)): below, K_v by method B is hardly above 1
@@ -102,13 +103,15 @@ def _none(case: Case, found: Found) -> Doubt:
 
 def _of_2019(case: Case, what: str) -> Doubt:
     """Return the doubt of what only the edition of 2019 has."""
-    return (False, f"{what}: 2019, from memory") if case.practice.edition == "2019" else (True, "")
+    return (
+        (False, f"{what} of 2019: {UNCHECKED}") if case.practice.edition == "2019" else (True, "")
+    )
 
 
 def _stiffness(case: Case, found: Found) -> Doubt:
     line = case.load * found["K_A"] * found["K_gamma"] / case.pair.face_width
     if line < LEAST_LINE_LOAD:
-        return False, "below 100 N/mm: the law of memory alone"
+        return False, f"below 100 N/mm: formula {UNCHECKED}"
     shifts = sum(gear.profile_shift for gear in case.pair.gears)
     if not SHIFTS[0] <= shifts <= SHIFTS[1]:
         return False, "x_1 + x_2 outside -0.5 to 2: beyond the range of c'"
@@ -134,7 +137,7 @@ def _dynamic(case: Case, found: Found) -> Doubt:
         name = "main resonance" if resonance <= MAIN else "above the main resonance"
         return False, f"{name}, N = {resonance:.2f}: no published value"
     if _tempered(case):
-        return False, "running-in of these materials: from memory"
+        return False, f"running-in of these materials: {UNCHECKED}"
     ratio = case.pair.ratio
     travel = case.speed * case.pair.pinion_teeth / 100.0 * (ratio**2 / (1.0 + ratio**2)) ** 0.5
     slow = "slow: below the range where method B is of use" if travel < RANGE else ""
@@ -143,9 +146,9 @@ def _dynamic(case: Case, found: Found) -> Doubt:
 
 def _face(case: Case, found: Found) -> Doubt:
     if case.practice.helix_modification != "none":
-        return False, "helix modification: from memory"
+        return False, f"helix modification: {UNCHECKED}"
     if case.practice.offset:
-        return False, "pinion off the middle: from memory"
+        return False, f"pinion off the middle: {UNCHECKED}"
     sound, remark = _stiffness(case, found)
     return sound, remark or ("above 2: one end is out of contact" if found["K_Hbeta"] > 2.0 else "")
 
@@ -156,7 +159,7 @@ def _root_face(case: Case, found: Found) -> Doubt:
 
 def _transverse(case: Case, found: Found) -> Doubt:
     if _tempered(case):
-        return False, "running-in of these materials: from memory"
+        return False, f"running-in of these materials: {UNCHECKED}"
     return _stiffness(case, found)
 
 
@@ -197,7 +200,7 @@ def _both(value: Any) -> tuple[Any, Any]:
 def _hardening(case: Case, found: Found) -> Doubt:
     values = _both(found["Z_W"])
     if any(value != 1.0 and shared(case, k, True) < 1.0 for k, value in enumerate(values)):
-        return False, "short lives: static strength from memory"
+        return False, f"short lives: static strength {UNCHECKED}"
     return True, "below 1, where rules of ship classes take 1" if min(values) < 1.0 else ""
 
 
@@ -224,7 +227,7 @@ def _life(case: Case, found: Found) -> Doubt:
 
 def _slip(case: Case, found: Found) -> Doubt:
     if any(m.family in ("St", "GTS", "GGG", *CAST, NITROCARBURISED) for m in case.materials):
-        return False, "slip layer from memory"
+        return False, f"slip layer {UNCHECKED}"
     tempered = [m for m in case.materials if m.family == "V"]
     if any(m.yield_strength <= 0.0 for m in tempered):
         return False, "yield point estimated from hardness"
@@ -234,7 +237,7 @@ def _slip(case: Case, found: Found) -> Doubt:
 
 def _surface(case: Case, found: Found) -> Doubt:
     if any(m.family in (*CAST, NITROCARBURISED) for m in case.materials):
-        return False, "line of these materials from memory"
+        return False, f"line of these materials {UNCHECKED}"
     return True, "roughness above 40 µm" if max(m.root for m in case.materials) > 40e-3 else ""
 
 

@@ -33,7 +33,7 @@ def _light(line: float) -> Iterator[str]:
     if line < LEAST_LINE_LOAD:
         yield (
             f"Unverified: stiffness by ISO 6336-1 is reduced by (F_t/b / {LEAST_LINE_LOAD:g} "
-            f"N/mm)^0.25 at light loads, here {line:.3g} N/mm (without K_A): a law of memory."
+            f"N/mm)^0.25 at light loads, here {line:.3g} N/mm (without K_A)."
         )
 
 
