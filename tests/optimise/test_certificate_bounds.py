@@ -137,7 +137,7 @@ def test_a_value_below_our_bound_is_an_error_or_explained():
     for excess in (1.01e-14, 5e-9):
         verdict = ours(-101.0, 0.0, excess=excess)
         assert verdict.status == "feasible" and verdict.gap is None
-        words = f"row is violated by {excess:.3g}, which the objective gains from. Ended."
+        words = f"row is violated by {excess:.3g}, from which the objective benefits. Ended."
         assert verdict.message == words
 
 
@@ -157,7 +157,7 @@ def test_limits_that_contradict_each_other_by_a_little_are_no_error(slope, kind)
         verdict = solve(problem)
     assert verdict.status in ("feasible", "stationary")
     assert verdict.message.startswith(("least is violated by 5e-11", "most is violated by 5e-11"))
-    assert verdict.message.endswith("which the objective gains from.")
+    assert verdict.message.endswith("from which the objective benefits.")
 
     assert (reported_gap(0.5), reported_gap(-0.5), reported_gap(np.inf), reported_gap(-np.inf)) == (
         0.5,

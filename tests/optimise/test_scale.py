@@ -356,5 +356,5 @@ def test_a_bound_far_below_doubts_a_minimum(at, below, status):
     before = Verdict("stationary", value, bound=value - below, message="Ended.")
     found = _doubted(problem, np.full(2, at), before)
     assert found.status == status
-    doubt = f"no minimum is known here: the bound is lower by {below:.3g}. Ended."
+    doubt = f"not proven to be a minimum: the bound is lower by {below:.3g}. Ended."
     assert found.message == ("Ended." if status == "stationary" else doubt)

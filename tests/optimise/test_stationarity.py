@@ -328,7 +328,7 @@ def test_where_slopes_vanish_but_the_objective_falls_is_said(name):
     problem = line(minimise, low, high, x)
     verdict = certify(problem, Outcome(np.array([x]), message="Ended."), 1e-6)
     assert verdict.status == "feasible"
-    words = "no minimum: gradients vanish there, but the objective falls along x. Ended."
+    words = "not a minimum: gradients vanish there, but the objective falls along x. Ended."
     assert verdict.message == words
     if name == "parabola":
         assert solve(problem).status == "feasible"  # Ipopt's guess is the maximum
@@ -372,7 +372,7 @@ def test_limits_without_a_price_leave_a_minimum_open():
     verdict = certify(problem, Outcome(np.zeros(2)), 1e-6)
     assert (
         verdict.status == "feasible"
-        and "open: limits are active with zero multipliers" in verdict.message
+        and "minimum: limits are active with zero multipliers" in verdict.message
     )
     blocked = plane(lambda a, b: -a * b, -3.0, 3.0, (0.0, 0.0), lambda a, b: 1.0 + a + b)
     verdict = certify(blocked, Outcome(np.zeros(2)), 1e-6)

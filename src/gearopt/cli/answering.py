@@ -46,8 +46,7 @@ Top = Annotated[
     typer.Option(
         min=1,
         max=1000,
-        help="Show so many of the best distinct trains, in proven order; by default 1, on a "
-        "page 10.",
+        help="Number of best distinct trains to show, in proven order; by default 1, on a page 10.",
     ),
 ]
 Prices = Annotated[
@@ -187,25 +186,26 @@ def compare(
     objectives: Annotated[
         str | None,
         typer.Option(
-            help="Two or three names with commas between, as gear_volume,mesh_loss: whole fronts "
-            "are compared."
+            help="Two or three objectives separated by commas, such as gear_volume,mesh_loss: "
+            "whole fronts are compared."
         ),
     ] = None,
     most: Most = None,
     methods: Annotated[
         str | None,
         typer.Option(
-            help="Methods by name, with commas between: {methods}. By default a choice for the "
+            help="Methods by name, separated by commas: {methods}. By default a choice for the "
             "kind of the file.",
             autocompletion=method_lists,
         ),
     ] = None,
     seeds: Annotated[int, typer.Option(min=1, help="Runs of every random method.")] = SEEDS,
     evaluations: Annotated[
-        int, typer.Option(min=1, help="Evaluations of a run, where these are held equal.")
+        int,
+        typer.Option(min=1, help="Evaluations per run, in the comparison at equal evaluations."),
     ] = EVALUATIONS,
     seconds: Annotated[
-        float, typer.Option(min=0.01, help="Time of a run, where that is held equal.")
+        float, typer.Option(min=0.01, help="Time per run, in the comparison at equal time.")
     ] = EACH,
     bound_from: Annotated[
         str | None,

@@ -18,11 +18,10 @@ HELP = "\n\n".join(
     (
         "Design gear drives, and prove that no better design is possible.",
         "A text file says what is needed: power, speeds, limits. gearopt finds the smallest or "
-        "lightest gears that do it, and how much smaller any other design could be: mostly not at "
-        "all. It does so for drives of up to six stages and the box around them, for spur pairs "
-        "and the contact of their teeth, for servo axes, for compound trains of "
-        "a given ratio, and for packings of cylinders. "
-        "Gears that are given it rates by AGMA and ISO 6336.",
+        "lightest gears that do it, and proves how much smaller any other design could be: "
+        "usually not at all. It does so for drives of up to six stages and the box around them, "
+        "for spur pairs and the contact of their teeth, for servo axes, for compound trains of "
+        "a given ratio, and for packings of cylinders. Given gears are rated by AGMA and ISO 6336.",
         "Begin with three commands: [bold]new[/] prints a file to start from, [bold]solve[/] finds "
         "the best design for it, and [bold]explain[/] says how much each number of it matters.",
         "Examples:",
@@ -30,11 +29,11 @@ HELP = "\n\n".join(
         "[bold]gearopt solve my.toml[/]                     the best gears, with the proof\n"
         "[bold]gearopt solve my.toml --html page.html[/]    the same as a page with drawings\n"
         "[bold]gearopt explain my.toml[/]                   what would change it, and how much\n"
-        "[bold]gearopt new rating > pair.toml[/]            a pair of gears that is given\n"
+        "[bold]gearopt new rating > pair.toml[/]            a given pair of gears\n"
         "[bold]gearopt rate pair.toml[/]                    its stresses, safety and life",
     )
 )
-FIRST, MORE, TOOLS = "To begin with", "More of files and results", "For editors and machines"
+FIRST, MORE, TOOLS = "To begin with", "Further commands", "For editors and machines"
 
 app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode="rich")
 

@@ -17,23 +17,27 @@ def pareto(
     objectives: Annotated[
         str | None,
         typer.Option(
-            help="Two or three names with commas between, as gear_volume,mesh_loss; the first is "
-            "minimised where others are limited. Without it the names that there are.",
+            help="Two or three objectives separated by commas, such as gear_volume,mesh_loss; "
+            "the first is minimised where others are limited. Without it the objectives are "
+            "listed.",
         ),
     ] = None,
     most: Most = None,
     method: Annotated[
         str | None,
         typer.Option(
-            help="exact, epsilon, nsga2, annealing or hybrid; by default what proves most."
+            help="exact, epsilon, nsga2, annealing or hybrid; by default the one that proves most."
         ),
     ] = None,
     points: Annotated[
-        int | None, typer.Option(min=2, max=10_000, help="Points sought, where there is a choice.")
+        int | None,
+        typer.Option(min=2, max=10_000, help="Number of points, where the method leaves it open."),
     ] = None,
     weights: Annotated[
         str | None,
-        typer.Option(help="NAME=NUMBER with commas between: pick by these weights, too."),
+        typer.Option(
+            help="NAME=NUMBER separated by commas: weights by which one more design is picked."
+        ),
     ] = None,
     seconds: Annotated[float, typer.Option(min=0.0, help="Stop after this time.")] = SECONDS,
     seed: Annotated[int, typer.Option(help="Seed of random methods.")] = 0,

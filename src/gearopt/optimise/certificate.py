@@ -145,7 +145,9 @@ def bounded(
     if abs(found) <= tolerance:
         status = "optimal"
     elif found < 0.0:
-        message = f"{worst} is violated by {excess:.3g}, which the objective gains from. {message}"
+        message = (
+            f"{worst} is violated by {excess:.3g}, from which the objective benefits. {message}"
+        )
     return replace(
         before,
         status=status,
@@ -232,7 +234,7 @@ def _doubted(problem: Problem, x: Array, before: Verdict) -> Verdict:
         return before
     if value - bound <= max(LOOSE * abs(value), STATIONARY * way(problem, x)):
         return before
-    words = f"no minimum is known here: the bound is lower by {value - bound:.3g}"
+    words = f"not proven to be a minimum: the bound is lower by {value - bound:.3g}"
     return replace(before, status="feasible", message=f"{words}. {before.message}".strip())
 
 

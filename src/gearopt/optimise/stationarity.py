@@ -186,7 +186,7 @@ def no_minimum(point: Point) -> str:
     for value, d in _eigen(cone.curved, np.vstack([cone.firm, cone.loose])):
         if value <= -FLAT:
             return _words(point, cone, d)
-    return "whether it is a minimum is open: limits are active with zero multipliers"
+    return "not known to be a minimum: limits are active with zero multipliers"
 
 
 def _free(point: Point) -> Any:
@@ -308,4 +308,4 @@ def _words(point: Point, cone: _Cone, d: Array) -> str:
     names = [name for (_, name), at in zip(point.problem.columns, cone.free, strict=True) if at]
     share = np.abs(cone.unit * d) / own_scales(point)[cone.free]
     most = [names[k] for k in np.argsort(-share, kind="stable")[:3] if share[k] > 0.3 * share.max()]
-    return f"no minimum: gradients vanish there, but the objective falls along {', '.join(most)}"
+    return f"not a minimum: gradients vanish there, but the objective falls along {', '.join(most)}"

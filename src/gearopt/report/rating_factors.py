@@ -23,7 +23,7 @@ def factors(result: Result, measures: Measures) -> Section | None:
         return None
     tables = [_table(one, found.beside is not None, measures) for one in found.each]
     level = (
-        " Of a load spectrum factors are those of the level of largest stress."
+        " For a load spectrum the factors are those of the level with the largest stress."
         if found.levels
         else ""
     )

@@ -22,7 +22,9 @@ from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Terms
 
 UTILISATION = "utilisation"
-LEAST = "Proof: exhausted searches at smaller and smaller utilisations; at the last there is none."
+LEAST = (
+    "Proof: exhausted searches at smaller and smaller utilisations; the last one found no design."
+)
 BEYOND = "the best train of this utilisation is beyond the largest value of its objective"
 CLOSE = 4e-7  # relative: between a utilisation that a train has and one that none has
 

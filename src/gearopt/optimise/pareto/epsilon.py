@@ -34,8 +34,8 @@ FIRST = 5  # points at least before others are spread by them
 SAMPLES = 65  # of a curve between two neighbours
 
 LAST = (
-    "Proof: exhausted searches, one a design, each for a smaller {name} than the last design has; "
-    "for the last of them there is none."
+    "Proof: exhausted searches, one per design, each for a smaller {name} than the design before; "
+    "the last search found no design."
 )
 
 Caps = dict[str, float]  # largest values of objectives that the user states

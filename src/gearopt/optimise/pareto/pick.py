@@ -29,13 +29,13 @@ def picks(values: Array, names: Sequence[str], weights: Mapping[str, float] | No
     if weights is not None:
         w = np.array([float(weights.get(name, 0.0)) for name in names])
         words = ", ".join(f"{n.replace('_', ' ')} {v:g}" for n, v in zip(names, w, strict=True))
-        reason = f"the smallest weighted sum of the objectives in their ranges: {words}"
+        reason = f"the minimum weighted sum of the normalised objectives: {words}"
         found.append(Pick(int((unit @ w).argmin()), WEIGHTS, reason))
     if (k := knee(unit)) is not None:
         reason = "the point furthest below the straight line between the ends of the front"
         found.append(Pick(k, KNEE, reason))
     near = int(np.linalg.norm(unit, axis=1).argmin())
-    reason = "the point nearest to the least value of every objective, in their ranges"
+    reason = "the point nearest to the ideal point, in normalised objectives"
     found.append(Pick(near, COMPROMISE, reason))
     return found
 
