@@ -81,7 +81,7 @@ def test_a_conflict_is_said_first_and_what_may_not_matter_last():
     doubtful = ways | {"unsure": ["face_width_over_diameter[1]"]}
     words = lead(replace(result, report={"ways_out": doubtful}))
     assert words.endswith(
-        "face width over diameter of stage 1 (perhaps not all of these are needed)"
+        "face width over diameter of stage 1 (not all of these need be part of the conflict)"
     )
 
 
