@@ -12,6 +12,7 @@ from gearopt.scenes.drive.rating.tables import GearTable, with_shared
 from gearopt.scenes.reading.fields import refuse
 
 USUAL = {"profile_shift": 0, "tip_alteration": 0, "addendum": 1, "tool_addendum": 1.25}
+SAME = 1e-9  # m_n
 ROOT: tuple[str, ...] = ("profile_shift", "tool_addendum")  # what sets a root circle
 TIP: tuple[str, ...] = ("profile_shift", "tip_alteration", "addendum")
 
@@ -78,8 +79,10 @@ def check_teeth(
 def check_mesh(stage: Stage, k: int, own: StageTable, gears: Gears) -> None:
     """Refuse a stage (from 0) whose fewest teeth have no root, no involute or no centre distance.
 
-    own, gears: its tables.
+    And one whose tips reach into the roots of their mates, whatever the teeth. own, gears: its
+    tables.
     """
+    _check_tips(stage, k, own, gears)
     made, fewest = stage.toothing, stage.pinion_teeth[0]
     teeth = fewest, max(stage.wheel_teeth[0], math.ceil(stage.ratio[0] * fewest))
     pair = made.pair(float(min(stage.modules, default=1)), *teeth, 1.0)
@@ -100,6 +103,25 @@ def check_mesh(stage: Stage, k: int, own: StageTable, gears: Gears) -> None:
     rule = f"and that of its mate leave no centre distance to {teeth[0]} and {teeth[1]} teeth"
     low = min((0, 1), key=lambda i: made.profile_shifts[i])
     raise refuse(rule, 0, ("stage", k, MEMBERS[low], "profile_shift"))
+
+
+def _check_tips(stage: Stage, k: int, own: StageTable, gears: Gears) -> None:
+    """Refuse tips that reach deeper than the mate's tool cuts: no numbers of teeth mend it.
+
+    c = (y - x1 - x2 + h_fP2 - h_aP1 - k_1) m_n, in which y never exceeds x1 + x2 (ISO 21771).
+    """
+    racks, shorter = stage.toothing.racks, stage.toothing.tip_alterations
+    if stage.toothing.working_distance is not None:
+        return
+    for i, member in enumerate(MEMBERS):
+        deep = racks[i].addendum + shorter[i] - racks[1 - i].dedendum
+        if deep <= SAME:
+            continue
+        long = racks[i].addendum + shorter[i] > USUAL["addendum"]
+        which, keys = (member, TIP[1:]) if long else (MEMBERS[1 - i], ROOT[1:])
+        place, write = cause(k, which, own, gears, keys)
+        rule = f"makes the tips of the {member} reach {deep:.4g} m_n into the roots of its mate"
+        raise refuse(f"{rule}, whatever the teeth", write, place, "sample")
 
 
 def cause(
