@@ -368,7 +368,7 @@ def _opened(what: File, changes: Changes) -> tuple[BaseModel, Any, dict[str, Any
     """Return the scene of what was given, the module of its kind, and its names for a result."""
     if not isinstance(changes, Mapping | NoneType):
         raise ValueError(
-            f"{changes!r} is no dict of changes, such as {{'duty.power': '9 kW'}}; options have "
+            f"{changes!r} is not a dict of changes, such as {{'duty.power': '9 kW'}}; options have "
             "names, as in method='exact', or methods=['ipopt', 'annealing'] of compare"
         )
     if not isinstance(what, str | Path | Mapping | BaseModel):

@@ -54,7 +54,7 @@ def test_scip_is_optimal_below_its_tolerance():
 
     verdict = certify(problem, Outcome(point, bound=scip.getDualbound()), 1e-6)
     assert verdict.status == "feasible" and verdict.bound is None
-    with pytest.raises(SolveError, match="error is no posynomial"):
+    with pytest.raises(SolveError, match="error is not a posynomial"):
         solve(problem, "scip")
 
 

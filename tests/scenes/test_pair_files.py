@@ -239,7 +239,7 @@ def test_of_given_gears_nothing_is_chosen(call):
 def test_the_cheapest_level_is_taken_whose_error_can_be_borne(error, level):
     found = contact(GIVEN, **{"sharing.error": error})
     assert found["level"].startswith(level) and max(map(abs, found["error_percent"])) <= 20.0
-    with pytest.raises(SceneError, match="error = .*stands beside level; one is enough"):
+    with pytest.raises(SceneError, match="error = .*conflicts with level; one is enough"):
         gearopt.load(with_(GIVEN, {"sharing.error": "5 %", "sharing.level": "ISO 6336"}))
 
 

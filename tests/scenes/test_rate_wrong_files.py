@@ -91,7 +91,7 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         "quality = 8 ",
         "quality = 8\naccuracy = 9",
         "rating.accuracy = 9",
-        "stands beside quality; one is enough. Remove it",
+        "conflicts with quality; one is enough. Remove it",
     ),
     "life without a unit": (
         '"20000 h"',
@@ -150,7 +150,7 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         "pinion_teeth = 20",
         "diametral_pitch = 8\npinion_teeth = 20",
         "stage[1].diametral_pitch = 8",
-        "stands beside module; one is enough. Remove it",
+        "conflicts with module; one is enough. Remove it",
     ),
     "shift too large": (
         "profile_shift = 0.2",

@@ -108,7 +108,7 @@ def test_every_stage_has_its_own_helix_and_every_gear_its_own_tool():
             "tips of the pinion reach 0.05 m_n into the roots of its mate, whatever the teeth",
         ),
         ({"stage[1].wheel.tool_addendum": 0.9}, "stage[1].wheel.tool_addendum", "reach 0.1 m_n"),
-        ({"stage[1].diametral_pitch": 12}, "stage[1].diametral_pitch", "stands beside module"),
+        ({"stage[1].diametral_pitch": 12}, "stage[1].diametral_pitch", "conflicts with module"),
     ],
 )
 def test_what_does_not_fit_is_named(changes, key, said):

@@ -133,9 +133,9 @@ WRONG = {  # keys of [gears], of the wheel; where, what is told
     "rim twice": (
         {"rim_thickness": "9 mm", "rim_over_module": 3},
         {},
-        "stands beside rim_thickness",
+        "conflicts with rim_thickness",
     ),
-    "web twice": ({}, {"web_thickness": "9 mm"} | WEBBED, "stands beside web_thickness"),
+    "web twice": ({}, {"web_thickness": "9 mm"} | WEBBED, "conflicts with web_thickness"),
     "web in mm of an open width": (
         {"rim_thickness": "9 mm", "web_thickness": "6 mm"},
         {},

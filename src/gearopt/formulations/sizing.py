@@ -41,7 +41,7 @@ def problem(train: Train) -> Problem:
 
     Variables, one component per stage: module [mm], pinion_teeth, ratio and, where it is not tied
     to d1, face_width [mm]. Of a rated drive the text is for numbers only, and of gears with webs
-    the objective is no posynomial: their own method finds a design (`rated_sizing`).
+    the objective is not a posynomial: their own method finds a design (`rated_sizing`).
     """
     if train.rated or train.hollow:
         from gearopt.formulations.rated_sizing import smooth

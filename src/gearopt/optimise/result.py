@@ -256,7 +256,7 @@ def loads(text: str) -> Any:
     """Return plain data from JSON text; ValueError for NaN, infinities, and endless depth."""
 
     def none(word: str) -> None:
-        raise ValueError(f"holds {word}, which is no number of JSON")
+        raise ValueError(f"holds {word}, which is not a JSON number")
 
     try:
         return json.loads(text, parse_constant=none)

@@ -138,7 +138,7 @@ class Repeat:
             _check_name(f"repeat {self.name}: data", name)
             values = _numbers(column)
             if values is None or values.ndim != 1 or not len(values) or np.isnan(values).any():
-                raise ValueError(f"repeat {self.name}: data {name} are no row of numbers")
+                raise ValueError(f"repeat {self.name}: data {name} are not a row of numbers")
             sizes.add(len(values))
         if len(sizes) > 1:
             raise ValueError(f"repeat {self.name}: its data differ in length: {sorted(sizes)}")

@@ -141,7 +141,7 @@ class Layers(Table):
     @model_validator(mode="after")
     def _one(self) -> "Layers":
         if self.most is not None and self.exactly is not None:
-            raise refuse("stands beside exactly, which sets it", at=("most",), action="remove")
+            raise refuse("conflicts with exactly, which sets it", at=("most",), action="remove")
         if self.most is None and self.exactly is None:
             raise refuse("is missing (or give exactly)", at=("most",))
         return self

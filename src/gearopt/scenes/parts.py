@@ -40,7 +40,7 @@ class Duty(Table):
     def _one_ratio(self) -> "Duty":
         if self.output_speed is not None and self.ratio is not None:
             raise refuse(
-                "stands beside output_speed; one is enough", at=("ratio",), action="remove"
+                "conflicts with output_speed; one is enough", at=("ratio",), action="remove"
             )
         if not self.asks_ratio:
             if self.RATIO_NEEDED:

@@ -62,7 +62,7 @@ class Law:
     smaller, and as the ratio u grows it falls no faster than 1 + 1/u: then narrowest widths and
     modules have closed forms, which are bisected otherwise. minimum_teeth: number of teeth of a
     pinion from which on the law and its promises hold. pressure_angle: whether an index depends on
-    it. relaxed: of a law that is no posynomial, a lower bound of its indices that is one, for
+    it. relaxed: of a law that is not a posynomial, a lower bound of its indices that is one, for
     proofs that a drive is impossible.
     """
 

@@ -41,7 +41,7 @@ NO_TRAIN = (
 )
 RATED = (
     "whole teeth that ratings limit are for exact, annealing and nsga2 only: a rating finds roots "
-    "by iteration and has ranges, and is no posynomial"
+    "by iteration and has ranges, and is not a posynomial"
 )
 MOST = 1e18  # teeth, steps or mm: no limit
 

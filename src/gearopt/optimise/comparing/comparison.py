@@ -181,7 +181,7 @@ class Comparison:
     def from_dict(cls, data: Mapping[str, Any]) -> "Comparison":
         """Return the inverse of `to_dict`; ValueError for what is none, or of another format."""
         if not isinstance(data, Mapping) or "comparison" not in data:
-            raise ValueError("is no comparison: it has no key `comparison`")
+            raise ValueError("is not a comparison: it has no key `comparison`")
         if data["comparison"] != FORMAT:
             raise ValueError(f"comparison format {data['comparison']!r}: this reads {FORMAT}")
         found: Comparison = typed(cls, data)

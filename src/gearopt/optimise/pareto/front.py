@@ -121,7 +121,7 @@ class Front:
     def from_dict(cls, data: Mapping[str, Any]) -> "Front":
         """Return the inverse of `to_dict`; ValueError for what is none, or of another format."""
         if not isinstance(data, Mapping) or "front" not in data:
-            raise ValueError("is no Pareto front: it has no key `front`")
+            raise ValueError("is not a Pareto front: it has no key `front`")
         if data["front"] != FORMAT:
             raise ValueError(f"front format {data['front']!r}: this gearopt reads {FORMAT}")
         found: Front = typed(cls, data)

@@ -114,12 +114,12 @@ def _build(problem: Problem) -> _Model:
     labelled = zip((*problem.rows.objectives, *names), (objective, *inequal, *equal), strict=True)
     for name, term in labelled:
         if not (term.is_scalar() and term.is_dgp()):
-            raise SolveError(f"{problem.name} is no geometric program by cvxpy's rules: {name}")
+            raise SolveError(f"{problem.name} is not a geometric program by cvxpy's rules: {name}")
     inequalities = tuple(row <= 1 for row in inequal)
     equalities = tuple(row == 1 for row in equal)
     model = cp.Problem(cp.Minimize(objective), [*inequalities, *equalities, *ends])
     if not model.is_dgp(dpp=True):
-        raise SolveError(f"{problem.name} is no geometric program by cvxpy's rules")
+        raise SolveError(f"{problem.name} is not a geometric program by cvxpy's rules")
     return _Model(model, tuple(variables), tuple(parameters), inequalities, equalities)
 
 

@@ -98,13 +98,13 @@ def _checked(problem: Problem) -> tuple[Form, Curvature]:
     one_objective(problem.name, problem.rows.objectives)
     shape = natural(problem)
     if shape is None:
-        raise SolveError(f"{problem.name} is no quadratic program: " + misfit(problem))
+        raise SolveError(f"{problem.name} is not a quadratic program: " + misfit(problem))
     hessian = hessian_of(problem, shape)
     curved = curvature(hessian)
     if not shape.convex:
         minimum = np.linalg.eigvalsh(hessian)[0] if np.isfinite(hessian).all() else np.nan
         raise SolveError(
-            f"{problem.name} is no convex quadratic program: {problem.rows.objectives[0]} has "
+            f"{problem.name} is not a convex quadratic program: {problem.rows.objectives[0]} has "
             f"curvature {minimum:.3g}"
         )
     return shape, curved
@@ -123,8 +123,8 @@ def _program(problem: Problem, shape: Form) -> _Program:
         names, known = [problem.rows.objectives[0]], np.zeros(1, bool)
     if not known.all():
         raise SolveError(
-            f"{problem.name} is no quadratic program: {names[int(known.argmin())]} has an infinite "
-            "coefficient, or one that is no number"
+            f"{problem.name} is not a quadratic program: {names[int(known.argmin())]} has an "
+            "infinite coefficient, or one that is not a number"
         )
     low, high, _ = problem.bounds()
     return _Program(

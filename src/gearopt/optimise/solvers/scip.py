@@ -44,7 +44,7 @@ class Posynomials:
 
 
 def read(problem: Problem) -> Posynomials:
-    """Expand every row of a problem's tape; SolveError names the row that is no posynomial."""
+    """Expand every row of a problem's tape; SolveError names the row that is not a posynomial."""
     if problem.repeats:
         raise SolveError(f"{problem.name} has repeats, which this reader does not expand")
     rows = problem.rows
@@ -53,12 +53,12 @@ def read(problem: Problem) -> Posynomials:
     names = [*rows.objectives, *(r.name for r in rows.inequalities), *rows.equalities]
     for name, term in zip(names, [*f, *g, *h], strict=True):
         if term is None or not (term.coefficients > 0).all() or not len(term.coefficients):
-            raise SolveError(f"{problem.name}: {name} is no posynomial")
+            raise SolveError(f"{problem.name}: {name} is not a posynomial")
         if not (np.isfinite(term.coefficients).all() and np.isfinite(term.exponents).all()):
             raise SolveError(f"{problem.name}: {name} has an infinite coefficient or exponent")
     for name, term in zip(rows.equalities, h, strict=True):
         if len(term.coefficients) != 1:
-            raise SolveError(f"{problem.name}: the equality {name} is no monomial")
+            raise SolveError(f"{problem.name}: the equality {name} is not a monomial")
     return Posynomials(f[0], tuple(g), tuple(h))
 
 

@@ -53,7 +53,9 @@ class BlankKeys(Table):
     def _one_way(self) -> "BlankKeys":
         for first, second in (RIM, WEB):
             if getattr(self, first) is not None and getattr(self, second) is not None:
-                raise refuse(f"stands beside {first}; one is enough", at=(second,), action="remove")
+                raise refuse(
+                    f"conflicts with {first}; one is enough", at=(second,), action="remove"
+                )
         if self.hub_over_bore is not None and self.hub_over_bore < THINNEST:
             rule = f"leaves the hub hardly a wall: {float(THINNEST):g} is the least"
             raise refuse(rule, HUB, (HUBS,), "sample")

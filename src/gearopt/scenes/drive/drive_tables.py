@@ -184,7 +184,7 @@ class StageTable(Loaded):
     @model_validator(mode="after")
     def _one_size(self) -> "StageTable":
         if self.diametral_pitch is not None and self.module is not None:
-            rule = "stands beside module; one is enough"
+            rule = "conflicts with module; one is enough"
             raise refuse(rule, at=("diametral_pitch",), action="remove")
         return self
 
@@ -237,7 +237,7 @@ class Limits(Loaded):
         given = [name for name in self.LAW.names if getattr(self, name) is not None]
         for name in self.LAW.names:
             if name in given and self.preset is not None:
-                raise refuse("stands beside preset, which sets it", at=(name,), action="remove")
+                raise refuse("conflicts with preset, which sets it", at=(name,), action="remove")
             if given and name not in given:
                 raise refuse("is missing (or give preset)", at=(name,))
         return self

@@ -14,14 +14,14 @@ def check_width(own: StageTable, gears: Gears, place: tuple[Any, ...]) -> None:
     if own.face_width is not None:
         if own.face_width_step is not None:
             raise refuse(
-                "stands beside face_width, which fixes the width",
+                "conflicts with face_width, which fixes the width",
                 at=(*place, "face_width_step"),
                 action="remove",
             )
         span = own.face_width_over_diameter
         if span is not None and span[0] == span[1]:
             raise refuse(
-                "stands beside face_width: only a range can limit a fixed width",
+                "conflicts with face_width: only a range can limit a fixed width",
                 [float(span[1] / 2), float(span[1])],
                 key,
             )

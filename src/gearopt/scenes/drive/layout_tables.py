@@ -141,7 +141,7 @@ class Layout(Table):
                 "is missing (or give shaft_diameters)", "40 MPa", ("shaft_stress",), "sample"
             )
         if self.shaft_diameters is not None and self.shaft_stress is not None:
-            raise refuse("stands beside shaft_diameters", at=("shaft_stress",), action="remove")
+            raise refuse("conflicts with shaft_diameters", at=("shaft_stress",), action="remove")
         for name, other in (("widths", "diameters"), ("diameters", "widths")):
             if getattr(self, f"bearing_{name}") and not getattr(self, f"bearing_{other}"):
                 raise refuse(f"is missing beside bearing_{name}", at=(f"bearing_{other}",))

@@ -50,7 +50,7 @@ class SharingTable(Table):
     @model_validator(mode="after")
     def _one_way(self) -> "SharingTable":
         if self.level is not None and self.error is not None:
-            rule = "stands beside level; one is enough"
+            rule = "conflicts with level; one is enough"
             raise refuse(rule, at=("error",), action="remove")
         if len(set(self.loads)) < len(self.loads):
             once = [float(load) for load in dict.fromkeys(self.loads)]

@@ -61,7 +61,7 @@ def _place(key: Any, file: str) -> Place:
     """Return the place that a key names: ("stage", 1, "module") of `stage[2].module`."""
     text = f".{key}"
     if not isinstance(key, str) or not re.fullmatch(rf"\.[\w-]+({_STEP})*", text):
-        rule = "is no key of a file"
+        rule = "is not a key of a file"
         remedy = "Write table.key, or table[2].key for the second [[table]], counted from 1"
         raise SceneError(file, cut(str(key), 80), "", rule, remedy)
     return tuple(int(index) - 1 if index else name for name, index in re.findall(_STEP, text))
@@ -108,7 +108,7 @@ def _check(here: Any, place: Place, key: str, file: str) -> None:
         rest = "" if isinstance(step, int) or step.isdigit() else f".{step}"
         remedy = f"Write {above}[1]{rest}, ... or {above}[{len(here) + 1}]{rest} for one more"
     else:
-        rule = f"{above} is no {'list' if isinstance(step, int) else 'table'}"
+        rule = f"{above} is not a {'list' if isinstance(step, int) else 'table'}"
         remedy = f"Change {above} itself"
     raise SceneError(file, cut(key, 80), "", rule, remedy)
 
@@ -122,7 +122,9 @@ def _found(content: dict[str, Any], place: Place, key: str, file: str) -> Any:
             close = near(str(step), here) if isinstance(here, dict) else None
             meant = close and dotted((*place[:k], close, *place[k + 1 :]))
             remedy = f"Did you mean {meant}?" if meant else "Leave it out of the changes"
-            raise SceneError(file, cut(key, 80), "", "is not there to be removed", remedy)
+            raise SceneError(
+                file, cut(key, 80), "", "is not in the file and cannot be removed", remedy
+            )
         if k + 1 < len(place):
             here = here[step]
     return here

@@ -102,7 +102,7 @@ class Scene(Table):
         self._check_backlash()
         for k, mesh in enumerate(self.mesh):
             if mesh.grade is not None and self.train is not None:
-                rule = "stands beside [train], which chooses the diameters that it depends on"
+                rule = "conflicts with [train], which chooses the diameters that it depends on"
                 raise refuse(rule, at=("mesh", k, "grade"), action="remove")
         if self.mesh and self.train is None:
             if self.tolerances is None:

@@ -88,7 +88,7 @@ def check_materials(
                 raise refuse(rule, told, (*place, "materials"), "tell")
         for key in STEEL if table.materials else ():
             if getattr(table, key) is not None:
-                rule = "stands beside materials, which set it"
+                rule = "conflicts with materials, which set it"
                 raise refuse(rule, at=(*place, key), action="remove")
 
 

@@ -323,15 +323,15 @@ class RatingTable(Table):
     @model_validator(mode="after")
     def _one_of_two(self) -> "RatingTable":
         if self.life is not None and self.input_revolutions is not None:
-            rule = "stands beside life; one is enough"
+            rule = "conflicts with life; one is enough"
             raise refuse(rule, at=("input_revolutions",), action="remove")
         if self.life is None and self.input_revolutions is None:
             raise refuse("is missing (or give input_revolutions)", "20000 h", ("life",), "sample")
         if self.friction_coefficient is not None and self.oil_viscosity is not None:
-            rule = "stands beside oil_viscosity, from which it is computed"
+            rule = "conflicts with oil_viscosity, from which it is computed"
             raise refuse(rule, at=("friction_coefficient",), action="remove")
         if self.quality is not None and self.accuracy is not None:
-            rule = "stands beside quality; one is enough"
+            rule = "conflicts with quality; one is enough"
             raise refuse(rule, at=("accuracy",), action="remove")
         bare = self.quality is None and self.accuracy is None and self.given.K_v is None
         if bare and self.by_agma:

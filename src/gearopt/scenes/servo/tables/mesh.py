@@ -147,12 +147,12 @@ class Mesh(Table):
             raise refuse(rule, "pinion_teeth", ("wheel_teeth",), "swap")
         for name in PITCH:
             if self.grade is not None and getattr(self, name) is not None:
-                raise refuse("stands beside grade, which sets it", at=(name,), action="remove")
+                raise refuse("conflicts with grade, which sets it", at=(name,), action="remove")
         if self.grade is not None:
             self._check_scope()
         for name in ("pinion_pitch", "wheel_pitch"):
             if self.pitch is not None and getattr(self, name) is not None:
-                raise refuse("stands beside pitch", at=(name,), action="remove")
+                raise refuse("conflicts with pitch", at=(name,), action="remove")
         if not (self.given or self.deviates):
             raise refuse("is missing, as is any deviation", at=("pitch",))
         return self
@@ -279,7 +279,7 @@ class Tolerances(Table):
     def _one(self) -> "Tolerances":
         for name in ("least_factor", "largest_factor"):
             if self.grades is not None and getattr(self, name) is not None:
-                raise refuse("stands beside grades, which sets it", at=(name,), action="remove")
+                raise refuse("conflicts with grades, which sets it", at=(name,), action="remove")
         return self
 
 

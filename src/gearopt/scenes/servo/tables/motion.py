@@ -100,7 +100,7 @@ class Duty(Table):
             raise refuse(f'is missing: motion = "{self.motion}" needs it', at=("motor", "torque"))
         if self.motion != "acceleration" and motor.no_load_speed is not None:
             rule = (
-                f'stands beside motion = "{self.motion}", which takes the torque up to speed_limit'
+                f'conflicts with motion = "{self.motion}", which takes the torque up to speed_limit'
             )
             raise refuse(rule, at=("motor", "no_load_speed"), action="remove")
 

@@ -96,10 +96,10 @@ class Train(Table):
     @model_validator(mode="after")
     def _complete(self) -> "Train":
         if self.maximise is not None and "minimise" in self.model_fields_set:
-            raise refuse("stands beside maximise", at=("minimise",), action="remove")
+            raise refuse("conflicts with maximise", at=("minimise",), action="remove")
         low, high = self.ratio
         if low != high and self.ratio_tolerance is not None:
-            rule = "stands beside a range of ratios"
+            rule = "conflicts with a range of ratios"
             raise refuse(rule, at=("ratio_tolerance",), action="remove")
         if len(self.wheel_tip_diameters) != 2:
             texts = [str(q) for q in (*self.wheel_tip_diameters, *self.wheel_tip_diameters)]
@@ -164,7 +164,7 @@ class Stiffness(Table):
             rule = "is missing (or give youngs_modulus)"
             raise refuse(rule, "10300 MPa", ("line_stiffness",), "sample")
         if self.line_stiffness is not None and self.youngs_modulus is not None:
-            raise refuse("stands beside line_stiffness", at=("youngs_modulus",), action="remove")
+            raise refuse("conflicts with line_stiffness", at=("youngs_modulus",), action="remove")
         if self.windup is not None and self.load_torque is None:
             raise refuse("is missing beside windup", at=("load_torque",))
         return self
