@@ -266,7 +266,7 @@ def compare(
 
 def _of_comparison(names: dict[str, Any]) -> dict[str, Any]:
     """Return the names of a file as a comparison has them: what is changed, not the tables."""
-    kept = {k: v for k, v in names.items() if k not in ("asked", "options")}
+    kept = {k: v for k, v in names.items() if k not in ("asked", "options", "report")}
     return kept | {"changes": names.get("options", {}).get("changes", {})}
 
 
@@ -310,8 +310,9 @@ def _traded(
     if left and hasattr(module, "advice") and (why := module.advice(scene, left)):
         raise SolveError(why)
     chosen = chosen_of(names, list(known), f'this file of kind "{about["scene"]}"')
-    title = {"title": getattr(scene, "title", "")}
-    return lambda method: module.several(scene, chosen, method), chosen, about | title
+    report = {"assumptions": module.assumptions(scene)} if hasattr(module, "assumptions") else {}
+    about |= {"title": getattr(scene, "title", ""), "report": report}
+    return lambda method: module.several(scene, chosen, method), chosen, about
 
 
 @in_turn
@@ -343,11 +344,10 @@ def pareto(
     check(most=most, weights=weights)
     budget, watch, most = budget or Budget(), whole(watch), dict(most or {})
     pose, _, about = _traded(what, changes, objectives)
-    posed = pose(method)
     options: dict[str, Any] = {"method": method, "seconds": budget.seconds, "points": points}
     options |= {"most": most, "weights": weights, "seed": seed}
     about["options"] = options | about.get("options", {})
-    return solved(posed, most, method, points, weights, budget, seed, watch, **about)
+    return solved(pose(method), most, method, points, weights, budget, seed, watch, **about)
 
 
 def _unchanged(problem: Problem | Conic, changes: Changes) -> None:

@@ -1,6 +1,7 @@
 """Fronts of servo files: which objectives they have, and what is told of those that have none."""
 
 from fractions import Fraction as F
+from html import escape
 from itertools import product
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import gearopt
 from gearopt import SolveError
 from gearopt.formulations.servo.tolerance.grades import Choice, Graded, problem
 from gearopt.optimise.pareto.pareto import found
+from gearopt.scenes.servo import assumptions
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 
@@ -72,6 +74,9 @@ def test_cost_against_error_of_tolerances_is_the_hyperbola_of_the_closed_form():
         most={"cost": 60.0},
     )
     cost, error = values(front).T
+    told = assumptions(gearopt.load(PROBLEMS / "servo_gimbal_trade_off.toml"))
+    assert told and front.report["assumptions"] == told  # as of a result, on the page, too
+    assert all(escape(words, quote=False) in front.to_html() for words in told)
     inside = error > 0.03
     assert front.status == "proven" and inside.sum() >= 5
     assert cost[inside] * error[inside] == pytest.approx(9.889999362 * 0.10819163, rel=1e-6)

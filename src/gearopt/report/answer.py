@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
 from gearopt.optimise.scale import gap
 from gearopt.report.deciding import lead
@@ -246,7 +247,7 @@ def _checks(result: Result) -> Table | None:
     return Table("checks", ("", ""), rows, csv_only=spoken, folded=len(spoken) == len(rows))
 
 
-def assumptions(result: Result, measures: Measures) -> Section | None:
+def assumptions(result: Result | Front, measures: Measures) -> Section | None:
     """Return the assumptions beside the file; None where the kind reports none."""
     words = list(map(measures.words, result.report.get("assumptions") or []))
     return Section("Assumptions and unverified data", words=words, half=True) if words else None

@@ -78,9 +78,6 @@ PLACE = pair(quantity("length", "10 mm", zero=True, signed=True))
 NONE = units.parse("0 mm", "length")
 SMOOTH = ("ipopt", "multistart")  # methods that need derivatives
 MOMENT = 0.1  # seconds for a bound after a run that has spent all of its time
-ASSUMED = (
-    "Cylinders are rigid, upright and of their nominal size; they may touch each other and walls."
-)
 UNTRIED = (
     "sensitivities are those of this arrangement; whole numbers are not tried, because the packing "
     "is not proven to be the best"
@@ -318,6 +315,12 @@ def _away(plan: Plan, i: int, j: int, at: tuple[Quantity, Quantity]) -> list[str
     return [rounded(a + need * u, at[0], u), rounded(b + need * v, at[1], v)]
 
 
+def assumptions(scene: Scene) -> list[str]:
+    """Return what a packing takes for granted."""
+    size = "Cylinders are rigid, upright and of their nominal size"
+    return [f"{size}; they may touch each other and walls."]
+
+
 def solve(scene: Scene, ask: Ask) -> Result:
     """Pack the cylinders; a method that brings no bound is held against the same one."""
     plan = scene.plan()
@@ -331,7 +334,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
         return result
     if result.bound is None:
         result = _bounded(plan, result, replace(ask, watch=watch))
-    report = {"assumptions": [ASSUMED]}
+    report = {"assumptions": assumptions(scene)}
     if result.status != "optimal":
         report["notes"] = [UNPROVEN]
     found = packing_text.places(plan, problem, outcome.x)

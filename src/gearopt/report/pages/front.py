@@ -9,6 +9,7 @@ from gearopt.formulations.design import drive_design
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.pareto.pareto import RANDOM
 from gearopt.report import front as told
+from gearopt.report.answer import assumptions
 from gearopt.report.front import rules, stages_of, words
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages import front_designs, front_plots, layout_views, train_views
@@ -26,6 +27,7 @@ def page(front: Front, html: str = "page.html", measures: Measures = METRIC) -> 
     """Return one self-contained HTML page; html: where the command at its foot writes it."""
     front = Front.from_dict(front.to_dict())  # plain numbers, as a file of it has them
     each = [front_designs.numbers(p.design, measures) for p in front.points]
+    sections = _lost(front, measures), _spent(front), assumptions(front, measures)
     return render(
         "front.html",
         told.title(front),
@@ -35,7 +37,7 @@ def page(front: Front, html: str = "page.html", measures: Measures = METRIC) -> 
         plots=bool(front.points),
         count=len(front.points),
         first=[_summary(front, measures), *_drawn(front, measures)],
-        last=[section for section in (_lost(front, measures), _spent(front)) if section],
+        last=[section for section in sections if section],
         json=_link(front),
         source=_source(front),
         **_picking(front, each, measures),

@@ -19,7 +19,7 @@ from gearopt.scenes.drive.blank_tables import body_flaws
 from gearopt.scenes.drive.rating import rated
 from gearopt.scenes.explaining.default import explain as explain_scene
 from gearopt.scenes.pair import relief_part
-from gearopt.scenes.pair.assumptions import assumptions
+from gearopt.scenes.pair.assumptions import contact_assumptions
 from gearopt.scenes.pair.contact_part import contact_of, mesh_of
 from gearopt.scenes.pair.example import EXAMPLE, MORE_EXAMPLES
 from gearopt.scenes.pair.relief_part import relieved
@@ -65,7 +65,10 @@ def _with_contact(scene: Scene, result: Result) -> tuple[PairMesh, Result]:
     design, made = _mesh(scene, result)
     stage = design.stages[0]
     contact = contact_of(scene, made, (stage.pinion_material, stage.wheel_material))
-    told = [*result.report.get("assumptions", []), *assumptions(scene, contact, made.elastic.pair)]
+    told = [
+        *result.report.get("assumptions", []),
+        *contact_assumptions(scene, contact, made.elastic.pair),
+    ]
     return made, replace(
         result,
         name="rating" if result.name == "rating" else "pair",

@@ -10,7 +10,7 @@ from gearopt.scenes.pair.contact_part import UNBORED, line_load
 from gearopt.scenes.pair.scene import Scene
 
 
-def assumptions(scene: Scene, made: PairContact, pair: GearPair) -> list[str]:
+def contact_assumptions(scene: Scene, made: PairContact, pair: GearPair) -> list[str]:
     """Return what the contact takes for granted, in sentences."""
     strain = "strain (wide gears)" if made.plane == "strain" else "stress (narrow gears)"
     coupled = 1e6 * made.coupling_mm_per_N

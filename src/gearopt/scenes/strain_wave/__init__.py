@@ -179,7 +179,7 @@ def _with(
 def _shown(scene: Scene, result: Result, design: WaveDesign, limits: dict[str, float]) -> Result:
     """Return a result with a design and all that is told of it."""
     told: dict[str, Any] = {
-        "assumptions": assumptions(scene, design),
+        "assumptions": assumptions(scene),
         "notes": [*notes(design), *range_notes(scene, design.range_ends)],
     }
     drawing = scene.cutter

@@ -23,7 +23,7 @@ NOT_JUDGED = (
 )
 
 
-def assumptions(scene: Scene, made: WaveDesign) -> list[str]:
+def assumptions(scene: Scene) -> list[str]:
     """Return what the numbers take for granted, in sentences."""
     model = [
         "A plane section: no taper of the cup, no stretch of the neutral curve, no friction, no "
@@ -42,7 +42,7 @@ def assumptions(scene: Scene, made: WaveDesign) -> list[str]:
         f"{100.0 * (OUTSIDE_BASE - 1.0):.2g} % outside the base circle, {ROOM:g} modules between "
         "the tips on the minor axis."
     )
-    assumed = [*_sizes(scene, made), *_materials(scene, scene.demand()), *_sharing(scene)]
+    assumed = [*_sizes(scene), *_materials(scene, scene.demand()), *_sharing(scene)]
     ranges = list(_ranges(scene)) if scene.limited else []
     found = [*model, limits, *(f"Assumed: {words}." for words in (*assumed, *ranges))]
     return found if math.isfinite(scene.demand().bending_limit) else [*found, NOT_JUDGED]
@@ -62,22 +62,22 @@ def _mesh_torque(scene: Scene) -> str:
     )
 
 
-def _sizes(scene: Scene, made: WaveDesign) -> Iterator[str]:
+def _sizes(scene: Scene) -> Iterator[str]:
     """Yield the sizes of which the file says nothing."""
     gears, teeth = scene.gears, scene.teeth
     if gears.face_width is None:
-        yield f"a face width of {made.face_width_mm:.4g} mm, 1/9 of the outer diameter"
+        yield f"a face width of {scene.face_width:.4g} mm, 1/9 of the outer diameter"
     if gears.shell is None:
         yield f"{scene.shell:.4g} mm of the circular spline outside its roots"
     if "clearance" not in gears.model_fields_set:
-        yield f"a bottom clearance of {made.clearance:g} modules"
+        yield f"a bottom clearance of {float(gears.clearance):g} modules"
     if scene.wave_generator.shape == "discs" and scene.wave_generator.wrap_angle is None:
-        yield f"discs that carry over {made.wrap_angle_deg:g}° on each side"
+        yield f"discs that carry over {math.degrees(scene.demand().wrap):g}° on each side"
     if not scene.involute and teeth.thickness is None:
-        yield f"teeth {made.thickness_mm:.4g} mm thick at half their height, half the pitch"
+        yield f"teeth {scene.law().thickness:.4g} mm thick at half their height, half the pitch"
     if teeth.law == DOUBLE_ARC:
         named = teeth.convex_radius, teeth.concave_radius, teeth.tangent
-        values = (*made.arc_radii_mm, made.tangent_mm)
+        values = (*scene.law().radii, scene.law().tangent)
         names = "convex radius", "concave radius", "tangent"
         rows = zip(names, values, named, strict=True)
         if left := [f"{name} {value:.4g} mm" for name, value, given in rows if given is None]:
