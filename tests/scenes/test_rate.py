@@ -140,6 +140,23 @@ def test_a_bore_wider_than_its_root_circle_does_not_fit(own, fits):
     assert gearopt.rate(pair(gears=own)).feasible
 
 
+@pytest.mark.parametrize("standard", ["iso6336", "both"])
+def test_a_face_that_is_loaded_in_part_is_warned_of(standard):
+    """b_cal/b = 2/K_Hbeta: the line load falls straight to 0 at b_cal, its mean is F/b."""
+    asked = {"standard": standard, "iso6336": {"accuracy_grade": 6}}
+    asked |= {"quality": 8} if standard == "both" else {}
+    tables = pair(asked, {"power": "2 kW"})
+    tables["rating"] = {k: v for k, v in tables["rating"].items() if k != "quality"} | asked
+    for power, partly in (("2 kW", True), ("25 kW", False)):
+        result = gearopt.rate(tables, {"duty.power": power})
+        found = result.design["rating"]
+        row = of((found.get("beside") or found)["factors"], symbol="K_Hbeta")
+        assert (row["pinion"] > 2.0) is partly
+        loaded = f"Only {200.0 / row['pinion']:.3g} % of the face width of stage 1"
+        assert any(loaded in said for said in found.get("flaws", ())) is partly
+        assert ("K_Hβ is" in str(result)) is partly
+
+
 def test_helix_and_pressure_angle_are_those_of_the_stage():
     """m_F = b sin beta/(pi m_n); tan alpha_t = tan alpha_n/cos beta; else those of [gears]."""
     tables = two_stages(

@@ -47,7 +47,7 @@ def warns(result: Result) -> list[str]:
     if (found := rating_of(result)) is None:
         return []
     unsafe = [] if found.safe_by_all or not result.objective else [sentence_of(found)]
-    return [*unsafe, *found.misfits, *found.flaws]
+    return [*unsafe, *map(greek, (*found.misfits, *found.flaws))]
 
 
 def sentence_of(found: DriveRating) -> str:
