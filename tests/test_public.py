@@ -1,10 +1,13 @@
 """The public names are those of `__all__`, each documented."""
 
+import ast
 import copy
 import inspect
+import os
 import pickle
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -66,3 +69,62 @@ def test_problems_that_were_solved_are_copied_and_reach_other_processes():
         assert other == problem and not other.memo
         assert gearopt.solve(other.at(k=4.0)).value == found.value
     assert all(other == found for other in other_than(found))
+
+
+USER = """
+from typing import Any
+import gearopt
+from gearopt import Budget, Event, Front, Param, Problem, Result, SceneError, Terms, Var
+
+def text(x: Any, p: Any) -> Terms:
+    return Terms({"cost": x.a + p.k / x.a})
+
+def watch(event: Event) -> bool:
+    return event.seconds < 1.0
+
+problem = Problem("own", (Var("a", "mm", 0.1, 9.0, 1.0),), (Param("k", "", 1.0),), text)
+found: Result = gearopt.solve(problem.at(k=4.0), budget=Budget(seconds=1.0), watch=watch)
+front: Front = gearopt.pareto("my.toml", objectives=["gear_volume", "mesh_loss"])
+values: list[float] = [point.values[0] for point in front.points]
+rated: Result = gearopt.rate("my.toml", {"duty.power": "7 kW"})
+told: str = gearopt.compare("my.toml", methods=["ipopt"]).to_json()
+try:
+    print(gearopt.explain("my.toml").remedies, gearopt.load("my.toml"), values, rated, told)
+except SceneError as wrong:
+    print(wrong.key, wrong.fix.value if wrong.fix else "")
+"""
+
+
+@pytest.mark.slow
+def test_a_program_of_a_user_is_checked_for_its_types(tmp_path):
+    """By mypy, which knows the package by its `py.typed`; wrong ones are found."""
+    site = tmp_path / "site"
+    site.mkdir()
+    (site / "gearopt").symlink_to(Path(gearopt.__file__).parent)
+
+    def checked(text):
+        (tmp_path / "user.py").write_text(text)
+        words = ["--strict", "--config-file", "", "--cache-dir", tmp_path / "cache", "user.py"]
+        return subprocess.run(
+            [sys.executable, "-m", "mypy", *map(str, words)],
+            cwd=tmp_path,
+            env=os.environ | {"MYPYPATH": "", "PYTHONPATH": str(site)},
+            capture_output=True,
+            text=True,
+        )
+
+    assert (done := checked(USER)).returncode == 0, done.stdout
+    wrong = checked(USER.replace("values: list[float]", "values: list[str]"))
+    assert wrong.returncode == 1 and "expected List[str]" in wrong.stdout
+
+
+def test_type_checkers_see_every_public_name():
+    source = Path(gearopt.__file__)
+    imported = {
+        name.name
+        for node in ast.walk(ast.parse(source.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ImportFrom) and node.module != "importlib"
+        for name in node.names
+    }
+    assert imported - {"version", "import_module"} == set(gearopt.__all__)
+    assert (source.parent / "py.typed").exists()

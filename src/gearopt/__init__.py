@@ -5,11 +5,12 @@ A name is imported when it is first asked for: the command must answer Ctrl-C be
 
 TYPE_CHECKING = False  # as in typing, which takes its time too
 if TYPE_CHECKING:
-    from gearopt.api import compare, explain, load, solve
+    from gearopt.api import compare, explain, load, pareto, rate, solve
     from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError
     from gearopt.optimise.comparing.comparison import Comparison
     from gearopt.optimise.conic.problem import Conic
     from gearopt.optimise.explaining.explanation import Explanation
+    from gearopt.optimise.pareto.front import Front
     from gearopt.optimise.problem import Problem
     from gearopt.optimise.result import Budget, Event, Outcome, Result
     from gearopt.optimise.solve import evaluate

@@ -1,6 +1,8 @@
 """`report` of kept files that were edited: shown, or refused in one line; never a traceback."""
 
+import csv
 import json
+import math
 import random
 from pathlib import Path
 
@@ -96,10 +98,9 @@ def held(data, folder, capsys):
     """What `report` says of data: its standard output, or the one message."""
     path, page = folder / "kept.json", folder / "page.html"
     path.write_text(json.dumps(data), encoding="utf-8")
-    tables = None if "comparison" in data else folder / "tables"
     page.unlink(missing_ok=True)
     try:
-        report(path, html=page, csv=tables, units="metric")
+        report(path, html=page, csv=folder / "tables", units="metric")
     except typer.Exit:
         said = capsys.readouterr()
         assert page.exists() and said.out and said.err == ""
@@ -212,12 +213,29 @@ def test_text_that_is_no_plain_data_is_refused(text, said, tmp_path):
     assert said in str(wrong.value) and "\n" not in str(wrong.value)
 
 
-def test_a_comparison_has_no_tables_and_one_system(kept, tmp_path):
-    path = tmp_path / "kept.json"
+def test_a_comparison_has_a_table_of_its_runs_and_one_system(kept, tmp_path, capsys):
+    path, table = tmp_path / "kept.json", tmp_path / "tables" / "runs.csv"
     path.write_text(json.dumps(kept["comparison"]))
-    for options in ({"csv": tmp_path / "tables"}, {"units": "inch"}):
-        with pytest.raises(GearoptError, match="this file holds a comparison"):
-            report(path, **options)
+    with pytest.raises(GearoptError, match="this file holds a comparison"):
+        report(path, units="inch")
+    with pytest.raises(typer.Exit):
+        report(path, csv=table.parent)
+    assert str(table) in capsys.readouterr().out
+    rows = list(csv.DictReader(table.read_text(encoding="utf-8-sig").splitlines()))
+    runs = [
+        (row["method"], kind, run)
+        for group in kept["comparison"]["groups"]
+        for row in group["rows"]
+        for kind in ("evaluations", "time")
+        if row[f"equal_{kind}"]
+        for run in row[f"equal_{kind}"]["runs"]
+    ]
+    assert [(r["method"], r["held equal"], int(r["seed"])) for r in rows] == [
+        (method, kind, run["seed"]) for method, kind, run in runs
+    ]
+    values = [float(r["objective"] or "nan") for r in rows if r["unit"] == "cm³"]
+    known = [math.nan if run["objective"] is None else run["objective"] / 1e3 for *_, run in runs]
+    assert values == pytest.approx(known, rel=1e-12, nan_ok=True)
 
 
 def test_an_old_page_stays_where_the_new_one_cannot_be_made(kept, tmp_path):

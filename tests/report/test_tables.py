@@ -13,6 +13,7 @@ from page_reader import Reader
 from rich.console import Console
 
 import gearopt
+from gearopt.report import answer
 from gearopt.report.measures import INCH, METRIC, SYSTEMS
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.section import Table, cell, percent, shown
@@ -109,6 +110,13 @@ def test_csv_of_odd_words_reads_back():
     assert rows(table.csv())[1:] == [[word, "0.1"] for word in odd]
     assert table.stem == "odd-name-mm"
     assert unquote(table.link).endswith(table.csv())
+
+
+def test_what_was_asked_stands_as_in_the_file():
+    asked = {"stage": [{"pinion": {"hardness": "335 HB"}, "module": ["2 mm", "8 mm"]}]}
+    result = gearopt.Result("drive", "failed", "exact", {"name": "volume"}, asked=asked)
+    (table,) = answer.asked(result, METRIC).tables
+    assert [row[1].text for row in table.rows] == ['{hardness = "335 HB"}', '["2 mm", "8 mm"]']
 
 
 def test_no_text_of_a_csv_is_a_formula():

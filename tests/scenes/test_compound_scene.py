@@ -96,6 +96,10 @@ def test_a_ratio_out_of_reach_is_said_first(ratio, teeth, first, then):
     [
         (6.931, "ratio 6.930921053 instead of 6.931 (-0.00114 %); proven nearest"),
         (6, "ratio 6 exactly; proven nearest"),
+        (
+            1 / 3,
+            "ratio 0.3333333333 instead of 0.3333333333 (less than 1e-9 % off); proven nearest",
+        ),
         (25, "ratio 25 exactly; proven nearest"),
         (25.0000001, "ratio 25 instead of 25.0000001 (-4e-07 %), out of reach"),
     ],

@@ -25,7 +25,6 @@ from gearopt.cli.app import (
 from gearopt.cli.names import method_lists, method_words
 from gearopt.cli.reporting import answer, checked, compared, written
 from gearopt.cli.watching import following, reached, watching
-from gearopt.cli.writing import check_html
 from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.runs import EVALUATIONS, SEEDS, Progress
 from gearopt.optimise.comparing.runs import SECONDS as EACH
@@ -215,12 +214,13 @@ def compare(
         ),
     ] = None,
     html: Html = None,
+    csv: Csv = None,
     as_json: Json = False,
 ) -> None:
     """Compare methods by their gap to the proven bound. Ctrl-C reports finished runs."""
     from gearopt.api import compare as compare_file
 
-    check_html(html, file)
+    files = checked(html, csv, "metric", file)
     named = None
     if methods is not None:
         named = [name.strip() for name in methods.split(",") if name.strip()]
@@ -238,7 +238,7 @@ def compare(
         )
     lines: list[str] = []
     try:
-        lines = compared(found, html)
+        lines = compared(found, files)
     finally:  # what took long to find is shown even where no page can be written
         answer(found, as_json, lines)
 

@@ -74,12 +74,12 @@ def _again(kept: Kept, screen: Console, files: Files) -> list[str]:
     """Show what was kept, write its files (never over its source); return lines about them."""
     if kept.file is not None:
         checked(files.html, files.csv, files.measures.name, Path(kept.file))
-    if isinstance(kept, Comparison) and (files.csv or files.measures is not METRIC):
-        raise GearoptError("--csv and --units are not for these; this file holds a comparison")
+    if isinstance(kept, Comparison) and files.measures is not METRIC:
+        raise GearoptError("--units is not for these; this file holds a comparison")
     _show(kept, screen, files.measures)
     if isinstance(kept, Front):
         return traded(kept, files)
-    return written(kept, files) if isinstance(kept, Result) else compared(kept, files.html)
+    return written(kept, files) if isinstance(kept, Result) else compared(kept, files)
 
 
 def _show(found: Kept, screen: Console, measures: Measures) -> None:
@@ -103,14 +103,12 @@ def answer(found: Kept, as_json: bool, lines: list[str], measures: Measures = ME
         print(line)
 
 
-def compared(found: Comparison, html: Path | None) -> list[str]:
-    """Write the page of a comparison; return a line about it."""
-    if html is None:
-        return []
-    from gearopt.report.pages.comparison import page
+def compared(found: Comparison, files: Files) -> list[str]:
+    """Write the page and the table of a comparison, once both are made; a line for each."""
+    from gearopt.report.pages.comparison import page, tables
 
-    write("--html", html, page(found))
-    return [f"\nPage: {html}"]
+    made = "" if files.html is None else page(found)
+    return _kept(files, made, {} if files.csv is None else tables(found))
 
 
 def traded(front: Front, files: Files) -> list[str]:

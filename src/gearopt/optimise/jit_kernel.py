@@ -18,16 +18,13 @@ from contextlib import contextmanager
 from typing import Any
 
 from numba import config, njit
-from numba.core.caching import (
-    CompileResultCacheImpl,
-    FunctionCache,
-    IndexDataCacheFile,
-    UserProvidedCacheLocator,
-)
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
 
 from gearopt.optimise.kernels import say, sound
 
 UNKEPT = "machine code of kernels cannot be kept in {} ({}): every run compiles them again"
+
+Locator = CompileResultCacheImpl._locator_classes[0]  # of config.CACHE_DIR; its name has changed
 
 
 class _Files(IndexDataCacheFile):  # type: ignore[misc, unused-ignore]
@@ -50,7 +47,7 @@ class _Files(IndexDataCacheFile):  # type: ignore[misc, unused-ignore]
             file.write(data + hashlib.sha256(data).digest())
 
 
-class _Folder(UserProvidedCacheLocator):  # type: ignore[misc, unused-ignore]
+class _Folder(Locator):  # type: ignore[misc, valid-type, unused-ignore]
     """The folder that `kernels.kernel` names, read even where none may write; numba's interface."""
 
     @classmethod

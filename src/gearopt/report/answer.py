@@ -30,6 +30,7 @@ from gearopt.report.words import (
     series_of,
     verdict,
 )
+from gearopt.scenes.reading.toml import toml_text
 
 PARTS = {  # of a result: what their names mean
     "sizing": "real-valued sizes",
@@ -285,8 +286,8 @@ def _asked_table(key: str, value: Any) -> Table:
 
 def _ends(value: Any) -> Any:
     """Return a value as the file writes it."""
-    if isinstance(value, list):
-        text = f"[{', '.join(str(v) for v in value)}]"
+    if isinstance(value, list | Mapping):
+        text = toml_text(value)
         return Cell(text, text)
     number = isinstance(value, int | float) and not isinstance(value, bool)
     return Cell(value, f"{value:.15g}") if number else value

@@ -8,7 +8,7 @@ from typing import Any
 from gearopt.formulations.design import StageDesign
 from gearopt.formulations.strength import laws
 from gearopt.optimise.result import Result
-from gearopt.report.measures import Measures
+from gearopt.report.measures import Measures, error_of
 from gearopt.report.section import Cell, Section, Table, Tile, cell, percent
 from gearopt.report.words import EXACT, MODULE, heading, is_module, number, objective, parted
 
@@ -137,7 +137,7 @@ def stage_label(key: str, measures: Measures) -> str:
 
 def ratio_tile(ratio: float, error_percent: float) -> Tile:
     """Return the total ratio and its error from the one that is asked for."""
-    return Tile("total ratio", number(ratio), f"error {error_percent:+.3g} %")
+    return Tile("total ratio", number(ratio), f"error {error_of(error_percent)}")
 
 
 def trains(result: Result, measures: Measures) -> Section | None:

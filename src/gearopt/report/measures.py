@@ -51,6 +51,11 @@ def rounded(value: float, digits: int, decimals: int | None = None, way: int = 0
     return text.rstrip("0").rstrip(".") if short else text
 
 
+def error_of(percent: float) -> str:
+    """Return a relative error; of one as small as rounding, only that it is so small."""
+    return f"{percent:+.3g} %" if abs(percent) >= 1e-9 else "below 1e-9 %" if percent else "0 %"
+
+
 def gap_percent(gap: float) -> str:
     """Return a gap in per cent, never less than it is."""
     if 0.0 < gap < NO_GAP:

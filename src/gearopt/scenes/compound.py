@@ -161,6 +161,8 @@ def _achieved(train: compound.Compound, ratio: Fraction) -> str:
         return f"ratio {float(ratio):.10g} exactly"
     off = 100.0 * float(ratio / train.ratio - 1)
     percent = f"{off:+,.0f} %" if abs(off) >= 100.0 else f"{off:+.3g} %"
+    if abs(off) < 1e-9:
+        percent = "less than 1e-9 % off"
     text = f"ratio {float(ratio):.10g} instead of {float(train.ratio):.10g} ({percent})"
     lowest, highest = train.reach
     within = lowest <= train.ratio <= highest

@@ -4,11 +4,12 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from gearopt.optimise.comparing.comparison import Comparison, Group, Sample
+from gearopt.optimise.comparing.comparison import Comparison, Group, Run, Sample
 from gearopt.report import comparison_words as words
+from gearopt.report.measures import METRIC
 from gearopt.report.pages.frame import render
 from gearopt.report.pages.sheet import COLOURS
-from gearopt.report.section import Figure, axis, layout
+from gearopt.report.section import Figure, Table, axis, layout
 
 KNOWN = ("exact", "ipopt", "annealing", "nsga2", "scip", "gp", "multistart")
 SMALLEST = 1e-9  # gaps below it are drawn as none
@@ -37,6 +38,35 @@ def page(found: Comparison) -> str:
         fairness=words.FAIRNESS,
         clipped=f" (it was so in {clipped} runs)" if clipped else "",
     )
+
+
+HEADS = (
+    *("model", "method", "held equal", "seed", "status", "objective", "bound", "unit"),
+    *("gap, %", "violation", "evaluations", "seconds"),
+)
+
+
+def tables(found: Comparison) -> dict[str, str]:
+    """Return the CSV of every run by the name of its file."""
+    rows = [
+        (*place, run.seed, run.status, *_of(group, run), 100.0 * run.gap if run.gap else run.gap)
+        + (run.violation, run.evaluations, run.seconds)
+        for group in found.groups
+        for row in group.rows
+        for kind, sample in (("evaluations", row.equal_evaluations), ("time", row.equal_time))
+        if sample is not None
+        for place in [(group.words or group.model, row.method, kind)]
+        for run in sample.runs
+    ]
+    return {"runs.csv": Table("runs", HEADS, rows).csv()}
+
+
+def _of(group: Group, run: Run) -> tuple[float | None, float | None, str]:
+    """Return objective and bound of a run in the unit that is shown, and that unit."""
+    value, bound = (
+        None if v is None else METRIC.of(v, group.unit) for v in (run.objective, run.bound)
+    )
+    return value, bound, METRIC.unit(group.unit)
 
 
 def colours(methods: list[str]) -> dict[str, str]:

@@ -3,15 +3,22 @@
 from typing import Any
 
 from pydantic import BaseModel
+from pydantic.json_schema import GenerateJsonSchema
 
 from gearopt.scenes.reading.load import FORMAT, kinds, scene_module
 from gearopt.scenes.reading.remedy import example_of, table_of, tables
 from gearopt.scenes.reading.toml import toml_text
 
 
+class _Schema(GenerateJsonSchema):
+    """Leaves out defaults that JSON cannot hold, as fractions; an interface of pydantic."""
+
+    ignored_warning_kinds = {"skipped-choice", "non-serializable-default"}
+
+
 def json_schema(kind: str) -> dict[str, Any]:
     """Return the JSON schema (2020-12) of a whole file of a kind."""
-    found: dict[str, Any] = scene_module(kind).Scene.model_json_schema()
+    found: dict[str, Any] = scene_module(kind).Scene.model_json_schema(schema_generator=_Schema)
     head = {
         "gearopt": {"const": FORMAT, "description": "Format version of the file"},
         "kind": {"const": kind, "description": "Kind of problem"},

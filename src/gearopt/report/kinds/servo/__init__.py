@@ -8,7 +8,7 @@ from gearopt.report.kinds import Kind, MakeSection
 from gearopt.report.kinds.generic import ASKED, LAST, TOLD
 from gearopt.report.kinds.servo import axis_accuracy, axis_housing, axis_motion, axis_trains
 from gearopt.report.kinds.servo.axis_words import arc_minutes, degrees, design_of, report_of
-from gearopt.report.measures import Measures
+from gearopt.report.measures import Measures, error_of
 from gearopt.report.pages import impossible_views
 from gearopt.report.section import Section, Tile
 from gearopt.report.words import REACHED, amount, goal, number
@@ -75,7 +75,7 @@ def _ratio(ratio: RatioDesign, name: str, measures: Measures) -> list[Tile]:
 
 def _train(train: TrainDesign, name: str, measures: Measures) -> list[Tile]:
     error, angle = train.ratio_error_percent, train.error_deg
-    off = "" if error is None else f", {error:+.3g} %"
+    off = "" if error is None else f", {error_of(error)}"
     teeth = ", ".join(f"{s.pinion_teeth}/{s.wheel_teeth}" for s in train.stages)
     made = [Tile("ratio of the train", number(train.ratio), f"{teeth}{off}")]
     if name != "error" and angle is not None:
