@@ -329,7 +329,7 @@ def pareto(
     seed: int = 0,
     watch: Watch | None = None,
 ) -> Front:
-    """Return the Pareto front of two or three objectives: the designs that no other beats.
+    """Return the Pareto front of two or three objectives: the designs that none dominates.
 
     changes: of a file, as in `load`.
     objectives: names; without them the error lists those of a file, and of a Problem all that it

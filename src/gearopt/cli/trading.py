@@ -46,7 +46,7 @@ def pareto(
     units: Units = "metric",
     as_json: Json = False,
 ) -> None:
-    """Find the designs that no other beats in several objectives. Ctrl-C keeps those found."""
+    """Find the Pareto front of two or three objectives. Ctrl-C keeps the designs found so far."""
     from gearopt.api import pareto as pareto_of
 
     files = checked(html, csv, units, file)

@@ -254,7 +254,7 @@ def _front(train: Train, problem: Problem, budget: Budget, watch: Watch | None) 
     opened = f"{run.compared:,} trains compared, nodes opened: {run.opened:,}"
     finished = not run.clock.stopped
     words = (
-        f"Proof: these are all designs that no other beats; {opened}, all others excluded by "
+        f"Proof: these are all Pareto-optimal designs; {opened}, all others excluded by "
         "lower bounds of every objective and of weighted sums."
         if finished
         else f"Stopped before the search was exhausted: {opened}."
