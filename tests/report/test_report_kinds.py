@@ -77,7 +77,8 @@ def test_dropping_any_one_is_said_where_it_was_tried():
     ways = {"conflict": ["ratio_low", "span"], "remedies": [], "message": "", "any_resolves": True}
     own = Result("own", "infeasible", "x", {}, scene="drive", report={"ways_out": ways})
     said = (
-        "minimum ratio and span are in conflict; dropping any one of them makes a design possible"
+        "the limits on minimum ratio and span are in conflict; dropping any one of them makes a "
+        "design possible"
     )
     assert lead(own) == said
 
@@ -85,10 +86,14 @@ def test_dropping_any_one_is_said_where_it_was_tried():
 @pytest.mark.parametrize(
     ("conflict", "said"),
     [
-        (["ratio_low"], "minimum ratio cannot be met, even if all other limits are dropped"),
+        (
+            ["ratio_low"],
+            "the limit on minimum ratio cannot be met, even if all other limits are dropped",
+        ),
         (
             ["ratio_low", "wheel_diameter[1]", "wheel_diameter[2]"],
-            "minimum ratio and wheel diameter of stages 1 and 2 cannot be met together",
+            "the limits on minimum ratio and wheel diameter of stages 1 and 2 cannot be met "
+            "together",
         ),
     ],
 )

@@ -90,8 +90,8 @@ def test_of_many_requirements_that_may_not_matter_some_are_named():
     ways = {"conflict": names, "unsure": names[1:], "remedies": []}
     result = replace(gearopt.solve(some_file(1)), status="infeasible", report={"ways_out": ways})
     assert lead(result).startswith(
-        "a of stage 1 cannot be met together with b of stage 1, c of stage 1, d of stage 1 and 2 "
-        "other requirements"
+        "the limit on a of stage 1 cannot be met together with b of stage 1, c of stage 1, "
+        "d of stage 1 and 2 other requirements"
     )
 
 

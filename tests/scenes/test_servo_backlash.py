@@ -148,7 +148,8 @@ def test_both_stages_are_moved_together():
         assert way.verified["with"] == "optimal" and way.verified["with_less"] == "infeasible"
     told = lead(replace(posed(changed(FILE, *both)), scene="servo"))
     assert told == (
-        "minimum backlash of stages 1 and 2 cannot be met, even if all other limits are dropped"
+        "the limits on minimum backlash of stages 1 and 2 cannot be met, even if all other "
+        "limits are dropped"
     )
 
 

@@ -49,7 +49,7 @@ def _impossible(result: Result) -> str:
         return (result.message or "no design meets all limits").rstrip(".")
     unsure = [name for name in ways.get("unsure") or () if name in names]
     names = [name for name in names if name not in unsure]
-    together = series_of(grouped(names, has_stages(result)))
+    together = _on(grouped(names, has_stages(result)), len(names))
     if unsure:
         with_ = f"cannot be met together with {_some(unsure, has_stages(result))}"
         return f"{together} {with_} (not all of these need be part of the conflict)"
