@@ -237,19 +237,26 @@ def worth(axis, train):
     """Inertia [t mm2], mass [kg], error [rad] in the axis's own goal."""
     if axis.goal == "error":
         return error_of(axis, train)
+    discs, (first, middle, last) = bodies(axis, train)
+    if axis.goal == "mass":
+        return 1000.0 * sum(discs)
+    z1, z2, z3, z4 = train[:4]
+    n1, n2 = z2 / z1, z4 / z3
+    return first + middle / n1**2 + last / (n1 * n2) ** 2
+
+
+def bodies(axis, train):
+    """Masses [t] of the four gears, and the inertias [t mm2] of the three shafts at themselves."""
     z1, z2, z3, z4, *modules = train
     m1, m2 = map(float, modules)
     d1, d2, d3, d4 = m1 * z1, m1 * z2, m2 * z3, m2 * z4
     area = math.pi / 4 * axis.density * 1e-9 * float(axis.width)
     discs = [area * d * d for d in (d1, d2, d3, d4)]
     discs[3] *= float(axis.sector)
-    if axis.goal == "mass":
-        return 1000.0 * sum(discs)
     polar = [m * d * d / 8 for m, d in zip(discs, (d1, d2, d3, d4), strict=True)]
     thick, long = (float(v) for v in axis.shaft)
     middle = math.pi / 32 * axis.density * 1e-9 * long * thick**4 + polar[1] + polar[2]
-    n1, n2 = z2 / z1, z4 / z3
-    return polar[0] + middle / n1**2 + polar[3] / (n1 * n2) ** 2
+    return discs, (polar[0], middle, polar[3])
 
 
 def error_of(axis, train):

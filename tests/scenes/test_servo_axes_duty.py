@@ -7,7 +7,7 @@ from fractions import Fraction as F
 import numpy as np
 import pytest
 from campaigns import few
-from servo_axes import SAME, held_against, random_axis, room, trains, worth
+from servo_axes import SAME, bodies, held_against, lewis, random_axis, room, trains, worth
 
 import gearopt
 from gearopt.scenes.reading.load import read
@@ -64,6 +64,32 @@ class Duty:
         top = min(math.sqrt(2.0 * angle / both), self.speed / n)
         return angle / top + 0.5 * top * both
 
+    def carried(self, axis, train):
+        """Whether both pinions carry the motor's torque, less what turns what lies before them."""
+        z1, z2, z3, z4, m1, m2 = train
+        n1, n2 = z2 / z1, z4 / z3
+        n, (first, middle, last) = n1 * n2, bodies(axis, train)[1]
+        rotor = self.rotor + first + middle / n1**2 + last / n**2
+        load = self.load + n * n * rotor
+        if self.motion == "swing":
+            a = math.radians(self.turn / 2) * (2 * math.pi * self.hertz) ** 2
+            ramps = [((a * load + self.friction) / n, a)]
+        else:
+            net, brake = self.torque - self.own_friction, self.torque + self.own_friction
+            ramps = [(net, (n * net - self.friction) / load)]
+            if self.motion == "move":
+                ramps.append((brake, (n * brake + self.friction) / load))
+        torques = [
+            max(t - (self.rotor + first) * n * a for t, a in ramps),
+            max(n1 * (t - (self.rotor + first) * n * a) - middle * n2 * a for t, a in ramps),
+        ]
+        width = float(axis.width)
+        stress = [
+            2 * torque / (float(m) ** 2 * z * width * lewis(z))
+            for torque, m, z in zip(torques, (m1, m2), (z1, z3), strict=True)
+        ]
+        return max(stress) <= axis.bending * (1.0 + 1e-11)
+
 
 def random_case(seed):
     """An axis and a duty, with a hub or a motor that the best train of all runs into.
@@ -88,7 +114,8 @@ def random_case(seed):
     aim = list(AIMS)[seed % 3]
     duty = random_duty(rng, axis, AIMS[aim], float(np.median([*gears.values()] or [1.0])))
     values = {t: duty.value(t[1] * t[3] / (t[0] * t[2]), inertia) for t, inertia in gears.items()}
-    able = sorted((t for t in values if values[t] < math.inf), key=lambda t: values[t])
+    able = [t for t in values if values[t] < math.inf and duty.carried(axis, t)]
+    able.sort(key=lambda t: values[t])
     axis = in_the_way(replace(axis, goal=aim), able, rng)
     return axis, duty, {train: values[train] for train in able}
 
@@ -139,7 +166,7 @@ def check(seed):
     return "optimal in a box" if axis.box is not None and axis.required else "optimal"
 
 
-@pytest.mark.parametrize("seed", few([3, 6, 21, 1, 9, 4, 10, 5, 17, 23], [3, 6]))
+@pytest.mark.parametrize("seed", few([3, 6, 21, 1, 9, 4, 10, 5, 23], [3, 6]))
 def test_the_best_train_for_a_duty_keeps_clear(seed):
     """Every goal, with and without a box; an enumeration under the same rules finds no better."""
     assert check(seed) in ("optimal", "optimal in a box")

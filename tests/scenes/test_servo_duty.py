@@ -370,3 +370,76 @@ def test_a_diameter_that_was_not_tried_in_time_is_not_called_out_of_reach(monkey
     rooms = blocked(asked, clock)
     assert not rooms.remedies and "out of reach" not in rooms.message
     assert rooms.message.endswith("; the budget ended before all remedies were tried")
+
+
+LOADED = """
+gearopt = 1
+kind = "servo"
+[motor]
+inertia = "1.1e-4 kg m^2"
+torque = "0.90 N m"
+speed_limit = "4500 rpm"
+[load]
+inertia = "0.05 kg m^2"
+friction = "0.3 N m"
+[duty]
+motion = "move"
+angle = "120 deg"
+[train]
+ratio = [20, 24]
+modules = ["0.5 mm", "0.8 mm"]
+pinion_teeth = [17, 18]
+wheel_teeth = 100
+face_width = "8 mm"
+density = "7.85 g/cm^3"
+second_pinion_diameter = "14 mm"
+wheel_tip_diameters = ["90 mm", "130 mm"]
+output_torque = "0.01 N m"
+bending_stress = "180 MPa"
+minimise = "move_time"
+"""
+
+
+def test_teeth_carry_what_the_motor_puts_on_them():
+    """The motor's torque less what turns its rotor and the gears before each mesh."""
+    result = gearopt.solve(scene(LOADED))
+    train, one = result.design["train"], result.design["ratio"]["chosen"]
+    (first, second), n = train["stages"], train["ratio"]
+    a = (n * 0.9 - 0.3) / (0.05 + n**2 * (1.1e-4 + train["inertia_kg_m2"]))
+    disc = math.pi / 32 * 7850.0 * 8e-3
+    pinion = disc * (1e-3 * first["pinion_diameter_mm"]) ** 4
+    middle = disc * sum(
+        (1e-3 * d) ** 4 for d in (first["wheel_diameter_mm"], second["pinion_diameter_mm"])
+    )
+    torque = 0.9 - (1.1e-4 + pinion) * n * a
+    later = first["ratio"] * torque - middle * second["ratio"] * a
+    for stage, t in ((first, torque), (second, later)):
+        z, m, b = stage["pinion_teeth"], stage["normal_module_mm"], stage["face_width_mm"]
+        stress = 2e3 * t / (z * m * m * b * math.pi * (0.154 - 0.912 / z))
+        assert stage["pinion_torque_Nm"] == pytest.approx(t, rel=1e-9)
+        assert stage["bending_stress_MPa"] == pytest.approx(stress, rel=1e-9) and stress <= 180.0
+    assert one["peak_load_torque_Nm"] == pytest.approx(0.05 * a + 0.3, rel=1e-9)
+    assert result.limits["bending_stress[2]"] == pytest.approx(stress / 180.0, rel=1e-9)
+    assert train["motion_torque_Nm"] == pytest.approx(second["ratio"] * later)
+    assert "this governs, as output_torque, 0.01 N m, is less" in " ".join(shown(result).split())
+    same = gearopt.solve(scene(LOADED, train={"output_torque": None}))
+    assert same.design["train"]["stages"] == train["stages"]
+    assert "the teeth carry this torque" in " ".join(shown(same).split())
+    more = gearopt.solve(scene(LOADED, train={"output_torque": "10 N m"}))
+    assert "output_torque, 10 N m, is larger and governs" in " ".join(shown(more).split())
+
+
+def test_an_output_torque_may_be_left_out_beside_a_motion_alone():
+    with pytest.raises(SceneError, match=r"train.output_torque: is missing: the teeth carry it"):
+        none = {"duty": None, "motor": None, "load": None}
+        scene(LOADED, train={"output_torque": None, "minimise": "mass"}, **none)
+
+
+@pytest.mark.slow
+def test_teeth_too_weak_for_the_motor_are_named_with_the_torque_they_carry():
+    weak = {"output_torque": None, "bending_stress": "100 MPa"}
+    result = gearopt.solve(scene(LOADED, train=weak))
+    ways = result.report["ways_out"]
+    assert result.status == "infeasible" and "the torque that the motor puts" in ways["message"]
+    keys = [way["what"] for way in ways["remedies"]]
+    assert {"train.bending_stress", "motor.torque"} <= set(keys)

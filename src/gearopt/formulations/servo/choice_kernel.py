@@ -14,14 +14,15 @@ from gearopt.formulations.servo.servo_box_kernel import SLACK, ZERO, decided, ro
 from gearopt.formulations.servo.split import duty_kernel
 from gearopt.formulations.servo.split.teeth_kernel import (
     ALLOWANCE,
+    carried,
     first_stage,
     first_stages,
     first_wheel,
+    holds,
     possible,
     promise,
     row,
     smallest,
-    sound,
     worth,
 )
 from gearopt.optimise.jit_kernel import entry, inner
@@ -62,7 +63,7 @@ def compliance(spring, m1, z1, z2, m2, z3, z4):
 @inner
 def stiff(s, spring, m1, z1, z2, m2, z3, z4):
     """Whether a train keeps all limits that fall with z4: error, stress and stiffness."""
-    if not sound(s, m1, z1, z2, m2, z3, z4):
+    if not holds(s, m1, z1, z2, m2, z3, z4):
         return False
     if spring[4] == 0.0:
         return True
@@ -230,6 +231,7 @@ def best_of_row(s, goal, kept, work, i, z1, z2, j, z3):
     m1, m2, ends, looked = s.module[i], s.module[j], work.ends, 0
     low, high = row(s, i, z1, z2, j, z3)
     low = first_stiff(s, kept.spring, m1, z1, z2, m2, z3, low, high)
+    low, high = carried(s, m1, z1, z2, m2, z3, low, high)
     steps = 2
     for step in range(high + 1 - low):
         z4 = high - step if goal == 2 else low + step

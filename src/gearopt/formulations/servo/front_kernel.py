@@ -7,6 +7,7 @@ import numpy as np
 from gearopt.formulations.servo.choice_kernel import first_stiff, least_d3, least_d4, promised
 from gearopt.formulations.servo.split import duty_kernel
 from gearopt.formulations.servo.split.teeth_kernel import (
+    carried,
     first_stage,
     first_stages,
     possible,
@@ -125,6 +126,7 @@ def unbeaten(s, aims, spring, sample, at, duty, rows, most):
             continue
         low, high = row(s, i, z1, z2, j, z3)
         low = first_stiff(s, spring, m1, z1, z2, m2, z3, low, high)
+        low, high = carried(s, m1, z1, z2, m2, z3, low, high)
         steps, at[2] = steps + 5, z3 + 1
         if low <= high:
             if count + high + 1 - low > len(rows):

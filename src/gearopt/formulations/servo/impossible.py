@@ -15,12 +15,21 @@ from gearopt.optimise.solve import solve_within
 
 WIDER = tuple(Fraction(1, 10**k) for k in range(6, 0, -1))  # ratio tolerances that are tried
 CLOSE = 1e-7  # relative: between the largest part that leaves a train and the smallest without
+FAINT = 1e-9  # N mm, a torque that loads no tooth
 THIN = 1e-6  # part of a diameter below which it is no remedy
 
 
 def status(train: ServoTrain, clock: Clock) -> str:
     """Return the status of a train in any box, whatever its duty."""
     return "limit" if clock.over else solve_within(clock, split.problem(train)).status
+
+
+def by_motion(train: ServoTrain, clock: Clock) -> bool:
+    """Return whether a train is impossible only as its teeth carry the duty's motion."""
+    if train.duty is None:
+        return False
+    still = replace(train, duty=None, output_torque=train.output_torque or FAINT)
+    return status(train, clock) == "infeasible" and status(still, clock) == "optimal"
 
 
 def in_conflict(train: ServoTrain, clock: Clock, goal: str = "") -> tuple[str, ...]:

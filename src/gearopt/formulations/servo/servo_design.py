@@ -72,7 +72,7 @@ class Teeth:
 
 @dataclass(frozen=True)
 class Stage(Teeth):
-    """One stage of a train; face width and Lewis stress where a file chooses the train."""
+    """One stage of a train; face width, torque and Lewis stress where a file chooses the train."""
 
     ratio: float
     pinion_diameter_mm: float
@@ -81,6 +81,7 @@ class Stage(Teeth):
     wheel_tip_diameter_mm: float
     centre_distance_mm: float
     face_width_mm: float | None = None
+    pinion_torque_Nm: float | None = None
     bending_stress_MPa: float | None = None
 
 
@@ -89,7 +90,8 @@ class TrainDesign:
     """A train; ratio_error_percent: off a single ratio that is asked for. error: at the output.
 
     inertia: at the motor, and mass where a file chooses the train. sector: part of a disc that the
-    last wheel is.
+    last wheel is. motion_torque: peak torque at the last wheel in the motion of a duty;
+    output_torque: that of the file.
     """
 
     stages: tuple[Stage, ...]
@@ -98,6 +100,8 @@ class TrainDesign:
     inertia_kg_m2: float | None = None
     mass_kg: float | None = None
     error_deg: float | None = None
+    motion_torque_Nm: float | None = None
+    output_torque_Nm: float | None = None
     sector: float = 1.0
 
 
@@ -144,6 +148,7 @@ class Achieved:
     motor_speed_rpm: float | None = None
     motor_speed_used_percent: float | None = None
     motor_torque_used_percent: float | None = None
+    peak_load_torque_Nm: float | None = None
     peak_motor_torque_Nm: float | None = None
     torque_to_load_percent: float | None = None
     torque_to_rotor_percent: float | None = None

@@ -42,16 +42,17 @@ LIMITS: tuple[tuple[Path, int], ...] = (  # of a file, and the way that is easie
     (("space", "height"), 1),
     (("space", "motor_diameter"), -1),
     (("space", "hub_diameter"), -1),
-    (("train", "output_shaft_diameter"), -1),
-    (("train", "second_pinion_diameter"), -1),
     (("train", "bending_stress"), 1),
     (("train", "output_torque"), -1),
     (("train", "face_width"), 1),
+    (("train", "output_shaft_diameter"), -1),
+    (("train", "second_pinion_diameter"), -1),
     (("shaft", "diameter"), 1),
     (("shaft", "diameter"), -1),
     (("shaft", "length"), -1),
 )
 RANGES: tuple[tuple[Path, int], ...] = (
+    (("motor", "torque"), -1),  # loads the teeth less, and may move the load no more
     (("train", "wheel_tip_diameters", 0), 1),
     (("train", "wheel_tip_diameters", 1), 1),
     (("train", "ratio_tolerance"), 1),

@@ -74,6 +74,7 @@ def _of_train(scene: Scene) -> list[str]:
     found = [
         "External spur gears without profile shift, solid discs of one face width; addendum 1 m.",
         *_sector(scene.train),
+        *_carried(scene),
         "Bending stress after Lewis at the tip of one tooth, form factor pi (0.154 - 0.912/z) of "
         "full-depth teeth of 20 degrees (up to 8 % above tables, so that stresses may be that much "
         "higher): no dynamic, load distribution or notch factor, and no contact stress. It is no "
@@ -102,6 +103,24 @@ def _sector(train: Train) -> tuple[str, ...]:
     """Say what part of a disc the last wheel is, where it is no whole one."""
     share = 100.0 * float(train.sector)
     return () if share == 100.0 else (f"The last wheel is {share:g} % of a disc.",)
+
+
+def _carried(scene: Scene) -> tuple[str, ...]:
+    """Say which torques the teeth carry."""
+    assert scene.train is not None
+    if scene.duty is None:
+        return ("Teeth carry output_torque; no motion of [duty] is known.",)
+    given = "output_torque or, where it is larger, " if scene.train.output_torque else ""
+    motion = (
+        ""
+        if scene.duty.motion == "swing"
+        else (
+            ", with all the motor's torque: what its rotor and the gears before a mesh do not take "
+            "loads the mesh, before losses"
+        )
+    )
+    lightest = " The lightest train carries output_torque alone." if scene.lightest else ""
+    return (f"Teeth carry {given}the peak torque of the motion{motion}.{lightest}",)
 
 
 def _counted(scene: Scene) -> str:

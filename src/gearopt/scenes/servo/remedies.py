@@ -36,6 +36,10 @@ WHOLE = (
     "real-valued teeth and modules meet all other limits, whole teeth and the modules of the list "
     "do not"
 )
+LOADED = (
+    "trains meet all other limits, but the torque that the motor puts on their teeth in [duty] is "
+    "more than bending_stress allows"
+)
 MOTOR = (
     "the cause is the duty: trains meet all other limits, but with none of them does the motor do "
     "what [duty] asks"
@@ -136,6 +140,8 @@ def _other(scene: Scene, message: str, clock: Clock) -> Remedies:
     if names := impossible.in_conflict(train, clock):
         why = "real-valued teeth and modules do not meet all other limits either"
         return Remedies(names, message=why)
+    if impossible.by_motion(train, clock):
+        return Remedies(message=LOADED)
     if message != NO_TEETH:  # it names the box, or the stiffness
         return Remedies(message=_reached(scene, clock) or message)
     if (other := impossible.with_wider_ratio(train, clock)) is not None:

@@ -177,6 +177,11 @@ class Scene(Table):
                     raise refuse("needs a table [train]", at=(name,), action="remove")
             return
         self._check_aim(self.train)
+        if self.train.output_torque is None and (self.duty is None or self.lightest is not None):
+            needs = (
+                "[lightest] needs it" if self.lightest else "the teeth carry it (or give [duty])"
+            )
+            raise refuse(f"is missing: {needs}", at=("train", "output_torque"))
         check_shafts(self.train, self.shaft, self.space, self.mesh)
         check_sector(self.train, self.space, self.duty)
         stiff = self.stiffness
@@ -264,7 +269,7 @@ class Scene(Table):
             max_wheel_teeth=table.wheel_teeth,
             face_width=table.face_width.value,
             density=table.density.value,
-            output_torque=table.output_torque.value,
+            output_torque=table.output_torque.value if table.output_torque else 0.0,
             bending=table.bending_stress.value,
             bore=table.second_pinion_diameter.exact[0],
             wheel_tips=(first, second),

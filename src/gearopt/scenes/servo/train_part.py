@@ -28,7 +28,13 @@ from gearopt.formulations.servo.servo_design import (
     TrainDesign,
 )
 from gearopt.formulations.servo.split.bodies import Pairs
-from gearopt.formulations.servo.split.servo_train import bending_stress, objectives, pairs
+from gearopt.formulations.servo.split.servo_train import (
+    bending_stress,
+    motion_torques,
+    objectives,
+    pairs,
+    pinion_torques,
+)
 from gearopt.formulations.servo.train_front import front
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.result import Result
@@ -113,8 +119,8 @@ def backlashes(scene: Scene) -> tuple[MeshBacklash, ...]:
     )
 
 
-def _stage(pair: GearPair, stress: float | None) -> Stage:
-    """Return a stage in the words of a drawing; stress and width where the train is known."""
+def _stage(pair: GearPair) -> Stage:
+    """Return a stage in the words of a drawing."""
     pinion, wheel = pair.gears
     return Stage(
         normal_module_mm=pair.normal_module,
@@ -126,8 +132,6 @@ def _stage(pair: GearPair, stress: float | None) -> Stage:
         pinion_tip_diameter_mm=float(pinion.tip_diameter),
         wheel_tip_diameter_mm=float(wheel.tip_diameter),
         centre_distance_mm=float(pair.centre_distance),
-        face_width_mm=None if stress is None else pair.face_width,
-        bending_stress_MPa=stress,
     )
 
 
@@ -136,23 +140,31 @@ def described(scene: Scene, gears: Pairs) -> TrainDesign:
     first, second = gears
     n, table = first.ratio * second.ratio, scene.train
     train = None if table is None else scene.servo_train()
-    stresses: tuple[float | None, float | None] = (None, None)
-    if train is not None:
-        torques = train.output_torque / second.ratio, train.output_torque
-        one, two = (bending_stress(t, p) for t, p in zip(torques, gears, strict=True))
-        stresses = float(one), float(two)
     error = sum(s.most * sensitivity(gears, s) for s in scene.sources)
     found = TrainDesign(
-        stages=(_stage(first, stresses[0]), _stage(second, stresses[1])),
+        stages=(_stage(first), _stage(second)),
         ratio=n,
         error_deg=math.degrees(error) if scene.sources else None,
     )
     if table is None or train is None:
         return found
     worth = objectives(train, ("inertia", "mass"), gears)
+    torques, moved = pinion_torques(train, gears), motion_torques(train, gears)
+    stages = tuple(
+        replace(
+            stage,
+            face_width_mm=pair.face_width,
+            pinion_torque_Nm=1e-3 * float(torque),
+            bending_stress_MPa=float(bending_stress(torque * pair.ratio, pair)),
+        )
+        for stage, pair, torque in zip(found.stages, gears, torques, strict=True)
+    )
     single = table.ratio[0] == table.ratio[1]
     return replace(
         found,
+        stages=stages,
+        motion_torque_Nm=None if moved is None else 1e-3 * float(moved[1]),
+        output_torque_Nm=1e-3 * train.output_torque or None,
         ratio_error_percent=100.0 * (n / float(train.ratio) - 1.0) if single else None,
         inertia_kg_m2=float(KG_M2 * worth["inertia"]),
         mass_kg=float(worth["mass"]),

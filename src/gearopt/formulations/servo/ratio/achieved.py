@@ -52,6 +52,7 @@ def achieved(bare: ServoDuty, one: Candidate, best: float) -> Achieved | None:
         loss_percent=100.0 * less,
         inertia_ratio=duty.drive.load_inertia / ratio**2 / duty.drive.inertia,
         gear_inertia_kg_m2=None if one.inertia is None else KG_M2 * one.inertia,
+        peak_load_torque_Nm=1e-3 * float(duty.carried_torque(ratio, 0.0, 0.0)) * ratio,
         **_speeds(duty, ratio),
         **_torques(duty, ratio, value),
     )

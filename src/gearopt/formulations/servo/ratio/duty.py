@@ -106,6 +106,36 @@ class ServoDuty:
         ramp = mean_ramp(found, self.deceleration(ratio, gears))
         return shortest_move_time(self.angle, own.speed_limit / ratio, ramp)
 
+    def carried_torque(self, ratio: Any, gears: Any, beyond: Any) -> Any:
+        """Return the peak torque [N mm] through a mesh, seen at the motor.
+
+        (J_L a + F_L)/(eta N) + J N a, a the largest acceleration, J = beyond what turns after the
+        mesh [t mm2, at the motor]; of a move the braking torque (J_L d - F_L)/N + J N d where that
+        is larger. A motor that falls in speed has most torque at standstill; where the load does
+        not move, all of it loads the teeth. gears: inertia of the train, seen at the motor.
+        """
+        own = self.drive
+        load, friction = own.load_inertia, own.load_friction
+        if self.motion == "swing":
+            peak = self.peak_acceleration
+            return (load * peak + friction) / ratio + beyond * ratio * peak
+        numbers = load, own.inertia + gears, own.net_torque, friction, own.efficiency
+        ramp = np.maximum(load_acceleration(ratio, *numbers), 0.0)
+        speeding = (load * ramp + friction) / (own.efficiency * ratio) + beyond * ratio * ramp
+        found = np.minimum(speeding, own.net_torque)
+        if self.motion == "move":
+            ramp = self.deceleration(ratio, gears)
+            found = np.maximum(found, (load * ramp - friction) / ratio + beyond * ratio * ramp)
+        return found
+
+    @property
+    def minimum_load_torque(self) -> float:
+        """Return a torque at the load [N mm] that every train must carry; 0 where none is known."""
+        own = self.drive
+        if self.motion != "swing":
+            return 0.0
+        return own.load_inertia * self.peak_acceleration + own.load_friction
+
     def limits(self, ratio: Any, value: Any) -> dict[str, Any]:
         """Return the utilisations of the motor at a ratio; value: that of the duty there.
 

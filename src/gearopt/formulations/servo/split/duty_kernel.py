@@ -8,13 +8,14 @@ the total ratio where the inertia is replaced by a + b N^2.
 import math
 
 from gearopt.formulations.servo.split.teeth_kernel import (
+    carried,
     first_stage,
     first_stages,
     first_wheel,
+    holds,
     moved,
     row,
     smallest,
-    sound,
     worth,
 )
 from gearopt.optimise.jit_kernel import entry, inner
@@ -105,7 +106,7 @@ def useful(s, goal, first, most, best, found):
     """Like `useful` of the teeth, for what a duty makes least; a promise is STEPS steps.
 
     Error and stress fall with the teeth of wheel 4 and gears keep clear above some number of them,
-    so that those allowed are the largest ones.
+    so that those allowed are the largest ones; those that carry the motion are an interval.
     """
     looked, steps, middle = 0, 0, centre(s.duty)
     n, (end, pinions, wheels) = first, first_stages(s)
@@ -123,15 +124,18 @@ def useful(s, goal, first, most, best, found):
             for z3 in range(s.bored[j], s.pinion[1] + 1):
                 steps += 1
                 low, high = row(s, i, z1, z2, j, z3)
-                if low > high or not sound(s, m1, z1, z2, m2, z3, high):
+                if low > high or not holds(s, m1, z1, z2, m2, z3, high):
                     continue
                 top = high
                 while low < top:
                     z4 = (low + top) // 2
-                    if sound(s, m1, z1, z2, m2, z3, z4):
+                    if holds(s, m1, z1, z2, m2, z3, z4):
                         top = z4
                     else:
                         low = z4 + 1
+                low, high = carried(s, m1, z1, z2, m2, z3, low, high)
+                if low > high:
+                    continue
                 z4, more = best_of_row(s, goal, m1, z1, z2, m2, z3, low, high, middle)
                 looked, steps = looked + more, steps + more
                 value = worth(s, goal, m1, z1, z2, m2, z3, z4)

@@ -24,7 +24,8 @@ class Numbers(NamedTuple):
     clear_2, stage_1 (K,): minimum numbers of teeth of gear 2, of gear 4, of gears 1 and 2 together;
     unit (K,), output: what keeps gear 2 clear of the output shaft (`bodies.MinimumTeeth`). low,
     high: total ratio. bore; tip: largest reference diameter of gear 4 [mm]. load: minimum d m [mm2]
-    of gear 4, by the teeth of its pinion. disc_mass [kg/mm2] and disc_inertia [t/mm2]: per d^2 and
+    of gear 4, by the teeth of its pinion, under the output torque; tooth: the same under 1 N mm.
+    disc_mass [kg/mm2] and disc_inertia [t/mm2]: per d^2 and
     per d^4. duty: see `duty_numbers`.
     """
 
@@ -44,6 +45,7 @@ class Numbers(NamedTuple):
     lost: Array
     error: float
     load: Array
+    tooth: Array
     low: float
     high: float
     bore: float
@@ -56,14 +58,14 @@ class Numbers(NamedTuple):
 
 
 def duty_numbers(duty: ServoDuty | None) -> Array:
-    """Return the motion (0 acceleration, 1 move, 2 swing) and the numbers of the kernel's `duty`.
+    """Return the motion (0 acceleration, 1 move, 2 swing, -1 none) and numbers: kernels' `duty`.
 
     Load and motor inertia [t mm2], torque less the motor's friction, load friction [N mm],
     efficiency, slope of the torque [N mm], angle [rad], speed limit [rad/s], friction of the motor
     [N mm], peak acceleration [rad/s2], largest rms torque [N mm].
     """
     if duty is None:
-        return np.zeros(12)
+        return np.array([-1.0, *[0.0] * 11])
     own = duty.drive
     loads = own.load_inertia, own.inertia, own.net_torque, own.load_friction
     motor = own.efficiency, duty.slope, duty.angle, own.speed_limit, own.motor_friction
@@ -88,6 +90,7 @@ def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
     most, width, density = train.pinion_teeth[1], train.face_width, train.density
     known = np.maximum(np.arange(most + 1, dtype=float), train.pinion_teeth[0])
     pinions = GearPair.of_teeth(1.0, known, known, width)
+    tooth = LEWIS.load(pinions, known, 0.0, (train.bending,))
     thick, long = train.shaft or (0.0, 0.0)
     return Numbers(
         least=-_floors(-low, most**2),
@@ -97,7 +100,8 @@ def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
         module=np.array([float(m) for m in train.modules]),
         lost=np.array(train.lost_motion or (0.0, 0.0)),
         error=float(train.error),
-        load=LEWIS.load(pinions, train.output_torque * known, 0.0, (train.bending,)),
+        load=train.output_torque * tooth,
+        tooth=tooth,
         low=float(low),
         high=float(high) * (1.0 + 1e-15),
         bore=float(train.bore),

@@ -37,9 +37,10 @@ def relaxation(train: ServoTrain, goal: str = "inertia") -> Problem:
 
     tips = tuple(float(t) for t in train.wheel_tips)
     error = (Param("error", "rad", train.error, key="accuracy.error", role="limit"),)
+    stress = Param("bending_stress", "MPa", train.bending, key="train.bending_stress", role="limit")
     parameters = (
         *(error if math.isfinite(train.error) else ()),
-        Param("bending_stress", "MPa", train.bending, key="train.bending_stress", role="limit"),
+        *((stress,) if _torque(train) > 0.0 else ()),
         *ratio_parameters(low, high),
         Param("bore", "mm", float(train.bore), key="train.second_pinion_diameter", role="limit"),
         Param("wheel_tip", "mm", tips, 2, TIPS, "limit"),
@@ -93,15 +94,12 @@ def _terms(train: ServoTrain, goal: str, moved: Problem | None, x: Any, p: Any) 
 def _limits(train: ServoTrain, both: Pairs, x: Any, p: Any) -> dict[str, Any]:
     """Return the limits of either stage: stress, diameters, numbers of teeth and modules."""
     law, ends = lewis(float(train.pinion_teeth[1])), _modules(train)
-    torques = train.output_torque / x.ratio[1], train.output_torque
+    torque = _torque(train)
+    torques = torque / x.ratio[1], torque
     low, high = train.pinion_teeth
     sizes = list(zip(x.pinion_diameter, x.module, strict=True))
     found = {
         "stage_ratio_low": tuple(1.0 / n for n in x.ratio),
-        "bending_stress": tuple(
-            bending_stress(t, pair, law) / p.bending_stress
-            for t, pair in zip(torques, both, strict=True)
-        ),
         "bore": p.bore / x.pinion_diameter[1],
         "wheel_tip": tuple(
             pair.wheel.tip_diameter / t for pair, t in zip(both, p.wheel_tip, strict=True)
@@ -111,12 +109,23 @@ def _limits(train: ServoTrain, both: Pairs, x: Any, p: Any) -> dict[str, Any]:
         "module_low": tuple(ends[0] / m for m in x.module),
         "module_high": tuple(m / ends[1] for m in x.module),
     }
+    if torque > 0.0:
+        found["bending_stress"] = tuple(
+            bending_stress(t, pair, law) / p.bending_stress
+            for t, pair in zip(torques, both, strict=True)
+        )
     if (most := train.max_wheel_teeth) is not None:
         wheels = [pair.wheel.reference_diameter for pair in both]
         found["wheel_teeth_high"] = tuple(
             d / (most * m) for d, m in zip(wheels, x.module, strict=True)
         )
     return found
+
+
+def _torque(train: ServoTrain) -> float:
+    """Return a torque at the output [N mm] that all trains carry."""
+    moved = 0.0 if train.duty is None else train.duty.minimum_load_torque
+    return max(train.output_torque, moved)
 
 
 def _modules(train: ServoTrain) -> tuple[float, float]:

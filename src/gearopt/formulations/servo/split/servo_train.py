@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
+
 from gearopt.formulations.servo.ratio.duty import ServoDuty
 from gearopt.formulations.servo.split.bodies import TIP, Bodies, Pairs
 from gearopt.formulations.strength import Law
@@ -25,13 +27,14 @@ class ServoTrain:
 
     ratio: total, within a relative tolerance. modules: those to choose from. pinion_teeth: minimum
     and maximum. max_wheel_teeth: None for no limit. face_width: of all gears. sector: part of a
-    full disc that the last wheel is. output_torque: peak at the load [N mm]. bending: allowable
-    Lewis stress [MPa]. bore: minimum reference diameter of gear 3. wheel_tips: largest tip
-    diameters of gears 2 and 4. shaft: diameter and length of the middle one; None: its inertia is
-    not counted. lost_motion: 2 j_t + 2 delta_p of each stage [mm], so that its error at the wheel
-    is that over the wheel's diameter; None: the error is not known. error: largest at the output
-    [rad]. duty: what the train's inertia and ratio are judged by, if its goal is asked for. bodies:
-    shafts, hub and motor that gears keep clear of; None: not checked.
+    full disc that the last wheel is. output_torque: peak at the load [N mm], 0 for none beside that
+    of the duty's motion, which the teeth carry too. bending: allowable Lewis stress [MPa]. bore:
+    minimum reference diameter of gear 3. wheel_tips: largest tip diameters of gears 2 and 4. shaft:
+    diameter and length of the middle one; None: its inertia is not counted. lost_motion: 2 j_t + 2
+    delta_p of each stage [mm], so that its error at the wheel is that over the wheel's diameter;
+    None: the error is not known. error: largest at the output [rad]. duty: what the train's inertia
+    and ratio are judged by, if its goal is asked for. bodies: shafts, hub and motor that gears keep
+    clear of; None: not checked.
     """
 
     ratio: Fraction
@@ -59,7 +62,9 @@ class ServoTrain:
             raise ValueError("a train needs modules > 0 to choose from")
         if not 12 <= self.pinion_teeth[0] <= self.pinion_teeth[1]:
             raise ValueError("pinion_teeth: needs 12 (for the Lewis factor) <= minimum <= maximum")
-        positive = (self.face_width, self.density, self.output_torque, self.bending, self.error)
+        if not self.output_torque >= 0.0 or (self.duty is None and self.output_torque == 0.0):
+            raise ValueError("a train without a duty needs an output_torque above 0")
+        positive = (self.face_width, self.density, self.bending, self.error)
         lengths = (*(self.lost_motion or ()), *(self.shaft or ()), *self.wheel_tips, self.bore)
         if not all(value > 0 for value in (*positive, *lengths)):
             raise ValueError("widths, loads, allowances and limits of a train are positive")
@@ -104,6 +109,14 @@ def train_inertia(density: Any, pairs: Pairs, shaft: tuple[Any, Any] | None, sec
     J_1 + (J_2 + J_3 + J_s)/n_1^2 + kappa J_4/(n_1 n_2)^2; shaft (diameter, length) [mm], ratios n,
     sector kappa, density [t/mm3]. Without a shaft J_s is left out.
     """
+    pinion, middle, last = shaft_inertias(density, pairs, shaft, sector)
+    return pinion + middle + last
+
+
+def shaft_inertias(
+    density: Any, pairs: Pairs, shaft: tuple[Any, Any] | None, sector: Any
+) -> tuple[Any, Any, Any]:
+    """Return the inertia [t mm2] of the gears of each shaft, seen at the motor."""
     first, second = pairs
     n1, n2 = first.ratio, second.ratio
     middle = first.wheel.inertia(density) + second.pinion.inertia(density)
@@ -111,7 +124,28 @@ def train_inertia(density: Any, pairs: Pairs, shaft: tuple[Any, Any] | None, sec
         thick, long = shaft
         middle = middle + disc_inertia(density, long, thick)
     last = sector * second.wheel.inertia(density)
-    return first.pinion.inertia(density) + middle / n1**2 + last / (n1 * n2) ** 2
+    return first.pinion.inertia(density), middle / n1**2, last / (n1 * n2) ** 2
+
+
+def motion_torques(train: ServoTrain, pairs: Pairs) -> tuple[Any, Any] | None:
+    """Return the peak torques [N mm] at both wheels in the duty's motion; None without a duty."""
+    if train.duty is None:
+        return None
+    pinion, middle, last = shaft_inertias(train.density, pairs, train.shaft, train.sector)
+    n1, n = pairs[0].ratio, pairs[0].ratio * pairs[1].ratio
+    gears = pinion + middle + last
+    first, second = (train.duty.carried_torque(n, gears, j) for j in (middle + last, last))
+    return n1 * first, n * second
+
+
+def pinion_torques(train: ServoTrain, pairs: Pairs) -> tuple[Any, Any]:
+    """Return the torque [N mm] of both pinions, by output_torque or by the motion if larger."""
+    n1, n2 = (pair.ratio for pair in pairs)
+    asked: tuple[Any, Any] = train.output_torque / (n1 * n2), train.output_torque / n2
+    moved = motion_torques(train, pairs)
+    if moved is None:
+        return asked
+    return np.maximum(asked[0], moved[0] / n1), np.maximum(asked[1], moved[1] / n2)
 
 
 def gear_mass(density: Any, pairs: Pairs, sector: Any) -> Any:

@@ -17,6 +17,7 @@ from gearopt.formulations.servo.split.servo_train import (
     bending_stress,
     objectives,
     pairs,
+    pinion_torques,
 )
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
@@ -50,14 +51,15 @@ def problem(train: ServoTrain, *goals: str) -> Problem:
         ratios = (first.ratio, second.ratio)
         bounded = () if math.isinf(train.error) else ("error",)
         found = objectives(train, (*goals, *bounded), both)
-        torques = train.output_torque / second.ratio, train.output_torque
-        stress = [bending_stress(torque, p) for torque, p in zip(torques, both, strict=True)]
         tips = [pair.wheel.tip_diameter for pair in both]
         limits = {name: found[name] / train.error for name in bounded} | {
             "ratio_low": low / (ratios[0] * ratios[1]),
             "ratio_high": ratios[0] * ratios[1] / high,
             "stage_ratio_low": tuple(1.0 / n for n in ratios),
-            "bending_stress": tuple(s / train.bending for s in stress),
+            "bending_stress": tuple(
+                bending_stress(torque * pair.ratio, pair) / train.bending
+                for torque, pair in zip(pinion_torques(train, both), both, strict=True)
+            ),
             "bore": float(train.bore) / second.pinion.reference_diameter,
             "wheel_tip": tuple(t / float(w) for t, w in zip(tips, train.wheel_tips, strict=True)),
         }

@@ -14,6 +14,7 @@ import math
 from gearopt.optimise.jit_kernel import entry, inner
 
 ALLOWANCE = 1.0 + 1e-12  # of error and stress: many times their rounding
+CARRIED = 1.0 + 1e-11  # of the stress by a motion: what rounding hides along a row, too
 
 
 @inner
@@ -53,6 +54,77 @@ def moved(duty, ratio, gears):
 
 
 @inner
+def carried_torque(duty, ratio, gears, beyond):
+    """Peak torque through a mesh in a motion, seen at the motor; beyond: inertia after the mesh."""
+    load, motor, torque, friction, efficiency = duty[1:6]
+    if duty[0] == 2:
+        return (load * duty[10] + friction) / ratio + beyond * ratio * duty[10]
+    inertia = motor + gears
+    left = efficiency * ratio * torque - friction
+    found = torque
+    if left > 0.0:
+        ramp = left / (load + efficiency * ratio**2 * inertia)
+        found = (load * ramp + friction) / (efficiency * ratio) + beyond * ratio * ramp
+    if duty[0] == 1:
+        ramp = (ratio * (torque + 2.0 * duty[9]) + friction) / (load + ratio**2 * inertia)
+        found = max(found, (load * ramp - friction) / ratio + beyond * ratio * ramp)
+    return found
+
+
+@inner
+def used(s, m1, z1, z2, m2, z3, z4):
+    """The larger part of its allowed stress that either pinion has in the motion; 0 without one."""
+    if s.duty[0] < 0:
+        return 0.0
+    n1, n = z2 / z1, z2 * z4 / (z1 * z3)
+    middle = (s.disc_inertia * ((m1 * z2) ** 4 + (m2 * z3) ** 4) + s.shaft_inertia) / n1**2
+    last = s.sector * s.disc_inertia * (m2 * z4) ** 4 / n**2
+    gears = s.disc_inertia * (m1 * z1) ** 4 + middle + last
+    first = carried_torque(s.duty, n, gears, middle + last) * s.tooth[z1] / (z1 * m1**2)
+    second = carried_torque(s.duty, n, gears, last) * n1 * s.tooth[z3] / (z3 * m2**2)
+    return max(first, second)
+
+
+@inner
+def carried(s, m1, z1, z2, m2, z3, low, high):
+    """The teeth of wheel 4 from low to high with which both pinions carry the motion: an interval.
+
+    The stress falls and then rises with the total ratio; it is level where nothing moves. Least and
+    most, the least one larger where there are none.
+    """
+    if s.duty[0] < 0 or low > high:
+        return low, high
+    if max(used(s, m1, z1, z2, m2, z3, low), used(s, m1, z1, z2, m2, z3, high)) <= CARRIED:
+        return low, high
+    start, end = low, high
+    while start < end:
+        z4 = (start + end) // 2
+        here = used(s, m1, z1, z2, m2, z3, z4)
+        beyond = used(s, m1, z1, z2, m2, z3, z4 + 1)
+        rests = s.duty[5] * z2 * z4 / (z1 * z3) * s.duty[3] <= s.duty[4]
+        if beyond < here or (beyond == here and rests):
+            start = z4 + 1
+        else:
+            end = z4
+    if used(s, m1, z1, z2, m2, z3, start) > CARRIED:
+        return start + 1, start
+    bottom = start
+    while low < bottom:
+        z4 = (low + bottom) // 2
+        if used(s, m1, z1, z2, m2, z3, z4) <= CARRIED:
+            bottom = z4
+        else:
+            low = z4 + 1
+    while start < high:
+        z4 = (start + high + 1) // 2
+        if used(s, m1, z1, z2, m2, z3, z4) <= CARRIED:
+            start = z4
+        else:
+            high = z4 - 1
+    return low, high
+
+
+@inner
 def possible(duty, value):
     """Whether the load moves at all, and within the rms torque of the motor."""
     return math.isfinite(value) and value <= duty[11] * ALLOWANCE
@@ -61,6 +133,14 @@ def possible(duty, value):
 @inner
 def sound(s, m1, z1, z2, m2, z3, z4):
     """Whether a train keeps the limits of error and of both pinions' stress."""
+    if used(s, m1, z1, z2, m2, z3, z4) > CARRIED:
+        return False
+    return holds(s, m1, z1, z2, m2, z3, z4)
+
+
+@inner
+def holds(s, m1, z1, z2, m2, z3, z4):
+    """Whether a train keeps what falls with z4: error, and stress under the output torque."""
     d2, d4 = m1 * z2, m2 * z4
     if s.lost[0] * z3 / (d2 * z4) + s.lost[1] / d4 > s.error * ALLOWANCE:
         return False
@@ -194,7 +274,8 @@ def useful(s, goal, first, most, best, found):
     """Like `every`, for the best train alone: what cannot be better is not looked at.
 
     First stages whose promise is no better are dropped. With the other numbers fixed, inertia and
-    mass grow with z4, error and stress fall with it: of every row of z4 only one end can be best.
+    mass grow with z4, error and stress fall with it, and what carries the motion is an interval: of
+    every row of z4 only one end can be best.
     Returns best, first stages and trains looked at, 0, and the first stage to go on from.
     """
     looked = steps = 0
@@ -224,17 +305,18 @@ def useful(s, goal, first, most, best, found):
                     if least > high + 1:
                         continue
                     low = max(low, int(least * (1.0 - 1e-9)))
-                while low <= high:
-                    looked, steps = looked + 1, steps + 1
-                    z4 = high if goal == 2 else low
-                    if sound(s, m1, z1, z2, m2, z3, z4):
-                        value = worth(s, goal, m1, z1, z2, m2, z3, z4)
-                        if value < best:
-                            best = value
-                            found[0], found[1], found[2], found[3] = z1, z2, z3, z4
-                            found[4], found[5] = i, j
-                        break
-                    if goal == 2:
-                        break
-                    low += 1
+                while goal != 2 and low <= high and not holds(s, m1, z1, z2, m2, z3, low):
+                    low, looked, steps = low + 1, looked + 1, steps + 1
+                low, high = carried(s, m1, z1, z2, m2, z3, low, high)
+                if low > high:
+                    continue
+                looked, steps = looked + 1, steps + 1
+                z4 = high if goal == 2 else low
+                if goal == 2 and not holds(s, m1, z1, z2, m2, z3, z4):
+                    continue
+                value = worth(s, goal, m1, z1, z2, m2, z3, z4)
+                if value < best:
+                    best = value
+                    found[0], found[1], found[2], found[3] = z1, z2, z3, z4
+                    found[4], found[5] = i, j
     return best, looked, 0, n

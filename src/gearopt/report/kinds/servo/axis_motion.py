@@ -25,6 +25,7 @@ ROWS = {  # field of `Achieved`: its name, and its unit
     "motor_speed_rpm": ("maximum motor speed", "rpm"),
     "motor_speed_used_percent": ("motor speed used", "percent"),
     "motor_torque_used_percent": ("motor torque used", "percent"),
+    "peak_load_torque_Nm": ("peak torque at the load", "Nm"),
     "peak_motor_torque_Nm": ("peak motor torque", "Nm"),
     "torque_to_load_percent": ("torque to the load", "percent"),
     "torque_to_rotor_percent": ("torque to the motor's rotor", "percent"),

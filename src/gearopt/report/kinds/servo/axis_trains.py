@@ -41,6 +41,7 @@ BARE = (
 COMPARED = (*MOTIONS.values(), *(GOALS[name] for name in OBJECTIVES))  # the duty first
 LARGEST = GOALS["inverse_acceleration"]  # whose value is maximised
 MOVED = ("ratio", "inertia_kg_m2")  # of a train: in the table of motor and load, too
+SAME = 1e-9  # relative: torques that are equal
 STAGE = ("normal_module_mm", "pinion_teeth", "wheel_teeth")
 BEST = {  # symbol and colour of the best by a goal
     "inertia": ("diamond", "--series-4"),
@@ -62,6 +63,8 @@ def section(result: Result, measures: Measures) -> Section | None:
     for key, value in plain.items():
         totals.append([heading(key, measures), cell(value, parted(key)[1], measures)])
     words = [_sector(found.sector)] if found.sector < 1.0 else []
+    carried = _carried(found, measures)
+    words += carried
     if found.error_deg is not None:
         words.append("The error is the worst case of backlash and pitch at the output.")
     if found.inertia_kg_m2 is not None:
@@ -78,7 +81,34 @@ def section(result: Result, measures: Measures) -> Section | None:
     whole = Table("train", ("", ""), totals, csv_only=compared)
     tables = (side_by_side, replace(whole, folded=len(compared) >= len(totals)))
     half = not drawn
-    return Section("Train", words=words, drawings=drawn, tables=tables, half=half, terminal=tables)
+    shown: list[Any] = [*tables, *carried]
+    return Section("Train", words=words, drawings=drawn, tables=tables, half=half, terminal=shown)
+
+
+def _carried(train: TrainDesign, measures: Measures) -> list[str]:
+    """Say which torque the teeth carry: that of the motion or output_torque; [] without [duty]."""
+    if train.motion_torque_Nm is None:
+        return []
+    moved = f"In the motion of [duty] the motor puts {_torque(train.motion_torque_Nm, measures)}"
+    if train.output_torque_Nm is None:
+        return [f"{moved} on the last wheel; the teeth carry this torque."]
+    asked = _torque(train.output_torque_Nm, measures)
+    through = [
+        stage.pinion_torque_Nm * ratio > train.output_torque_Nm * (1.0 + SAME)
+        for stage, ratio in zip(train.stages, (train.ratio, train.stages[1].ratio), strict=True)
+        if stage.pinion_torque_Nm is not None
+    ]
+    which = f"output_torque, {asked}, is larger and governs"
+    if all(through):
+        which = f"this governs, as output_torque, {asked}, is less"
+    elif any(through):
+        stage = 1 + through.index(True)
+        which = f"it governs stage {stage}, and output_torque, {asked}, stage {3 - stage}"
+    return [f"{moved} on the last wheel: {which}."]
+
+
+def _torque(value: float, measures: Measures) -> str:
+    return amount(value, "Nm", measures)
 
 
 def _sector(share: float) -> str:

@@ -76,8 +76,10 @@ class Train(Table):
     wheel_tip_diameters: Annotated[
         tuple[Quantity, ...], several(quantity("length", "80 mm"), ["80 mm", "106 mm"])
     ] = Field(description="Maximum tip diameters of the wheels of stage 1 and 2")
-    output_torque: Annotated[Quantity, quantity("torque", "2.4 N m")] = Field(
-        description="Peak torque at the output"
+    output_torque: Annotated[Quantity | None, quantity("torque", "2.4 N m")] = Field(
+        None,
+        description="Peak torque at the output; with [duty] the teeth also carry what the motion "
+        "puts on them, and it may be left out",
     )
     bending_stress: Annotated[Quantity, quantity("stress", "150 MPa")] = Field(
         description="Allowed bending stress after Lewis, without any factor"
