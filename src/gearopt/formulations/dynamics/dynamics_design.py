@@ -30,7 +30,8 @@ class Response:
     deformation: negative where teeth press. axes: x and y of pinion and wheel; none on fixed axes.
     error: estimated, of the deformation, relative to its largest value. frequency, amplitude: of
     the deformation's spectrum over the second half. jammed: when both flanks are first pressed at
-    once, as the axes came together; None: never.
+    once, as the axes came together; None: never. steady: until when roundings stay below the error
+    asked; None: to the end.
     """
 
     method: str
@@ -48,6 +49,7 @@ class Response:
     frequency_Hz: Columns
     amplitude_mm: Columns
     jammed_ms: float | None = None
+    steady_ms: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

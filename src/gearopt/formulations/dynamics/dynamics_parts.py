@@ -119,6 +119,7 @@ def response(
         frequency_Hz=columns(lines),
         amplitude_mm=columns(amplitude, 5),
         jammed_ms=None if made.motion.jammed is None else MILLI * made.motion.jammed,
+        steady_ms=MILLI * made.steady if made.steady < math.inf else None,
     )
 
 

@@ -17,6 +17,10 @@ from gearopt.physics.motion.moving_pair import MovingPair
 COARSE = 4.0  # steps in a period of the fastest mode, of the longest steps tried
 EXACT = 1e-11  # error of exact pieces, of the largest |delta|: rounding over a long run
 ROUNDING = 3e-13  # error below which halving a step shows rounding, not the method
+MOVED = 5e-14  # of its scale by which a start is moved: half of what impacts are located to
+IMPACTS = 4  # order that a falling change of a motion with impacts is taken to tell, at most
+ROUGH = 0.1  # change from which on a method follows a motion
+NOISE = 3.0  # times what that changes: changes up to there are of roundings, not of the method
 SAFETY = 4.0  # times the error that changes by halving tell of the finer run
 SHORTEST = 11  # outputs of a motion that was cut short, at least
 MOST = 400_000_000  # rates evaluated, at most: some minute
@@ -29,8 +33,10 @@ class Simulated:
     """A motion: its method, the error of delta reached, relative to its largest |delta|.
 
     error: the last change c by halving the steps, times 4/(q - 1) where the changes fell by a
-    factor of q > 5 (at most 2^p of an order p): four times what is left of a geometric series.
-    rates: evaluated in all, those of the search for a method included. met: whether the error asked
+    factor of q > 5 (at most 2^p of an order p, of 4 where teeth part): four times what is left of a
+    geometric series. Where teeth part at least four times what a start moved by MOVED changes, 1e-3
+    after many impacts. steady [s]: until when that stays below the error asked. rates: evaluated in
+    all, those of the search for a method included. met: whether the error asked
     was reached, to the last of the times. longest [s]: the step of the run kept; 0 of exact pieces.
     """
 
@@ -41,6 +47,7 @@ class Simulated:
     met: bool
     rates: int
     longest: float
+    steady: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -73,8 +80,8 @@ def simulate(
     and unloaded where None. Piecewise linear scenes whose teeth never part are solved exactly; else
     steps of several methods are halved (with backlash of those that locate separations), always of
     that whose order promises to need the fewest evaluations, until the change says that the error
-    is met, or the clock stops. Then the best run is told, or of the first two what both have
-    reached; None where that is less than SHORTEST outputs.
+    is met, the clock stops, or the change is of roundings. Then the run of least error is told, or
+    of the first two what both have reached; None where that is less than SHORTEST outputs.
     """
     state, clock = np.zeros(2 * LEVELS[level][0]) if state is None else state, clock or Clock()
     intervals = timeline(pair, times)
@@ -82,7 +89,7 @@ def simulate(
         exact = exact_motion(pair, level, intervals, state, clock)
         return _told(times, exact, "exponential", EXACT, error, exact.rates, 0.0)
     tried = _begun(pair, level, intervals, state, clock)
-    spent = sum(t.spent for t in tried)
+    spent, ended = sum(t.spent for t in tried), list[_Try]()
     while tried:
         best = min(tried, key=lambda t: (t.error > error, t.ahead(error)))
         if best.error <= error or spent + 2 * best.motion.rates > MOST or not clock.tell():
@@ -91,12 +98,40 @@ def simulate(
         if clock.stopped or finer is None:
             break
         spent += finer.motion.rates
-        if best.change < 1e-6 and finer.change > 0.5 * best.change:  # rounding alone is left
-            break
+        if best.change < ROUGH and finer.change > 0.5 * best.change:  # is rounding alone left?
+            moved = _moved(best, intervals, state, clock)
+            if best.change < 1e-6 or finer.change <= NOISE * moved.max():
+                break
         tried[tried.index(best)] = finer
+        ended.append(replace(best, error=max(best.error, finer.change)))
     if not tried:
         return None
-    return _told(times, best.motion, best.method, best.error, error, spent, best.longest)
+    if best.error > error:
+        best = min((*ended, *tried), key=lambda t: t.error)
+    changed = _moved(best, intervals, state, clock)
+    reached = max(best.error, float(changed.max(initial=0.0)))
+    found = _told(times, best.motion, best.method, reached, error, spent, best.longest)
+    if found is None or len(changed) < len(best.motion.states):
+        return found and replace(found, met=False)
+    beyond = np.flatnonzero(changed > error)
+    return replace(found, steady=float(times[max(0, beyond[0] - 1)])) if beyond.size else found
+
+
+def _moved(tried: _Try, times: Timeline, state: Array, clock: Clock) -> Array:
+    """Return SAFETY times the change of the deformation by a start moved by MOVED, relative.
+
+    0 of a motion whose teeth neither part nor meet; of the first outputs where the clock stops.
+    """
+    motion = tried.motion
+    if not motion.events:
+        return np.zeros(len(motion.states))
+    length = abs(motion.pair.load) / motion.pair.wave.mean
+    start = state - MOVED * np.maximum(length, np.abs(state))
+    other = march(motion.pair, motion.level, times, tried.method, tried.longest, start, clock).delta
+    both = min(len(other), len(motion.states))
+    scale = float(np.max(np.abs(motion.delta))) or 1.0
+    change = np.abs(other[:both] - motion.delta[:both]) / scale
+    return np.where(np.isfinite(change), SAFETY * change, math.inf)
 
 
 def _begun(pair: MovingPair, level: str, times: Timeline, state: Array, clock: Clock) -> list[_Try]:
@@ -159,7 +194,10 @@ def _halved(tried: _Try, times: Timeline, state: Array, clock: Clock) -> _Try | 
     change = float(np.max(np.abs(new.delta - old.delta[: len(new.states)]))) / scale
     change = change if math.isfinite(change) else math.inf
     falls = tried.change / change if change > 0.0 else math.inf
-    falls = min(falls, 2.0 ** STEPPERS[tried.method].order) if tried.change < math.inf else 1.0
+    order = (
+        min(STEPPERS[tried.method].order, IMPACTS) if new.events else STEPPERS[tried.method].order
+    )
+    falls = min(falls, 2.0**order) if tried.change < math.inf else 1.0
     told = SAFETY * change / (falls - 1.0) if falls > SAFETY + 1.0 else change
     error = max(told, ROUNDING)
     spent = tried.spent + new.rates

@@ -39,6 +39,13 @@ def _of_response(response: Response, design: DynamicsDesign) -> list[str]:
             f"The error asked, {response.error_asked:.1e}, was not reached: the estimate is "
             f"{response.error:.1e}."
         )
+    if response.steady_ms is not None:
+        found.append(
+            "Every impact of the teeth enlarges small differences: from "
+            f"{response.steady_ms:.4g} ms on the rounding of numbers alone makes more than the "
+            "error asked, however short the steps. Up to there the motion is known to it; after "
+            "that read the RMS and the spectrum, not the single peaks."
+        )
     if response.jammed_ms is not None:
         found.append(
             f"The axes come together until the backlash is used up, first at "
