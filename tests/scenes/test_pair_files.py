@@ -65,7 +65,10 @@ WRONG = [
     ),
     ({"sharing.loads": [1, 1]}, r"names a load twice\. Write loads = \[1\.0\]"),
     ({"sharing.loads": []}, r"loads = \[\]: is empty"),
-    ({"sharing.error": 5}, r"error = 5: is not above 0 and at most 1\. Write error = \"5 %\""),
+    (
+        {"sharing.error": 5},
+        r"error = 5: is not greater than 0 and at most 1\. Write error = \"5 %\"",
+    ),
     ({"sharing.load": [1]}, r"sharing\.load = .*Write loads, in \[sharing\]"),
     ({"sharing.positions": 3}, "positions = 3: is not a whole number from 12 to 5000"),
     (

@@ -250,6 +250,11 @@ def test_weight_is_mass_and_volume_is_asked_back():
         ("[[stage]]", 'module = "7 in"', 'is a module of 177.8 mm. Write "7 1/in" for a diametral'),
         ("[[stage]]", 'diametral_pitch = "8 DP"', "Write diametral_pitch = 8, without a unit"),
         ("[[stage]]", "pinion_teeth = -20", "Write pinion_teeth = 20"),
+        ("[[stage]]", 'pinion_teeth = "20-30"', "Write pinion_teeth = [20, 30]"),
+        ("[[stage]]", 'module = "2 to 4 mm"', 'Write module = ["2 mm", "4 mm"]'),
+        ("[objective]", "density = 7850", 'Write density = "7850 kg/m^3"'),
+        ("[[stage]]", "unit_load = 7000", 'Write unit_load = "7000 psi"'),
+        ("[[stage]]", "minimum_face_width = 12", 'Write minimum_face_width = "12 mm"'),
     ],
 )
 def test_terms_of_the_field_are_answered_by_their_meaning(head, line, said):

@@ -141,7 +141,7 @@ WRONG = {  # keys of [gears], of the wheel; where, what is told
         {},
         "Write web_over_face_width",
     ),
-    "web of nothing": ({"web_over_face_width": 0}, {}, "not above 0 and at most 2"),
+    "web of nothing": ({"web_over_face_width": 0}, {}, "not greater than 0 and at most 2"),
 }
 
 

@@ -5,6 +5,7 @@ and a value to write instead, which `remedy` turns into a SceneError. Numbers re
 exactly as written (int or Decimal).
 """
 
+import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,6 +23,7 @@ from gearopt.units import Quantity
 
 LARGEST = Fraction(10) ** 30  # of any number in a file: beyond it lies a slip, not a gear
 SMALLEST = 1 / LARGEST
+FAR_OFF = math.log(100.0)  # from the example: there another unit is likelier
 BEYOND = "is out of any sensible range (1e-30 to 1e30)"
 # A comma before three digits may separate thousands, so it is not taken for a decimal one.
 _NUMBER = r"(\+?[0-9]*(?:\.|,(?![0-9]{3}(?![0-9])))?[0-9]+(?:[eE][+-]?[0-9]{1,3})?)"
@@ -119,7 +121,7 @@ def quantity(
     """
     bound = units.parse(limit, dimension) if limit else None
     names = ", ".join(units.UNITS[dimension])
-    usual = units.parse(example, dimension).unit
+    usual, size = units.parse(example, dimension).unit, units.parse(example, dimension).value
 
     def fault(found: Quantity) -> str:
         if not signed and (found.number < 0 or (found.number == 0 and not zero)):
@@ -128,6 +130,17 @@ def quantity(
             return BEYOND
         above = bound is not None and found.value > bound.value * (1 + 1e-12)
         return f"is above {limit}" if above else ""
+
+    def likely(digits: str) -> str:
+        """Return the unit that a number without one may have: the example's, if not far from it."""
+        apart = {}
+        for unit in (usual, *units.UNITS[dimension]):
+            try:
+                value = abs(units.parse(f"{digits} {unit}", dimension).value)
+            except ValueError:
+                return usual
+            apart[unit] = abs(math.log(value / size)) if value > 0 and size > 0 else 0.0
+        return usual if apart[usual] < FAR_OFF else min(apart, key=lambda unit: apart[unit])
 
     def usable(text: str) -> str | None:
         try:
@@ -139,7 +152,7 @@ def quantity(
         if isinstance(value, Quantity):
             return value
         if _is_number(value):
-            right = None if _is_far(value) else usable(f"{value} {usual}")
+            right = None if _is_far(value) else usable(f"{value} {likely(str(value))}")
             raise refuse(f"is a bare number: {dimension} needs a unit ({names})", right)
         if not isinstance(value, str):
             raise refuse(f"is not a text with a number and a unit of {dimension} ({names})")
@@ -150,7 +163,7 @@ def quantity(
         try:
             found = units.parse(value, dimension)
         except ValueError as reason:
-            raise refuse(str(reason), usable(meant(value, dimension, usual))) from None
+            raise refuse(str(reason), usable(meant(value, dimension, likely))) from None
         if rule := fault(found):
             raise refuse(rule, usable(value.strip().removeprefix("-")))
         return found
@@ -174,7 +187,7 @@ def number(
 
     percent: "1 %" is read too; fraction: "127/120" too.
     """
-    above = f"between {minimum} and" if minimum or zero else "above 0 and at most"
+    above = f"between {minimum} and" if minimum or zero else "greater than 0 and at most"
     sort = 'a number or a percentage such as "1 %"' if percent else "a number"
     sort += ' or a fraction such as "127/120"' if fraction else ""
 
@@ -360,15 +373,18 @@ def thousands(text: str) -> tuple[str, str] | None:
     return f"{match[1]}{match[3]}{unit}", f"{match[1]}.{match[3]}{unit}"
 
 
-def meant(text: str, dimension: str, usual: str) -> str:
-    """Return a text with its separators and its unit put right; "" where that cannot be done."""
+def meant(text: str, dimension: str, likely: Callable[[str], str]) -> str:
+    """Return a text with its separators and its unit put right; "" where that cannot be done.
+
+    likely: the unit of a number, as text, that has none.
+    """
     if groups := _GROUPS.fullmatch(text[:80]):
         digits, rest, word = groups.groups("")
         text = f"{re.sub('[^0-9]', '', digits)}{rest} {word}"
     match = _SLIP.fullmatch(text[:80])
     if match is None:
         return ""
-    word = match[2] or usual
+    word = match[2] or likely(match[1].replace(",", "."))
     unit = units.named(word, dimension, re.IGNORECASE)
     if unit is None or (unit[0] != word[0] and unit[1:] == word[1:]):
         return ""  # not MW for mW: that is another unit, and the number would be wrong

@@ -10,6 +10,9 @@ from gearopt.scenes.reading.fields import Reads, refuse
 from gearopt.scenes.reading.near import near
 from gearopt.units import Quantity
 
+_END = r"([0-9]{1,9}(?:\.[0-9]{1,9})?)"
+_RANGE = re.compile(rf"\s*{_END}\s*(?:-|\u2013|\.\.\.?|to)\s*{_END}\s*([A-Za-z%][\w/^ ]*)?")
+
 
 def _mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
     """Return the values, wrong ones replaced (or None), and the first rule broken."""
@@ -52,6 +55,11 @@ def span(item: Reads, example: Any, single: bool = False) -> Reads:
     def read(value: Any, example: Any) -> tuple[Any, Any]:
         if isinstance(value, tuple):
             return value[0], value[1]
+        if isinstance(value, str) and (two := _RANGE.fullmatch(value[:80])):
+            texts = [f"{end} {two[3] or ''}".strip() for end in two.group(1, 2)]
+            right, _ = _mended(item, [int(text) if text.isdigit() else text for text in texts])
+            write = None if None in right else right
+            raise refuse("is a text, not a range [minimum, maximum]", write)
         if single and not isinstance(value, list):
             only = item.reader(value, item.example)
             return only, only
