@@ -42,13 +42,12 @@ def needed(standard: "Agma", cells: Cells, safety: tuple[float, float]) -> tuple
     bare["K_s"] = tuple(sizes) if practice.size else (1.0, 1.0)
     module, d = cells.module[LEAST], cells.diameter[LEAST]
     pair = cells.toothing.of_diameter(module, cells.teeth[LEAST], d, cells.ratio[MOST], 1.0)
-    case = standard.case(pair, 1.0, cells.speed[LEAST], {**bare, **standard.given})
+    case = standard.case(pair, 1.0, cells.speed[LEAST], bare)
     made = safeties(case, 1.0, (1.0, 1.0))
     own = pair.working_diameters[0]
     first, *both = _geometry(cells, teeth)
-    pitting = given.get("I")
-    first = first if pitting is None else pitting * (1.0 + 1.0 / cells.ratio[LEAST])
-    both = list(given.get("J", both))
+    first = 1.0 + 1.0 / cells.ratio[LEAST] if "I" in given else first  # `made` has what is given
+    both = [1.0, 1.0] if "J" in given else both
     pressed = [(own * safety[1] / (s * working[MOST])) ** 2 / first for s in made[2:]]
     bent = [
         own * (d / cells.teeth[LEAST]) / s * cells.teeth[LEAST] * safety[0] / (j * working[MOST])
