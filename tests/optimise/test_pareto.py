@@ -255,6 +255,75 @@ def test_the_known_front_of_binh_and_korn_is_found():
     assert shares(front, np.column_stack([f, known_front(f)])) > 0.96
 
 
+def catalogue(cost, error):
+    """One of several designs is to be chosen."""
+
+    def evaluate(x, p):
+        goals = {"cost": np.array(cost) @ x.y, "error": np.array(error) @ x.y}
+        return Terms(goals, equal={"one": cp.sum(x.y)})
+
+    y = Var("y", "", 0.0, 1.0, 0.0, size=len(cost), integer=True)
+    return Conic("catalogue", (y,), (), evaluate)
+
+
+@pytest.mark.parametrize(
+    ("cost", "error", "unbeaten_ones"),
+    [
+        ((0, 1, 2, 9), (10, 3, 2.5, 0), (0, 1, 2, 3)),
+        pytest.param(  # ties and beaten ones
+            (2, 0, 1, 1, 3, 2), (1, 4, 3, 4, 1, 3), (1, 2, 0), marks=pytest.mark.slow
+        ),
+    ],
+)
+def test_the_front_of_a_catalogue_is_complete(cost, error, unbeaten_ones):
+    """Between (0, 10) and (9, 0) half the error is met by (0, 10) alone: the rest is not empty."""
+    front = gearopt.pareto(catalogue(cost, error))
+    assert front.status == "complete" and front.error is None and not front.message
+    expected = [(cost[k], error[k]) for k in unbeaten_ones]
+    assert [p.values for p in front.points] == [pytest.approx(v, abs=1e-7) for v in expected]
+    assert "may be missing" not in repr(front)
+    few = gearopt.pareto(catalogue(cost, error), points=2)
+    assert few.status == "proven" and len(few.points) == 2 and few.error > 0.1
+    assert "A better pick may lie between them." in repr(few)
+
+
+def zdt3(x, p):
+    """Zitzler, Deb and Thiele (2000), problem 3, of 3 variables: a front of five pieces."""
+    g = 1.0 + 9.0 * (x.b + x.c) / 2.0
+    bent = 1.0 - np.sqrt(x.a / g) - x.a / g * np.sin(10.0 * np.pi * x.a)
+    return Terms({"f": x.a, "g": g * bent})
+
+
+def two_pieces(x, p):
+    """The front is a from 0.1 to 0.4 and from 0.6 to 0.9, with b = 0."""
+    first = 1.0 + 2.0 * (x.a - 0.1) * (x.a - 0.9) / 0.18
+    second = 1.0 - 20.0 * (x.a - 0.4) * (x.a - 0.6) / 4.8
+    goals = {"f": 100.0 * (x.a**2 + x.b**2), "g": (x.a - 1.0) ** 2 + x.b**2}
+    return Terms(goals, {"first": first, "second": second})
+
+
+PIECES = {  # text, bounds, guess, pieces of the first objective
+    "zdt3": (
+        zdt3,
+        (0.0, 1.0, 0.5),
+        "abc",
+        ((0.0, 0.0831), (0.1822, 0.2578), (0.4093, 0.4539), (0.6183, 0.6526), (0.8233, 0.8519)),
+    ),
+    "two_pieces": (two_pieces, (-2.0, 2.0, 0.0), "ab", ((1.0, 16.0), (36.0, 81.0))),
+}
+
+
+@pytest.mark.parametrize("name", ["zdt3", pytest.param("two_pieces", marks=pytest.mark.slow)])
+def test_all_pieces_of_a_front_are_found_whatever_the_guess(name):
+    text, ends, variables, pieces = PIECES[name]
+    own = Problem(name, tuple(Var(n, "", *ends) for n in variables), (), text)
+    front = gearopt.pareto(own, points=20)
+    first = values(front)[:, 0]
+    there = [(first >= a - 1e-3) & (first <= b * 1.001 + 1e-3) for a, b in pieces]
+    assert np.any(there, axis=0).all() and all(one.sum() >= 2 for one in there)
+    assert front.status == "not proven" and "Parts of the front may be missing" in repr(front)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("method", ["nsga2", "hybrid"])
 def test_samplers_come_near_the_front_of_binh_and_korn(method):

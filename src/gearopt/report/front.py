@@ -19,6 +19,7 @@ VERDICTS = {
     "infeasible": ("impossible, proven", "red"),
     "limit": ("stopped early", "yellow"),
 }
+COARSE = 0.1  # of the ranges of the objectives: an error at which a pick is told with care
 DEFAULTS = {"seconds": SECONDS, "seed": 0}
 
 
@@ -53,10 +54,15 @@ def decided(front: Front, measures: Measures = METRIC) -> list[str]:
             for k, one in enumerate(front.objectives)
         )
         designs = "1 design" if count == 1 else f"{count:,} designs"
-        found.insert(0, f"{designs} on the Pareto front: {ends}.")
+        among = "on the Pareto front" if front.whole else "found, none dominated by another of them"
+        found.insert(0, f"{designs} {among}: {ends}.")
+        if not front.whole:
+            found.append("Parts of the front may be missing; a pick is from these designs alone.")
     if front.error is not None:
         part = f"{100.0 * front.error:.2g} % of the ranges of its objectives"
         found.append(f"The true front lies within {part} of the line through these points.")
+        if front.error > COARSE:
+            found.append("A better pick may lie between them.")
     if front.impossible:
         count, proven = len(front.impossible), sum(one.proven for one in front.impossible)
         steps = "1 step was" if count == 1 else f"{count} steps were"

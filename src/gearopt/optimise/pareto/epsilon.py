@@ -1,9 +1,10 @@
-"""Fronts of continuous problems by epsilon constraints: one objective is minimised, others limited.
+"""Fronts by epsilon constraints: one objective is minimised, others limited.
 
 The ends of the front come first. A few more follow where the tangents of two neighbours meet, in
-the largest box first; the others are spread so that the least hypervolume is missing. Where every
+the largest gap first; the others are spread so that the least hypervolume is missing. Where every
 point is proven and the problem convex, tangents are below the front and chords above it, which
-gives its error.
+gives its error. Where steps are not proven they start from points of evolution, too, so that no
+piece of the front depends on the guess alone; of what is discrete, gaps are shut by proven steps.
 """
 
 import math
@@ -16,27 +17,38 @@ from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.form import form
+from gearopt.optimise.pareto import evolution
+from gearopt.optimise.pareto.concluded import concluded
 from gearopt.optimise.pareto.found import Found, Point, Skipped, Step, sifted
-from gearopt.optimise.pareto.posed import MOST, Built, Limit, kept, scale, valued
+from gearopt.optimise.pareto.gaps import (
+    CLOSE,
+    TRIALS,
+    Gap,
+    Tried,
+    gaps,
+    met,
+    spread,
+)
+from gearopt.optimise.pareto.posed import MOST, Built, Limit, kept, posed, scale, valued
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result, Watch
-from gearopt.optimise.solve import GAP
 from gearopt.optimise.solve import run as solve_raw
 from gearopt.optimise.terms import Array
 
 SLACK = 1e-7  # relative, of the first end's objective while the others are minimised
 RANDOM = False
 COUNTS = "Ipopt iteration, or solve of a Conic"
-SETTINGS = {"of three objectives": "slices at even limits of the third"}
 STEP = 1e-8  # relative, from one of finitely many designs to the next
+SAMPLED = 2000  # evaluations of evolution, where a step is not proven
+SHARE = 0.3  # of a budget at most, for it
+TWICE = 2  # steps at most for each point that is sought
 CORNER = 0.1  # part of a chord next to its ends where none of the first limits is put
 FIRST = 5  # points at least before others are spread by them
-SAMPLES = 65  # of a curve between two neighbours
 
-LAST = (
-    "Proof: exhausted searches, one per design, each for a smaller {name} than the design before; "
-    "the last search found no design."
-)
+SETTINGS = {
+    "of three objectives": "slices at even limits of the third",
+    "starts where nothing is proven": f"a neighbour, and {SAMPLED} evaluations of evolution",
+}
 
 Caps = dict[str, float]  # largest values of objectives that the user states
 
@@ -56,8 +68,12 @@ class Limiting:
 
 
 @dataclass
-class _Run:
-    """The problems of a front, the points found so far, and the clock; it has state to fill."""
+class Run:
+    """The problems of a front, the points found so far, and the clock; it has state to fill.
+
+    sample: points that evolution found, which steps start from; None: it was not asked, as all
+    steps are proven. sure: the ends are proven.
+    """
 
     problem: Problem | Conic
     names: tuple[str, ...]
@@ -70,8 +86,27 @@ class _Run:
     skipped: list[Skipped] = field(default_factory=list)
     steps: list[Step] = field(default_factory=list)
     widths: dict[str, float] = field(default_factory=dict)
+    lines: list["Line"] = field(default_factory=list)
+    sample: tuple[Point, ...] | None = None
     logarithmic: bool = True
+    sure: bool = True
     none: Result | None = None
+
+    @property
+    def discrete(self) -> bool:
+        """Return whether some variable is, so that the front may have jumps."""
+        return any(v.discrete for v, _ in self.problem.columns)
+
+    def within(self, most: Caps) -> list[Point]:
+        """Return the points of evolution within limits on objectives."""
+        places = {self.names.index(name): value for name, value in most.items()}
+        sample = self.sample or ()
+        return [p for p in sample if all(p.values[k] <= v for k, v in places.items())]
+
+    def started(self, name: str, most: Caps) -> Array | None:
+        """Return the best point of evolution for one objective under limits on others."""
+        place, inside = self.names.index(name), self.within(most)
+        return min(inside, key=lambda p: float(p.values[place])).x if inside else None
 
 
 def front(
@@ -92,17 +127,17 @@ def front(
     """
     if limiting is not None:
         _limitable(limiting, (*names[1:], *caps))
-    own = _Run(problem, tuple(names), caps, Clock(budget, watch), method, limiting)
+    own = Run(problem, tuple(names), caps, Clock(budget, watch), method, limiting)
     if limiting is not None and limiting.whole and len(names) == 2:
-        return _found(own, _stairs(own, points))
+        return concluded(own, _stairs(own, points))
     ends = _ends(own, own.names, own.caps)
     if ends is None:
-        return _found(own)
+        return concluded(own)
     if len(names) == 2:
         _between(own, ends, points, own.caps)
     else:
         _slices(own, ends, points)
-    return _found(own)
+    return concluded(own)
 
 
 def _limitable(limiting: Limiting, names: Sequence[str]) -> None:
@@ -115,7 +150,7 @@ def _limitable(limiting: Limiting, names: Sequence[str]) -> None:
             )
 
 
-def _ends(run: _Run, names: tuple[str, ...], caps: Caps) -> list[Point] | None:
+def _ends(run: Run, names: tuple[str, ...], caps: Caps) -> list[Point] | None:
     """Return the points of the least value of objectives under caps; None where there is none."""
     ends: list[Point] = []
     for k, name in enumerate(names):
@@ -123,11 +158,13 @@ def _ends(run: _Run, names: tuple[str, ...], caps: Caps) -> list[Point] | None:
         if first is None:
             run.points += ends if run.clock.stopped else []
             return None
+        run.sure = run.sure and first.proven
         fixed = run.limiting is None or name in run.limiting.names
         for other in (*names[:k], *names[k + 1 :]) if fixed else ():
             at = first.values[k]
             held = {name: float(at + SLACK * abs(at))}
             again = _solved(run, other, _least(caps, held), first.x)
+            run.sure = run.sure and again is not None and again.proven
             first = again if again is not None else first
         ends.append(first)
     if len(names) == len(run.names):
@@ -141,7 +178,7 @@ def _ends(run: _Run, names: tuple[str, ...], caps: Caps) -> list[Point] | None:
     return framed if len(names) == 2 else ends
 
 
-def _stairs(run: _Run, points: int) -> bool:
+def _stairs(run: Run, points: int) -> bool:
     """Add designs by steps just below the last one; return whether the last step has none."""
     (first, second), held = run.names, dict(run.caps)
     while not run.clock.over and (not points or len(run.points) < points):
@@ -153,7 +190,7 @@ def _stairs(run: _Run, points: int) -> bool:
     return False
 
 
-def _keep(run: _Run, point: Point) -> None:
+def _keep(run: Run, point: Point) -> None:
     """Add a point, and note how the front has grown."""
     run.points.append(point)
     values = np.array([p.values for p in sifted(run.points)[0]])
@@ -164,100 +201,85 @@ def _least(caps: Caps, held: Caps) -> Caps:
     return {n: min(caps.get(n, math.inf), held.get(n, math.inf)) for n in {**caps, **held}}
 
 
-def _between(run: _Run, ends: list[Point], points: int, caps: Caps) -> None:
+def _between(run: Run, ends: list[Point], points: int, caps: Caps) -> None:
     """Add points of a front of the first two objectives between its ends.
 
-    A few where tangents meet in the largest boxes, the others spread; without tangents all are in
-    the largest boxes.
+    A few are in the largest gaps, where tangents meet; of a convex front the others are spread.
+    Gaps that steps find empty are narrowed until as many points are found, or all are shut or
+    without results.
     """
-    found, closed = list(ends), set[tuple[float, float]]()
-    whole = math.prod(run.widths[name] or 1.0 for name in run.names[:2])
-    few = points if run.limiting is not None else min(points, max(FIRST, points // 4))
-    while len(found) < few and not run.clock.over:
-        pairs = [p for p in _pairs(found) if _place(p) not in closed]
-        if not pairs or max(map(_box, pairs)) <= SLACK * whole:
+    line = Line(run, caps, list(ends), np.array([run.widths[name] or 1.0 for name in run.names]))
+    few = (
+        points if run.limiting is not None or run.discrete else min(points, max(FIRST, points // 4))
+    )
+    line.fill(few)
+    for most in spread(line.open, points - len(line.points)):
+        line.step(most)
+    line.fill(points)
+    run.lines.append(line)
+
+
+def _tight(point: Point, near: float) -> bool:
+    """Return whether a point is proven to so much of its first objective."""
+    return point.bound is not None and bool(point.values[0] - point.bound <= near)
+
+
+@dataclass
+class Line:
+    """A front of two objectives under caps as its points are found; it has state to fill."""
+
+    run: Run
+    caps: Caps
+    points: list[Point]
+    ranges: Array
+    tried: list[Tried] = field(default_factory=list)
+
+    @property
+    def gaps(self) -> list[Gap]:
+        """Return the gaps between the points."""
+        return gaps(self.points, self.tried, self.ranges)
+
+    @property
+    def open(self) -> list[Gap]:
+        """Return the gaps that are not shut."""
+        return [gap for gap in self.gaps if not gap.shut]
+
+    def fill(self, count: int) -> None:
+        """Step into the largest gap until there are so many points, or no gap is left to try."""
+        least = SLACK * math.prod(self.ranges[:2])
+        steps = len(self.tried) + TWICE * count
+        while len(self.points) < count and len(self.tried) < steps and not self.run.clock.over:
+            free = [g for g in self.open if g.area > least and len(g.refused) < TRIALS]
+            if not free:
+                return
+            gap = max(free, key=lambda g: g.area)
+            at = met(gap.left, gap.right)[1] if gap.whole else 0.5
+            shutting = self.run.discrete and not gap.whole and not gap.refused
+            shut = gap.top - 0.5 * CLOSE * self.ranges[1]
+            self.step(shut if shutting else gap.limit(min(max(float(at), CORNER), 1.0 - CORNER)))
+
+    def step(self, most: float) -> None:
+        """Add the point of least first objective below a limit of the second one, if it is new."""
+        run, near = self.run, CLOSE * self.ranges
+        gap = next((g for g in self.open if g.floor < most < g.top), None)
+        if gap is None or run.clock.over:
             return
-        pair = max(pairs, key=_box)
-        at = float(_met(*pair)[1])
-        closed.add(_place(pair))
-        found += _added(run, min(max(at, CORNER), 1.0 - CORNER), pair, caps)
-    for at, pair in _spread(_pairs(found), points - len(found)):
-        if _place(pair) not in closed:
-            made, low = _added(run, at, pair, caps), float(pair[0].values[1])
-            if not made or made[0].values[1] <= low + SLACK * abs(low):
-                closed.add(_place(pair))  # nothing lies between them
+        point = _solved(run, run.names[0], _least(self.caps, {run.names[1]: most}), gap.right.x)
+        f = float(gap.left.values[0])
+        back = point is not None and point.values[1] >= gap.top - 0.1 * near[1]
+        if point is None or back or point.values[0] > f + near[0]:
+            self.tried.append(Tried(most, None, False))
+            return
+        proven = _tight(point, near[0])
+        if point.values[0] >= f - near[0]:
+            self.tried.append(Tried(most, f, proven))
+            return
+        self.tried.append(Tried(most, float(point.values[0]), proven))
+        self.points.append(point)
+        _keep(run, point)
 
 
-Pair = tuple[Point, Point]
-
-
-def _pairs(points: list[Point]) -> list[Pair]:
-    """Return neighbours along a front, by the second objective."""
-    ranked = sorted(points, key=lambda p: float(p.values[1]))
-    return list(zip(ranked, ranked[1:], strict=False))
-
-
-def _added(run: _Run, at: float, pair: Pair, caps: Caps) -> list[Point]:
-    """Add the point whose second objective is at a part of the way between two others."""
-    g0, g1 = (float(p.values[1]) for p in pair)
-    held = {run.names[1]: g0 + at * (g1 - g0)}
-    made = _solved(run, run.names[0], _least(caps, held), pair[1].x)
-    if made is None:
-        return []
-    _keep(run, made)
-    return [made]
-
-
-def _place(pair: Pair) -> tuple[float, float]:
-    return float(pair[0].values[1]), float(pair[1].values[1])
-
-
-def _box(pair: Pair) -> float:
-    """Return the area between two neighbours that their points leave open."""
-    return float(np.prod(np.abs(pair[0].values - pair[1].values)[:2]))
-
-
-def _met(left: Point, right: Point) -> Array:
-    """Return where tangents of two neighbours meet, as parts of the way between them (2,).
-
-    The middle where they are not known, or meet outside of the box.
-    """
-    (f0, g0), (f1, g1) = left.values[:2], right.values[:2]
-    if left.slopes is None or right.slopes is None or f0 == f1 or g0 == g1:
-        return np.full(2, 0.5)
-    s0, s1 = (float(p.slopes[0]) * (g1 - g0) / (f1 - f0) for p in (left, right))  # type: ignore
-    at = 0.0 if math.isinf(s0) else (1.0 - s1) / (s0 - s1) if s0 != s1 else 0.5
-    met = np.array([1.0 if math.isinf(s0) else s0 * at, at])
-    return met if ((met >= 0.0) & (met <= 1.0)).all() else np.full(2, 0.5)
-
-
-def _spread(pairs: list[Pair], count: int) -> list[tuple[float, Pair]]:
-    """Return where so many more points miss least of the hypervolume, the first most of it.
-
-    Parts of the way between two neighbours, and these. Points of a curve f(g) miss least where
-    their density goes as (-df/dg)^(1/2): Auger, Bader, Brockhoff, Zitzler, Theory of the
-    hypervolume indicator, FOGA 2009. Between neighbours the curve is taken as the parabola that
-    their tangents make.
-    """
-    t = np.linspace(0.0, 1.0, SAMPLES)[:, None]
-    ways, lengths = [], []
-    for left, right in pairs:
-        way = 2.0 * t * (1.0 - t) * _met(left, right) + t**2
-        step = np.sqrt(np.abs(np.diff(way, axis=0)).prod(axis=1))
-        ways.append((np.append(0.0, np.cumsum(step)), way[:, 1]))
-        lengths.append(ways[-1][0][-1] * math.sqrt(_box((left, right))))
-    parts = np.ones(len(pairs))
-    for _ in range(count if pairs else 0):  # a gap of n parts misses length^2/(2 n)
-        parts[(np.array(lengths) ** 2 / (parts * (parts + 1.0))).argmax()] += 1.0
-    found = [
-        (float(np.interp(k / n * s[-1], s, g)), pair)
-        for pair, (s, g), n in zip(pairs, ways, parts, strict=True)
-        for k in range(1, int(n))
-    ]
-    return [found[k] for k in sorted(range(len(found)), key=lambda k: f"{k:016b}"[::-1])]
-
-
-def _slices(run: _Run, ends: list[Point], points: int) -> None:
+def _slices(run: Run, ends: list[Point], points: int) -> None:
     """Add fronts of the first two objectives at even limits of the third."""
     third, values = run.names[2], np.array([p.values[2] for p in ends])
     count = max(2, round(math.sqrt(points)))
@@ -269,23 +291,59 @@ def _slices(run: _Run, ends: list[Point], points: int) -> None:
             _between(run, own, points // count, caps)
 
 
-def _solved(run: _Run, name: str, most: Caps, near: Array | None = None) -> Point | None:
-    """Return the point of least value of one objective under limits on others; None: none found."""
+def _solved(run: Run, name: str, most: Caps, near: Array | None = None) -> Point | None:
+    """Return the point of least value of one objective under limits on others; None: none found.
+
+    Where a step is not proven, the best point that evolution found within the limits is another
+    start, and the better of both answers counts.
+    """
     if run.clock.stopped:
         return None
+    result, point = _attempt(run, name, most, near)
+    unsure = result.status not in ("optimal", "infeasible")
+    if unsure and run.limiting is None and isinstance(run.problem, Problem):
+        if run.sample is None:
+            run.sample = _sampled(run, run.problem)
+        start, place = run.started(name, most), run.names.index(name)
+        if start is not None and not run.clock.over:
+            _, other = _attempt(run, name, most, start)
+            if point is None or (other is not None and other.values[place] < point.values[place]):
+                point = other
+    if point is None:
+        run.skipped.append(Skipped(most, result.status == "infeasible"))
+        run.none = run.none or result
+    return point
+
+
+def _sampled(run: Run, problem: Problem) -> tuple[Point, ...]:
+    """Return what evolution finds of a front within a part of the budget, as starts of steps."""
+    clock = run.clock
+    limits = {name: Limit.of(value, 0.0) for name, value in run.caps.items()}
+    own, left = posed(problem, run.names, limits), clock.left
+    if problem.repeats or not isinstance(own, Problem):
+        return ()
+    seconds = None if left.seconds is None else SHARE * left.seconds
+    most = SAMPLED if left.evaluations is None else min(SAMPLED, int(SHARE * left.evaluations))
+    before = clock.evaluations
+    sample = evolution.front(own, 0, Budget(seconds, most), 0, clock.inner(values=False))
+    clock.evaluations = before + sample.evaluations
+    return sample.points
+
+
+def _attempt(run: Run, name: str, most: Caps, near: Array | None) -> tuple[Result, Point | None]:
+    """Return the result of one step from a start, and its point."""
     at = _posed(run, name, most, near)
     before = run.clock.evaluations
     result, outcome = solve_raw(at, run.method, run.clock.left, watch=run.clock.inner(values=False))
     run.clock.evaluations = before + result.evaluations
     run.clock.tell()
     if result.value is None or outcome.x is None:
-        run.skipped.append(Skipped(most, result.status == "infeasible"))
-        run.none = run.none or result
-        return None
+        return result, None
     values = _values(run, result, outcome.x)
     slopes = None
     rows = [f"{MOST}_{n}" for n in run.names[1:]]
-    if name == run.names[0] and all(row in result.multipliers for row in rows):
+    priced = name == run.names[0] and not run.discrete
+    if priced and all(row in result.multipliers for row in rows):
         scales = [scale(at, n) for n in run.names[1:]]
         slopes = np.array([result.multipliers[r] / s for r, s in zip(rows, scales, strict=True)])
     proven = result.status == "optimal"
@@ -294,10 +352,10 @@ def _solved(run: _Run, name: str, most: Caps, near: Array | None = None) -> Poin
         run.logarithmic = run.logarithmic and shape.convex and shape.log_objective
     else:
         run.logarithmic = False
-    return Point(outcome.x, values, proven, result.bound if proven else None, slopes)
+    return result, Point(outcome.x, values, proven, result.bound if proven else None, slopes)
 
 
-def _posed(run: _Run, name: str, most: Caps, near: Array | None) -> Problem | Conic:
+def _posed(run: Run, name: str, most: Caps, near: Array | None) -> Problem | Conic:
     if run.limiting is not None:
         return run.limiting.problem(name, most)
     limits = {n: Limit.of(value, run.widths.get(n, 0.0)) for n, value in most.items()}
@@ -307,93 +365,9 @@ def _posed(run: _Run, name: str, most: Caps, near: Array | None) -> Problem | Co
     return at
 
 
-def _values(run: _Run, result: Result, x: Array) -> Array:
+def _values(run: Run, result: Result, x: Array) -> Array:
     """Return the values of all objectives at the point of a result."""
     if run.limiting is None:
         return valued(result, run.names)
     rows, values = run.problem.rows.objectives, run.problem.batch(x[None]).F[0]
     return np.array([values[rows.index(name)] for name in run.names])
-
-
-def _found(run: _Run, complete: bool = False) -> Found:
-    """Return the front of all points, with its error where it is proven."""
-    points, beaten = sifted(run.points)
-    all_proven = bool(points) and all(p.proven for p in points)
-    two = len(run.names) == 2
-    error = _error(points, run.logarithmic) if all_proven and two and len(points) > 1 else None
-    said = LAST.format(name=run.names[1]) if complete and points else _sentence(points)
-    proof = {"method": "epsilon constraints", "sentence": said}
-    none = None if points else run.none
-    return Found(
-        points,
-        complete=complete and bool(points),
-        error=None if complete else error,
-        beaten=beaten,
-        skipped=tuple(run.skipped[:-1] if complete else run.skipped),
-        infeasible=not points and bool(run.skipped) and run.skipped[0].proven,
-        finished=not run.clock.stopped,
-        steps=tuple(run.steps),
-        proof=proof if none is None else none.proof,
-        evaluations=run.clock.evaluations,
-        message="" if none is None else none.message or "no design meets all limits",
-    )
-
-
-def _sentence(points: tuple[Point, ...]) -> str:
-    """Return what is proven of the points."""
-    count = sum(p.proven for p in points)
-    if not count:
-        return "Not proven: every point is the best one found under its limits."
-    which = "Every point" if count == len(points) else f"{count} of {len(points)} points"
-    verb = "is" if count == len(points) else "are"
-    by = f"by more than {GAP:g} of its first objective"
-    return f"{which} {verb} proven: no design dominates it {by}."
-
-
-def _error(points: tuple[Point, ...], logarithmic: bool) -> float:
-    """Return the largest distance between tangents and chords, in the ranges of the objectives.
-
-    In logarithms where the problem is convex in them. Where a tangent is missing, that from chords
-    to the corners of boxes: between two proven points no other is below both of them.
-    """
-    values = np.array([p.values for p in points])
-    if any(p.slopes is None for p in points):
-        return _boxed(values)
-    slopes = np.array([p.slopes[0] for p in points if p.slopes is not None])
-    if logarithmic:
-        slopes = slopes * values[:, 1] / values[:, 0]
-        values = np.log(values)
-    width = np.ptp(values, axis=0)
-    if not (width > 0.0).all():
-        return 0.0
-    f, g = ((values - values.min(axis=0)) / width).T
-    slopes = slopes * width[1] / width[0]
-    worst = 0.0
-    for k in range(len(points) - 1):  # by the first objective: the second falls
-        df, dg = f[k + 1] - f[k], g[k + 1] - g[k]
-        meet = _meet(df, dg, float(slopes[k]), float(slopes[k + 1]))
-        worst = max(worst, abs(meet[0] * dg - meet[1] * df) / math.hypot(df, dg))
-    return worst
-
-
-def _boxed(values: Array) -> float:
-    """Return the largest distance from the chord of two neighbours to a corner of their box."""
-    width = np.ptp(values, axis=0)
-    sides = np.abs(np.diff(values, axis=0)) / np.where(width > 0.0, width, 1.0)
-    length = np.hypot(*sides.T)
-    return float((sides.prod(axis=1) / np.where(length > 0.0, length, 1.0)).max(initial=0.0))
-
-
-def _meet(df: float, dg: float, first: float, second: float) -> tuple[float, float]:
-    """Return where the tangents of (0, 0) and (df, dg) meet: f = first g, f = df + second (g - dg).
-
-    The corner of their box where they meet outside of it, as roundings let them.
-    """
-    if math.isinf(second):
-        at = dg
-    elif first == second:
-        return 0.0, dg
-    else:
-        at = (df - second * dg) / (first - second)
-    at = min(max(at, min(0.0, dg)), max(0.0, dg))
-    return first * at, at

@@ -99,6 +99,11 @@ class Front:
         """Return the names of the objectives."""
         return tuple(one.name for one in self.objectives)
 
+    @property
+    def whole(self) -> bool:
+        """Return whether no part is missing: complete, or known to its error."""
+        return self.status == "complete" or self.error is not None
+
     def __repr__(self) -> str:
         return str(shown("front_lines", self))
 
