@@ -121,7 +121,7 @@ def test_a_front_comes_back_from_its_json():
     front = gearopt.pareto(product(), points=4)
     again = Front.from_json(front.to_json())
     assert again.to_json() == front.to_json() and again.points == front.points
-    with pytest.raises(ValueError, match="no Pareto front"):
+    with pytest.raises(ValueError, match="not a Pareto front"):
         Front.from_dict({})
 
 
