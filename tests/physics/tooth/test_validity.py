@@ -7,8 +7,16 @@ from reference_pairs import elastic
 
 from gearopt.physics.gears import GearPair
 from gearopt.physics.tooth.elastic import ElasticPair
-from gearopt.physics.tooth.ladder import LEVELS, USUAL
-from gearopt.physics.tooth.validity import cheapest, doubts, unsupported, usual_plane
+from gearopt.physics.tooth.foundation import ring_torsion
+from gearopt.physics.tooth.ladder import LEVELS, RINGED, USUAL
+from gearopt.physics.tooth.validity import (
+    cheapest,
+    doubts,
+    refused,
+    unsupported,
+    usual_level,
+    usual_plane,
+)
 
 
 def test_thin_rings_and_large_ones():
@@ -18,11 +26,22 @@ def test_thin_rings_and_large_ones():
     assert unsupported(thin, "finite elements") == ()
     assert any("a real rim is softer" in each for each in doubts(thin, "finite elements"))
     assert cheapest(thin, 0.2) == "finite elements"
-    large = replace(pair, bores=(8.0, 50.0))  # Sainsot: 6 to 11 % too soft by finite elements
+    large = replace(pair, bores=(8.0, 50.0))  # Sainsot: 6 to 11 % too stiff by finite elements
     assert cheapest(large, 0.1) == "finite elements"
     assert cheapest(large, 0.11) == "profile + Cornell + torsion"
     assert any("fitted up to 7" in each for each in doubts(large, USUAL))
     assert unsupported(large, USUAL) == () == unsupported(pair, USUAL)
+
+
+def test_bores_for_which_the_fit_means_nothing():
+    """Beyond 15 the ring's torsion is nearly all that gives way, and exact: half of Sainsot's."""
+    rows = {10.0: (0.85, 0.95), 50.0: (1.8, 2.6)}
+    for ratio, (least, most) in rows.items():
+        pair = ElasticPair(elastic("reference").pair, (67.5 / ratio, 142.5 / ratio))
+        softer = [LEVELS[name].compliance(pair, 0.0, 5e3) for name in (USUAL, RINGED)]
+        assert least < softer[0] / softer[1] < most and usual_level(pair) == RINGED
+        assert bool(refused(pair, USUAL)) == (ratio > 15.0) and not refused(pair, RINGED)
+    assert ring_torsion(pair) > 0.9 * softer[1] and usual_level(elastic("reference")) == USUAL
 
 
 def test_wide_roots_and_planes():

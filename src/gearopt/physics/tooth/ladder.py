@@ -98,6 +98,7 @@ def _torsion(member: ElasticGear, line: LoadLine) -> Any:
 SAINSOT = profile_compliance, sainsot_compliance
 CORNELL = profile_compliance, cornell_compliance
 USUAL = "profile + Sainsot"  # for any tooth, undercut or not
+RINGED = "profile + Cornell + torsion"  # for any bore, however small
 ALONE, RING = ("trapezoid", "half plane"), ("trapezoid", "Sainsot")
 LEVELS: Mapping[str, Level] = MappingProxyType(
     {
@@ -132,7 +133,7 @@ LEVELS: Mapping[str, Level] = MappingProxyType(
         "profile + Cornell": Level(
             _sum(*CORNELL), "profile", "half plane", (0.045, 0.233), (0.044, 0.802), 0.6
         ),
-        "profile + Cornell + torsion": Level(
+        RINGED: Level(
             _sum(*CORNELL, _torsion),
             "profile",
             "half plane and ring",

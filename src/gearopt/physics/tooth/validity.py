@@ -5,19 +5,26 @@ from gearopt.physics.geometry.flaws import THIN_TIP
 from gearopt.physics.geometry.tooth import tip_thickness
 from gearopt.physics.tooth.elastic import ElasticGear, ElasticPair
 from gearopt.physics.tooth.foundation import SAINSOT_BORE_RATIOS, SAINSOT_HALF_ANGLES
-from gearopt.physics.tooth.ladder import LEVELS
+from gearopt.physics.tooth.ladder import LEVELS, RINGED, USUAL
 from gearopt.physics.tooth.trapezoid import is_waisted
 
 WIDE = 6.0  # modules of face width from which plane strain is nearer to the truth (an assumption)
 EXACT = "finite elements"
 MEASURED = 1.4, 5.0  # bore ratios of the pairs on which `LEVELS` records errors
 WIDEST_ROOT = 0.17  # half angle of a root [rad] up to which they do
-RINGED = ("half plane and ring", "elements")  # bodies that larger ones suit as well: up to 15
+WIDEST_SAINSOT = 15.0  # bore ratio beyond which Sainsot's body, 2 times too soft at 50, is refused
+ANY_BORE = ("half plane and ring", "elements")  # bodies that larger ones suit as well: up to 50
 
 
 def usual_plane(pair: GearPair) -> str:
     """Return "strain" for a face width of at least 6 normal modules, else "stress"."""
     return "strain" if pair.face_width >= WIDE * pair.normal_module else "stress"
+
+
+def usual_level(elastic: ElasticPair) -> str:
+    """Return the model of a pair for which none is asked: one with a ring of any bore beyond 7."""
+    widest = max(member.bore_ratio for member in elastic.members)
+    return USUAL if widest <= SAINSOT_BORE_RATIOS[1] else RINGED
 
 
 def unsupported(elastic: ElasticPair, level: str) -> tuple[str, ...]:
@@ -38,7 +45,21 @@ def unsupported(elastic: ElasticPair, level: str) -> tuple[str, ...]:
             for name, member in rows
             if member.bore_ratio < least
         ]
+        found += [
+            f"The root circle of the {name} is {member.bore_ratio:.4g} times its bore: Sainsot's "
+            f"body is known up to {WIDEST_SAINSOT:g}, and up to 2.4 times too soft at 50. Take "
+            f'level = "{RINGED}"'
+            for name, member in rows
+            if member.bore_ratio > WIDEST_SAINSOT
+        ]
     return tuple(found)
+
+
+def refused(elastic: ElasticPair, level: str) -> tuple[str, ...]:
+    """Return why a level says nothing of a pair, in sentences: its trapezoid, or Sainsot's body."""
+    model, bores = LEVELS[level], [member.bore_ratio for member in elastic.members]
+    far = model.body == "Sainsot" and max(bores) > WIDEST_SAINSOT
+    return unsupported(elastic, level) if far or model.tooth == "trapezoid" else ()
 
 
 def doubts(elastic: ElasticPair, level: str) -> tuple[str, ...]:
@@ -89,17 +110,17 @@ def cheapest(elastic: ElasticPair, error: float) -> str:
 def _measured(elastic: ElasticPair, level: str) -> bool:
     """Return whether the bore ratios of a pair are those on which the error of a level is known."""
     ratios = [member.bore_ratio for member in elastic.members]
-    large = max(ratios) > MEASURED[1] and LEVELS[level].body not in RINGED
+    large = max(ratios) > MEASURED[1] and LEVELS[level].body not in ANY_BORE
     return min(ratios) >= MEASURED[0] and not large
 
 
 def _outside_fit(name: str, member: ElasticGear) -> list[str]:
     """Return where a gear lies outside the range over which Sainsot's body was fitted."""
     found, most = [], SAINSOT_BORE_RATIOS[1]
-    if member.bore_ratio > most:
+    if most < member.bore_ratio <= WIDEST_SAINSOT:
         found.append(
             f"Root over bore of the {name} is {member.bore_ratio:.2f}: Sainsot's body was fitted "
-            f"up to {most:g}; at 10 to 15, gears of 12 to 25 teeth were 7 to 36 % stiffer."
+            f"up to {most:g}. At 7 to 15 it makes teeth 4 to 36 % too stiff."
         )
     low, high = SAINSOT_HALF_ANGLES
     if not low <= member.root_half_angle <= WIDEST_ROOT:

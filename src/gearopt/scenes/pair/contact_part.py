@@ -15,8 +15,9 @@ from gearopt.physics.iso6336.stiffness import (
 )
 from gearopt.physics.loads import torque
 from gearopt.physics.tooth.elastic import POISSON, STEEL, ElasticPair
+from gearopt.physics.tooth.foundation import SAINSOT_BORE_RATIOS
 from gearopt.physics.tooth.ladder import COUPLINGS, LEVELS, USUAL
-from gearopt.physics.tooth.validity import cheapest, doubts, unsupported, usual_plane
+from gearopt.physics.tooth.validity import cheapest, doubts, refused, usual_level, usual_plane
 from gearopt.scenes.drive.rating import gears as rated_gears
 from gearopt.scenes.pair.scene import Scene
 from gearopt.units import Quantity
@@ -32,7 +33,7 @@ def contact_of(scene: Scene, made: PairMesh, materials: Materials) -> PairContac
     told = scene.sharing.coupling
     name = "given" if isinstance(told, Quantity) else told
     pair = made.elastic.pair
-    beyond = (*_webs(scene, pair, materials), *_validity(made, name))
+    beyond = (*_chosen(scene, made), *_webs(scene, pair, materials), *_validity(made, name))
     found = contact(made, name, _by_iso(scene, pair, made.elastic, materials), beyond)
     most = max(one.largest_contact_stress_MPa for one in found.loads)
     if most <= BORNE:
@@ -58,7 +59,7 @@ def mesh_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> Pa
     moved = torque(duty.power.value, duty.input_speed.value)
     loads = sorted({float(load) for load in (*asked.loads, *((relief and relief.loads) or ()))})
     level = level_of(scene, elastic)
-    if LEVELS[level].tooth == "trapezoid" and (excluded := unsupported(elastic, level)):
+    if excluded := refused(elastic, level):
         raise SolveError(f'[sharing] level = "{level}" does not suit the gears. {excluded[0]}')
     try:
         coupled = told.value if isinstance(told, Quantity) else COUPLINGS[told](elastic)
@@ -97,7 +98,7 @@ def level_of(scene: Scene, elastic: ElasticPair) -> str:
     asked = scene.sharing
     if asked.error is not None:
         return cheapest(elastic, float(asked.error))
-    return asked.level or USUAL
+    return asked.level or usual_level(elastic)
 
 
 def elastic_pair(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> ElasticPair:
@@ -144,6 +145,17 @@ def _by_iso(
     webs = tuple(blank.web(gear) for blank, gear in zip(blanks, pair.gears, strict=True))
     single = single_stiffness(pair, line, elastic.moduli, mean_blank_factor((webs[0], webs[1])))
     return float(single), float(mesh_stiffness(single, elastic.path.transverse_ratio)[0])
+
+
+def _chosen(scene: Scene, made: PairMesh) -> Iterator[str]:
+    """Yield why the model of the teeth is not the usual one, where the file names none."""
+    asked = scene.sharing
+    if asked.level is None and asked.error is None and made.level != USUAL:
+        yield (
+            f'The file names no level, and the bores are too small for "{USUAL}", whose body was '
+            f"fitted to a root circle of up to {SAINSOT_BORE_RATIOS[1]:g} bores: teeth are "
+            f'computed by "{made.level}", within 7 % of finite elements there.'
+        )
 
 
 def _webs(scene: Scene, pair: GearPair, materials: Materials) -> Iterator[str]:
