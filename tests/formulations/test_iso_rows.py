@@ -50,6 +50,26 @@ KINDS |= {
     "brief levels": (replace(iso((EH, SOFT)), loads=BRIEF), 0.2),
 }
 COUNT = 300
+# what a box 1 % wide leaves open, in millionths, medians as measured
+LOOSE = {
+    "tempered": 2168,
+    "spur": 2245,
+    "hardened": 2197,
+    "hard on soft": 2840,
+    "2019": 2440,
+    "2019, spur, fine": 2435,
+    "crowned": 2892,
+    "webs": 2106,
+    "cast": 1678,
+    "short life": 1930,
+    "K_Fbeta given": 2315,
+    "K_Hbeta given": 1403,
+    "K_v given": 2028,
+    "many given": 1868,
+    "others given": 1304,
+    "three levels": 2451,
+    "brief levels": 1320,
+}
 
 
 def pairs(helix, seed, shifts=(0.0, 0.0)):
@@ -87,7 +107,7 @@ def test_one_width_and_torque_give_what_is_rated(kind):
     np.testing.assert_allclose(found, exact(standard, pair, width, torque, power), rtol=1e-12)
 
 
-@pytest.mark.parametrize("kind", few(KINDS, list(KINDS)[::2]))
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("wide", few([1.01, 1.0003, 1.5], 1))
 def test_no_width_and_torque_of_a_box_use_less(kind, wide):
     standard, helix = KINDS[kind]
@@ -101,7 +121,8 @@ def test_no_width_and_torque_of_a_box_use_less(kind, wide):
     assert np.all(found <= least * (1.0 + 1e-12))
     sound = np.isfinite(least)
     loose = np.median(1.0 - found[sound] / least[sound])
-    assert loose < (0.45 if wide == 1.01 else 0.5) * (wide - 1.0)
+    assert loose < 0.5 * (wide - 1.0)
+    assert wide != 1.01 or 1e6 * loose == pytest.approx(LOOSE.get(kind), abs=2.0)  # as measured
 
 
 def test_it_is_the_rating_of_one_pair():
