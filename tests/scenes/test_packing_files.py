@@ -43,7 +43,12 @@ CHANGES = {  # change of the example: key, part of the rule, what to write
     "no count": (("count = 3", "count = 0"), "cylinder[1].count", "whole number", "count = 1"),
     "too many": (("count = 3", "count = 49"), "cylinder[1].count", "at most 50", "count = 47"),
     "narrow": (("[layers]", 'width = "19 mm"\n[layers]'), "container.width", "20 mm", '"20 mm"'),
-    "both layers": (("most = 2", "most = 2\nexactly = 2"), "layers.most", "beside", "Remove it"),
+    "both layers": (
+        ("most = 2", "most = 2\nexactly = 2"),
+        "layers.most",
+        "conflicts with",
+        "Remove it",
+    ),
     "no layers": (("most = 2", ""), "layers.most", "missing", "most = 2"),
     "too many layers": (("most = 2", "exactly = 7"), "layers.exactly", "empty", "exactly = 6"),
     "objective": (('"volume"', '"mass"'), "objective.minimise", "is not one of", "volume"),

@@ -112,7 +112,7 @@ def test_a_swing_keeps_to_the_torque_of_the_motor():
     assert "the rms torque is 0.0325656 N m, above the motor's 0.0325 N m" in weak.message
     assert strong.value == pytest.approx(0.0325656, abs=6e-8)
     assert strong.limits["motor_torque"] == pytest.approx(0.0325656 / 0.0326, abs=2e-6)
-    with pytest.raises(SceneError, match='beside motion = "swing"'):
+    with pytest.raises(SceneError, match='conflicts with motion = "swing"'):
         changed(swing, (("motor", "no_load_speed"), "800 rad/s"))
 
 

@@ -252,7 +252,7 @@ def test_weight_is_mass_and_volume_is_asked_back():
         ("[[stage]]", "pinion_teeth = -20", "Write pinion_teeth = 20"),
         ("[[stage]]", 'pinion_teeth = "20-30"', "Write pinion_teeth = [20, 30]"),
         ("[[stage]]", 'module = "2 to 4 mm"', 'Write module = ["2 mm", "4 mm"]'),
-        ("[objective]", "density = 7850", 'Write density = "7850 kg/m^3"'),
+        ("[gears]", "elastic_modulus = 206000", 'Write elastic_modulus = "206000 MPa"'),
         ("[[stage]]", "unit_load = 7000", 'Write unit_load = "7000 psi"'),
         ("[[stage]]", "minimum_face_width = 12", 'Write minimum_face_width = "12 mm"'),
     ],

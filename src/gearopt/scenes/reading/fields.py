@@ -137,9 +137,9 @@ def quantity(
         for unit in (usual, *units.UNITS[dimension]):
             try:
                 value = abs(units.parse(f"{digits} {unit}", dimension).value)
-            except ValueError:
+                apart[unit] = abs(math.log(value / size))
+            except (ValueError, ArithmeticError):  # no number, or zero
                 return usual
-            apart[unit] = abs(math.log(value / size)) if value > 0 and size > 0 else 0.0
         return usual if apart[usual] < FAR_OFF else min(apart, key=lambda unit: apart[unit])
 
     def usable(text: str) -> str | None:
