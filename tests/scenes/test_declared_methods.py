@@ -14,6 +14,7 @@ from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import method_of
 from gearopt.scenes import compound, drive, packing, pair, servo
+from gearopt.scenes.reading.ask import Ask
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 ROOMS = {room.Scene: room for room in (compound, drive, packing, pair, servo)}
@@ -162,3 +163,8 @@ def test_a_polish_counts():
     plain, polished = (curve("elevator_box", m, 5_000) for m in ("sa", "sa-polish"))
     assert plain.evaluations == 5_000 and 4_500 < polished.evaluations <= 5_000
     assert polished.steps[-1][1] > 4_500 and polished.objective < plain.objective
+
+
+def test_half_of_a_budget_is_half_of_its_seconds():
+    assert Ask(budget=Budget(seconds=4.0, evaluations=7)).half.budget == Budget(2.0, 7)
+    assert Ask().half.budget.seconds is None

@@ -250,6 +250,7 @@ def test_weight_is_mass_and_volume_is_asked_back():
         ("[[stage]]", 'module = "7 in"', 'is a module of 177.8 mm. Write "7 1/in" for a diametral'),
         ("[[stage]]", 'diametral_pitch = "8 DP"', "Write diametral_pitch = 8, without a unit"),
         ("[[stage]]", "pinion_teeth = -20", "Write pinion_teeth = 20"),
+        ("[[stage]]", "pinion_teeth = [20]", "Write pinion_teeth = [20, 20]"),
         ("[[stage]]", 'pinion_teeth = "20-30"', "Write pinion_teeth = [20, 30]"),
         ("[[stage]]", 'module = "2 to 4 mm"', 'Write module = ["2 mm", "4 mm"]'),
         ("[gears]", "elastic_modulus = 206000", 'Write elastic_modulus = "206000 MPa"'),
@@ -271,6 +272,7 @@ def test_terms_of_the_field_are_answered_by_their_meaning(head, line, said):
         ("ratio = 0.333", "input and output exchanged. Write ratio = 3.003"),
         ('ratio = "1:20"', "input and output exchanged. Write ratio = 20"),
         ('ratio = "20:1"', "is written with a colon. Write ratio = 20"),
+        ('modules = ["7 in"]', 'Write modules = ["2 mm"]'),
         ("ratio = 0.0000001", "is not between 1 and 1000000"),
     ],
 )
@@ -303,6 +305,12 @@ def test_no_key_of_a_file_is_called_absent():
         scene = scene_module(kind).Scene
         known = {*scene.model_fields, *(k for _, t in tables(scene) for k in t.model_fields)}
         assert not [key for key in known if absent(key) or option(key)]
+
+
+def test_a_long_value_is_cut_to_sixty_characters():
+    text = BASES["elevator"].replace("[gears]", f'[gears]\nHRC = "{"6" * 70}"')
+    (wrong,) = mistakes(text).errors
+    assert wrong.value == '"' + 56 * "6" + "..."
 
 
 def test_files_of_other_formats_are_named():
