@@ -12,12 +12,14 @@ import gearopt
 from gearopt.cli.app import exit_code
 from gearopt.errors import SceneError, SolveError
 from gearopt.formulations.dynamics.dynamics_parts import jammed, own_depth, scaled
-from gearopt.formulations.dynamics.teeth_wave import of_contact
+from gearopt.formulations.dynamics.teeth_wave import nearest_load, of_contact
 from gearopt.optimise.kernels import COMPILING
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor
 from gearopt.physics.motion.stiffness_wave import fourier, trapezoid
 from gearopt.scenes.dynamics import EXAMPLE
-from gearopt.scenes.reading.load import read
+from gearopt.scenes.dynamics.own_teeth import of_teeth
+from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.load import load, read
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 
@@ -185,12 +187,38 @@ def test_depth_of_a_wave_is_scaled():
         assert (other.value(phases) - wave.mean) / 0.25 == pytest.approx(shape, rel=1e-3, abs=1.0)
 
 
+def test_teeth_of_a_pair_keep_their_relief_and_no_others_are_taken(solved, tmp_path):
+    """The normal force over the stiffness is the transmission error with relief, 1.2 of 5.0 um."""
+    kept, file = tmp_path / "pair.json", tmp_path / "teeth.toml"
+    relieved = solved("relief_two_loads")
+    kept.write_text(relieved.to_json(), encoding="utf-8")
+    text = (
+        (PROBLEMS / "teeth_as_springs.toml").read_text(encoding="utf-8").partition("[simulate")[0]
+    )
+    file.write_text(text.replace("reference_pair.toml", "pair.json"), encoding="utf-8")
+    scene = load(file).scene
+    wave, assumed = of_teeth(scene, Ask())
+    still = 5675.6148 / wave.value(np.arange(960) / 960)
+    assert np.ptp(still) == pytest.approx(relieved.value, rel=5e-3)
+    assert "with its relief" in assumed[0] and len(assumed) == 1
+    heavier = file.read_text(encoding="utf-8").replace('"200 N m"', '"300 N m"')
+    file.write_text(heavier, encoding="utf-8")
+    assert "add 1.5 to [sharing] loads" in of_teeth(load(file).scene, Ask())[1][1]
+    for old, new in (("teeth = 25", "teeth = 28"), ('"140.954 mm"', '"141.2 mm"')):
+        file.write_text(heavier.replace(old, new), encoding="utf-8")
+        with pytest.raises(
+            SceneError, match=r"(28, of the pair's file 25|141.2 mm, .* 140.954 mm)"
+        ):
+            gearopt.solve(file)
+
+
 def test_the_stiffness_of_a_pair_is_load_over_transmission_error(solved):
     from gearopt.formulations.pair_contact import PairContact
     from gearopt.optimise.typed import typed
 
     contact = typed(PairContact, solved("reference_pair").design["contact"], "contact")
-    wave, load = of_contact(contact), contact.loads[-1]
+    load = nearest_load(contact.loads, 5675.6)
+    wave = of_contact(contact, load)
     phase = np.array(contact.travel_mm) / contact.base_pitch_mm
     known = load.normal_force_N / np.array(load.transmission_error_mm)
     inside = (phase > 0.0) & (phase < 1.0)

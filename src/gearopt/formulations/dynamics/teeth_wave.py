@@ -1,17 +1,25 @@
 """The mesh stiffness of a pair's own teeth, from its contact."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from gearopt.formulations.pair_contact import PairContact
+from gearopt.formulations.pair_contact import ContactLoad, PairContact
 from gearopt.physics.motion.stiffness_wave import Wave
 
 
-def of_contact(contact: PairContact) -> Wave:
-    """Return normal force over transmission error of a pair's own teeth at the duty's torque.
+def nearest_load(loads: Sequence[ContactLoad], force: float) -> ContactLoad:
+    """Return the load whose normal force is nearest to one [N]."""
+    return min(loads, key=lambda one: abs(one.normal_force_N - force))
 
-    Both sides of the points where pairs come and go are a step of the wave.
+
+def of_contact(contact: PairContact, load: ContactLoad) -> Wave:
+    """Return normal force over transmission error of a pair's own teeth at one of its loads.
+
+    With this stiffness the normal force deforms the mesh by the transmission error, relief and all.
+    Both sides of the points where pairs come and go are a step of the wave. load: of the contact,
+    or of its relief.
     """
-    load = min(contact.loads, key=lambda one: abs(one.load - 1.0))
     phase = np.array(contact.travel_mm) / contact.base_pitch_mm
     stiffness = load.normal_force_N / np.array(load.transmission_error_mm)
     inside = (phase > 1e-12) & (phase < 1.0 - 1e-12)

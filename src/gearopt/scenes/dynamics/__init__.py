@@ -25,6 +25,7 @@ from gearopt.scenes.dynamics.optimised import (
     told,
     whole_problem,
 )
+from gearopt.scenes.dynamics.own_teeth import of_teeth
 from gearopt.scenes.dynamics.scene import Scene, wave_of
 from gearopt.scenes.dynamics.warnings import warnings
 from gearopt.scenes.explaining.default import explained, of_report
@@ -43,9 +44,11 @@ NOTHING = "the file has no table [optimise], so that nothing is chosen"
 def solve(scene: Scene, ask: Ask) -> Result:
     """Return what the file asks of its pair, or of the pair of least vibration with [optimise]."""
     clock = Clock(ask.budget, ask.watch)
-    pair = scene.pair(wave_of(scene.mesh, ask))
+    wave, assumed = of_teeth(scene, ask) if scene.mesh.pair else (wave_of(scene.mesh), [])
+    pair = scene.pair(wave)
     if scene.optimise is not None:
-        return _least(scene, ask, pair, clock)
+        result = _least(scene, ask, pair, clock)
+        return _assuming(result, assumed)
     without_method(ask, NOTHING)
     design = _design(scene, pair, scene.mesh.axes, clock)
     missing = _missing(scene, design) if clock.stopped else ""
@@ -62,7 +65,13 @@ def solve(scene: Scene, ask: Ask) -> Result:
         seed=ask.seed,
         versions=versions("numpy"),
     )
-    return replace(found, seconds=clock.seconds)
+    return _assuming(replace(found, seconds=clock.seconds), assumed)
+
+
+def _assuming(result: Result, assumed: list[str]) -> Result:
+    """Return a result with more assumptions, after those of every file."""
+    told = [*result.report.get("assumptions", []), *assumed]
+    return replace(result, report=result.report | {"assumptions": told}) if assumed else result
 
 
 def _least(scene: Scene, ask: Ask, before: MovingPair, clock: Clock) -> Result:

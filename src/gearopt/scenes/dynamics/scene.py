@@ -6,10 +6,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from gearopt.formulations.dynamics.teeth_wave import of_contact
 from gearopt.formulations.orbit.task import Task
-from gearopt.formulations.pair_contact import PairContact
-from gearopt.optimise.typed import typed
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor, damping_of
 from gearopt.physics.motion.stiffness_wave import Wave, constant, fourier, trapezoid
 from gearopt.scenes.dynamics.tables import (
@@ -20,7 +17,6 @@ from gearopt.scenes.dynamics.tables import (
     SpeedsTable,
     StabilityTable,
 )
-from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, refuse, words
 
 NEEDED = {  # keys of [mesh] that a shape of the wave asks for; others change nothing
@@ -261,18 +257,13 @@ def fourier_of(mesh: MeshTable) -> Wave:
     return fourier(mesh.stiffness.value, *sums)
 
 
-def wave_of(mesh: MeshTable, ask: Ask) -> Wave:
-    """Return the stiffness over a period that a file describes; of teeth by solving their file."""
+def wave_of(mesh: MeshTable) -> Wave:
+    """Return the stiffness over a period that a file describes without another file."""
     mean = mesh.stiffness.value if mesh.stiffness else 0.0
     if mesh.wave == "constant":
         return constant(mean)
     if mesh.wave == "fourier":
         return fourier_of(mesh)
-    if mesh.wave == "pair":
-        assert mesh.pair is not None
-        design = mesh.pair.result(ask).design
-        contact: PairContact = typed(PairContact, design["contact"], "contact")
-        return of_contact(contact)
     ramp = float(mesh.ramp) if mesh.ramp is not None else 0.0
     assert mesh.depth is not None and mesh.duty is not None
     return trapezoid(mean, float(mesh.depth), float(mesh.duty), ramp)
