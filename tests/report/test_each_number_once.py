@@ -150,5 +150,5 @@ def test_a_ratio_tolerance_is_used_as_far_as_its_error_goes(solved):
 def test_a_ratio_out_of_reach_is_not_blamed_on_whole_numbers():
     result = gearopt.solve("problems/sandgren_train.toml", {"train.ratio": 4000})
     words = opening(result)
-    assert words.endswith("the numbers of teeth allowed end before the ratio.")
+    assert words.endswith("the allowed numbers of teeth do not reach the ratio.")
     assert "whole" in opening(gearopt.solve("problems/sandgren_train.toml"))

@@ -35,7 +35,7 @@ def printed(result):
             1000,
             (12, 60),
             "ratio 25 instead of 1000 (-97.5 %), out of reach of 12 to 60 teeth; proven nearest",
-            "12 to 60 teeth make ratios of 0.04 to 25 in two pairs. "
+            "Two pairs of 12 to 60 teeth have ratios from 0.04 to 25. "
             "Write teeth = [12, 380] (up to 1002.78).",
         ),
         (
@@ -43,37 +43,37 @@ def printed(result):
             (12, 60),
             "ratio 0.04 instead of 0.001 (+3,900 %), out of reach of 12 to 60 teeth; proven "
             "nearest",
-            "12 to 60 teeth make ratios of 0.04 to 25 in two pairs. "
+            "Two pairs of 12 to 60 teeth have ratios from 0.04 to 25. "
             "Write teeth = [12, 380] (down to 0.00099723).",
         ),
         (
             60,
             (12, 60),
             "ratio 25 instead of 60 (-58.3 %), out of reach of 12 to 60 teeth; proven nearest",
-            "12 to 60 teeth make ratios of 0.04 to 25 in two pairs. "
+            "Two pairs of 12 to 60 teeth have ratios from 0.04 to 25. "
             "Write teeth = [12, 93] (up to 60.0625) or teeth = [7, 60] (up to 73.4694).",
         ),
         (
             5000,
             (12, 60),
             "ratio 25 instead of 5000 (-99.5 %), out of reach of 12 to 60 teeth; proven nearest",
-            "12 to 60 teeth make ratios of 0.04 to 25 in two pairs. "
+            "Two pairs of 12 to 60 teeth have ratios from 0.04 to 25. "
             "Write teeth = [5, 354] (up to 5012.64).",
         ),
         (
             10000,
             (12, 60),
             "ratio 25 instead of 10000 (-99.8 %), out of reach of 12 to 60 teeth; proven nearest",
-            "12 to 60 teeth make ratios of 0.04 to 25 in two pairs. No two pairs of 5 to 400 "
-            'teeth make it: kind = "drive" has more stages.',
+            "Two pairs of 12 to 60 teeth have ratios from 0.04 to 25. No two pairs of 5 to 400 "
+            'teeth reach it: kind = "drive" has more stages.',
         ),
         (  # a drive takes ratios from 1
             1e-9,
             (12, 60),
             "ratio 0.04 instead of 1e-09 (+3,999,999,900 %), out of reach of 12 to 60 teeth; "
             "proven nearest",
-            "12 to 60 teeth make ratios of 0.04 to 25 in two pairs. No two pairs of 5 to 400 "
-            "teeth make it.",
+            "Two pairs of 12 to 60 teeth have ratios from 0.04 to 25. No two pairs of 5 to 400 "
+            "teeth reach it.",
         ),
     ],
 )
@@ -84,7 +84,7 @@ def test_a_ratio_out_of_reach_is_said_first(ratio, teeth, first, then):
     told = printed(result)
     title, decides = told[0].split("\n")
     assert title == f"Two pairs: {first}" and " ".join(told[1].split()) == then
-    assert decides == "The numbers of teeth allowed end before the ratio."
+    assert decides == "The allowed numbers of teeth do not reach the ratio."
     html = page(result, "")
     assert html.index(first[1:]) < html.index("driver teeth") and "Remedies" not in html
     said = then.replace('"', "&#34;")

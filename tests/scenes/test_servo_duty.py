@@ -353,7 +353,7 @@ def test_no_reason_is_given_where_time_ran_out_before_it_was_known():
     assert (found.conflict, found.remedies) == (
         (),
         (),
-    ) and found.message == "the budget ended before the cause was known"
+    ) and found.message == "time ran out before the cause was identified"
 
 
 def test_a_diameter_that_was_not_tried_in_time_is_not_called_out_of_reach(monkeypatch):

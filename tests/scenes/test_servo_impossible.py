@@ -182,7 +182,7 @@ def test_time_that_ran_out_is_no_reason_of_its_own():
     for clock in (Clock(Budget(seconds=0.0)), Clock(Budget(), lambda event: False)):
         found = remedies(scene, clock)
         assert (found.conflict, found.remedies) == ((), ())
-        assert found.message.startswith("the budget ended")
+        assert found.message.startswith("time ran out")
 
 
 def test_a_stop_ends_the_look_for_ways_out():

@@ -194,7 +194,7 @@ def test_a_sweep_that_is_not_given_is_twice_the_sector():
 
 def test_the_output_shaft_is_told_and_may_be_given():
     """Without a key it is as thick as the shaft between the stages; the report says which."""
-    said = "Output shaft with hub: "
+    said = "Diameter of the output shaft with hub: "
     cases = (
         ((), [("space",)], 8, "8 mm, as thick as the shaft"),
         (((("train", "output_shaft_diameter"), "1 in"),), [("space",)], F("25.4"), "25.4 mm."),

@@ -22,7 +22,7 @@ from gearopt.optimise.terms import Terms, Var
 RANDOM = False
 COUNTS = "pair of numbers of teeth matched"
 ERROR, SQUARED, LARGEST = "ratio_error", "squared_error", "largest_gear"  # objectives
-PAIRS = "all ratios of one pair were matched with the nearest of the other, in rational arithmetic"
+PAIRS = "all ratios of one pair were combined with the best of the other, in rational arithmetic"
 LOOK = 500  # pairs between two checks of clock and watcher: some 10 ms
 BASE = 2**24  # a digit of the ratio times two numbers of teeth is a whole number that doubles hold
 
@@ -83,8 +83,8 @@ def problem(train: Compound, names: Sequence[str] = ()) -> Problem:
         if not done:
             return Outcome(x, finished=False, evaluations=looked, message="stopped early")
         words = (
-            f"Proof: {looked:,} ratios of one pair, each with the two nearest of the other pair, "
-            "in rational arithmetic."
+            f"Proof: each of the {looked:,} ratios of one pair was combined with the two best "
+            "ratios of the other pair, in rational arithmetic."
         )
         proof = {"method": "exhausted", "arithmetic": "rational", "pairs_matched": looked}
         proof |= {"sentence": words}

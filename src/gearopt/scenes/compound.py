@@ -173,7 +173,7 @@ def _out_of_reach(train: compound.Compound, reach: dict[str, Any]) -> str:
     """Return what the teeth can make, and which would do; "" where the ratio is within."""
     if reach["within"]:
         return ""
-    made = "{} to {} teeth make ratios of {:.6g} to {:.6g} in two pairs".format(
+    made = "Two pairs of {} to {} teeth have ratios from {:.6g} to {:.6g}".format(
         *train.teeth, reach["least_ratio"], reach["most_ratio"]
     )
     end, words = (0, "down to") if train.ratio < 1 else (1, "up to")
@@ -184,7 +184,7 @@ def _out_of_reach(train: compound.Compound, reach: dict[str, Any]) -> str:
     if ways:
         return f"{made}. Write {' or '.join(ways)}."
     more = ': kind = "drive" has more stages' if train.ratio >= 1 else ""  # a drive slows down
-    return f"{made}. No two pairs of {MIN_TEETH} to {MAX_TEETH} teeth make it{more}."
+    return f"{made}. No two pairs of {MIN_TEETH} to {MAX_TEETH} teeth reach it{more}."
 
 
 def idle(scene: Scene, method: str | None) -> dict[str, str]:

@@ -187,7 +187,9 @@ def first_that_fits(boxes: Iterable[ServoBox], limit: int = 10_000) -> tuple[int
         given = numbers(box)
         answer = code.fits(given._replace(box=tied(given.box)), cells, angles, limit)
         if answer < 0:
-            raise SolveError(f"whether train {k + 1} fits is not decided in {limit:,} intervals")
+            raise SolveError(
+                f"whether train {k + 1} fits could not be decided in {limit:,} intervals"
+            )
         if answer:
             return k, angles.copy()
     return None

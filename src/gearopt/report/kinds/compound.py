@@ -34,10 +34,9 @@ def decides(result: Result) -> str:
     if not result.design:
         return ""
     if not result.report.get("reach", {"within": True})["within"]:
-        return "the numbers of teeth allowed end before the ratio"
+        return "the allowed numbers of teeth do not reach the ratio"
     exact = _design(result).ratio_error_percent == 0.0
-    words = "make the ratio exactly" if exact else "are all that keeps the train from the ratio"
-    return f"whole numbers of teeth {words}"
+    return f"whole numbers of teeth {'make' if exact else 'do not make'} the ratio exactly"
 
 
 def gears(result: Result, measures: Measures) -> Section | None:

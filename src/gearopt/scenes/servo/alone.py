@@ -308,8 +308,8 @@ def reached(scene: Scene, clock: Clock) -> Iterator[str]:
                 for f, way in ((found[1], 1), (found[0], -1))
             )
             yield (
-                f"the smallest box of these proportions that holds a train is {there}; that none "
-                f"fits {too_small} is proven"
+                f"the smallest box of these proportions that holds a train is {there}; it "
+                f"is proven that none fits in {too_small}"
             )
 
 

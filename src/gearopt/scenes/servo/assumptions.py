@@ -31,7 +31,9 @@ def assumptions(scene: Scene) -> list[str]:
     found = []
     if scene.duty is not None:
         found.append(FRICTION[scene.duty.motion])
-        found.append("The best ratio counts the motor's inertia alone, not that of a train.")
+        found.append(
+            "The best total ratio is computed with the motor's inertia, without that of a train."
+        )
     if scene.train is not None:
         found += _of_train(scene)
     if scene.mesh:
@@ -49,8 +51,8 @@ def assumptions(scene: Scene) -> list[str]:
         )
     if scene.tolerances is not None and any(mesh.two_sided for mesh in scene.mesh):
         found.append(
-            "Of two-sided allowances the end that leaves less backlash is held; their width is "
-            "the tolerance."
+            "Of two-sided allowances the end that gives less backlash stays as it is; their width "
+            "is the tolerance that is chosen."
         )
     if any(mesh.grade is not None for mesh in scene.mesh):
         found.append(
@@ -63,8 +65,8 @@ def assumptions(scene: Scene) -> list[str]:
         )
     if any(budget.rule == "rss" for budget in scene.budget):
         found.append(
-            "The root of the sum of squares leaves aside that one-sided deviations have a mean "
-            "above zero: the Monte Carlo yield counts it."
+            "The root of the sum of squares neglects the mean of one-sided deviations, which is "
+            "above zero; the Monte Carlo yield includes it."
         )
     return found
 
@@ -89,12 +91,15 @@ def _of_train(scene: Scene) -> list[str]:
             "length; bearings, housing, motor and output shaft are rigid; motor locked."
         )
         if scene.stiffness.line_stiffness is None:
-            found.append("Line stiffness of a mesh after Buckingham and Lewis: unverified.")
+            found.append(
+                "Line stiffness of a mesh after Buckingham and Lewis: formula not checked against "
+                "any source."
+            )
     if scene.space is not None:
         found.append(
             "The box holds all gears, the last wheel wherever it swings, shafts, hub and motor, "
             "seen along the shafts, without clearances; its depth is not checked. Lists and plots "
-            "of other trains leave the box aside."
+            "of other trains ignore the box."
         )
     return found
 
@@ -143,16 +148,16 @@ def _of_bodies(scene: Scene) -> list[str]:
     if scene.space is not None:
         thick += ", hub_diameter of [space]"
     elif scene.train.output_shaft_diameter is None and scene.shaft is None:
-        thick = "as thin as a line"
+        thick = "not given, taken as 0"
     elif scene.train.output_shaft_diameter is None:
         thick += ", as thick as the shaft between the stages"
-    thin = "" if scene.shaft is not None else " The middle shaft, not given, is a line."
-    motor = " and motor" if scene.space is not None else ""
+    thin = "" if scene.shaft is not None else " The middle shaft is not given and taken as a line."
+    solid = "Gears, shafts and motor" if scene.space is not None else "Gears and shafts"
     return [
         "There are three planes along the shafts: motor, stage 1, stage 2. The motor's shaft ends "
-        "at its pinion, the other two pass through all three. What shares a plane does not "
-        f"overlap, without clearance: gears, shafts{motor}. Root circles, 1.25 m inside the pitch "
-        f"circle, are around their shafts. Output shaft with hub: {thick}.{thin}"
+        f"at its pinion, the other two pass through all three. {solid} in the same plane do not "
+        "overlap; no clearance is added. Root circles, 1.25 m inside the reference circle, lie "
+        f"outside their shafts. Diameter of the output shaft with hub: {thick}.{thin}"
     ]
 
 
@@ -196,7 +201,7 @@ def _told(whose: str, broken: list[str]) -> str:
     return f"{whose} {' and '.join(WHAT[name] for name in broken)}." if broken else ""
 
 
-UNLISTED = "Other trains are not shown beside this one: time ended before all were compared."
+UNLISTED = "Other trains are not listed: time ran out before all were compared."
 
 
 def notes(
@@ -217,8 +222,8 @@ def notes(
         worst = drawn.worst_case_deg
         if worst > limit * (1.0 + 1e-9):
             found.append(
-                f"The new tolerances at their worst make {worst:.5g} degrees, above the "
-                f"{limit:.5g} of [accuracy]: their budget counts otherwise."
+                f"With all new tolerances at their limits the error is {worst:.5g} degrees, above "
+                f"the {limit:.5g} of [accuracy]: their budget is no worst case."
             )
     stages = () if design.train is None else design.train.stages
     rack = Rack(scene.accuracy.pressure_angle.value)

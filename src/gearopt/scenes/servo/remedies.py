@@ -27,22 +27,22 @@ DIGITS = 5  # of a number that is proposed; rounded to the easy side
 ROOM = 1e-9  # by which a proposal is easier, to be feasible in doubles
 BACK = 1e-3  # a remedy that much smaller must be impossible
 LOOSE = "90 deg"  # an error that no train misses
-LATE = "the budget ended before the cause was known"
+LATE = "time ran out before the cause was identified"
 PATIENCE = 20.0, 5.0  # seconds, for numbers that help alone; where a duty chooses
 NAMED = 3  # sources of error that the message names
-ASIDE = "the cause is not the accuracy alone: with the maximum error left aside"
+ASIDE = "the cause is not the accuracy alone: even without a maximum error"
 KEPT = {"stiffness": "the stiffness", "box": "[space]"}
 WHOLE = (
-    "real-valued teeth and modules meet all other limits, whole teeth and the modules of the list "
-    "do not"
+    "real-valued teeth and modules would meet all other limits, but no whole teeth with the "
+    "modules of the list do"
 )
 LOADED = (
-    "trains meet all other limits, but the torque that the motor puts on their teeth in [duty] is "
-    "more than bending_stress allows"
+    "there are trains that meet all other limits, but the torque that the motor puts on their "
+    "teeth in [duty] is more than bending_stress allows"
 )
 MOTOR = (
-    "the cause is the duty: trains meet all other limits, but with none of them does the motor do "
-    "what [duty] asks"
+    "the cause is the duty: there are trains that meet all other limits, but the motor can make "
+    "the motion of [duty] with none of them"
 )
 COVERED = (
     "in all trains that meet all other limits the first wheel covers the output shaft, however "
@@ -84,7 +84,7 @@ def remedies(scene: Scene, clock: Clock, message: str = NO_TEETH) -> Remedies:
     if found.conflict and (kept := [KEPT[name] for name in scene.choice().apart]):
         words += f"{'; ' if words else ''}every remedy also keeps {' and '.join(kept)}"
     if within.over:
-        words += "; not all numbers of the file were tried" if words else ""
+        words += "; time ran out before all numbers of the file were tried" if words else ""
     return replace(found, remedies=(*found.remedies, *more), message=words)
 
 
@@ -112,7 +112,7 @@ def _cause(scene: Scene, clock: Clock, message: str) -> Remedies:
         other = _other(free, least.message, clock)
         return replace(other, message=f"{ASIDE}, {other.message}")
     if least.status != "optimal":
-        return Remedies(message="the budget ended before the minimum possible error was proven")
+        return Remedies(message="time ran out before the minimum possible error was proven")
     best = units.parse(f"{least.value!r} deg", "angle")
     names = impossible.in_conflict(scene.servo_train(), clock)
     floor = impossible.minimum_error(scene.servo_train(), clock) if names else None
@@ -204,7 +204,7 @@ def _message(scene: Scene, least: Result) -> str:
     rows = sorted(errors(scene, of_point(scene, point)), key=lambda row: -row.error_deg)
     largest = ", ".join(f"{row.source} {row.error_deg:.4f} deg" for row in rows[:NAMED])
     return (
-        f"the most accurate train has an error of {least.value:.5f} deg; of it the largest parts "
+        f"the most accurate train has an error of {least.value:.5f} deg; its largest parts "
         f"are {largest}"
     )
 

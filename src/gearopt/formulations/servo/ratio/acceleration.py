@@ -183,5 +183,5 @@ def impossible(reason: str) -> Outcome:
 
 def unbounded(what: str, remedy: str) -> Outcome:
     """Return an outcome for a duty without a best ratio."""
-    text = f"unbounded: the {what} is better the larger the ratio; give {remedy}"
+    text = f"unbounded: the larger the ratio, the better the {what}; give {remedy}"
     return Outcome(None, message=text, evaluations=1)

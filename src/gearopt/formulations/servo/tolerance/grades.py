@@ -176,7 +176,7 @@ def _proof(choice: Choice, found: "Picked", clock: Clock) -> dict[str, Any]:
         "arithmetic": _numbers(choice)[2],
         "pairs": clock.evaluations,
         "pairs_kept": found.largest,
-        "sentence": f"Proof: a dynamic program over all picks, {clock.evaluations:,} pairs of "
+        "sentence": f"Proof: a dynamic program over all choices, {clock.evaluations:,} pairs of "
         "weight and cost looked at.",
     }
 

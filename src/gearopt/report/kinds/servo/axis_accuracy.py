@@ -204,8 +204,8 @@ def tolerances(result: Result, measures: Measures) -> Section | None:
     )
     words = _cost_words(cost, None if design.train is None else design.train.error_deg)
     ends = (
-        "Of the error: sensitivity times new tolerance, of their sum. Min and max: the new "
-        "tolerance is the minimum or the maximum that the file allows."
+        "Share of the error: sensitivity times new tolerance over the sum of these. Min and max: "
+        "the new tolerance is the minimum or the maximum that the file allows."
     )
     terminal = (table, "\n".join(words))
     return Section("Tolerances", words=[*words, ends], tables=(table,), terminal=terminal)

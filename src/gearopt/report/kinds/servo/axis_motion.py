@@ -33,9 +33,9 @@ ROWS = {  # field of `Achieved`: its name, and its unit
     "torque_to_friction_percent": ("torque to friction", "percent"),
 }
 NOTE = (
-    "Inertias are seen at the motor; their ratio is that of the load to rotor and train together."
+    "Inertias are referred to the motor shaft; their ratio is that of the load to rotor plus train."
 )
-SPEEDING = " Torques are shares of the motor's while the load speeds up."
+SPEEDING = " Torques are in per cent of the motor's while the load speeds up."
 BRAKING = " The motor brakes with all its torque too, and friction helps: the ramps are not alike."
 WITH_TRAIN = "with the chosen train's inertia"
 TICKS = (1.0, 2.0, 5.0)  # of a decade
@@ -201,6 +201,6 @@ def _flat(found: RatioDesign) -> str:
     pairs = zip(found.curve.total_ratio, found.curve.value, strict=True)
     near = [n for n, v in pairs if (v >= limit if most else v <= limit)]
     return (
-        f"The optimum is flat: from {number(round(near[0], 1))} to {number(round(near[-1], 1))} "
-        "the value is within 1 % of the best."
+        f"The optimum is flat: total ratios from {number(round(near[0], 1))} to "
+        f"{number(round(near[-1], 1))} are within 1 % of the best {found.name}."
     )

@@ -34,9 +34,9 @@ from gearopt.report.section import Figure, Section, Table, axis, cell, layout
 from gearopt.report.words import amount, heading, parted
 
 BARE = (
-    "A bare train of the same ratio by its number of stages: all pinions alike, all gears full "
-    "discs of one width, no limit but the ratio; inertia at the motor and mass in those of a "
-    "pinion."
+    "For comparison, trains of the same total ratio by number of stages, without any other limit: "
+    "equal pinions, all gears solid discs of one face width. Inertia at the motor and mass are "
+    "multiples of one pinion's."
 )
 COMPARED = (*MOTIONS.values(), *(GOALS[name] for name in OBJECTIVES))  # the duty first
 LARGEST = GOALS["inverse_acceleration"]  # whose value is maximised
@@ -68,7 +68,7 @@ def section(result: Result, measures: Measures) -> Section | None:
     if found.error_deg is not None:
         words.append("The error is the worst case of backlash and pitch at the output.")
     if found.inertia_kg_m2 is not None:
-        words.append("Inertia is seen at the motor.")
+        words.append("Inertia is referred to the motor shaft.")
     drawn = train_views.views(stages, measures) if design.box is None else ()
     if drawn:
         words.append(
@@ -321,7 +321,7 @@ def _caption(result: Result, trains: Sequence[ListedTrain], goal: Goal) -> str:
         *names, last = (goal.word for goal in goals)
         several = f"{', '.join(names)} and {last}"
         which = f"Pareto front of {len(trains)} trains: none dominates another in {several}"
-    return f"{which}; the pointer shows their teeth.".capitalize()
+    return f"{which}; point at one to see its teeth.".capitalize()
 
 
 def _points(
