@@ -151,3 +151,17 @@ def test_random_drives_of_the_same_materials_as_by_brute_force(seed):
     chosen = teeth.best_choices(train, free.found[0][1])[1]
     if len(set(chosen)) == 1:
         assert value == pytest.approx(free.found[0][0], rel=1e-12)
+
+
+def test_a_search_of_lists_cut_short_has_a_design_and_a_bound():
+    """Brute force has the optimum elsewhere; the watcher ends the search with its first bound."""
+    train, seen = small(), []
+    narrow = [replace(s, options=s.options[:2]) for s in train.stages]
+    assert [t.stages for t in train.of_one_material] == [
+        tuple(replace(s, options=s.options[k : k + 1]) for s in narrow) for k in range(2)
+    ]
+    best = search(train, 1, Budget(), lambda e: seen.append(e) is None).found[0][0]
+    early = search(train, 1, Budget(), lambda event: event.bound is None)
+    assert early.clock.stopped and early.found[0][0] >= best
+    assert 0.5 * best < early.bound <= best
+    assert all(e.bound <= best * (1.0 + 1e-12) for e in seen if e.bound is not None)

@@ -15,10 +15,11 @@ from small_drives import FACES, OBJECTIVES, drive
 from gearopt.formulations.teeth import _in_order
 from gearopt.formulations.teeth import later_stages as bounds
 from gearopt.formulations.teeth import stage as staging
+from gearopt.formulations.teeth.existence import any_train, possible
 from gearopt.formulations.teeth.later_stages import bound
 from gearopt.formulations.teeth.progress import TIE
 from gearopt.formulations.teeth.reach import first_cut, reach
-from gearopt.formulations.teeth.search import possible, search, within
+from gearopt.formulations.teeth.search import search, within
 from gearopt.formulations.teeth.tables import table
 from gearopt.optimise.result import Budget
 
@@ -332,7 +333,7 @@ def test_a_stage_without_a_pair_leaves_no_train(position):
 
 def test_any_train_is_one_that_keeps_every_limit():
     train = drive(2, total=6)
-    teeth_of, trains = searching.any_train(train, 60.0, None), every_train(train)
+    teeth_of, trains = any_train(train, 60.0, None), every_train(train)
     assert list(map(list, teeth_of)) in trains.teeth.tolist()
-    assert searching.any_train(drive(2, total=6, modules=(F(1, 10),)), 60.0, None) == ()
-    assert searching.any_train(train, 0.0, None) is None
+    assert any_train(drive(2, total=6, modules=(F(1, 10),)), 60.0, None) == ()
+    assert any_train(train, 0.0, None) is None

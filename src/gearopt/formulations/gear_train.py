@@ -199,6 +199,19 @@ class Train:
         return tuple(replace(self, stages=tuple(stages)) for stages in made)
 
     @property
+    def of_one_material(self) -> tuple["Train", ...]:
+        """The drives of this one whose gears are all of one material; itself without a choice."""
+        if not self.several_options:
+            return (self,)
+        rows = [{o.materials: o for o in s.options} for s in self.stages]
+        alike = [n for n in rows[0] if n[0] == n[1] and all(n in row for row in rows)]
+        made = [
+            [replace(s, options=(row[n],)) for s, row in zip(self.stages, rows, strict=True)]
+            for n in alike
+        ]
+        return tuple(replace(self, stages=tuple(own), same_option=False) for own in made)
+
+    @property
     def hollow(self) -> bool:
         """Whether an objective counts gears that are no solid discs."""
         blanks = [blank for stage in self.stages for blank in stage.blanks]
@@ -316,9 +329,10 @@ def terms(
     for k, pair in enumerate(pairs):
         own = {name: each(getattr(numbers, name))[k] for name in train.by_stage}
         stage, option = train.stages[k], options[k] if options else 0
-        several = range(max(1, len(stage.options)))
+        asked = np.unique(np.rint(option)).astype(int)
+        option = np.searchsorted(asked, np.rint(option))
         for name in totals:
-            worth = [shares(train, k, pair, numbers.density, one, name) for one in several]
+            worth = [shares(train, k, pair, numbers.density, one, name) for one in asked]
             totals[name] = totals[name] + _chosen(worth, option)
         allowable = [own[name] for name in train.law.names]
         rows = train.law.utilisations(pair, torque, numbers.speed / product, allowable)
@@ -328,7 +342,7 @@ def terms(
             if rated is not None:
                 rows |= rated(k, pair, *load, safety)
             else:
-                made = [one.utilisations(pair, *load, safety) for one in stage.options]
+                made = [stage.options[o].utilisations(pair, *load, safety) for o in asked]
                 rows |= {name: _chosen([r[name] for r in made], option) for name in made[0]}
         rows |= _choices(stage, own, pair)
         if stage.wheel_fixed and not stage.pinion_fixed:
@@ -345,8 +359,8 @@ def terms(
 
 
 def _chosen(values: Sequence[Any], option: Any) -> Any:
-    """Return the value of an option, by its number from 0."""
-    return values[0] if len(values) == 1 else np.choose(np.rint(option).astype(int), values)
+    """Return the value of an option, by its place among the values."""
+    return values[0] if len(values) == 1 else np.choose(option, values)
 
 
 def _choices(stage: Stage, own: dict[str, Any], pair: GearPair) -> dict[str, Any]:

@@ -25,7 +25,7 @@ class Progress:
     objective known from elsewhere; lower: that of this search, once it covers all trains (whole).
     beside: a bound on the trains of drives that are searched in turn with the present one.
     clock: counts tooth pairs sized.
-    enough: the budget's gap is reached.
+    enough: the budget's gap is reached. patient: only the watcher ends what is under way.
     """
 
     wanted: int
@@ -38,6 +38,7 @@ class Progress:
     compared: int = 0
     nodes: int = 0
     enough: bool = False
+    patient: bool = False
 
     @property
     def bound(self) -> float:
@@ -67,11 +68,12 @@ class Progress:
     def raise_lower(self, bound: float) -> None:
         """Raise the bound to the lowest open one of a search, if that search covers all trains."""
         if self.whole:
-            self.lower = max(self.lower, min(bound, self.beside))
+            best = self.found[0][0] if self.found else math.inf
+            self.lower = max(self.lower, min(bound, self.beside, best))
 
     def tick(self) -> None:
         """Raise Spent where budget and watcher stop the search."""
-        if not self.continues():
+        if not self.continues() and not (self.patient and not self.clock.refused):
             raise Spent
 
     def continues(self) -> bool:

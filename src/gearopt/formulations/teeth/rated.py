@@ -6,13 +6,12 @@ tried, as a larger one may be the better one where the load-distribution factor 
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearopt.formulations.gear_train import Train
 from gearopt.formulations.shares import least_share, share
@@ -36,23 +35,22 @@ FINEST = 0.005  # width of a cell where none is given
 
 @dataclass(frozen=True)
 class Found:
-    """The best choice of rows (n,): cost, module [mm], face width [mm], option.
-
-    first: index of the first module that carries at all, of one option; else 0.
-    """
+    """The least cost of rows (n,), and the index of the first module that carries at all."""
 
     cost: Array
-    module: Array
-    width: Array
-    option: Index
     first: Index
 
 
 @dataclass(frozen=True)
 class RatedTable(Table):
-    """Tooth pairs (n,) of a stage with options; others: tables that may have these pairs, too."""
+    """Tooth pairs (n,) of a stage with options.
+
+    others: tables that may have these pairs, too. tick: called between options and modules, about
+    a hundred times a second; what it raises ends the work.
+    """
 
     others: tuple["RatedTable", ...] = ()
+    tick: Callable[[], None] = field(default=lambda: None, compare=False, repr=False)
 
     @cached_property
     def _prepared(self) -> list[list[Any]]:
@@ -126,9 +124,17 @@ class RatedTable(Table):
 
     def choose(self, torque: float, pair: int) -> tuple[float, float, int]:
         """Return the module, the face width [mm] and the option behind `cost`."""
-        at = np.array([torque])
-        found = self._found((at, at), np.array([pair]))
-        return found.module.item(), found.width.item(), found.option.item()
+        module = np.arange(self.first[pair], self.last[pair] + 1)
+        own, at = np.full(len(module), pair), np.full(len(module), torque)
+        one = self.made(self.modules[module], own)
+        ends, best = self._ends(one, module, own), (math.inf, math.inf, math.inf, 0)
+        for option in range(len(self.stage.options)):
+            widths = self._narrowest((at, at), own, module, option, ends)
+            costs = np.where(np.isfinite(widths), self._worth(one, widths, option), np.inf)
+            for k in np.flatnonzero(np.isfinite(costs)):
+                if costs[k] < best[0] * (1.0 - ALLOWANCE):
+                    best = costs[k].item(), self.modules[module[k]].item(), widths[k].item(), option
+        return best[1:]
 
     def rough_cost(self, torque: Array, pair: Index) -> Array:
         """Return a rough lower bound of `cost`."""
@@ -202,7 +208,7 @@ class RatedTable(Table):
         column = (self.log_ratio / delta).astype(np.int64)
         highest = math.log(self.train.highest_ratio)
         first = np.zeros(len(self.ratio), np.int64)
-        for rows in _batches(cells, len(self.ratio)):
+        for rows in cells.batches(len(self.ratio), BATCH):
             tick()
             inside = self.log_ratio <= highest - rows[:, None] * delta + EDGE
             if cells.useful is not None:
@@ -270,11 +276,12 @@ class RatedTable(Table):
         most: costs above which none counts; first: index of the module to begin with; close,
         steps: as of `first_width`, for lower bounds.
         """
-        best = _none(len(pair), len(self.modules))
+        best = Found(np.full(len(pair), np.inf), np.full(len(pair), len(self.modules)))
         for option in range(len(self.stage.options)):
             at = np.maximum(self.first[pair], first)
             rows = np.arange(len(pair))
             while True:
+                self.tick()
                 rows = rows[at[rows] <= self.last[pair[rows]]]
                 own, module = pair[rows], at[rows]
                 one = self.made(self.modules[module], own)
@@ -316,10 +323,7 @@ class RatedTable(Table):
         rows, pair, module, width = rows[some], pair[some], module[some], width[some]
         best.first[rows] = np.minimum(best.first[rows], module)
         cost = self._worth(self.made(self.modules[module], pair), width, option)
-        some = cost < best.cost[rows] * (1.0 - ALLOWANCE)
-        place = rows[some]
-        best.cost[place], best.width[place] = cost[some], width[some]
-        best.module[place], best.option[place] = self.modules[module[some]], option
+        best.cost[rows] = np.minimum(best.cost[rows], cost)
 
     def _ends(self, one: GearPair, module: Index, pair: Index) -> tuple[Array, Array]:
         """Return the minimum and maximum face width [mm] of pairs with modules (indices)."""
@@ -382,18 +386,3 @@ class RatedTable(Table):
             width[active] = first_width(now, on[goes] + step, high[active], close)
             active = active[np.isfinite(width[active])]
         return found
-
-
-def _none(count: int, modules: int) -> Found:
-    """Return that nothing carries."""
-    cost, module, width = (np.full(count, np.inf) for _ in range(3))
-    return Found(cost, module, width, np.zeros(count, np.int64), np.full(count, modules))
-
-
-def _batches(cells: Cells, pairs: int) -> Iterator[NDArray[np.int64]]:
-    """Yield cells of torque in order, as many at once as have about BATCH pairs."""
-    every, size = np.arange(cells.torque), np.full(cells.torque, pairs)
-    if cells.useful is not None:
-        size = np.ceil(cells.useful[: cells.torque].mean(axis=1) * pairs).astype(np.int64)
-    every, size = every[size > 0], np.cumsum(size[size > 0])
-    yield from np.split(every, np.flatnonzero(np.diff(size // BATCH)) + 1)

@@ -1,6 +1,7 @@
 """How large the ratio of a stage may be: of pairs there are, of a first look, of trains of use."""
 
 import math
+from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
@@ -32,15 +33,20 @@ def reach(
     cut: Fraction,
     maximum: Fraction,
     threshold: float,
+    tick: Callable[[], None] = lambda: None,
     shelf: list[RatedTable] | None = None,
 ) -> Fraction:
     """Return the largest stage ratio that a train at least as good as `threshold` may have.
 
+    tick: called several times a second; what it raises ends the work.
     Any stage carries at least the input torque; its share alone then grows with its ratio, where
     its law is proportional and the objective a volume, mass or length.
     """
     if train.rated:
-        every = stage_tables(train, maximum, shelf=shelf)
+        every = stage_tables(train, maximum, tick, shelf)
+        names = (train.objective, *(name for name, _ in train.weights))
+        if "total_length" not in names:  # equal stages have the same shares
+            every = [t for k, t in enumerate(every) if train.stages[k] not in train.stages[:k]]
         return Fraction(max(t.useful_ratio(float(cut), threshold) for t in every))
     if not train.law.proportional or train.objective not in ("gear_volume", "mass", *LENGTHS):
         return maximum

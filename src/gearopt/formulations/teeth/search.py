@@ -16,7 +16,6 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from gearopt.errors import SolveError
 from gearopt.formulations.gear_train import Train
 from gearopt.formulations.teeth.later_stages import (
     SLICE,
@@ -32,7 +31,7 @@ from gearopt.formulations.teeth.reach import first_cut, largest_ratio, reach
 from gearopt.formulations.teeth.stage import EDGE, Table
 from gearopt.formulations.teeth.tables import stage_tables
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.result import Budget, Event, Watch
+from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.terms import Array
 
 BEAM = 4  # nodes followed down at once; measured best for two to four stages
@@ -43,6 +42,10 @@ COARSE, FINE = 32.0, 0.006  # first cells of rated drives, times usual ones; the
 PROMISING = 32  # children of a node that a first dive looks at
 DIVE = 1000  # pairs examined on each of these grids, for a train
 CELLS = 10_000_000  # largest grid of a stage, 80 MB
+
+
+Places = tuple[NDArray[np.int64], NDArray[np.int64]]
+Few = tuple[int, Array | None]
 
 
 @dataclass(frozen=True)
@@ -74,7 +77,8 @@ def search(
     """Return the `wanted` best trains; `stopped` or `enough` where the search was not exhausted.
 
     A first look at stage ratios near the even split gives a train; what it does not exclude by
-    the ratio of a single stage is then searched to the end. floor: a bound known from elsewhere.
+    the ratio of a single stage is then searched to the end. Of rated drives that look is a dive,
+    in each material alone where there is a choice. floor: a bound known from elsewhere.
     whole: False where its own bound is of no use, as that of a part of the caller's drive. shelf:
     tables of like drives, which spare this one work; its own are added.
     """
@@ -84,14 +88,32 @@ def search(
     cut = min(maximum, first_cut(train))
     progress.whole = whole and cut == maximum
     try:
-        closed = _look(train, cut, progress, FIRST_LOOK, shelf)
-        far = reach(train, cut, maximum, progress.threshold, shelf)
+        for one in train.of_one_material if train.rated else ():
+            _glance(one, cut, progress, shelf)
+        closed = not progress.found and _look(train, cut, progress, FIRST_LOOK, shelf)
+        far = reach(train, cut, maximum, progress.threshold, progress.tick, shelf)
         progress.whole = whole
         if not (closed and far <= cut):
             _look(train, max(cut, far), progress, math.inf, shelf)
     except Spent:
         pass  # `stopped` or `enough` holds the reason
     return progress
+
+
+def _glance(train: Train, cut: Fraction, progress: Progress, shelf: list[RatedTable]) -> None:
+    """Look for a first train among few; however short the budget, this ends."""
+    progress.patient = True
+    tables = stage_tables(train, cut, progress.tick, shelf)
+    if all(len(t.ratio) for t in tables):
+        delta = COARSE * _width(tables)
+        _dive(
+            train,
+            tables,
+            bound(train, tables, delta, progress.tick, None, progress.threshold),
+            progress,
+        )
+    progress.patient = False
+    progress.tick()
 
 
 def _look(
@@ -122,9 +144,8 @@ def _rounds(
     train: Train, tables: list[Table], progress: Progress, patience: float
 ) -> Iterator[float]:
     """Search on ever finer grids; yield the bound of what is left, inf: none; end impatiently."""
-    delta, useful = 0.01 if len(tables) <= 3 else 0.005, None
-    coarse = train.rated  # whose bounds take long: few cells at first, then those of use
-    delta *= COARSE if coarse else 1.0
+    coarse, useful = train.rated, None  # whose bounds take long: few cells at first
+    delta = _width(tables) * (COARSE if coarse else 1.0)
     first: Array | None = None
     while True:
         finer = math.log(train.highest_ratio) * tables[-1].log_ratio[-1] / (delta / 2) ** 2
@@ -132,26 +153,50 @@ def _rounds(
         own = DIVE if coarse else math.inf if last else PATIENCE
         enough = progress.clock.evaluations + min(patience, own)
         rest = bound(train, tables, delta, progress.tick, useful, progress.threshold)
-        if train.rated and math.isinf(progress.threshold):
-            _dive(train, tables, rest, progress)
+        if train.rated:
+            begins = first is None
+            if first is None:
+                first = first_costs(train, tables[0], FINE, progress.threshold)
+            progress.raise_lower(_least(tables, rest, first))
+            if begins:
+                _dive(train, tables, rest, progress, first)
         lower = _closed(train, tables, rest, progress, enough)
         if lower < math.inf and patience <= PATIENCE and not coarse:
             return
         yield lower
         if train.rated:
-            if first is None:
-                first = first_costs(train, tables[0], FINE, progress.threshold)
+            assert first is not None
             useful = useful_cells(tables, rest, first, progress.threshold)
         delta /= 2
         coarse = coarse and delta > FINE
 
 
-def _dive(train: Train, tables: list[Table], rest: Bound, progress: Progress) -> None:
-    """Look for a train among the most promising nodes, so that a search knows what is of use."""
+def _width(tables: list[Table]) -> float:
+    """Return the usual width of a cell of log ratio."""
+    return 0.01 if len(tables) <= 3 else 0.005
+
+
+def _least(tables: list[Table], rest: Bound, first: Array) -> float:
+    """Return a bound of all trains: first costs of the first stage, and of the rest to go."""
+    if len(tables) == 1:
+        return float(first.min(initial=math.inf))
+    ahead = rest.to_go[1][rest.cell(tables[0].log_ratio)]
+    return float((first + ahead).min(initial=math.inf))
+
+
+def _dive(
+    train: Train, tables: list[Table], rest: Bound, progress: Progress, first: Array | None = None
+) -> None:
+    """Look for a train among the most promising nodes, so that a search knows what is of use.
+
+    first: bounds of the first stage's pairs, where they are known.
+    """
     chunk: Chunk | None = _root()
+    few: tuple[int, Array | None] = (PROMISING, first)
     while chunk is not None:
         width = LEAVES if chunk.level == len(tables) - 1 else BEAM
-        chunk = _expand(train, tables, rest, chunk.part(slice(0, width)), progress, PROMISING)
+        chunk = _expand(train, tables, rest, chunk.part(slice(0, width)), progress, few)
+        few = PROMISING, None
 
 
 def _root() -> Chunk:
@@ -192,11 +237,12 @@ def _expand(
     rest: Bound,
     chunk: Chunk,
     progress: Progress,
-    few: int = 0,
+    few: Few = (0, None),
 ) -> Chunk | None:
     """Return the useful children of some nodes, or None (complete trains are kept).
 
-    few: of the most promising children only, for each node; 0: of all.
+    few: of so many of the most promising children only, for each node, 0: of all; bounds of their
+    costs where they are known.
     """
     chunk = chunk.part(chunk.bound <= progress.threshold)
     level, stage = chunk.level, tables[chunk.level]
@@ -211,8 +257,8 @@ def _expand(
         start = rest.starts[level][cell]
         group, pair = ragged(start, rest.starts[level][cell + 1] - start)
         node = owner[group]
-    if few:
-        node, pair = _promising(train, stage, rest, chunk, (node, pair), few)
+    if few[0]:
+        node, pair = _promising(train, stage, rest, chunk, (node, pair), *few)
     progress.clock.evaluations += len(pair)
     log_ratio = chunk.log_ratio[node] + stage.log_ratio[pair]
     ahead = rest.to_go[level + 1][rest.cell(log_ratio)]
@@ -233,11 +279,14 @@ def _expand(
     return Chunk(level + 1, lower[use], cost[use], log_ratio[use], path)
 
 
-Places = tuple[NDArray[np.int64], NDArray[np.int64]]
-
-
 def _promising(
-    train: Train, stage: Table, rest: Bound, chunk: Chunk, places: Places, few: int
+    train: Train,
+    stage: Table,
+    rest: Bound,
+    chunk: Chunk,
+    places: Places,
+    few: int,
+    first: Array | None,
 ) -> Places:
     """Return the nodes and pairs of the least rough bounds, a few for each node."""
     node, pair = places
@@ -248,7 +297,8 @@ def _promising(
         goes = np.isfinite(ahead)
         node, pair, ahead = node[goes], pair[goes], ahead[goes]
     torque = (train.torque * np.exp(chunk.log_ratio))[node]
-    rough = chunk.cost[node] + stage.rough_cost(torque, pair) + ahead
+    own = stage.rough_cost(torque, pair) if first is None else first[pair]
+    rough = chunk.cost[node] + own + ahead
     best = np.sort(np.argsort(rough, kind="stable")[: few * len(chunk.cost)])
     return node[best], pair[best]
 
@@ -295,7 +345,7 @@ def _complete(
     rest: Bound,
     chunk: Chunk,
     progress: Progress,
-    few: int,
+    few: Few,
 ) -> None:
     """Add the last stage to nodes and keep the best trains that meet the ratio limits exactly."""
     stage = tables[-1]
@@ -303,8 +353,8 @@ def _complete(
     start = np.searchsorted(stage.log_ratio, low - chunk.log_ratio - EDGE)
     stop = np.searchsorted(stage.log_ratio, high - chunk.log_ratio + EDGE)
     node, pair = ragged(start, stop - start)
-    if few:
-        node, pair = _promising(train, stage, rest, chunk, (node, pair), few)
+    if few[0]:
+        node, pair = _promising(train, stage, rest, chunk, (node, pair), *few)
     progress.clock.evaluations += len(pair)
     most = progress.threshold - chunk.cost[node]
     total = chunk.cost[node] + _costs(train, stage, chunk, (node, pair), most, progress)
@@ -337,35 +387,3 @@ def within(train: Train, teeth: Teeth) -> bool:
         low.numerator * pinions <= wheels * low.denominator
         and wheels * high.denominator <= high.numerator * pinions
     )
-
-
-def possible(
-    train: Train, seconds: float, watch: Watch | None, shelf: list[RatedTable] | None = None
-) -> bool | None:
-    """Return whether any train meets all limits; None where that is not known in time.
-
-    shelf: as of `search`.
-    """
-    found = any_train(train, seconds, watch, shelf)
-    return found if found is None else bool(found)
-
-
-def any_train(
-    train: Train, seconds: float, watch: Watch | None, shelf: list[RatedTable] | None = None
-) -> Teeth | None:
-    """Return the teeth of a train that meets all limits, () if there is none; None: not known.
-
-    shelf: as of `search`.
-    """
-
-    def first(event: Event) -> bool:
-        wanted = watch is None or watch(event) is not False
-        return event.best is None and wanted  # one train is enough
-
-    try:
-        progress = search(train, 1, Budget(seconds=seconds), first, shelf=shelf)
-    except SolveError:  # too many pairs to examine
-        return None
-    if progress.found:
-        return progress.found[0][1]
-    return None if progress.clock.stopped else ()

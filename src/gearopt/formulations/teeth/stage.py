@@ -6,7 +6,7 @@ irrational except at 0, 60 and 90 (Niven's theorem), so no tie with a rational l
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -36,6 +36,14 @@ class Cells:
     delta: float
     useful: NDArray[np.bool_] | None = None
     most: float = np.inf
+
+    def batches(self, pairs: int, most: int) -> Iterator[NDArray[np.int64]]:
+        """Yield cells of torque in order, as many at once as have about so many of the pairs."""
+        every, size = np.arange(self.torque), np.full(self.torque, pairs)
+        if self.useful is not None:
+            size = np.ceil(self.useful[: self.torque].mean(axis=1) * pairs).astype(np.int64)
+        every, size = every[size > 0], np.cumsum(size[size > 0])
+        yield from np.split(every, np.flatnonzero(np.diff(size // most)) + 1)
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ def table(
     made = columns(train, position, cut, tick)
     if not train.stages[position].options:
         return Table(*made)
-    return replace(RatedTable(*made), others=tuple(others))
+    return replace(RatedTable(*made), others=tuple(others), tick=tick)
 
 
 def stage_tables(

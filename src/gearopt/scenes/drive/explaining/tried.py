@@ -5,9 +5,9 @@ from dataclasses import dataclass, field, replace
 
 from gearopt.formulations import sizing
 from gearopt.formulations.gear_train import Train
+from gearopt.formulations.teeth.existence import any_train, possible
 from gearopt.formulations.teeth.progress import Teeth
 from gearopt.formulations.teeth.rated import RatedTable
-from gearopt.formulations.teeth.search import any_train, possible
 from gearopt.formulations.teeth.wide import narrowed
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import THERE
