@@ -132,7 +132,7 @@ def test_gp_refuses_what_is_no_geometric_program():
     signomial = Problem(
         "s", (Var("a", "", 0.1, 1, 0.5, log=True),), (), lambda x, p: Terms({"f": 1.0 - x.a})
     )
-    with pytest.raises(SolveError, match="no geometric program"):
+    with pytest.raises(SolveError, match="not a geometric program"):
         solve(signomial, "gp")
     logarithm = Problem("l", signomial.variables, (), lambda x, p: Terms({"f": 1.0 - np.log(x.a)}))
     with pytest.raises(SolveError, match="the text of l cannot be run on cvxpy variables"):

@@ -48,7 +48,7 @@ BASIS = (
 HELD = f", with these whole numbers and choices,{BASIS}"
 UNSURE = 0.02  # between sensitivities by multipliers and by solving again that differ
 PART = 1e-3  # of the change up to which whole numbers and choices stay: the step of a re-solve
-UNDECIDED = "an empty cell: solving again gave no certain answer"
+UNDECIDED = "where a cell is empty, solving again gave no certain answer"
 UNPROVEN = "numbers are not solved again, because the answer is not proven optimal"
 
 
