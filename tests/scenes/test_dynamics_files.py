@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import tomllib
 from pathlib import Path
 
@@ -395,3 +396,19 @@ def test_where_contact_is_unstable_the_motion_that_parting_limits_is_told(tmp_pa
     found = gearopt.solve(path)
     assert found.design["warnings"] == [f"{told} period. Its motion grows without end."]
     assert "own depth of 0.3: 11,500 Hz" in found.to_html()
+
+
+@pytest.mark.parametrize(
+    ("bearing", "said"), [(3e3, "the contact ratio falls"), (1e2, "none touch")]
+)
+def test_axes_that_move_out_of_the_range_of_the_model_are_told(bearing, said):
+    """F = 200 N m/60 mm moves both axes by F/k along the line of action; module 4.257 mm."""
+    text = changed(('"100 kN/mm"', f'"{bearing:g} N/mm"'), text=BARE)
+    apart = 2.0 * 2e5 / 60.0 / bearing
+    distance, angle = 140.0 / math.cos(math.radians(20.0)), math.radians(20.0)
+    far = math.hypot(distance + apart * math.sin(angle), apart * math.cos(angle)) - distance
+    (warned,) = gearopt.solve(tomllib.loads(text)).design["warnings"]
+    told = re.search(r"up to ([0-9.]+) mm, ([0-9.]+) modules", warned)
+    assert said in warned and float(told[1]) == pytest.approx(far, rel=0.1)
+    assert float(told[2]) == pytest.approx(float(told[1]) / 4.2567, rel=1e-2)
+    assert not gearopt.solve(tomllib.loads(BARE)).design.get("warnings")

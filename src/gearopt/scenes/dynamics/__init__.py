@@ -58,7 +58,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
         method=design.response.method if design.response else "modes",
         objective={},
         certificate={"feasibility": 0.0},
-        design=untyped(replace(design, warnings=tuple(warnings(design)))),
+        design=untyped(replace(design, warnings=tuple(warnings(design, scene.module)))),
         report={"assumptions": assumptions(scene)},
         message=missing,
         evaluations=clock.evaluations + 1,
@@ -86,7 +86,7 @@ def _least(scene: Scene, ask: Ask, before: MovingPair, clock: Clock) -> Result:
     if clock.stopped:
         text = f"{result.message} {_missing(scene, design)}".strip()
         result = replace(result, message=text)
-    said = (*told(best, result, scene.optimise.periods), *warnings(design))
+    said = (*told(best, result, scene.optimise.periods), *warnings(design, scene.module))
     report = {"assumptions": assumptions(scene)}
     return replace(result, design=untyped(replace(design, warnings=said)), report=report)
 

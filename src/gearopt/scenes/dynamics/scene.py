@@ -203,6 +203,12 @@ class Scene(Table):
         return self.mesh.teeth * speed / (2.0 * math.pi)
 
     @property
+    def module(self) -> float:
+        """Module of the teeth [mm]: base pitch over pi cos(alpha)."""
+        radius = 0.5 * self.pinion.base_diameter.value
+        return float(2.0 * radius / (self.mesh.teeth * math.cos(self.mesh.pressure_angle.value)))
+
+    @property
     def task(self) -> Task:
         """Return what [optimise] asks."""
         asked, mesh = self.optimise, self.mesh

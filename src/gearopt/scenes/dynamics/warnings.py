@@ -3,6 +3,8 @@
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from gearopt.formulations.dynamics.dynamics_design import DynamicsDesign, Response, Speeds
 from gearopt.formulations.dynamics.motions_over_speed import ranges
 from gearopt.formulations.dynamics.steady_motion import MOST_PERIODS
@@ -10,12 +12,18 @@ from gearopt.formulations.motion.stability import UNSTABLE
 from gearopt.formulations.orbit.task import MICRO
 from gearopt.scenes.dynamics.tables import MOST_OUTPUTS
 
+DEPTH = 2.0  # modules: working depth of the teeth; axes that are further apart have none in mesh
+APART = 0.1  # modules by which axes part or teeth give way without changing the stiffness much
+CLEARANCE = 0.25  # modules between tips and roots (ISO 53)
 FINE = 10.0  # times in a period of the fastest motion at which it is told, at least
 
 
-def warnings(design: DynamicsDesign) -> list[str]:
-    """Return what is unstable, parts, jams, or was not reached."""
-    found, stability = list[str](), design.stability
+def warnings(design: DynamicsDesign, module: float) -> list[str]:
+    """Return what is unstable, parts, jams, leaves the model's range, or was not reached.
+
+    module [mm]: of the teeth.
+    """
+    found, stability = _out_of_range(design, module), design.stability
     if design.response is not None:
         found += _of_response(design.response, design)
     if stability is not None and stability.here is not None and stability.here > 1.0 + UNSTABLE:
@@ -29,6 +37,42 @@ def warnings(design: DynamicsDesign) -> list[str]:
         )
     if design.speeds is not None:
         found += _of_speeds(design.speeds)
+    return found
+
+
+def _out_of_range(design: DynamicsDesign, module: float) -> list[str]:
+    """Return where axes or teeth move so far that the stiffness of the file is not theirs."""
+    rest, moved, found = design.equilibrium, design.response, list[str]()
+    growths, pressed = [rest.centre_distance_growth_mm], [rest.deformation_mm]
+    if moved is not None:
+        pressed += moved.deformation_mm
+        if moved.axes_mm:
+            x1, y1, x2, y2 = np.array(moved.axes_mm)
+            apart = rest.centre_distance_mm - rest.centre_distance_growth_mm
+            growths += (np.hypot(apart + x2 - x1, y2 - y1) - apart).tolist()
+    most, least, deep = max(growths) / module, -min(growths) / module, -min(pressed) / module
+    if most > APART:
+        far = f"The axes move apart by up to {most * module:.3g} mm, {most:.3g} modules"
+        if most > DEPTH:
+            found.append(
+                f"{far}: teeth are {DEPTH:g} modules deep in mesh, so that none touch there. "
+                "The model does not know it, and its numbers mean nothing from there on."
+            )
+        else:
+            found.append(
+                f"{far}: the contact ratio falls, and the stiffness with it, which the model "
+                f"keeps as at rest. It holds up to about {APART:g} modules."
+            )
+    if least > CLEARANCE:
+        found.append(
+            f"The axes come together by up to {least * module:.3g} mm, {least:.3g} modules: tips "
+            f"touch roots from some {CLEARANCE:g} modules on, which the model does not know."
+        )
+    if deep > APART:
+        found.append(
+            f"The mesh deforms by up to {deep * module:.3g} mm, {deep:.3g} modules: teeth would "
+            "break long before, and their stiffness is that of small deformations."
+        )
     return found
 
 
