@@ -269,7 +269,7 @@ def edges(found: CutterDesign, measures: Measures) -> Table:
             cell(found.given_deviation_mm, "um", measures),
         ],
         [
-            f"circular arc, best{least}",
+            f"circular arc, best found{least}",
             None,
             cell(found.arc_radius_mm, "mm", measures),
             cell(found.arc_deviation_mm, "um", measures),

@@ -17,10 +17,13 @@ from gearopt.scenes.servo.train_part import candidates, given_gears
 
 SLOWEST = "acceleration"  # what nobody minimises
 FRICTION = {
-    "acceleration": "The motor speeds the load up; friction is Coulomb's and opposes the motion.",
+    "acceleration": "The motor speeds the load up with all the torque that it has at that speed, "
+    "and the efficiency is constant; friction is Coulomb's and opposes the motion. Heating of the "
+    "motor is not checked.",
     "move": "The motor speeds the load up and brakes it with all its torque, which is the same up "
     "to its speed limit. Coulomb friction opposes the one and helps the other, so the ramps are "
-    "not alike; losses of the train are not counted while the motor brakes.",
+    "not alike; losses of the train are not counted while the motor brakes. Heating of the motor, "
+    "by its rms torque, is not checked.",
     "swing": "Coulomb friction is in phase with the speed, inertia with the acceleration; no "
     "losses in the train. Where [motor] has a torque, it is the maximum rms torque.",
 }

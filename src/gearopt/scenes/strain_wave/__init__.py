@@ -49,7 +49,7 @@ METHODS = ("exchange",)  # its own
 SAMPLERS = ("annealing", "nsga2")
 NOTHING = "the gearing is given, so that nothing is chosen"
 UNPROVEN = "sensitivities need a design that is certified as locally optimal, and this one is not"
-NEAREST = "The nearest design of this size reaches: {}."
+NEAREST = "The nearest design of this size that was found reaches: {}."
 NO_FLANK = (
     "No gearing was found whose flanks are conjugate from root to tip. "
     "Increase the deflection or the pressure angle."
