@@ -171,6 +171,9 @@ def test_a_train_that_fits_is_not_called_too_large():
 
 
 def test_the_first_sentence_names_a_box_that_costs_something():
-    assert servo.decides(boxed()) == "the box decides the move time: without it a train is better"
+    assert (
+        servo.decides(boxed())
+        == "the box determines the move time: without it there is a better train"
+    )
     assert servo.decides(boxed(best_s=0.21)) == ""
     assert servo.decides(replace(boxed(), status="feasible")) == ""

@@ -177,8 +177,8 @@ def remedy_words(found: Mapping[str, Any]) -> tuple[list[list[Any]], str]:
         )
     if any(way["verified"].get("nearer") == "infeasible" for way in ways):
         words += (
-            " The ratio named is the nearest feasible one (within the tolerance around it "
-            "others are feasible, too)."
+            " The ratio named is the nearest feasible one (of real-valued sizes to 0.1 % of its "
+            "distance; within the tolerance around it others are feasible, too)."
         )
     if conflict and any(way["bound"] is not None for way in ways):
         words += " Proven minimum: no smaller factor suffices, even with real-valued sizes."

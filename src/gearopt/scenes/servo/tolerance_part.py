@@ -167,7 +167,7 @@ def spent(scene: Scene, gears: Pairs) -> Outcome | None:
     ]
     if not small:
         return None
-    text = f"the allowances at their lower ends make {lost:.5g} degrees, all of a budget"
+    text = f"the lower allowances alone give an error of {lost:.5g} degrees, which uses up a budget"
     proof = {"method": "closed form", "sentence": f"Proof: {text}."}
     return Outcome(None, infeasible=True, proof=proof, message=text)
 

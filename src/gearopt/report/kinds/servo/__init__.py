@@ -21,11 +21,13 @@ def decides(result: Result) -> str:
     """Return what decides beside the limits: a box, or the inertias of motor and load."""
     design = design_of(result)
     if _costs(result):
-        return f"the box decides the {goal(result)[0]}: without it a train is better"
+        return f"the box determines the {goal(result)[0]}: without it there is a better train"
     full = [n for n, u in result.limits.items() if u >= 1.0 - REACHED and n != FULL_TORQUE]
     if design.train is not None or design.ratio is None or full or result.value is None:
         return ""
-    return "the inertias of motor and load decide the total ratio, no limit of the motor does"
+    return (
+        "the inertias of motor and load determine the total ratio; no limit of the motor is active"
+    )
 
 
 def _costs(result: Result) -> bool:
