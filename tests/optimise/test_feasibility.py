@@ -103,4 +103,4 @@ def test_the_first_number_that_is_none_is_named():
 def test_a_variable_that_nothing_holds_is_named(lower, upper, guess, x, named):
     posed = problem(Var("held", "", -1, 1, 0), Var("x", "", lower, upper, guess))
     words = runaway(posed, np.array([0.5, x]), *posed.bounds())
-    assert words == (f"nothing holds x ({x:.3g}): give it a bound or a limit" if named else "")
+    assert words == (f"x is unbounded ({x:.3g}): give it a bound or a limit" if named else "")

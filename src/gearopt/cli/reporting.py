@@ -61,7 +61,7 @@ def report(
         raise
     except Exception as odd:  # whatever an edited file holds: its reader gets one message
         what = " ".join(f"{type(odd).__name__}: {odd}".split())[:LONGEST]
-        raise GearoptError(f"{file}: holds what no result holds ({what}); {HOW}") from odd
+        raise GearoptError(f"{file}: is not a result of gearopt ({what}); {HOW}") from odd
     print(text.get(), end="")
     for line in lines:
         print(line)

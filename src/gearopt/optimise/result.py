@@ -285,14 +285,14 @@ def _check_sorts(data: Mapping[str, Any]) -> None:
         raise ValueError(f"has the status {str(data['status'])[:40]!r}, which no result has")
     for key, sort in _SORTS.items():
         if key in data and not isinstance(data[key], sort):
-            raise ValueError(f"has another sort of {key} than a result has")
+            raise ValueError(f"has a value of the wrong type in {key}")
     value = data["objective"].get("value")
     if not isinstance(value, int | float | None):
-        raise ValueError("has an objective whose value is no number")
+        raise ValueError("has an objective whose value is not a number")
     absent = "" if data["status"] in ("evaluated", "limit") else None
     words = [data["objective"].get("name", absent), data["objective"].get("unit", "")]
     if not all(isinstance(word, str) for word in words):
-        raise ValueError("has an objective without a name, or whose unit is no text")
+        raise ValueError("has an objective without a name, or whose unit is not a text")
 
 
 def versions(*packages: str) -> dict[str, str]:

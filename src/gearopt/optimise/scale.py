@@ -178,4 +178,4 @@ def runaway(problem: Problem | Conic, x: Array, lower: Array, upper: Array, gues
     if not loose.any():
         return ""
     k = int(np.argmax(loose))
-    return f"nothing holds {problem.columns[k][1]} ({x[k]:.3g}): give it a bound or a limit"
+    return f"{problem.columns[k][1]} is unbounded ({x[k]:.3g}): give it a bound or a limit"

@@ -38,7 +38,7 @@ def typed(kind: Any, data: Any, where: str = "") -> Any:
     if origin is not None and issubclass(origin, Mapping):
         return {k: typed(inner[1], v, f"{where}.{k}") for k, v in _mapping(data, where).items()}
     if not isinstance(data, NUMBERS[kind]) or (isinstance(data, bool) and kind is not bool):
-        raise ValueError(f"has another sort of value in {where} than a {kind.__name__}")
+        raise ValueError(f"has a value in {where} that is not a {kind.__name__}")
     return data
 
 
@@ -78,11 +78,11 @@ def _declared(kind: Any) -> tuple[Mapping[str, Any], frozenset[str], tuple[str, 
 
 def _mapping(data: Any, where: str) -> Mapping[str, Any]:
     if not isinstance(data, Mapping):
-        raise ValueError(f"has another sort of value in {where or 'it'} than keys with values")
+        raise ValueError(f"has a value in {where or 'it'} that is not a dict of keys")
     return data
 
 
 def _list(data: Any, where: str) -> list[Any] | tuple[Any, ...]:
     if not isinstance(data, list | tuple):
-        raise ValueError(f"has another sort of value in {where} than a list")
+        raise ValueError(f"has a value in {where} that is not a list")
     return data

@@ -106,7 +106,7 @@ def _bound(problem: Conic, outcome: Outcome, value: float) -> tuple[float, float
             if not np.isfinite(box[0][k]) or not np.isfinite(box[1][k])
         ]
         if unheld:
-            loose = f"nothing holds {unheld[0]}: give it a bound or a limit, for a proof."
+            loose = f"{unheld[0]} is unbounded: give it a bound or a limit, for a proof."
             return -math.inf, 0.0, 0.0, loose
         if leaf.y is None or leaf.ray:
             return -math.inf, 0.0, 0.0, ""
