@@ -93,7 +93,7 @@ def test_report_shows_a_kept_result_again(tmp_path, here):
         (("report", "part.json"), "lacks the keys method"),
         (("report", "more.json"), "extra"),
         (("report", "status.json"), "status 'great'"),
-        (("report", "parts.json"), "another sort of parts"),
+        (("report", "parts.json"), "value of the wrong type in parts"),
         (("report", "value.json"), "value is no number"),
         (("report", "stages.json"), "no result holds"),
         (("report", "why.json"), "is an explanation"),

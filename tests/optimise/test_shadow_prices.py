@@ -132,5 +132,5 @@ def test_of_what_is_no_proven_minimum_there_are_none():
 def test_they_are_kept_in_json():
     found = solve(projection())
     assert Result.from_json(found.to_json()).multipliers == found.multipliers
-    with pytest.raises(ValueError, match="another sort of multipliers"):
+    with pytest.raises(ValueError, match="value of the wrong type in multipliers"):
         Result.from_dict(found.to_dict() | {"multipliers": [1.0]})
