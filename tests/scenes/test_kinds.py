@@ -7,7 +7,10 @@ import pytest
 
 import gearopt.scenes
 from gearopt.errors import SceneError, SolveError
+from gearopt.scenes.reading.changes import as_written
+from gearopt.scenes.reading.fields import Reads
 from gearopt.scenes.reading.load import kinds, read, scene_module
+from gearopt.scenes.reading.remedy import tables
 
 
 @pytest.mark.parametrize("kind", kinds())
@@ -28,3 +31,13 @@ def test_a_kind_that_cannot_be_imported_is_named_and_leaves_the_others_alone(tmp
     with pytest.raises(SolveError, match="kind 'broken' cannot be imported: .*nothing"):
         read(b'gearopt = 1\nkind = "broken"\n')
     assert "gearopt.scenes.broken" not in sys.modules
+
+
+def test_every_reader_takes_its_example_and_what_it_returned():
+    """Values that were read are read again where a scene is made from another one."""
+    for kind in kinds():
+        for _, table in tables(scene_module(kind).Scene):
+            for name, info in table.model_fields.items():
+                for reads in (m for m in info.metadata if isinstance(m, Reads) and not m.opens):
+                    found = reads.reader(as_written(reads.example), reads.example)
+                    assert reads.reader(found, reads.example) == found, (table, name)
