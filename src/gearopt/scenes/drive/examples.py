@@ -60,7 +60,7 @@ face_width = "30 mm"
 # helix_angle = "15 deg"       # normal module and pressure angle then
 # centre_distance = "121 mm"   # of spur gears here; without it the one without backlash
 
-[stage.pinion]                 # what the pinion has of its own; [stage.wheel] likewise
+[stage.pinion]                 # data of the pinion alone; likewise [stage.wheel]
 profile_shift = 0.2
 
 [gears]                        # what all gears share

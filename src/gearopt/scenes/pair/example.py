@@ -15,7 +15,7 @@ pinion_teeth = 25
 wheel_teeth = 50
 face_width = "30 mm"
 
-[stage.pinion]                 # what the pinion has of its own; [stage.wheel] likewise
+[stage.pinion]                 # data of the pinion alone; likewise [stage.wheel]
 bore = "30 mm"                 # where the gear is held on its shaft
 
 [stage.wheel]
