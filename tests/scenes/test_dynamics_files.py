@@ -272,12 +272,12 @@ def test_least_vibration_says_what_lies_between_its_speeds(solved):
     ("looks", "missing"),
     [
         (0, "the motion in time, 8 of 8 rows of the map, 12 of 12 speeds"),
-        (10, "2 of 8 rows of the map, 12 of 12 speeds"),
-        (20, "4 of 12 speeds"),
+        (46, "2 of 8 rows of the map, 12 of 12 speeds"),
+        (74, "4 of 12 speeds"),
     ],
 )
 def test_a_watcher_ends_a_motion_with_what_there_is(tmp_path, looks, missing):
-    """It is asked before the motion, between its runs, before a row and before a speed."""
+    """It is asked before the motion, between its runs, before rows, frequencies and speeds."""
     path, seen = tmp_path / "motion.toml", []
     text = changed(
         ('duration = "20 ms"\nerror = 1e-6', 'duration = "2 ms"\nerror = 1e-3'),

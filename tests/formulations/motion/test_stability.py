@@ -7,12 +7,14 @@ import pytest
 from moving_pairs import paper_pair
 from scipy import special
 
+from gearopt.formulations.motion import stability
 from gearopt.formulations.motion.stability import (
     largest,
     monodromy,
     multipliers,
     stability_map,
 )
+from gearopt.optimise.clock import Clock
 from gearopt.physics.motion.linear import Linear, linear, static, with_modal_damping
 from gearopt.physics.motion.stiffness_wave import fourier, sampled, trapezoid
 
@@ -109,3 +111,20 @@ def test_any_wave_is_carried_to_the_digits_of_a_rectangle():
     ramped = trapezoid(2e5, 0.5, 0.6, 0.1)
     one, other = (abs(multipliers(system, w, 3000.0)[0]) for w in (dense, ramped))
     assert one == pytest.approx(other, abs=1e-10)
+
+
+def test_slow_meshes_and_stiff_bearings_stop_within_a_period():
+    """A period in parts is the same map; a watcher that says no ends it at the next part."""
+    system = linear(paper_pair(kx=2e6), "line")
+    ramped, looks = trapezoid(2e5, 0.5, 0.68, 0.1), [0]
+    whole = monodromy(system, ramped, 200.0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(stability, "SLICE", 100)
+        assert monodromy(system, ramped, 200.0) == pytest.approx(whole, rel=1e-9, abs=1e-12)
+
+    def watch(event):
+        looks[0] += 1
+        return looks[0] < 4
+
+    assert len(largest(system, ramped, np.array([3e3, 2e3, 0.1, 5e3]), Clock(watch=watch))) == 2
+    assert looks[0] == 4

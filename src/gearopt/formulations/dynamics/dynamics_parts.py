@@ -15,7 +15,7 @@ from gearopt.formulations.dynamics.dynamics_design import (
     Tongue,
 )
 from gearopt.formulations.motion.simulate import simulate
-from gearopt.formulations.motion.stability import UNSTABLE, bands, largest, stability_map
+from gearopt.formulations.motion.stability import UNSTABLE, bands, largest, ready, stability_map
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.kinematics import growth
@@ -183,14 +183,16 @@ def stability(
     """
     frequencies, depths = np.linspace(*across), np.linspace(*up)
     system, wave = around(pair, level), pair.wave
-    growth = stability_map(system, [scaled(wave, float(d)) for d in depths], frequencies, clock)
+    mine = np.array([pair.mesh_frequency] if pair.mesh_frequency > 0.0 else [])
+    ready(system, wave, clock)
+    own = largest(system, wave, np.append(mine, frequencies), clock)
+    clock.evaluations += len(own)
+    waves = [scaled(wave, float(d)) for d in depths]
+    growth = stability_map(system, waves, frequencies, clock)
     if len(growth) < 2:
         return None
-    own = largest(system, wave, frequencies)
+    here, own = (float(own[0]) if mine.size else None), own[mine.size :]
     unstable = bands(frequencies, own > 1.0 + UNSTABLE)
-    here = None
-    if pair.mesh_frequency > 0.0:
-        here = float(largest(system, wave, np.array([pair.mesh_frequency]))[0])
     found = [
         Tongue(
             modes=t.modes,

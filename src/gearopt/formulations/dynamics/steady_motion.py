@@ -95,7 +95,10 @@ def in_contact(
             break
         wanted = enough(pair, level, float(frequency), harmonics)
         series = linear_orbit(pair, level, float(frequency), wanted)
-        found.append(Contact(series, float(largest(system, pair.wave, np.array([frequency]))[0])))
+        grown = largest(system, pair.wave, np.array([frequency]), clock)
+        if not len(grown):
+            break
+        found.append(Contact(series, float(grown[0])))
         clock.evaluations += 2
     return found
 

@@ -49,11 +49,12 @@ def summed(y, h, shares, slopes, count, out):
 
 
 @entry
-def monodromy(tableau, system, wave, period, longest, found):
-    """Carry the unit matrix over a period by Runge-Kutta steps of at most `longest` [s].
+def monodromy(tableau, system, wave, period, longest, begin, found):
+    """Carry the unit matrix over pieces of a period by Runge-Kutta steps of at most `longest` [s].
 
     tableau: table, weights, nodes. system: 1/masses, stiffness, damping, direction. wave: lengths
-    of its pieces, stiffness at both ends, cosines, sines. found (2 n, 2 n) is written to.
+    of the pieces, stiffness at both ends, cosines, sines. begin: the phase of the first. found
+    (2 n, 2 n) is written to.
     """
     table, weights, nodes = tableau
     inverse, held, damped, direction = system
@@ -63,7 +64,7 @@ def monodromy(tableau, system, wave, period, longest, found):
         for b in range(size):
             found[a, b] = 1.0 if a == b else 0.0
     slopes, inside = np.empty((stages, size, size)), np.empty((size, size))
-    start = 0.0
+    start = begin
     for piece in range(lengths.size):
         long = lengths[piece] * period
         count = max(1, int(math.ceil(long / longest)))

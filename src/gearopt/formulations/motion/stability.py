@@ -1,6 +1,7 @@
 """Stability of a pair under a periodic mesh stiffness: Floquet multipliers and maps of them."""
 
 import math
+from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
@@ -17,14 +18,16 @@ from gearopt.physics.motion.stiffness_wave import Wave
 KERNEL = "gearopt.formulations.motion.floquet_kernel"
 STEPS = 30.0  # of RK8 in a period of the fastest mode: 1e-12 of an entry
 UNSTABLE = 1e-6  # by which the largest multiplier of an unstable pair exceeds 1
+SLICE = 2000  # steps between two looks at a clock: some hundredth of a second
 CONDITION = 1e7  # of eigenvectors, above which a matrix exponential takes their place
 
 
-def monodromy(system: Linear, wave: Wave, frequency: float) -> Array:
+def monodromy(system: Linear, wave: Wave, frequency: float, clock: Clock | None = None) -> Array:
     """Return the map (2 n, 2 n) of displacements and velocities over a period of the mesh.
 
     Velocities are divided by the highest angular frequency. A stepped stiffness is solved exactly,
-    by matrix exponentials; any other by RK8 from kink to kink. frequency of the mesh [Hz] > 0.
+    by matrix exponentials; any other by RK8 from kink to kink. frequency of the mesh [Hz] > 0. NaN
+    where the clock stops, which is asked after every SLICE steps.
     """
     top = _top(system, wave)
     if wave.stepped:
@@ -34,13 +37,35 @@ def monodromy(system: Linear, wave: Wave, frequency: float) -> Array:
         for length, k in zip(wave.lengths, wave.after, strict=True):
             found = expm(_rates(system, float(k), top) * (length / frequency)) @ found
         return found
-    found = np.empty((2 * system.mass.size,) * 2)
+    found, part = np.eye(2 * system.mass.size), np.empty((2 * system.mass.size,) * 2)
     given = 1.0 / system.mass, system.stiffness, system.damping, system.direction
-    pieces = wave.lengths, wave.after, np.roll(wave.before, -1), wave.cosines, wave.sines
     longest = 2.0 * math.pi / top / STEPS
-    kernel(KERNEL).monodromy(eighth(), given, pieces, 1.0 / frequency, longest, found)
+    for begin, pieces in _slices(wave, 1.0 / frequency / longest):
+        if begin and clock is not None and not clock.tell():
+            return np.full(found.shape, math.nan)
+        pieces = *pieces, wave.cosines, wave.sines
+        kernel(KERNEL).monodromy(eighth(), given, pieces, 1.0 / frequency, longest, begin, part)
+        found = part @ found
     scale = np.append(np.ones(system.mass.size), np.full(system.mass.size, top))
     return np.asarray(found * scale / scale[:, None])
+
+
+def _slices(wave: Wave, steps: float) -> Iterator[tuple[float, Any]]:
+    """Yield the pieces of a wave, lengths and stiffness at both ends, with the phase they begin at.
+
+    All at once, or parts of at most SLICE of the steps of a period.
+    """
+    ends = np.roll(wave.before, -1)
+    if steps <= SLICE:
+        yield 0.0, (wave.lengths, wave.after, ends)
+        return
+    for begin, length, low, high in zip(wave.edges, wave.lengths, wave.after, ends, strict=True):
+        count = math.ceil(length * steps / SLICE)
+        shares = np.arange(count + 1) / count
+        levels = low + (high - low) * shares
+        for k, share in enumerate(shares[:-1]):
+            lengths = np.array([length / count])
+            yield float(begin + share * length), (lengths, levels[k : k + 1], levels[k + 1 : k + 2])
 
 
 def ready(system: Linear, wave: Wave, clock: Clock) -> None:
@@ -56,16 +81,32 @@ def multipliers(system: Linear, wave: Wave, frequency: float) -> NDArray[np.comp
     return np.asarray(found[np.argsort(-np.abs(found))])
 
 
-def largest(system: Linear, wave: Wave, frequencies: Array) -> Array:
-    """Return the largest |multiplier| at mesh frequencies (F,) [Hz]."""
+def _one_by_one(system: Linear, wave: Wave, frequencies: Array, clock: Clock | None) -> Array:
+    """Return the largest |multiplier| at the first mesh frequencies, until the clock stops."""
+    found = list[float]()
+    for frequency in frequencies:
+        if clock is not None and not clock.tell():
+            break
+        over = monodromy(system, wave, float(frequency), clock)
+        if np.isnan(over).any() and clock is not None and clock.stopped:
+            break
+        found.append(float(np.max(np.abs(np.linalg.eigvals(over)))))
+    return np.array(found)
+
+
+def largest(system: Linear, wave: Wave, frequencies: Array, clock: Clock | None = None) -> Array:
+    """Return the largest |multiplier| at mesh frequencies (F,) [Hz].
+
+    At the first of them where the clock stops.
+    """
     if not wave.stepped:
-        return np.array([abs(multipliers(system, wave, float(f))[0]) for f in frequencies])
+        return _one_by_one(system, wave, frequencies, clock)
     top, found = _top(system, wave), np.eye(2 * system.mass.size, dtype=complex)
     for length, k in zip(wave.lengths, wave.after, strict=True):
         rates = _rates(system, float(k), top)
         values, vectors = np.linalg.eig(rates)
         if np.linalg.cond(vectors) > CONDITION:
-            return np.array([abs(multipliers(system, wave, float(f))[0]) for f in frequencies])
+            return _one_by_one(system, wave, frequencies, clock)
         grown = np.exp(values * length / np.asarray(frequencies)[:, None])
         found = (vectors * grown[:, None, :]) @ np.linalg.inv(vectors) @ found
     return np.asarray(np.max(np.abs(np.linalg.eigvals(found)), axis=-1))
@@ -83,8 +124,11 @@ def stability_map(
     for wave in waves:
         if not clock.tell():
             break
-        rows.append(largest(system, wave, frequencies))
-        clock.evaluations += len(frequencies)
+        row = largest(system, wave, frequencies, clock)
+        clock.evaluations += len(row)
+        if len(row) < len(frequencies):
+            break
+        rows.append(row)
     return np.reshape(rows, (len(rows), len(frequencies)))
 
 
