@@ -3,8 +3,6 @@
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from gearopt.formulations.dynamics.dynamics_design import DynamicsDesign, Response, Speeds
 from gearopt.formulations.dynamics.motions_over_speed import ranges
 from gearopt.formulations.dynamics.steady_motion import MOST_PERIODS
@@ -47,9 +45,11 @@ def _out_of_range(design: DynamicsDesign, module: float) -> list[str]:
     if moved is not None:
         pressed += moved.deformation_mm
         if moved.axes_mm:
-            x1, y1, x2, y2 = np.array(moved.axes_mm)
             apart = rest.centre_distance_mm - rest.centre_distance_growth_mm
-            growths += (np.hypot(apart + x2 - x1, y2 - y1) - apart).tolist()
+            growths += (
+                math.hypot(apart + x2 - x1, y2 - y1) - apart
+                for x1, y1, x2, y2 in zip(*moved.axes_mm, strict=True)
+            )
     most, least, deep = max(growths) / module, -min(growths) / module, -min(pressed) / module
     if most > APART:
         far = f"The axes move apart by up to {most * module:.3g} mm, {most:.3g} modules"
