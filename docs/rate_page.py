@@ -49,7 +49,7 @@ The first command prints this file. A pair is a drive of one stage:
 {example}```
 
 With all teeth, modules and widths given, `[limits]` and the ratio of `[duty]` are left out. What
-both gears share stands in `[gears]`; what one has of its own in `[stage.pinion]`, `[stage.wheel]`.
+both gears share stands in `[gears]`; the data of one alone in `[stage.pinion]`, `[stage.wheel]`.
 They are cut by the tool of ISO 53 profile A unless a tool is given, and run at the centre distance
 without backlash unless `centre_distance` and `thickness_allowance` say otherwise. The same in
 inches: `diametral_pitch = 10`, `"1.5 in"`, `"4 hp"`, `"50 ksi"`.
