@@ -251,6 +251,7 @@ def test_weight_is_mass_and_volume_is_asked_back():
         ("[[stage]]", 'diametral_pitch = "8 DP"', "Write diametral_pitch = 8, without a unit"),
         ("[[stage]]", "pinion_teeth = -20", "Write pinion_teeth = 20"),
         ("[gears]", "poisson_ratio = 2", "Write, for example, poisson_ratio = 0.3"),
+        ("[gears]", 'treatment = "carburizing"', '. Write treatment = "carburised"'),
         ("[[stage]]", "pinion_teeth = [20]", "Write pinion_teeth = [20, 20]"),
         ("[[stage]]", 'pinion_teeth = "20-30"', "Write pinion_teeth = [20, 30]"),
         ("[[stage]]", 'module = "2 to 4 mm"', 'Write module = ["2 mm", "4 mm"]'),
