@@ -62,7 +62,7 @@ class Front:
     status: complete (proven: there is no other), proven (every point is; the front between them is
     known to `error`), not proven, infeasible (proven: no design at all), limit (stopped early).
     error: largest distance of the true front to the line through its points, in the ranges of the
-    objectives. beaten: values of feasible designs that others beat. corner: the point from which
+    objectives. beaten: values of dominated feasible designs. corner: the point from which
     the hypervolume is measured. picks: the designs that rules take.
     """
 
