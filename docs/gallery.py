@@ -179,8 +179,8 @@ UNITS = {  # as keys of a result have them
     "error": "deg",
     "inverse_acceleration": "",
     "move_time": "s",
-    "peak_to_peak": "mm_as_um",
-    "rms": "mm_as_um",
+    "peak_to_peak": "mm (shown in um)",
+    "rms": "mm (shown in um)",
     "rms_torque": "Nm",
     "cost": "",
 }

@@ -34,7 +34,7 @@ def test_the_terminal_says_the_load_the_motion_and_the_stiffness(solved):
     assert said.startswith(head) and "limits met" not in said
     flat = " ".join(said.split())
     assert "carries the whole load, 5,676 N, over 2.81 mm of its path (18.8 %)" in flat
-    assert "a pair comes into contact with 40.1 % of the load and parts with 41.2 %" in flat
+    assert "a pair comes into contact with 40.1 % of the load and leaves it with 41.2 %" in flat
     assert "varies by 2.50 µm at 50 % of the torque, 4.99 µm at 100 % of the torque" in flat
     hertz = 25 * 100 / (2 * math.pi)  # teeth, and the speed of the file [rad/s]
     assert f"at the mesh frequency of {hertz:.0f} Hz, has an amplitude of 2.57 µm at" in flat

@@ -27,7 +27,7 @@ UNITS = {
     "mm3": "mm^3",
     "um": "mm",
     "um_or_uin": "mm",
-    "mm_as_um": "mm",
+    "mm (shown in um)": "mm",
     "N_per_mm": "newton / millimeter",
     "N_per_mm_um": "MPa",
     "kg_m2": "kg*m^2",

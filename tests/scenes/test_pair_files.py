@@ -184,7 +184,7 @@ def test_a_coupling_beyond_the_compliance_of_a_pair_is_refused(edits):
 def test_a_model_without_a_ring_beside_a_coupling_by_the_ring_is_said():
     """Nakada's half plane does not turn; Sainsot's ring does."""
     assert (
-        'coupling = "none" goes' in contact(GIVEN, **{"sharing.level": "Nakada C"})["validity"][0]
+        'Write coupling = "none"' in contact(GIVEN, **{"sharing.level": "Nakada C"})["validity"][0]
     )
     assert "validity" not in contact(
         GIVEN, **{"sharing.level": "Nakada C", "sharing.coupling": "none"}

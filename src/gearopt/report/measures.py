@@ -172,7 +172,7 @@ METRIC = Measures(
         "kg": ("kg", 1.0),
         "um": ("µm", 1e3),  # of mm
         "um_or_uin": ("µm", 1e3),  # of mm
-        "mm_as_um": ("µm", 1e3),  # of mm: an objective's, whose value is in mm
+        "mm (shown in um)": ("µm", 1e3),  # of mm: an objective's, whose value is in mm
         "N_per_mm_um": ("N/(mm µm)", 1e-3),  # of MPa
         "N_per_mm": ("N/mm", 1.0),
         "kg_m2": ("g cm²", 1e7),
@@ -205,7 +205,7 @@ INCH = Measures(
         "kg": ("lb", 1.0 / _POUND),
         "um": ("mil", 1000.0 / _INCH),  # of mm
         "um_or_uin": ("µin", 1e6 / _INCH),  # of mm
-        "mm_as_um": ("µin", 1e6 / _INCH),  # of mm
+        "mm (shown in um)": ("µin", 1e6 / _INCH),  # of mm
         "N_per_mm_um": ("lbf/(in µin)", 1e-6 / _PSI),  # of MPa
         "N_per_mm": ("lbf/in", _INCH / _POUND_FORCE),
         "kg_m2": ("oz in²", 16e6 / (_POUND * _INCH**2)),

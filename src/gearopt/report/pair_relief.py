@@ -79,7 +79,7 @@ def answers(found: PairRelief) -> list[str]:
     if found.break_even is not None:
         words.append(
             f"Below {100.0 * found.break_even:.3g} % of the torque the gears run more evenly "
-            "without it: a light load does not close the gaps that it makes."
+            "without relief: a light load does not close the gaps that relief opens."
         )
     words += _finer(found)
     return [*words, _as_made(found.made)] if found.made else words
@@ -114,7 +114,7 @@ def _as_made(made: MadeRelief) -> str:
 
 
 def _flank(name: str, flank: FlankRelief) -> str:
-    known = {None: "as its profile says", 1.0: "linearly", 2.0: "as a parabola"}
+    known = {None: "by the profile in the table", 1.0: "linearly", 2.0: "as a parabola"}
     shape = known.get(flank.exponent) or f"with the exponent {flank.exponent:g}"
     if not flank.amount_mm:
         return f"The {name} keeps its involute."

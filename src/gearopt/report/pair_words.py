@@ -36,7 +36,7 @@ def answers(
     even = _even(found, load, frequency)
     if pair is not None and (alike := graded(pair, load.peak_to_peak_mm)):
         even = f"{even} {alike}"
-    first = ["All that follows is of the gears without relief."] if relieved else []
+    first = ["The results below are those of the gears without relief."] if relieved else []
     change = [] if relieved or not load.normal_force_N else [_changed(found)]
     return [*first, _shared(found, load), even, *change, _stiff(found, load), _sure(found)]
 
@@ -66,15 +66,17 @@ def _changed(found: PairContact) -> str:
     first, second = (rounded(1e3 * amount, 3) for amount in found.rule_relief_mm)
     return (
         f"About {first} µm off the tips of the pinion and {second} µm off those of the wheel would "
-        "let pairs of teeth come and go without load at the torque of the duty; a table [relief] "
-        "finds the best amounts, for several loads."
+        "let every pair of teeth enter and leave contact without load at the torque of [duty]. A "
+        "table [relief] finds the best amounts for several loads."
     )
 
 
 def _shared(found: PairContact, load: ContactLoad) -> str:
     """Say how much one pair of teeth carries and where."""
     first, last = load.share[0], load.share[-1]
-    ends = f"comes into contact with {share(first)} % of the load and parts with {share(last)} %"
+    ends = (
+        f"comes into contact with {share(first)} % of the load and leaves it with {share(last)} %"
+    )
     if not load.normal_force_N:
         return "Without load no pair of teeth carries anything."
     alone = 2.0 - found.contact_ratio
@@ -113,7 +115,7 @@ def _stiff(found: PairContact, load: ContactLoad) -> str:
     off = 100.0 * (load.mean_mesh_stiffness_MPa / found.iso_mesh_stiffness_MPa - 1.0)
     return (
         f"The mean mesh stiffness is {rounded(abs(off), 2)} % {'above' if off > 0 else 'below'} "
-        "c_γα of ISO 6336-1, which is one number for gears of any bores."
+        "c_γα of ISO 6336-1, which does not depend on the bores."
     )
 
 
@@ -121,21 +123,21 @@ def _sure(found: PairContact) -> str:
     """Say how wrong stiffness and transmission error may be."""
     low, high = found.error_percent
     stiff = (
-        f"How wrong that may be: over 34 pairs of steel gears the stiffness by {found.level} was "
+        f"Accuracy: for 34 pairs of steel gears the stiffness by {found.level} was "
         f"{_between(low, high)} that by finite elements"
     )
     if found.coupling not in OVERSTATED:
         return (
-            f"{stiff}; the mean transmission error is off by about as much, too large where the "
-            "stiffness is too low, its variation by up to twice as much."
+            f"{stiff}. The error of the mean transmission error is about as large, that of its "
+            "peak-to-peak value up to twice as large."
         )
     least, most = OVERSTATED[found.coupling]
     name = {"none": "Without coupling of neighbouring teeth"}.get(
         found.coupling, f"With neighbouring teeth coupled by {found.coupling}"
     )
     return (
-        f"{stiff}. {name} the transmission error of two of them came out {least} to {most} % "
-        'larger than with coupling = "finite elements".'
+        f"{stiff}. {name} the peak-to-peak transmission error of two of them was {least} to "
+        f'{most} % larger than with coupling = "finite elements".'
     )
 
 

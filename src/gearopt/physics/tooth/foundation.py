@@ -49,8 +49,8 @@ def cornell_compliance(member: ElasticGear, line: LoadLine) -> Any:
 
     cos^2(aL)/(E b) {f 16.67/pi (u/S_f)^2 + c u/S_f + f 1.534 (1 + tan^2(aL)/(2.4 (1 + nu)))};
     c = 2 (1 - nu) of plane stress, 2 (1 - nu - 2 nu^2) of plane strain. A half plane does not turn
-    with a ring: add `torsion_compliance`. Source: Cornell, J. Mech. Des. 103 (1981) (constants
-    unverified: of memory; with torsion within 11 % of finite elements).
+    with a ring: add `torsion_compliance`. Source: Cornell, J. Mech. Des. 103 (1981), constants not
+    checked against the paper; with torsion within 11 % of finite elements.
     """
     nu, factor = member.poisson, member.plane_factor
     linear = 2.0 * (1.0 - nu) if member.plane == "stress" else 2.0 * (1.0 - nu - 2.0 * nu**2)

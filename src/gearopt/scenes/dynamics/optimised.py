@@ -114,7 +114,7 @@ def _judged(result: Result, best: Chosen, task: Task) -> Result:
             )
             result = replace(result, status="feasible", message=text)
         value = simulated
-    told = result.objective | {"value": value, "unit": "mm_as_um"}
+    told = result.objective | {"value": value, "unit": "mm (shown in um)"}
     return replace(result, objective=told, limits=limits)
 
 

@@ -129,12 +129,12 @@ def _of_speeds(speeds: Speeds) -> list[str]:
     if any(endless):
         found.append(
             f"At {ranges(speeds.speed_rpm, endless)} the pair is unstable: its motion grows "
-            "without end, and has no amplitude."
+            "without limit, so that there is no amplitude."
         )
     if any(limited):
         found.append(
-            f"At {ranges(speeds.speed_rpm, limited)} teeth in contact are unstable: they part, and "
-            "that alone limits the amplitude."
+            f"At {ranges(speeds.speed_rpm, limited)} contact is unstable: teeth part, "
+            "which limits the amplitude."
         )
     pulls = [h is not None and h > 0.0 for h in speeds.highest_mm]
     if any(pulls) and not speeds.teeth_part:

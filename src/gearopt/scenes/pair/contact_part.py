@@ -175,7 +175,7 @@ def _validity(made: PairMesh, coupling: str) -> Iterator[str]:
     if LEVELS[made.level].body == "half plane" and coupling in ("ring torsion", "finite elements"):
         yield (
             f"{made.level} has no torsion of the rings, which the coupling by {coupling} has: "
-            'shares and transmission error mix two bodies. coupling = "none" goes with this level.'
+            'stiffness and coupling are then of two different bodies. Write coupling = "none".'
         )
     told = doubts(made.elastic, made.level)
     yield from told

@@ -26,7 +26,7 @@ from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.scene import Scene
 from gearopt.scenes.reading.ask import Ask
 
-SHOWN = {"mm": "mm_as_um"}  # units of criteria as they are read
+SHOWN = {"mm": "mm (shown in um)"}  # units of criteria as they are read
 DEFAULT = "annealing"  # of what has no proven search
 FEW = 2.0  # contact ratio below which free shapes are searched
 AT_END = 1e-6  # of a range: a value as near to its end is at it
