@@ -13,7 +13,7 @@ from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.shares import OBJECTIVES
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.teeth.search import possible
+from gearopt.formulations.teeth.existence import possible
 from gearopt.formulations.teeth.wide import narrowed
 from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.result import Budget
