@@ -13,6 +13,7 @@ from gearopt import SceneError
 from gearopt.formulations.teeth.existence import possible
 from gearopt.scenes.explaining.numbers import content, numbers
 from gearopt.scenes.reading.load import read
+from gearopt.scenes.reading.modules import SERIES, series_of, unverified
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 FILE = """
@@ -185,3 +186,9 @@ def test_a_servo_train_of_pitches_is_that_of_its_modules():
     module, pitch = solved('["0.5 mm", "0.4 mm"]'), solved('["50.8 1/in", "63.5 1/in"]')
     assert module.status == "optimal" and module.value == pitch.value
     assert "unverified by a standard" in " ".join(solved('"DP fine"').report["assumptions"])
+
+
+def test_a_standard_series_is_known_by_its_sizes():
+    assert [series_of(sizes) for sizes in SERIES.values()] == list(SERIES)
+    assert series_of(SERIES["DP fine"][1:]) == "" and unverified(SERIES["ISO 54 I"]) == []
+    assert "DP fine" in unverified(SERIES["DP fine"])[0]
