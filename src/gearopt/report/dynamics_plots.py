@@ -249,6 +249,7 @@ def before_and_after(found: Chosen, measure: str, measures: Measures) -> Figure:
         ),
         line(found.dense_rpm, after, "least vibration", 1),
     ]
+    traces = traces[set(found.before_mm) == {None} :]  # none where the run was stopped
     judged = [float(np.interp(n, found.dense_rpm, after)) for n in found.speed_rpm]
     marks = line(found.speed_rpm, judged, "speeds of the problem")
     traces.append(marks | {"mode": "markers", "marker": {"color": series(1), "size": 6}})

@@ -22,10 +22,11 @@ COARSE = 91  # speeds of the pair before, between which its curve is straight
 
 
 def chosen(
-    task: Task, values: Sequence[float], before: MovingPair, rounds: Sequence[dict[str, Any]]
+    task: Task, values: Sequence[float], before: MovingPair | None, rounds: Sequence[dict[str, Any]]
 ) -> Chosen:
     """Return what is to be known of a design (5,) over all speeds, beside the pair before it.
 
+    before: None where there is no time left for it.
     Of motions that rising and falling speeds lead to, the larger one.
     """
     point, speeds = np.array(values, float), dense(task)
@@ -33,7 +34,7 @@ def chosen(
     made = orbit_parts(task, kb, ratio, width, rim)
     found, highest, repeats = _motions(task, point, speeds)
     coarse = np.linspace(speeds[0], speeds[-1], COARSE)
-    told = _before(task, before, coarse)
+    told = np.full(COARSE, np.nan) if before is None else _before(task, before, coarse)
     return Chosen(
         bearing_stiffness_N_per_mm=kb,
         contact_ratio=ratio,

@@ -162,6 +162,8 @@ def _missing(scene: Scene, design: DynamicsDesign) -> str:
             found.append(f"{speeds.points - done} of {speeds.points} speeds")
         if design.speeds and design.speeds.teeth_part and not design.speeds.falling_rms_mm:
             found.append("falling speeds")
+    if design.chosen is not None and set(design.chosen.before_mm) == {None}:
+        found.append("the motions of the file's own pair over speed")
     return f"Stopped early: {', '.join(found)} missing." if found else ""
 
 

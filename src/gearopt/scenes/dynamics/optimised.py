@@ -78,7 +78,8 @@ def optimised(
     if result.value is None:
         return result, None, task
     values = tuple(float(v) for v in list(result.design.values())[: len(VARIABLES)])
-    best = chosen(task, values, before, made.rounds if made else ())
+    beside_it = None if clock.stopped else before
+    best = chosen(task, values, beside_it, made.rounds if made else ())
     return _judged(result, best, task), best, task
 
 
