@@ -30,7 +30,7 @@ EXIT_CODES = {
     3: "proven: no design meets the limits; or a given design, evaluated, exceeds one, or its "
     "gears do not fit",
     4: "nothing found within the time",
-    130: "interrupted before there was anything to keep, or by a second Ctrl-C",
+    130: "interrupted: there was nothing to keep, a step did not end, or by a second Ctrl-C",
 }
 KINDS: dict[Any, str] = {int: "N", float: "NUMBER", str: "TEXT", Path: "FILE"}
 

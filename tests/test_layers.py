@@ -15,7 +15,7 @@ INSIDE = {
     "formulations": {"physics", "optimise", "formulations", "errors"},
     "scenes": {"formulations", "physics", "optimise", "scenes", "units", "errors"},
     "report": {"physics", "formulations", "optimise", "scenes", "report", "units"},
-    "bench": {"physics", "formulations", "optimise", "scenes", "bench"},
+    "bench": {"physics", "formulations", "optimise", "scenes", "bench", "errors", "api"},
 }
 OUTSIDE = {  # at module level; what is imported inside functions is free
     "physics": {"numpy"},

@@ -81,3 +81,29 @@ def test_a_terminal_shows_what_is_reached_and_seconds_that_move():
 @pytest.mark.slow
 def test_a_short_run_shows_nothing():
     assert on_a_terminal(0.1).split() == ["done"]
+
+
+DEAF = """
+import os, signal, sys, time
+from gearopt.cli.watching import watching
+from gearopt.optimise.result import Event
+
+with watching(60.0, quiet=True) as watch:
+    watch(Event(1.0, 1200, None, 12.0, "teeth", "mass", "kg"))
+    os.kill(os.getpid(), signal.SIGINT)
+    assert watch(Event(1.0, 1200, None, 12.0, "teeth", "mass", "kg")) is False
+    time.sleep(float(sys.argv[1]))
+print("done")
+"""
+
+
+@pytest.mark.slow
+def test_a_run_that_does_not_hear_ctrl_c_is_ended():
+    """After half a second, with what it has said; one that ends by itself goes on to its answer."""
+    ended, kept = (
+        subprocess.run([sys.executable, "-c", DEAF, seconds], capture_output=True, text=True)
+        for seconds in ("30", "0.01")
+    )
+    assert ended.returncode == 130 and ended.stdout == ""
+    assert ended.stderr == "gearopt: interrupted (teeth: bound 12 kg, 1,200 evaluations)\n"
+    assert kept.returncode == 0 and kept.stdout == "done\n"

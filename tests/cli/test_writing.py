@@ -1,5 +1,6 @@
 """Files are written whole, and never in the place of what a run reads."""
 
+import errno
 import os
 import stat
 from pathlib import Path
@@ -10,7 +11,7 @@ from gearopt.api import solve
 from gearopt.cli.answering import compare
 from gearopt.cli.answering import solve as solve_command
 from gearopt.cli.reporting import checked, report
-from gearopt.cli.writing import check_csv, check_html, write
+from gearopt.cli.writing import Written, check_csv, check_html, write
 from gearopt.errors import GearoptError
 
 ELEVATOR = Path(__file__).parents[2] / "problems" / "elevator.toml"
@@ -95,22 +96,50 @@ def test_a_page_and_a_table_are_two_files(room):
 
 def test_a_file_is_written_whole_or_not_at_all(room):
     page = room / "page.html"
-    write("--html", page, "old\n")
+    write(Written("--html", page, "old\n"))
     page.chmod(0o604)
     for text, kind in (("new \ud800", UnicodeEncodeError), (7, TypeError)):
         with pytest.raises(kind):
-            write("--html", page, text)
+            write(Written("--html", page, text))
         assert page.read_text() == "old\n"
-    write("--html", page, "new\n")
+    write(Written("--html", page, "new\n"))
     assert page.read_text() == "new\n" and stat.S_IMODE(page.stat().st_mode) == 0o604
     assert not [path for path in room.iterdir() if path.name.startswith(".")]
+
+
+def test_tables_are_written_all_or_none(room, monkeypatch):
+    """The disk is full at the second table: the first is as it was, and nothing stays beside."""
+    tables = [Path(name) for name in ("a.csv", "b.csv")]
+    tables[0].write_text("old")
+
+    def full(self, mode, **given):
+        if sum(path.name.startswith(".gearopt-") for path in Path().iterdir()):
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return plain(self, mode, **given)
+
+    plain = Path.open
+    said = "--csv b.csv: No space left on device; nothing was written"
+    with monkeypatch.context() as patched, pytest.raises(GearoptError, match=said):
+        patched.setattr(Path, "open", full)
+        write(*(Written("--csv", path, "new") for path in tables))
+    assert tables[0].read_text() == "old" and not tables[1].exists()
+    assert not list(Path().glob(".gearopt-*"))
+
+
+def test_what_a_killed_run_left_is_removed_by_the_next_one(room):
+    """No process has a number beyond 2^22 on Linux; that of the test runs."""
+    left, mine = Path(f".gearopt-{2**22 + 1}-ab"), Path(f".gearopt-{os.getpid()}-ab")
+    for path in (left, mine):
+        path.write_text("half")
+    write(Written("--html", Path("page.html"), "new"))
+    assert not left.exists() and mine.exists()
 
 
 def test_a_link_stays_and_what_it_leads_to_is_written(room):
     (room / "real.html").write_text("old")
     (room / "link.html").symlink_to("real.html")
     check_html(Path("link.html"), Path("mine.toml"))
-    write("--html", Path("link.html"), "new")
+    write(Written("--html", Path("link.html"), "new"))
     assert (room / "link.html").is_symlink() and (room / "real.html").read_text() == "new"
 
 
@@ -118,7 +147,7 @@ def test_a_pipe_is_written_to_as_it_is(room):
     os.mkfifo(room / "pipe")
     reader = os.open(room / "pipe", os.O_RDONLY | os.O_NONBLOCK)
     check_html(Path("pipe"), Path("mine.toml"))
-    write("--html", Path("pipe"), "page")
+    write(Written("--html", Path("pipe"), "page"))
     assert os.read(reader, 10) == b"page"
     os.close(reader)
 
@@ -130,4 +159,4 @@ def test_what_the_system_refuses_is_one_message(room):
     with pytest.raises(GearoptError, match="is a folder"):
         check_html(Path("tables"))
     with pytest.raises(GearoptError, match="--html page.html/x"):
-        write("--html", Path("page.html/x"), "page")
+        write(Written("--html", Path("page.html/x"), "page"))

@@ -224,7 +224,7 @@ def compare(
     named = None
     if methods is not None:
         named = [name.strip() for name in methods.split(",") if name.strip()]
-    with following(_words, quiet=as_json) as watch:
+    with following(_words, quiet=as_json, kept=lambda now: now.done > 0) as watch:
         found = compare_file(
             file,
             objectives=objectives,

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from gearopt.cli.app import MORE, Csv, Html, Units, app, console, exit_code, front_code, print_whole
 from gearopt.cli.names import result_files
-from gearopt.cli.writing import check_csv, check_html, write
+from gearopt.cli.writing import Written, check_csv, check_html, write
 from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.pareto.front import Front
@@ -139,16 +139,17 @@ def written(result: Result, files: Files) -> list[str]:
 
 def _kept(files: Files, page: str, found: Mapping[str, str]) -> list[str]:
     """Write a page, and tables by the names of their files; return a line for each."""
-    lines = []
+    lines, written = [], []
     if files.html is not None:
-        write("--html", files.html, page)
+        written.append(Written("--html", files.html, page))
         lines.append(f"\nPage: {files.html}")
     if files.csv is not None:
         _make(files.csv)
         paths = {files.csv / name: text for name, text in found.items()}
-        for path, text in paths.items():
-            write("--csv", path, text, "utf-8-sig")  # for spreadsheets
+        # for spreadsheets
+        written += [Written("--csv", path, text, "utf-8-sig") for path, text in paths.items()]
         lines.append(f"\nTables: {', '.join(map(str, paths))}")
+    write(*written)
     return lines
 
 

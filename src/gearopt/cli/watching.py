@@ -21,6 +21,7 @@ from gearopt.report.screen import Screen
 PATIENCE = 0.5  # seconds of a run without a line about it
 PAUSE = 0.2  # seconds between one line and the next
 LONGEST = 1e5  # seconds: a limit above it is none
+GRACE, KEEPING = 0.5, 5.0  # seconds from Ctrl-C to the end: with nothing to keep, and at most
 SHOW_CURSOR = b"\r\x1b[K\x1b[?25h"  # and clear the line of the progress that hid it
 
 
@@ -31,20 +32,26 @@ def watching(seconds: float, quiet: bool, measures: Measures = METRIC) -> Iterat
     def words(event: Event) -> str:
         return progress(event, measures)
 
-    with following(words, quiet, seconds) as watch:
+    with following(words, quiet, seconds, kept=lambda event: event.best is not None) as watch:
         yield watch
 
 
 @contextmanager
 def following(
-    words: Callable[[Any], str], quiet: bool, limit: float = math.inf
+    words: Callable[[Any], str],
+    quiet: bool,
+    limit: float = math.inf,
+    kept: Callable[[Any], bool] = lambda progress: False,
 ) -> Iterator[Callable[[Any], bool]]:
     """Yield a watcher, False after Ctrl-C (the second one kills), that shows words(progress).
+
+    A run that does not end by itself is ended GRACE after Ctrl-C, where kept(progress) says that
+    there is something to keep KEEPING after it, with its last words on stderr.
 
     On a terminal a line of what was reached last and of the seconds spent moves after half a
     second, whether or not the run has anything to report. limit: seconds that it may take.
     """
-    stopped = False
+    stopped, last, ended = False, None, threading.Event()
     screen = Screen(stderr=True, highlight=False)
     line = _Line(limit)
     status = screen.status(line) if screen.is_terminal and not quiet else None
@@ -57,6 +64,15 @@ def following(
             signal.signal(signal.SIGINT, before)
             signal.raise_signal(signal.SIGINT)
         stopped = True
+        threading.Thread(target=leave, daemon=True).start()
+
+    def leave() -> None:
+        if ended.wait(KEEPING if last is not None and kept(last) else GRACE):
+            return
+        said = "" if last is None else f" ({words(last)})"
+        os.write(2, b"" if status is None else SHOW_CURSOR)
+        os.write(2, f"gearopt: interrupted{said}\n".encode())
+        os._exit(130)
 
     before = signal.signal(signal.SIGINT, stop)
     news = _News(screen)
@@ -66,6 +82,8 @@ def following(
         logger.setLevel(logging.INFO)
 
     def watch(progress: Any) -> bool:
+        nonlocal last
+        last = progress
         if status is not None and line.due():
             line.words = words(progress)
         return not stopped
@@ -75,6 +93,7 @@ def following(
             begin.start()
         yield watch
     finally:
+        ended.set()
         if begin is not None:
             begin.cancel()
             begin.join()

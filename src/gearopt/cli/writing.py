@@ -4,6 +4,7 @@ import io
 import os
 import shutil
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from secrets import token_hex
 from typing import TextIO
@@ -47,6 +48,7 @@ def patient(stream: TextIO) -> TextIO:
     )
 
 
+BESIDE = ".gearopt-"  # with a process number: files that are being written
 PROBLEM, TABLE = ".toml", ".csv"  # endings: of files that are never written, and of tables
 
 
@@ -89,32 +91,75 @@ def check_csv(folder: Path | None, html: Path | None, *given: Path) -> None:
         raise GearoptError(f"--html {html}: --csv writes its tables there; name a .html file")
 
 
-def write(option: str, path: Path, text: str, encoding: str = "utf-8") -> None:
-    """Write a file that an option names; GearoptError where the system refuses."""
-    try:
-        _write(path, text, encoding)
-    except OSError as refused:
-        raise GearoptError(f"{option} {path}: {refused.strerror}") from refused
+@dataclass(frozen=True)
+class Written:
+    """A file that an option names, and its text."""
+
+    option: str
+    path: Path
+    text: str
+    encoding: str = "utf-8"
 
 
-def _write(path: Path, text: str, encoding: str) -> None:
-    """Write a file whole or not at all: beside its place first, then in it.
+def write(*files: Written) -> None:
+    """Write files, all of them or none; GearoptError where the system refuses.
 
     What a link leads to is replaced, not the link; a pipe or a terminal is written to as it is.
     """
-    if not _ordinary(path):
-        path.write_text(text, encoding=encoding)
-        return
-    place = _place(path)
-    beside = place.with_name(f".gearopt-{os.getpid()}-{token_hex(4)}")
+    beside: dict[Path, Path] = {}  # by place
+    placed: list[str] = []
+    now = files[0] if files else None
     try:
-        with beside.open("x", encoding=encoding, newline="") as file:
-            file.write(text)
-        if place.exists():
-            shutil.copymode(place, beside)
-        beside.replace(place)
+        for now in files:
+            if _ordinary(now.path):
+                beside[_place(now.path)] = _beside(now)
+        for now in files:
+            if (made := beside.get(_place(now.path))) is None:
+                now.path.write_text(now.text, encoding=now.encoding)
+            else:
+                made.replace(_place(now.path))
+                del beside[_place(now.path)]
+            placed.append(str(now.path))
+    except OSError as refused:
+        assert now is not None
+        none = "nothing was written" if len(files) > 1 else ""
+        left = f"written were {', '.join(placed)}" if placed else none
+        words = "; ".join(filter(None, (refused.strerror, left)))
+        raise GearoptError(f"{now.option} {now.path}: {words}") from refused
     finally:
-        beside.unlink(missing_ok=True)
+        for made in beside.values():
+            made.unlink(missing_ok=True)
+
+
+def _beside(file: Written) -> Path:
+    """Return a new file beside the place of another, with its text; stale ones are removed."""
+    place = _place(file.path)
+    for stale in place.parent.glob(f"{BESIDE}*"):
+        if not _runs(stale.name.removeprefix(BESIDE).partition("-")[0]):
+            stale.unlink(missing_ok=True)
+    made = place.with_name(f"{BESIDE}{os.getpid()}-{token_hex(4)}")
+    try:
+        with made.open("x", encoding=file.encoding, newline="") as stream:
+            stream.write(file.text)
+        if place.exists():
+            shutil.copymode(place, made)
+    except BaseException:
+        made.unlink(missing_ok=True)
+        raise
+    return made
+
+
+def _runs(number: str) -> bool:
+    """Return whether a process runs that has this number; of one that is none, too."""
+    if not number.isdecimal() or os.name != "posix":  # signal 0 would end it on Windows
+        return True
+    try:
+        os.kill(int(number), 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        return True
+    return True
 
 
 def _spare(what: str, target: Path, given: tuple[Path, ...], instead: str) -> None:
