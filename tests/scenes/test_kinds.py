@@ -41,3 +41,10 @@ def test_every_reader_takes_its_example_and_what_it_returned():
                 for reads in (m for m in info.metadata if isinstance(m, Reads) and not m.opens):
                     found = reads.reader(as_written(reads.example), reads.example)
                     assert reads.reader(found, reads.example) == found, (table, name)
+
+
+def test_what_a_kind_offers_by_name_is_a_function():
+    """A file of its folder of the same name would be taken for it."""
+    for module in map(scene_module, kinds()):
+        for name in ("advice", "assumptions", "explain", "idle", "objectives", "rate", "several"):
+            assert callable(getattr(module, name, print)), (module.__name__, name)

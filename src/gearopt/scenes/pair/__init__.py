@@ -19,7 +19,7 @@ from gearopt.scenes.drive.blank_tables import body_flaws
 from gearopt.scenes.drive.rating import rated
 from gearopt.scenes.explaining.default import explain as explain_scene
 from gearopt.scenes.pair import relief_part
-from gearopt.scenes.pair.assumptions import contact_assumptions
+from gearopt.scenes.pair.contact_assumptions import contact_assumptions
 from gearopt.scenes.pair.contact_part import contact_of, mesh_of
 from gearopt.scenes.pair.example import EXAMPLE, MORE_EXAMPLES
 from gearopt.scenes.pair.relief_part import relieved
