@@ -16,7 +16,7 @@ from gearopt.scenes.reading.near import near
 from gearopt.scenes.reading.not_yet import nearest
 from gearopt.scenes.reading.toml import cut, dotted, short, toml_text
 
-OTHER_NAME = "has another name here"
+OTHER_NAME, OTHER_TABLE = "has another name here", "belongs in another table"
 
 
 def wrong_value(
@@ -152,7 +152,8 @@ def _unknown(
     if there is None and (way := nearest(kind, name)):
         return SceneError(file, shown, short(value), "is not a key here", way)
     if there := there or called(kind, name):
-        return SceneError(file, shown, short(value), OTHER_NAME, f"Write {there}")
+        rule = OTHER_TABLE if there.split(",")[0] == name else OTHER_NAME
+        return SceneError(file, shown, short(value), rule, f"Write {there}")
     if given := option(name):
         rule = "is an option of the command, not a key of the file"
         way = f"Remove it and run `gearopt solve FILE {given}`"
