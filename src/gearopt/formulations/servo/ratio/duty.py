@@ -87,9 +87,9 @@ class ServoDuty:
 
     def deceleration(self, ratio: Any, gears: Any = 0.0) -> Any:
         """Return the load's deceleration [rad/s2] while the motor brakes; gears: see above."""
-        own = self.drive
-        numbers = own.load_inertia, own.inertia + gears, own.braking_torque, own.load_friction
-        return load_deceleration(ratio, *numbers)
+        drive = self.drive
+        inertias = drive.load_inertia, drive.inertia + gears
+        return load_deceleration(ratio, *inertias, drive.braking_torque, drive.load_friction)
 
     def value(self, ratio: Any, gears: Any = 0.0) -> Any:
         """Return what is minimised [s2/rad, s or N mm]; very large where the load does not move."""
@@ -114,27 +114,28 @@ class ServoDuty:
         is larger. A motor that falls in speed has most torque at standstill; where the load does
         not move, all of it loads the teeth. gears: inertia of the train, seen at the motor.
         """
-        own = self.drive
-        load, friction = own.load_inertia, own.load_friction
+        drive = self.drive
+        load, friction, eta = drive.load_inertia, drive.load_friction, drive.efficiency
         if self.motion == "swing":
             peak = self.peak_acceleration
             return (load * peak + friction) / ratio + beyond * ratio * peak
-        numbers = load, own.inertia + gears, own.net_torque, friction, own.efficiency
-        ramp = np.maximum(load_acceleration(ratio, *numbers), 0.0)
-        speeding = (load * ramp + friction) / (own.efficiency * ratio) + beyond * ratio * ramp
-        found = np.minimum(speeding, own.net_torque)
-        if self.motion == "move":
-            ramp = self.deceleration(ratio, gears)
-            found = np.maximum(found, (load * ramp - friction) / ratio + beyond * ratio * ramp)
-        return found
+        inertia = drive.inertia + gears
+        ramp = load_acceleration(ratio, load, inertia, drive.net_torque, friction, eta)
+        ramp = np.maximum(ramp, 0.0)
+        starting = (load * ramp + friction) / (eta * ratio) + beyond * ratio * ramp
+        starting = np.minimum(starting, drive.net_torque)
+        if self.motion != "move":
+            return starting
+        ramp = self.deceleration(ratio, gears)
+        braking = (load * ramp - friction) / ratio + beyond * ratio * ramp
+        return np.maximum(starting, braking)
 
     @property
     def minimum_load_torque(self) -> float:
         """Return a torque at the load [N mm] that every train must carry; 0 where none is known."""
-        own = self.drive
         if self.motion != "swing":
             return 0.0
-        return own.load_inertia * self.peak_acceleration + own.load_friction
+        return self.drive.load_inertia * self.peak_acceleration + self.drive.load_friction
 
     def limits(self, ratio: Any, value: Any) -> dict[str, Any]:
         """Return the utilisations of the motor at a ratio; value: that of the duty there.

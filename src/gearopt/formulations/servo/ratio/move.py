@@ -84,9 +84,9 @@ def move(drive: Drive, angle: float) -> Problem:
         return _exact(replace(drive.of(values), efficiency=efficiency), values["angle"], rubs)
 
     loss = Param("loss", "", 1.0 / drive.efficiency - 1.0)  # of torque, in a part of what is left
-    own = Param("angle", "rad", angle, key="duty.angle", role="given")
+    turn = Param("angle", "rad", angle, key="duty.angle", role="given")
     lossy = (loss,) if drive.efficiency < 1.0 else ()
-    parameters = (*drive.parameters("efficiency"), *lossy, own)
+    parameters = (*drive.parameters("efficiency"), *lossy, turn)
     return Problem("ratio", variables, parameters, evaluate, methods={"exact": exact})
 
 

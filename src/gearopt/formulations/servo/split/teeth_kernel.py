@@ -61,14 +61,14 @@ def carried_torque(duty, ratio, gears, beyond):
         return (load * duty[10] + friction) / ratio + beyond * ratio * duty[10]
     inertia = motor + gears
     left = efficiency * ratio * torque - friction
-    found = torque
+    starting = torque
     if left > 0.0:
         ramp = left / (load + efficiency * ratio**2 * inertia)
-        found = (load * ramp + friction) / (efficiency * ratio) + beyond * ratio * ramp
-    if duty[0] == 1:
-        ramp = (ratio * (torque + 2.0 * duty[9]) + friction) / (load + ratio**2 * inertia)
-        found = max(found, (load * ramp - friction) / ratio + beyond * ratio * ramp)
-    return found
+        starting = (load * ramp + friction) / (efficiency * ratio) + beyond * ratio * ramp
+    if duty[0] != 1:
+        return starting
+    ramp = (ratio * (torque + 2.0 * duty[9]) + friction) / (load + ratio**2 * inertia)
+    return max(starting, (load * ramp - friction) / ratio + beyond * ratio * ramp)
 
 
 @inner
