@@ -412,3 +412,18 @@ def test_axes_that_move_out_of_the_range_of_the_model_are_told(bearing, said):
     assert said in warned and float(told[1]) == pytest.approx(far, rel=0.1)
     assert float(told[2]) == pytest.approx(float(told[1]) / 4.2567, rel=1e-2)
     assert not gearopt.solve(tomllib.loads(BARE)).design.get("warnings")
+
+
+@pytest.mark.parametrize(
+    ("axes", "said"), [("fixed", "masses of the gears"), ("line", "that key has no")]
+)
+def test_keys_without_effect_are_told(axes, said):
+    text = changed(('axes = "line"', f'axes = "{axes}"\nkinematics = "exact"'), text=BARE)
+    content = tomllib.loads(text)
+    found = [gearopt.solve(content)]
+    content["mesh"]["kinematics"] = "tangent"
+    if axes == "fixed":
+        content["pinion"] |= {"mass": "6 kg", "bearing_stiffness": "7 N/mm"}
+    found.append(gearopt.solve(content))
+    assert found[0].design["equilibrium"] == found[1].design["equilibrium"]
+    assert said in found[0].report["assumptions"][-1]

@@ -178,6 +178,15 @@ def assumptions(scene: Scene) -> list[str]:
             "The paper's kinematics are not those of two involutes: a rotation of the whole pair "
             "changes the deformation. They are there to compare with."
         )
+    if scene.mesh.axes == "fixed":
+        said.append(
+            "Axes do not move: masses of the gears, bearings and kinematics have no effect."
+        )
+    elif scene.mesh.axes == "line" and "kinematics" in scene.mesh.model_fields_set:
+        said.append(
+            "Axes move along the line of action, where all kinematics are alike: that key has no "
+            "effect."
+        )
     if scene.optimise is not None:
         said.append(
             "Gears are discs of the pitch radii, times the rim factor; torques balance; the wave "
