@@ -173,7 +173,7 @@ def _verified(
         return None
     status = solve_within(clock, train_problem(changed.choice())).status
     back = moved(scene, path, less)
-    verified = {"with": status, "rounded": f"by up to {ROUND:.0%}"}
+    verified = {"with": status, "rounded": f"by up to {100 * ROUND:g} %"}
     if back is not None:
         verified["with_less"] = "infeasible" if some_train(back, clock) is None else "feasible"
     was, write = (toml_text(written(v, path)) for v in (value, new))
@@ -219,7 +219,7 @@ def _box(scene: Scene, clock: Clock) -> Remedy | None:
     if status != "optimal":
         return None
     less = some_train(_scaled(scene, least[1] * (1.0 - BACK)), clock)
-    verified = {"with": status, "rounded": f"by up to {ROUND:.0%}"}
+    verified = {"with": status, "rounded": f"by up to {100 * ROUND:g} %"}
     verified["with_less"] = "infeasible" if less is None else "feasible"
     factor = max(change.factor for change in changes)
     return Remedy("alone", "both sides of the box", tuple(changes), factor, least[0], verified)
