@@ -80,6 +80,7 @@ def test_with_the_constants_of_the_inch_form_that_pair_is_smaller():
 CASES = [(0.0, "spur"), (0.2, "low"), (0.4363, "low"), (0.4363, "conventional")]
 HARD, TEMPERED = Steel("carburised"), Steel(hardness=320.0)
 SOFTER = replace(TEMPERED, hardness=256.0)
+UNLIKE = Rack(addendum=1.2), Rack(addendum=0.85, dedendum=1.5)
 STEELS = {  # and hours, factors that are given, practice
     "tempered": ((TEMPERED, SOFTER), 2e4, {}, Practice(quality=7.0)),
     "carburised, brief": ((HARD, HARD), 20.0, {}, Practice(7.0, "open", True, 0.3, True)),
@@ -88,10 +89,10 @@ STEELS = {  # and hours, factors that are given, practice
 }
 TIGHT = {  # of CASES in turn
     "tempered": (
-        (0.9598, 0.9260, 0.9369, 0.9342),
-        (0.7875, 0.7176, 0.7671, 0.7659),
-        (0.7964, 0.7189, 0.7742, 0.7723),
-        (0.9586, 0.9577, 0.9591, 0.9561),
+        (0.9582, 0.9240, 0.9359, 0.9327),
+        (0.7870, 0.7171, 0.7666, 0.7654),
+        (0.7964, 0.7187, 0.7738, 0.7720),
+        (0.9566, 0.9558, 0.9570, 0.9544),
     ),
     "carburised, brief": (
         (0.9387, 0.9265, 0.9376, 0.9376),
@@ -106,10 +107,10 @@ TIGHT = {  # of CASES in turn
         (0.9589, 0.9580, 0.8799, 0.8629),
     ),
     "hard on soft": (
-        (0.9982, 0.8265, 0.8529, 0.9273),
-        (0.9990, 0.8270, 0.7104, 0.7627),
-        (0.9995, 0.8273, 0.7169, 0.7678),
-        (0.9982, 0.8264, 0.8728, 0.9524),
+        (0.9982, 0.8265, 0.8671, 0.9458),
+        (0.9990, 0.8270, 0.6570, 0.7052),
+        (0.9995, 0.8273, 0.6705, 0.7225),
+        (0.9982, 0.8264, 0.8205, 0.8919),
     ),
 }
 
@@ -122,8 +123,9 @@ def test_no_bounding_law_exceeds_the_rating(helix, choice, kind):
     steels, hours, given, practice = STEELS[kind]
     standard = agma(steels, hours=hours, practice=practice, given=given)
     standard = replace(standard, loads=(Load(hours, 0.8, 1.3),))
-    toothing = Toothing(helix, (SHARP, SHARP))
-    box = Box((18.0, 70.0), (1.5, 6.0), (10.0, 300.0), 300.0, toothing)
+    toothing = Toothing(helix, UNLIKE if kind == "hard on soft" else (SHARP, SHARP))
+    widest = 450.0 if kind == "tempered" else 300.0
+    box = Box((18.0, 70.0), (1.5, 6.0), (10.0, 300.0), widest, toothing)
     floor = standard.floor(box, choice)
     z, u = 1 / rng.uniform(1 / 70, 1 / 18, count), rng.uniform(1.5, 6.0, count)
     module = np.exp(rng.uniform(0.0, 2.3, count))
@@ -131,7 +133,7 @@ def test_no_bounding_law_exceeds_the_rating(helix, choice, kind):
     axial = np.pi * module / max(np.sin(helix), 1e-3)
     low, high = {"spur": (0.1, 2.0), "low": (0.1, 1.0), "conventional": (1.001, 4.0)}[choice]
     width = rng.uniform(low, high, count) * (d if choice == "spur" else axial)
-    width = np.minimum(width, 300.0)
+    width = np.minimum(width, widest)
     torque, speed = np.exp(rng.uniform(5, 15, count)), rng.uniform(10.0, 300.0, count)
     pair = toothing.of_diameter(module, z, d, u, width)
     true = np.array(standard.safeties(pair, torque, speed), float)
