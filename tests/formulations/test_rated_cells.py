@@ -60,6 +60,7 @@ STANDARDS = {
         loads=PARTLY,
     ),
     "iso, given": iso(given={"K_v": 1.2, "Z_eps": 0.8, "Y_F": (2.5, 2.3), "f_ma": 0.01}),
+    "iso, c_gamma given": iso(given={"c_gamma_alpha": 19e3, "N": 0.3, "C_a": 0.02}),
     "iso, others given": iso(given=OTHERS),
 }
 # what cells ask for over what designs in them need, medians: of contact and bending, helical teeth
@@ -74,6 +75,7 @@ TIGHT = {
     "agma, given": (0.9914, 0.9915, 0.9910, 0.9912),
     "agma, I given": (0.9947, 0.9816, 0.9941, 0.9832),
     "iso, webs": (0.9774, 0.9621, 0.9710, 0.9641),
+    "iso, c_gamma given": (0.9776, 0.9664, 0.9753, 0.9681),
     "iso, given": (0.9868, 0.9764, 0.9846, 0.9793),
     "iso, others given": (0.9875, 0.9779, 0.9851, 0.9786),
 }
