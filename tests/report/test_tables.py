@@ -183,7 +183,7 @@ WAYS = [  # as of remedies
 
 @pytest.mark.parametrize("width", range(60, 160, 10))
 def test_what_is_to_be_written_is_never_cut(width):
-    heads = ("remedy, one is enough", "write in the file", "instead of", "factor", "minimum")
+    heads = ("remedy (any one)", "write in the file", "instead of", "factor", "minimum")
     console = Console(file=io.StringIO(), width=width)
     console.print(grid(Table("remedies", heads, WAYS, words=True, left=3), width))
     lines = console.file.getvalue().splitlines()

@@ -27,7 +27,7 @@ KINDS = {
     "choice": "or choose",
 }
 REMEDY_HEADS = (
-    "remedy, one is enough",
+    "remedy (any one)",
     "write in the file",
     "instead of",
     "factor",
