@@ -234,16 +234,18 @@ def break_even(made: PairMesh, removed: Removed, loads: Sequence[float]) -> floa
     down to a hundredth, or worse at the least one already.
     """
     least = min(loads)
-    tried = np.linspace(0.01, 1.0, STEPS) * least
-    mesh = made.of_loads([float(load) for load in tried])
-    plain = mesh.criteria(mesh.separations(NO_RELIEF, NO_RELIEF)).peak_to_peak
-    lost = mesh.criteria(removed.separations(mesh)).peak_to_peak - plain
-    worse = np.flatnonzero(lost[:-1] > 0.0)
-    if not least or lost[-1] >= 0.0 or not len(worse):
-        return None
-    k = int(worse[-1])
-    part = lost[k] / (lost[k] - lost[k + 1])
-    return float(tried[k] + part * (tried[k + 1] - tried[k]))
+    low, high = 0.01 * least, least
+    for _ in range(2):  # the second time between the two loads that the first one found
+        tried = np.linspace(low, high, STEPS)
+        mesh = made.of_loads([float(load) for load in tried])
+        plain = mesh.criteria(mesh.separations(NO_RELIEF, NO_RELIEF)).peak_to_peak
+        lost = mesh.criteria(removed.separations(mesh)).peak_to_peak - plain
+        worse = np.flatnonzero(lost[:-1] > 0.0)
+        if not least or lost[-1] >= 0.0 or not len(worse):
+            return None
+        low, high = tried[worse[-1]], tried[worse[-1] + 1]
+    before, after = lost[worse[-1] : worse[-1] + 2]
+    return float(low + before / (before - after) * (high - low))
 
 
 def rules(made: PairMesh) -> dict[str, tuple[Relief, Relief]]:
