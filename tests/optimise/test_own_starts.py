@@ -1,6 +1,7 @@
 """A problem of one's own: starts, the method that is taken, and what its message says of proofs."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -123,6 +124,21 @@ def test_what_only_lacks_logarithms_is_told():
     declared = solve(box(log=True))
     assert declared.status == "optimal" and "declare" not in declared.message
     assert declared.value == pytest.approx(2.0 * 12.0**0.5, rel=1e-6)
+
+
+@pytest.mark.parametrize("log", [False, True])
+def test_a_maximum_is_promised_a_proof_only_as_a_variable(log):
+    """max(x, 4/x) is least at 2: the text with np.maximum has a kink there, and no tight bound."""
+    x, t = (Var(n, "", 0.1, 9.0, 1.0, log=log) for n in "xt")
+    found = solve(Problem("bent", (x,), (), lambda x, p: Terms({"f": np.maximum(x.x, 4.0 / x.x)})))
+    assert found.status != "optimal" and "write every np.maximum(a, b) as" in found.message
+    assert ("declare log=True for x, and" in found.message) != log
+
+    def written(x, p):
+        return Terms({"f": x.t}, defines={"over": (x.x / x.t, 4.0 / x.x / x.t)})
+
+    proven = solve(Problem("over", (replace(x, log=True), replace(t, log=True)), (), written))
+    assert proven.status == "optimal" and proven.value == pytest.approx(2.0, rel=1e-6)
     open_ = solve(box(lower=0.0, upper=np.inf)).message
     assert "a lower bound above 0 for a, b, a finite upper bound for a, b: then" in open_
 

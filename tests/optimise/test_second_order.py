@@ -346,7 +346,8 @@ def test_flat_directions_end_at_bounds():
     """Beyond the bound the objective would rise, and on the other side too."""
 
     def walled(a):
-        return -((a - 1) ** 4) + 1e9 * np.maximum(abs(a - 1) - 0.05, 0.0) ** 2
+        beyond = np.maximum(a - 1.05, 0.0) + np.maximum(0.95 - a, 0.0)
+        return -((a - 1) ** 4) + 1e9 * beyond**2
 
     assert word(walled, (1,), (0.95, 4.0)) == "a"
     assert word(walled, (1,), (-4.0, 1.05)) == "a"

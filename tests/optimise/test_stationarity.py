@@ -294,6 +294,7 @@ MINIMA = {
     "quartic": (lambda x: x**4, 0.0, -1.0, 1.0),
     "sine": (np.sin, 1.5 * np.pi, 0.0, 6.0),
     "kink": (abs, 0.0, -1.0, 1.0),
+    "kink of a hill": (lambda x: np.maximum(x, -x) - 0.5 * x**2, 0.0, -1.0, 1.0),
     "end of a slope": (lambda x: x - x**2 / 8.0, 0.0, 0.0, 1.0),
     "lower end": (lambda x: x - x**2 / 16.0, 2.0, 2.0, 3.0),
     "upper end": (lambda x: x**2 / 16.0 - x - x**3, 3.0, 2.0, 3.0),
@@ -307,6 +308,8 @@ NO_MINIMA = {
     "quartic": (lambda x: -(x**4), 0.0, -1.0, 1.0),
     "sine": (np.sin, 0.5 * np.pi, 0.0, 6.0),
     "kink": (lambda x: -abs(x), 0.0, -1.0, 1.0),
+    "kink of a bowl": (lambda x: x**2 - abs(x), 0.0, -1.0, 1.0),
+    "one side of a kink": (lambda x: np.maximum(x, 0.0) ** 2 - 0.1 * x**2, 0.0, -1.0, 1.0),
     "cubic": (lambda x: x**3, 0.0, -1.0, 1.0),
     "cubic above zero": (lambda x: 7.0 + x**3, 0.0, -5.0, 5.0),
     "quintic above zero": (lambda x: 7.0 + x**5, 0.0, -5.0, 5.0),
@@ -377,6 +380,13 @@ def test_limits_without_a_price_leave_a_minimum_open():
     blocked = plane(lambda a, b: -a * b, -3.0, 3.0, (0.0, 0.0), lambda a, b: 1.0 + a + b)
     verdict = certify(blocked, Outcome(np.zeros(2)), 1e-6)
     assert verdict.status == "feasible" and "falls along" in verdict.message
+
+
+def test_kinks_across_the_axes_leave_open_whether_it_is_a_minimum():
+    """|a + b| - |a - b|/2 + a^2 + b^2 rises along both axes and falls along a = -b."""
+    bent = plane(lambda a, b: abs(a + b) - 0.5 * abs(a - b) + a**2 + b**2, -1.0, 1.0, (0.0, 0.0))
+    verdict = certify(bent, Outcome(np.zeros(2)), 1e-6)
+    assert verdict.status == "feasible" and "abs has a kink there" in verdict.message
 
 
 def test_a_curvature_that_is_no_number_is_no_minimum():

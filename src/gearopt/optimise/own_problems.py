@@ -16,6 +16,10 @@ from gearopt.optimise.solve import default, solve
 from gearopt.optimise.tape import log_convex_in_logarithms
 from gearopt.optimise.terms import Array
 
+MAXIMUM = (
+    "write every np.maximum(a, b) as a further variable t with log=True and "
+    "defines={'over': (a / t, b / t)}"
+)
 SAMPLER = "annealing"  # taken where variables are discrete and no method is named
 
 
@@ -56,14 +60,16 @@ def _provable(problem: Problem | Conic, result: Result) -> str:
 
     That its terms are log-convex is read from the tape, as if every variable were log.
     """
-    if isinstance(problem, Conic) or result.value is None or result.bound is not None:
+    if isinstance(problem, Conic) or result.value is None or result.status == "optimal":
         return ""
     (low, high, _), variables = problem.bounds(), [v for v, _ in problem.columns]
     plain = list(dict.fromkeys(v.name for v in variables if not v.log))
-    if not plain or any(v.discrete for v in variables) or (low < 0.0).any():
+    if any(v.discrete for v in variables) or (low < 0.0).any():
         return ""
     try:
-        if not log_convex_in_logarithms(problem):
+        bent = _takes_maxima(problem)
+        known = result.bound is not None and not bent
+        if known or not (plain or bent) or not log_convex_in_logarithms(problem):
             return ""
     except SolveError:  # no tape
         return ""
@@ -76,10 +82,17 @@ def _provable(problem: Problem | Conic, result: Result) -> str:
         ],
     }
     needs = "".join(f", {what} for {', '.join(names)}" for what, names in more.items() if names)
-    return (
-        f"declare log=True for {', '.join(plain)}{needs}: then this is a geometric program, whose "
-        "optimum is proven"
-    )
+    steps = [f"declare log=True for {', '.join(plain)}{needs}"] if plain else []
+    steps += [MAXIMUM] if bent else []
+    return f"{', and '.join(steps)}: then this is a geometric program, whose optimum is proven"
+
+
+def _takes_maxima(problem: Problem) -> bool:
+    """Return whether a text takes the larger of two numbers: there no dual bound is tight."""
+    import casadi as ca
+
+    tapes = (block.function for block in problem.traced().blocks)
+    return any(f.instruction_id(k) == ca.OP_FMAX for f in tapes for k in range(f.n_instructions()))
 
 
 def _started(problem: Problem | Conic, method: str, start: Mapping[str, Any]) -> Problem:

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.optimise.form import Form
+from gearopt.optimise.kinks import kink, probed
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.quadratic import dense
 from gearopt.optimise.scale import sizes
@@ -129,6 +130,8 @@ BOX = 0.1  # of its box is another scale of a variable: one near zero is small f
 NOISE = 1e-12  # of all terms that are added up, in these steps
 MOST = 1000  # variables off their bounds; the reduced Hessian is dense
 ROUNDS = 20  # of making the entries of a matrix equal
+NO_NUMBER = "its curvature is not a number"
+FALLS = "not a minimum: gradients vanish there, but the objective falls along {}"
 NEWTON = 10  # steps from a straight line to a curve, by the Hessian at the point
 
 
@@ -168,12 +171,18 @@ def no_minimum(point: Point) -> str:
     """Return why a stationary point may be no local minimum, in words; "" where it is one."""
     if point.shape.convex:
         return ""
+    name = kink(point.problem, point.shape.to_x(point.y), point.g >= -NEAR)
+    return _kinked(point, name) if name else _curved(point)
+
+
+def _curved(point: Point) -> str:
+    """Return why the curvature makes a stationary point no minimum; "" where it does not."""
     free = _free(point)
     if free.sum() > MOST:
         return f"its curvature was not examined: {free.sum()} variables are off their bounds"
     cone = _cone(point, free)
     if not np.isfinite(cone.curved).all():
-        return "its curvature is not a number"
+        return NO_NUMBER
     blocked = False
     for value, direction in _eigen(cone.curved, cone.firm):
         for d in (direction, -direction):
@@ -187,6 +196,17 @@ def no_minimum(point: Point) -> str:
         if value <= -FLAT:
             return _words(point, cone, d)
     return "not known to be a minimum: limits are active with zero multipliers"
+
+
+def _kinked(point: Point, name: str) -> str:
+    """Return why a point where a function has a kink may be no minimum: gradients tell nothing."""
+    x = point.shape.to_x(point.y)
+    along, rising = probed(point.problem, x)
+    if along:
+        return FALLS.format(along)
+    if rising and len(x) == 1:
+        return "" if np.isfinite(dense(hessian(point))).all() else NO_NUMBER
+    return f"whether it is a minimum is open: {name} has a kink there, where gradients tell nothing"
 
 
 def _free(point: Point) -> Any:
@@ -308,4 +328,4 @@ def _words(point: Point, cone: _Cone, d: Array) -> str:
     names = [name for (_, name), at in zip(point.problem.columns, cone.free, strict=True) if at]
     share = np.abs(cone.unit * d) / own_scales(point)[cone.free]
     most = [names[k] for k in np.argsort(-share, kind="stable")[:3] if share[k] > 0.3 * share.max()]
-    return f"not a minimum: gradients vanish there, but the objective falls along {', '.join(most)}"
+    return FALLS.format(", ".join(most))
