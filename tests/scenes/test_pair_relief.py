@@ -25,6 +25,7 @@ def test_the_relief_is_proven_and_beats_what_was_published(solved):
     result = solved("relief_two_loads")
     assert result.status == "optimal" and result.objective["name"] == "peak_to_peak"
     assert 1e3 * result.value < 1.2373 and result.value - result.bound <= 1e-6 * result.value
+    assert "proven optimal (at 99 positions of the gears)" in repr(result).splitlines()[0]
     relief, contact = result.design["relief"], result.design["contact"]
     worst = max(load["peak_to_peak_mm"] for load in relief["at"] if load["load"] <= 1.0)
     assert worst == pytest.approx(result.value, rel=1e-12)

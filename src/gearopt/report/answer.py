@@ -42,7 +42,7 @@ ROWS = (
     *("method", "proof", "evaluations", "seconds"),
 )
 WAYS = {"below": -1, "above": 1}  # in which a bound is rounded, by the side without designs
-SHOWN = ("method", "arithmetic", "sentence", "on")  # of a proof, elsewhere
+SHOWN = ("method", "arithmetic", "sentence")  # of a proof, elsewhere
 CHECKS = {  # of a certificate: what each number is
     "feasibility": "largest violation of a limit",
     "stationarity": "largest gradient left in the Lagrangian, relative",
@@ -165,10 +165,9 @@ def meaning(result: Result) -> str:
     """Say what the status of a result means, and what it does not mean."""
     known, status = result.bound is not None, result.status
     if status == "optimal":
-        where = f" {result.proof['on']}" if "on" in result.proof else ""
         return (
-            f"No feasible design{scope(result)} is better{where} by more than the gap. gearopt "
-            "computed the bound itself; it is not taken from a solver."
+            f"No feasible design{scope(result)} is better by more than the gap. gearopt computed "
+            "the bound itself; it is not taken from a solver."
         )
     if status == "infeasible":
         if of_gears_first(result):

@@ -166,8 +166,6 @@ def certainty(result: Result) -> tuple[str, str]:
     if result.status == "optimal" and (result.gap or 0.0) > EXACT:
         of = "the least for these gears" if these else "the optimum"
         words = f"proven within {100 * (result.gap or 0.0):.2g} % of {of}"
-    if result.status == "optimal" and "on" in result.proof:
-        words = f"{words} {result.proof['on']}"
     if "achieved" in result.report:  # something is come near to
         words = words.replace("optimal", result.report.get("best", "nearest"))
     return f"{words} ({scope})" if scope else words, colour

@@ -277,7 +277,7 @@ def search(profile: "Profile") -> Callable[..., Outcome]:
         bound, ended = found.run()
         said = SENTENCE if ended else STOPPED
         proof = {"method": "patterns", "programs": clock.evaluations, "sentence": said}
-        proof |= {"on": profile.mesh.sampled}
+        proof |= {"scope": profile.mesh.sampled}
         x, spent = found.removed / MICRO, clock.evaluations
         return Outcome(x, ended, bound=max(bound, 0.0) / MICRO, proof=proof, evaluations=spent)
 

@@ -136,7 +136,7 @@ def search(mesh: Mesh, exponents: tuple[float, float], goal: Goal) -> Callable[.
         point, bound, ended = _searched(made, goal, clock, *known)
         said = SENTENCE if ended else STOPPED
         proof = {"method": "boxes", "boxes": clock.evaluations, "sentence": said}
-        proof |= {"on": mesh.sampled}
+        proof |= {"scope": mesh.sampled}
         x, spent = made.variables(point), clock.evaluations
         lowest = max(bound, 0.0) / MICRO if ended or not goal.limited else None  # never below 0
         return Outcome(x, ended, bound=lowest, proof=proof, evaluations=spent)

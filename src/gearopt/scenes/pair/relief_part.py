@@ -258,7 +258,8 @@ def several(scene: Scene, made: PairMesh, names: Sequence[str]) -> Several:
 
     proven = tuple(name for name in known if name.startswith(parametric.PROVEN))
     limiting = Limiting(limited, proven) if set(names) <= set(proven) else None
-    return Several(_problem(asked, mesh, ranges, chosen), listed, drawn, limiting)
+    where = mesh.sampled if limiting else ""
+    return Several(_problem(asked, mesh, ranges, chosen), listed, drawn, limiting, scope=where)
 
 
 def _unit(name: str) -> str:
