@@ -172,11 +172,7 @@ def _meet(df: float, dg: float, first: float, second: float) -> tuple[float, flo
 
     The corner of their box where they meet outside of it, as roundings let them.
     """
-    if math.isinf(second):
-        at = dg
-    elif first == second:
-        return 0.0, dg
-    else:
-        at = (df - second * dg) / (first - second)
+    parallel = math.isinf(second) or first == second  # of a straight front: anywhere on it
+    at = dg if parallel else (df - second * dg) / (first - second)
     at = min(max(at, min(0.0, dg)), max(0.0, dg))
     return first * at, at

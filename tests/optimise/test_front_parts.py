@@ -1,0 +1,191 @@
+"""The parts of fronts by numbers worked out by hand: picks, gaps, limits, errors, what is said."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import gearopt
+from gearopt import Problem, Terms, Var
+from gearopt.optimise.pareto import epsilon
+from gearopt.optimise.pareto.corners import corners, useful
+from gearopt.optimise.pareto.found import Found, Point, sifted
+from gearopt.optimise.pareto.gaps import (
+    Gap,
+    Tried,
+    boxed_error,
+    curve_error,
+    gaps,
+    met,
+    ranked,
+    spread,
+)
+from gearopt.optimise.pareto.judged import status
+from gearopt.optimise.pareto.measures import hypervolume, igd, nadir, reference, unbeaten
+from gearopt.optimise.pareto.pick import knee, neighbours, picks, scaled
+from gearopt.optimise.pareto.posed import Limit, caps, moved, posed, scale
+
+
+def point(f, g, slope=None, proven=True, bound=None):
+    slopes = None if slope is None else np.array([slope])
+    return Point(np.array([f, g]), np.array([float(f), float(g)]), proven, bound, slopes)
+
+
+def test_picks_are_scaled_by_ideal_and_nadir():
+    values = np.array([[10.0, 9.0], [11.0, 5.0], [14.0, 4.0], [20.0, 1.0]])
+    assert scaled(values) == pytest.approx(
+        np.array([[0.0, 1.0], [0.1, 0.5], [0.4, 0.375], [1.0, 0.0]])
+    )
+    assert knee(scaled(values)) == 1 and knee(scaled(values)[:2]) is None
+    assert knee(np.array([[0.0, 1.0], [0.5, 0.5], [1.0, 0.0]])) is None  # on the line
+    found = picks(values, ["mass", "cost"], {"mass": 3.0})
+    assert [(p.place, p.rule) for p in found] == [(0, "weights"), (1, "knee"), (1, "compromise")]
+    assert "mass 3, cost 0" in found[0].reason
+    assert picks(np.empty((0, 2)), ["mass", "cost"], None) == []
+    assert [p.rule for p in picks(values[:1], ["mass", "cost"], None)] == ["compromise"]
+    flat = scaled(np.array([[1.0, 7.0], [3.0, 7.0]]))
+    assert flat == pytest.approx(np.array([[0.0, 0.0], [1.0, 0.0]]))
+    assert [neighbours(values, k) for k in range(4)] == [[1], [0, 2], [1, 3], [2]]
+
+
+def test_measures_of_ties_and_flat_fronts():
+    tied = np.array([[1.0, 2.0], [1.0 + 1e-10, 2.0], [1.0, 2.0 + 1e-8], [2.0, 1.0]])
+    assert unbeaten(tied).tolist() == [0, 3]
+    assert unbeaten(tied, equal=True).tolist() == [0, 1, 3]
+    assert unbeaten(np.array([[-1.0, 5.0], [-1.0 - 1e-8, 6.0]])).tolist() == [1, 0]
+    assert len(unbeaten(np.empty((0, 2)))) == 0 and hypervolume(np.empty((0, 2)), np.ones(2)) == 0
+    assert reference(np.array([[4.0, 0.0], [4.0, 0.0]])) == pytest.approx([8.0, 1.0])
+    assert reference(np.array([[-3.0, 2.0], [-3.0, 4.0]])) == pytest.approx([0.0, 4.1])
+    assert nadir(np.array([[1.0, 5.0], [3.0, 2.0]])) == pytest.approx([3.0, 5.0])
+    assert hypervolume(np.array([[1.0, 1.0], [3.0, 0.0]]), np.array([2.0, 2.0])) == 1.0
+    assert igd(np.empty((0, 2)), tied) == math.inf
+    front = np.array([[10.0, 40.0], [20.0, 20.0]])  # ranges 10 and 20
+    assert igd(np.array([[15.0, 40.0], [20.0, 30.0]]), front) == pytest.approx(0.5)
+    flat = np.array([[1.0, 5.0], [1.0, 5.0]])
+    assert igd(np.array([[3.0, 5.0]]), flat) == pytest.approx(2.0)
+
+
+def test_a_gap_is_narrowed_by_what_steps_found():
+    """Neighbours (0, 10), (1, 3), (9, 0) as (f, g); steps under limits of g."""
+    line = [point(9, 0), point(0, 10), point(1, 3), point(1, 4)]
+    assert [tuple(p.values) for p in ranked(line)] == [(9, 0), (1, 3), (0, 10)]
+    ranges = np.array([9.0, 10.0])
+    low, high = gaps(line, [], ranges)
+    assert (low.floor, low.top, high.floor, high.top) == (0.0, 3.0, 3.0, 10.0)
+    assert low.whole and not low.shut and low.area == 24.0 and high.area == 7.0
+    tried = [Tried(2.0, 9.0, True), Tried(1.0, 9.0, True), Tried(6.5, None, False)]
+    low, high = gaps(line, tried, ranges)
+    assert (low.floor, low.area, low.whole, low.refused) == (2.0, 8.0, False, ())
+    assert (high.floor, high.refused) == (3.0, (6.5,))
+    assert low.limit(0.25) == 2.25 and high.limit(0.1) in (4.75, 8.25)
+    assert Gap(line[0], line[1], 3.0, (5.0,)).limit(0.1) == 7.5  # the middle of the larger part
+    (shut, _) = gaps(line, [Tried(3.0 - 9e-6, 9.0 - 8e-6, True)], ranges)
+    assert shut.shut and shut.floor == shut.top
+    (still, _) = gaps(line, [Tried(3.0 - 2e-5, 9.0, True)], ranges)
+    assert not still.shut
+    (other, _) = gaps(line, [Tried(2.0, 8.9, True)], ranges)  # of no neighbour
+    assert other.whole
+    (passed, _) = gaps(line, [Tried(1.0, None, False), Tried(2.0, 9.0, True)], ranges)
+    assert passed.refused == ()  # below what is known to be empty
+    assert ranked([]) == []
+
+
+def test_errors_are_those_of_tangents_or_of_boxes():
+    line = [point(9, 0), point(1, 3), point(0, 10)]
+    ranges = np.array([9.0, 10.0])
+    every = gaps(line, [], ranges)
+    sides = [(8 / 9, 0.3), (1 / 9, 0.7)]
+    assert boxed_error(every, ranges) == pytest.approx(
+        max(a * b / math.hypot(a, b) for a, b in sides)
+    )
+    some = gaps(line, [Tried(3.0 - 1e-6, 9.0, True)], ranges)
+    a, b = sides[1]
+    assert boxed_error(some, ranges) == pytest.approx(a * b / math.hypot(a, b))
+    # f = 1/g between (1, 1) and (4, 1/4): tangents -1 and -16 meet at g = 0.4, f = 1.6
+    hyperbola = [point(1.0, 1.0, -1.0), point(4.0, 0.25, -16.0)]
+    u, v = (1.6 - 1.0) / 3.0, (0.4 - 0.25) / 0.75
+    assert curve_error(hyperbola, False) == pytest.approx((1.0 - u - v) / math.sqrt(2.0))
+    assert curve_error(hyperbola, True) == pytest.approx(0.0, abs=1e-12)
+    assert met(hyperbola[1], hyperbola[0]) == pytest.approx([0.8, 0.2])
+    ends = [point(1.0, 1.0, 0.0), point(4.0, 0.25, -math.inf)]
+    assert curve_error(ends, False) == pytest.approx(1.0 / math.sqrt(2.0))
+    assert met(ends[1], ends[0]) == pytest.approx([1.0, 0.0])
+    assert met(point(4, 0), point(1, 1)) == pytest.approx([0.5, 0.5])
+    assert met(point(4, 0, -6.0), point(1, 1, -9.0)) == pytest.approx([0.5, 0.5])  # outside
+    assert curve_error([point(1, 1, -1.0), point(1, 1, -1.0)], False) == 0.0
+
+
+def test_limits_are_spread_where_the_curve_is_long():
+    straight = [point(4, 0), point(1, 2), point(0, 3)]
+    limits = spread(gaps(straight, [], np.array([4.0, 3.0])), 2)
+    assert sorted(limits) == pytest.approx([2 / 3, 4 / 3])  # a box of 6 against one of 1
+    assert len(spread(gaps(straight, [], np.array([4.0, 3.0])), 7)) == 7
+    assert spread([], 3) == []
+    narrowed = gaps(straight[:2], [Tried(1.0, 4.0, True)], np.array([4.0, 3.0]))
+    assert spread(narrowed, 1) == pytest.approx([1.5])
+
+
+def test_limits_of_objectives_are_quotients_or_differences():
+    assert Limit.of(3.0, 9.0) == Limit(3.0, 3.0)
+    assert Limit.of(-3.0, 9.0) == Limit(-3.0, 9.0) and Limit.of(-3.0, 1.0) == Limit(-3.0, 3.0)
+    assert Limit.of(0.0, 0.0) == Limit(0.0, 1.0) and Limit.of(0.0, 2.0) == Limit(0.0, 2.0)
+    text = lambda x, p: Terms({"a": x.x, "b": 5.0 - x.x})  # noqa: E731
+    own = Problem("two", (Var("x", "", 0.0, 9.0, 1.0),), (), text)
+    limited = posed(own, ["a"], {"b": Limit.of(2.0, 1.0)})
+    batch = limited.batch(np.array([[3.0], [4.0]]))
+    assert batch.G.ravel() == pytest.approx([1.0, 0.5]) and batch.F.ravel() == pytest.approx([3, 4])
+    assert scale(limited, "b") == 2.0 and caps(posed(own, ["a", "b"], {"b": Limit(2, 2)})) == {
+        "b": 2
+    }
+    signed = moved(posed(own, ["a"], {"b": Limit.of(-2.0, 4.0)}), {"b": Limit(-1.0, 8.0)})
+    assert signed.batch(np.array([[2.0]])).G.ravel() == pytest.approx([1.0 + (3.0 + 1.0) / 8.0])
+    assert scale(signed, "b") == 8.0 and batch.report["value_b"] == pytest.approx([2.0, 1.0])
+
+
+def test_corners_below_which_a_point_may_lie():
+    left = corners(np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([[4.0, 4.0]]))
+    assert sorted(map(tuple, left)) == [(1.0, 4.0), (2.0, 2.0), (4.0, 1.0)]
+    bounds = np.array([[2.0, 2.0], [2.1, 1.5], [3.0, 1.0], [math.inf, 0.0], [0.0, 4.1], [4.0, 0.5]])
+    assert useful(bounds, left).tolist() == [True, False, True, False, False, True]
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"infeasible": True, "complete": True}, "infeasible"),
+        ({"complete": True, "finished": False}, "complete"),
+        ({"finished": False}, "limit"),
+        ({}, "proven"),
+        ({"points": (point(1, 2), point(2, 1, proven=False))}, "not proven"),
+        ({"points": ()}, "not proven"),
+    ],
+)
+def test_the_status_says_the_least_of_what_is_certain(given, said):
+    assert status(Found(**{"points": (point(1, 2),)} | given)) == said
+
+
+def test_beaten_points_are_set_apart():
+    kept, beaten = sifted([point(2, 2), point(1, 1), point(0, 3)])
+    assert [tuple(p.values) for p in kept] == [(0, 3), (1, 1)] and beaten.tolist() == [[2, 2]]
+    assert sifted([])[0] == ()
+
+
+def test_steps_without_a_result_leave_their_gap_open_and_named(monkeypatch):
+    """Of a + b = 1 no step between b = 0.4 and 0.8 has a result."""
+    own = epsilon._attempt
+
+    def attempt(run, name, most, near):
+        if 0.4 < most.get("b", 0.0) < 0.8:
+            return SimpleNamespace(status="failed", value=None, message=""), None
+        return own(run, name, most, near)
+
+    monkeypatch.setattr(epsilon, "_attempt", attempt)
+    line = Var("x", "", 0.0, 1.0, 0.5)
+    text = lambda x, p: Terms({"a": x.x**2, "b": (1.0 - x.x) ** 2})  # noqa: E731
+    front = gearopt.pareto(Problem("line", (line,), (), text), points=6)
+    assert front.message.startswith("1 part of the front is open, where steps had no result: b 0.")
+    low, high = (float(word) for word in front.message.rsplit(" ", 3)[1::2])
+    assert 0.0 <= low <= 0.4 and 0.8 <= high <= 1.0
+    second = np.array([p.values[1] for p in front.points])
+    assert not ((second > 0.4001) & (second < 0.8)).any() and len(second) == 6
