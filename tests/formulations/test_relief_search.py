@@ -140,6 +140,10 @@ def test_one_load_under_a_limit_at_another(part):
     assert found.bound < annealed.value < 1.3 * found.value
     none = solve(problem(made, ranges, ("peak_to_peak_at_2",), {"peak_to_peak_at_1": 0.99 * least}))
     assert none.status == "infeasible" and "none keeps to these limits" in none.message
+    light, alone = mesh((0.05, 1.0), COUPLING, 12), mesh((0.05,), COUPLING, 12)
+    found = solve(problem(light, ranges, ("peak_to_peak_at_1",)), "exact")
+    least = solve(problem(alone, ranges), "exact").value  # however much more the other load has
+    assert found.status == "optimal" and found.value == pytest.approx(least, rel=2e-6)
 
 
 @pytest.mark.parametrize("loads, most", [((1.0, 0.1), 2.3093e-3), ((0.6, 1.0), 1.7104e-3)])

@@ -44,6 +44,9 @@ def test_no_tolerance_is_the_nominal_value():
     assert found.value == pytest.approx(value(x), rel=1e-9) and found.bound < found.value * 1.0011
     early = worst(MADE, NOMINAL, Tolerance(5e-3, 1.0), Budget(evaluations=4))
     assert early.boxes == 4 and early.bound > early.value
+    gaps = (worst(MADE, NOMINAL, Tolerance(6e-3, 1.0), Budget(gap=g)) for g in (0.2, 1e-3))
+    rough, fine = gaps
+    assert rough.boxes < fine.boxes and fine.bound <= rough.bound <= 1.2 * rough.value + 1e-12
     told = []
     stopped = worst(MADE, NOMINAL, Tolerance(5e-3, 1.0), watch=lambda e: bool(told.append(e)))
     assert stopped is None or (stopped.boxes == 0 and stopped.bound > stopped.value)
