@@ -65,7 +65,7 @@ def solve(
     watch: Watch | None = None,
     gap: float | None = None,
     top: int = 1,
-    prices: bool = False,
+    prices: bool | float = False,
     start: Mapping[str, Any] | None = None,
 ) -> Result:
     """Return the certified answer to a problem file, its tables or scene, or a problem of your own.
@@ -75,11 +75,11 @@ def solve(
     returns False to stop the run. gap: relative gap to our bound that is enough, so that a search
     may end there; None: none is, and 1e-6 is called optimal. top: so many next best answers too
     (drives with a [teeth] table). prices: report["prices"] holds the sensitivities to every number
-    of the file, as `explain` does. start: of a Problem, values by name of the variable from which
+    of the file, as `explain` does; a number: in so many times the seconds of the answer, at most,
+    and 2 s. start: of a Problem, values by name of the variable from which
     ipopt, multistart and annealing begin instead of the guess. SceneError for a wrong file or
     change, SolveError where the method does not fit, or an option changes nothing, ValueError for
-    an option of another sort. Of several threads one
-    solves at a time, and its budget begins then.
+    an option of another sort. Of several threads one solves at a time; its budget begins then.
     """
     check(method=method, budget=budget, seed=seed, watch=watch, gap=gap, top=top, prices=prices)
     check(start=start)
@@ -101,7 +101,7 @@ def solve(
         asked["top"] = None
     result: Result = module.solve(scene, ask)
     if prices and result.value is not None and result.status != "evaluated":
-        left = replace(ask, budget=budget.less(result.seconds))
+        left = ask.for_prices(prices, result.seconds)
         found = _explained(module, scene, left, result)
         result = replace(result, report=result.report | {"prices": found.prices})
     if (ways := result.report.get("ways_out")) and result.status == "infeasible":
@@ -191,7 +191,7 @@ def idle_options(what: File, method: str | None) -> dict[str, str]:
     return idle(module, scene, method)
 
 
-def _only_of_files(name: str, top: int, prices: bool) -> None:
+def _only_of_files(name: str, top: int, prices: bool | float) -> None:
     """Raise SolveError for options of problem files that are asked of a problem of one's own."""
     if top > 1:
         raise SolveError(f"top={top} changes nothing here: {name} has no next best answers")

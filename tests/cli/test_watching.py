@@ -4,11 +4,13 @@ import os
 import re
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 
-from gearopt.cli.watching import progress
-from gearopt.optimise.result import Event
+from gearopt.cli.watching import progress, watching
+from gearopt.optimise.result import Budget, Event, Result
+from gearopt.scenes.reading.ask import Ask
 
 
 @pytest.mark.parametrize(
@@ -81,6 +83,23 @@ def test_a_terminal_shows_what_is_reached_and_seconds_that_move():
 @pytest.mark.slow
 def test_a_short_run_shows_nothing():
     assert on_a_terminal(0.1).split() == ["done"]
+
+
+def test_what_is_proven_is_told_before_remedies_are_sought(capsys):
+    proof = {"conflict": ["unit_load[1]", "unit_load[2]", "wheel_diameter[2]"]}
+    known = Result("sizing", "infeasible", "ipopt", {"name": "gear_volume", "value": None})
+    with watching(60.0, quiet=False) as watch:
+        for _ in range(2):
+            assert watch(Event(1.0, 20, known=replace(known, proof=proof)))
+    said = " ".join(capsys.readouterr().err.split())
+    assert said.count("Impossible, proven: the limits on unit load of stages 1 and 2") == 1
+    assert said.endswith("Looking for changes with which a design exists; Ctrl-C ends it.")
+
+
+def test_sensitivities_of_a_page_take_no_longer_than_its_answer():
+    ask = Ask(budget=Budget(60.0))
+    times = [ask.for_prices(*case).budget.seconds for case in ((True, 4.0), (1.0, 4.0), (1.0, 0.1))]
+    assert times == [56.0, 4.0, 2.0] and ask.for_prices(1.0, 59.0).budget.seconds == 1.0
 
 
 DEAF = """

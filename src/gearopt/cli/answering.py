@@ -31,6 +31,7 @@ from gearopt.optimise.comparing.runs import SECONDS as EACH
 from gearopt.optimise.result import Budget, Result
 from gearopt.report.command import SECONDS, TOP_ON_PAGE
 
+PAGE_SHARE = 1.0  # of the time of an answer, at most, for the sensitivities of its page
 Seconds = Annotated[float, typer.Option(min=0.0, help="Stop after this time.")]
 Method = Annotated[
     str | None,
@@ -51,7 +52,9 @@ Top = Annotated[
 Prices = Annotated[
     bool,
     typer.Option(
-        "--prices", help="Show sensitivities to every number of the file, as a page always does."
+        "--prices",
+        help="Show sensitivities to every number of the file; a page has those that take no "
+        "longer than the answer.",
     ),
 ]
 Gap = Annotated[
@@ -97,7 +100,7 @@ def solve(
             watch=watch,
             gap=gap,
             top=top,
-            prices=prices or full,
+            prices=prices or (full and PAGE_SHARE),
         )
     lines: list[str] = []
     try:

@@ -7,13 +7,14 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from rich.console import Console
+from rich.text import Text
 
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.result import Event, Watch
+from gearopt.optimise.result import Event, Result, Watch
 from gearopt.optimise.scale import gap
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.screen import Screen
@@ -28,12 +29,34 @@ SHOW_CURSOR = b"\r\x1b[K\x1b[?25h"  # and clear the line of the progress that hi
 @contextmanager
 def watching(seconds: float, quiet: bool, measures: Measures = METRIC) -> Iterator[Watch]:
     """Yield a watcher of one run that ends it at Ctrl-C and shows long work."""
+    said = quiet
 
     def words(event: Event) -> str:
         return progress(event, measures)
 
     with following(words, quiet, seconds, kept=lambda event: event.best is not None) as watch:
-        yield watch
+
+        def telling(event: Event) -> bool:
+            nonlocal said
+            if event.known is not None and not said:
+                said = True
+                _tell(event.known)
+            return watch(event)
+
+        yield telling
+
+
+def _tell(known: Result) -> None:
+    """Print what is proven while its remedies are sought, on stderr."""
+    from gearopt.report.answer import opening
+
+    screen = Console(stderr=True, highlight=False)
+    of_stages = replace(known, scene=known.scene or known.name)
+    screen.print(Text(opening(of_stages)))
+    screen.print(
+        Text("Looking for changes with which a design exists; Ctrl-C ends it."),
+        style="dim",
+    )
 
 
 @contextmanager

@@ -5,7 +5,7 @@ import time
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from gearopt.optimise.result import Budget, Event, Watch
+from gearopt.optimise.result import Budget, Event, Result, Watch
 
 if TYPE_CHECKING:
     from gearopt.optimise.conic.problem import Conic
@@ -131,6 +131,12 @@ def of_others(watch: Watch | None, part: str = OTHERS) -> Watch | None:
         return watch(Event(event.seconds, event.evaluations, part=part)) is not False
 
     return follow
+
+
+def tell_known(watch: Watch | None, result: Result) -> None:
+    """Tell a watcher what is proven already, before its remedies are sought."""
+    if watch is not None:
+        watch(Event(result.seconds, result.evaluations, part=OTHERS, known=result))
 
 
 def whole(watch: Watch | None) -> Watch | None:

@@ -70,7 +70,8 @@ class Event:
     as "sizing" or "layout"; "other numbers" where `explain` and prices solve changed problems, or
     other trains of a servo axis are listed, whose values are left out; "compiling, once for this
     version of gearopt: 3 of 22" while functions are compiled, in the time of no budget. objective,
-    unit: of best and bound; unit "" for a plain number.
+    unit: of best and bound; unit "" for a plain number. known: a result that is proven to be
+    impossible, told before remedies are sought; else None.
     """
 
     seconds: float
@@ -80,6 +81,7 @@ class Event:
     part: str = ""
     objective: str = ""
     unit: str = ""
+    known: "Result | None" = None
 
 
 Watch = Callable[[Event], bool]

@@ -14,7 +14,7 @@ from gearopt.formulations import sizing, teeth
 from gearopt.formulations.gear_train import Train
 from gearopt.formulations.shares import MASSES
 from gearopt.optimise.certificate import reconcile
-from gearopt.optimise.clock import Clock, in_part, of_others
+from gearopt.optimise.clock import Clock, in_part, of_others, tell_known
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.problem import Problem
@@ -139,6 +139,7 @@ def _with_ways_out(scene: Scene, ask: Ask, result: Result) -> Result:
         return result
     from gearopt.scenes.drive.explaining.rated import conflict_soon
 
+    tell_known(ask.watch, result)
     clock, rated = _others(ask, result.seconds), scene.by_ratings
     ways = conflict_soon(bare(scene), clock) if rated else asdict(_ways_out(scene, clock))
     return replace(result, report=result.report | {"ways_out": ways}) if ways else result
@@ -177,6 +178,7 @@ def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation
         best_count(scene, ask.half, _real, _answer) if scene.several else _answer(scene, ask.half)
     )
     if result.status == "infeasible":
+        tell_known(ask.watch, result)
         return Explanation(result, **vars(_ways_out(scene, clock)), seconds=clock.seconds)
     if result.value is None:
         return Explanation(result, message="no design was found in time", seconds=clock.seconds)

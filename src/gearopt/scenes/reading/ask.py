@@ -7,6 +7,7 @@ from gearopt.errors import SolveError
 from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.solve import GAP
 
+LEAST_PRICES = 2.0  # s, for sensitivities that may take a share of the answer's seconds
 RANDOM = ("annealing", "multistart", "nsga2", "scip")  # back ends that another seed leads elsewhere
 
 
@@ -26,6 +27,17 @@ class Ask:
         """Return the same in half of its seconds: an answer that leaves time to explain it."""
         seconds = self.budget.seconds and 0.5 * self.budget.seconds
         return replace(self, budget=replace(self.budget, seconds=seconds))
+
+    def for_prices(self, share: bool | float, spent: float) -> "Ask":
+        """Return the same for sensitivities, after an answer that took so many seconds.
+
+        share: True for all that is left; else of these seconds, and LEAST_PRICES, at most.
+        """
+        left = self.budget.less(spent)
+        if share is not True:
+            most = max(LEAST_PRICES, share * spent)
+            left = replace(left, seconds=most if left.seconds is None else min(most, left.seconds))
+        return replace(self, budget=left)
 
 
 def unseeded(method: str | None) -> dict[str, str]:

@@ -24,7 +24,7 @@ from gearopt.formulations.layout.layout_design import (
 )
 from gearopt.formulations.layout.layout_text import Placed, placed, read
 from gearopt.formulations.layout.slabs import Arrangement, arrangements
-from gearopt.optimise.clock import Clock, following, in_part, of_others
+from gearopt.optimise.clock import Clock, following, in_part, of_others, tell_known
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
@@ -163,12 +163,15 @@ def _impossible(
         result = replace(result, status="infeasible", proof=proof, certificate={}, limits={})
     if others_may_fit(scene, pairs_of(scene, sized)):
         result = replace(result, proof=result.proof | _scope(sized))
+    message = _message(scene, sized, notes)
+    result = replace(result, design={}, parts=parts, message=message)
+    if scene.layout is not None and not scene.layout.together:
+        tell_known(ask.watch, result)
     found, changed = remedies(scene, pairs_of(scene, sized), left)
     report = {"notes": notes, "ways_out": asdict(found)}
     if changed is not None and (drawn := _beside(scene, changed, sized, left)) is not None:
         report["nearest_layout"] = drawn
-    message = _message(scene, sized, notes)
-    return replace(result, design={}, parts=parts, message=message, report=report)
+    return replace(result, report=report)
 
 
 def others_may_fit(scene: Scene, pairs: tuple[GearPair, ...]) -> bool:
