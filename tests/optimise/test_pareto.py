@@ -269,18 +269,20 @@ def catalogue(cost, error):
 @pytest.mark.parametrize(
     ("cost", "error", "unbeaten_ones"),
     [
-        ((0, 1, 2, 9), (10, 3, 2.5, 0), (0, 1, 2, 3)),
+        ((0, 1, 2, 9), (1e4, 3e3, 2.5e3, 0), (0, 1, 2, 3)),
         pytest.param(  # ties and beaten ones
             (2, 0, 1, 1, 3, 2), (1, 4, 3, 4, 1, 3), (1, 2, 0), marks=pytest.mark.slow
         ),
     ],
 )
 def test_the_front_of_a_catalogue_is_complete(cost, error, unbeaten_ones):
-    """Between (0, 10) and (9, 0) half the error is met by (0, 10) alone: the rest is not empty."""
+    """Below a tenth of the largest error only (9, 0) is left: the rest of the gap is not empty."""
     front = gearopt.pareto(catalogue(cost, error))
     assert front.status == "complete" and front.error is None and not front.message
     expected = [(cost[k], error[k]) for k in unbeaten_ones]
-    assert [p.values for p in front.points] == [pytest.approx(v, abs=1e-7) for v in expected]
+    assert [p.values for p in front.points] == [
+        pytest.approx(v, rel=1e-7, abs=1e-6) for v in expected
+    ]
     assert "may be missing" not in repr(front)
     few = gearopt.pareto(catalogue(cost, error), points=2)
     assert few.status == "proven" and len(few.points) == 2 and few.error > 0.1

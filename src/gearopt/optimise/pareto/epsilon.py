@@ -247,10 +247,9 @@ class Line:
     def fill(self, count: int) -> None:
         """Step into the largest gap until there are so many points, or no gap is left to try."""
         least = SLACK * math.prod(self.ranges[:2])
-        steps = len(self.tried) + TWICE * count
-        while len(self.points) < count and len(self.tried) < steps and not self.run.clock.over:
+        for _ in range(TWICE * count):
             free = [g for g in self.open if g.area > least and len(g.refused) < TRIALS]
-            if not free:
+            if not free or len(self.points) >= count or self.run.clock.over:
                 return
             gap = max(free, key=lambda g: g.area)
             at = met(gap.left, gap.right)[1] if gap.whole else 0.5
