@@ -276,6 +276,7 @@ def test_terms_of_the_field_are_answered_by_their_meaning(head, line, said):
         ('ratio = "1:20"', "input and output exchanged. Write ratio = 20"),
         ('ratio = "20:1"', "is written with a colon. Write ratio = 20"),
         ('modules = ["7 in"]', 'Write modules = ["2 mm"]'),
+        (f"ratio = 0x{'9' * 9999}", "is out of any sensible range"),
         ("ratio = 0.0000001", "is not between 1 and 1000000"),
     ],
 )
