@@ -62,6 +62,9 @@ def test_measures_of_ties_and_flat_fronts():
     assert igd(np.empty((0, 2)), tied) == math.inf
     front = np.array([[10.0, 40.0], [20.0, 20.0]])  # ranges 10 and 20
     assert igd(np.array([[15.0, 40.0], [20.0, 30.0]]), front) == pytest.approx(0.5)
+    narrow = np.array([[0.0, 0.5], [0.5, 0.0]])
+    assert igd(narrow + [[0.25, 0.0]], narrow) == pytest.approx(0.5)
+    assert scaled(narrow) == pytest.approx(2.0 * narrow)
     flat = np.array([[1.0, 5.0], [1.0, 5.0]])
     assert igd(np.array([[3.0, 5.0]]), flat) == pytest.approx(2.0)
 
