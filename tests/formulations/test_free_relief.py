@@ -11,6 +11,7 @@ from gearopt.formulations.relief.free_form import Profile, Shape, free_problem
 from gearopt.formulations.relief.free_search import Program
 from gearopt.formulations.relief.parametric import Ranges, problem
 from gearopt.optimise.solve import solve
+from gearopt.physics.load_sharing import share
 
 TWO, THREE = (0.6, 1.0), (0.5, 1.0, 1.25)
 # um: coupling, loads, complete contact from any place and within the double zone, any symmetric
@@ -61,6 +62,11 @@ def test_every_pattern_by_enumeration(convex):
     made = mesh(TWO, COUPLING, 5)
     shape = Shape(convex=convex)
     program = Program(Profile(made, shape))
+    ahead = np.random.default_rng(0).uniform(-30.0, 30.0, len(program.double))
+    apart = np.clip(np.stack([ahead, -ahead], axis=1), 0.0, None)
+    for q, load in enumerate(program.loads):  # lost contact on either side, too
+        known = share(program.own[program.double], apart, load).approach - apart[:, 1]
+        assert program.law(q, ahead) == pytest.approx(known, rel=1e-12)
     kinks = np.sort(program.kinks.reshape(-1, len(program.double)), axis=0)
     ends = np.vstack([kinks[:1] * 0.0 - 30.0, kinks, kinks[:1] * 0.0 + 30.0])
     least = np.inf

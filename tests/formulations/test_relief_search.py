@@ -144,6 +144,7 @@ def test_one_load_under_a_limit_at_another(part):
     found = solve(problem(light, ranges, ("peak_to_peak_at_1",)), "exact")
     least = solve(problem(alone, ranges), "exact").value  # however much more the other load has
     assert found.status == "optimal" and found.value == pytest.approx(least, rel=2e-6)
+    assert set(problem(alone, ranges).methods) == {"exact", "mpec"}
 
 
 @pytest.mark.parametrize("loads, most", [((1.0, 0.1), 2.3093e-3), ((0.6, 1.0), 1.7104e-3)])
