@@ -238,6 +238,16 @@ def test_a_comparison_has_a_table_of_its_runs_and_one_system(kept, tmp_path, cap
     assert values == pytest.approx(known, rel=1e-12, nan_ok=True)
 
 
+def test_stages_that_cannot_be_drawn_are_refused_at_once(kept, tmp_path, capsys):
+    """Thousands of them, or lengths near the smallest number, kept a page from being made."""
+    data = json.loads(json.dumps(kept["drive"]))
+    stages = data["design"]["stages"]
+    small = [{k: 5e-324 if k.endswith("_mm") else v for k, v in s.items()} for s in stages]
+    for odd, said in ((stages * 51, "102 stages cannot be drawn"), (small, "cannot be drawn")):
+        data["design"]["stages"] = odd
+        assert said in held(data, tmp_path, capsys)
+
+
 def test_an_old_page_stays_where_the_new_one_cannot_be_made(kept, tmp_path):
     path, page = tmp_path / "kept.json", tmp_path / "page.html"
     page.write_text("old")

@@ -1,5 +1,6 @@
 """A train without a layout, drawn to scale with all its shafts in one line."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import pairwise
@@ -33,6 +34,7 @@ LOW, NAMES = 100.0, 46.0  # px: circles of radii below the one leave names the o
 CHAIN = 30.0  # px from the lowest circle to the dimensions of the centre distances
 MODULES = 26.0  # px from the face widths up to the modules: two lines that keep apart
 SIDE = (24.0, 44.0, 24.0, 60.0)  # px kept free around the side view
+MOST_STAGES = 100  # in one line; a drive has six at most
 
 
 @dataclass(frozen=True)
@@ -125,8 +127,11 @@ def circles(stage: Mapping[str, Any], member: str) -> list[float]:
 def in_one_line(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
     """Return shafts and gears with every shaft at z = 0; and the scale [px/mm].
 
-    Diameters of shafts are 0: they are not known.
+    Diameters of shafts are 0: they are not known. ValueError for stages that cannot be drawn: more
+    than MOST_STAGES, or of no finite size.
     """
+    if len(stages) > MOST_STAGES:
+        raise ValueError(f"{len(stages):,} stages cannot be drawn")
     axes = [0.0]
     for stage in stages:
         axes.append(axes[-1] + stage.centre_distance_mm)
@@ -137,6 +142,8 @@ def in_one_line(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
     ]
     long = max(y + r for y, r in rims) - min(y - r for y, r in rims)
     scale = (WIDE - 2.0 * EDGE) / long  # no wheel is higher than the row is long
+    if not 0.0 < scale < math.inf:
+        raise ValueError(f"stages {long:g} mm long cannot be drawn")
     scale, starts = _along([s.face_width_mm for s in stages], scale)
     gears = [
         GearDesign(
