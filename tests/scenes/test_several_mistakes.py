@@ -251,7 +251,7 @@ def test_weight_is_mass_and_volume_is_asked_back():
         ("[[stage]]", 'diametral_pitch = "8 DP"', "Write diametral_pitch = 8, without a unit"),
         ("[[stage]]", "pinion_teeth = -20", "Write pinion_teeth = 20"),
         ("[gears]", "sigma_Hlim = 1500", "belongs in another table. Write sigma_Hlim, or sigma"),
-        ("[gears]", 'pressure_angle = "50 deg"', "is above 45 deg"),
+        ("[[stage]]", 'pressure_angle = "50 deg"', "is above 45 deg"),
         ("[gears]", "poisson_ratio = 2", "Write, for example, poisson_ratio = 0.3"),
         ("[gears]", 'treatment = "carburizing"', '. Write treatment = "carburised"'),
         ("[[stage]]", "pinion_teeth = [20]", "Write pinion_teeth = [20, 20]"),
