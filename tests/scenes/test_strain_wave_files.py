@@ -36,6 +36,7 @@ def test_a_given_gearing_is_evaluated_and_its_design_is_typed(solved):
     assert sum(t.force_N for t in found.teeth) == pytest.approx(5e4 / 38.05755114, rel=1e-8)
     assert found.cutter.regular and found.cutter.straight_deg == pytest.approx(20.097, abs=6e-4)
     assert found.least_clearance_mm == 0.0
+    assert [row.profile_shift for row in found.shifts] == pytest.approx([0.3 * k for k in range(8)])
 
 
 def test_loads_over_the_wave_are_those_of_the_teeth(solved):
