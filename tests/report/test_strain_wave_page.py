@@ -173,3 +173,10 @@ def test_a_cutter_with_a_cusp_and_teeth_that_cut_are_warned_of(result):
     assert "overlap by 3" in first and "have a cusp" in second
     assert not cutter(own, METRIC).drawings
     assert "would have a cusp" in cutter(own, METRIC).words[0]
+
+
+def test_teeth_without_a_load_have_clearances_and_no_colours(result):
+    """As of face widths of ten million kilometres, where loads are rounding."""
+    none = [0.0 for _ in result.design["load_N"]]
+    section = moving(replace(result, design=result.design | {"load_N": none}), METRIC)
+    assert len(section.figures) == 1 and not section.animations and section.tables
