@@ -77,7 +77,7 @@ def test_dropping_any_one_is_said_where_it_was_tried():
     ways = {"conflict": ["ratio_low", "span"], "remedies": [], "message": "", "any_resolves": True}
     own = Result("own", "infeasible", "x", {}, scene="drive", report={"ways_out": ways})
     said = (
-        "the limits on minimum ratio and span are in conflict; dropping any one of them makes a "
+        "the limits on minimum ratio and span cannot all be met; dropping any one of them makes a "
         "design possible"
     )
     assert lead(own) == said

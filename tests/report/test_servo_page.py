@@ -125,7 +125,7 @@ def test_steps_of_the_errors_add_up_to_the_total(result, found):
     assert limit["x0"] == limit["x1"] == pytest.approx(0.12, rel=1e-9)
     over = replace(result, limits=result.limits | {"error": 1.25})
     said = {s.heading: s for s in sections(over)}["Where the error comes from"].words[0]
-    assert said == "All sources at their limits make 0.023950° more than is allowed."
+    assert said == "All sources at their limits exceed the limit by 0.023950°."
 
 
 def test_equal_sources_are_bars_apart(result):

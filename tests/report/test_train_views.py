@@ -177,7 +177,7 @@ def test_rims_hubs_and_bores_are_circles():
     inside = stage["wheel_root_diameter_mm"] - 2.0 * 7.5
     sizes = sorted(float(e.get("r")) / scale for e in marks(front, "circle", "body"))
     assert sizes == pytest.approx([21.0, 21.0, 33.6, inside], rel=1e-3)
-    words = "thin ones rims from inside, hubs and bores"
+    words = "thin ones the insides of rims, hubs and bores"
     assert words in "".join(Reader(html).text)
     assert words not in "".join(Reader(page(result(TRAINS["one stage"]), "x")).text)
 

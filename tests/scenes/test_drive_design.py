@@ -140,7 +140,7 @@ def test_an_undercut_pinion_is_named(tmp_path, result, teeth):
     assert len(notes) == (teeth < 17)
     if notes:
         assert "stage 1" in notes[0] and f"with {teeth} teeth" in notes[0]
-        assert "a rack cuts 17 teeth and more cleanly (in theory 17.1)" in notes[0]
+        assert "a rack cuts without undercut from 17 teeth on (in theory 17.1)" in notes[0]
 
 
 @pytest.mark.parametrize(
@@ -159,7 +159,7 @@ def test_the_least_teeth_that_are_not_named_are_those_of_tables(pressure, helix,
         "The pinion of stage 1",
         "The pinion of stage 4",
     ]
-    assert all(f"a rack cuts {least} teeth and more cleanly" in n for n in notes)
+    assert all(f"a rack cuts without undercut from {least} teeth on" in n for n in notes)
     assert all(n.endswith(" So.") for n in notes)
     flank = 1.25 - 0.38 * (1.0 - math.sin(angles[0]))  # where that of the rack ends
     transverse = math.atan(math.tan(angles[0]) / math.cos(angles[1]))

@@ -122,7 +122,7 @@ def test_too_few_outputs_are_told(tmp_path):
     path = tmp_path / "long.toml"
     path.write_text(BARE + '[simulate]\nduration = "0.5 s"\nerror = 1e-3\n')
     told = gearopt.solve(path).design["warnings"]
-    (said,) = [each for each in told if "The motion is told at 2,001 times" in each]
+    (said,) = [each for each in told if "The motion is given at 2,001 times" in each]
     assert "Take at most" in said
 
 

@@ -66,14 +66,14 @@ def test_a_deflection_without_play_is_told(solved):
         Deflected(deflection=w, least_clearance_mm=g)
         for w, g in ((0.98, -0.0154), (1.02, -0.00464))
     )
-    (told,) = [n for n in notes(replace(base, deflections=(less, more))) if "no tolerance" in n]
+    (told,) = [n for n in notes(replace(base, deflections=(less, more))) if "No deviation" in n]
     assert told.endswith("by 15.4 µm at 0.98 modules and 4.64 µm at 1.02 modules.")
 
 
 def test_what_is_assumed_is_told_until_it_is_given():
     told = " ".join(assumptions(scene(EXAMPLE)))
     for word in (
-        *("1e+05 N/mm", "400 MPa", "230 MPa", "3e+03 N/mm", "chain of springs", "206 GPa"),
+        *("100,000 N/mm", "400 MPa", "230 MPa", "3,000 N/mm", "chain of springs", "206 GPa"),
         *(
             "notch factor of 1.6",
             "safety of 1.5",

@@ -13,6 +13,7 @@ from gearopt.report.measures import METRIC, Measures, gap_percent
 from gearopt.report.section import Cell, Figure, Section, Table, Tile, axis, layout, percent
 from gearopt.report.words import (
     EXACT,
+    REACHED,
     RULED,
     amount,
     certainty,
@@ -115,7 +116,13 @@ def limits(result: Result, measures: Measures) -> Section | None:
     cells = [[words, *map(percent, values)] for words, values in rows]
     elsewhere = [limit_words(name) for name in kind_of(result).elsewhere(result)]
     table = Table("limits", heads, cells, csv_only=elsewhere)
-    words = ("At 100 % a limit is active.",)
+    sized = next((part.limits for part in result.parts if part.name == "sizing"), {})
+    words: tuple[str, ...] = ("At 100 % a limit is active.",)
+    if any(result.limits.get(n, 1.0) < 1.0 - REACHED <= used for n, used in sized.items()):
+        words += (
+            "Limits that determine the result may stay below 100 %, as teeth and modules come in "
+            "steps.",
+        )
     return Section("Limits", words=words, tables=(table,), half=True, terminal=(table,))
 
 

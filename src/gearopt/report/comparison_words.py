@@ -215,15 +215,15 @@ def command(found: Comparison) -> str:
 FAIRNESS = (
     "All methods of a table solve the same model from the same file, with settings fixed "
     "beforehand and none tuned to the problem.",
-    "Equal evaluations: a run ends at the given number of what its method counts as one, up to "
-    "one generation, sweep or expansion. Equal time: a run ends at the given wall time of the "
-    "method alone; checking its answer is not counted. A method that is done earlier ends "
-    "earlier, and the clock ends a run by evaluations that takes ten times the time budget.",
-    "Start-up (imports, tracing, building the model) is the first short call less the same call "
-    "again, and is in no other number. A library that methods share is charged to the first of "
-    "them; CasADi, which our own check needs, to none.",
+    "Equal evaluations: a run ends at the given number of evaluations, as its method counts them, "
+    "to within one generation, sweep or expansion. Equal time: a run ends at the given wall time "
+    "of the method alone; checking its answer is not counted. A method that is done earlier ends "
+    "earlier; a run by evaluations is stopped by the clock at ten times the time budget.",
+    "Start-up (imports, tracing, building the model) is the time of a first short call less that "
+    "of the same call again; no other number includes it. A library that methods share is charged "
+    "to the first of them; CasADi, which our own check needs, to none.",
     "Random methods run once for each of the same seeds; a deterministic one runs once. Methods "
-    "take turns, so that a slower minute of the machine meets all alike.",
+    "take turns, so that a slower minute of the machine affects all alike.",
     "A point counts only if it passes our own check of every limit (within 1e-8). A seed without "
     "one has no gap and ranks behind every other in the median and the worst.",
     "Annealing and NSGA-II plan their run over the evaluations they are given; for equal time they "

@@ -50,14 +50,18 @@ def _impossible(result: Result) -> str:
     unsure = [name for name in ways.get("unsure") or () if name in names]
     names = [name for name in names if name not in unsure]
     together = _on(grouped(names, has_stages(result)), len(names))
+    ratio = {*ENDS} & ({*(result.proof.get("conflict") or ())} - {*names})
+    held = " at the ratio asked" if ratio else ""
     if unsure:
         with_ = f"cannot be met together with {_some(unsure, has_stages(result))}"
         return f"{together} {with_} (not all of these need be part of the conflict)"
     if len(names) == 1 or result.proof.get("each_alone"):
         return f"{together} cannot be met, even if all other limits are dropped"
     if ways.get("any_resolves"):
-        return f"{together} are in conflict; dropping any one of them makes a design possible"
-    return f"{together} cannot be met together"
+        return (
+            f"{together} cannot all be met{held}; dropping any one of them makes a design possible"
+        )
+    return f"{together} cannot be met together{held}"
 
 
 def _some(names: Sequence[str], staged: bool) -> str:

@@ -48,7 +48,7 @@ def response(found: Response, measures: Measures) -> Figure:
         axis("time [ms]"), axis(f"deformation δ [{measures.unit('um')}]"), HEIGHT, hovermode="x"
     )
     plot["shapes"] = [_across(0.0)]
-    caption = "Deformation of the mesh, negative where teeth press; above the line they part."
+    caption = "Deformation of the mesh, negative under compression; above the line teeth part."
     follows = ORBIT if found.axes_mm else ""
     return Figure([line(found.time_ms, micro)], plot, caption, follows=follows)
 
@@ -164,8 +164,8 @@ def stability(found: Stability) -> Figure:
         HEIGHT + 40,
     )
     caption = (
-        "Where it is coloured the motion of teeth in contact grows without end, by so much a "
-        "period of the mesh. Dotted: the tongues of the first-order formulas, without damping."
+        "Coloured: the motion of teeth in contact grows without limit; colour: growth per mesh "
+        "period. Dotted: instability tongues by the first-order formulas, without damping."
     )
     return Figure(traces, plot, caption)
 

@@ -199,7 +199,7 @@ def _less(ways: Sequence[Mapping[str, Any]]) -> str:
     but = f" (not known of {', '.join(doubtful)})" if doubtful else ""
     short = [way["verified"]["rounded"] for way in moved if "rounded" in way["verified"]]
     cut = any(change.get("short") for way in moved for change in way["changes"])
-    short += ["to the easy side"] if cut else []
+    short += ["to the side that eases the limit"] if cut else []
     rounded = f", before they were rounded {short[0]}" if short else ""
     return f", and none with 0.1 % (or one tooth or module) less{rounded}{but}"
 

@@ -104,11 +104,11 @@ def _as_made(made: MadeRelief) -> str:
         off += f" and lengths by up to {made.length_tolerance_mm:.3g} mm"
     pinion, wheel = (1e3 * amount for amount in made.worst_amounts_mm)
     return (
-        f"As it is made, with {off}, the transmission error varies by up to "
+        f"As manufactured, with {off}, the transmission error varies by up to "
         f"{1e3 * made.worst_mm:.4g} µm, peak to peak, and by no more than "
         f"{1e3 * made.bound_mm:.4g} µm (proven of the computed positions); the worst has "
         f"{pinion:.2f} µm off the pinion and {wheel:.2f} µm off the wheel. Of "
-        f"{made.drawn:,} drawn ones half stay below "
+        f"{made.drawn:,} gear pairs drawn at random half stay below "
         f"{1e3 * made.median_mm:.4g} µm and 95 % below {1e3 * made.most_mm:.4g} µm."
     )
 
@@ -178,10 +178,10 @@ def rules(found: PairRelief, measures: Measures) -> Table:
     for k, name in enumerate(at):
         lines.append([f"load jump {name} [%]", *(percent(r.load_jump[k]) for r in rows)])
     caption = (
-        "Without relief, by rules, and as found here. Rules take off the tips what teeth give way "
-        "at the torque of the duty: that of Hwang and others (the paper's) the whole deflection of "
-        "the pair that comes or goes, the corrected one the deflection of the pairs that stay. "
-        "Load jump: the share of the load with which a pair comes or goes."
+        "Without relief, by rules, and as found here. Rules remove at the tips a deflection at the "
+        "torque of the duty: that of Hwang and others (the paper's) the whole deflection of the "
+        "pair that enters or leaves contact, the corrected rule that of the pairs that stay. "
+        "Load jump: the share of the load with which a pair enters or leaves contact."
     )
     return Table("relief and rules", ["", *(r.name for r in rows)], lines, caption, across=True)
 

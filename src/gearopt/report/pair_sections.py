@@ -81,12 +81,12 @@ def _of_loads(
     return [
         over_path(
             *(shown, path, shares, "share of the normal force [%]"),
-            f"What part of the load one pair of teeth carries along its path, {said}.",
+            f"Share of the load that one pair of teeth carries along its path, {said}.",
             *(measures, MESH),
         ),
         over_path(
             *(shown, path, errors, f"transmission error [{measures.unit('um')}]"),
-            f"How far the gears give way along the line of action, {said}.",
+            f"Transmission error: approach of the gears along the line of action, {said}.",
             *(measures, MESH),
         ),
     ]
@@ -122,8 +122,8 @@ def _stiffness(found: PairContact, pair: GearPair, measures: Measures) -> Figure
     return over_path(
         *(carried(found, duty), usable_path(pair), lines),
         f"stiffness [{measures.unit(STIFFNESS)}]",
-        f"Normal force per face width and approach: of one pair of teeth, and of the mesh at "
-        f"{100.0 * duty.load:g} % of the torque.",
+        f"Stiffness, normal force over face width and approach: of one pair of teeth, and of the "
+        f"mesh at {100.0 * duty.load:g} % of the torque.",
         *(measures, MESH, beside),
     )
 

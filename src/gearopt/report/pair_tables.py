@@ -69,7 +69,13 @@ def loads(found: PairContact, measures: Measures) -> Table:
         row("c' of ISO 6336-1, of one pair", STIFFNESS, lambda o: found.iso_single_stiffness_MPa),
     ]
     names = [f"{100.0 * one.load:g} %" for one in found.loads]
-    return Table("loads", ["", *names], rows, "What happens at each load.", across=True)
+    return Table(
+        "loads",
+        ["", *names],
+        rows,
+        "Force, contact stress, transmission error and stiffness at each load.",
+        across=True,
+    )
 
 
 def _harmonic(number: int, one: ContactLoad) -> float:

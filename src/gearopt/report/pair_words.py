@@ -50,11 +50,11 @@ def graded(pair: GearPair, error: float) -> str:
         return ""
     middle = float(deviations(pair, (5.0, 5.0), smooth=True).profile_form)
     grade = 5.0 + 2.0 * math.log2(error / middle)
-    alike = f"as much as profiles of accuracy grade {grade:.0f} of ISO 1328-1 may deviate in form"
+    alike = f"about the profile form tolerance of accuracy grade {grade:.0f} of ISO 1328-1"
     if grade < 0.5:
-        alike = "less than profiles of any accuracy grade of ISO 1328-1 may deviate in form"
+        alike = "below the profile form tolerance of every accuracy grade of ISO 1328-1"
     elif grade > 12.5:
-        alike = "more than profiles of any accuracy grade of ISO 1328-1 may deviate in form"
+        alike = "above the profile form tolerance of every accuracy grade of ISO 1328-1"
     return (
         f"The peak-to-peak value is {alike}: in coarser gears manufacturing errors matter more, "
         "in finer ones the load."
@@ -65,7 +65,7 @@ def _changed(found: PairContact) -> str:
     """Say what relief by rule would do."""
     first, second = (rounded(1e3 * amount, 3) for amount in found.rule_relief_mm)
     return (
-        f"About {first} µm off the tips of the pinion and {second} µm off those of the wheel would "
+        f"Tip relief of about {first} µm on the pinion and {second} µm on the wheel would "
         "let every pair of teeth enter and leave contact without load at the torque of [duty]. A "
         "table [relief] finds the best amounts for several loads."
     )

@@ -55,7 +55,7 @@ LEVELS = {
 ONCE = ("level", "power_kW", "input_speed_rpm", "share_percent")  # of a level, for all gears
 DAMAGE_DIGITS = 3
 LOAD_FACTORS = (
-    "By ISO 6336 K_v and the factors of face and transverse load depend on the load: its power "
+    "By ISO 6336, K_v and the face and transverse load factors depend on the load: the power "
     "capacity is rated with their values at that power."
 )
 
@@ -78,7 +78,8 @@ def _said(found: DriveRating) -> list[str]:
     """Return what the standards are, and what safety factors and lives mean."""
     words = [
         _standards(found),
-        "S_F and S_H are permissible over present stress; S_H squared is the safety of the load.",
+        "S_F and S_H are permissible over actual stress; S_H squared is the safety factor of the "
+        "load.",
     ]
     if any(one.by == "ISO 6336" for one in found.each):
         words.append(LOAD_FACTORS)
@@ -198,8 +199,8 @@ def levels(result: Result, measures: Measures) -> Section | None:
         at = len(ONCE) + 1
         rows.append([*row[:at], *[SHORT[one.by]] * named, *row[at:]])
     said = [
-        "A level's damage is its load cycles over those that the gear would bear at this level "
-        "alone; it fails where their sum (Miner's) is 1."
+        "The damage of a level is its load cycles over those that the gear would bear at this "
+        "level alone; the gear fails where the sum of the damages (Miner's sum) reaches 1."
     ]
     said += [
         f"Unverified by {one.by}: a published spectrum confirms the sum for contact, none for "

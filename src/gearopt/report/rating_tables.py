@@ -153,14 +153,15 @@ def forces(result: Result, measures: Measures) -> Section | None:
     shafts = replace(shafts, rows=[*shafts.rows[:-1], axial])
     level = ", at the load level of largest force" if found.levels else ""
     words = [
-        f"Forces of a mesh act at the working pitch circles{level}. Shafts carry them without "
-        "losses; rotations are seen from the input end, axial forces point away from it where "
-        "they are positive, and the other way where the input turns anticlockwise."
+        f"Forces of a mesh act at the working pitch circles{level}. Shafts transmit torques "
+        "without losses. Rotations are seen from the input end, for an input that turns "
+        "clockwise; positive axial forces point away from that end, and all reverse with the "
+        "rotation of the input."
     ]
     if found.efficiency_percent is not None:
         words.append(
-            "Efficiencies are those of tooth friction alone, without bearings, seals and churned "
-            "oil" + ("." if found.efficiency_error_percent is None else f"; {FRICTION}.")
+            "Efficiencies are those of tooth friction alone, without bearings, seals and oil "
+            "churning" + ("." if found.efficiency_error_percent is None else f"; {FRICTION}.")
         )
     stages = result.design["stages"]
     told = "\n".join(f"{_mesh_words(found, stage, k, measures)}" for k, stage in enumerate(stages))

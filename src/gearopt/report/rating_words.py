@@ -276,7 +276,7 @@ def _unverified(found: DriveRating, named: bool) -> list[str]:
     names = [_of_stages(symbol, own if several else []) for symbol, own in stages.items()]
     of = f" by {found.by}" if named else ""
     return [
-        f"Unverified{of}, because a single source has it or no published value confirms it: "
+        f"Unverified{of}, with a single source or no published value that confirms them: "
         f"{series_of(list(map(greek, names)))}."
     ]
 

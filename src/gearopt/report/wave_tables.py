@@ -276,7 +276,7 @@ def edges(found: CutterDesign, measures: Measures) -> Table:
         ],
     ]
     heads = ["edge", "angle [°]", f"radius [{length}]", f"largest deviation [{micro}]"]
-    caption = "Normal to the edge: what of the tool's tolerance the replacement uses up."
+    caption = "Deviations normal to the edge: the part of the tool's tolerance that is used up."
     return Table("cutting edges", heads, rows, caption)
 
 

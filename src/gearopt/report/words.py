@@ -134,7 +134,9 @@ def share(used: float) -> str:
 
 def effort(method: str, evaluations: int, seconds: float) -> str:
     """Return what an answer took, in words."""
-    return f"{method}, {evaluations:,} evaluation{'s' * (evaluations != 1)}, {seconds:.3g} s."
+    return (
+        f"Method {method}: {evaluations:,} evaluation{'s' * (evaluations != 1)}, {seconds:.3g} s."
+    )
 
 
 def number(value: Any) -> str:

@@ -16,7 +16,9 @@ from gearopt.optimise.result import FEASIBLE, Outcome
 from gearopt.optimise.terms import Terms
 
 MIDDLE = 1.5  # the contact ratio at which a ramp of 1/2 still fits
-SENTENCE = "Proof: the corner of the ranges where a limit is least exceeds it."
+SENTENCE = (
+    "Proof: where it is least, at a corner of the ranges, the limited quantity exceeds its limit."
+)
 WORDS = {
     "mass": "the mass of the narrowest gears with the lightest rims",
     "displacement": "the displacement of the axes on the stiffest bearings",

@@ -34,7 +34,9 @@ TOLERANCES = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance
 RANDOM = False
 COUNTS = "linear program solved"
 SETTINGS = {"gap": GAP}
-SENTENCE = "Proof: every pattern of contact was searched; bounds by multipliers of linear programs."
+SENTENCE = (
+    "Proof: every pattern of contact was searched; bounds from multipliers of linear programs."
+)
 STOPPED = (
     "Proof of the lower bound: no pattern of contact has less; bounds by multipliers of linear "
     "programs."

@@ -32,9 +32,11 @@ TOLD = 256  # boxes between two words to the watcher
 RANDOM = False
 COUNTS = "box bounded"
 SETTINGS = {"gap": GAP}
-EMPTY = "Proof: every box of amounts and lengths was searched: none keeps to these limits."
-SENTENCE = "Proof: every box of amounts and lengths was searched; bounds of boxes by planes."
-STOPPED = "Proof of the lower bound: no box of amounts and lengths has less; bounds by planes."
+EMPTY = "Proof: every box of amounts and lengths was searched: no relief keeps to these limits."
+SENTENCE = "Proof: every box of amounts and lengths was searched; bounds by cutting planes."
+STOPPED = (
+    "Proof of the lower bound: no box of amounts and lengths has less; bounds by cutting planes."
+)
 
 
 @dataclass(frozen=True)

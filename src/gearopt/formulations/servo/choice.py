@@ -223,7 +223,7 @@ def binding(backlash: tuple[tuple[int, float, float], ...]) -> Outcome | None:
         for k, there, asked in short
     )
     conflict = [f"minimum_backlash[{k}]" for k, _, _ in short]
-    words = "Proof: the sum of the deviations, all at the ends that close the mesh."
+    words = "Proof: the sum of the deviations, each at the end of its range that closes the mesh."
     proof = {"method": "closed form", "conflict": conflict, "each_alone": True, "sentence": words}
     return Outcome(None, infeasible=True, proof=proof, message=text)
 

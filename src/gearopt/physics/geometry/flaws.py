@@ -108,8 +108,8 @@ def _undercut(member: str, gear: Gear, depth: float) -> str:
     needed = math.ceil(100.0 * (gear.profile_shift + depth)) / 100.0
     return (
         f"The {member} is undercut, with {gear.teeth:.4g} teeth{shift}: without profile shift a "
-        f"rack cuts {least} teeth and more cleanly (in theory {limit:.1f}), these with a profile "
-        f"shift of {needed:.2f}."
+        f"rack cuts without undercut from {least} teeth on (in theory {limit:.1f}), these with a "
+        f"profile shift of {needed:.2f}."
     )
 
 

@@ -91,8 +91,8 @@ def decides(result: Result) -> str:
     gaps = clearances(result)
     full = [n for n in gaps if result.limits.get(n, 0.0) >= 1.0 - REACHED]
     walls, apart = _at_walls(found), any(part.name == "gears" for part in result.parts)
-    first = "the gears, sized first, decide the box" if apart else "gears and box are one optimum"
-    words = [f"{first}: {series_of(walls)} touch the wall clearance" if walls else first]
+    first = "the gears were sized first" if apart else "gears and box were chosen at once"
+    words = [first, *([f"{series_of(walls)} touch the wall clearance"] if walls else [])]
     words += [f"{series_of(list(map(limit_words, full)))} at the minimum clearance"] if full else []
     return "; ".join(words if apart else [*words, of_limits(result, gaps)])
 
@@ -151,7 +151,9 @@ def processes(result: Result, measures: Measures) -> Section | None:
     heads = ["", best.method, *(part.name for part in designs[1:])]
     rows = [*_stages(designs, measures), *_totals(designs, best.bound, measures)]
     rows += rating_words.least_safeties(designs)
-    words = "The processes follow design rules, without a search; limits and bound are the same."
+    words = (
+        "Processes follow design rules, without a search; limits and bound are those of the drive."
+    )
     stages = len(best.design["stages"])
     table = Table(
         "processes and optimum",

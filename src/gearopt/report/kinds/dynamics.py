@@ -15,7 +15,7 @@ from gearopt.report.answer import assumptions, limits, progress, summary
 from gearopt.report.explained import remedies, sensitivities
 from gearopt.report.kinds import Kind
 from gearopt.report.kinds.generic import FIRST
-from gearopt.report.measures import Measures
+from gearopt.report.measures import Measures, rounded
 from gearopt.report.section import Section, Table, Tile, cell, percent
 from gearopt.report.words import amount, number
 
@@ -63,8 +63,12 @@ def decides(result: Result) -> str:
         return ""
     rest = abs(found.equilibrium.deformation_mm)
     moved = found.response
-    told = f"the mesh deforms by {1e3 * rest:.3g} µm under its load"
-    return told if moved is None else f"{told} and moves by {1e3 * moved.peak_to_peak_mm:.3g} µm"
+    told = f"the mean load deforms the mesh by {1e3 * rest:.4g} µm"
+    if moved is None:
+        return told
+    return (
+        f"{told}; in motion the deformation varies by {rounded(1e3 * moved.peak_to_peak_mm, 4)} µm"
+    )
 
 
 def warns(result: Result) -> Sequence[str]:
@@ -112,7 +116,7 @@ def stability(result: Result, measures: Measures) -> Section | None:
         for t in held.tongues
     ]
     heads = ("modes", "harmonic", "mesh frequency [Hz]", "half width [%]", "damping against it [%]")
-    table = Table("tongues", heads, rows, "Widest tongues by the first-order formulas.")
+    table = Table("tongues", heads, rows, "Widest instability tongues by the first-order formulas.")
     ends = f"{spans(held.bands_Hz)} Hz" if held.bands_Hz else "none"
     words = (
         f"{held.unstable_percent:.3g} % of the map is unstable. Unstable mesh frequencies at the "
@@ -169,7 +173,7 @@ def _two(held: Speeds) -> list[str]:
     most = max(max(pair) / min(pair) for pair, two in zip(pairs, where, strict=True) if two)
     return [
         f"There are two motions at {ranges(held.speed_rpm, where)}, one up to {most:.3g} times "
-        "as large as the other: whether speed rises or falls decides which."
+        "as large as the other: which one occurs depends on whether speed rises or falls."
     ]
 
 

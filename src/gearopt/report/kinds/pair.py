@@ -58,7 +58,7 @@ def _contact_tiles(
             amount(load.mean_mesh_stiffness_MPa, STIFFNESS, measures),
             f"c_γα of ISO 6336-1: {iso}",
         ),
-        Tile("contact ratio", number(found.contact_ratio), "of the flanks that are there"),
+        Tile("contact ratio", number(found.contact_ratio), "of the flanks that undercut leaves"),
     ]
 
 

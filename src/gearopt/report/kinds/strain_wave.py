@@ -72,6 +72,8 @@ def decides(result: Result) -> str:
     """Return what was reached: of a given gearing its loads, else its teeth and what decides."""
     if (found := design_of(result)) is None:
         return ""
+    if result.value is None and found.least_clearance_mm < CUTTING:
+        return ""
     if result.value is None:
         pressure = amount(found.shared_pressure_MPa, "MPa", METRIC)
         carry = "1 tooth of a lobe carries"
@@ -236,8 +238,8 @@ def cutter(result: Result, measures: Measures) -> Section | None:
         return Section("Cutter of the flexspline", words=words, terminal=words)
     words = (
         f"{_tool(tool)}, rolling on a pitch radius of "
-        f"{amount(tool.pitch_radius_mm, 'mm', measures)}: regular, it generates the flank to "
-        f"{1e3 * tool.round_trip_mm:.0e} µm. {_least(tool)}",
+        f"{amount(tool.pitch_radius_mm, 'mm', measures)}: it is regular and generates the flank "
+        f"to within {1e3 * tool.round_trip_mm:.0e} µm. {_least(tool)}",
     )
     shown, pitch = result.report["cutter_drawing"], math.pi * found.module_mm
     scale = shown["scale"] or usual_scale(tool, pitch, shown["grid_mm"])

@@ -149,7 +149,7 @@ def _spent(front: Front) -> Section:
     """Return how the front was found: proof, effort, and its growth where a method has steps."""
     plot, table = front_plots.grown(front), front_designs.growth(front)
     seed = f", seed {front.seed}" if front.method in RANDOM else ""
-    said = [f"Method {effort(f'{front.method}{seed}', front.evaluations, front.seconds)}"]
+    said = [effort(f"{front.method}{seed}", front.evaluations, front.seconds)]
     if plot is None and front.points:
         said.append("It finds the whole front in one pass, so that there is no growth to show.")
     figures, shown = ([plot] if plot else []), ([table] if table else [])

@@ -86,7 +86,7 @@ def remedies(found: Sequence[Mapping[str, Any]]) -> Drawing | None:
     if not rows:
         return None
     proven = any(row.blocked is not None for row in rows)
-    caption = "By what factor one number of the file must move; a dot: a design exists" + (
+    caption = "Factor by which one number of the file must change; a dot: a design exists" + (
         "; orange: none does, proven even with real-valued sizes." if proven else "."
     )
     guides = (Guide(1.0, "asked", "gap"),)

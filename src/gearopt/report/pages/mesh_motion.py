@@ -32,7 +32,7 @@ COLOURS = (1, 4)  # of pinion and wheel, in the series
 CAPTION = (
     "The pinion, below, turns clockwise and drives; its pairs of teeth, numbered from the one that "
     "came into contact last, touch on the line of action. Colour: their share of the normal force. "
-    "After one base pitch all repeats, each pair in the place of the next."
+    "After one base pitch the motion repeats, each pair in the place of the next."
 )
 
 

@@ -62,15 +62,15 @@ def section(result: Result, measures: Measures, hint: str = "") -> Section | Non
         return None
     name, sign, one = measures.module
     webs = [circles(s, m) for s in result.design["stages"] for m in MEMBERS]
-    inside = ", thin ones rims from inside, hubs and bores" if any(webs) else ""
+    inside = ", thin ones the insides of rims, hubs and bores" if any(webs) else ""
     plural = f"modules {sign} in {one}" if one == "mm" else f"{name}es {sign} in {one}"
     words = (
         "All shafts are drawn in one line: their places are not optimised, and the gaps between "
         f"the stages are only as wide as the labels need.{hint}",
         f"Drawn to one scale; dimensions in {measures.lengths}: centre distances, length over "
         f"tip circles, face widths b; {plural}; teeth z. Solid lines are tip circles, "
-        f"dash-dotted ones reference circles{inside}; numbers in circles are shafts, whose "
-        "diameters are not known.",
+        f"dash-dotted ones reference circles{inside}; numbers in circles name the "
+        "shafts, which are not drawn.",
     )
     return Section("Gears in one line", words=words, drawings=drawn)
 

@@ -30,7 +30,7 @@ RING = 181, 721  # points of the ring, of the whole and of the close-up
 CAPTION = (
     "The wave generator turns counter-clockwise, the circular spline rests; to scale. Colour: load "
     "of a tooth at the duty's torque. After half a turn the flexspline has fallen back by one "
-    "pitch of its teeth, and all repeats."
+    "pitch of its teeth, and the motion repeats."
 )
 
 

@@ -90,8 +90,8 @@ def _bodies(scene: Scene) -> str:
     if all(blank(table, None).solid and not table.web_thickness for table in tables):
         return "Volumes and masses are those of solid reference cylinders"
     return (
-        "Volumes are those of solid reference cylinders; masses those of rims, webs, hubs, teeth "
-        "being a ring between root and reference circle"
+        "Volumes are those of solid reference cylinders; masses those of rims, webs and hubs, with "
+        "the teeth as a ring between root and reference circle"
     )
 
 
@@ -140,14 +140,14 @@ def rating_assumptions(scene: Scene) -> list[str]:
     assert asked
     by_agma, by_iso = asked.standard != "iso6336", asked.standard != "agma"
     found = [
-        "External cylindrical gears on parallel shafts, steel, whose pinions drive; no losses but "
+        "External cylindrical steel gears on parallel shafts; the pinions drive. No losses except "
         "those of the mesh, where they are reported.",
         "The standards themselves were not read: formulas and values are those of textbooks, "
-        "tables and public programs; what a single source has is marked unverified.",
+        "tables and public programs; those from a single source are marked unverified.",
         *(_agma_assumptions(asked) if by_agma else []),
         *(_iso_assumptions(scene, asked) if by_iso else []),
         "Scuffing, micropitting, wear, shafts and bearings are not rated.",
-        "Safety against contact is of stress: its square is of load. Lives are those at which a "
+        "S_H is a ratio of contact stresses, its square one of loads. Lives are those at which a "
         "safety factor is 1.",
     ]
     unstated = _unstated(asked, by_agma, by_iso)
@@ -165,7 +165,7 @@ def _agma_assumptions(asked: RatingTable) -> list[str]:
         f"K_m by the curve of {asked.mounting} gearing"
         + (", crowned" if asked.crowned else ", teeth without crowning")
         + f"; pinion offset S_1/S {float(asked.pinion_offset):g}.",
-        f"Bending of spur teeth and of low overlap: load {load}"
+        f"Bending of spur gears, and of helical ones of low overlap ratio: load {load}"
         f"{' (AGMA)' * (asked.standard == 'both')}.",
     ]
 

@@ -176,7 +176,7 @@ def assumptions(scene: Scene) -> list[str]:
     if scene.mesh.kinematics.startswith("paper"):
         said.append(
             "The paper's kinematics are not those of two involutes: a rotation of the whole pair "
-            "changes the deformation. They are there to compare with."
+            "changes the deformation. They serve for comparison."
         )
     if scene.mesh.axes == "fixed":
         said.append(

@@ -137,7 +137,7 @@ def told(best: Chosen, result: Result, periods: int) -> list[str]:
     if best.longest_repeat > periods:
         found.append(
             f"A motion repeats after {best.longest_repeat} mesh periods, not after {periods}: "
-            f"periods = {best.longest_repeat}."
+            f"write periods = {best.longest_repeat}."
         )
     return found
 

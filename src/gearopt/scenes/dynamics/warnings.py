@@ -56,17 +56,17 @@ def _out_of_range(design: DynamicsDesign, module: float) -> list[str]:
         if most > DEPTH:
             found.append(
                 f"{far}: teeth are {DEPTH:g} modules deep in mesh, so that none touch there. "
-                "The model does not know it, and its numbers mean nothing from there on."
+                "The model neglects this, and its numbers mean nothing from there on."
             )
         else:
             found.append(
-                f"{far}: the contact ratio falls, and the stiffness with it, which the model "
-                f"keeps as at rest. It holds up to about {APART:g} modules."
+                f"{far}: the contact ratio falls, and with it the stiffness; the model keeps both "
+                f"as at rest. It holds up to about {APART:g} modules."
             )
     if least > CLEARANCE:
         found.append(
             f"The axes come together by up to {least * module:.3g} mm, {least:.3g} modules: tips "
-            f"touch roots from some {CLEARANCE:g} modules on, which the model does not know."
+            f"touch roots from some {CLEARANCE:g} modules on, which the model neglects."
         )
     if deep > APART:
         found.append(
@@ -86,9 +86,9 @@ def _of_response(response: Response, design: DynamicsDesign) -> list[str]:
     if response.steady_ms is not None:
         found.append(
             "Every impact of the teeth enlarges small differences: from "
-            f"{response.steady_ms:.4g} ms on the rounding of numbers alone makes more than the "
-            "error asked, however short the steps. Up to there the motion is known to it; after "
-            "that read the RMS and the spectrum, not the single peaks."
+            f"{response.steady_ms:.4g} ms on rounding alone causes more than the error asked, "
+            "however short the steps. Until then the motion is known to that error; afterwards "
+            "rely on the RMS and the spectrum, not on single peaks."
         )
     if response.jammed_ms is not None:
         found.append(
@@ -114,7 +114,7 @@ def _too_few(times_ms: Sequence[float], design: DynamicsDesign) -> list[str]:
     most = MOST_OUTPUTS / (FINE * fastest)
     change = f"outputs = {needed}" if needed <= MOST_OUTPUTS else f"at most {1e3 * most:.3g} ms"
     return [
-        f"The motion is told at {len(times_ms):,} times, {len(times_ms) / fastest / duration:.2g} "
+        f"The motion is given at {len(times_ms):,} times, {len(times_ms) / fastest / duration:.2g} "
         f"in a period of {fastest:,.0f} Hz: peaks, RMS and spectrum may miss what lies between. "
         f"Take {change}."
     ]

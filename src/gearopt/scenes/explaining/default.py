@@ -43,7 +43,8 @@ from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.toml import toml_text
 
 BASIS = (
-    " by multipliers, checked by solving again. Effect of relaxing a limit or a step: solved again"
+    " by Lagrange multipliers, checked by solving again. "
+    "Effect of relaxing a limit or a step: solved again"
 )
 HELD = f", with these whole numbers and choices,{BASIS}"
 UNSURE = 0.02  # between sensitivities by multipliers and by solving again that differ

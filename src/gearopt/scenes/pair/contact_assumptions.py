@@ -18,8 +18,8 @@ def contact_assumptions(scene: Scene, made: PairContact, pair: GearPair) -> list
         "Contact: exact involutes without errors and modifications, plane models, no friction, "
         "no dynamics; shafts and bearings are rigid, and gears are held at their bores. Loads are "
         "those of the duty without application, dynamic and face load factors, spread evenly over "
-        "the face width. Teeth meet at SAP; bent ones without relief meet before it, at the edge "
-        "of a tip.",
+        "the face width. Teeth are taken to meet at SAP; without relief deflected teeth meet "
+        "before it, at the edge of a tip.",
         f"Teeth by {made.level}, in plane {strain}; the contact compliance is that at the torque "
         "of the duty, at every load.",
         f"Neighbouring teeth are coupled by {coupled:.3g} µm/kN ({made.coupling}).",

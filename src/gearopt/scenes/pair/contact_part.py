@@ -40,7 +40,7 @@ def contact_of(scene: Scene, made: PairMesh, materials: Materials) -> PairContac
         return found
     said = (
         f"The contact stress reaches {most:,.0f} MPa, and hardened steel yields from "
-        f"{BORNE:,.0f} MPa on: the gears are too small for the load, or the load is not meant."
+        f"{BORNE:,.0f} MPa on: the gears are too small, or the load in the file is wrong."
     )
     return replace(found, validity=(*found.validity, said))
 

@@ -17,12 +17,12 @@ from gearopt.scenes.servo.train_part import candidates, given_gears
 
 SLOWEST = "acceleration"  # what nobody minimises
 FRICTION = {
-    "acceleration": "The motor speeds the load up with all the torque that it has at that speed, "
+    "acceleration": "The motor accelerates the load with its full torque at that speed, "
     "and the efficiency is constant; friction is Coulomb's and opposes the motion. Heating of the "
     "motor is not checked.",
-    "move": "The motor speeds the load up and brakes it with all its torque, which is the same up "
-    "to its speed limit. Coulomb friction opposes the one and helps the other, so the ramps are "
-    "not alike; losses of the train are not counted while the motor brakes. Heating of the motor, "
+    "move": "The motor accelerates and brakes the load with its full torque, which is the same up "
+    "to its speed limit. Coulomb friction opposes acceleration and helps braking, so the ramps "
+    "differ; losses of the train are not counted while the motor brakes. Heating of the motor, "
     "by its rms torque, is not checked.",
     "swing": "Coulomb friction is in phase with the speed, inertia with the acceleration; no "
     "losses in the train. Where [motor] has a torque, it is the maximum rms torque.",
@@ -226,7 +226,7 @@ def notes(
         if worst > limit * (1.0 + 1e-9):
             found.append(
                 f"With all new tolerances at their limits the error is {worst:.5g} degrees, above "
-                f"the {limit:.5g} of [accuracy]: their budget is no worst case."
+                f"the {limit:.5g} of [accuracy]: their budget is not by the rule worst_case."
             )
     stages = () if design.train is None else design.train.stages
     rack = Rack(scene.accuracy.pressure_angle.value)

@@ -56,7 +56,7 @@ def _way(scene: Scene, key: str, missing: dict[int, float], clock: Clock) -> Rem
     if status != "optimal":
         return None
     bound = back is not None and binding(back.choice().backlash) is not None
-    verified = {"with": status, "rounded": "to the easy side"}
+    verified = {"with": status, "rounded": "to the side that eases the limit"}
     verified["with_less"] = "infeasible" if bound else "undecided"
     what = ", ".join(change.key for change in changes)
     return Remedy(

@@ -100,9 +100,9 @@ def _materials(scene: Scene, demand: Demand) -> Iterator[str]:
     if "safety" not in asked.model_fields_set:
         yield f"a safety of {demand.safety:g} against fatigue of the rim"
     if "ratcheting" not in asked.model_fields_set:
-        yield f"teeth that ratchet above {demand.ratchet_factor:g} times the torque"
+        yield f"a ratcheting torque of at least {demand.ratchet_factor:g} times the torque"
     if "pairs" not in asked.model_fields_set:
-        yield f"at least {demand.pairs:g} conjugate pair in the mean"
+        yield f"a mean of at least {demand.pairs:g} conjugate pair per lobe and flank"
 
 
 def _sharing(scene: Scene) -> Iterator[str]:
@@ -110,11 +110,11 @@ def _sharing(scene: Scene) -> Iterator[str]:
     sharing = scene.sharing
     by_modulus = "" if scene.modulus == STEEL else ", in proportion to the modulus of elasticity"
     if sharing.pair_compliance is None:
-        yield f"a stiffness of {scene.pair_stiffness:.3g} N/mm of a pair of teeth{by_modulus}"
+        yield f"a stiffness of {scene.pair_stiffness:,.0f} N/mm of a pair of teeth{by_modulus}"
     if scene.design.radial_compliance is None:
         yield (
-            f"ratcheting by a radial stiffness of {scene.radial_stiffness:.3g} N/mm{by_modulus}, "
-            "formula not checked against any source"
+            f"a radial stiffness of {scene.radial_stiffness:,.0f} N/mm against ratcheting"
+            f"{by_modulus}, formula not checked against any source"
         )
     if "wall_over_rim" not in sharing.model_fields_set:
         yield f"a wall of the cup {float(sharing.wall_over_rim):g} times as thick as the rim"
@@ -203,7 +203,7 @@ def _without_play(made: WaveDesign) -> list[str]:
     each = " and ".join(
         f"{-1e3 * d.least_clearance_mm:.3g} µm at {d.deflection:.4g} modules" for d in near
     )
-    return [f"The deflection has no tolerance: teeth would overlap by {each}."]
+    return [f"No deviation of the deflection is tolerated: teeth would overlap by {each}."]
 
 
 def _name(name: str) -> str:

@@ -133,10 +133,10 @@ def sentence(proof: Mapping[str, Any], infeasible: bool) -> str:
     but = f" but {apart}" if apart else ""
     feasible = proof.get("feasible_trains")
     counted = "" if feasible is None else f", {feasible:,} meet all limits{but}"
-    rest = "meets all limits" if infeasible else "can be better"
+    rest = "no choice meets all limits" if infeasible else "no other can be better"
     return (
         f"Proof: {proof['trains_looked_at']:,} choices of teeth and modules examined{counted}; "
-        f"no other {rest}."
+        f"{rest}."
     )
 
 

@@ -68,7 +68,7 @@ def _ratio(ratio: RatioDesign, name: str, measures: Measures) -> list[Tile]:
     """Return what the chosen train gives, unless that is the objective, and the best ratio."""
     made, chosen = [], ratio.chosen
     if chosen is not None and not ratio.name.endswith(name):
-        worse = f"{chosen.loss_percent:.3g} % worse than the best ratio, no gears"
+        worse = f"{chosen.loss_percent:.3g} % worse than at the best ratio, no gears"
         value = amount(chosen.value, ratio.unit, measures)
         made.append(Tile(f"{ratio.name} of the train", value, worse))
     without = "no gears" if chosen is not None else ""

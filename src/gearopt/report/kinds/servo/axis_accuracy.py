@@ -27,7 +27,7 @@ from gearopt.report.kinds.servo.axis_words import (
 from gearopt.report.measures import Measures
 from gearopt.report.pages.sheet import series
 from gearopt.report.section import Cell, Figure, Section, Table, axis, layout, percent
-from gearopt.report.words import number
+from gearopt.report.words import number, share
 
 ROW = 23.0  # px of a source
 REST = 120.0  # px of legend and axis
@@ -69,7 +69,9 @@ def errors(result: Result, measures: Measures) -> Section | None:
     up["showgrid"] = False
     high = round(REST + ROW * len(order))
     plot = layout(across, up, high, barmode="overlay", bargap=0.25, shapes=shapes)
-    caption = "Each bar begins where the last one ends: the worst case, all at once."
+    caption = (
+        "Each bar begins where the last one ends: the worst case, all at their limits at once."
+    )
     words, table = _error_words(total, limit), _error_table(found, total, measures)
     tables = (table, *_backlash_table(design.backlash, measures))
     return Section(
@@ -106,7 +108,7 @@ def _error_words(total: float, limit: float | None) -> list[str]:
         return [f"All sources at their limits add up to {arc_minutes(total)} at the output."]
     if total <= limit * (1.0 + 1e-9):
         return []
-    return [f"All sources at their limits make {degrees(total - limit)} more than is allowed."]
+    return [f"All sources at their limits exceed the limit by {degrees(total - limit)}."]
 
 
 def _error_table(found: Sequence[ErrorSource], total: float, measures: Measures) -> Table:
@@ -215,7 +217,7 @@ def _cost_words(found: Allocation, error: float | None) -> list[str]:
     """Say how the cost changes, and what the budgets are; error: of the train [deg]."""
     change = 100.0 * (found.cost / found.old_cost - 1.0)
     limits = (
-        f"{_rule(b)} as the error at the output"
+        f"{_rule(b)}, limit equal to the error at the output"
         if error is not None and degrees(b.limit_deg) == degrees(error)
         else f"{_rule(b)} {degrees(b.limit_deg)}"
         for b in found.budgets
@@ -287,10 +289,10 @@ def drawn(result: Result, measures: Measures) -> Section | None:
         f"{found.count:,} Monte Carlo trains with every deviation at random within its tolerance "
         f"(seed {found.seed}); the band is the interval of the quantile."
     )
-    worst = 100.0 * found.worst_case_deg / found.limit_deg
+    worst = share(found.worst_case_deg / found.limit_deg)
     normal = (
         f"Mean {degrees(found.mean_deg)}, standard deviation {degrees(found.sd_deg)}; all "
-        f"tolerances at their limits at once would be {worst:.4g} % of the limit."
+        f"tolerances at their limits at once would be {worst} % of the limit."
     )
     budgets = () if design.allocation is None else design.allocation.budgets
     said = any(budget.limit_deg == found.limit_deg for budget in budgets)

@@ -35,8 +35,8 @@ ROWS = {  # field of `Achieved`: its name, and its unit
 NOTE = (
     "Inertias are referred to the motor shaft; their ratio is that of the load to rotor plus train."
 )
-SPEEDING = " Torques are in per cent of the motor's while the load speeds up."
-BRAKING = " The motor brakes with all its torque too, and friction helps: the ramps are not alike."
+SPEEDING = " Torques are in per cent of the motor's torque while the load accelerates."
+BRAKING = " The motor also brakes with its full torque, and friction helps: the two ramps differ."
 WITH_TRAIN = "with the chosen train's inertia"
 TICKS = (1.0, 2.0, 5.0)  # of a decade
 MARKS = (  # of what is judged beside the best ratio: colour and symbol

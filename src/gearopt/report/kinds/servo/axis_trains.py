@@ -114,7 +114,7 @@ def _torque(value: float, measures: Measures) -> str:
 def _sector(share: float) -> str:
     return (
         f"The last wheel is a sector of {360.0 * share:.4g}°, {100.0 * share:.4g} % of a full one; "
-        "its mass and inertia are counted so."
+        "its mass and inertia are those of the sector."
     )
 
 

@@ -48,7 +48,10 @@ def several(scene: Scene, names: Sequence[str], sized: Result) -> Several:
         return Several(impossible("layout", names, none), listed)
     box = scene.gearbox(pairs_of(scene, sized))
     if wrong := faults(box):
-        proof = {"method": "closed form", "sentence": "Proof: the sizes of these gears."}
+        proof = {
+            "method": "closed form",
+            "sentence": "Proof: the sizes of these gears exclude every layout.",
+        }
         none = Outcome(None, infeasible=True, proof=proof, message=" ".join(wrong))
         return Several(impossible("layout", names, none), listed)
     layout.ready()

@@ -21,7 +21,7 @@ from gearopt.scenes.explaining.numbers import Number, eased, moved, numbers
 from gearopt.scenes.reading.modules import series_of
 
 BASIS = (
-    " with real-valued teeth and modules, by multipliers, checked by solving again. "
+    " with real-valued teeth and modules, by Lagrange multipliers, checked by solving again. "
     "Effect of relaxing a limit: the drive itself solved again"
 )
 RATED = (  # of drives that ratings limit, or whose gears have webs

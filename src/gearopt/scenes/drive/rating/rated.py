@@ -187,8 +187,8 @@ def _partial_contact(found: DriveRating) -> Iterator[str]:
             yield (
                 f"Only {100.0 * FULL_CONTACT / row.pinion:.3g} % of the face width of stage "
                 f"{row.stage} carries load: K_Hbeta is {row.pinion:.4g}, and above "
-                f"{FULL_CONTACT:g} one end is out of contact. A modified helix or a narrower face "
-                "would mend it."
+                f"{FULL_CONTACT:g} one end is out of contact. A helix modification or a smaller "
+                "face width would help."
             )
 
 
