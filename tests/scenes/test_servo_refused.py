@@ -46,6 +46,8 @@ REFUSED = [  # edits, dropped, key, words
     ([(("duty", "motion"), "move")], [], "duty.angle", "needs it"),
     ([(("duty", "motion"), "swing")], [], "duty.amplitude", "needs it"),
     ([(("duty", "angle"), "90 deg")], [], "duty.angle", 'for motion = "move"'),
+    ([(("motor", "no_load_speed"), "800 rad/s")], [], "motor.no_load_speed", "without load_speed"),
+    ([(("budget", 0, "kappa"), 2)], [], "budget[1].kappa", 'for rule = "mean_plus_sd"'),
     ([], [("mesh", 1)], "mesh", "each of the two stages"),
     ([], [("mesh",)], "mesh", "needs one per stage"),
     ([], [("shaft",)], "shaft", "twists"),

@@ -359,3 +359,10 @@ class BudgetTable(Table):
         description="Standard deviations counted by mean_plus_sd",
         json_schema_extra={"default": 3},
     )
+
+    @model_validator(mode="after")
+    def _counted(self) -> "BudgetTable":
+        if "kappa" in self.model_fields_set and self.rule != "mean_plus_sd":
+            rule = f'is for rule = "mean_plus_sd", not for "{self.rule}"'
+            raise refuse(rule, at=("kappa",), action="remove")
+        return self

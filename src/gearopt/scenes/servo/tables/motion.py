@@ -32,7 +32,9 @@ class Motor(Table):
         NONE, description="Coulomb friction torque", json_schema_extra={"default": "0 N m"}
     )
     no_load_speed: Annotated[Quantity | None, quantity("speed", "8000 rpm")] = Field(
-        None, description="Speed at which the torque has fallen to zero, in a straight line"
+        None,
+        description="Speed at which the torque has fallen to zero, in a straight line; for an "
+        "acceleration at load_speed",
     )
     speed_limit: Annotated[Quantity | None, quantity("speed", "800 rad/s")] = Field(
         None, description="Maximum speed of the motor"
@@ -102,6 +104,9 @@ class Duty(Table):
             rule = (
                 f'conflicts with motion = "{self.motion}", which takes the torque up to speed_limit'
             )
+            raise refuse(rule, at=("motor", "no_load_speed"), action="remove")
+        if self.load_speed is None and motor.no_load_speed is not None:
+            rule = "changes nothing without load_speed: at standstill the motor has all its torque"
             raise refuse(rule, at=("motor", "no_load_speed"), action="remove")
 
 
