@@ -60,7 +60,7 @@ def test_teeth_at_an_end_of_their_range_are_reached_and_not_said_to_decide(pair)
     result = solve(pair())
     first = decided(result)
     assert result.limits["pinion_teeth_low[1]"] == 1.0
-    assert "reached" in first and "decide" not in first and "no limit" not in first
+    assert "active" in first and "determine" not in first and "no limit" not in first
 
 
 @pytest.mark.parametrize(

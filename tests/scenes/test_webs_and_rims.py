@@ -54,7 +54,7 @@ def test_masses_of_a_design_by_its_dimensions(solved):
     assert result.value == pytest.approx(sum(s["mass_kg"] for s in result.design["stages"]))
     told = [note for note in result.report["notes"] if "no web" in note]
     assert [note[:24] for note in told] == [f"The pinion of stage {k} ha" for k in (1, 2)]
-    assert any("rims, webs, hubs" in words for words in result.report["assumptions"])
+    assert any("rims, webs and hubs" in words for words in result.report["assumptions"])
 
 
 @pytest.mark.slow
