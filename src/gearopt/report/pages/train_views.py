@@ -68,7 +68,8 @@ def section(result: Result, measures: Measures, hint: str = "") -> Section | Non
         "All shafts are drawn in one line: their places are not optimised, and the gaps between "
         f"the stages are only as wide as the labels need.{hint}",
         f"Drawn to one scale; dimensions in {measures.lengths}: centre distances, length over "
-        f"tip circles, face widths b; {plural}; teeth z. Solid lines are tip circles, "
+        "tip circles (the total length of the design is that over reference circles), face widths "
+        f"b; {plural}; teeth z. Solid lines are tip circles, "
         f"dash-dotted ones reference circles{inside}; numbers in circles name the "
         "shafts, which are not drawn.",
     )
