@@ -34,7 +34,7 @@ THIN_TIP = 0.2  # normal modules of tip thickness; 0.3 to 0.4 if case hardened (
 LEAST_RATIO = 1.2  # transverse contact ratio below which ISO 6336-1 has no stiffness
 PRINTED = 0.5e-3  # mm, half a unit of the last digit of a centre distance as drawings have it
 LOOSE = 4.0  # times the recommended least backlash, from which on it is told (a rule of ours)
-ROUNDING = 1e-9  # of the module
+ROUNDING = 1e-8  # of the module, as limits of a result are held (`FEASIBLE`)
 INTRUSION = 1e-3  # normal modules by which tips may touch fillets, less than edges are rounded by
 POINTS = 201  # of a fillet, and of the path of a tip
 
