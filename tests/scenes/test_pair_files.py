@@ -51,6 +51,7 @@ WRONG = [
     ({"stage.module": None}, r"rating: is missing: stage\[1\]\.module is open, and gears that"),
     ({"stage": []}, r"rating: is missing: no table \[\[stage\]\] gives gears"),
     ({"teeth": {}}, "teeth = {}: changes nothing: the gears are given. Remove it"),
+    ({"stage.k_factor": "2 MPa"}, r"k_factor = .*changes nothing: the gears are given\. Remove it"),
     ({"gears.treatment": "carburised"}, r"gears\.treatment = .*needs a table \[rating\]"),
     ({"sharing.coupling": "ring"}, 'coupling = "ring": is neither one of .*coupling = "ring tors'),
     ({"sharing.coupling": "0.8 um"}, r"has the unit um of length; units of compliance: um/kN"),

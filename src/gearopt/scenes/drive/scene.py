@@ -40,6 +40,7 @@ from gearopt.scenes.drive.rating.checks import (
     check_rated,
     check_sized,
     check_unrated,
+    check_unsized,
     not_given,
 )
 from gearopt.scenes.drive.rating.materials import MaterialTable, check_materials, check_same
@@ -256,6 +257,8 @@ class Scene(Table):
             check_same(self.gears, self.stage)
             check_rated(self.rating, self.gears, self.stage, self.load, self.material)
         check_objective(self.objective, self.gears, self.stage, self.material)
+        if self.given and not self.limited:
+            check_unsized(self.limits.LAW, self.stage)
         if self.by_ratings:
             ruled = [n for n in PROCESSES if getattr(self, n) is not None]
             check_sized(self.law, self.limits.LAW, self.stage, ruled)

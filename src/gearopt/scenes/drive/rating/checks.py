@@ -75,6 +75,15 @@ def check_sized(law: Law, own: Law, stages: Sequence[StageTable], ruled: Sequenc
         raise refuse(rule, at=(name,), action="remove")
 
 
+def check_unsized(own: Law, stages: Sequence[StageTable]) -> None:
+    """Refuse load limits of given gears, which nothing sizes; own: the law of these limits."""
+    for k, stage in enumerate(stages):
+        for name in own.names:
+            if getattr(stage, name) is not None:
+                rule = "changes nothing: the gears are given"
+                raise refuse(rule, at=("stage", k, name), action="remove")
+
+
 def check_objective(
     asked: Objective, gears: Gears, stages: Sequence[StageTable], materials: Sequence[Named]
 ) -> None:
