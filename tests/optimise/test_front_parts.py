@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 
 import gearopt
-from gearopt import Problem, Terms, Var
-from gearopt.optimise.pareto import epsilon
+from gearopt import Budget, Problem, Terms, Var
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.pareto import epsilon, evolution, scalarised
 from gearopt.optimise.pareto.corners import corners, useful
 from gearopt.optimise.pareto.found import Found, Point, sifted
+from gearopt.optimise.pareto.front import Front, FrontPoint, Objective
 from gearopt.optimise.pareto.gaps import (
     Gap,
     Tried,
@@ -25,11 +27,24 @@ from gearopt.optimise.pareto.judged import status
 from gearopt.optimise.pareto.measures import hypervolume, igd, nadir, reference, unbeaten
 from gearopt.optimise.pareto.pick import knee, neighbours, picks, scaled
 from gearopt.optimise.pareto.posed import Limit, caps, moved, posed, scale
+from gearopt.optimise.pareto.united import united
+from gearopt.optimise.result import Event
 
 
 def point(f, g, slope=None, proven=True, bound=None):
     slopes = None if slope is None else np.array([slope])
     return Point(np.array([f, g]), np.array([float(f), float(g)]), proven, bound, slopes)
+
+
+def segment():
+    """Squares of the distances from 0 and 1, x in [0, 1]: sqrt(a) + sqrt(b) = 1."""
+    text = lambda x, p: Terms({"a": x.x**2, "b": (1.0 - x.x) ** 2})  # noqa: E731
+    return Problem("segment", (Var("x", "", 0.0, 1.0, 0.5),), (), text)
+
+
+def steps_of(problem, **budget):
+    """The run of a front of a and b, with nothing found so far."""
+    return epsilon.Run(problem, ("a", "b"), {}, Clock(Budget(**budget)), None)
 
 
 def test_picks_are_scaled_by_ideal_and_nadir():
@@ -105,6 +120,8 @@ def test_errors_are_those_of_tangents_or_of_boxes():
     some = gaps(line, [Tried(3.0 - 1e-6, 9.0, True)], ranges)
     a, b = sides[1]
     assert boxed_error(some, ranges) == pytest.approx(a * b / math.hypot(a, b))
+    narrow, half = [point(0.5, 0), point(0, 0.5)], np.full(2, 0.5)
+    assert boxed_error(gaps(narrow, [], half), half) == pytest.approx(math.sqrt(0.5))
     # f = 1/g between (1, 1) and (4, 1/4): tangents -1 and -16 meet at g = 0.4, f = 1.6
     hyperbola = [point(1.0, 1.0, -1.0), point(4.0, 0.25, -16.0)]
     u, v = (1.6 - 1.0) / 3.0, (0.4 - 0.25) / 0.75
@@ -116,6 +133,8 @@ def test_errors_are_those_of_tangents_or_of_boxes():
     assert met(ends[1], ends[0]) == pytest.approx([1.0, 0.0])
     assert met(point(4, 0), point(1, 1)) == pytest.approx([0.5, 0.5])
     assert met(point(4, 0, -6.0), point(1, 1, -9.0)) == pytest.approx([0.5, 0.5])  # outside
+    for left in (point(1, 0, -6.0), point(4, 1, -6.0)):  # the same f, the same g
+        assert met(left, point(1, 1, -9.0)) == pytest.approx([0.5, 0.5])
     assert curve_error([point(1, 1, -1.0), point(1, 1, -1.0)], False) == 0.0
 
 
@@ -184,11 +203,96 @@ def test_steps_without_a_result_leave_their_gap_open_and_named(monkeypatch):
         return own(run, name, most, near)
 
     monkeypatch.setattr(epsilon, "_attempt", attempt)
-    line = Var("x", "", 0.0, 1.0, 0.5)
-    text = lambda x, p: Terms({"a": x.x**2, "b": (1.0 - x.x) ** 2})  # noqa: E731
-    front = gearopt.pareto(Problem("line", (line,), (), text), points=6)
+    front = gearopt.pareto(segment(), points=6)
     assert front.message.startswith("1 part of the front is open, where steps had no result: b 0.")
     low, high = (float(word) for word in front.message.rsplit(" ", 3)[1::2])
     assert 0.0 <= low <= 0.4 and 0.8 <= high <= 1.0
     second = np.array([p.values[1] for p in front.points])
     assert not ((second > 0.4001) & (second < 0.8)).any() and len(second) == 6
+
+
+def test_steps_start_from_neighbours_and_from_evolution_and_the_better_answer_counts(monkeypatch):
+    run = steps_of(segment())
+    assert epsilon._posed(run, "a", {}, np.array([0.25])).bounds()[2].tolist() == [0.25]
+    run.sample = (point(1, 2), point(0, 3))
+    assert run.within({"b": 2.0}) == [run.sample[0]] and run.within({"b": 1.9}) == []
+    answers = [point(1, 1), point(2, 1), point(1, 1), None, point(2, 1), point(1, 1)]
+    replies = iter(answers)
+    reply = lambda *_: (SimpleNamespace(status="feasible"), next(replies))  # noqa: E731
+    monkeypatch.setattr(epsilon, "_attempt", reply)
+    for best in (answers[0], answers[2], answers[5]):
+        assert epsilon._solved(run, "a", {"b": 2.0}) is best
+    assert not run.skipped
+
+
+@pytest.mark.parametrize(("limiting", "few"), [(None, 10), (object(), 40)])
+def test_a_quarter_of_the_points_come_before_others_are_spread(limiting, few, monkeypatch):
+    counts, limits = [], []
+    monkeypatch.setattr(epsilon.Line, "fill", lambda line, count: counts.append(count))
+    monkeypatch.setattr(epsilon.Line, "step", lambda line, most: limits.append(most))
+    run = steps_of(segment())
+    run.limiting, run.widths = limiting, {"a": 1.0, "b": 1.0}
+    epsilon._between(run, [point(0, 1), point(1, 0)], 40, {})
+    assert counts == [few, 40] and len(limits) == 38 and len(run.lines) == 1
+
+
+def test_a_point_that_breaks_its_limits_is_no_point_of_the_front(monkeypatch):
+    failed = SimpleNamespace(status="failed", value=None, evaluations=3)
+    solve = lambda *_, **__: (failed, SimpleNamespace(x=np.array([0.5])))  # noqa: E731
+    monkeypatch.setattr(epsilon, "solve_raw", solve)
+    run = steps_of(segment())
+    assert epsilon._attempt(run, "a", {}, None) == (failed, None) and run.clock.evaluations == 3
+
+
+@pytest.mark.parametrize(("most", "spent"), [(1000, 300), (100_000, 2000)])
+def test_evolution_has_a_part_of_the_budget_and_its_values_are_not_the_run_s(
+    most, spent, monkeypatch
+):
+    """Three tenths of it, 2000 at most, before steps; half of it before Ipopt improves points."""
+    budgets, events = [], []
+
+    def evolve(problem, points, budget, seed, watch):
+        budgets.append((points, budget.evaluations))
+        watch(Event(0.0, 7, 0.1, None))
+        return Found((), evaluations=7)
+
+    monkeypatch.setattr(evolution, "front", evolve)
+    assert epsilon._sampled(steps_of(segment(), evaluations=most), segment()) == ()
+    front = scalarised.polished(segment(), 8, Budget(evaluations=most), 0, events.append)
+    assert budgets == [(0, spent), (8, most // 2)] and front.evaluations == 7
+    assert [(e.evaluations, e.best) for e in events] == [(7, None)]
+
+
+@pytest.mark.parametrize(
+    ("points", "weights"), [(2, [[0, 1], [1, 0]]), (3, [[0, 2], [2, 0], [1, 1]])]
+)
+def test_weighted_sums_are_of_the_ends_first(points, weights, monkeypatch):
+    taken = []
+    none = SimpleNamespace(value=None, evaluations=1), None
+    monkeypatch.setattr(scalarised, "weighed", lambda problem, w: taken.append(w.tolist()))
+    monkeypatch.setattr(scalarised, "run", lambda *_: none)
+    front = scalarised.annealed(segment(), points, Budget())
+    assert taken == weights and front.evaluations == len(weights) and not front.points
+
+
+@pytest.mark.parametrize(
+    ("statuses", "status"),
+    [
+        (("complete", "complete"), "complete"),
+        (("complete", "infeasible"), "complete"),
+        (("complete", "proven"), "not proven"),
+        (("limit", "proven"), "limit"),
+    ],
+)
+def test_fronts_of_several_problems_are_one(statuses, status):
+    """Of (1, 5), (3, 3) and (2, 4), (3, 4) the last is beaten."""
+    goals = Objective("a"), Objective("b")
+    first, second = ((1.0, 5.0), (3.0, 3.0)), ((2.0, 4.0), (3.0, 4.0))
+    fronts = [
+        Front("two", s, "epsilon", goals, tuple(FrontPoint(v, True) for v in values), evaluations=4)
+        for s, values in zip(statuses, (first, second), strict=True)
+    ]
+    front = united(fronts, None)
+    assert [p.values for p in front.points] == [(1.0, 5.0), (2.0, 4.0), (3.0, 3.0)]
+    assert front.beaten == ((3.0, 4.0),) and front.status == status and front.evaluations == 8
+    assert {p.proven for p in front.points} == {status == "complete"}

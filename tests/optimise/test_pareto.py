@@ -106,7 +106,7 @@ def test_a_limit_on_an_objective_cuts_the_front_and_an_impossible_one_is_proven(
     assert values(front)[:, 0].max() == pytest.approx(2.0, rel=1e-6)
     nothing = gearopt.pareto(product(), points=5, most={"a": 2.0, "b": 0.4})
     assert nothing.status == "infeasible" and not nothing.points
-    assert nothing.impossible[0].proven
+    assert nothing.impossible[0].proven and nothing.hypervolume is None and nothing.corner == ()
 
 
 def test_three_objectives_by_a_grid_lie_on_the_known_surface():
