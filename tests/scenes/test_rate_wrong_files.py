@@ -176,6 +176,12 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         'stage[1].wheel_hand = "right"',
         "Write pinion_hand, in a [[stage]]; the wheel has the other hand",
     ),
+    "hand of spur gears": (
+        "# helix_angle",
+        'pinion_hand = "left"\n# helix_angle',
+        'stage[1].pinion_hand = "left"',
+        "is the hand of a helix, and these are spur gears. Remove it",
+    ),
     "wheel with fewer teeth": (
         "wheel_teeth = 60",
         "wheel_teeth = 16",

@@ -58,6 +58,12 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         "gears.iso_core",
         "changes nothing: only Eh of quality MQ has strengths by core. Remove it",
     ),
+    "yield strength of a case": (
+        TREATMENT,
+        f'{TREATMENT}\nyield_strength = "800 MPa"',
+        'gears.yield_strength = "800 MPa"',
+        "changes nothing: of surface-hardened steel no strength depends on it. Remove it",
+    ),
     "tolerances": ('"1995"', '"2010"', 'rating.iso6336.tolerances = "2010"', '"1995"'),
     "oil grade without a unit": ('"320 mm^2/s"', "320", "rating.iso6336.oil_grade = 320", "mm^2/s"),
     "material": (

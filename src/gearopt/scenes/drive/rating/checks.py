@@ -1,6 +1,6 @@
 """What the tables of a rating must agree on; what only a rating needs."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from gearopt.formulations.strength import Law
@@ -10,14 +10,13 @@ from gearopt.physics.iso6336.materials import SURFACE_HARDENED, strength
 from gearopt.scenes.drive.drive_tables import Gears, Objective, StageTable
 from gearopt.scenes.drive.rating.iso_material import SOFT_ROOTS, steel
 from gearopt.scenes.drive.rating.iso_tables import ISO_KEYS, IsoTable
-from gearopt.scenes.drive.rating.materials import Named, choices
+from gearopt.scenes.drive.rating.materials import STEEL, Named, choices
 from gearopt.scenes.drive.rating.tables import (
     MATERIAL,
     GearTable,
     GivenTable,
     LoadTable,
     RatingTable,
-    with_shared,
 )
 from gearopt.scenes.reading.fields import Table, refuse
 from gearopt.scenes.reading.toml import dotted
@@ -30,6 +29,7 @@ AGMA = (  # keys of [rating] that only AGMA has
 )
 AGMA_KEYS = ("grade", "surface_hardness", "quality")  # of gears
 CORELESS = "changes nothing: only Eh of quality MQ has strengths by core"
+YIELDLESS = "changes nothing: of surface-hardened steel no strength depends on it"
 CYCLES = ("Y_N", "Z_N", "Y_NT", "Z_NT")  # factors that follow from the levels of a spectrum
 
 
@@ -147,8 +147,10 @@ def check_rated(
 ) -> None:
     """Refuse a rating whose gears lack their strength, or whose loads do not fit together."""
     _check_standard(rating, gears, stages)
+    _check_hands(gears, stages)
     if rating.by_iso6336:
-        _check_core(gears, stages)
+        _check_needed("iso_core", CORELESS, _by_core, gears, stages, materials)
+        _check_needed("yield_strength", YIELDLESS, _by_yield, gears, stages, materials)
     for k, stage in enumerate(stages or (StageTable(),)):
         given = rating.given.factors() | stage.given.factors()
         made = rating.iso6336.given.factors() | stage.given_iso6336.factors()
@@ -249,19 +251,55 @@ def _written(gears: Gears, stages: Sequence[StageTable], names: Sequence[str]) -
         yield from ((*place, name) for name in names if getattr(table, name) is not None)
 
 
-def _check_core(gears: Gears, stages: Sequence[StageTable]) -> None:
-    """Refuse a core of gears whose strength does not depend on it."""
-    counts = []  # whether the core that all gears share is that of one
+def _check_needed(
+    name: str,
+    rule: str,
+    needed: Callable[[int, str, GearTable], bool],
+    gears: Gears,
+    stages: Sequence[StageTable],
+    materials: Sequence[Named],
+) -> None:
+    """Refuse a key of gears at a place where it changes nothing of any gear.
+
+    needed: whether the gear of a stage (from 0), a member, with a material, depends on it.
+    """
+    counts: dict[Place, bool] = {}
     for k, stage in enumerate(stages or (StageTable(),)):
         for member in MEMBERS:
             own = getattr(stage, member)
-            table = with_shared(own, gears)
-            known = table.treatment is not None or table.iso_material is not None
-            counts.append(own.iso_core is None and not (known and not steel(table).by_core))
-            if own.iso_core and known and not steel(table).by_core:
-                raise refuse(CORELESS, at=("stage", k, member, "iso_core"), action="remove")
-    if gears.iso_core and not any(counts):
-        raise refuse(CORELESS, at=("gears", "iso_core"), action="remove")
+            for gear, one in choices(own, gears, materials):
+                if getattr(gear, name) is None:
+                    continue
+                at: Place = ("gears", name)
+                if one is not None and name in STEEL:
+                    at = ("material", materials.index(one), name)
+                elif getattr(own, name) is not None:
+                    at = ("stage", k, member, name)
+                counts[at] = counts.get(at, False) or needed(k, member, gear)
+    for at, counted in counts.items():
+        if not counted:
+            raise refuse(rule, at=at, action="remove")
+
+
+def _by_core(_stage: int, _member: str, gear: GearTable) -> bool:
+    """Return whether the strength of a gear depends on its core, or its steel is missing."""
+    known = gear.treatment is not None or gear.iso_material is not None
+    return not known or steel(gear).by_core
+
+
+def _by_yield(_stage: int, _member: str, gear: GearTable) -> bool:
+    """Return whether Y_deltarelT depends on the yield strength, or the steel is missing."""
+    known = gear.treatment is not None or gear.iso_material is not None
+    return not known or steel(gear).name not in SURFACE_HARDENED
+
+
+def _check_hands(gears: Gears, stages: Sequence[StageTable]) -> None:
+    """Refuse the hand of spur gears."""
+    for k, stage in enumerate(stages):
+        angle = gears.helix_angle if stage.helix_angle is None else stage.helix_angle
+        if stage.pinion_hand is not None and angle.number == 0:
+            rule = "is the hand of a helix, and these are spur gears"
+            raise refuse(rule, at=("stage", k, "pinion_hand"), action="remove")
 
 
 def _check_material(gear: GearTable, place: Place, given: dict[str, Any]) -> None:
