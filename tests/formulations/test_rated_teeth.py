@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -20,6 +21,9 @@ from gearopt.formulations.teeth.search import search, within
 from gearopt.formulations.teeth.tables import stage_tables
 from gearopt.optimise.result import Budget
 from gearopt.physics.agma.rating_factors import Steel
+
+searching = import_module("gearopt.formulations.teeth.search")
+stage_tables_of = import_module("gearopt.formulations.teeth.tables")
 
 SLOW = pytest.mark.slow
 STEPPED = FaceWidth(F(3, 10), F(3, 4), step=F(5))
@@ -182,3 +186,21 @@ def test_what_like_drives_have_in_common_is_computed_once(standards, monkeypatch
     monkeypatch.setattr(standard, "prepared", lambda *a: pytest.fail("computed again"))
     assert np.array_equal(shared.cost(torque, pair), expected) and np.isfinite(expected).any()
     assert shelf == [first]
+
+
+def test_without_time_a_first_train_is_looked_for_among_few_pairs(monkeypatch):
+    """Two stages of 5 pinions, 400 or so pairs each: of 20 of them one is found, and it carries."""
+    train, tables = rated_drive(F(9), [TIED] * 2, pinion_teeth=(20, 24)), []
+    monkeypatch.setattr(stage_tables_of, "THINNED", 20)
+    bounded = searching.bound
+    monkeypatch.setattr(
+        searching, "bound", lambda t, few, *a: tables.append(few) or bounded(t, few, *a)
+    )
+    progress = search(train, 1, Budget(seconds=0.0))
+    assert [len(t.ratio) > 20 for t in tables[0]] == [True, True]
+    assert [len(t.ratio) for t in tables[1]] == [20, 20] and len(tables) == 2
+    value, chosen = progress.found[0]
+    point = teeth.point(train, *teeth.best_choices(train, chosen))
+    assert progress.clock.stopped and within(train, chosen)
+    made = teeth.problem(train).batch(point[None])
+    assert made.G.max() <= 1.0 + 1e-9 and made.F[0, 0] == pytest.approx(value, rel=1e-12)

@@ -367,6 +367,17 @@ def small():
     return scene(text)
 
 
+def test_the_drive_is_read_once_for_all_its_boxes(small, monkeypatch):
+    """A search over gears and box makes hundreds of boxes of one drive."""
+    from gearopt.optimise.clock import Clock
+    from gearopt.scenes.drive.box.other_gears import _fits
+
+    read, train = [], type(small).train
+    monkeypatch.setattr(type(small), "train", lambda one: read.append(1) or train(one))
+    assert _fits(small, Clock(gearopt.Budget(seconds=0.0))) is None
+    assert len(read) <= 2
+
+
 @pytest.mark.slow
 def test_together_stopped_at_once_gives_the_gears_chosen_first(small):
     from gearopt.scenes.drive import bare, solve

@@ -25,7 +25,8 @@ class Progress:
     objective known from elsewhere; lower: that of this search, once it covers all trains (whole).
     beside: a bound on the trains of drives that are searched in turn with the present one.
     clock: counts tooth pairs sized.
-    enough: the budget's gap is reached. patient: only the watcher ends what is under way.
+    enough: the budget's gap is reached. patience: seconds after the budget's until which the
+    watcher alone ends what is under way, whatever its evaluations.
     """
 
     wanted: int
@@ -38,7 +39,7 @@ class Progress:
     compared: int = 0
     nodes: int = 0
     enough: bool = False
-    patient: bool = False
+    patience: float = -math.inf
 
     @property
     def bound(self) -> float:
@@ -73,8 +74,16 @@ class Progress:
 
     def tick(self) -> None:
         """Raise Spent where budget and watcher stop the search."""
-        if not self.continues() and not (self.patient and not self.clock.refused):
+        if self.continues():
+            return
+        if self.clock.refused or self.late >= self.patience:
             raise Spent
+
+    @property
+    def late(self) -> float:
+        """Seconds since those of the budget were over; negative before."""
+        seconds = self.clock.budget.seconds
+        return -math.inf if seconds is None else self.clock.seconds - seconds
 
     def continues(self) -> bool:
         """Return whether budget and watcher let the search continue."""

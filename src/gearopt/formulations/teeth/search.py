@@ -29,7 +29,7 @@ from gearopt.formulations.teeth.progress import TIE, Progress, Spent, Teeth
 from gearopt.formulations.teeth.rated import RatedTable
 from gearopt.formulations.teeth.reach import first_cut, largest_ratio, reach
 from gearopt.formulations.teeth.stage import EDGE, Table
-from gearopt.formulations.teeth.tables import stage_tables
+from gearopt.formulations.teeth.tables import stage_tables, thinned
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.terms import Array
@@ -78,9 +78,9 @@ def search(
 
     A first look at stage ratios near the even split gives a train; what it does not exclude by
     the ratio of a single stage is then searched to the end. Of rated drives that look is a dive,
-    in each material alone where there is a choice. floor: a bound known from elsewhere.
-    whole: False where its own bound is of no use, as that of a part of the caller's drive. shelf:
-    tables of like drives, which spare this one work; its own are added.
+    in each material alone where there is a choice; where time ends first, among far fewer. floor: a
+    bound known from elsewhere. whole: False where its own bound is of no use, as that of a part of
+    the caller's drive. shelf: tables of like drives, which spare this one work; its own are added.
     """
     shelf = [] if shelf is None else shelf
     progress = Progress(wanted, Clock(budget, watch), floor)
@@ -101,19 +101,30 @@ def search(
 
 
 def _glance(train: Train, cut: Fraction, progress: Progress, shelf: list[RatedTable]) -> None:
-    """Look for a first train among few; however short the budget, this ends."""
-    progress.patient = True
+    """Look for a first train among few, whatever the budget's evaluations.
+
+    Where its seconds end before there is one, among far fewer; however short they are, this ends.
+    """
+    progress.patience = math.inf
     tables = stage_tables(train, cut, progress.tick, shelf)
+    try:
+        progress.patience = 0.0
+        _first_dive(train, tables, tables, progress)
+    except Spent:
+        if progress.found or progress.clock.refused:
+            raise
+        progress.patience = math.inf
+        _first_dive(train, tables, thinned(tables), progress)
+    progress.patience = -math.inf
+    progress.tick()
+
+
+def _first_dive(train: Train, tables: list[Table], few: list[Table], progress: Progress) -> None:
+    """Look for a train of all pairs of the last stage and few of the others."""
     if all(len(t.ratio) for t in tables):
         delta = COARSE * _width(tables)
-        _dive(
-            train,
-            tables,
-            bound(train, tables, delta, progress.tick, None, progress.threshold),
-            progress,
-        )
-    progress.patient = False
-    progress.tick()
+        rest = bound(train, few, delta, progress.tick, None, progress.threshold)
+        _dive(train, [*few[:-1], tables[-1]], rest, progress)
 
 
 def _look(

@@ -3,11 +3,16 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
+
+import numpy as np
 
 from gearopt.formulations.gear_train import Train
 from gearopt.formulations.teeth.columns import columns
 from gearopt.formulations.teeth.rated import RatedTable
 from gearopt.formulations.teeth.stage import Table
+
+THINNED = 400  # tooth pairs of a stage, of all ratios, that are left to a hurried search
 
 
 def table(
@@ -49,3 +54,24 @@ def stage_tables(
         if isinstance(made, RatedTable) and not any(one.covers(made) for one in shelf):
             shelf.append(made)
     return tables
+
+
+def thinned(tables: list[Table]) -> list[Table]:
+    """Return tables with THINNED of their tooth pairs; equal ones stay one."""
+    known: dict[int, Table] = {}
+    for one in tables:
+        if id(one) not in known:
+            known[id(one)] = one if len(one.ratio) <= THINNED else _few(one)
+    return [known[id(one)] for one in tables]
+
+
+def _few(one: Table) -> Table:
+    """Return a table with THINNED of its tooth pairs, evenly spread in their order."""
+    place = np.linspace(0, len(one.ratio) - 1, THINNED).astype(np.int64)
+    names = ("z1", "z2", "ratio", "log_ratio", "first", "last", "need", "slope")
+    columns: dict[str, Any] = {name: getattr(one, name)[place] for name in names}
+    if one.steps is not None:
+        columns["steps"] = (one.steps[0][:, place], one.steps[1][:, place])
+    if one.load is not None:
+        columns["load"] = one.load[place]
+    return replace(one, **columns)

@@ -374,10 +374,10 @@ class Scene(Table):
         one, two = self.process_one, self.process_two
         return methods(self.train(), one.inputs() if one else None, two.inputs() if two else None)
 
-    def gearbox(self, pairs: tuple[GearPair, ...]) -> Gearbox:
-        """Return the drive of these gear pairs, to be laid out; it needs the table [layout]."""
+    def gearbox(self, pairs: tuple[GearPair, ...], train: Train | None = None) -> Gearbox:
+        """Return the drive of gear pairs with its [layout], to be laid out; train: `train()`."""
         assert self.layout is not None
-        return gearbox(self.layout, self.place, self.keep_out, self.train(), pairs)
+        return gearbox(self.layout, self.place, self.keep_out, train or self.train(), pairs)
 
     def _stage(self, own: StageTable) -> Stage:
         limits = self.limits

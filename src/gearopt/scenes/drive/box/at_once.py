@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from gearopt.errors import SolveError
@@ -46,10 +47,12 @@ def at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
         return replace(result, name="drive", seconds=result.seconds + spent, **_why(result, apart))
     if isinstance(model.problem, Problem) and real:
         return _real(scene, result, outcome, sized, model.problem, _start(scene, apart)[0], events)
-    box, angles, order = together.laid_out(scene.train(), scene.gearbox, outcome.x)
-    own, pairs = teeth.problem(scene.train()), together.pairs(scene.train(), outcome.x)
+    train = scene.train()
+    make = partial(scene.gearbox, train=train)
+    box, angles, order = together.laid_out(train, make, outcome.x)
+    own, pairs = teeth.problem(train), together.pairs(train, outcome.x)
     point = outcome.x[: sum(v.size for v in own.variables)]
-    chosen = together.options(scene.train(), outcome.x)
+    chosen = together.options(train, outcome.x)
     gears = replace(sized, design=untyped(scene.design(pairs, chosen)), limits=limits(own, point))
     found = with_layout(scene, result, events, replace(gears, report={}), box, angles, order)
     if scene.by_ratings:
@@ -74,7 +77,8 @@ def posed(scene: Scene, method: str, apart: Result) -> Model:
     """Return the problem that a method gets; apart: the layout of gears sized first, a start."""
     assert scene.layout is not None
     train = scene.train()
-    unit = scene.gearbox(pairs_of(scene, apart.parts[0])).unit
+    make = partial(scene.gearbox, train=train)
+    unit = make(pairs_of(scene, apart.parts[0])).unit
     if method == "exact":
         import numpy as np
 
@@ -82,8 +86,8 @@ def posed(scene: Scene, method: str, apart: Result) -> Model:
         if apart.value is not None:
             slabs, pairs, angles = _start(scene, apart)
             made = pairs, _options(train, apart)
-            known = (made, arrange(scene.gearbox(pairs), slabs), np.array(angles))
-        problem = together.problem(train, scene.gearbox, known)
+            known = (made, arrange(make(pairs), slabs), np.array(angles))
+        problem = together.problem(train, make, known)
         return Model(problem, "Gears and box at once", unit)
     if method not in REAL:
         raise SolveError(f"together = true is for exact and {' and '.join(REAL)}, not for {method}")
@@ -92,7 +96,7 @@ def posed(scene: Scene, method: str, apart: Result) -> Model:
     if apart.value is None:
         raise SolveError(f"{method} needs a start: {apart.message}")
     slabs, pairs, angles = _start(scene, apart)
-    smooth = continuous(train, scene.gearbox, slabs, (pairs, angles))
+    smooth = continuous(train, make, slabs, (pairs, angles))
     return Model(smooth, "Gears and box at once, real-valued teeth", unit)
 
 
@@ -118,8 +122,10 @@ def _options(train: Train, found: Result) -> tuple[int, ...]:
 def _from(scene: Scene, start: Start, ask: Ask) -> tuple[Result, ...]:
     """Return the real-valued part, started from an exact answer; none unless Ipopt improves it."""
     slabs, pairs, angles = start
-    problem = continuous(scene.train(), scene.gearbox, slabs, (pairs, angles))
-    unit = scene.gearbox(pairs).unit
+    train = scene.train()
+    make = partial(scene.gearbox, train=train)
+    problem = continuous(train, make, slabs, (pairs, angles))
+    unit = make(pairs).unit
     watch = in_part(ask.watch, unit, REAL_VALUED)
     result, _ = run(problem, "ipopt", ask.budget, watch=watch)
     if result.value is None or result.status == "limit":  # a start is no answer

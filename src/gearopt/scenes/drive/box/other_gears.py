@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 from gearopt.errors import SolveError
 from gearopt.formulations import together
@@ -77,7 +78,8 @@ def _fits(scene: Scene, clock: Clock) -> bool | None:
         return clock.tell() and event.best is None  # one layout is enough
 
     try:
-        problem = together.problem(scene.train(), scene.gearbox)
+        train = scene.train()
+        problem = together.problem(train, partial(scene.gearbox, train=train))
         budget = replace(clock.left, seconds=min(seconds, SECONDS))
         found, _ = run(problem, None, budget, watch=first)
     except SolveError:  # too many pairs to examine
