@@ -187,7 +187,7 @@ BOTH = {'iso6336"': 'both"\nquality = 11'}
 
 AGMA = {  # of ISO, the keys of AGMA in the place of those of ISO 6336
     'iso6336"\n': 'agma"\nquality = 11\n',
-    'iso_quality = "MQ"\nflank_rz = "6 um"\n': 'roughness = "1 um"\n',
+    'iso_quality = "MQ"\nflank_rz = "6 um"\n': "",
     '[rating.iso6336]\naccuracy_grade = 5\noil_grade = "320 mm^2/s"\ntip_relief = "70 um"\n': "",
 }
 

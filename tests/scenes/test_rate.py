@@ -51,7 +51,8 @@ HORSEPOWER = 550 * 0.3048 * 0.45359237 * 9.80665 * 1e-3  # kW
 def test_inches_are_millimetres():
     """Every number of the design, of a pair in in, hp, psi and degF and the same in mm, kW, MPa."""
     inch = pair(
-        {"temperature": "284 degF", "given": {"s_at": "50 ksi", "C_p": "2300 sqrt(psi)"}},
+        {"temperature": "284 degF", "oil_viscosity": "40 mPa s"}
+        | {"given": {"s_at": "50 ksi", "C_p": "2300 sqrt(psi)"}},
         {"power": "20 hp"},
         {"elastic_modulus": "30000 ksi", "roughness": "32 uin"},
         {"profile_shift": 0.2, "thickness_allowance": "-0.002 in", "rim_thickness": "0.25 in"},
@@ -63,7 +64,7 @@ def test_inches_are_millimetres():
     inch["stage"][0]["diametral_pitch"] = 10
     given = {"s_at": f"{50e3 * PSI!r} MPa", "C_p": f"{2300 * math.sqrt(PSI)!r} sqrt(MPa)"}
     metric = pair(
-        {"temperature": "140 degC", "given": given},
+        {"temperature": "140 degC", "oil_viscosity": "40 mPa s", "given": given},
         {"power": f"{20 * HORSEPOWER!r} kW"},
         {"elastic_modulus": f"{30e6 * PSI!r} MPa", "roughness": f"{32e-3 * INCH!r} um"},
         {

@@ -182,6 +182,12 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         'stage[1].pinion_hand = "left"',
         "is the hand of a helix, and these are spur gears. Remove it",
     ),
+    "roughness without oil": (
+        "grade = 1",
+        'roughness = "1 um"',
+        'gears.roughness = "1 um"',
+        "changes nothing: without oil_viscosity only C_H takes it",
+    ),
     "wheel with fewer teeth": (
         "wheel_teeth = 60",
         "wheel_teeth = 16",

@@ -64,6 +64,12 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         'gears.yield_strength = "800 MPa"',
         "changes nothing: of surface-hardened steel no strength depends on it. Remove it",
     ),
+    "two roughnesses": (
+        TREATMENT,
+        f'{TREATMENT}\nroughness = "1 um"',
+        'gears.roughness = "1 um"',
+        "changes nothing beside flank_rz, which the rating by ISO 6336 takes. Remove it",
+    ),
     "tolerances": ('"1995"', '"2010"', 'rating.iso6336.tolerances = "2010"', '"1995"'),
     "oil grade without a unit": ('"320 mm^2/s"', "320", "rating.iso6336.oil_grade = 320", "mm^2/s"),
     "material": (

@@ -5,6 +5,7 @@ from typing import Any
 
 from gearopt.formulations.strength import Law
 from gearopt.physics.agma.allowables import CONTACT, bending_allowable, contact_allowable
+from gearopt.physics.agma.rating_factors import SURFACE_HARD_KINDS, Steel
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.materials import SURFACE_HARDENED, strength
 from gearopt.scenes.drive.drive_tables import Gears, Objective, StageTable
@@ -30,6 +31,11 @@ AGMA = (  # keys of [rating] that only AGMA has
 AGMA_KEYS = ("grade", "surface_hardness", "quality")  # of gears
 CORELESS = "changes nothing: only Eh of quality MQ has strengths by core"
 YIELDLESS = "changes nothing: of surface-hardened steel no strength depends on it"
+SMOOTHLESS = "changes nothing beside flank_rz, which the rating by ISO 6336 takes"
+DRY = (
+    "changes nothing: without oil_viscosity only C_H takes it, that of the pinion, where that is "
+    "surface-hardened and the wheel through-hardened"
+)
 CYCLES = ("Y_N", "Z_N", "Y_NT", "Z_NT")  # factors that follow from the levels of a spectrum
 
 
@@ -170,6 +176,7 @@ def check_rated(
                     _check_steel(gear, at, given)
                 if rating.by_iso6336:
                     _check_material(gear, at, made)
+    _check_roughness(rating, gears, stages, materials)
     total = sum(level.share for level in load)
     if load and total != 1:
         rest = load[-1].share + 1 - total
@@ -291,6 +298,32 @@ def _by_yield(_stage: int, _member: str, gear: GearTable) -> bool:
     """Return whether Y_deltarelT depends on the yield strength, or the steel is missing."""
     known = gear.treatment is not None or gear.iso_material is not None
     return not known or steel(gear).name not in SURFACE_HARDENED
+
+
+def _check_roughness(
+    rating: RatingTable,
+    gears: Gears,
+    stages: Sequence[StageTable],
+    materials: Sequence[Named],
+) -> None:
+    """Refuse the roughness R_a of gears for which neither friction nor a factor takes it."""
+    if rating.standard == "iso6336":
+
+        def rough(_stage: int, _member: str, gear: GearTable) -> bool:
+            return gear.flank_rz is None
+
+        _check_needed("roughness", SMOOTHLESS, rough, gears, stages, materials)
+    if rating.standard != "agma" or rating.oil_viscosity is not None:
+        return
+
+    def of_ratio(stage: int, member: str, gear: GearTable) -> bool:
+        """Whether C_H is that of a surface-hardened pinion and a through-hardened wheel."""
+        wheel = (stages or (StageTable(),))[stage].wheel
+        soft = (g.treatment in NEED_HARDNESS for g, _ in choices(wheel, gears, materials))
+        kind = Steel(gear.treatment or "").kind
+        return member == "pinion" and kind in SURFACE_HARD_KINDS and any(soft)
+
+    _check_needed("roughness", DRY, of_ratio, gears, stages, materials)
 
 
 def _check_hands(gears: Gears, stages: Sequence[StageTable]) -> None:

@@ -146,7 +146,9 @@ class GearKeys(BlankKeys, IsoGearKeys):
         None, description="Poisson's ratio; by default 0.3"
     )
     roughness: Annotated[Quantity | None, quantity("length", "0.8 um", "100 um")] = Field(
-        None, description="Arithmetic roughness R_a of the flanks; by default 0.8 um"
+        None,
+        description="Arithmetic roughness R_a of the flanks, for friction by oil_viscosity, C_H, "
+        "and R_z where flank_rz is not given; by default 0.8 um",
     )
     reversed_load: Annotated[bool | None, truth()] = Field(
         None, description="The load reverses, as on idlers: 0.7 of the bending strength"
