@@ -46,7 +46,9 @@ class BlankKeys(Table):
         "is solid, as on a pinion shaft. By default 0",
     )
     hub_over_bore: Annotated[Fraction | None, number(1.6, 1, 10)] = Field(
-        None, description=f"Diameter of the hub over the bore; by default {HUB}"
+        None,
+        description=f"Diameter of the hub over the bore; by default {HUB}. Of a gear without a "
+        "rim it only decides whether the bore has room inside the root circle",
     )
 
     @model_validator(mode="after")
