@@ -85,6 +85,7 @@ def test_no_material_in_common_is_one_message():
     "change, key, told",
     [
         ({"stage": [{}]}, "gears.same_materials", "there is one stage"),
+        ({"gears": {"materials": ["hard"]}}, "gears.same_materials", "no gear has a choice"),
         ({"rating": None, "material": None}, "gears.same_materials", "needs a table [rating]"),
         ({"gears": {"materials": None, "treatment": "carburised"}}, "materials", "is missing"),
     ],

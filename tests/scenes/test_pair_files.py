@@ -101,6 +101,13 @@ def test_what_can_hardly_be_meant_is_said():
         gearopt.rate(GIVEN)
 
 
+def test_without_a_rim_a_hub_decides_whether_the_bore_has_room():
+    wide = {"gears.bore": "45 mm", "gears.hub_over_bore": 1.4, "stage.pinion": {}}
+    gearopt.load(with_(GIVEN, wide))
+    with pytest.raises(SceneError, match="leaves its hub, 72 mm, no room"):
+        gearopt.load(with_(GIVEN, wide | {"gears.hub_over_bore": 1.6}))
+
+
 def test_a_second_pair_is_a_drive():
     two = GIVEN | {"stage": [*GIVEN["stage"], {}]}
     with pytest.raises(SceneError, match=r'stage\[2\].*is a second pair: kind = "drive" has'):

@@ -99,8 +99,10 @@ def check_same(gears: Any, stages: Sequence[Any]) -> None:
     at = ("gears", "same_materials")
     if len(stages) == 1:
         raise refuse("changes nothing: there is one stage", at=at, action="remove")
+    free = False
     for member in MEMBERS:
         known = [names(getattr(stage, member), gears) for stage in stages]
+        free = free or any(len(found) > 1 for found in known or [gears.materials or ()])
         for k, found in enumerate(known or [gears.materials or ()]):
             if not found:
                 place = ("stage", k, member, "materials") if stages else ("gears", "materials")
@@ -109,6 +111,8 @@ def check_same(gears: Any, stages: Sequence[Any]) -> None:
             words = "; ".join(f"stage {k}: {', '.join(own)}" for k, own in enumerate(known, 1))
             rule = f"leaves no material that the {member}s of all stages may have ({words})"
             raise refuse(rule, at=at, action="remove")
+    if not free:
+        raise refuse("changes nothing: no gear has a choice of materials", at=at, action="remove")
 
 
 def unused(stages: Sequence[Any], gears: GearKeys, materials: Sequence[Named]) -> list[str]:
