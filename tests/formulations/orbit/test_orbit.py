@@ -56,6 +56,14 @@ def test_a_design_with_its_motions_is_a_feasible_point():
         assert reduced(task).batch(BEST.clip(*task.box())[None]).F[0, 0] == pytest.approx(value)
 
 
+def test_without_time_a_design_is_as_it_is(monkeypatch):
+    """No step of Ipopt, and no multipliers, once the seconds are over."""
+    for name in ("gearopt.optimise.solvers.ipopt.run", "gearopt.optimise.certificate._local"):
+        monkeypatch.setattr(name, lambda *a, **k: pytest.fail("it began"))
+    made = climb(TASK, problem(TASK), REFERENCE.clip(*TASK.box()), Clock(Budget(seconds=0.0)))
+    assert made.judged == pytest.approx(16.930952076, rel=1e-9)
+
+
 def test_one_local_optimum_and_its_certificate():
     task = replace(TASK, speeds_rpm=(3000.0, 4500.0), harmonics=6)
     posed = problem(task)

@@ -6,6 +6,7 @@ there counts.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -99,11 +100,19 @@ def measure(task: Task, point: Array, speeds_rpm: Array, clock: Clock) -> Array:
 
 def _ipopt(problem: Problem, start: Array, clock: Clock) -> tuple[float, Outcome] | None:
     found = ipopt.run(problem, clock.left, 0, clock.inner(False), start=start)
-    verdict = certify(problem, found, 0.0)
-    return None if verdict.objective is None else (verdict.objective, found)
+    value = _value(problem, found)
+    return None if value is None else (value, found)
+
+
+def _value(problem: Problem, found: Outcome) -> float | None:
+    """Return the objective [um] of a point within the limits, without multipliers; else None."""
+    plain = replace(found, bound=None, proof=None, stationary=False)
+    return certify(problem, plain, 0.0, exact=True).objective
 
 
 def _contact(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbed | None:
+    if clock.over:
+        return _with_its_motions(task, problem, point)
     made = _ipopt(problem, orbit_text.start(task, problem, point), clock)
     return made and Climbed(problem, made[1], made[0], made[0])
 
@@ -184,8 +193,13 @@ def _as_it_is(task: Task, problem: Problem, point: Array) -> Climbed | None:
     assert task.most_growth is not None
     if growth(task, point) > task.most_growth + WITHIN:
         return None
+    return _with_its_motions(task, problem, point)
+
+
+def _with_its_motions(task: Task, problem: Problem, point: Array) -> Climbed | None:
+    """Return a design as it is, where it is within the limits of the problem."""
     found = Outcome(orbit_text.start(task, problem, point), evaluations=1)
-    value = certify(problem, found, 0.0).objective
+    value = _value(problem, found)
     return None if value is None else Climbed(problem, found, value, value)
 
 
