@@ -291,6 +291,15 @@ def test_the_front_of_a_catalogue_is_complete(cost, error, unbeaten_ones):
     assert "A better pick may lie between them." in repr(few)
 
 
+@pytest.mark.slow
+def test_small_differences_of_a_large_objective_lose_no_design():
+    """An excess of 1e-7 of a million is a tenth of all differences: ends are held closer."""
+    cost, error = (1e6, 1e6 + 0.05, 1e6 + 1.0), (10, 1, 0)
+    front = gearopt.pareto(catalogue(cost, error))
+    assert front.status == "proven" and 0.01 < front.error < 0.03
+    assert np.allclose([p.values for p in front.points], list(zip(cost, error, strict=True)))
+
+
 def zdt3(x, p):
     """Zitzler, Deb and Thiele (2000), problem 3, of 3 variables: a front of five pieces."""
     g = 1.0 + 9.0 * (x.b + x.c) / 2.0

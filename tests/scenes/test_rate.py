@@ -133,7 +133,10 @@ def test_a_centre_distance_far_off_is_told_first():
     assert "contact ratio of stage 1 is small, 1.107" in shown
 
 
-@pytest.mark.parametrize(("own", "fits"), [({"bore": "55 mm"}, False), ({"bore": "40 mm"}, True)])
+@pytest.mark.parametrize(
+    ("own", "fits"),
+    [({"bore": "55 mm"}, False), ({"bore": "52.5 mm"}, False), ({"bore": "40 mm"}, True)],
+)
 def test_a_bore_wider_than_its_root_circle_does_not_fit(own, fits):
     """Of 52.5 mm; a bore of all gears leaves a small one solid, as on a pinion shaft."""
     found = gearopt.rate(pair(pinion=own))

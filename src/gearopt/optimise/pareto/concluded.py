@@ -28,7 +28,7 @@ def concluded(run: "Run", complete: bool = False) -> Found:
     all_proven = bool(points) and all(p.proven for p in points)
     line = run.lines[0] if len(run.names) == 2 and run.lines else None
     if line is not None and all_proven:
-        complete = run.sure and not line.open and all(t.proven for t in line.tried)
+        complete = run.sure and not run.blur and not line.open and all(t.proven for t in line.tried)
     error = _error(run, points, line) if all_proven and line and not complete else None
     none = None if points else run.none
     return Found(
@@ -85,4 +85,4 @@ def _error(run: "Run", points: tuple[Point, ...], line: "Line") -> float | None:
     convex = run.limiting is None and not run.discrete
     if convex and all(p.slopes is not None for p in points):
         return curve_error(points, run.logarithmic)
-    return boxed_error(line.gaps, np.ptp([p.values for p in points], axis=0))
+    return boxed_error(line.gaps, np.ptp([p.values for p in points], axis=0)) + run.blur

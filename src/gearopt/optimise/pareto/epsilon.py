@@ -31,7 +31,7 @@ from gearopt.optimise.pareto.gaps import (
 )
 from gearopt.optimise.pareto.posed import MOST, Built, Limit, kept, posed, scale, valued
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Result, Watch
+from gearopt.optimise.result import FEASIBLE, Budget, Result, Watch
 from gearopt.optimise.solve import run as solve_raw
 from gearopt.optimise.terms import Array
 
@@ -72,7 +72,8 @@ class Run:
     """The problems of a front, the points found so far, and the clock; it has state to fill.
 
     sample: points that evolution found, which steps start from; None: it was not asked, as all
-    steps are proven. sure: the ends are proven.
+    steps are proven. sure: the ends are proven. blur: what feasibility alone leaves open of an
+    objective, in parts of its range, where that is more than CLOSE.
     """
 
     problem: Problem | Conic
@@ -90,6 +91,7 @@ class Run:
     sample: tuple[Point, ...] | None = None
     logarithmic: bool = True
     sure: bool = True
+    blur: float = 0.0
     none: Result | None = None
 
     @property
@@ -153,20 +155,22 @@ def _limitable(limiting: Limiting, names: Sequence[str]) -> None:
 def _ends(run: Run, names: tuple[str, ...], caps: Caps) -> list[Point] | None:
     """Return the points of the least value of objectives under caps; None where there is none."""
     ends: list[Point] = []
+    least: list[float] = []
     for k, name in enumerate(names):
         first = _solved(run, name, dict(caps), ends[-1].x if ends else None)
         if first is None:
             run.points += ends if run.clock.stopped else []
             return None
         run.sure = run.sure and first.proven
-        fixed = run.limiting is None or name in run.limiting.names
-        for other in (*names[:k], *names[k + 1 :]) if fixed else ():
-            at = first.values[k]
-            held = {name: float(at + SLACK * abs(at))}
-            again = _solved(run, other, _least(caps, held), first.x)
-            run.sure = run.sure and again is not None and again.proven
-            first = again if again is not None else first
-        ends.append(first)
+        least.append(float(first.values[k]))
+        ends.append(_end(run, names, k, caps, first, least[k] + SLACK * abs(least[k])))
+    near = CLOSE * np.ptp([p.values for p in ends], axis=0)
+    for k, at in enumerate(least):  # small differences of large values are told apart
+        if SLACK * abs(at) > near[k]:
+            blur = 2.0 * FEASIBLE * abs(at)
+            run.blur = max(run.blur, blur * CLOSE / near[k] if blur > near[k] > 0.0 else 0.0)
+            most = at + max(float(near[k]), FEASIBLE * abs(at))
+            ends[k] = _end(run, names, k, caps, ends[k], most)
     if len(names) == len(run.names):
         values = np.array([p.values for p in ends])
         run.widths = dict(zip(run.names, np.ptp(values, axis=0).tolist(), strict=True))
@@ -176,6 +180,17 @@ def _ends(run: Run, names: tuple[str, ...], caps: Caps) -> list[Point] | None:
     for p in framed if len(run.names) == 2 else ends:
         _keep(run, p)
     return framed if len(names) == 2 else ends
+
+
+def _end(run: Run, names: tuple[str, ...], k: int, caps: Caps, first: Point, most: float) -> Point:
+    """Return a point of the least others where objective k is at most a value; from a point."""
+    if run.limiting is not None and names[k] not in run.limiting.names:
+        return first
+    for other in (*names[:k], *names[k + 1 :]):
+        again = _solved(run, other, _least(caps, {names[k]: most}), first.x)
+        run.sure = run.sure and again is not None and again.proven
+        first = again if again is not None else first
+    return first
 
 
 def _stairs(run: Run, points: int) -> bool:

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from gearopt.physics.blanks import HUB, Blank
 from gearopt.physics.gears import MEMBERS, GearPair
-from gearopt.physics.geometry.flaws import Flaw
+from gearopt.physics.geometry.flaws import ROUNDING, Flaw
 from gearopt.scenes.reading.fields import Table, number, quantity, refuse
 from gearopt.units import Quantity
 
@@ -137,8 +137,9 @@ def body_flaws(
                     f"The {name} is solid, without its bore: a hub of {made.hub:.4g} mm does not "
                     f"lie inside the root circle of {root:.4g} mm."
                 )
-                wide = (made.bore - root) / gear.normal_module if bored and bored[k][i] else 0.0
-                yield Flaw("no bore", text, misfit=max(0.0, wide))
+                wide = (made.bore - root) / gear.normal_module if bored and bored[k][i] else -1.0
+                equal = 2.0 * ROUNDING  # a bore as wide as the root circle does not fit either
+                yield Flaw("no bore", text, misfit=max(0.0, wide + equal))
             elif made.has_rim and not body.rim_thickness:
                 inside = f"{float(made.inside(gear)):.4g} mm inside its rim"
                 hub = f" for a hub of {made.hub:.4g} mm" if made.bore else ""
