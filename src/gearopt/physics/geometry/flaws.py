@@ -226,7 +226,8 @@ def tip_intrusion(pair: GearPair, member: int) -> float:
     corner = np.linspace(-1.0, 1.0, POINTS) * math.acos(min(1.0, max(-1.0, reach)))
     across, along = top * np.sin(corner), distance - top * np.cos(corner)
     radius, turned = np.hypot(across, along), corner - float(half_angle(mate, top))
-    free = float(circumferential_backlash(pair)) / float(pair.working_diameters[member])
+    play = max(0.0, float(circumferential_backlash(pair)))  # teeth that do not fit stay centred
+    free = play / float(pair.working_diameters[member])
     angle = np.arctan2(across, along) - turned * float(mate.teeth / own.teeth) + free
     x, y = profile(own, POINTS, 2)
     fillet = np.hypot(x, y)[:-1]
