@@ -219,7 +219,7 @@ def test_wrong_tables_are_told():
         ("solve", {"top": 0}, "top is a whole number of at least 1"),
         ("solve", {"method": 3}, 'such as method="ipopt"'),
         ("solve", {"watch": 3}, "watch is a function"),
-        ("solve", {"prices": "yes"}, "prices is True or False"),
+        ("solve", {"prices": "yes"}, "prices is True, False or a share"),
         ("solve", {"changes": "exact"}, "is not a dict of changes.*method='exact'"),
         ("compare", {"seeds": 0}, "seeds is a whole number of at least 1"),
         ("solve", {"what": 3}, "int: write the path of a problem file"),
