@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from gearopt.formulations.gear_train import FaceWidth, Stage, Train
 from gearopt.formulations.layout.gearbox import Clearances, Gearbox, KeepOut, Shaft
 from gearopt.formulations.layout.slabs import arrangements, clashes, orders
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.together import search
+from gearopt.formulations.together import continuous, search, tables
 from gearopt.formulations.together.tables import numbers, rest
 from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.clock import Clock
@@ -119,6 +120,12 @@ def some_frame(rng, train):
     return make
 
 
+MEASURES = {
+    "box_volume": lambda w, h, length: w * h * length,
+    "plan_area": lambda w, h, length: w * length,
+    "face_area": lambda w, h, length: w * h,
+    "height": lambda w, h, length: h,
+}
 TOGETHER = [(seed, 2, 1e-4) for seed in range(20)] + [(seed, 3, 1e-3) for seed in (0, 2, 3)]
 
 
@@ -277,6 +284,11 @@ def test_a_train_whose_layouts_are_not_exhausted_leaves_the_search_unproven(monk
         and math.isfinite(work.value)
         and not work.clock.stopped
     )
+    best, box = work.value, work.make(pairs)
+    (order,) = search.orders_of(box)  # of its layouts `best` is the least
+    for share, below in ((0.9, False), (1.2, False), (1.3, False), (1.5, True)):
+        work.clock.best = share * best
+        assert search._below(work, box, order, 0.3) == below
     monkeypatch.setattr("gearopt.formulations.layout.exact.DEEP", 3)
     fresh = search.Search(train, work.make, Clock(), 0)
     assert not search.lay(fresh, (pairs, (0, 0)), 0.003) and not fresh.clock.stopped
@@ -293,10 +305,14 @@ def test_tables_of_the_rest_hold_ratios_at_the_edges_of_their_cells():
     first, second = (math.log(z2 / z1) for z1, z2 in teeth[:2])
     delta = (second + 1e-9) / 7635
     assert 1e-9 < first - 6707 * delta < 2e-9
-    tables = rest(drive._replace(delta=delta), lambda: True)
+    held = rest(drive._replace(delta=delta), lambda: True)
     cell = int((first + second - 1e-9) / delta)  # as `bound` of the nodes asks
     assert cell == 6707 + 7635 - 1
-    assert np.isfinite(tables.least[2, :2, cell]).all()
+    assert np.isfinite(held.least[2, :2, cell]).all()
+    assert not held.edge[0].any()
+    for edge, z2 in zip(held.edge[1:], (42, 45), strict=True):  # tip radii of modules 2 to 6
+        assert edge[[0, -1]] == pytest.approx([z2 + 2.0, 3.0 * z2 + 6.0])
+        assert edge[0] < z2 + 2.0
 
 
 def test_other_pairs_are_refused():
@@ -308,15 +324,92 @@ def test_other_pairs_are_refused():
 
 def test_the_text_measures_a_layout_as_layout_does():
     train = elevator()
-    make = frame(train, (10.0, 17.5, 30.0))
+    tank = KeepOut("tank", (50.0, 80.0), (0.0, 10.0))
+    make = frame(train, (10.0, 17.5, 30.0), keep_outs=(tank,))
     problem = together.problem(train, make)
     point = np.array([2.0, 3.0, 21, 24, 128, 85, -0.7, -1.5])
+    other = np.array([*point[:6], 0.3, 0.6])
     box = make(together.pairs(train, point))
-    laid = layout.problem(box).batch(point[None, -2:])
-    found = problem.batch(np.stack([point, point]))
-    assert found.F[:, 0] == pytest.approx(laid.F[0, 0], rel=1e-14)
+    laid = layout.problem(box).batch(np.stack([point[-2:], other[-2:]]))
+    found = problem.batch(np.stack([point, other]))
+    assert found.F[:, 0] == pytest.approx(laid.F[:, 0], rel=1e-14)
     names = [r.name for r in problem.rows.inequalities]
     assert {"k_factor[1]", "ratio_high", "shafts_apart[1,3]", "shafts_apart[2,3]"} <= set(names)
+    (order,) = search.orders_of(box)
+    links = np.array([p.centre_distance for p in box.pairs])
+    for row, angles in zip(found.G, (point[-2:], other[-2:]), strict=True):
+        y, z = (np.append(0.0, np.cumsum(links * f(angles))) for f in (np.cos, np.sin))
+        past = np.maximum(np.maximum(50.0 - y, y - 80.0), 0.0)
+        over = np.maximum(np.maximum(-z, z - 10.0), 0.0)
+        need, there = order.keep_apart[0] ** 2, past**2 + over**2
+        kept = [row[names.index(f"clear_of_keep_out[1,{k}]")] for k in (1, 2, 3)]
+        wanted = 1.0 + (need - there) / np.maximum(np.maximum(need, there), 1.0)
+        assert kept == pytest.approx(wanted, rel=1e-12)
+
+
+def test_a_point_with_an_arrangement_is_read():
+    train = three()
+    make = frame(train, (8.0, 15.0, 22.5, 35.0))
+    point = np.array([1.5, 3, 4, 21, 21, 24, 162, 89, 80, -0.7, -1.5, 0.4, 3])
+    box, angles, order = together.laid_out(train, make, point)
+    assert angles == (-0.7, -1.5, 0.4) and order.slabs == orders(box)[3] == ((0, 2), (1,))
+    assert [p.pinion_teeth for p in box.pairs] == [21, 21, 24]
+
+
+@pytest.mark.parametrize("width", [None, 50.0])
+@pytest.mark.parametrize("objective", MEASURES)
+def test_objectives_are_powers_of_sides_with_a_length(objective, width):
+    """Constant and factor of the length 300, by the powers of width 70 and height 40."""
+    train = elevator()
+    box = frame(train, (10.0, 17.5, 30.0), objective=objective, width=width)(
+        (train.pair(0, 2.0, 21, 128, 25.0), train.pair(1, 3.0, 24, 85, 50.0))
+    )
+    powers, (constant, slope) = tables._objective(box)
+    length, value = constant + slope * 300.0, 70.0 ** powers[0] * 40.0 ** powers[1]
+    assert length * value == pytest.approx(MEASURES[objective](width or 70.0, 40.0, 300.0))
+
+
+def test_each_first_stage_has_a_chain_of_the_shafts_behind_it():
+    train = elevator()
+    rows = tables.chains(*numbers(train, frame(train, (10.0, 17.5, 30.0))))
+    assert [len(c.link) for c in rows] == [2, 1]
+    assert [c.apart.shape for c in rows] == [(1, 3, 3), (1, 2, 2)]
+    assert [len(c.place) for c in rows] == [len(c.reach) for c in rows] == [3, 2]
+
+
+def test_widths_by_cells_of_torque_are_those_of_their_lower_ends(monkeypatch):
+    """Of a law without loads: one cell where there may be few entries."""
+    train = elevator()
+    table = SimpleNamespace(z1=np.ones(3), load=None, modules=(2.0,), width=lambda t, *_: 1e-3 * t)
+    _, widths, rows, first, step = tables._loads(train, [table])
+    count = math.ceil((math.log(train.highest_ratio) + 0.02) / 0.01)
+    assert rows.tolist() == [0, count, 2 * count, 3 * count] and not first.any()
+    wanted = 1e-3 * train.torque * np.exp(step * np.arange(count))
+    assert widths[:count, 0] == pytest.approx(wanted) and count * step >= math.log(
+        train.highest_ratio
+    )
+    monkeypatch.setattr(tables, "ENTRIES", 2)
+    assert tables._loads(train, [table])[1] == pytest.approx(np.full((3, 1), 1e-3 * train.torque))
+
+
+def test_real_valued_layouts_keep_clearances_and_bounds():
+    train = elevator()
+    make = frame(train, (10.0, 17.5, 30.0), motor=60.0)
+    pairs = train.pair(0, 2.0, 21, 128, 25.0), train.pair(1, 3.0, 24, 85, 50.0)
+    box = make(pairs)
+    rows = continuous._apart(box, [], ([0.0, 100.0, 80.0], [10.0, 30.0, 70.0]))
+    need = 60.0 + 30.0 + box.clearances.shafts
+    assert rows == {"motor_to_output": pytest.approx(2.0 - (80.0**2 + 60.0**2) / need**2)}
+    posed = continuous.continuous(train, make, ((0,), (1,)), (pairs, (-0.7, -1.5)))
+    (slab,) = (v for v in posed.variables if v.name == "slab")
+    assert slab.guess == (25.0, 50.0) and slab.lower == pytest.approx(1e-4 * slab.upper)
+
+
+def test_the_width_of_a_stage_without_options_is_that_of_its_load():
+    train = elevator()
+    wanted = face_width(train.stages[0], train.torque, train.stages[0].modules[4], (21, 128))
+    widths = search.widths_of(train.fixed_teeth(0, 21, 128), 0, train.torque, 4)
+    assert widths == [pytest.approx(wanted, rel=1e-12)]
 
 
 @pytest.mark.slow
