@@ -14,6 +14,7 @@ from gearopt.formulations import layout, teeth, together
 from gearopt.formulations.layout.gearbox import Clearances, Gearbox, Shaft
 from gearopt.formulations.layout.slabs import arrangements, clashes
 from gearopt.formulations.strength.rated import Option
+from gearopt.formulations.together import rated_widths
 from gearopt.formulations.together.rated_widths import STEPS, narrower
 from gearopt.formulations.together.search import Search
 from gearopt.formulations.together.tables import numbers
@@ -135,14 +136,17 @@ def test_three_stages_as_by_brute_force():
 
 
 @pytest.mark.parametrize("standard", [agma, pytest.param(some_iso, marks=pytest.mark.slow)])
-def test_widths_of_cells_are_below_those_of_every_torque(standard):
+def test_widths_of_cells_are_below_those_of_every_torque(standard, monkeypatch):
     """At a torque and at all stronger ones that a stage may carry, in cells of any width."""
     train = some_train(3, standard, stages=3)
+    train = replace(train, torque=12.0 * train.torque)  # so that widths depend on it
     make = some_frame(3, train)
     search, (drive, _) = Search(train, make, Clock(), 0), numbers(train, make)
     rng = np.random.default_rng(8)
     for step in STEPS[:2]:
         drive = narrower(search.tables, drive, step, lambda: True)
+        for stage, table in enumerate(search.tables):
+            assert_least_at_cells(table, drive, stage)
         for _ in range(40):
             stage = int(rng.integers(3))
             table = search.tables[stage]
@@ -162,6 +166,23 @@ def test_widths_of_cells_are_below_those_of_every_torque(standard):
                 bound = drive.bisected[row, module]
                 assert bound <= width * (1.0 + 1e-9)
     assert np.isfinite(drive.bisected).any()
+    monkeypatch.setattr(rated_widths, "ENTRIES", drive.bisected.size - 1)
+    assert narrower(search.tables, drive, drive.step, lambda: True) is drive  # too many
+
+
+def assert_least_at_cells(table, drive, stage):
+    """At the start of the cells of every pair but its first one, of stage 0 at its one torque."""
+    start, stop = drive.start[stage : stage + 2]
+    pair = np.repeat(np.arange(start, stop), np.diff(drive.row[start : stop + 1]))
+    row = drive.row[start] + np.arange(len(pair))
+    pair, row = (a[(row > drive.row[pair]) | (stage == 0)] for a in (pair, row))
+    reached = (drive.cell[pair] + row - drive.row[pair]) * drive.step
+    torque = drive.torque * np.exp(reached + (1e-9 if stage else 0.0))
+    every = range(len(table.modules))
+    widths = np.column_stack([table.width(torque, pair - start, k) for k in every])
+    bounds = drive.bisected[row, : len(every)]
+    assert (bounds <= widths * (1.0 + 1e-9)).all()
+    assert (bounds >= widths * (1.0 - 1e-9)).mean() > 0.9  # they are no idle ones
 
 
 @pytest.mark.slow
