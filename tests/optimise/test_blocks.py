@@ -71,9 +71,9 @@ def test_blocks_of_limits_of_an_own_problem_are_no_stages():
         {"f": 1.0 / (x.d[0] * x.d[1])}, {"shaft_length": (x.d[0] / 4.0, x.d[1] / 5.0)}
     )
     found = solve(Problem("shafts", (d,), (), text))
-    assert "The limits on shaft length[1] and shaft length[2] determine" in repr(found) and "stage" not in repr(
+    assert "The limits on shaft length[1] and shaft length[2] determine" in repr(
         found
-    )
+    ) and "stage" not in repr(found)
     assert [row["limit used, %"] for row in found.table("limits")] == [
         "shaft length[1]",
         "shaft length[2]",

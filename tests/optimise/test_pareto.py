@@ -101,6 +101,11 @@ def test_samplers_come_near_the_known_front(method):
     )
 
 
+def test_evolution_ends_with_its_watcher():
+    front = gearopt.pareto(discs(), method="nsga2", points=8, watch=lambda event: False)
+    assert front.status == "limit" and front.evaluations == 8
+
+
 def test_a_limit_on_an_objective_cuts_the_front_and_an_impossible_one_is_proven():
     front = gearopt.pareto(product(), points=5, most={"a": 2.0})
     assert values(front)[:, 0].max() == pytest.approx(2.0, rel=1e-6)
