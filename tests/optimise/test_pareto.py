@@ -297,6 +297,13 @@ def test_the_front_of_a_catalogue_is_complete(cost, error, unbeaten_ones):
 
 
 @pytest.mark.slow
+def test_differences_within_feasibility_are_not_called_complete():
+    """A limit of 1e8 may be exceeded by 1: of costs that near none is proven to be the least."""
+    front = gearopt.pareto(catalogue((1e8, 1e8 + 1, 1e8 + 2, 1e8 + 9), (10, 3, 2.5, 0)))
+    assert front.status == "proven" and front.error > 0.1
+
+
+@pytest.mark.slow
 def test_small_differences_of_a_large_objective_lose_no_design():
     """An excess of 1e-7 of a million is a tenth of all differences: ends are held closer."""
     cost, error = (1e6, 1e6 + 0.05, 1e6 + 1.0), (10, 1, 0)

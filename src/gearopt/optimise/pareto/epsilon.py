@@ -167,10 +167,11 @@ def _ends(run: Run, names: tuple[str, ...], caps: Caps) -> list[Point] | None:
     near = CLOSE * np.ptp([p.values for p in ends], axis=0)
     for k, at in enumerate(least):  # small differences of large values are told apart
         if SLACK * abs(at) > near[k]:
-            blur = 2.0 * FEASIBLE * abs(at)
-            run.blur = max(run.blur, blur * CLOSE / near[k] if blur > near[k] > 0.0 else 0.0)
             most = at + max(float(near[k]), FEASIBLE * abs(at))
             ends[k] = _end(run, names, k, caps, ends[k], most)
+    for at, width in zip(least, np.ptp([p.values for p in ends], axis=0), strict=False):
+        blur = 2.0 * FEASIBLE * abs(at)
+        run.blur = max(run.blur, blur / width if blur > CLOSE * width > 0.0 else 0.0)
     if len(names) == len(run.names):
         values = np.array([p.values for p in ends])
         run.widths = dict(zip(run.names, np.ptp(values, axis=0).tolist(), strict=True))
