@@ -96,8 +96,8 @@ def corner_gap(flank: Flank, at: Motion) -> tuple[Any, Any]:
     seen = at.of_tooth(corner(flank.gearing))
     low, high = nodes[0].x, nodes[-1].x
     height, step = np.clip(seen.x, low, high), 1e-4 * (high - low)
-    half = thickness_at(nodes, height)
-    slope = (thickness_at(nodes, height + step) - thickness_at(nodes, height - step)) / (2 * step)
+    half, above, below = thickness_at(nodes, np.stack((height, height + step, height - step)))
+    slope = (above - below) / (2 * step)
     gap = (seen.y - half) / np.sqrt(1.0 + slope * slope)
     return gap, np.minimum(seen.x - low, high - seen.x)
 
