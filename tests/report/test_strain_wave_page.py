@@ -11,6 +11,7 @@ from gearopt.formulations.strain_wave.wave_report import WaveDesign
 from gearopt.optimise.typed import typed
 from gearopt.report.kinds.strain_wave import cutter, moving, numbers, search, shift, tiles, warns
 from gearopt.report.measures import METRIC
+from gearopt.report.pages.cutter_drawing import drawing
 from gearopt.report.pages.frame import templates
 from gearopt.report.pages.row import Row
 from gearopt.report.pages.wave_motion import drawn, running
@@ -133,6 +134,17 @@ def test_a_cutter_never_shrinks_and_fits_a_sheet_by_default(result, found):
     assert 'class="true"' in shown[1] and "@page" not in shown[1]
     numbers_at = re.findall(r'<text class="size"[^>]*>(-?[0-9.]+)</text>', narrow.svg)
     assert {"0.000", "0.500", "-0.500"} <= set(numbers_at)
+
+
+def test_the_grid_of_a_high_or_wide_cutter_has_few_lines(found):
+    """Edges 1 m high, or 10 km wide, on a grid of 0.05 mm: at most 62 lines either way."""
+    for high, wide in ((1e3, 1.0), (1.0, 1e7)):
+        x, y = (
+            np.multiply(v, f) for v, f in ((found.cutter.x_mm, high), (found.cutter.y_mm, wide))
+        )
+        edge = replace(found.cutter, x_mm=tuple(x), y_mm=tuple(y), straight_deg=0.0)
+        svg = drawing(edge, wide * math.pi * 0.5, 1e-3, 0.05, METRIC).svg
+        assert 4 < len(re.findall('class="(grid|extension)"', svg)) <= 2 * 62
 
 
 def test_sections_say_what_was_found(result, found):

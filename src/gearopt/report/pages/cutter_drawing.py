@@ -14,11 +14,11 @@ from gearopt.report.pages.sheet import Drawing, Place, Sheet, Window, series
 Frame = tuple[float, float, float, float]
 PX_PER_MM = 96.0 / 25.4  # of a screen and of paper as browsers print it
 FREE = (46.0, 16.0, 34.0, 16.0)  # px around the edge
-LINES = 60  # of the grid in one direction at most: coarser ones are taken beyond
+LINES = 60  # of the grid across and upwards at most: coarser ones are taken beyond
 ROOM = 0.06  # of the width of two teeth, that is free beside them
 EVERY = (1, 2, 4, 10, 20, 40, 100, 200)  # lines of the grid from one with a number to the next
 APART = 60.0  # px between numbers at least
-STEPS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)  # times the grid
+STEPS = tuple(s * 10.0**k for k in range(12) for s in (1.0, 2.0, 5.0))  # times the grid
 
 
 def drawing(
@@ -72,7 +72,8 @@ def _frame(teeth: list[Any], grid: float) -> tuple[Frame, float]:
     """
     x, y = np.vstack(teeth).T
     room = ROOM * float(np.ptp(x))
-    step = next((s * grid for s in STEPS if np.ptp(x) + 2 * room < LINES * s * grid), 100 * grid)
+    span = max(np.ptp(x), np.ptp(y)) + 2 * room
+    step = next((s * grid for s in STEPS if span < LINES * s * grid), span)
     low = [float(np.floor((v.min() - room) / step) * step) for v in (x, y)]
     high = [float(np.ceil((v.max() + room) / step) * step) for v in (x, y)]
     return (low[0], high[0], low[1], high[1]), step
