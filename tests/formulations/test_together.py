@@ -354,6 +354,8 @@ def test_a_point_with_an_arrangement_is_read():
     box, angles, order = together.laid_out(train, make, point)
     assert angles == (-0.7, -1.5, 0.4) and order.slabs == orders(box)[3] == ((0, 2), (1,))
     assert [p.pinion_teeth for p in box.pairs] == [21, 21, 24]
+    arrangement = together.text(train, make, box, {}).variables[-1]
+    assert (arrangement.lower, arrangement.upper, arrangement.guess) == (0, 3, 0)
 
 
 @pytest.mark.parametrize("width", [None, 50.0])
@@ -403,6 +405,10 @@ def test_real_valued_layouts_keep_clearances_and_bounds():
     posed = continuous.continuous(train, make, ((0,), (1,)), (pairs, (-0.7, -1.5)))
     (slab,) = (v for v in posed.variables if v.name == "slab")
     assert slab.guess == (25.0, 50.0) and slab.lower == pytest.approx(1e-4 * slab.upper)
+    start = posed.batch(posed.bounds()[2][None])
+    walls = {r.name: start.G[0, k] for k, r in enumerate(posed.rows.inequalities)}
+    sides = [v for n, v in walls.items() if n.startswith(("low_", "high_"))]
+    assert max(sides) == pytest.approx(1.0) and min(sides) < 0.9  # the box touches its bodies
 
 
 def test_the_width_of_a_stage_without_options_is_that_of_its_load():
