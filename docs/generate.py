@@ -48,7 +48,7 @@ def with_code() -> str:
     """The page of the compound train with the code of its two files as it is now."""
     page = (DOCS / "compound.md").read_text(encoding="utf-8")
     head, *blocks = page.split("```python\n")
-    files = ("formulations/compound.py", "scenes/compound.py")
+    files = ("formulations/compound/__init__.py", "scenes/compound/__init__.py")
     for file, block in zip(files, blocks, strict=True):
         code = (DOCS.parent / "src" / "gearopt" / file).read_text(encoding="utf-8")
         head += f"```python\n{code}" + block[block.index("```\n") :]

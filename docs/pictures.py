@@ -15,11 +15,12 @@ from pathlib import Path
 import gearopt
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
+from gearopt.report.drawing import layout_views, sheet, train_views
+from gearopt.report.drawing.sheet import Drawing
 from gearopt.report.kinds import packing, pair
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.pages import front_plots, layout_views, sheet, train_views
+from gearopt.report.pages import front_plots
 from gearopt.report.pages.front_values import drawn
-from gearopt.report.pages.sheet import Drawing
 from gearopt.report.section import Section
 
 ROOT = Path(__file__).parents[1]
@@ -139,7 +140,7 @@ def _style(moves: bool) -> str:
 
     moves: with those of the bodies of an animation.
     """
-    room = Path(sheet.__file__).parent
+    room = Path(sheet.__file__).parents[1] / "pages"
     frame, rules, player = (
         (room / f"{name}.css").read_text(encoding="utf-8")
         for name in ("frame", "drawing", "player")

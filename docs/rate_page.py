@@ -8,7 +8,7 @@ from pathlib import Path
 from rich.console import Console
 
 import gearopt
-from gearopt.formulations.rating import DriveRating
+from gearopt.formulations.drive.rating import DriveRating
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.physics.iso6336.materials import CORES, QUALITIES, SURFACE_HARDENED

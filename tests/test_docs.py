@@ -9,7 +9,7 @@ import pytest
 
 import gearopt
 from gearopt import api, cli
-from gearopt.formulations import sizing, teeth
+from gearopt.formulations.drive import sizing, teeth
 from gearopt.optimise.own_methods import back_ends
 from gearopt.report.measures import METRIC
 from gearopt.scenes.reading.load import kinds, read, scene_module

@@ -4,7 +4,7 @@ import pytest
 
 import gearopt
 from gearopt.bench.compare import RANDOM_DRIVES, _rows, random_drive, reducer
-from gearopt.formulations import teeth
+from gearopt.formulations.drive import teeth
 from gearopt.optimise.solve import solve
 
 

@@ -11,9 +11,9 @@ from fractions import Fraction
 import numpy as np
 from blank_rings import volume
 
-from gearopt.formulations.gear_train import FaceWidth, Stage, Train
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.toothing import Toothing
 from gearopt.physics.gears import MODULES
 
 SAME = 1e-12  # objectives closer than this are ties; loads may exceed a limit by this much

@@ -6,9 +6,9 @@ from fractions import Fraction as F
 import numpy as np
 from brute_force import k_factor_width, width
 
-from gearopt.formulations.layout.chain import chain, turns
-from gearopt.formulations.layout.gearbox import Clearances, Gearbox, Shaft
-from gearopt.formulations.layout.slabs import arrangements, clashes
+from gearopt.formulations.drive.layout.chain import chain, turns
+from gearopt.formulations.drive.layout.gearbox import Clearances, Gearbox, Shaft
+from gearopt.formulations.drive.layout.slabs import arrangements, clashes
 from gearopt.optimise.kernels import kernel
 from gearopt.physics.gears import GearPair
 
@@ -134,7 +134,7 @@ def every(train, needed=k_factor_width, narrowest=None):
 
 def smallest_box(train, make, rel, needed=k_factor_width, narrowest=None):
     """The minimum objective of all trains in all arrangements, within rel; inf if none fits."""
-    branch = kernel("gearopt.formulations.layout.branch_kernel").branch
+    branch = kernel("gearopt.formulations.drive.layout.branch_kernel").branch
     best, links = math.inf, len(train.stages)
     theta, cells, bounds = np.zeros(links), np.zeros((4000, 2, links)), np.zeros(4000)
     for pairs in every(train, needed, narrowest):

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from gearopt.formulations.motion.integrate import march
-from gearopt.formulations.motion.timeline import timeline
+from gearopt.formulations.dynamics.motion.integrate import march
+from gearopt.formulations.dynamics.motion.timeline import timeline
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor
 from gearopt.physics.motion.stiffness_wave import constant
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 from blank_rings import backup, rings, volume
 
-from gearopt.formulations.shares import share
+from gearopt.formulations.drive.shares import share
+from gearopt.formulations.drive.teeth.columns import spans
+from gearopt.formulations.drive.teeth.search import within
 from gearopt.formulations.strength.iso6336 import Iso6336
-from gearopt.formulations.teeth.columns import spans
-from gearopt.formulations.teeth.search import within
 from gearopt.physics.agma.rating import rate as agma_rate
 from gearopt.physics.agma.rating import rate_spectrum as agma_spectrum
 from gearopt.physics.iso6336.rating import rate as iso_rate

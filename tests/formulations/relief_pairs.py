@@ -2,7 +2,7 @@
 
 import functools
 
-from gearopt.formulations.relief.meshing import Mesh
+from gearopt.formulations.pair.relief.meshing import Mesh
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.mesh_cycle import cycle
 from gearopt.physics.tooth.elastic import ElasticPair

@@ -2,10 +2,10 @@
 
 from fractions import Fraction
 
-from gearopt.formulations.gear_train import FaceWidth, Stage, Train
+from gearopt.formulations.drive.teeth.tables import table
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.teeth.tables import table
-from gearopt.formulations.toothing import Toothing
 
 F = Fraction
 FACES = {

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from gearboxes import gearbox, some_box
 
-from gearopt.formulations import layout
-from gearopt.formulations.layout import annealing
-from gearopt.formulations.layout.exact import BRANCH
+from gearopt.formulations.drive import layout
+from gearopt.formulations.drive.layout import annealing
+from gearopt.formulations.drive.layout.exact import BRANCH
 from gearopt.optimise import kernels
 from gearopt.optimise.result import Budget
 

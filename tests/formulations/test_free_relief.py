@@ -7,9 +7,9 @@ import pytest
 from relief_pairs import COUPLING, mesh
 from scipy.optimize import linprog
 
-from gearopt.formulations.relief.free_form import Profile, Shape, free_problem
-from gearopt.formulations.relief.free_search import Program
-from gearopt.formulations.relief.parametric import Ranges, problem
+from gearopt.formulations.pair.relief.free_form import Profile, Shape, free_problem
+from gearopt.formulations.pair.relief.free_search import Program
+from gearopt.formulations.pair.relief.parametric import Ranges, problem
 from gearopt.optimise.solve import solve
 from gearopt.physics.load_sharing import share
 

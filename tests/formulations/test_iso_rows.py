@@ -7,9 +7,9 @@ import pytest
 from campaigns import few
 from rated_drives import RACK, iso
 
+from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.strength.rated import Load
 from gearopt.formulations.strength.widths import first_width
-from gearopt.formulations.toothing import Toothing
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.geometry.contact import usable_path
 from gearopt.physics.iso6336.case import Practice

@@ -8,8 +8,8 @@ from campaigns import few
 from gearboxes import gearbox
 
 from gearopt.errors import SolveError
-from gearopt.formulations.layout import layout_front
-from gearopt.formulations.layout.gearbox import SIDES, KeepOut
+from gearopt.formulations.drive.layout import layout_front
+from gearopt.formulations.drive.layout.gearbox import SIDES, KeepOut
 from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.pareto import found
 

@@ -9,17 +9,17 @@ from campaigns import few
 from gearboxes import gearbox, law, places, some_box
 from uncompiled import uncompiled
 
-from gearopt.formulations.layout import problem
-from gearopt.formulations.layout.chain import chain
-from gearopt.formulations.layout.gearbox import Clearances, KeepOut, Place
-from gearopt.formulations.layout.slabs import arrangements
+from gearopt.formulations.drive.layout import problem
+from gearopt.formulations.drive.layout.chain import chain
+from gearopt.formulations.drive.layout.gearbox import Clearances, KeepOut, Place
+from gearopt.formulations.drive.layout.slabs import arrangements
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 
-K = uncompiled("gearopt.formulations.layout.chain_kernel")
-BOUND = uncompiled("gearopt.formulations.layout.bound_kernel")
-ANNEAL = uncompiled("gearopt.formulations.layout.anneal_kernel")
+K = uncompiled("gearopt.formulations.drive.layout.chain_kernel")
+BOUND = uncompiled("gearopt.formulations.drive.layout.bound_kernel")
+ANNEAL = uncompiled("gearopt.formulations.drive.layout.anneal_kernel")
 KEEPS = (
     KeepOut("wall", (60.0, math.inf), (-math.inf, 40.0)),
     KeepOut("post", (-300.0, -150.0), (20.0, 90.0), (0.0, 90.0)),
@@ -208,7 +208,7 @@ def test_closings_reach_what_they_close_on():
 
 
 def test_a_search_without_room_or_that_cannot_halve_keeps_an_honest_floor():
-    branch = kernel("gearopt.formulations.layout.branch_kernel").branch
+    branch = kernel("gearopt.formulations.drive.layout.branch_kernel").branch
     box = gearbox("table4_p1")
     shape = chain(box, arrangements(box))
     cells, bounds, theta = np.zeros((3, 2, 3)), np.zeros(3), np.zeros(3)

@@ -11,11 +11,12 @@ from rated_brute_force import cheapest
 from rated_drives import RACK, F, agma, rated_drive, some_iso, some_rated_drive
 from test_teeth_brute_force import agrees
 
-from gearopt.formulations import rated_sizing, sizing
-from gearopt.formulations.gear_train import FaceWidth
-from gearopt.formulations.teeth import pairs, problem
-from gearopt.formulations.teeth.search import search
-from gearopt.formulations.toothing import Toothing
+from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive.rated import sizing as rated_sizing
+from gearopt.formulations.drive.teeth import pairs, problem
+from gearopt.formulations.drive.teeth.search import search
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import FaceWidth
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.tape import legacy_numpy

@@ -13,8 +13,8 @@ from rated_brute_force import cheapest
 from rated_drives import some_rated_drive
 from small_drives import drive
 
-from gearopt.formulations import teeth
-from gearopt.formulations.teeth import load_front
+from gearopt.formulations.drive import teeth
+from gearopt.formulations.drive.teeth import load_front
 from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.pareto import found
 from gearopt.optimise.result import Budget

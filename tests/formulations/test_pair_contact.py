@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from gearopt.formulations.pair_contact import PairMesh, contact, contact_stress, spectrum
-from gearopt.formulations.pair_relief import Removed, break_even, finer
-from gearopt.formulations.relief.meshing import Relief
-from gearopt.formulations.relief.rules import smooth_shares, without_error
+from gearopt.formulations.pair.contact import PairMesh, contact, contact_stress, spectrum
+from gearopt.formulations.pair.relief.meshing import Relief
+from gearopt.formulations.pair.relief.rules import smooth_shares, without_error
+from gearopt.formulations.pair.relief_map import Removed, break_even, finer
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.tooth.elastic import ElasticPair
 

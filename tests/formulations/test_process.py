@@ -9,10 +9,11 @@ import pytest
 
 import gearopt
 from gearopt.errors import SolveError
-from gearopt.formulations import process, teeth
-from gearopt.formulations.design import describe
-from gearopt.formulations.gear_train import FaceWidth
-from gearopt.formulations.process import ProcessOne, ProcessTwo
+from gearopt.formulations.drive import processes as process
+from gearopt.formulations.drive import teeth
+from gearopt.formulations.drive.design import describe
+from gearopt.formulations.drive.processes import ProcessOne, ProcessTwo
+from gearopt.formulations.drive.train import FaceWidth
 from gearopt.optimise.solve import run
 from gearopt.physics.loads import k_factor, unit_load
 

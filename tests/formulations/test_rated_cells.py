@@ -19,11 +19,13 @@ from rated_drives import (
     some_rated_drive,
 )
 
-from gearopt.formulations import rated_cells, rated_sizing, sizing, teeth
-from gearopt.formulations.gear_train import FaceWidth
-from gearopt.formulations.rated_boxes import ROWS, bounded, first_boxes, shafts_about
+from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive.rated import cells as rated_cells
+from gearopt.formulations.drive.rated import sizing as rated_sizing
+from gearopt.formulations.drive.rated.boxes import ROWS, bounded, first_boxes, shafts_about
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import FaceWidth
 from gearopt.formulations.strength.rated import Load
-from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve

@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 from rated_drives import FREE, agma, by, rated_drive
 
-from gearopt.formulations import rated_bound, rated_sizing, sizing, teeth
-from gearopt.formulations.gear_train import FaceWidth, Stage, Train
+from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive.rated import bound as rated_bound
+from gearopt.formulations.drive.rated import sizing as rated_sizing
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength import RATED
 from gearopt.formulations.strength.rated import Box, Load, Option
-from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.form import form
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve

@@ -7,10 +7,10 @@ import pytest
 from rated_brute_force import least_share
 from rated_drives import MODULES, RACK, TIED, F, agma, iso, rated_drive
 
+from gearopt.formulations.drive.teeth.columns import spans
+from gearopt.formulations.drive.teeth.search import search, within
+from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.strength.rated import Load, Option
-from gearopt.formulations.teeth.columns import spans
-from gearopt.formulations.teeth.search import search, within
-from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.result import Budget
 from gearopt.physics.agma.rating import rate_spectrum as agma_spectrum
 from gearopt.physics.iso6336.rating import rate_spectrum as iso_spectrum

@@ -10,20 +10,20 @@ from campaigns import few
 from rated_brute_force import cheapest, least_share, safe
 from rated_drives import FREE, MODULES, TIED, F, agma, by, rated_drive
 
-from gearopt.formulations import teeth
-from gearopt.formulations.gear_train import FaceWidth
-from gearopt.formulations.shares import share
+from gearopt.formulations.drive import teeth
+from gearopt.formulations.drive.shares import share
+from gearopt.formulations.drive.teeth.columns import spans
+from gearopt.formulations.drive.teeth.later_stages import bound, first_costs, useful_cells
+from gearopt.formulations.drive.teeth.search import search, within
+from gearopt.formulations.drive.teeth.tables import stage_tables
+from gearopt.formulations.drive.train import FaceWidth
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.strength.rated import Option
-from gearopt.formulations.teeth.columns import spans
-from gearopt.formulations.teeth.later_stages import bound, first_costs, useful_cells
-from gearopt.formulations.teeth.search import search, within
-from gearopt.formulations.teeth.tables import stage_tables
 from gearopt.optimise.result import Budget
 from gearopt.physics.agma.rating_factors import Steel
 
-searching = import_module("gearopt.formulations.teeth.search")
-stage_tables_of = import_module("gearopt.formulations.teeth.tables")
+searching = import_module("gearopt.formulations.drive.teeth.search")
+stage_tables_of = import_module("gearopt.formulations.drive.teeth.tables")
 
 SLOW = pytest.mark.slow
 STEPPED = FaceWidth(F(3, 10), F(3, 4), step=F(5))

@@ -7,9 +7,9 @@ import pytest
 from campaigns import few
 from relief_pairs import COUPLING, LOAD, PATH, compliance, mesh
 
-from gearopt.formulations.relief.meshing import NO_RELIEF, Relief
-from gearopt.formulations.relief.parametric import Ranges, at_point, objective, problem
-from gearopt.formulations.relief.rules import (
+from gearopt.formulations.pair.relief.meshing import NO_RELIEF, Relief
+from gearopt.formulations.pair.relief.parametric import Ranges, at_point, objective, problem
+from gearopt.formulations.pair.relief.rules import (
     short_relief,
     smooth_shares,
     tip_amounts,

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from relief_pairs import COUPLING, mesh
 
-from gearopt.formulations.relief.parametric import Ranges, at_point, problem
-from gearopt.formulations.relief.relief_mpec import MICRO, STEPS, _point, complementarity
+from gearopt.formulations.pair.relief.parametric import Ranges, at_point, problem
+from gearopt.formulations.pair.relief.relief_mpec import MICRO, STEPS, _point, complementarity
 from gearopt.optimise.solve import Budget, solve
 
 

@@ -7,9 +7,9 @@ import pytest
 from campaigns import few
 from relief_pairs import COUPLING, LOAD, mesh
 
-from gearopt.formulations.relief.meshing import Mesh, Relief
-from gearopt.formulations.relief.parametric import Ranges, at_point, problem
-from gearopt.formulations.relief.relief_search import numbers
+from gearopt.formulations.pair.relief.meshing import Mesh, Relief
+from gearopt.formulations.pair.relief.parametric import Ranges, at_point, problem
+from gearopt.formulations.pair.relief.relief_search import numbers
 from gearopt.optimise.solve import Budget, solve
 from gearopt.physics.geometry.contact import ContactPath
 from gearopt.physics.mesh_cycle import cycle

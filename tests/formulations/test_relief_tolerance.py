@@ -4,9 +4,14 @@ import numpy as np
 import pytest
 from relief_pairs import mesh
 
-from gearopt.formulations.relief.meshing import Relief
-from gearopt.formulations.relief.parametric import Ranges, at_point
-from gearopt.formulations.relief.relief_tolerance import Tolerance, drawn, robust_problem, worst
+from gearopt.formulations.pair.relief.meshing import Relief
+from gearopt.formulations.pair.relief.parametric import Ranges, at_point
+from gearopt.formulations.pair.relief.relief_tolerance import (
+    Tolerance,
+    drawn,
+    robust_problem,
+    worst,
+)
 from gearopt.optimise.solve import Budget, solve
 
 MADE = mesh((0.6, 1.0))

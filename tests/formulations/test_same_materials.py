@@ -8,10 +8,10 @@ import pytest
 from rated_brute_force import cheapest
 from rated_drives import MODULES, TIED, TREATMENTS, agma, rated_drive, some_rated_drive
 
-from gearopt.formulations import teeth
-from gearopt.formulations.gear_train import FaceWidth
+from gearopt.formulations.drive import teeth
+from gearopt.formulations.drive.teeth.search import search
+from gearopt.formulations.drive.train import FaceWidth
 from gearopt.formulations.strength.rated import Option
-from gearopt.formulations.teeth.search import search
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run
 from gearopt.physics.agma.rating_factors import Steel

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gearopt.formulations.sharing import KERNEL, conic, problem, share_rows
+from gearopt.formulations.pair.sharing import KERNEL, conic, problem, share_rows
 from gearopt.optimise import kernels
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.solve import solve

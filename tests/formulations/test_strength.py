@@ -14,14 +14,15 @@ from gearboxes import smallest_box
 from small_drives import FACES, OBJECTIVES, drive
 
 from gearopt.errors import SolveError
-from gearopt.formulations import process, sizing, teeth, together
-from gearopt.formulations.gear_train import FaceWidth, Stage, Train
-from gearopt.formulations.layout.gearbox import Gearbox, Shaft
-from gearopt.formulations.process import ProcessOne
+from gearopt.formulations.drive import processes as process
+from gearopt.formulations.drive import sizing, teeth, together
+from gearopt.formulations.drive.layout.gearbox import Gearbox, Shaft
+from gearopt.formulations.drive.processes import ProcessOne
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength import Law, Limit, laws
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.strength.lewis import LEWIS
-from gearopt.formulations.toothing import Toothing
 from gearopt.optimise import tape
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
@@ -29,8 +30,8 @@ from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.loads import lewis_stress
 from gearopt.physics.stiffness import lewis_form_factor
 from gearopt.scenes import drive as drives
-from gearopt.scenes.drive.drive_tables import Limits, StageTable, limited_by
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.drive import Limits, StageTable, limited_by
 from gearopt.scenes.reading.ask import Ask
 
 F = Fraction

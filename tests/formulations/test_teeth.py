@@ -9,13 +9,13 @@ import pytest
 from brute_force import some_drive
 from campaigns import few
 
-from gearopt.formulations import sizing, teeth
-from gearopt.formulations.gear_train import FaceWidth, Stage, Train
-from gearopt.formulations.shares import OBJECTIVES
+from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive.shares import OBJECTIVES
+from gearopt.formulations.drive.teeth.existence import possible
+from gearopt.formulations.drive.teeth.wide import narrowed
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.teeth.existence import possible
-from gearopt.formulations.teeth.wide import narrowed
-from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
 from gearopt.physics.gears import SERIES_I
@@ -109,7 +109,7 @@ def test_wide_ranges_are_searched_like_narrow_ones(number, monkeypatch):
     """Pinions left out for their cost change nothing: of random drives and their ten best."""
     train = some_drive(number, 2)
     expected = [run(teeth.problem(train, n))[1] for n in (1, 10)]
-    module = import_module("gearopt.formulations.teeth.wide")
+    module = import_module("gearopt.formulations.drive.teeth.wide")
     monkeypatch.setattr(module, "FEW", 150)
     assert narrowed(train) != train
     for n, whole in zip((1, 10), expected, strict=True):
@@ -216,7 +216,7 @@ def test_a_drive_of_nonsense_numbers_is_refused():
 
 
 def test_a_tolerance_that_leaves_too_many_pairs_is_told_before_memory_is_spent(monkeypatch):
-    monkeypatch.setattr("gearopt.formulations.teeth.later_stages.ENTRIES", 100_000)
+    monkeypatch.setattr("gearopt.formulations.drive.teeth.later_stages.ENTRIES", 100_000)
     loose = drive(total=F(100), widths=("0.6",) * 3, tolerance=F(1, 2))
     found = solve(teeth.problem(loose))
     assert found.status == "limit" and "narrow it, or limit wheel teeth" in found.message

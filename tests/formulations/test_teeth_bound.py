@@ -11,10 +11,10 @@ from campaigns import few
 from small_drives import FACES, drive, tables_of
 
 from gearopt.errors import SolveError
-from gearopt.formulations.teeth import later_stages as bounds
-from gearopt.formulations.teeth import stage as staging
-from gearopt.formulations.teeth.later_stages import EDGE, bound, ragged, slices
-from gearopt.formulations.teeth.tables import stage_tables
+from gearopt.formulations.drive.teeth import later_stages as bounds
+from gearopt.formulations.drive.teeth import stage as staging
+from gearopt.formulations.drive.teeth.later_stages import EDGE, bound, ragged, slices
+from gearopt.formulations.drive.teeth.tables import stage_tables
 
 F = Fraction
 

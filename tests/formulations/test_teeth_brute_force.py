@@ -10,10 +10,10 @@ import pytest
 from brute_force import ONE, SAME, every_train, log_uniform, own_teeth, some_drive
 from campaigns import few
 
-from gearopt.formulations.gear_train import FaceWidth, Stage, Train
+from gearopt.formulations.drive.teeth import pairs, problem
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.teeth import pairs, problem
-from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.solve import run
 
 

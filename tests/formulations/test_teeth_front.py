@@ -11,8 +11,8 @@ from front_brute_force import every_choice, every_rated_choice, unbeaten
 from rated_drives import agma, some_iso, some_rated_drive
 from small_drives import drive
 
-from gearopt.formulations import teeth
-from gearopt.formulations.teeth.front import fronts, teeth_of
+from gearopt.formulations.drive import teeth
+from gearopt.formulations.drive.teeth.front import fronts, teeth_of
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.pareto.pareto import found
 from gearopt.optimise.result import Budget

@@ -10,11 +10,19 @@ from brute_force import every_train
 from small_drives import FACES, OBJECTIVES, drive
 
 from gearopt.errors import SolveError
-from gearopt.formulations import teeth
-from gearopt.formulations.gear_train import FaceWidth
-from gearopt.formulations.teeth import MOST, _in_order, _why, best_pairs, pairs, point, problem
-from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress
-from gearopt.formulations.teeth.search import search
+from gearopt.formulations.drive import teeth
+from gearopt.formulations.drive.teeth import (
+    MOST,
+    _in_order,
+    _why,
+    best_pairs,
+    pairs,
+    point,
+    problem,
+)
+from gearopt.formulations.drive.teeth.progress import MARGIN, TIE, Progress
+from gearopt.formulations.drive.teeth.search import search
+from gearopt.formulations.drive.train import FaceWidth
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import method_of, run

@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from gearopt.formulations.teeth.progress import MARGIN, TIE, Progress, Spent
+from gearopt.formulations.drive.teeth.progress import MARGIN, TIE, Progress, Spent
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Event
 

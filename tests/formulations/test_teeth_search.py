@@ -12,19 +12,19 @@ from brute_force import cost, every_train, some_drive
 from campaigns import few
 from small_drives import FACES, OBJECTIVES, drive
 
-from gearopt.formulations.teeth import _in_order
-from gearopt.formulations.teeth import later_stages as bounds
-from gearopt.formulations.teeth import stage as staging
-from gearopt.formulations.teeth.existence import any_train, possible
-from gearopt.formulations.teeth.later_stages import bound
-from gearopt.formulations.teeth.progress import TIE
-from gearopt.formulations.teeth.reach import first_cut, reach
-from gearopt.formulations.teeth.search import search, within
-from gearopt.formulations.teeth.tables import table
+from gearopt.formulations.drive.teeth import _in_order
+from gearopt.formulations.drive.teeth import later_stages as bounds
+from gearopt.formulations.drive.teeth import stage as staging
+from gearopt.formulations.drive.teeth.existence import any_train, possible
+from gearopt.formulations.drive.teeth.later_stages import bound
+from gearopt.formulations.drive.teeth.progress import TIE
+from gearopt.formulations.drive.teeth.reach import first_cut, reach
+from gearopt.formulations.drive.teeth.search import search, within
+from gearopt.formulations.drive.teeth.tables import table
 from gearopt.optimise.result import Budget
 
 F = Fraction
-searching = import_module("gearopt.formulations.teeth.search")  # `teeth.search` is its function
+searching = import_module("gearopt.formulations.drive.teeth.search")  # not its function
 
 
 def test_within_is_decided_in_whole_numbers():

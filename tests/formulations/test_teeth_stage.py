@@ -11,11 +11,11 @@ from campaigns import few
 from small_drives import FACES, LIMITED, OBJECTIVES, drive
 
 from gearopt.errors import SolveError
-from gearopt.formulations.gear_train import FaceWidth, Stage, Train
+from gearopt.formulations.drive.teeth import columns as staging
+from gearopt.formulations.drive.teeth.stage import ALLOWANCE
+from gearopt.formulations.drive.teeth.tables import table
+from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.teeth import columns as staging
-from gearopt.formulations.teeth.stage import ALLOWANCE
-from gearopt.formulations.teeth.tables import table
 
 F = Fraction
 

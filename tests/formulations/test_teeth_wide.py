@@ -10,17 +10,17 @@ import pytest
 from brute_force import cost
 from small_drives import FACES, OBJECTIVES, drive
 
-from gearopt.formulations.teeth import columns as staging
-from gearopt.formulations.teeth import problem
-from gearopt.formulations.teeth.progress import MARGIN
-from gearopt.formulations.teeth.reach import first_cut
-from gearopt.formulations.teeth.search import search
+from gearopt.formulations.drive.teeth import columns as staging
+from gearopt.formulations.drive.teeth import problem
+from gearopt.formulations.drive.teeth.progress import MARGIN
+from gearopt.formulations.drive.teeth.reach import first_cut
+from gearopt.formulations.drive.teeth.search import search
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import method_of
 
 F = Fraction
 FEW = 3000
-wide = import_module("gearopt.formulations.teeth.wide")
+wide = import_module("gearopt.formulations.drive.teeth.wide")
 
 
 def wide_drive():

@@ -12,14 +12,14 @@ from gearboxes import face_width, smallest_box
 from uncompiled import uncompiled
 
 from gearopt.errors import SolveError
-from gearopt.formulations import layout, teeth, together
-from gearopt.formulations.gear_train import FaceWidth, Stage, Train
-from gearopt.formulations.layout.gearbox import Clearances, Gearbox, KeepOut, Shaft
-from gearopt.formulations.layout.slabs import arrangements, clashes, orders
+from gearopt.formulations.drive import layout, teeth, together
+from gearopt.formulations.drive.layout.gearbox import Clearances, Gearbox, KeepOut, Shaft
+from gearopt.formulations.drive.layout.slabs import arrangements, clashes, orders
+from gearopt.formulations.drive.together import continuous, search, tables
+from gearopt.formulations.drive.together.tables import numbers, rest
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.together import continuous, search, tables
-from gearopt.formulations.together.tables import numbers, rest
-from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run
@@ -254,7 +254,7 @@ def at_its_limit():
 def test_a_box_as_large_as_it_may_be_is_not_too_large_by_rounding():
     train, make = at_its_limit()
     drive, _ = numbers(train, make)
-    nodes = uncompiled("gearopt.formulations.together.node_kernel")
+    nodes = uncompiled("gearopt.formulations.drive.together.node_kernel")
     high = 2.0 * (0.5 * 2.2 * 56 + 2.2 + 8.0)
     assert high > 143.6  # by rounding alone
     assert math.isfinite(nodes.worth(drive.aim, 50.0, high * high, high))
@@ -289,7 +289,7 @@ def test_a_train_whose_layouts_are_not_exhausted_leaves_the_search_unproven(monk
     for share, below in ((0.9, False), (1.2, False), (1.3, False), (1.5, True)):
         work.clock.best = share * best
         assert search._below(work, box, order, 0.3) == below
-    monkeypatch.setattr("gearopt.formulations.layout.exact.DEEP", 3)
+    monkeypatch.setattr("gearopt.formulations.drive.layout.exact.DEEP", 3)
     fresh = search.Search(train, work.make, Clock(), 0)
     assert not search.lay(fresh, (pairs, (0, 0)), 0.003) and not fresh.clock.stopped
 
@@ -421,7 +421,7 @@ def test_the_width_of_a_stage_without_options_is_that_of_its_load():
 @pytest.mark.slow
 def test_kernels_bound_what_they_measure():
     """The closed form of two discs is the least W H of all angles; widths are those of `teeth`."""
-    nodes = uncompiled("gearopt.formulations.together.node_kernel")
+    nodes = uncompiled("gearopt.formulations.drive.together.node_kernel")
     rng = np.random.default_rng(5)
     angle = np.linspace(0.0, 0.5 * math.pi, 20_001)
     for r0, r1, share in rng.uniform([10, 10, 0.5], [200, 200, 1.5], (200, 3)):

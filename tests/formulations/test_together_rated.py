@@ -10,14 +10,14 @@ from gearboxes import smallest_box
 from rated_brute_force import safe, widths
 from rated_drives import TREATMENTS, agma, some_iso, some_rated_drive
 
-from gearopt.formulations import layout, teeth, together
-from gearopt.formulations.layout.gearbox import Clearances, Gearbox, Shaft
-from gearopt.formulations.layout.slabs import arrangements, clashes
+from gearopt.formulations.drive import layout, teeth, together
+from gearopt.formulations.drive.layout.gearbox import Clearances, Gearbox, Shaft
+from gearopt.formulations.drive.layout.slabs import arrangements, clashes
+from gearopt.formulations.drive.together import rated_widths
+from gearopt.formulations.drive.together.rated_widths import STEPS, narrower
+from gearopt.formulations.drive.together.search import Search
+from gearopt.formulations.drive.together.tables import numbers
 from gearopt.formulations.strength.rated import Option
-from gearopt.formulations.together import rated_widths
-from gearopt.formulations.together.rated_widths import STEPS, narrower
-from gearopt.formulations.together.search import Search
-from gearopt.formulations.together.tables import numbers
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run

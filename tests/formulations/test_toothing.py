@@ -9,14 +9,15 @@ import pytest
 from small_drives import drive
 
 from gearopt.errors import SolveError
-from gearopt.formulations import process, sizing, teeth
-from gearopt.formulations.design import describe
-from gearopt.formulations.gear_train import terms
-from gearopt.formulations.layout.gearbox import Gearbox, Shaft
-from gearopt.formulations.process import ProcessTwo
+from gearopt.formulations.drive import processes as process
+from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive.design import describe
+from gearopt.formulations.drive.layout.gearbox import Gearbox, Shaft
+from gearopt.formulations.drive.processes import ProcessTwo
+from gearopt.formulations.drive.together.tables import numbers
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import terms
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.together.tables import numbers
-from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.solve import run
 from gearopt.physics.gears import ISO_53_A, Rack
 

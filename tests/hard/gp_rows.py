@@ -11,7 +11,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from gearopt.formulations.toothing import Toothing
+from gearopt.formulations.drive.toothing import Toothing
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.agma import factors

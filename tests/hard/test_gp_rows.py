@@ -10,7 +10,7 @@ import pytest
 from campaigns import few
 from gp_rows import BETA, ELEVATOR, FIVE, THREE
 
-from gearopt.formulations.toothing import Toothing
+from gearopt.formulations.drive.toothing import Toothing
 from gearopt.optimise.solve import solve
 from gearopt.physics.agma import factors
 from gearopt.physics.agma.bending import (

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from gearopt.formulations.relief.meshing import Mesh
-from gearopt.formulations.relief.parametric import Ranges, at_point, problem
+from gearopt.formulations.pair.relief.meshing import Mesh
+from gearopt.formulations.pair.relief.parametric import Ranges, at_point, problem
 from gearopt.optimise.solve import Budget, solve
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.load_sharing import share

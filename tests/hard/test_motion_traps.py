@@ -10,12 +10,18 @@ import numpy as np
 import pytest
 from moving_pairs import oscillator, paper_pair, steady
 
-from gearopt.formulations.motion.balance import linear_orbit
-from gearopt.formulations.motion.exponential import exact_motion
-from gearopt.formulations.motion.integrate import ALPHA, ALPHAS, STEPPERS, generalised, march
-from gearopt.formulations.motion.numbers import numbers
-from gearopt.formulations.motion.stability import largest
-from gearopt.formulations.motion.timeline import timeline
+from gearopt.formulations.dynamics.motion.balance import linear_orbit
+from gearopt.formulations.dynamics.motion.exponential import exact_motion
+from gearopt.formulations.dynamics.motion.integrate import (
+    ALPHA,
+    ALPHAS,
+    STEPPERS,
+    generalised,
+    march,
+)
+from gearopt.formulations.dynamics.motion.numbers import numbers
+from gearopt.formulations.dynamics.motion.stability import largest
+from gearopt.formulations.dynamics.motion.timeline import timeline
 from gearopt.optimise.kernels import kernel
 from gearopt.physics.motion.accelerations import LEVELS
 from gearopt.physics.motion.linear import linear, mesh_shares, modes, static

@@ -10,7 +10,7 @@ from campaigns import few
 from rated_drives import agma, some_iso, some_rated_drive
 
 import gearopt
-from gearopt.formulations import teeth
+from gearopt.formulations.drive import teeth
 from gearopt.optimise.solve import run
 
 

@@ -8,7 +8,7 @@ from campaigns import few
 from rated_brute_force import cheapest, safe
 from rated_drives import agma, impossible, some_iso, some_rated_drive
 
-from gearopt.formulations import teeth
+from gearopt.formulations.drive import teeth
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.terms import each
 

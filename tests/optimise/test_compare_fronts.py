@@ -10,7 +10,7 @@ import gearopt
 from gearopt import Comparison, Conic, Problem, SolveError, Terms, Var
 from gearopt.optimise.comparing import fronts
 from gearopt.optimise.result import Outcome
-from gearopt.report import comparison_words as words
+from gearopt.report import comparison as words
 
 SMALL = {"evaluations": 600, "seconds": 0.05, "seeds": 2}
 

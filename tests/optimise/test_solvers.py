@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from gearopt.errors import SolveError
-from gearopt.formulations import sizing, teeth
-from gearopt.formulations.gear_train import FaceWidth, Stage, Train
+from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import back_ends, solve

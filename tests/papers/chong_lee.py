@@ -9,8 +9,9 @@ from functools import cache
 from pathlib import Path
 
 import gearopt
-from gearopt.formulations import process, sizing, teeth
-from gearopt.formulations.design import describe
+from gearopt.formulations.drive import processes as process
+from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive.design import describe
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair

@@ -5,7 +5,7 @@ import math
 import chong_lee as paper
 from chong_lee import DESIGNS, K, chain, modules, niemann, recomputed, sixth, train
 
-from gearopt.formulations import process
+from gearopt.formulations.drive import processes as process
 from gearopt.physics.loads import k_factor, unit_load
 
 SPLIT = (4.96, 4.36)  # as printed for both processes of Table 2

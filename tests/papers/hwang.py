@@ -8,9 +8,9 @@ from functools import cache
 
 import numpy as np
 
-from gearopt.formulations.relief.meshing import NO_RELIEF, Mesh
-from gearopt.formulations.relief.parametric import Ranges, at_point, problem
-from gearopt.formulations.relief.rules import short_relief, tip_amounts
+from gearopt.formulations.pair.relief.meshing import NO_RELIEF, Mesh
+from gearopt.formulations.pair.relief.parametric import Ranges, at_point, problem
+from gearopt.formulations.pair.relief.rules import short_relief, tip_amounts
 from gearopt.optimise.solve import solve
 from gearopt.physics.agma.factors import elastic_coefficient
 from gearopt.physics.gears import GearPair, Rack

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from jun_oh import BASE, base
 
-from gearopt.formulations.strain_wave.wave_sharing import shared
+from gearopt.formulations.strain_wave.sharing import shared
 from gearopt.physics.strain_wave.conjugate import flank
 from gearopt.physics.strain_wave.cutter import blank_profile, envelope
 from gearopt.physics.strain_wave.fitted_curvature import graph_curvature

@@ -15,7 +15,7 @@ import pytest
 from chong_lee import DESIGNS, K, recomputed, sixth, train
 
 import gearopt
-from gearopt.formulations import process
+from gearopt.formulations.drive import processes as process
 from gearopt.physics.loads import k_factor
 
 PAGE = (Path(__file__).parents[2] / "docs" / "multi_stage.md").read_text(encoding="utf-8")

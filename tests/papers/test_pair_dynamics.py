@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from moving_pairs import paper_pair
 
-from gearopt.formulations.motion.integrate import march
-from gearopt.formulations.motion.stability import bands, largest
-from gearopt.formulations.motion.timeline import timeline
+from gearopt.formulations.dynamics.motion.integrate import march
+from gearopt.formulations.dynamics.motion.stability import bands, largest
+from gearopt.formulations.dynamics.motion.timeline import timeline
 from gearopt.physics.motion.linear import linear, static
 from gearopt.physics.motion.moving_pair import damping_of
 from gearopt.physics.motion.stiffness_wave import trapezoid

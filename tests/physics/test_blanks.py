@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearopt.formulations.toothing import Toothing
+from gearopt.formulations.drive.toothing import Toothing
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import Rack, reference_diameter
 from gearopt.physics.geometry.fillet import profile

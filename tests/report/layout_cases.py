@@ -3,10 +3,10 @@
 import math
 
 import gearopt
-from gearopt.formulations.design import describe
-from gearopt.formulations.gear_train import FaceWidth, Stage, Train
+from gearopt.formulations.drive.design import describe
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.typed import untyped
 
 HELIX = 25.0

@@ -6,7 +6,7 @@ from html.parser import HTMLParser
 
 import numpy as np
 
-from gearopt.report.pages.sheet import LETTER, SIZE
+from gearopt.report.drawing.sheet import LETTER, SIZE
 
 ATTACK = "</title><script>alert('x')</script><b>&"
 

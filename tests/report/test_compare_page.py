@@ -15,7 +15,7 @@ from rich.console import Console
 import gearopt
 from gearopt import Problem, Terms, Var
 from gearopt.optimise.result import Outcome
-from gearopt.report import comparison_words as words
+from gearopt.report import comparison as words
 from gearopt.report.pages import frame
 from gearopt.report.pages.comparison import colours, page
 from gearopt.report.terminal import show_comparison

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gearopt.formulations.dynamics.dynamics_design import (
+from gearopt.formulations.dynamics.design import (
     DynamicsDesign,
     Equilibrium,
     Response,
@@ -10,7 +10,7 @@ from gearopt.formulations.dynamics.dynamics_design import (
 )
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
-from gearopt.report import dynamics_plots
+from gearopt.report.kinds.dynamics import plots as dynamics_plots
 from gearopt.report.kinds.dynamics import speeds
 from gearopt.report.measures import METRIC
 

@@ -6,9 +6,9 @@ import re
 import pytest
 
 import gearopt
-from gearopt.formulations.design import drive_design
+from gearopt.formulations.drive.design import drive_design
+from gearopt.report.drawing.mesh_view import ALONG, WIDE, section
 from gearopt.report.measures import METRIC
-from gearopt.report.pages.mesh_view import ALONG, WIDE, section
 
 FILE = {
     "gearopt": 1,

@@ -18,14 +18,14 @@ from gearopt.physics.blanks import Body
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.contact import usable_path
 from gearopt.physics.mesh_cycle import cycle
+from gearopt.report.drawing.sheet import SIZE
+from gearopt.report.kinds.pair.mesh_motion import Carried, in_mesh
+from gearopt.report.kinds.pair.path_plots import Line, over_path, zone_words
+from gearopt.report.kinds.pair.solid import figure
+from gearopt.report.kinds.pair.tooth_section import sections
 from gearopt.report.measures import INCH, METRIC
-from gearopt.report.pages.mesh_motion import Carried, in_mesh
-from gearopt.report.pages.pair_solid import figure
-from gearopt.report.pages.path_plots import Line, over_path, zone_words
 from gearopt.report.pages.result import page
 from gearopt.report.pages.result import sections as sections_of
-from gearopt.report.pages.sheet import SIZE
-from gearopt.report.pages.tooth_section import sections
 
 PAIRS = {
     "reference": GearPair.of_teeth(3.0, 25, 50, 30.0),

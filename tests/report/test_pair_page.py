@@ -10,9 +10,9 @@ from rich.console import Console
 
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.report.kinds.pair import KIND, contact_of
+from gearopt.report.kinds.pair.words import answers, graded, of_duty
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.result import tables
-from gearopt.report.pair_words import answers, graded, of_duty
 from gearopt.report.terminal import show
 
 

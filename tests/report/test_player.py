@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from page_reader import ATTACK, Reader, ours
 
+from gearopt.report.drawing.player import Animation, Body, Reading, Scale, View
+from gearopt.report.drawing.sheet import Sheet, Window
 from gearopt.report.pages import frame
 from gearopt.report.pages.frame import render
-from gearopt.report.pages.player import Animation, Body, Reading, Scale, View
-from gearopt.report.pages.sheet import Sheet, Window
 from gearopt.report.section import Figure, Section, axis, layout
 
 ROOM = Path(frame.__file__).parent

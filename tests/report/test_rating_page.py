@@ -184,7 +184,7 @@ def _column(columns, label):
 
 
 def test_safety_factors_are_never_rounded_up():
-    from gearopt.report.rating_words import safety
+    from gearopt.report.kinds.drive.rating_words import safety
 
     assert [safety(v) for v in (1.1999, 1.2, 1.2 - 1e-12, 0.99999, 15.28)] == [
         *("1.199", "1.2", "1.2", "0.9999", "15.28")
@@ -194,7 +194,7 @@ def test_safety_factors_are_never_rounded_up():
 @pytest.mark.parametrize("make", RATED, ids=lambda f: f.__name__)
 def test_a_safety_factor_and_a_capacity_are_written_in_one_way(make):
     """In sentences, key figures and tables, of terminal and page."""
-    from gearopt.report.rating_words import safety
+    from gearopt.report.kinds.drive.rating_words import safety
 
     result = make()
     rating = result.design["rating"]

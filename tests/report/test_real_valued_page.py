@@ -9,10 +9,10 @@ import pytest
 import gearopt
 from gearopt.physics.gears import Gear
 from gearopt.physics.geometry.fillet import profile
+from gearopt.report.drawing.solid import BACKLASH, Toothed, drawn_teeth, gear_mesh, outline
+from gearopt.report.kinds.drive import layout_solid
 from gearopt.report.measures import METRIC
-from gearopt.report.pages import layout_solid
 from gearopt.report.pages.result import page, tables
-from gearopt.report.pages.solid import BACKLASH, Toothed, drawn_teeth, gear_mesh, outline
 
 ROOT = Path(__file__).parents[2]
 BOX = ROOT / "docs" / "pictures" / "elevator_box.json"

@@ -6,16 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearopt.formulations.pair_contact import PairMesh, contact
-from gearopt.formulations.pair_relief import Removed, described
-from gearopt.formulations.relief.meshing import Relief
+from gearopt.formulations.pair.contact import PairMesh, contact
+from gearopt.formulations.pair.relief.meshing import Relief
+from gearopt.formulations.pair.relief_map import Removed, described
 from gearopt.physics.gears import GearPair
 from gearopt.physics.tooth.elastic import ElasticPair
+from gearopt.report.kinds.pair.relief import grinding
+from gearopt.report.kinds.pair.relief_plots import diameter_at, flanks, harmonics, profile, steps
+from gearopt.report.kinds.pair.sections import moving
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.result import sections
-from gearopt.report.pair_relief import grinding
-from gearopt.report.pair_sections import moving
-from gearopt.report.relief_plots import diameter_at, flanks, harmonics, profile, steps
 
 PAIR = GearPair.of_teeth(3.0, 25, 50, 30.0)
 LOADS = (0.6, 1.0, 1.25)

@@ -15,16 +15,16 @@ from campaigns import few
 from page_reader import ATTACK, Reader, drawings, extents, marks, numbers, ours
 
 import gearopt
-from gearopt.formulations.layout.layout_design import LayoutDesign
+from gearopt.formulations.drive.layout.layout_design import LayoutDesign
 from gearopt.optimise.typed import typed
 from gearopt.physics.gears import Gear
+from gearopt.report.drawing.bodies import keep_outs, layout_of, nearest
+from gearopt.report.drawing.row import SHEET
+from gearopt.report.drawing.sheet import SIZE
+from gearopt.report.drawing.solid import Toothed, block, gear_mesh, rod, upright
+from gearopt.report.kinds.drive.layout_solid import MOST
 from gearopt.report.pages import frame
-from gearopt.report.pages.bodies import keep_outs, layout_of, nearest
-from gearopt.report.pages.layout_solid import MOST
 from gearopt.report.pages.result import page
-from gearopt.report.pages.row import SHEET
-from gearopt.report.pages.sheet import SIZE
-from gearopt.report.pages.solid import Toothed, block, gear_mesh, rod, upright
 
 ROOM = Path(frame.__file__).parent
 MADE = (cases.three_stage, cases.partial_span, cases.elevator, cases.boxed_in)

@@ -17,7 +17,7 @@ from gearopt.formulations.servo.servo_design import (
 from gearopt.optimise.typed import untyped
 from gearopt.report.answer import bound_words
 from gearopt.report.kinds import servo
-from gearopt.report.kinds.servo.axis_housing import box
+from gearopt.report.kinds.servo.housing import box
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.terminal import show

@@ -16,7 +16,7 @@ from rich.console import Console
 import gearopt
 from gearopt.formulations.servo.servo_design import BoxDesign
 from gearopt.optimise.typed import typed
-from gearopt.report.kinds.servo.axis_housing import axes
+from gearopt.report.kinds.servo.housing import axes
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.terminal import show

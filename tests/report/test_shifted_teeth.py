@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from campaigns import few
 
-from gearopt.formulations.layout.layout_design import GearDesign, gear_sizes
-from gearopt.formulations.toothing import Toothing
+from gearopt.formulations.drive.layout.layout_design import GearDesign, gear_sizes
+from gearopt.formulations.drive.toothing import Toothing
 from gearopt.optimise.typed import typed, untyped
 from gearopt.physics.gears import ISO_53_A, Rack
 from gearopt.physics.geometry.tooth import circumferential_backlash
-from gearopt.report.pages.layout_solid import _toothed
-from gearopt.report.pages.solid import BACKLASH, outline, twist
+from gearopt.report.drawing.solid import BACKLASH, outline, twist
+from gearopt.report.kinds.drive.layout_solid import _toothed
 
 HOB = Rack(math.radians(25.0), 1.0, 1.25, 0.3), Rack(math.radians(25.0), 1.0, 1.3, 0.25)
 BOTH = ISO_53_A, ISO_53_A

@@ -10,9 +10,9 @@ import pytest
 from campaigns import few
 from page_reader import extents, marks
 
+from gearopt.report.drawing.still import Block, Rod, Texts, covers, in_order, still, view
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page, sections
-from gearopt.report.pages.still import Block, Rod, Texts, covers, in_order, still, view
 
 MADE = {
     "three stages": cases.three_stage,

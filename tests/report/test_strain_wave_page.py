@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearopt.formulations.strain_wave.wave_report import WaveDesign
+from gearopt.formulations.strain_wave.report import WaveDesign
 from gearopt.optimise.typed import typed
+from gearopt.report.drawing.row import Row
 from gearopt.report.kinds.strain_wave import cutter, moving, numbers, search, shift, tiles, warns
+from gearopt.report.kinds.strain_wave.cutter import drawing
+from gearopt.report.kinds.strain_wave.motion import drawn, running
 from gearopt.report.measures import METRIC
-from gearopt.report.pages.cutter_drawing import drawing
 from gearopt.report.pages.frame import templates
-from gearopt.report.pages.row import Row
-from gearopt.report.pages.wave_motion import drawn, running
 
 
 @pytest.fixture(scope="module")

@@ -10,15 +10,15 @@ import pytest
 from page_reader import Reader, drawings, extents, marks, numbers
 
 import gearopt
-from gearopt.formulations.design import describe
-from gearopt.formulations.gear_train import FaceWidth, Stage, Train
+from gearopt.formulations.drive.design import describe
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.typed import untyped
 from gearopt.physics.blanks import Blank
+from gearopt.report.drawing.train_views import BESIDE, PITCH, WIDE, beside
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page
-from gearopt.report.pages.train_views import BESIDE, PITCH, WIDE, beside
 
 TRAINS = {  # m_n, z1, z2, b of every stage
     "two stages": ((2.0, 21, 115, 27.805), (3.0, 23, 91, 57.1)),

@@ -13,7 +13,7 @@ from pathlib import Path
 from scene_files import dump, parse
 
 from gearopt import solve
-from gearopt.formulations import sizing
+from gearopt.formulations.drive import sizing
 from gearopt.physics.gears import MODULES
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.reading.toml import toml_text

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from gearopt.formulations.teeth.columns import spans
+from gearopt.formulations.drive.teeth.columns import spans
 
 WIDTHS = 40  # of a free face, between its ends
 STEELS = (

@@ -7,7 +7,7 @@ import pytest
 
 import gearopt
 from gearopt.errors import SolveError
-from gearopt.formulations.layout import annealing
+from gearopt.formulations.drive.layout import annealing
 from gearopt.optimise.comparing.compare import attempt, enter
 from gearopt.optimise.comparing.runs import Entry
 from gearopt.optimise.kernels import kernel
@@ -107,7 +107,7 @@ def test_a_servo_train_is_compared_once_not_for_every_seed():
 
 
 def test_settings_of_a_layout_are_those_of_each_method():
-    law = kernel("gearopt.formulations.layout.anneal_kernel")
+    law = kernel("gearopt.formulations.drive.layout.anneal_kernel")
     angles, positions = annealing.SETTINGS["sa"], annealing.SETTINGS["sa-paper"]
     assert angles["temperatures"] == (law.HOT, law.COLD) and angles["penalty"] == law.PENALTY
     free = (law.FREE * law.HOT, law.FREE * law.COLD)

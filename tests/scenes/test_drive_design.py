@@ -9,9 +9,9 @@ import gearopt
 from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport, Stage, TrainDesign
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.report.design_tables import PAGE_ONLY, STAGE_ROWS
-from gearopt.scenes.drive.drive_tables import ORIGINS, PRESETS
+from gearopt.scenes.drive.tables.drive import ORIGINS, PRESETS
 from gearopt.scenes.parts import tooth_warnings
-from gearopt.scenes.servo.assumptions import notes as servo_notes
+from gearopt.scenes.servo.notes import notes as servo_notes
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 FILE = """

@@ -9,7 +9,7 @@ import pytest
 
 import gearopt
 from gearopt.scenes.dynamics import EXAMPLE
-from gearopt.scenes.dynamics.optimised import resolvable
+from gearopt.scenes.dynamics.steps import resolvable
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 BARE = EXAMPLE[: EXAMPLE.index("[simulate]")]
@@ -26,7 +26,7 @@ def test_a_motion_is_told_to_the_digits_that_were_asked(tmp_path):
 
 def test_a_proof_tells_the_time_that_its_remedies_took(tmp_path, monkeypatch):
     """Else what is left of a budget is spent again, on files that are solved in full."""
-    module = import_module("gearopt.scenes.dynamics.optimised")
+    module = import_module("gearopt.scenes.dynamics.steps")
     ways_out = module._ways_out
 
     def slow(*given):

@@ -12,7 +12,7 @@ import pytest
 import gearopt
 from gearopt.cli.app import exit_code
 from gearopt.errors import SceneError, SolveError
-from gearopt.formulations.dynamics.dynamics_parts import jammed, own_depth, scaled
+from gearopt.formulations.dynamics.parts import jammed, own_depth, scaled
 from gearopt.formulations.dynamics.teeth_wave import nearest_load, of_contact
 from gearopt.optimise.kernels import COMPILING
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor
@@ -214,7 +214,7 @@ def test_teeth_of_a_pair_keep_their_relief_and_no_others_are_taken(solved, tmp_p
 
 
 def test_the_stiffness_of_a_pair_is_load_over_transmission_error(solved):
-    from gearopt.formulations.pair_contact import PairContact
+    from gearopt.formulations.pair.contact import PairContact
     from gearopt.optimise.typed import typed
 
     contact = typed(PairContact, solved("reference_pair").design["contact"], "contact")

@@ -11,7 +11,7 @@ import pytest
 from edits import edited, scene_of
 
 from gearopt import Budget, explain, solve
-from gearopt.formulations import sizing, teeth
+from gearopt.formulations.drive import sizing, teeth
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 ELEVATOR = (PROBLEMS / "elevator.toml").read_text(encoding="utf-8")

@@ -26,7 +26,7 @@ from gearopt.scenes.explaining.influences import NEAR
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, number, quantity, whole
 from gearopt.scenes.reading.load import kind_of, read, scene_module
-from gearopt.scenes.reading.remedy import table_of
+from gearopt.scenes.reading.mistakes import table_of
 from gearopt.units import Quantity
 
 PROBLEMS = Path(__file__).parents[2] / "problems"

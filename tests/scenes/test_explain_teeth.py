@@ -11,8 +11,8 @@ import pytest
 from edits import edited
 from pydantic import Field
 
-from gearopt.formulations import teeth
-from gearopt.formulations.gear_train import FaceWidth, Stage, Train
+from gearopt.formulations.drive import teeth
+from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.lewis import LEWIS
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.solve import run, solve

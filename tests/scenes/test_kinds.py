@@ -10,7 +10,7 @@ from gearopt.errors import SceneError, SolveError
 from gearopt.scenes.reading.changes import as_written
 from gearopt.scenes.reading.fields import Reads
 from gearopt.scenes.reading.load import kinds, read, scene_module
-from gearopt.scenes.reading.remedy import tables
+from gearopt.scenes.reading.mistakes import tables
 
 
 @pytest.mark.parametrize("kind", kinds())

@@ -11,16 +11,16 @@ from campaigns import few
 from edits import edited, scene_of
 
 import gearopt
-from gearopt.formulations import layout
-from gearopt.formulations.layout.faults import faults, possible
-from gearopt.formulations.layout.gearbox import KeepOut, Place
-from gearopt.formulations.layout.slabs import orders
+from gearopt.formulations.drive import layout
+from gearopt.formulations.drive.layout.faults import faults, possible
+from gearopt.formulations.drive.layout.gearbox import KeepOut, Place
+from gearopt.formulations.drive.layout.slabs import orders
 from gearopt.optimise.result import Budget
 from gearopt.report.explained import remedy_words
 from gearopt.scenes.drive import Scene
-from gearopt.scenes.drive.box import remedies as ways
-from gearopt.scenes.drive.box.edits import LARGER, SMALLER
-from gearopt.scenes.drive.box.remedies import BRIEF
+from gearopt.scenes.drive.explaining import box_remedies as ways
+from gearopt.scenes.drive.explaining.box_edits import LARGER, SMALLER
+from gearopt.scenes.drive.explaining.box_remedies import BRIEF
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 TABLE4 = (PROBLEMS / "table4_process_one_layout.toml").read_text(encoding="utf-8")
@@ -171,7 +171,7 @@ def ways_by(monkeypatch, text, answer):
         asked.append(seconds)
         return answer(box)
 
-    monkeypatch.setattr("gearopt.scenes.drive.box.remedies.possible", possible_)
+    monkeypatch.setattr("gearopt.scenes.drive.explaining.box_remedies.possible", possible_)
     scene, _ = scene_of(text)
     return gearopt.solve(scene).report["ways_out"], asked
 

@@ -171,7 +171,7 @@ def test_a_search_and_the_ways_out_of_it_share_a_budget(monkeypatch):
     given = []
     none = Remedies(), None
     monkeypatch.setattr(
-        "gearopt.scenes.drive.box.remedies.remedies",
+        "gearopt.scenes.drive.explaining.box_remedies.remedies",
         lambda *asked: given.append(asked[-1].budget) or none,
     )
     tight = scene(with_layout(largest_height='"415 mm"', largest_width='"600 mm"'))

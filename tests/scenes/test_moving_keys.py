@@ -20,7 +20,7 @@ import gearopt
 from gearopt import Budget
 from gearopt.errors import GearoptError, SolveError
 from gearopt.scenes.reading.load import examples, kinds, scene_module
-from gearopt.scenes.reading.remedy import example_of, table_of, tables
+from gearopt.scenes.reading.mistakes import example_of, table_of, tables
 from gearopt.scenes.reading.schema import json_schema
 
 PROBLEMS = Path(__file__).parents[2] / "problems"

@@ -10,7 +10,7 @@ from edits import scene_of
 from rich.console import Console
 
 import gearopt
-from gearopt.formulations.layout.faults import of_any_gears
+from gearopt.formulations.drive.layout.faults import of_any_gears
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page
 from gearopt.report.terminal import show

@@ -11,7 +11,7 @@ import pytest
 import gearopt
 from gearopt.errors import SceneError, SolveError
 from gearopt.physics.tooth.ladder import LEVELS
-from gearopt.report.pair_words import OVERSTATED
+from gearopt.report.kinds.pair.words import OVERSTATED
 from gearopt.scenes.pair import EXAMPLE, MORE_EXAMPLES
 
 GIVEN = tomllib.loads(EXAMPLE)

@@ -8,7 +8,7 @@ import pytest
 
 from gearopt.scenes.drive import EXAMPLE
 from gearopt.scenes.reading.load import examples, kinds, scene_module
-from gearopt.scenes.reading.remedy import table_of
+from gearopt.scenes.reading.mistakes import table_of
 from gearopt.scenes.reading.schema import json_schema
 
 PROBLEMS = sorted((Path(__file__).parents[2] / "problems").glob("*.toml"))

@@ -24,7 +24,7 @@ from servo_axes import (
 import gearopt
 from gearopt.formulations.servo import split
 from gearopt.optimise.clock import Clock
-from gearopt.report.kinds.servo.axis_housing import box as box_section
+from gearopt.report.kinds.servo.housing import box as box_section
 from gearopt.report.measures import METRIC
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.servo.remedies import blocked

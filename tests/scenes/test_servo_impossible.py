@@ -19,7 +19,7 @@ from gearopt.report.answer import proof, summary
 from gearopt.report.measures import METRIC
 from gearopt.scenes.servo import EXAMPLE
 from gearopt.scenes.servo.alone import reached
-from gearopt.scenes.servo.assumptions import notes
+from gearopt.scenes.servo.notes import notes
 from gearopt.scenes.servo.remedies import remedies
 
 

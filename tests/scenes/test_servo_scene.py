@@ -21,20 +21,21 @@ from servo_files import (
 
 import gearopt
 from gearopt.errors import SceneError
-from gearopt.formulations.servo import choice, servo_box, split, train_front
+from gearopt.formulations.servo import choice, servo_box, split
+from gearopt.formulations.servo import front as train_front
+from gearopt.formulations.servo.front import front
 from gearopt.formulations.servo.servo_design import RatioDesign
 from gearopt.formulations.servo.split.servo_train import pairs
-from gearopt.formulations.servo.train_front import front
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.typed import typed
 from gearopt.report.explained import remedy_words
-from gearopt.report.kinds.servo.axis_motion import best_words
+from gearopt.report.kinds.servo.motion import best_words
 from gearopt.scenes import servo
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.servo import EXAMPLE
-from gearopt.scenes.servo.assumptions import UNLISTED, assumptions, given_overlap
-from gearopt.scenes.servo.train_part import of_point
+from gearopt.scenes.servo.notes import UNLISTED, assumptions, given_overlap
+from gearopt.scenes.servo.train import of_point
 
 
 @pytest.mark.parametrize(

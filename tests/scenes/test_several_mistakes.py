@@ -13,8 +13,8 @@ from gearopt.errors import SceneError
 from gearopt.scenes.reading.absent import absent, option
 from gearopt.scenes.reading.called import CALLED
 from gearopt.scenes.reading.load import kinds, read, scene_module
+from gearopt.scenes.reading.mistakes import tables
 from gearopt.scenes.reading.not_yet import NEAREST
-from gearopt.scenes.reading.remedy import tables
 from gearopt.scenes.reading.toml import dotted
 
 PROBLEMS = Path(__file__).parents[2] / "problems"

@@ -10,16 +10,16 @@ from gearopt.errors import SceneError, SolveError
 from gearopt.formulations.strain_wave.duty import equal_pressure, loads_at, pressures
 from gearopt.formulations.strain_wave.exchange import design_of
 from gearopt.formulations.strain_wave.range_ends import RangeEnd
-from gearopt.formulations.strain_wave.wave_report import Deflected, WaveDesign, used
+from gearopt.formulations.strain_wave.report import Deflected, WaveDesign, used
 from gearopt.optimise.typed import typed
+from gearopt.report.kinds.strain_wave.tables import loads
 from gearopt.report.measures import METRIC
-from gearopt.report.wave_tables import loads
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.strain_wave import EXAMPLE, compared, explain, model, objectives, several
 from gearopt.scenes.strain_wave.example import FROM_DUTY
-from gearopt.scenes.strain_wave.wave_assumptions import assumptions, notes, range_notes
-from gearopt.scenes.strain_wave.ways_out import costs
+from gearopt.scenes.strain_wave.notes import assumptions, notes, range_notes
+from gearopt.scenes.strain_wave.remedies import costs
 
 
 def scene(text):

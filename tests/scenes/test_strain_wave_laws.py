@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from gearopt.errors import SceneError
-from gearopt.formulations.strain_wave.wave_report import WaveDesign
+from gearopt.formulations.strain_wave.report import WaveDesign
 from gearopt.optimise.typed import typed
 from gearopt.report.kinds.strain_wave import cutter, moving, numbers, shift
+from gearopt.report.kinds.strain_wave.motion import drawn, running
 from gearopt.report.measures import METRIC
-from gearopt.report.pages.wave_motion import drawn, running
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.strain_wave.example import EXAMPLE
 

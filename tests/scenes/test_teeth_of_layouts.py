@@ -6,8 +6,8 @@ import pytest
 
 import gearopt
 from gearopt.errors import SceneError
-from gearopt.formulations.layout.chain import chain
-from gearopt.formulations.layout.slabs import arrangements
+from gearopt.formulations.drive.layout.chain import chain
+from gearopt.formulations.drive.layout.slabs import arrangements
 
 TEXT = """
 gearopt = 1

@@ -10,10 +10,10 @@ from fractions import Fraction
 from typing import Any
 
 from gearopt.bench.drive import CASES, train_of
-from gearopt.formulations import sizing, teeth
-from gearopt.formulations.gear_train import FaceWidth, Stage, Train
+from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.toothing import Toothing
 from gearopt.optimise.comparing.compare import compare
 from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.comparing.runs import Model, Plan

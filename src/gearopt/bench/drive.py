@@ -7,8 +7,8 @@ and more stages have no published optimum, so their error is the proven gap.
 from typing import Any
 
 from gearopt.bench import timed
-from gearopt.formulations import sizing, teeth
-from gearopt.formulations.gear_train import Train
+from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive.train import Train
 from gearopt.optimise.solve import solve
 from gearopt.scenes.reading.load import read
 

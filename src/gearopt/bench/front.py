@@ -12,7 +12,7 @@ from functools import partial
 from typing import Any
 
 from gearopt.bench.drive import CASES, train_of
-from gearopt.formulations import teeth
+from gearopt.formulations.drive import teeth
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.fronts import FINE
 from gearopt.optimise.pareto.found import Found

@@ -13,9 +13,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from gearopt.formulations.motion.integrate import STEPPERS, conservative, march
-from gearopt.formulations.motion.reference import SCIPY, cvodes, scipy_motion
-from gearopt.formulations.motion.timeline import timeline
+from gearopt.formulations.dynamics.motion.integrate import STEPPERS, conservative, march
+from gearopt.formulations.dynamics.motion.reference import SCIPY, cvodes, scipy_motion
+from gearopt.formulations.dynamics.motion.timeline import timeline
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor
 from gearopt.physics.motion.stiffness_wave import Wave, constant, trapezoid
 

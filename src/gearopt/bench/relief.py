@@ -12,9 +12,9 @@ from functools import partial
 from typing import Any
 
 from gearopt.bench import timed
-from gearopt.formulations.relief.free_form import free_problem
-from gearopt.formulations.relief.meshing import Mesh
-from gearopt.formulations.relief.parametric import Ranges, problem
+from gearopt.formulations.pair.relief.free_form import free_problem
+from gearopt.formulations.pair.relief.meshing import Mesh
+from gearopt.formulations.pair.relief.parametric import Ranges, problem
 from gearopt.optimise.result import Budget, Result
 from gearopt.optimise.solve import solve
 from gearopt.physics.gears import GearPair, Rack

@@ -11,7 +11,7 @@ from functools import partial
 from typing import Any
 
 from gearopt.bench import timed
-from gearopt.formulations.sharing import share_rows
+from gearopt.formulations.pair.sharing import share_rows
 from gearopt.physics.load_sharing import share
 
 POSITIONS, CHECKED = 1_000_000, 200

@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 
 from gearopt.bench import timed
-from gearopt.formulations.strain_wave.wave_sharing import Teeth, conic, problem, shared, teeth_of
+from gearopt.formulations.strain_wave.sharing import Teeth, conic, problem, shared, teeth_of
 from gearopt.optimise.solve import solve
 from gearopt.physics.strain_wave.conjugate import flank
 from gearopt.physics.strain_wave.gearing import StrainWave

@@ -5,7 +5,7 @@ from dataclasses import MISSING, fields
 from itertools import zip_longest
 from typing import Any
 
-from gearopt.formulations.design import StageDesign
+from gearopt.formulations.drive.design import StageDesign
 from gearopt.formulations.strength import laws
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures, error_of

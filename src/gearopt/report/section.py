@@ -13,10 +13,10 @@ from urllib.parse import quote
 
 from rich.text import Text
 
+from gearopt.report.drawing.player import Animation
+from gearopt.report.drawing.row import Row
+from gearopt.report.drawing.sheet import Drawing
 from gearopt.report.measures import Measures
-from gearopt.report.pages.player import Animation
-from gearopt.report.pages.row import Row
-from gearopt.report.pages.sheet import Drawing
 from gearopt.report.words import number, share
 
 # What spreadsheets take for formulas (wide signs in East Asian ones), unless it is a number.

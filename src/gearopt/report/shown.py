@@ -15,7 +15,8 @@ from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
-from gearopt.report import comparison_words, front
+from gearopt.report import comparison as comparison_words
+from gearopt.report import front
 from gearopt.report.answer import WAYS, decided
 from gearopt.report.explained import of_influences
 from gearopt.report.kinds import kind_of

@@ -11,7 +11,7 @@ from gearopt.optimise.comparing.comparison import Comparison, Group
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
-from gearopt.report import comparison_words as words
+from gearopt.report import comparison as words
 from gearopt.report import front
 from gearopt.report.answer import decided
 from gearopt.report.explained import of_influences

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from moving_pairs import oscillator, paper_pair
 
-from gearopt.formulations.motion.balance import linear_orbit, orbit
-from gearopt.formulations.motion.integrate import march
-from gearopt.formulations.motion.timeline import timeline
+from gearopt.formulations.dynamics.motion.balance import linear_orbit, orbit
+from gearopt.formulations.dynamics.motion.integrate import march
+from gearopt.formulations.dynamics.motion.timeline import timeline
 from gearopt.physics.motion.moving_pair import damping_of
 from gearopt.physics.motion.stiffness_wave import trapezoid
 

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from moving_pairs import oscillator, steady
 
-from gearopt.formulations.motion.balance import orbit
-from gearopt.formulations.motion.integrate import march
-from gearopt.formulations.motion.timeline import timeline
+from gearopt.formulations.dynamics.motion.balance import orbit
+from gearopt.formulations.dynamics.motion.integrate import march
+from gearopt.formulations.dynamics.motion.timeline import timeline
 from gearopt.physics.motion.stiffness_wave import fourier
 
 TURN = 2.0 * math.pi

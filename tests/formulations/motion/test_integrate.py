@@ -7,16 +7,16 @@ import pytest
 from moving_pairs import paper_pair
 from scipy import integrate
 
-from gearopt.formulations.motion.exponential import exact_motion, piecewise_linear
-from gearopt.formulations.motion.integrate import (
+from gearopt.formulations.dynamics.motion.exponential import exact_motion, piecewise_linear
+from gearopt.formulations.dynamics.motion.integrate import (
     MARCH,
     composition,
     march,
 )
-from gearopt.formulations.motion.numbers import deformation, numbers
-from gearopt.formulations.motion.reference import cvodes, scipy_motion
-from gearopt.formulations.motion.simulate import simulate
-from gearopt.formulations.motion.timeline import timeline
+from gearopt.formulations.dynamics.motion.numbers import deformation, numbers
+from gearopt.formulations.dynamics.motion.reference import cvodes, scipy_motion
+from gearopt.formulations.dynamics.motion.simulate import simulate
+from gearopt.formulations.dynamics.motion.timeline import timeline
 from gearopt.optimise.kernels import kernel
 from gearopt.physics.motion.accelerations import LEVELS
 from gearopt.physics.motion.moving_pair import turns

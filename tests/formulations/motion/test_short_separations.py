@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from moving_pairs import paper_pair
 
-from gearopt.formulations.motion.simulate import simulate
+from gearopt.formulations.dynamics.motion.simulate import simulate
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor, damping_of
 from gearopt.physics.motion.stiffness_wave import trapezoid
 

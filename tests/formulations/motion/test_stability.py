@@ -7,8 +7,8 @@ import pytest
 from moving_pairs import paper_pair
 from scipy import special
 
-from gearopt.formulations.motion import stability
-from gearopt.formulations.motion.stability import (
+from gearopt.formulations.dynamics.motion import stability
+from gearopt.formulations.dynamics.motion.stability import (
     largest,
     monodromy,
     multipliers,

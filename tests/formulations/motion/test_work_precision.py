@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from gearopt.bench.integrators import OUTPUTS, TIME, pair
-from gearopt.formulations.motion.integrate import STEPPERS, march
-from gearopt.formulations.motion.reference import scipy_motion
-from gearopt.formulations.motion.timeline import timeline
+from gearopt.formulations.dynamics.motion.integrate import STEPPERS, march
+from gearopt.formulations.dynamics.motion.reference import scipy_motion
+from gearopt.formulations.dynamics.motion.timeline import timeline
 from gearopt.physics.motion.stiffness_wave import constant, trapezoid
 
 SCENES = {

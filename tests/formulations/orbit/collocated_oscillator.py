@@ -9,9 +9,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearopt.formulations.motion.integrate import march
-from gearopt.formulations.motion.timeline import timeline
-from gearopt.formulations.orbit.collocation import Moving, Piece, Timing, collocated, gauss
+from gearopt.formulations.dynamics.motion.integrate import march
+from gearopt.formulations.dynamics.motion.timeline import timeline
+from gearopt.formulations.dynamics.orbit.collocation import Moving, Piece, Timing, collocated, gauss
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Repeat, Terms, Var
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor

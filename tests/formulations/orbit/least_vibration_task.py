@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from gearopt.formulations.orbit.task import Task
+from gearopt.formulations.dynamics.orbit.task import Task
 
 ANGLE = math.radians(20.0)
 SPEEDS = tuple(np.linspace(1500.0, 6000.0, 16))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from collocated_oscillator import at_phase_zero, oscillator, partings, posed, started
 
-from gearopt.formulations.orbit.collocation import gauss
+from gearopt.formulations.dynamics.orbit.collocation import gauss
 from gearopt.optimise.solve import solve
 
 DOWN = (0.9, 0.85, 0.8, 0.77, 0.75)  # falling speeds, which keep the motion that parts

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from least_vibration_task import TASK
 
-from gearopt.formulations.orbit.impossible import impossible, least_limits
-from gearopt.formulations.orbit.least_vibration import methods
-from gearopt.formulations.orbit.orbit_text import problem, reduced
-from gearopt.formulations.orbit.screening import within
+from gearopt.formulations.dynamics.orbit.impossible import impossible, least_limits
+from gearopt.formulations.dynamics.orbit.least_vibration import methods
+from gearopt.formulations.dynamics.orbit.orbit_text import problem, reduced
+from gearopt.formulations.dynamics.orbit.screening import within
 from gearopt.optimise.box import box
 from gearopt.optimise.solve import solve
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from least_vibration_task import BEST, HEAVY, LEAST, REFERENCE, SPEEDS, TASK
 
-from gearopt.formulations.motion.balance import linear_orbit
-from gearopt.formulations.motion.stability import multipliers
-from gearopt.formulations.orbit.climbing import climb, growth, posed
-from gearopt.formulations.orbit.least_vibration import exchange, methods
-from gearopt.formulations.orbit.orbit_text import problem, reduced, start
-from gearopt.formulations.orbit.task import pair_of, worst
+from gearopt.formulations.dynamics.motion.balance import linear_orbit
+from gearopt.formulations.dynamics.motion.stability import multipliers
+from gearopt.formulations.dynamics.orbit.climbing import climb, growth, posed
+from gearopt.formulations.dynamics.orbit.least_vibration import exchange, methods
+from gearopt.formulations.dynamics.orbit.orbit_text import problem, reduced, start
+from gearopt.formulations.dynamics.orbit.task import pair_of, worst
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve

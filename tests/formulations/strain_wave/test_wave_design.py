@@ -9,9 +9,9 @@ from gearopt.bench.wave_design import DEMAND, STARTS
 from gearopt.errors import SolveError
 from gearopt.formulations.strain_wave import sampled
 from gearopt.formulations.strain_wave.demand import FREE, limits, squares
+from gearopt.formulations.strain_wave.design import Passage, problem, variables
 from gearopt.formulations.strain_wave.duty import equal_pressure, shared_pressure
 from gearopt.formulations.strain_wave.exchange import design_of, exchange, stretched
-from gearopt.formulations.strain_wave.wave_design import Passage, problem, variables
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.compare import compare
 from gearopt.optimise.comparing.runs import Model, Plan
@@ -130,7 +130,7 @@ def test_what_limits_cost_is_what_solving_again_finds(monkeypatch):
     start = np.array(STARTS[0])
 
     def pressure(demand=DEMAND, more=0.0):
-        monkeypatch.setattr("gearopt.formulations.strain_wave.wave_design.LEAST_GAP", 1e-5 + more)
+        monkeypatch.setattr("gearopt.formulations.strain_wave.design.LEAST_GAP", 1e-5 + more)
         return exchange(demand, start, Clock()).result.value
 
     prices = exchange(DEMAND, start, Clock()).result.multipliers

@@ -12,7 +12,7 @@ from gearopt.formulations.strain_wave.duty import (
     pressures,
     shared_pressure,
 )
-from gearopt.formulations.strain_wave.wave_sharing import conic, problem, shared, teeth_of
+from gearopt.formulations.strain_wave.sharing import conic, problem, shared, teeth_of
 from gearopt.optimise.solve import solve
 from gearopt.physics.load_sharing import share
 from gearopt.physics.strain_wave.conjugate import flank

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from moving_pairs import paper_pair
 
-from gearopt.formulations.motion.stability import largest
+from gearopt.formulations.dynamics.motion.stability import largest
 from gearopt.physics.motion.linear import linear, mesh_shares, modes, with_modal_damping
 from gearopt.physics.motion.stiffness_wave import of_contact_ratio, trapezoid
 from gearopt.physics.motion.tongues import tongues

@@ -10,8 +10,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearopt.formulations.dynamics.dynamics_design import Columns, Speeds
-from gearopt.formulations.dynamics.dynamics_parts import columns, gaps
+from gearopt.formulations.dynamics.design import Columns, Speeds
+from gearopt.formulations.dynamics.motion.stability import bands
+from gearopt.formulations.dynamics.parts import columns, gaps
 from gearopt.formulations.dynamics.steady_motion import (
     Contact,
     Motion,
@@ -20,7 +21,6 @@ from gearopt.formulations.dynamics.steady_motion import (
     near,
     settled,
 )
-from gearopt.formulations.motion.stability import bands
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.moving_pair import MovingPair

@@ -12,12 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gearopt.formulations.dynamics.dynamics_parts import around, jammed, resting
-from gearopt.formulations.motion.balance import SAMPLES, Orbit, linear_orbit, orbit, states
-from gearopt.formulations.motion.integrate import Marched, march
-from gearopt.formulations.motion.simulate import fastest
-from gearopt.formulations.motion.stability import UNSTABLE, largest, ready
-from gearopt.formulations.motion.timeline import timeline
+from gearopt.formulations.dynamics.motion.balance import SAMPLES, Orbit, linear_orbit, orbit, states
+from gearopt.formulations.dynamics.motion.integrate import Marched, march
+from gearopt.formulations.dynamics.motion.simulate import fastest
+from gearopt.formulations.dynamics.motion.stability import UNSTABLE, largest, ready
+from gearopt.formulations.dynamics.motion.timeline import timeline
+from gearopt.formulations.dynamics.parts import around, jammed, resting
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.linear import linear

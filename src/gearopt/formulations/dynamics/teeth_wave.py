@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gearopt.formulations.pair_contact import ContactLoad, PairContact
+from gearopt.formulations.pair.contact import ContactLoad, PairContact
 from gearopt.physics.motion.stiffness_wave import Wave
 
 

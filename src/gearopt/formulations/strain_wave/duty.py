@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.strain_wave.wave_sharing import Loads, Teeth, shared, teeth_of
+from gearopt.formulations.strain_wave.sharing import Loads, Teeth, shared, teeth_of
 from gearopt.physics.strain_wave.conjugate import Flank
 from gearopt.physics.strain_wave.rim import Cup
 from gearopt.physics.strain_wave.strength import contact_modulus, equal_share, hertz_pressure

@@ -8,14 +8,14 @@ import numpy as np
 
 from gearopt.formulations.strain_wave.box_bounds import proof
 from gearopt.formulations.strain_wave.demand import FREE, PRESSURE, Demand
-from gearopt.formulations.strain_wave.impossible import Nearest, nearest
-from gearopt.formulations.strain_wave.wave_design import (
+from gearopt.formulations.strain_wave.design import (
     COUNT,
     NO_LIMITS,
     Passage,
     problem,
     tip_leaves,
 )
+from gearopt.formulations.strain_wave.impossible import Nearest, nearest
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Result, Watch

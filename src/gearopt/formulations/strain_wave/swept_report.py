@@ -11,7 +11,7 @@ from gearopt.formulations.strain_wave.cutter_report import Cutter, cutter_of
 from gearopt.formulations.strain_wave.demand import Demand, common_limits
 from gearopt.formulations.strain_wave.duty import SHIFTS, Duty
 from gearopt.formulations.strain_wave.exchange import STEP_DEG
-from gearopt.formulations.strain_wave.wave_report import (
+from gearopt.formulations.strain_wave.report import (
     OTHER_DEFLECTIONS,
     ROWS,
     TURNS,
@@ -26,7 +26,7 @@ from gearopt.formulations.strain_wave.wave_report import (
     shares,
     sizes_of,
 )
-from gearopt.formulations.strain_wave.wave_sharing import compliance_of, shared
+from gearopt.formulations.strain_wave.sharing import compliance_of, shared
 from gearopt.physics.strain_wave.circular_arc import DoubleArc, half_locus_tooth, tooth_heights
 from gearopt.physics.strain_wave.cutter import Profile
 from gearopt.physics.strain_wave.gearing import StrainWave

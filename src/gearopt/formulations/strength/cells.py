@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.toothing import Toothing
+from gearopt.formulations.drive.toothing import Toothing
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 

@@ -3,14 +3,14 @@
 from dataclasses import replace
 from typing import Any
 
-from gearopt.formulations.layout.layout_design import GearDesign
+from gearopt.formulations.drive.layout.layout_design import GearDesign
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.design_tables import ratio_tile
+from gearopt.report.drawing.number_line import Guide, Span, number_line
+from gearopt.report.drawing.train_views import DrawnStage, along_shafts, in_one_line
 from gearopt.report.kinds import generic
 from gearopt.report.measures import Measures
-from gearopt.report.pages.number_line import Guide, Span, number_line
-from gearopt.report.pages.train_views import DrawnStage, along_shafts, in_one_line
 from gearopt.report.section import Section, Tile
 from gearopt.scenes.compound import CompoundDesign
 

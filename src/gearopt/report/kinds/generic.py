@@ -5,10 +5,10 @@ A design with a list of `stages` that has the sizes of gears is drawn, too.
 
 from gearopt.report.answer import asked, assumptions, limits, progress, proven, summary
 from gearopt.report.design_tables import tables
+from gearopt.report.drawing.impossible_views import section as impossible
+from gearopt.report.drawing.train_views import section as gears_in_one_line
 from gearopt.report.explained import remedies, sensitivities
 from gearopt.report.kinds import Kind
-from gearopt.report.pages.impossible_views import section as impossible
-from gearopt.report.pages.train_views import section as gears_in_one_line
 
 FIRST = (summary, remedies, impossible)
 ASKED = (asked, limits, sensitivities)

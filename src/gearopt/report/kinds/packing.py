@@ -14,11 +14,8 @@ from gearopt.formulations.packing.design import (
 )
 from gearopt.optimise.result import Result
 from gearopt.report.design_tables import records, tables_of
-from gearopt.report.kinds import Kind
-from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
-from gearopt.report.measures import Measures
-from gearopt.report.pages.sheet import Drawing, Place, Sheet, Window, around, series
-from gearopt.report.pages.solid import (
+from gearopt.report.drawing.sheet import Drawing, Place, Sheet, Window, around, series
+from gearopt.report.drawing.solid import (
     TURN,
     Point,
     edges,
@@ -28,7 +25,10 @@ from gearopt.report.pages.solid import (
     space,
     upright,
 )
-from gearopt.report.pages.still import Rod, Texts, sizes_of, still, view
+from gearopt.report.drawing.still import Rod, Texts, sizes_of, still, view
+from gearopt.report.kinds import Kind
+from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
+from gearopt.report.measures import Measures
 from gearopt.report.section import Cell, Figure, Section, Table, shown
 from gearopt.report.words import heading, number, parted
 from gearopt.units import parse

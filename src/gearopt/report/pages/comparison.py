@@ -5,10 +5,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from gearopt.optimise.comparing.comparison import Comparison, Group, Run, Sample
-from gearopt.report import comparison_words as words
+from gearopt.report import comparison as words
+from gearopt.report.drawing.sheet import COLOURS
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.frame import render
-from gearopt.report.pages.sheet import COLOURS
 from gearopt.report.section import Figure, Table, axis, layout
 
 KNOWN = ("exact", "ipopt", "annealing", "nsga2", "scip", "gp", "multistart")

@@ -5,18 +5,19 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-from gearopt.formulations.design import drive_design
+from gearopt.formulations.drive.design import drive_design
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.pareto.pareto import RANDOM
 from gearopt.report import front as told
 from gearopt.report.answer import assumptions
+from gearopt.report.drawing import layout_views, train_views
+from gearopt.report.drawing.sheet import Drawing
 from gearopt.report.front import rules, stages_of, words
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.pages import front_designs, front_plots, layout_views, train_views
+from gearopt.report.pages import front_designs, front_plots
 from gearopt.report.pages.frame import render
 from gearopt.report.pages.front_designs import Numbers
 from gearopt.report.pages.front_values import Drawn, drawn
-from gearopt.report.pages.sheet import Drawing
 from gearopt.report.section import Section, Tile
 from gearopt.report.words import effort, sentence
 

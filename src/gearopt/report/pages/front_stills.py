@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
+from gearopt.report.drawing.number_line import even_ticks
+from gearopt.report.drawing.sheet import Drawing, Place, Sheet, Window, around
+from gearopt.report.drawing.still import edges, outside, view
 from gearopt.report.pages.front_values import Drawn, Span
-from gearopt.report.pages.number_line import even_ticks
-from gearopt.report.pages.sheet import Drawing, Place, Sheet, Window, around
-from gearopt.report.pages.still import edges, outside, view
 
 WIDE, HIGH = 620.0, 340.0  # px of a plot inside its axes
 LEFT, BELOW, EDGE = 74.0, 46.0, 16.0  # px around it

@@ -10,9 +10,9 @@ from functools import partial
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations import sizing, teeth
-from gearopt.formulations.gear_train import Train
-from gearopt.formulations.shares import MASSES
+from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive.shares import MASSES
+from gearopt.formulations.drive.train import Train
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.clock import Clock, in_part, of_others, tell_known
 from gearopt.optimise.comparing.runs import Model
@@ -21,16 +21,16 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
 from gearopt.optimise.typed import untyped
-from gearopt.scenes.drive.assumptions import assumptions, notes
-from gearopt.scenes.drive.blank_tables import BlankKeys, body_flaws
+from gearopt.scenes.drive.counts import best_count
 from gearopt.scenes.drive.examples import EXAMPLE, MORE_EXAMPLES
-from gearopt.scenes.drive.front import advice, objectives, several, to_choose
+from gearopt.scenes.drive.notes import assumptions, notes
 from gearopt.scenes.drive.rating.cut_short import bounded
 from gearopt.scenes.drive.rating.limits import check_safe, rated_afterwards
 from gearopt.scenes.drive.rating.rated import rate, with_rating
-from gearopt.scenes.drive.rating.tables import MATERIAL, GivenTable
 from gearopt.scenes.drive.scene import PROCESSES, Scene
-from gearopt.scenes.drive.stage_counts import best_count
+from gearopt.scenes.drive.tables.blanks import BlankKeys, body_flaws
+from gearopt.scenes.drive.tables.rating import MATERIAL, GivenTable
+from gearopt.scenes.drive.trades import advice, objectives, several, to_choose
 from gearopt.scenes.explaining.default import of_report
 from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.ask import Ask, unseeded
@@ -198,7 +198,7 @@ def _explained(scene: Scene, ask: Ask, result: Result, clock: Clock) -> Explanat
         words = f"the number of stages is held at {count}"
         return replace(found, message="; ".join(filter(None, (found.message, words))))
     if scene.layout is not None:
-        from gearopt.scenes.drive.box.remedies import explained as box_explained
+        from gearopt.scenes.drive.explaining.box_remedies import explained as box_explained
 
         return box_explained(scene, result, clock)
     from gearopt.scenes.drive.explaining.influences import explained

@@ -3,8 +3,8 @@
 from fractions import Fraction
 from typing import Any
 
-from gearopt.formulations.gear_train import FaceWidth
-from gearopt.scenes.drive.drive_tables import Gears, StageTable
+from gearopt.formulations.drive.train import FaceWidth
+from gearopt.scenes.drive.tables.drive import Gears, StageTable
 from gearopt.scenes.reading.fields import refuse
 
 

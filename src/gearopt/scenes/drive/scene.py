@@ -7,33 +7,16 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
-from gearopt.formulations.design import DriveDesign, describe
-from gearopt.formulations.gear_train import Stage, Train
-from gearopt.formulations.layout.gearbox import Gearbox
-from gearopt.formulations.process import methods
+from gearopt.formulations.drive.design import DriveDesign, describe
+from gearopt.formulations.drive.layout.gearbox import Gearbox
+from gearopt.formulations.drive.processes import methods
+from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength import RATED, Law
 from gearopt.optimise.result import Outcome
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.loads import torque
-from gearopt.scenes.drive.blank_tables import blank, check_blanks
-from gearopt.scenes.drive.drive_tables import (
-    Gears,
-    Limits,
-    Objective,
-    ProcessOneTable,
-    ProcessTwoTable,
-    StageTable,
-    Teeth,
-)
 from gearopt.scenes.drive.face_widths import check_width, face_width
-from gearopt.scenes.drive.layout_tables import (
-    KeepOutTable,
-    Layout,
-    PlaceTable,
-    check_shared,
-    gearbox,
-)
 from gearopt.scenes.drive.rating.checks import (
     check_given,
     check_objective,
@@ -44,8 +27,25 @@ from gearopt.scenes.drive.rating.checks import (
     not_given,
 )
 from gearopt.scenes.drive.rating.materials import MaterialTable, check_materials, check_same
-from gearopt.scenes.drive.rating.tables import LoadTable, RatingTable, with_shared
-from gearopt.scenes.drive.tooth_tables import check_mesh, check_teeth, toothing
+from gearopt.scenes.drive.tables.blanks import blank, check_blanks
+from gearopt.scenes.drive.tables.drive import (
+    Gears,
+    Limits,
+    Objective,
+    ProcessOneTable,
+    ProcessTwoTable,
+    StageTable,
+    Teeth,
+)
+from gearopt.scenes.drive.tables.layout import (
+    KeepOutTable,
+    Layout,
+    PlaceTable,
+    check_shared,
+    gearbox,
+)
+from gearopt.scenes.drive.tables.rating import LoadTable, RatingTable, with_shared
+from gearopt.scenes.drive.tables.teeth import check_mesh, check_teeth, toothing
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.fields import Table, refuse, whole, words

@@ -4,11 +4,11 @@ import math
 from dataclasses import replace
 
 from gearopt.errors import SolveError
-from gearopt.formulations.dynamics import dynamics_parts as parts
-from gearopt.formulations.dynamics.dynamics_design import DynamicsDesign
+from gearopt.formulations.dynamics import parts
+from gearopt.formulations.dynamics.design import DynamicsDesign
+from gearopt.formulations.dynamics.motion.stability import UNSTABLE
 from gearopt.formulations.dynamics.motions_over_speed import limited, over_speeds
-from gearopt.formulations.motion.stability import UNSTABLE
-from gearopt.formulations.orbit.task import pair_of
+from gearopt.formulations.dynamics.orbit.task import pair_of
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explain import binding
@@ -17,7 +17,10 @@ from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
 from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.scenes.dynamics.example import EXAMPLE
-from gearopt.scenes.dynamics.optimised import (
+from gearopt.scenes.dynamics.notes import warnings
+from gearopt.scenes.dynamics.own_teeth import of_teeth
+from gearopt.scenes.dynamics.scene import Scene, wave_of
+from gearopt.scenes.dynamics.steps import (
     BEST,
     beside,
     optimised,
@@ -25,9 +28,6 @@ from gearopt.scenes.dynamics.optimised import (
     told,
     whole_problem,
 )
-from gearopt.scenes.dynamics.own_teeth import of_teeth
-from gearopt.scenes.dynamics.scene import Scene, wave_of
-from gearopt.scenes.dynamics.warnings import warnings
 from gearopt.scenes.explaining.default import explained, of_report
 from gearopt.scenes.reading.ask import Ask, without_method
 

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from gearopt.errors import SceneError
-from gearopt.formulations.design import DriveDesign, drive_design
+from gearopt.formulations.drive.design import DriveDesign, drive_design
 from gearopt.formulations.dynamics.teeth_wave import nearest_load, of_contact
-from gearopt.formulations.pair_contact import ContactLoad, PairContact
-from gearopt.formulations.pair_relief import PairRelief
+from gearopt.formulations.pair.contact import ContactLoad, PairContact
+from gearopt.formulations.pair.relief_map import PairRelief
 from gearopt.optimise.typed import typed
 from gearopt.physics.gears import GearPair
 from gearopt.physics.motion.stiffness_wave import Wave

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from gearopt.formulations.orbit.task import Task
+from gearopt.formulations.dynamics.orbit.task import Task
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor, damping_of
 from gearopt.physics.motion.stiffness_wave import Wave, constant, fourier, trapezoid
 from gearopt.scenes.dynamics.tables import (

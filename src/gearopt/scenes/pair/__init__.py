@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from gearopt.errors import SolveError
-from gearopt.formulations.design import DriveDesign, drive_design
-from gearopt.formulations.pair_contact import PairMesh
-from gearopt.formulations.relief import parametric
+from gearopt.formulations.drive.design import DriveDesign, drive_design
+from gearopt.formulations.pair.contact import PairMesh
+from gearopt.formulations.pair.relief import parametric
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explanation import Explanation
@@ -15,14 +15,14 @@ from gearopt.optimise.pareto.several import Several
 from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
 from gearopt.scenes import drive
-from gearopt.scenes.drive.blank_tables import body_flaws
 from gearopt.scenes.drive.rating import rated
+from gearopt.scenes.drive.tables.blanks import body_flaws
 from gearopt.scenes.explaining.default import explain as explain_scene
-from gearopt.scenes.pair import relief_part
-from gearopt.scenes.pair.contact_assumptions import contact_assumptions
-from gearopt.scenes.pair.contact_part import contact_of, mesh_of
+from gearopt.scenes.pair import relief as relief_part
+from gearopt.scenes.pair.contact import contact_of, mesh_of
 from gearopt.scenes.pair.example import EXAMPLE, MORE_EXAMPLES
-from gearopt.scenes.pair.relief_part import relieved
+from gearopt.scenes.pair.notes import contact_assumptions
+from gearopt.scenes.pair.relief import relieved
 from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.scene import Scene
 from gearopt.scenes.reading.ask import Ask, unseeded, without_method

@@ -6,10 +6,10 @@ from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.tooth.ladder import LEVELS, USUAL
 from gearopt.physics.tooth.trapezoid import is_waisted
-from gearopt.scenes.drive.blank_tables import blank
-from gearopt.scenes.drive.drive_tables import Gears, StageTable
-from gearopt.scenes.drive.rating.tables import with_shared
-from gearopt.scenes.drive.tooth_tables import ROOT, TIP, cause
+from gearopt.scenes.drive.tables.blanks import blank
+from gearopt.scenes.drive.tables.drive import Gears, StageTable
+from gearopt.scenes.drive.tables.rating import with_shared
+from gearopt.scenes.drive.tables.teeth import ROOT, TIP, cause
 from gearopt.scenes.reading.fields import refuse
 
 Place = tuple[Any, ...]

@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from gearopt import units
-from gearopt.formulations.relief.parametric import OBJECTIVES
+from gearopt.formulations.pair.relief.parametric import OBJECTIVES
 from gearopt.scenes.pair.sharing_tables import LOADS
 from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, truth
 from gearopt.scenes.reading.lists import span, word_or

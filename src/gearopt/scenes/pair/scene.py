@@ -6,13 +6,13 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, ValidationError, model_validator
 
 from gearopt.physics.gears import GearPair
-from gearopt.scenes.drive.drive_tables import Gears, Limits, Objective, StageTable, Teeth
 from gearopt.scenes.drive.rating.checks import check_pinion, not_given
 from gearopt.scenes.drive.rating.gears import given_pairs
 from gearopt.scenes.drive.rating.materials import MaterialTable
-from gearopt.scenes.drive.rating.tables import LoadTable, RatingTable
 from gearopt.scenes.drive.scene import DriveDuty
 from gearopt.scenes.drive.scene import Scene as Drive
+from gearopt.scenes.drive.tables.drive import Gears, Limits, Objective, StageTable, Teeth
+from gearopt.scenes.drive.tables.rating import LoadTable, RatingTable
 from gearopt.scenes.pair.pair_flaws import check_level, check_pair
 from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.sharing_tables import SharingTable

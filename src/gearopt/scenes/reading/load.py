@@ -22,8 +22,8 @@ from gearopt.scenes.reading.called import kind_called
 from gearopt.scenes.reading.changes import as_written, changed
 from gearopt.scenes.reading.fields import Opened
 from gearopt.scenes.reading.files import LARGEST_FILE, first_bytes
+from gearopt.scenes.reading.mistakes import translate, wrong_name, wrong_value
 from gearopt.scenes.reading.near import near
-from gearopt.scenes.reading.remedy import translate, wrong_name, wrong_value
 from gearopt.scenes.reading.toml import cut, dotted, short
 
 FORMAT = 1

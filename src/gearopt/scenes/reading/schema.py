@@ -6,7 +6,7 @@ from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
 
 from gearopt.scenes.reading.load import FORMAT, kinds, scene_module
-from gearopt.scenes.reading.remedy import example_of, table_of, tables
+from gearopt.scenes.reading.mistakes import example_of, table_of, tables
 from gearopt.scenes.reading.toml import toml_text
 
 

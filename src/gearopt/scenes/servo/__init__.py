@@ -28,13 +28,13 @@ from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import disc_mass
 from gearopt.scenes.explaining.default import explained, of_report
 from gearopt.scenes.reading.ask import Ask, unseeded
-from gearopt.scenes.servo.assumptions import assumptions, notes
-from gearopt.scenes.servo.front import objectives, several
+from gearopt.scenes.servo.notes import assumptions, notes
 from gearopt.scenes.servo.remedies import remedies
 from gearopt.scenes.servo.scene import EXAMPLE, Scene
-from gearopt.scenes.servo.tolerance_part import by_every_rule, named, old, tolerance_part
-from gearopt.scenes.servo.tolerance_part import problem as tolerance_problem
-from gearopt.scenes.servo.train_part import (
+from gearopt.scenes.servo.tolerances import by_every_rule, named, old, tolerance_part
+from gearopt.scenes.servo.tolerances import problem as tolerance_problem
+from gearopt.scenes.servo.trades import objectives, several
+from gearopt.scenes.servo.train import (
     Found,
     backlashes,
     beside,

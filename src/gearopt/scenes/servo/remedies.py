@@ -20,7 +20,7 @@ from gearopt.scenes.servo.alone import alone, reached
 from gearopt.scenes.servo.backlash import binds
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import WORDS, Mesh
-from gearopt.scenes.servo.train_part import errors, of_point
+from gearopt.scenes.servo.train import errors, of_point
 from gearopt.units import Quantity
 
 DIGITS = 5  # of a number that is proposed; rounded to the easy side

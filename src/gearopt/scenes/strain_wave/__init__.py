@@ -12,18 +12,18 @@ from gearopt.formulations.strain_wave.demand import FREE, PRESSURE, VOLUME
 from gearopt.formulations.strain_wave.exchange import CUTTING, Exchanged, design_of, exchange
 from gearopt.formulations.strain_wave.impossible import told
 from gearopt.formulations.strain_wave.range_ends import ends_of, slopes_of
-from gearopt.formulations.strain_wave.sampled import SHARE
-from gearopt.formulations.strain_wave.swept_report import (
-    described_by_law,
-    swept_gearing,
-    used_by_law,
-)
-from gearopt.formulations.strain_wave.wave_report import (
+from gearopt.formulations.strain_wave.report import (
     RoundRow,
     WaveDesign,
     described,
     sketched,
     used,
+)
+from gearopt.formulations.strain_wave.sampled import SHARE
+from gearopt.formulations.strain_wave.swept_report import (
+    described_by_law,
+    swept_gearing,
+    used_by_law,
 )
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.runs import Model
@@ -40,9 +40,9 @@ from gearopt.physics.strain_wave.conjugate import Flank
 from gearopt.scenes.explaining.default import of_report
 from gearopt.scenes.reading.ask import Ask, unseeded, without_method
 from gearopt.scenes.strain_wave.example import EXAMPLE, MORE_EXAMPLES
+from gearopt.scenes.strain_wave.notes import assumptions, notes, range_notes
+from gearopt.scenes.strain_wave.remedies import influences, ways_out
 from gearopt.scenes.strain_wave.scene import Scene
-from gearopt.scenes.strain_wave.wave_assumptions import assumptions, notes, range_notes
-from gearopt.scenes.strain_wave.ways_out import influences, ways_out
 
 __all__ = ["EXAMPLE", "MORE_EXAMPLES", "Scene"]
 METHODS = ("exchange",)  # its own

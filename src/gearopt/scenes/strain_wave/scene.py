@@ -8,13 +8,13 @@ from pydantic import Field, model_validator
 from gearopt.formulations.strain_wave.cutter_report import USUAL, Cutter
 from gearopt.formulations.strain_wave.demand import FREE, Demand
 from gearopt.formulations.strain_wave.duty import Duty
+from gearopt.formulations.strain_wave.report import INVOLUTE
 from gearopt.formulations.strain_wave.swept_report import HALF_LOCUS, Law
-from gearopt.formulations.strain_wave.wave_report import INVOLUTE
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.rim import Cup
 from gearopt.scenes.reading.fields import Table, refuse, words
 from gearopt.scenes.strain_wave.law_faults import Fault, contact_fault, law_fault
-from gearopt.scenes.strain_wave.wave_tables import (
+from gearopt.scenes.strain_wave.tables import (
     MODULES,
     OUTPUT,
     RANGES,

@@ -4,12 +4,15 @@ from gearopt.formulations.servo.servo_design import GOALS, RatioDesign, TrainDes
 from gearopt.optimise.result import Result
 from gearopt.report import answer, explained
 from gearopt.report.deciding import PROVEN
+from gearopt.report.drawing import impossible_views
 from gearopt.report.kinds import Kind, MakeSection
 from gearopt.report.kinds.generic import ASKED, LAST, TOLD
-from gearopt.report.kinds.servo import axis_accuracy, axis_housing, axis_motion, axis_trains
-from gearopt.report.kinds.servo.axis_words import arc_minutes, degrees, design_of, report_of
+from gearopt.report.kinds.servo import accuracy as axis_accuracy
+from gearopt.report.kinds.servo import housing as axis_housing
+from gearopt.report.kinds.servo import motion as axis_motion
+from gearopt.report.kinds.servo import trains as axis_trains
+from gearopt.report.kinds.servo.words import arc_minutes, degrees, design_of, report_of
 from gearopt.report.measures import Measures, error_of
-from gearopt.report.pages import impossible_views
 from gearopt.report.section import Section, Tile
 from gearopt.report.words import REACHED, amount, goal, number
 

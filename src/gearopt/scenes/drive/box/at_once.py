@@ -6,11 +6,11 @@ from functools import partial
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations import sizing, teeth, together
-from gearopt.formulations.design import drive_design
-from gearopt.formulations.gear_train import Train
-from gearopt.formulations.layout.slabs import Slabs, arrange
-from gearopt.formulations.together.continuous import angles_of, continuous
+from gearopt.formulations.drive import sizing, teeth, together
+from gearopt.formulations.drive.design import drive_design
+from gearopt.formulations.drive.layout.slabs import Slabs, arrange
+from gearopt.formulations.drive.together.continuous import angles_of, continuous
+from gearopt.formulations.drive.train import Train
 from gearopt.optimise.clock import following, in_part
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.problem import Problem

@@ -5,12 +5,12 @@ from dataclasses import asdict, replace
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations import layout
-from gearopt.formulations.design import DriveDesign, drive_design, gears_first
-from gearopt.formulations.layout.exact import GAP
-from gearopt.formulations.layout.faults import faults, of_any_gears
-from gearopt.formulations.layout.gearbox import Gearbox, KeepOut
-from gearopt.formulations.layout.layout_design import (
+from gearopt.formulations.drive import layout
+from gearopt.formulations.drive.design import DriveDesign, drive_design, gears_first
+from gearopt.formulations.drive.layout.exact import GAP
+from gearopt.formulations.drive.layout.faults import faults, of_any_gears
+from gearopt.formulations.drive.layout.gearbox import Gearbox, KeepOut
+from gearopt.formulations.drive.layout.layout_design import (
     BearingDesign,
     BoxDesign,
     ClearanceDesign,
@@ -22,8 +22,8 @@ from gearopt.formulations.layout.layout_design import (
     ShaftDesign,
     gear_sizes,
 )
-from gearopt.formulations.layout.layout_text import Placed, placed, read
-from gearopt.formulations.layout.slabs import Arrangement, arrangements
+from gearopt.formulations.drive.layout.layout_text import Placed, placed, read
+from gearopt.formulations.drive.layout.slabs import Arrangement, arrangements
 from gearopt.optimise.clock import Clock, following, in_part, of_others, tell_known
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.result import Result
@@ -151,7 +151,7 @@ def _impossible(
     notes: list[str],
     result: Result | None = None,
 ) -> Result:
-    from gearopt.scenes.drive.box.remedies import remedies
+    from gearopt.scenes.drive.explaining.box_remedies import remedies
 
     layout.ready(ask.watch)
     spent = sized.seconds + (0.0 if result is None else result.seconds)

@@ -5,14 +5,14 @@ from dataclasses import replace
 from functools import partial
 
 from gearopt.errors import SolveError
-from gearopt.formulations import together
-from gearopt.formulations.layout.faults import of_any_gears
+from gearopt.formulations.drive import together
+from gearopt.formulations.drive.layout.faults import of_any_gears
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.optimise.result import Event
 from gearopt.optimise.solve import run
 from gearopt.physics.gears import GearPair
-from gearopt.scenes.drive.box.edits import switches
+from gearopt.scenes.drive.explaining.box_edits import switches
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.numbers import allowed
 

@@ -5,13 +5,13 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations import layout
-from gearopt.formulations.design import drive_design, gears_first
-from gearopt.formulations.layout import layout_front
-from gearopt.formulations.layout.faults import faults
-from gearopt.formulations.layout.gearbox import SIDES
-from gearopt.formulations.layout.layout_text import read
-from gearopt.formulations.layout.slabs import arrangements
+from gearopt.formulations.drive import layout
+from gearopt.formulations.drive.design import drive_design, gears_first
+from gearopt.formulations.drive.layout import layout_front
+from gearopt.formulations.drive.layout.faults import faults
+from gearopt.formulations.drive.layout.gearbox import SIDES
+from gearopt.formulations.drive.layout.layout_text import read
+from gearopt.formulations.drive.layout.slabs import arrangements
 from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
 from gearopt.optimise.pareto.several import Several, impossible

@@ -15,7 +15,7 @@ from gearopt.scenes.drive.explaining.together import is_real
 from gearopt.scenes.drive.explaining.tried import Case
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.numbers import SHORT, allowed, eased, put, written
-from gearopt.scenes.reading.modules import SERIES, family, series_of
+from gearopt.scenes.reading.module_series import SERIES, family, series_of
 from gearopt.scenes.reading.toml import dotted, toml_text
 from gearopt.units import Quantity
 

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from gearopt.formulations import sizing
-from gearopt.formulations.shares import MASSES
+from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive.shares import MASSES
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import EASE, STEP, binding
 from gearopt.optimise.explaining.explanation import Explanation
@@ -13,12 +13,12 @@ from gearopt.optimise.explaining.sensitivity import sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
-from gearopt.scenes.drive.blank_tables import HUBS, RIM, WEB
 from gearopt.scenes.drive.explaining.movable import fields, next_module
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.blanks import HUBS, RIM, WEB
 from gearopt.scenes.explaining.influences import Basis, influences, per_cent
 from gearopt.scenes.explaining.numbers import Number, eased, moved, numbers
-from gearopt.scenes.reading.modules import series_of
+from gearopt.scenes.reading.module_series import series_of
 
 BASIS = (
     " with real-valued teeth and modules, by Lagrange multipliers, checked by solving again. "

@@ -8,8 +8,8 @@ from typing import Any
 
 from gearopt.optimise.explaining.explanation import Change
 from gearopt.optimise.explaining.handles import Handle
-from gearopt.scenes.drive.drive_tables import StageTable
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.explaining.numbers import (
     Path,
     allowed,

@@ -8,7 +8,7 @@ from gearopt.physics.iso6336.materials import QUALITIES, Material
 from gearopt.scenes.drive.explaining.rated_conflict import Conflict
 from gearopt.scenes.drive.scene import MOST_STAGES, Scene
 from gearopt.scenes.explaining.numbers import allowed, content
-from gearopt.scenes.reading.modules import SERIES, family, series_of
+from gearopt.scenes.reading.module_series import SERIES, family, series_of
 from gearopt.scenes.reading.toml import toml_text
 
 Works = Callable[[Scene], bool | None]

@@ -8,7 +8,7 @@ impossible, by a search of all teeth, modules and materials, is dropped for good
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from gearopt.formulations.gear_train import Train
+from gearopt.formulations.drive.train import Train
 from gearopt.formulations.strength.rated import Option
 from gearopt.scenes.drive.explaining.requirements import (
     BENDING,

@@ -12,12 +12,12 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-from gearopt.formulations.gear_train import FaceWidth, Stage, Train
+from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.physics.iso6336.materials import QUALITIES
-from gearopt.scenes.drive.drive_tables import StageTable
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.explaining.numbers import allowed, times
-from gearopt.scenes.reading.modules import SERIES, family
+from gearopt.scenes.reading.module_series import SERIES, family
 
 Dropped = frozenset[str]
 

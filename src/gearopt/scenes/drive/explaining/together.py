@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from gearopt.formulations import sizing
-from gearopt.formulations.gear_train import Train
-from gearopt.formulations.teeth import best_pairs
+from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive.teeth import best_pairs
+from gearopt.formulations.drive.train import Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.handles import Handle, handles
 from gearopt.optimise.explaining.repair import FARTHEST, SAME, least_factors

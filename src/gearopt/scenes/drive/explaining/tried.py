@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from gearopt.formulations import sizing
-from gearopt.formulations.gear_train import Train
-from gearopt.formulations.teeth.existence import any_train, possible
-from gearopt.formulations.teeth.progress import Teeth
-from gearopt.formulations.teeth.rated import RatedTable
-from gearopt.formulations.teeth.wide import narrowed
+from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive.teeth.existence import any_train, possible
+from gearopt.formulations.drive.teeth.progress import Teeth
+from gearopt.formulations.drive.teeth.rated import RatedTable
+from gearopt.formulations.drive.teeth.wide import narrowed
+from gearopt.formulations.drive.train import Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import THERE
 from gearopt.optimise.explaining.repair import WIDEST, Works, least_between, least_value

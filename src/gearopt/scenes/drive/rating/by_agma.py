@@ -12,8 +12,8 @@ from gearopt.physics.agma.rating_factors import Practice, Steel
 from gearopt.physics.gears import GearPair
 from gearopt.physics.rating import Operation
 from gearopt.scenes.drive.rating.gears import Tables, blanks
-from gearopt.scenes.drive.rating.tables import GearTable, RatingTable
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.rating import GearTable, RatingTable
 
 __all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
 __all__ += ["NAME", "UNVERIFIED_SPECTRUM", "limits", "practice", "steel", "title"]

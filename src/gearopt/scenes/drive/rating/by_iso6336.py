@@ -11,9 +11,9 @@ from gearopt.physics.iso6336.rating import rate, rate_spectrum
 from gearopt.physics.rating import Operation
 from gearopt.scenes.drive.rating.gears import Tables, blanks
 from gearopt.scenes.drive.rating.iso_material import finish, material, steel
-from gearopt.scenes.drive.rating.iso_tables import NAMES
-from gearopt.scenes.drive.rating.tables import RatingTable
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.iso6336 import NAMES
+from gearopt.scenes.drive.tables.rating import RatingTable
 
 __all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
 __all__ += ["NAME", "UNVERIFIED_SPECTRUM", "limits", "practice", "steel", "title"]

@@ -3,8 +3,9 @@
 from collections.abc import Callable
 from dataclasses import replace
 
-from gearopt.formulations import rated_sizing, sizing
-from gearopt.formulations.gear_train import Train
+from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive.rated import sizing as rated_sizing
+from gearopt.formulations.drive.train import Train
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result

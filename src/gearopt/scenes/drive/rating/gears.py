@@ -9,12 +9,12 @@ from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import GearPair
 from gearopt.physics.rating import Operation
 from gearopt.physics.shaft_forces import rpm
-from gearopt.scenes.drive.blank_tables import blank
-from gearopt.scenes.drive.drive_tables import StageTable
 from gearopt.scenes.drive.rating.materials import Named, choices
-from gearopt.scenes.drive.rating.tables import GearTable, RatingTable
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.drive.tooth_tables import toothing
+from gearopt.scenes.drive.tables.blanks import blank
+from gearopt.scenes.drive.tables.drive import StageTable
+from gearopt.scenes.drive.tables.rating import GearTable, RatingTable
+from gearopt.scenes.drive.tables.teeth import toothing
 
 HOUR = 3600.0  # s
 Tables = tuple[GearTable, GearTable]  # of pinion and wheel

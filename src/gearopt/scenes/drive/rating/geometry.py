@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from gearopt.formulations.rating import ToothGeometry
+from gearopt.formulations.drive.rating import ToothGeometry
 from gearopt.physics.gears import MEMBERS, Gear, GearPair
 from gearopt.physics.geometry.contact import active_root_diameters, contact_path, specific_sliding
 from gearopt.physics.geometry.fillet import form_diameter

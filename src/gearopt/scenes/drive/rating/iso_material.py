@@ -1,7 +1,7 @@
 """The material of a gear by ISO 6336-5, from its table."""
 
 from gearopt.physics.iso6336.materials import SURFACE_HARDENED, Material
-from gearopt.scenes.drive.rating.tables import GearTable
+from gearopt.scenes.drive.tables.rating import GearTable
 
 OF_TREATMENT = {  # treatment of AGMA: the nearest material of ISO 6336-5
     "through-hardened": "V alloy",

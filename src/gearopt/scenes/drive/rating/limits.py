@@ -4,14 +4,14 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import CertificateError
-from gearopt.formulations.design import drive_design
+from gearopt.formulations.drive.design import drive_design
 from gearopt.formulations.strength.rated import Option
 from gearopt.optimise.result import Result
 from gearopt.physics.gears import MEMBERS
 from gearopt.scenes.drive.rating import by_agma, by_iso6336
 from gearopt.scenes.drive.rating.gears import gear_choices, loads, unit_operation
-from gearopt.scenes.drive.rating.tables import GearTable
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.rating import GearTable
 
 STANDARDS: dict[str, tuple[Any, ...]] = {  # of the key standard
     "agma": (by_agma,),

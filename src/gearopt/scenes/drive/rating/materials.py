@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from pydantic import Field, create_model
 
 from gearopt.physics.gears import MEMBERS
-from gearopt.scenes.drive.rating.tables import GearKeys, GearTable, with_shared
+from gearopt.scenes.drive.tables.rating import GearKeys, GearTable, with_shared
 from gearopt.scenes.reading.fields import Table, number, quantity, refuse, words
 from gearopt.units import Quantity
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations.design import DriveDesign, StageDesign, drive_design, of_pairs
-from gearopt.formulations.rating import DriveRating, MeshRating
+from gearopt.formulations.drive.design import DriveDesign, StageDesign, drive_design, of_pairs
+from gearopt.formulations.drive.rating import DriveRating, MeshRating
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
@@ -16,8 +16,7 @@ from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.flaws import Flaw
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
-from gearopt.scenes.drive.assumptions import rating_assumptions, unused_materials
-from gearopt.scenes.drive.blank_tables import body_flaws
+from gearopt.scenes.drive.notes import rating_assumptions, unused_materials
 from gearopt.scenes.drive.rating import gears as rated_gears
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.geometry import tooth_geometry
@@ -32,6 +31,7 @@ from gearopt.scenes.drive.rating.rows import (
     shaft_rows,
 )
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.blanks import body_flaws
 from gearopt.scenes.parts import tooth_flaws
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.toml import dotted

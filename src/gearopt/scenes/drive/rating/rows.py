@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from gearopt.formulations.rating import (
+from gearopt.formulations.drive.rating import (
     GearRating,
     LoadLevel,
     MeshRating,

@@ -22,7 +22,7 @@ from gearopt.scenes.reading.fields import (
     whole,
 )
 from gearopt.scenes.reading.lists import several, span
-from gearopt.scenes.reading.modules import series
+from gearopt.scenes.reading.module_series import series
 from gearopt.scenes.servo.tables.mesh import Mesh
 from gearopt.scenes.servo.tables.motion import Duty
 from gearopt.units import Quantity

@@ -1,0 +1,273 @@
+"""The design of a drive for its drawing: diameters, distances and loads of every stage."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from fractions import Fraction
+from typing import Any
+
+from gearopt.formulations.drive.layout.layout_design import LayoutDesign
+from gearopt.formulations.drive.rating import DriveRating
+from gearopt.formulations.drive.train import Train
+from gearopt.formulations.pair.contact import PairContact
+from gearopt.formulations.pair.relief_map import PairRelief
+from gearopt.formulations.strength import Law
+from gearopt.formulations.strength.rated import Option
+from gearopt.optimise.typed import INLINE, typed
+from gearopt.physics.blanks import SOLID, Blank
+from gearopt.physics.gears import ISO_53_A, MEMBERS, Gear, GearPair, Rack
+from gearopt.physics.loads import pitch_line_velocity
+
+TOOL = ("addendum", "tool_addendum", "tool_tip_radius", "tool_protuberance")  # as in a `Rack`
+TEETH = ("profile_shift", "tip_alteration", "thickness_allowance_mm")  # as in a `Gear`
+STEEL_DENSITY = 7.85e-9  # t/mm3: EN 1991-1-1 table A.4 (to 78.5 kN/m3), Steel for Life Blue Book
+
+
+def gears_first(objective: str) -> str:
+    """Return the scope of a layout of gears that were sized before it, for their own objective."""
+    return f"gears sized first for least {objective.replace('_', ' ')}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class StageDesign:
+    """A gear pair with its loads; fields are the keys of a result, with their units.
+
+    Fields with a default say how its teeth are cut, of which materials, of several, its gears are,
+    and what their blanks have; a result leaves out those that hold it.
+    """
+
+    normal_module_mm: float
+    pinion_teeth: float
+    wheel_teeth: float
+    ratio: float
+    face_width_mm: float
+    pinion_diameter_mm: float
+    wheel_diameter_mm: float
+    pinion_tip_diameter_mm: float
+    wheel_tip_diameter_mm: float
+    pinion_root_diameter_mm: float
+    wheel_root_diameter_mm: float
+    centre_distance_mm: float
+    transverse_contact_ratio: float
+    overlap_ratio: float
+    pinion_torque_Nm: float
+    pitch_line_velocity_m_per_s: float
+    indices: Mapping[str, float] = field(metadata=INLINE)  # of the strength law: name_unit
+    gear_volume_mm3: float
+    pinion_mass_kg: float
+    wheel_mass_kg: float
+    mass_kg: float
+    helix_angle_deg: float = 0.0
+    pressure_angle_deg: float = 20.0
+    working_pressure_angle_deg: float | None = None  # transverse; None: on the reference circles
+    pinion_profile_shift: float = 0.0
+    wheel_profile_shift: float = 0.0
+    pinion_tip_alteration: float = 0.0
+    wheel_tip_alteration: float = 0.0
+    pinion_thickness_allowance_mm: float = 0.0
+    wheel_thickness_allowance_mm: float = 0.0
+    pinion_addendum: float = ISO_53_A.addendum
+    wheel_addendum: float = ISO_53_A.addendum
+    pinion_tool_addendum: float = ISO_53_A.dedendum
+    wheel_tool_addendum: float = ISO_53_A.dedendum
+    pinion_tool_tip_radius: float = ISO_53_A.tip_radius
+    wheel_tool_tip_radius: float = ISO_53_A.tip_radius
+    pinion_tool_protuberance: float = ISO_53_A.protuberance
+    wheel_tool_protuberance: float = ISO_53_A.protuberance
+    pinion_material: str = ""
+    wheel_material: str = ""
+    pinion_rim_thickness_mm: float | None = None  # None of what a gear does not have
+    wheel_rim_thickness_mm: float | None = None
+    pinion_web_thickness_mm: float | None = None
+    wheel_web_thickness_mm: float | None = None
+    pinion_hub_diameter_mm: float | None = None
+    wheel_hub_diameter_mm: float | None = None
+    pinion_bore_mm: float | None = None
+    wheel_bore_mm: float | None = None
+
+    @property
+    def pair(self) -> GearPair:
+        """The gears with their teeth, at their centre distance."""
+        shifted = self.working_pressure_angle_deg is not None
+        made = [self._gear(member) for member in ("pinion", "wheel")]
+        return GearPair(made[0], made[1], self.centre_distance_mm if shifted else None)
+
+    def _gear(self, member: str) -> Gear:
+        own = {n: getattr(self, f"{member}_{n}") for n in (*TOOL, *TEETH, "teeth", "diameter_mm")}
+        return Gear(
+            self.normal_module_mm,
+            own["teeth"],
+            own["diameter_mm"],
+            self.face_width_mm,
+            math.radians(self.helix_angle_deg),
+            Rack(math.radians(self.pressure_angle_deg), *(own[n] for n in TOOL)),
+            *(own[n] for n in TEETH),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriveDesign:
+    """Stages and totals of a drive; where its gears are, once laid out.
+
+    contact, relief: of one pair whose file asks for them.
+    """
+
+    stages: tuple[StageDesign, ...]
+    ratio: float
+    ratio_error_percent: float
+    output_torque_Nm: float
+    gear_volume_mm3: float
+    sum_of_centre_distances_mm: float
+    total_length_mm: float
+    mass_kg: float
+    layout: LayoutDesign | None = None
+    rating: DriveRating | None = None
+    contact: PairContact | None = None
+    relief: PairRelief | None = None
+
+
+def drive_design(data: Mapping[str, Any]) -> DriveDesign:
+    """Return the design that a result of a drive holds; ValueError names what does not belong."""
+    found: DriveDesign = typed(DriveDesign, data, "design")
+    return found
+
+
+def describe(train: Train, pairs: tuple[GearPair, ...], options: Sequence[int] = ()) -> DriveDesign:
+    """Return stages and totals of a drive; masses as of `of_pairs`, or of the options' materials.
+
+    options: of every stage, from 0; none: the first.
+    """
+    loaded = float(train.torque), float(train.speed)
+    blanks = [stage.blanks for stage in train.stages]
+    made = of_pairs(train.law, pairs, *loaded, train.ratio, train.density, blanks)
+    if not train.rated:
+        return made
+    chosen = zip(made.stages, train.stages, options or (0,) * len(pairs), strict=True)
+    usual = train.density or STEEL_DENSITY
+    stages = tuple(_of_materials(one, stage.options[k], usual) for one, stage, k in chosen)
+    return replace(made, stages=stages, mass_kg=sum(s.mass_kg for s in stages))
+
+
+def _of_materials(stage: StageDesign, option: Option, usual: float) -> StageDesign:
+    """Return a stage of the materials of an option; usual: the density [t/mm3] of others."""
+    first, second = ((own or usual) / usual for own in option.densities)
+    masses = first * stage.pinion_mass_kg, second * stage.wheel_mass_kg
+    return replace(
+        stage,
+        pinion_mass_kg=masses[0],
+        wheel_mass_kg=masses[1],
+        mass_kg=sum(masses),
+        pinion_material=option.materials[0],
+        wheel_material=option.materials[1],
+    )
+
+
+def of_pairs(
+    law: Law,
+    pairs: tuple[GearPair, ...],
+    torque: float,
+    speed: float,
+    asked_ratio: Fraction | None = None,
+    density: float | None = None,
+    blanks: Sequence[tuple[Blank, Blank]] = (),
+) -> DriveDesign:
+    """Return stages and totals of a drive.
+
+    torque [N mm], speed [rad/s] of the input; asked_ratio: None where none is asked for. Masses are
+    those of the blanks of every stage, by default solid and of steel; density [t/mm3].
+    """
+    stages: list[StageDesign] = []
+    density = density or STEEL_DENSITY
+    for pair, made in zip(pairs, blanks or [(SOLID, SOLID)] * len(pairs), strict=True):
+        stages.append(_stage(law, pair, torque, speed, density, made))
+        torque, speed = torque * float(pair.ratio), speed / float(pair.ratio)
+    ratio = math.prod(s.ratio for s in stages)
+    volume = sum(s.gear_volume_mm3 for s in stages)
+    centres = sum(s.centre_distance_mm for s in stages)
+    ends = stages[0].pinion_diameter_mm + stages[-1].wheel_diameter_mm
+    return DriveDesign(
+        stages=tuple(stages),
+        ratio=ratio,
+        ratio_error_percent=(
+            0.0 if asked_ratio is None else round(100.0 * (ratio / float(asked_ratio) - 1.0), 9)
+        ),
+        output_torque_Nm=1e-3 * torque,
+        gear_volume_mm3=volume,
+        sum_of_centre_distances_mm=centres,
+        total_length_mm=0.5 * ends + centres,
+        mass_kg=sum(s.mass_kg for s in stages),
+    )
+
+
+def _stage(
+    law: Law,
+    pair: GearPair,
+    torque: float,
+    speed: float,
+    density: float,
+    blanks: tuple[Blank, Blank],
+) -> StageDesign:
+    """Describe a pair; torque [N mm] and speed [rad/s] are its pinion's."""
+    pinion, wheel = pair.gears
+    d, loads = pinion.reference_diameter, law.indices(pair, torque, speed)
+    rows = zip(blanks, pair.gears, strict=True)
+    masses = [1000.0 * density * float(blank.volume(gear)) for blank, gear in rows]
+    return StageDesign(
+        normal_module_mm=float(pair.normal_module),
+        pinion_teeth=_whole(pair.pinion_teeth),
+        wheel_teeth=_whole(pair.wheel_teeth),
+        ratio=float(pair.ratio),
+        face_width_mm=float(pair.face_width),
+        pinion_diameter_mm=float(d),
+        wheel_diameter_mm=float(wheel.reference_diameter),
+        pinion_tip_diameter_mm=float(pinion.tip_diameter),
+        wheel_tip_diameter_mm=float(wheel.tip_diameter),
+        pinion_root_diameter_mm=float(pinion.root_diameter),
+        wheel_root_diameter_mm=float(wheel.root_diameter),
+        centre_distance_mm=float(pair.centre_distance),
+        transverse_contact_ratio=float(pair.transverse_contact_ratio),
+        overlap_ratio=float(pair.overlap_ratio),
+        pinion_torque_Nm=1e-3 * torque,
+        pitch_line_velocity_m_per_s=float(1e-3 * pitch_line_velocity(speed, d)),
+        indices={
+            limit.design_key: float(load) for limit, load in zip(law.limits, loads, strict=True)
+        },
+        gear_volume_mm3=float(pair.volume),
+        pinion_mass_kg=masses[0],
+        wheel_mass_kg=masses[1],
+        mass_kg=sum(masses),
+        **_teeth(pair),
+        **_bodies(pair, blanks),
+    )
+
+
+def _teeth(pair: GearPair) -> dict[str, Any]:
+    """Return what a stage says of how its teeth are cut."""
+    working, own = pair.working_angle, pair.pinion.transverse_pressure_angle
+    found: dict[str, Any] = {
+        "helix_angle_deg": round(math.degrees(pair.pinion.helix_angle), 12),
+        "pressure_angle_deg": round(math.degrees(pair.pinion.rack.pressure_angle), 12),
+        "working_pressure_angle_deg": None if working == own else math.degrees(working),
+    }
+    for member, gear in zip(("pinion", "wheel"), pair.gears, strict=True):
+        found[f"{member}_profile_shift"] = float(gear.profile_shift)
+        found[f"{member}_tip_alteration"] = float(gear.tip_alteration)
+        found[f"{member}_thickness_allowance_mm"] = float(gear.thickness_allowance)
+        rack = gear.rack
+        tool = rack.addendum, rack.dedendum, rack.tip_radius, rack.protuberance
+        found |= {f"{member}_{n}": float(v) for n, v in zip(TOOL, tool, strict=True)}
+    return found
+
+
+def _bodies(pair: GearPair, blanks: tuple[Blank, Blank]) -> dict[str, Any]:
+    """Return the dimensions of rims, webs, hubs and bores."""
+    found: dict[str, Any] = {}
+    for member, blank, gear in zip(MEMBERS, blanks, pair.gears, strict=True):
+        rows = asdict(blank.body(gear)).items()
+        found |= {f"{member}_{name}_mm": value for name, value in rows}
+    return found
+
+
+def _whole(teeth: float) -> float | int:
+    """Return a number of teeth as an integer where it is one."""
+    return round(teeth) if abs(teeth - round(teeth)) < 1e-9 else float(teeth)

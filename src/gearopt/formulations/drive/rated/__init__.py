@@ -1,0 +1,1 @@
+"""Real-valued sizes of drives that ratings limit: search, bound, cells."""

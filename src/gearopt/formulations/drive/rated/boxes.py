@@ -1,0 +1,313 @@
+"""Boxes of designs of a stage that ratings limit, and the least share of each in the objective.
+
+In a box the ratings ask for no less than some d1^2 b/T: with all else in its least a geometric
+program of monomials, which has a closed form.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.drive.shares import least_share
+from gearopt.formulations.drive.train import Stage, Train
+from gearopt.formulations.strength.cells import LEAST, Cells
+from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
+
+ROWS = ("teeth", "slim", "diameter", "end", "module", "width", "wheel", "ratio")
+Z, SLIM, D, END, M, B, D2, U = range(len(ROWS))
+FREE = (Z, SLIM, D, END)  # from which the others follow
+LENGTHS = 1e-3, 1e5  # mm: of diameters
+SLIMMEST, WIDEST = 1e-3, 1e3  # b/d1 without limits
+TEETH = 1e6
+ROUND = 1e-12  # of logarithms: a box this narrow is a point
+MARGIN = 1e-9  # relative, of what is needed: rounding
+
+
+@dataclass(frozen=True)
+class Boxes:
+    """Boxes (n,) of designs of a stage.
+
+    sizes (rows, 2, n): logarithms of both ends of ROWS; end: the total ratio behind the last stage,
+    else 0. before, after (n,): cells of the shafts before and after the stage.
+    """
+
+    sizes: Array
+    before: Any
+    after: Any
+
+    @property
+    def widths(self) -> Array:
+        """Widths (4, n) of the rows in FREE."""
+        return np.asarray(self.sizes[list(FREE), 1] - self.sizes[list(FREE), 0])
+
+    def take(self, place: Any) -> "Boxes":
+        """Return some of the boxes."""
+        return Boxes(self.sizes[:, :, place], self.before[place], self.after[place])
+
+    def __len__(self) -> int:
+        return len(self.before)
+
+
+def joined(boxes: list[Boxes]) -> Boxes:
+    """Return all boxes of a list."""
+    return Boxes(
+        np.concatenate([one.sizes for one in boxes], axis=2),
+        np.concatenate([one.before for one in boxes]),
+        np.concatenate([one.after for one in boxes]),
+    )
+
+
+@dataclass(frozen=True)
+class Shafts:
+    """Shafts between the stages of a drive: ln of their torque over the input's, in `count` cells.
+
+    potential (stages + 1,): slope of what is moved from the share of one stage to that of the next,
+    about `middle`, at each shaft; it cancels along a drive, and what is left of a share changes
+    little with the torques at a good design.
+    """
+
+    train: Train
+    count: int
+    potential: Array
+    middle: Array
+
+    @property
+    def step(self) -> float:
+        """Width of a cell."""
+        return math.log(float(self.train.highest_ratio)) / self.count
+
+    @property
+    def last(self) -> int:
+        """The last stage, from 0."""
+        return len(self.train.stages) - 1
+
+    def torques(self, k: int, boxes: Boxes) -> tuple[Array, Array]:
+        """Return ln of the torques before and after a stage over the input's, (2, n) each."""
+        before = np.stack([boxes.before, boxes.before + 1]) * (self.step if k else 0.0)
+        if k == self.last:
+            return before, boxes.sizes[END]
+        return before, np.stack([boxes.after, boxes.after + 1]) * self.step
+
+
+def shafts_about(train: Train, count: int, pairs: Sequence[GearPair] = ()) -> Shafts:
+    """Return shafts whose potentials are those of a design; none of no pairs."""
+    size = len(train.stages) + 1
+    potential, middle = np.zeros(size), np.zeros(size)
+    for k, pair in enumerate(pairs):
+        u = float(pair.ratio)
+        middle[k + 1] = middle[k] + math.log(u)
+        if k < size - 2:
+            power, _, rise = growth(train, k, u)
+            potential[k + 1] = float(least_share(train, k, pair)) * (rise - power / (1.0 + u))
+    return Shafts(train, count, potential, middle)
+
+
+def first_boxes(shafts: Shafts, k: int) -> Boxes:
+    """Return the boxes of all designs of a stage, one a cell of its shafts."""
+    train = shafts.train
+    stage, numbers = train.stages[k], dict[str, Any](train.numbers())
+    face, last = stage.face_width, k == shafts.last
+    sizes = np.empty((len(ROWS), 2))
+    sizes[Z] = max(1.0, numbers["pinion_low"][k]), min(TEETH, numbers["pinion_high"][k])
+    slim = float(face.low) or min(SLIMMEST, SLIMMEST * face.widest)
+    wide = face.widest if math.isfinite(face.widest) else max(WIDEST, WIDEST * slim)
+    sizes[SLIM] = slim, wide
+    sizes[D] = LENGTHS
+    total = float(train.lowest_ratio), float(train.highest_ratio)
+    sizes[END] = total if last else (1.0, 1.0)
+    sizes[M] = max(numbers["module_low"][k], 1e-6), min(numbers["module_high"][k], LENGTHS[1])
+    sizes[B] = max(float(face.least), 1e-9), LENGTHS[1] * wide
+    if face.fixed is not None:
+        sizes[B] = float(face.fixed)
+    sizes[D2] = 1e-6, min(numbers["wheel_diameter"][k], LENGTHS[1] * TEETH)
+    sizes[U] = float(stage.ratio[0]), min(float(stage.ratio[1] or total[1]), total[1])
+    cells = np.arange(shafts.count)
+    grid = np.meshgrid(cells if k else cells[:1], cells[:1] if last else cells, indexing="ij")
+    i, j = (side.ravel() for side in grid)
+    some = (j >= i) | last
+    i, j = i[some], j[some]
+    return Boxes(np.repeat(np.log(sizes)[:, :, None], len(i), axis=2), i, j)
+
+
+def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
+    """Return what may hold designs, made as small as limits and ratings allow, and least shares."""
+    stage = shafts.train.stages[k]
+    before, after = shafts.torques(k, boxes)
+    sizes = boxes.sizes.copy()
+    sizes[U, 0] = np.maximum(sizes[U, 0], after[0] - before[1] - ROUND)
+    sizes[U, 1] = np.minimum(sizes[U, 1], after[1] - before[0] + ROUND)
+    _follow(shafts.train, k, sizes)
+    some = np.flatnonzero(_possible(sizes))
+    boxes = Boxes(sizes, boxes.before, boxes.after).take(some)
+    before, after, sizes = before[:, some], after[:, some], boxes.sizes
+    if not len(boxes):
+        return boxes, np.zeros(0)
+    torque = shafts.train.torque * np.exp(before)
+    size = np.exp(sizes)
+    speed = shafts.train.speed_at(torque)[::-1]
+    ends = size[Z], size[U], size[D], size[D2], size[M], size[B], size[SLIM]
+    cells = Cells(stage.toothing, *ends, torque, speed)
+    needed = _needed(shafts.train, stage, cells)
+    weak = _needed_by_weak(stage, cells, shafts.train.safety, needed[0])
+    most = np.maximum(weak * (1.0 + 1.0 / size[U, 1]), needed[1]) * torque[0]
+    with np.errstate(divide="ignore"):
+        least = np.log(most * (1.0 - MARGIN))  # of d1^2 b = d1^3 slim
+    sizes[D, 0] = np.maximum(sizes[D, 0], (least - sizes[SLIM, 1]) / 3.0)
+    sizes[SLIM, 0] = np.maximum(sizes[SLIM, 0], least - 3.0 * sizes[D, 1])
+    _follow(shafts.train, k, sizes)
+    parts = [(needed[0], True, True), (needed[1], False, True), (weak, True, False)]
+    value = _of_sizes(shafts, k, sizes, before, after)
+    for part in parts:
+        value = np.maximum(value, _of_ratings(shafts, k, sizes, part, before, after))
+    some = np.flatnonzero(_possible(sizes))
+    return boxes.take(some), value[some]
+
+
+def _possible(sizes: Array) -> Array:
+    """Return which boxes are not empty; what is empty by rounding alone is made a point."""
+    found = (sizes[:, 1] >= sizes[:, 0] - ROUND).all(axis=0)
+    sizes[:, 1] = np.maximum(sizes[:, 0], sizes[:, 1])
+    return np.asarray(found)
+
+
+def _follow(train: Train, k: int, sizes: Array) -> None:
+    """Make boxes smaller by what their rows have to do with one another, in place."""
+    stage = train.stages[k]
+    cosine = math.log(stage.toothing.cosine)
+    numbers = dict[str, Any](train.numbers())
+    for name, row in (("wheel_low", 0), ("wheel_high", 1)):
+        with np.errstate(divide="ignore"):
+            end = np.log(numbers[name][k])
+        pick = (np.maximum, np.minimum)[row]
+        sizes[Z, row] = pick(sizes[Z, row], end - sizes[U, 1 - row])
+    low, high = stage.face_width.over_module
+    if low is not None:
+        sizes[SLIM, 0] = np.maximum(sizes[SLIM, 0], math.log(low) + cosine - sizes[Z, 1])
+    if high is not None:
+        sizes[SLIM, 1] = np.minimum(sizes[SLIM, 1], math.log(high) + cosine - sizes[Z, 0])
+        sizes[Z, 1] = np.minimum(sizes[Z, 1], math.log(high) + cosine - sizes[SLIM, 0])
+    for _ in range(2):
+        for whole, one, other, by in ((D, M, Z, -cosine), (B, SLIM, D, 0.0), (D2, D, U, 0.0)):
+            (a_low, a_high), (b_low, b_high) = sizes[one] + by, sizes[other]
+            c_low, c_high = sizes[whole]
+            sizes[whole] = np.maximum(c_low, a_low + b_low), np.minimum(c_high, a_high + b_high)
+            c_low, c_high = sizes[whole]
+            sizes[one] = np.maximum(a_low, c_low - b_high), np.minimum(a_high, c_high - b_low)
+            sizes[other] = np.maximum(b_low, c_low - a_high), np.minimum(b_high, c_high - a_low)
+            sizes[one] -= by
+
+
+def _needed(train: Train, stage: Stage, cells: Cells) -> tuple[Array, Array]:
+    """Return the least d1^2 b/(T (1 + 1/u)) of contact and d1^2 b/T of bending [1/MPa].
+
+    An index of a proportional law over 1 + 1/u falls neither with z1 nor with u (`Law`).
+    """
+    zero, u = np.zeros(cells.teeth.shape[1]), cells.ratio[LEAST]
+    made = [(zero, zero)]
+    with np.errstate(all="ignore"):
+        if train.law.limits and train.law.proportional:
+            z = cells.teeth[LEAST]
+            pair = cells.toothing.of_diameter(cells.toothing.cosine / z, z, 1.0, u, 1.0)
+            load = train.law.load(pair, 1.0, cells.speed[LEAST], stage.allowable)
+            made.append((load / (1.0 + 1.0 / u), zero))
+        given = stage.toothing.working_distance is not None  # then teeth alone say little
+        for one in stage.options[0].standards if stage.options and not given else ():
+            made.append(one.needed(cells, train.safety))
+    pressed, bent = (np.maximum.reduce([one[i] for one in made]) for i in (0, 1))
+    return np.nan_to_num(pressed, nan=0.0), np.nan_to_num(bent, nan=0.0)
+
+
+def _needed_by_weak(stage: Any, cells: Cells, safety: Any, usual: Array) -> Array:
+    """Return the least of contact that holds with the least torque: T K(T) does not fall with T."""
+    standards = [one for option in stage.options[:1] for one in option.standards]
+    standards = [one for one in standards if not one.monotone]
+    given = cells.toothing.working_distance is not None
+    if given or not standards or np.array_equal(*cells.torque):
+        return usual
+    weak = replace(cells, torque=np.stack([cells.torque[LEAST]] * 2))
+    with np.errstate(all="ignore"):
+        made = [np.nan_to_num(one.needed(weak, safety)[0], nan=0.0) for one in standards]
+    return np.asarray(np.maximum.reduce([usual, *made]))
+
+
+def _moved(shafts: Shafts, k: int, before: Any, after: Any) -> Any:
+    """Return what potentials add to the share of a stage at torques before and after it."""
+    (first, second), (at, then) = shafts.potential[k : k + 2], shafts.middle[k : k + 2]
+    return first * (before - at) - second * (after - then)
+
+
+def _of_sizes(shafts: Shafts, k: int, sizes: Array, before: Array, after: Array) -> Array:
+    """Return the share of the least sizes of boxes, and what the potentials move at least."""
+    own, moved = _least_sizes(shafts, k, sizes, before, after)
+    return np.asarray(own * (1.0 - MARGIN) + moved)
+
+
+def _least_sizes(
+    shafts: Shafts, k: int, sizes: Array, before: Array, after: Array
+) -> tuple[Array, Array]:
+    """Return the share of the least sizes of boxes, and what the potentials add to it at least."""
+    size = np.exp(sizes[:, LEAST])
+    own = shafts.train.stages[k].toothing
+    pair = own.of_diameter(size[M], size[Z], size[D], size[U], size[B])
+    first, second = shafts.potential[k : k + 2]
+    moved = _moved(shafts, k, before[int(first < 0.0)], after[int(second > 0.0)])
+    fewest = size[Z], size[Z] * size[U]
+    own_share = least_share(shafts.train, k, pair, fewest=fewest)
+    return np.asarray(own_share), moved
+
+
+def _of_ratings(
+    shafts: Shafts, k: int, sizes: Array, needed: Any, before: Array, after: Array
+) -> Array:
+    """Return the least share of designs that the ratings may accept.
+
+    needed: d1^2 b over 1 + 1/u (or not) and over T (or the least T), and whether. The share is
+    convex in the logarithms t and e of the torques before and after: above its tangent.
+    """
+    coefficient, pressed, loaded = needed
+    t, e = before.mean(axis=0), after.mean(axis=0)
+    half = 0.5 * (before[1] - before[0]), 0.5 * (after[1] - after[0])
+    first, second = shafts.potential[k : k + 2]
+    u, power = np.exp(e - t), 1.0
+    power, grown, rise = growth(shafts.train, k, u)
+    wide, slope = (1.0 + 1.0 / u, 1.0 / (1.0 + u)) if pressed else (1.0, 0.0)
+    least = shafts.train.torque * np.exp(t if loaded else before[0]) * coefficient * wide
+    if not shafts.train.by_width:
+        least = least / np.exp(sizes[SLIM, 1])
+    value = least**power * grown * (1.0 - MARGIN)
+    by_t, by_e = value * (power * (loaded + slope) - rise), value * (rise - power * slope)
+    lost = np.abs(by_t + first) * half[0] + np.abs(by_e - second) * half[1]
+    return np.asarray(value + _moved(shafts, k, t, e) - lost)
+
+
+def cut(shafts: Shafts, k: int, boxes: Boxes, limit: Array) -> Boxes:
+    """Return boxes without designs whose share, less what potentials move, exceeds a limit (n,)."""
+    before, after = shafts.torques(k, boxes)
+    sizes = boxes.sizes.copy()
+    own, moved = _least_sizes(shafts, k, sizes, before, after)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        room = np.log((limit - moved) / own) + MARGIN
+    room = np.where(np.isfinite(room), np.maximum(room, 0.0), np.inf)
+    power = 2.0 if shafts.train.by_width and not shafts.train.hollow else 1.0
+    sizes[D, 1] = np.minimum(sizes[D, 1], sizes[D, 0] + room / power)
+    if shafts.train.by_width:
+        sizes[B, 1] = np.minimum(sizes[B, 1], sizes[B, 0] + room)
+    return Boxes(sizes, boxes.before, boxes.after)
+
+
+def growth(train: Train, k: int, u: Any) -> tuple[float, Any, Any]:
+    """Return p, and of a ratio u the share over (d1^2 b)^p and its slope in logarithms.
+
+    Of lengths p is 1/3, and b = d1.
+    """
+    power, exponent = (1.0, 2.0) if train.by_width else (1.0 / 3.0, 1.0)
+    tooth = train.stages[k].toothing
+    pairs = [tooth.of_diameter(1.0, 20.0, 1.0, x, 1.0) for x in (1.0, 2.0)]
+    one, two = (least_share(train, k, pair) for pair in pairs)
+    rising = (two - one) / (2.0**exponent - 1.0) * u**exponent
+    grown = one - (two - one) / (2.0**exponent - 1.0) + rising
+    return power, grown, exponent * rising / grown

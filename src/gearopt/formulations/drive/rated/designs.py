@@ -1,0 +1,168 @@
+"""Designs of a drive that ratings limit, found by trying: in boxes, and near a design."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from functools import cache
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.drive.rated.boxes import (
+    D2,
+    ROUND,
+    SLIM,
+    B,
+    D,
+    M,
+    U,
+    Z,
+    first_boxes,
+    shafts_about,
+)
+from gearopt.formulations.drive.shares import share
+from gearopt.formulations.drive.train import Train
+from gearopt.formulations.strength.rated import Option
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
+
+TRIED = 48  # diameters
+ABOVE = 0.02  # at least, of a box, within which a diameter is looked for
+SAME = 1e-10  # of ratios
+FIRST_STEP, LAST_STEP = 0.18, 1e-5  # of logarithms, by which a design is moved
+SHORTER = 0.4  # of a step that gained little
+LITTLE = 1e-4  # of the value
+
+Design = tuple[tuple[GearPair, ...], float]  # pairs and value
+
+
+def in_boxes(
+    train: Train, after: Sequence[float], smallest: Callable[..., GearPair | None]
+) -> Design | None:
+    """Return the best pairs that are found in boxes of all stages, and their value.
+
+    after: ln of the torque behind each stage over the input's; smallest(stage, before, after): the
+    pair that is found there, whose ratio may be another one.
+    """
+    pairs, value, at = [], 0.0, 0.0
+    for k, then in enumerate(after):
+        pair = smallest(k, at, then)
+        if pair is None:
+            return None
+        pairs.append(pair)
+        value += float(share(train, k, pair))
+        at += math.log(pair.ratio)
+    low, high = float(train.lowest_ratio), float(train.highest_ratio)
+    good = math.log(low) - SAME <= at <= math.log(high) + SAME
+    return (tuple(pairs), value) if good else None
+
+
+def polished(train: Train, best: Design, clock: Clock) -> Design:
+    """Return the best design near a design: ratios, teeth and b/d1 in ever shorter steps.
+
+    The design need not be one that the ratings accept; only better ones than its value count.
+    """
+    size = FIRST_STEP
+    while size > LAST_STEP and clock.tell():
+        pairs, before = best
+        at = np.cumsum([math.log(float(pair.ratio)) for pair in pairs])
+        boxes = [_around(train, k, pair, size) for k, pair in enumerate(pairs)]
+
+        @cache
+        def tried(k: int, at: float, then: float, boxes: list[Array] = boxes) -> GearPair | None:
+            return smallest(train, k, boxes[k], at, then, 3)
+
+        for moves in product((-size, 0.0, size), repeat=len(pairs) - 1):
+            if clock.over:
+                return best
+            made = in_boxes(train, [*(at[:-1] + np.array(moves)), at[-1]], tried)
+            if made is not None and made[1] < best[1]:
+                best = made
+        if not best[1] < before * (1.0 - LITTLE):
+            size *= SHORTER
+    return best
+
+
+def _around(train: Train, k: int, pair: GearPair, size: float) -> Array:
+    """Return a box about a pair within the limits of its stage."""
+    limits = first_boxes(shafts_about(train, 1), k).sizes[:, :, 0]
+    box = limits.copy()
+    d = pair.pinion.reference_diameter
+    for row, value, wide in (
+        (Z, pair.pinion_teeth, size),
+        (SLIM, pair.face_width / d, size),
+        (D, d, 2.0 * size),
+    ):
+        ends = np.log(float(value)) + np.array([-wide, wide])
+        box[row] = np.clip(ends, *limits[row])
+    return box
+
+
+def smallest(
+    train: Train, k: int, box: Array, before: float, after: float, sides: int
+) -> GearPair | None:
+    """Return the pair of the least share that the ratings accept among some of a box.
+
+    before, after: ln of the torques over the input's, the latter as near as the box has it; sides:
+    so many teeth and b/d1 are tried, with TRIED diameters each.
+    """
+    stage, ratio = train.stages[k], math.exp(float(np.clip(after - before, *box[U])))
+    spread = [
+        np.linspace(box[row, 0], box[row, 1], sides if np.ptp(box[row]) > ROUND else 1)
+        for row in (Z, SLIM)
+    ]
+    diameters = np.linspace(box[D, 0], max(box[D, 1], box[D, 0] + ABOVE), TRIED)
+    sizes = np.exp([side.ravel() for side in np.meshgrid(*spread, diameters)])
+
+    def pairs(z: Array, slim: Array, d: Array) -> GearPair:
+        module = d * stage.toothing.cosine / z
+        return stage.toothing.of_diameter(module, z, d, ratio, slim * d)
+
+    sizes = sizes[:, _allowed(train, k, pairs(*sizes))]
+    if not sizes.shape[1]:
+        return None
+    torque = train.torque * math.exp(before)
+    for accepts in _judges(train, k, torque, float(train.speed_at(torque))):
+        sizes = sizes[:, accepts(pairs(*sizes))]
+        if not sizes.shape[1]:
+            return None
+    return pairs(*sizes[:, int(share(train, k, pairs(*sizes)).argmin())])
+
+
+def _judges(
+    train: Train, k: int, torque: float, speed: float
+) -> Iterator[Callable[[GearPair], Any]]:
+    """Return what accepts pairs (n,) of a stage: its load limits, then each of its standards."""
+    stage = train.stages[k]
+    if train.law.limits:
+        law = train.law
+        yield lambda pair: np.asarray(law.load(pair, torque, speed, stage.allowable) <= 1.0)
+    for option in stage.options[:1]:
+        for standard in reversed(option.standards):
+            alone = replace(option, standards=(standard,))
+
+            def accepts(pair: GearPair, alone: Option = alone) -> Any:
+                loads = np.full((2, *np.shape(pair.ratio)), [[torque], [speed]])
+                used = alone.utilisations(pair, loads[0], loads[1], train.safety)
+                return np.asarray(np.max([*used.values()], axis=0) <= 1.0)
+
+            yield accepts
+
+
+def _allowed(train: Train, k: int, pair: GearPair) -> Array:
+    """Return which pairs keep to the limits of a stage on sizes."""
+    sizes = first_boxes(shafts_about(train, 1), k).sizes[:, :, 0]
+    d, width = pair.pinion.reference_diameter, pair.face_width
+    rows = {Z: pair.pinion_teeth, SLIM: width / d, D: d, M: pair.normal_module, B: width}
+    rows[D2] = pair.wheel.reference_diameter
+    found = np.ones(np.shape(d), bool)
+    for row, value in rows.items():
+        found &= (np.log(value) >= sizes[row, 0] - ROUND) & (np.log(value) <= sizes[row, 1] + ROUND)
+    numbers, over = dict[str, Any](train.numbers()), width / pair.normal_module
+    low, high = train.stages[k].face_width.over_module
+    found &= (over >= float(low or 0) - ROUND) & (over <= float(high or math.inf) * (1.0 + ROUND))
+    z = pair.wheel_teeth
+    found &= (z >= numbers["wheel_low"][k] - SAME) & (z <= numbers["wheel_high"][k] + SAME)
+    return found

@@ -1,0 +1,366 @@
+"""Continuous sizing of stages that ratings limit: a smooth form, its bound, and the exact rating.
+
+Ipopt minimises the ratings' smooth form in every combination of what it needs fixed beforehand
+(regimes of AGMA 908, ranges of K_v of ISO 6336), from the optimum of a geometric program whose
+limits are below the true ones (AGMA), or from what a search finds (ISO 6336 without steps in its
+tolerances). That search bounds the drive from below, in real-valued and in whole teeth, and looks
+for designs of its own (`rated_cells`). What is returned was rated by the exact form.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive.rated.bound import Choice, bounding, box, solved
+from gearopt.formulations.drive.rated.cells import Searched, search
+from gearopt.formulations.drive.rated.designs import polished
+from gearopt.formulations.drive.rated.starts import (
+    point_of,
+    point_of_result,
+    repaired,
+    safe,
+    starts,
+    whole,
+)
+from gearopt.formulations.drive.train import Stage, Train, terms
+from gearopt.formulations.strength.rated import MODES, Standard
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
+from gearopt.physics.gears import GearPair
+
+ROUNDS = 4  # of correcting the smooth form by the exact one
+EQUAL = 1e-7  # relative; of safety factors that are those of the exact rating
+SAME = 1e-9  # of corrections that no longer change
+CLOSE = 5e-7  # relative gap that ends the search
+ENOUGH = 0.999  # of a gap that is asked for: roundings included
+SEARCH = 5.0  # seconds of the search for a bound where no gap is asked for; 3-fold from 3 stages
+POLISHING = 0.2  # of these seconds, at most, for the best design before it
+REFINED = 4  # best designs whose choices are refined
+
+
+def smooth(train: Train) -> Callable[..., Outcome]:
+    """Return the method of `sizing.problem` for a rated drive.
+
+    It returns the best design that the exact rating accepts, with a bound.
+    """
+
+    def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Ipopt on the smooth form from the bounding program; the seed changes nothing."""
+        return _outcome(train, problem, Clock(budget, watch))
+
+    return run
+
+
+def choices(train: Train) -> Iterator[Choice]:
+    """Return every combination of what the smooth form needs fixed beforehand."""
+    stages = [
+        product(*(s.choices(bool(stage.toothing.helix_angle)) for s in _standards(stage)))
+        for stage in train.stages
+    ]
+    return product(*stages)
+
+
+def _standards(stage: Stage) -> tuple[Standard, ...]:
+    """Return the standards that rate a stage."""
+    return stage.options[0].standards if stage.options else ()
+
+
+def smooth_problem(train: Train, choice: Choice) -> Problem:
+    """Return the smooth problem in one combination.
+
+    Variables are those of `sizing.problem` and the unknowns of the standards, one component a
+    stage. The parameter trim has factors of the smooth safeties, by default 1, by stage, standard
+    (two) and mode.
+    """
+    unknowns, size = _unknowns(train), 8 * len(train.stages)
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        extra: dict[str, dict[str, Any]] = {"defines": {}, "equal": {}}
+
+        def rated(k: int, pair: GearPair, torque: Any, speed: Any, safety: Any) -> dict[str, Any]:
+            rows: dict[str, Any] = {}
+            for j, standard in enumerate(_standards(train.stages[k])):
+                suffix = standard.suffix
+                own = {n: each(getattr(x, n + suffix))[k] for n in standard.unknowns}
+                made = standard.smooth(pair, torque, speed, choice[k][j], own)
+                for i, (mode, actual) in enumerate(zip(MODES, made.safeties, strict=True)):
+                    rows[mode + suffix] = safety[i // 2] / (actual * p.trim[8 * k + 4 * j + i])
+                rows |= {n + suffix: v for n, v in made.limits.items()}
+                for part in extra:
+                    found = getattr(made, part).items()
+                    extra[part] |= {f"{n}{suffix}[{k + 1}]": v for n, v in found}
+            return rows
+
+        found = terms(train, p, sizing.text_pairs(train, x, p), rated=rated)
+        equal = {**found.equal, **extra["equal"]}
+        return Terms(found.minimise, found.limits, extra["defines"], equal)
+
+    columns = (*sizing.variables(train), *unknowns)
+    trim = Param("trim", "", (1.0,) * size, size)
+    return Problem("sizing", columns, (*sizing.parameters(train), trim), evaluate)
+
+
+def _unknowns(train: Train) -> tuple[Var, ...]:
+    size, found = len(train.stages), {}
+    for stage in train.stages:
+        for standard in _standards(stage):
+            for name, (low, high, log) in standard.unknowns.items():
+                at = max(low, 1.0) if log else 0.5 * (low + high)
+                own = name + standard.suffix
+                lower, upper, guess = ((end,) * size for end in (low, high, at))
+                found[own] = Var(own, "", lower, upper, guess, size, log=log, search=True)
+    return tuple(found.values())
+
+
+@dataclass(frozen=True)
+class _Design:
+    """A design in real-valued teeth that the exact rating accepts.
+
+    x: point of `sizing.problem`; same: whether the smooth form is exact there; status: of Ipopt's
+    point, as certified.
+    """
+
+    value: float
+    x: Array
+    choice: Choice
+    same: bool
+    status: str
+
+
+def searched(train: Train) -> Callable[..., Outcome]:
+    """Return a method of `sizing.problem` for a rated drive: the search for its bound alone."""
+
+    def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Branch and bound; the seed changes nothing."""
+        clock = Clock(budget, watch)
+        found = _searched(train, None, clock, budget.seconds)
+        best = _of_pairs(train, problem, found)
+        return _claim(best, found.bound, clock)
+
+    return run
+
+
+def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
+    """Return the best design of all combinations with the bound of all."""
+    if train.several_options:
+        raise SolveError("lists of materials are for whole teeth: give a table [teeth]")
+    bounded = _all_bounded(train)
+    designs, bound = _by_programs(train, exact, clock) if bounded else ([], -math.inf)
+    if not bounded or not designs or train.hollow:
+        made = [_Design(_value(exact, x), x, (), False, "feasible") for x in whole(train, clock)]
+        designs += [design for design in made if safe(exact, design.x)]
+    best = min(designs, key=lambda design: design.value, default=None)
+    long = SEARCH * (3.0 if len(train.stages) > 2 else 1.0)
+    seconds = None if clock.budget.gap > 0.0 else clock.within(long)
+    if bound < math.inf and not clock.stopped:
+        found = _searched(train, best, clock, seconds)
+        own = _of_pairs(train, exact, found)
+        bound, designs = max(bound, found.bound), [*designs, *([own] if own else [])]
+    more = train.hollow or not bounded and not (designs and _stepped(train))
+    if more and bound < math.inf:
+        designs += _by_ipopt(train, exact, [*(d.x for d in designs), *starts(exact)], clock)
+    return _claim(min(designs, key=lambda d: d.value, default=None), bound, clock)
+
+
+def _by_programs(train: Train, exact: Problem, clock: Clock) -> tuple[list[_Design], float]:
+    """Return designs from the optima of the bounding programs, and the least of their bounds."""
+    begun = {choice: _start(train, choice, clock) for choice in choices(train)}
+    designs = []
+    for choice, (start, _) in begun.items():
+        made = None if start is None else _design(train, exact, choice, start, clock)
+        designs += [] if made is None else [made]
+        if designs:
+            clock.best = min(d.value for d in designs)
+    designs.sort(key=lambda design: design.value)
+    designs += [_refined(train, exact, design, clock) for design in designs[:REFINED]]
+    return designs, min(least for _, least in begun.values())
+
+
+def _by_ipopt(train: Train, exact: Problem, begin: list[Array], clock: Clock) -> list[_Design]:
+    """Return designs from given starts."""
+    designs = []
+    for choice in choices(train):
+        made = smooth_problem(train, choice)
+        found = [_design(train, exact, choice, one, clock, made) for one in begin]
+        designs += [design for design in found if design is not None]
+    designs.sort(key=lambda design: design.value)
+    return designs + [_refined(train, exact, design, clock) for design in designs[:1]]
+
+
+def _searched(train: Train, best: _Design | None, clock: Clock, seconds: float | None) -> Searched:
+    """Return what the search over cells finds beside the best design so far."""
+    known = () if best is None else sizing.pairs(train, best.x)
+    most = math.inf if best is None else best.value
+    close = max(ENOUGH * clock.budget.gap, CLOSE)
+    inner = Clock(replace(clock.left, seconds=seconds), clock.inner())
+    if known and _stepped(train):
+        spent = None if seconds is None else POLISHING * seconds
+        known, most = polished(train, (tuple(known), most), Clock(Budget(spent), clock.inner()))
+    found = search(train, known, most, inner, close)
+    if found.pairs is None and known and best is not None and most < best.value:
+        found = Searched(found.bound, tuple(known), most)
+    if found.pairs is not None and found.bound < found.value * (1.0 - close):
+        found = Searched(found.bound, *polished(train, (found.pairs, found.value), clock))
+    clock.best, clock.bound = min(clock.best, found.value), max(clock.bound, found.bound)
+    clock.tell()
+    return found
+
+
+def _of_pairs(train: Train, exact: Problem, found: Searched) -> _Design | None:
+    """Return the design of a search; None where it has none that the exact text accepts."""
+    if found.pairs is None:
+        return None
+    x = point_of(train, found.pairs)
+    x = np.clip(x, *exact.bounds()[:2])
+    return _Design(_value(exact, x), x, (), False, "feasible") if safe(exact, x) else None
+
+
+def _stepped(train: Train) -> bool:
+    """Return whether a rating jumps with sizes, which no smooth form follows."""
+    return any(one.steps for stage in train.stages for one in _standards(stage))
+
+
+def _value(exact: Problem, x: Array) -> float:
+    return float(exact.batch(x[None]).F[0, 0])
+
+
+def _refined(train: Train, exact: Problem, best: _Design, clock: Clock) -> _Design:
+    """Return the best design in choices that are closer to the exact rating, stage by stage."""
+    for k, pair in enumerate(sizing.pairs(train, best.x)):
+        for j, standard in enumerate(_standards(train.stages[k])):
+            row = best.choice[k]
+            for closer in () if clock.stopped else standard.refined(pair, row[j]):
+                changed = (*row[:j], closer, *row[j + 1 :])
+                own = (*best.choice[:k], changed, *best.choice[k + 1 :])
+                made = _design(train, exact, own, best.x, clock)
+                if made is not None and made.value < best.value:
+                    best = made
+    return best
+
+
+def _claim(best: _Design | None, bound: float, clock: Clock) -> Outcome:
+    proof = {
+        "method": "branch and bound",
+        "arithmetic": "double, with a rounding allowance",
+        "sentence": "Proof: branch and bound over cells of teeth, ratios and sizes, in each of "
+        "which a geometric program with limits and objective at most those of the drive bounds it.",
+    }
+    done = not clock.stopped
+    if best is None:
+        if bound == math.inf and done:
+            return Outcome(None, infeasible=True, proof=proof, evaluations=clock.evaluations)
+        words = "no start led to a design that the ratings accept"
+        return Outcome(None, done, evaluations=clock.evaluations, message=words)
+    known = min(bound, best.value) if bound > -math.inf else None
+    by_search = not best.choice
+    words = "the smooth form of the ratings was corrected by the exact one"
+    words = "" if best.same or by_search else words
+    return Outcome(
+        best.x,
+        done,
+        bound=known,
+        proof=proof if known is not None else None,
+        stationary=best.same and best.status in ("optimal", "stationary"),
+        evaluations=clock.evaluations,
+        message=words,
+    )
+
+
+def _all_bounded(train: Train) -> bool:
+    """Return whether every standard has a bounding law, from whose optimum a search may start."""
+    boxes = [(stage, box(train, k, math.inf)) for k, stage in enumerate(train.stages)]
+    return all(
+        standard.floor(own, standard.choices(bool(stage.toothing.helix_angle))[0]) is not None
+        for stage, own in boxes
+        for standard in _standards(stage)
+    )
+
+
+def _start(train: Train, choice: Choice, clock: Clock) -> tuple[Array | None, float]:
+    """Return the optimum of the bounding program, or None, and its bound; inf: impossible."""
+    made = None if clock.stopped else bounding(train, choice)
+    if made is None:
+        return None, -math.inf
+    found = solved(clock, made)
+    if found.status == "infeasible":
+        return None, math.inf
+    return point_of_result(made, found), -math.inf if found.bound is None else found.bound
+
+
+def _design(
+    train: Train,
+    exact: Problem,
+    choice: Choice,
+    start: Array,
+    clock: Clock,
+    made: Problem | None = None,
+) -> _Design | None:
+    """Return the best design in a combination, as the exact rating accepts it.
+
+    made: the smooth problem of the combination, where it is known.
+    """
+    if clock.stopped:
+        return None
+    made = made or smooth_problem(train, choice)
+    trims, size, at = np.ones((len(train.stages), 2, 4)), len(start), start
+    best: _Design | None = None
+    for _ in range(ROUNDS):
+        if clock.stopped:
+            break
+        made = made.at(trim=tuple(trims.ravel().tolist()))
+        found = solved(clock, made.starting(np.concatenate([at, guess(train, at, choice)])))
+        at_end = point_of_result(made, found)
+        if at_end is None:
+            break
+        at = np.clip(at_end[:size], *exact.bounds()[:2])
+        ratio = _errors(train, at, choice, made, at_end, trims)
+        safe = repaired(exact, at)
+        if safe is not None:
+            value = float(exact.batch(safe[None]).F[0, 0])
+            same = bool(np.all(np.abs(trims * ratio - 1.0) <= EQUAL)) and np.array_equal(safe, at)
+            if best is None or value < best.value:
+                best = _Design(value, safe, choice, same, found.status)
+        if not np.isfinite(ratio).all() or np.abs(ratio - 1.0).max() <= SAME:
+            break
+        trims = trims * ratio
+    return best
+
+
+def _loads(train: Train, pairs: tuple[GearPair, ...]) -> Iterator[tuple[GearPair, float, float]]:
+    torque = train.torque
+    for pair in pairs:
+        yield pair, torque, float(train.speed_at(torque))
+        torque *= float(pair.ratio)
+
+
+def guess(train: Train, at: Array, choice: Choice) -> Array:
+    """Return the unknowns of the standards at a point, in the order of the variables."""
+    columns: dict[str, list[float]] = {v.name: list(each(v.guess)) for v in _unknowns(train)}
+    for k, pair in enumerate(sizing.pairs(train, at)):
+        for j, standard in enumerate(_standards(train.stages[k])):
+            for name, value in standard.guess(pair, choice[k][j]).items():
+                columns[name + standard.suffix][k] = value
+    return np.array([v for column in columns.values() for v in column])
+
+
+def _errors(
+    train: Train, at: Array, choice: Choice, made: Problem, point: Array, trims: Array
+) -> Array:
+    """Return the exact safeties over the trimmed smooth ones (stages, standards, 4)."""
+    ratio = np.ones_like(trims)
+    x = namespace(made.variables, [float(v) for v in point])
+    for k, (pair, torque, speed) in enumerate(_loads(train, sizing.pairs(train, at))):
+        for j, standard in enumerate(_standards(train.stages[k])):
+            own = {n: each(getattr(x, n + standard.suffix))[k] for n in standard.unknowns}
+            smooth = standard.smooth(pair, torque, speed, choice[k][j], own).safeties
+            exact = standard.safeties(pair, torque, speed)
+            ratio[k, j] = np.array(exact, float) / (np.array(smooth, float) * trims[k, j])
+    return ratio

@@ -1,0 +1,103 @@
+"""What the gears of a stage add to the objective of a drive."""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from gearopt.formulations.strength.rated import Option
+from gearopt.physics.gears import GearPair
+
+if TYPE_CHECKING:
+    from gearopt.formulations.drive.train import Train
+
+OBJECTIVES = {  # name -> unit
+    "gear_volume": "mm3",
+    "mass": "kg",
+    "sum_of_centre_distances": "mm",
+    "total_length": "mm",
+    "cost": "",
+    "mesh_loss": "percent",
+}
+WEIGHTED = "weighted sum"  # of objectives, by the train's weights
+FRICTION = 0.06  # coefficient of friction of `mesh_loss`
+LENGTHS = ("sum_of_centre_distances", "total_length")  # objectives along the line of centres
+MASSES = ("mass", "cost")  # objectives of gears as heavy as their blanks
+BY_WIDTH = ("gear_volume", *MASSES)  # objectives whose shares are proportional to b
+
+
+def share(
+    train: "Train",
+    stage: int,
+    pair: GearPair,
+    density: Any = None,
+    option: int = 0,
+    objective: str | None = None,
+) -> Any:
+    """Return what the pair of a stage (counted from 0) adds to an objective, in its unit.
+
+    density [t/mm3], by default the train's; those of the stage's option come first. objective: by
+    default the train's. total_length is that of the shafts in one line, from the rim of the first
+    pinion to that of the last wheel over reference circles: d1/2 + sum of centre distances + d2/2.
+    mesh_loss is the power lost by tooth friction, in per cent of the input power: FRICTION pi
+    (1/z1 + 1/z2).
+    """
+    objective = objective or train.objective
+    if objective == WEIGHTED:
+        return sum(w * share(train, stage, pair, density, option, n) for n, w in train.weights)
+    if objective in MASSES:
+        rows = zip(train.stages[stage].blanks, pair.gears, strict=True)
+        volumes = [blank.volume(gear) for blank, gear in rows]
+        return _worth(train, stage, volumes, density, option, objective)
+    if objective == "gear_volume":
+        return pair.volume
+    if objective == "mesh_loss":
+        return 100.0 * FRICTION * math.pi * (1.0 / pair.pinion_teeth + 1.0 / pair.wheel_teeth)
+    length = pair.centre_distance
+    if objective == "total_length" and stage == 0:
+        length = length + 0.5 * pair.pinion.reference_diameter
+    if objective == "total_length" and stage == len(train.stages) - 1:
+        length = length + 0.5 * pair.wheel.reference_diameter
+    return length
+
+
+def least_share(
+    train: "Train",
+    stage: int,
+    pair: GearPair,
+    density: Any = None,
+    option: int = 0,
+    fewest: Sequence[Any] | None = None,
+    objective: str | None = None,
+) -> Any:
+    """Return a lower bound of `share` that grows with every size of the pair; equal of solid gears.
+
+    fewest: least numbers of teeth of pinion and wheel; None: unknown, then it is proportional to
+    b d1^2 at a given ratio.
+    """
+    objective, blanks = objective or train.objective, train.stages[stage].blanks
+    if objective == WEIGHTED:
+        rest = density, option, fewest
+        return sum(w * least_share(train, stage, pair, *rest, n) for n, w in train.weights)
+    if objective == "mesh_loss" and fewest is None:
+        return 0.0 * pair.volume  # it falls with more teeth
+    if objective not in MASSES or not train.hollow:
+        return share(train, stage, pair, density, option, objective)
+    if fewest is None:
+        rows = zip(blanks, pair.gears, strict=True)
+        volumes = [blank.least_fraction * gear.volume for blank, gear in rows]
+    else:
+        each_ = zip(blanks, pair.gears, fewest, strict=True)
+        volumes = [blank.least_volume(gear, teeth) for blank, gear, teeth in each_]
+    return _worth(train, stage, volumes, density, option, objective)
+
+
+def _worth(
+    train: "Train", stage: int, volumes: Sequence[Any], density: Any, option: int, objective: str
+) -> Any:
+    """Return mass [kg] or cost of gears of these volumes [mm3] of a stage."""
+    usual: Any = train.density if density is None else density
+    options = train.stages[stage].options
+    own = options[option] if options else Option(())
+    rows = zip(volumes, own.densities, own.prices, strict=True)
+    masses = [(1000.0 * (rho or usual) * volume, price) for volume, rho, price in rows]
+    return sum(kg if objective == "mass" else kg * price for kg, price in masses)

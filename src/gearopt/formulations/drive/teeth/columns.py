@@ -1,0 +1,167 @@
+"""The tooth pairs of one stage and what its limits allow of each; ties are decided in fractions."""
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearopt.errors import SolveError
+from gearopt.formulations.drive.shares import least_share
+from gearopt.formulations.drive.train import Stage, Train
+from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
+
+Index = NDArray[np.int64]
+Columns = tuple[Any, ...]
+
+PAIRS = 3_000_000  # tooth pairs of one stage: about 1 GB of tables
+
+
+def columns(train: Train, position: int, cut: Fraction, tick: Callable[[], None]) -> Columns:
+    """Return the fields of the table of a stage (counted from 0) for ratios up to `cut`.
+
+    tick: called several times a second; what it raises ends the work.
+    """
+    tick()
+    stage = train.stages[position]
+    cosine = stage.toothing.cosine
+    z1, z2 = _pairs(train, position, cut)
+    tick()
+    ratio = z2 / z1
+    load, need, exponent, slope = closed(train, position, z1, ratio)
+    tick()
+    first, last = _allowed(stage, z1, z2, cosine)
+    return (
+        train,
+        position,
+        z1,
+        z2,
+        ratio,
+        np.log(ratio),
+        np.array([float(m) for m in stage.modules]),
+        first,
+        last,
+        _steps(stage, z1, cosine),
+        load,
+        need,
+        exponent,
+        slope,
+    )
+
+
+def closed(
+    train: Train, position: int, z1: Index, ratio: Array
+) -> tuple[Array | None, Array, float, Array]:
+    """Return load, need, exponent and slope of a `Table`."""
+    stage = train.stages[position]
+    cosine = stage.toothing.cosine
+    if not train.law.proportional:
+        return None, np.zeros_like(ratio), 1.0, np.zeros_like(ratio)
+    one = stage.toothing.of_diameter(1.0, z1, z1 / cosine, ratio, 1.0)
+    load = train.law.load(one, 1.0, 0.0, stage.allowable)
+    slope = np.zeros_like(ratio)
+    if train.objective in ("gear_volume", "mass"):  # no module counts: d1 is 1 mm here
+        size = load * (z1 / cosine) ** 2  # b d1^2 for a torque of 1 N mm
+        slope = np.asarray(least_share(train, position, GearPair.of_teeth(1.0, 1.0, ratio, size)))
+    face = stage.face_width
+    if face.fixed is not None:
+        return load, (load / float(face.fixed)) ** 0.5, 0.5, slope
+    widest = face.widest * z1 / cosine  # b/m_n
+    if face.over_module[1] is not None:
+        widest = np.minimum(widest, float(face.over_module[1]))
+    return load, (load / widest) ** (1.0 / 3.0), 1.0 / 3.0, slope
+
+
+def _pairs(train: Train, position: int, cut: Fraction) -> tuple[Index, Index]:
+    """Return all (z1, z2) of a stage with ratios up to cut, by ratio, then by teeth.
+
+    SolveError where there are too many for the memory.
+    """
+    ranges = spans(train, position, cut)
+    count = sum(stop - start + 1 for _, start, stop in ranges)
+    if count > PAIRS:
+        raise SolveError(
+            f"a stage has {count:,} tooth pairs to choose from: narrow its pinion teeth, or limit "
+            "its wheel teeth or ratio (pinion_teeth, wheel_teeth, stage_ratio)"
+        )
+    wheels = [np.arange(start, stop + 1, dtype=np.int64) for _, start, stop in ranges]
+    z1 = np.repeat([z for z, _, _ in ranges], [len(w) for w in wheels]).astype(np.int64)
+    z2 = np.concatenate(wheels)
+    if train.coprime:
+        keep = np.gcd(z1, z2) == 1
+        z1, z2 = z1[keep], z2[keep]
+    order = np.argsort(z2 / z1, kind="stable")
+    return z1[order], z2[order]
+
+
+def spans(train: Train, position: int, cut: Fraction) -> list[tuple[int, int, int]]:
+    """Return every pinion z1 of a stage with its minimum and maximum wheel teeth up to a ratio.
+
+    The maximum is one below the minimum where there are none. Wheels that are too large with the
+    smallest module are left out.
+    """
+    stage = train.stages[position]
+    low = max(stage.ratio[0], train.lowest_ratio) if len(train.stages) == 1 else stage.ratio[0]
+    high = cut if stage.ratio[1] is None else min(cut, stage.ratio[1])
+    most_wheel = stage.wheel_teeth[1]
+    if stage.wheel_diameter is not None:
+        most = math.floor(stage.wheel_diameter * Fraction(stage.toothing.cosine) / stage.modules[0])
+        most_wheel = most if most_wheel is None else min(most_wheel, most)
+    least_z1, most_z1 = stage.pinion_teeth
+    assert most_z1 is not None
+    found = []
+    for z in range(least_z1, most_z1 + 1):
+        start = max(stage.wheel_teeth[0], math.ceil(low * z))
+        stop = math.floor(high * z)
+        stop = stop if most_wheel is None else min(stop, most_wheel)
+        found.append((z, start, max(stop, start - 1)))
+    return found
+
+
+def _allowed(stage: Stage, z1: Index, z2: Index, cosine: float) -> tuple[Index, Index]:
+    """Return the first and last module index by wheel diameter and limits of the face width."""
+    last = np.full(len(z1), len(stage.modules) - 1, dtype=np.int64)
+    exact_cosine = Fraction(cosine)
+    if stage.wheel_diameter is not None:
+        teeth = [math.floor(stage.wheel_diameter * exact_cosine / m) for m in stage.modules]
+        last = np.minimum(last, (np.array(teeth)[:, None] >= z2).sum(axis=0) - 1)
+    face = stage.face_width
+    if face.fixed is None and face.plain:
+        return np.zeros_like(last), last
+    pinions, place = np.unique(z1, return_inverse=True)
+    ends = [_modules(stage, face.proportions(int(z) / exact_cosine)) for z in pinions]
+    first, end = np.array(ends, dtype=np.int64).reshape(-1, 2).T
+    return first[place], np.minimum(last, end[place])
+
+
+def _modules(stage: Stage, span: tuple[Fraction, Fraction | None]) -> tuple[int, int]:
+    """Return the first and last index of modules with which some b has b/m in a span."""
+    face, (low, high) = stage.face_width, span
+    narrow, wide = (face.least, None) if face.fixed is None else (face.fixed, face.fixed)
+    possible = high is None or low <= high
+    possible &= wide is None or wide >= face.least
+    first = sum(high is not None and high * m < narrow for m in stage.modules)
+    last = sum(wide is None or low * m <= wide for m in stage.modules) - 1
+    return first, last if possible else -1
+
+
+def _steps(stage: Stage, z1: Index, cosine: float) -> tuple[Array, Array] | None:
+    """Return the minimum and maximum number of width steps for every module and pair."""
+    face = stage.face_width
+    if face.step is None:
+        return None
+    exact_cosine = Fraction(cosine)
+    teeth = np.unique(z1)
+    place = np.searchsorted(teeth, z1)
+    minimum = np.empty((len(stage.modules), len(teeth)))
+    maximum = np.empty_like(minimum)
+    for k, module in enumerate(stage.modules):
+        for i, z in enumerate(teeth):
+            low, high = face.proportions(int(z) / exact_cosine)
+            assert high is not None
+            minimum[k, i] = max(1, math.ceil(max(low * module, face.least) / face.step))
+            maximum[k, i] = math.floor(high * module / face.step)
+    return minimum[:, place], maximum[:, place]

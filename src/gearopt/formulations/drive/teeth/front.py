@@ -1,0 +1,355 @@
+"""All trains of whole teeth that no other train beats, by branch and bound on several objectives.
+
+A node is a choice of the first k stages. Its bounds, one an objective and one a weighted sum of
+them, are what the stages cost plus a table of lower bounds on the rest (`later_stages`). It is
+dropped where they lie below none of the corners that the known trains leave open. Of every pair,
+module and option the narrowest face is taken: no objective falls as a face grows. The search ends
+when no node is left.
+"""
+
+import heapq
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearopt.formulations.drive.shares import share
+from gearopt.formulations.drive.teeth.columns import Index
+from gearopt.formulations.drive.teeth.later_stages import Bound, bound, ragged
+from gearopt.formulations.drive.teeth.progress import Spent, Teeth
+from gearopt.formulations.drive.teeth.rated import RatedTable
+from gearopt.formulations.drive.teeth.search import search, within
+from gearopt.formulations.drive.teeth.stage import EDGE, Table
+from gearopt.formulations.drive.teeth.tables import stage_tables
+from gearopt.formulations.drive.train import Train
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.pareto.corners import corners, useful, weighed
+from gearopt.optimise.pareto.measures import TIE, unbeaten
+from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
+
+BEAM = 256  # nodes followed down at once
+LEAVES = 512  # nodes completed at once
+FINE = 0.0025  # width of the cells of log ratio
+COARSE = 0.01  # of rated drives, whose bounds take long
+WEIGHTS = {  # of weighted sums whose bounds are of use, by the number of objectives
+    2: ((0.2, 0.8), (0.5, 0.5), (0.8, 0.2)),
+    3: ((1.0, 1.0, 1.0), (1.0, 1.0, 0.1), (1.0, 0.1, 1.0), (0.1, 1.0, 1.0)),
+}
+
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What stages are made of, (n, stages): pairs (indices), modules and widths [mm], options."""
+
+    pair: Index
+    module: Array
+    width: Array
+    option: Index
+
+    def take(self, which: Index | Mask | slice) -> "Choice":
+        """Return some of them."""
+        return Choice(self.pair[which], self.module[which], self.width[which], self.option[which])
+
+    def after(self, own: "Choice") -> "Choice":
+        """Return these stages followed by another one."""
+        columns = ("pair", "module", "width", "option")
+        return Choice(*(np.hstack([getattr(self, n), getattr(own, n)]) for n in columns))
+
+    def __add__(self, other: "Choice") -> "Choice":
+        columns = ("pair", "module", "width", "option")
+        return Choice(*(np.vstack([getattr(self, n), getattr(other, n)]) for n in columns))
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """Nodes (n,) of one level: bounds (n, objectives + weights), costs alike, log of the ratio."""
+
+    level: int
+    bound: Array
+    cost: Array
+    log_ratio: Array
+    made: Choice
+
+    def take(self, which: Index | Mask | slice) -> "Nodes":
+        """Return some of them."""
+        columns = self.bound[which], self.cost[which], self.log_ratio[which]
+        return Nodes(self.level, *columns, self.made.take(which))
+
+    def __len__(self) -> int:
+        return len(self.cost)
+
+
+@dataclass
+class Search:
+    """A search as it goes on; it has state because it fills it.
+
+    train: one of `Train.of_one_option`, by its number. weights (w, objectives): of the sums that
+    are bounded too. values (n, objectives), made: the trains that none beats so far; open
+    (corners, objectives + w): what they leave open; low (objectives,): their least values.
+    compared: trains sized; opened: nodes expanded.
+    """
+
+    train: Train
+    clock: Clock
+    most: Array
+    weights: Array
+    tables: list[Table] = field(default_factory=list)
+    rest: list[Bound] = field(default_factory=list)
+    values: Array = field(default_factory=lambda: np.empty((0, 0)))
+    made: Choice | None = None
+    open: Array = field(default_factory=lambda: np.empty((0, 0)))
+    low: Array = field(default_factory=lambda: np.empty(0))
+    compared: int = 0
+    opened: int = 0
+    number: int = 0
+
+    def trains(self) -> list[tuple[tuple[GearPair, ...], tuple[int, ...]]]:
+        """Return gear pairs and options of the trains that none beats, by the first objective."""
+        if self.made is None:
+            return []
+        found = []
+        for k in range(len(self.values)):
+            modules, widths = self.made.module[k].tolist(), self.made.width[k].tolist()
+            rows = zip(teeth_of(self, self.made, k), modules, widths, strict=True)
+            pairs = tuple(
+                self.train.pair(stage, module, z1, z2, width)
+                for stage, ((z1, z2), module, width) in enumerate(rows)
+            )
+            found.append((pairs, tuple(map(int, self.made.option[k]))))
+        return found
+
+    def tick(self) -> None:
+        """Raise Spent where budget and watcher stop the search."""
+        self.clock.best = float(self.values[:, 0].min(initial=math.inf))
+        if not self.clock.tell():
+            raise Spent
+
+
+def fronts(train: Train, most: Array, clock: Clock) -> Search:
+    """Return every train that none beats, ties once; `clock.stopped`: not exhausted.
+
+    most (objectives,): largest values of interest; inf: any.
+    """
+    count = len(train.objectives)
+    run = Search(train, clock, most, np.empty((0, count)), values=np.empty((0, count)))
+    shelf: list[RatedTable] = []
+    try:
+        for run.number, run.train in enumerate(train.of_one_option):
+            run.rest, run.weights = [], np.empty((0, count))
+            run.open = np.full((1, count), np.inf)
+            run.tables = stage_tables(run.train, train.highest_ratio, run.tick, shelf)
+            if all(len(t.ratio) for t in run.tables) and _ends(run):
+                _bounds(run)
+                _all(run)
+    except Spent:
+        _inside(run)  # the ends of the front are found without its limits
+    return run
+
+
+def _ends(run: Search) -> bool:
+    """Begin with the trains that are best in one objective; return whether there are any."""
+    for objective in run.train.objectives:
+        watch = run.clock.inner(values=False)
+        best = search(run.train.minimising(objective), 1, run.clock.left, watch)
+        for _, teeth in best.found:
+            _add_teeth(run, teeth)
+        run.tick()
+        if not best.found:
+            return False
+    return True
+
+
+def _bounds(run: Search) -> None:
+    """Compute the bounds of every objective, and of weighted sums in the ranges of the ends."""
+    width = np.ptp(run.values, axis=0)
+    width = np.where(width > 0.0, width, np.abs(run.values[0]))
+    run.weights = np.array([np.array(w) / width for w in WEIGHTS[len(width)]])
+    delta = COARSE if run.train.rated else FINE
+    alone = [run.train.minimising(name) for name in run.train.objectives]
+    for train in (*alone, *(run.train.weighing(w) for w in run.weights)):
+        own = [table.of(train) for table in run.tables]
+        run.rest.append(bound(train, own, delta, run.tick))
+    run.low = run.values.min(axis=0)
+    _inside(run)
+    run.open = weighed(corners(run.values, run.most[None, :]), run.weights)
+
+
+def _inside(run: Search) -> None:
+    """Keep the trains up to the largest values of interest."""
+    inside = np.flatnonzero((run.values <= run.most * (1.0 + TIE)).all(axis=1))
+    if run.made is not None:
+        run.values, run.made = run.values[inside], run.made.take(inside)
+
+
+def _add_teeth(run: Search, teeth: Teeth) -> None:
+    """Add what trains of given teeth can be."""
+    nodes = _root(run)
+    for (z1, z2), table in zip(teeth, run.tables, strict=True):
+        pair = np.flatnonzero((table.z1 == z1) & (table.z2 == z2))
+        if not len(pair):
+            return
+        place = np.full(len(nodes), pair[0])
+        nodes = _children(run, nodes, (np.arange(len(nodes)), place))
+        nodes = nodes.take(unbeaten(nodes.cost, equal=True))
+    _keep(run, nodes)
+
+
+def _root(run: Search) -> Nodes:
+    """Return the node of no choice."""
+    none, zero = np.empty((1, 0)), np.zeros((1, len(run.train.objectives) + len(run.weights)))
+    places = np.empty((1, 0), dtype=np.int64)
+    return Nodes(0, zero, zero, np.zeros(1), Choice(places, none, none, places))
+
+
+def _all(run: Search) -> None:
+    """Search to the end, the most promising nodes first."""
+    last, order = len(run.tables) - 1, itertools.count()
+    heap: list[tuple[float, int, Nodes]] = [(0.0, next(order), _root(run))]
+    count = len(run.train.objectives)
+    low, scale = run.low, run.weights.mean(axis=0)
+    while heap:
+        nodes: Nodes | None = heapq.heappop(heap)[2]
+        while nodes is not None and len(nodes):
+            run.tick()
+            width = LEAVES if nodes.level == last else BEAM
+            rest, nodes = nodes.take(slice(width, None)), nodes.take(slice(0, width))
+            if len(rest):
+                score = float((rest.bound[0, :count] - low) @ scale)
+                heapq.heappush(heap, (score, next(order), rest))
+            nodes = nodes.take(useful(nodes.bound, run.open))
+            run.opened += len(nodes)
+            if nodes.level == last:
+                _complete(run, nodes)
+                break
+            nodes = _children(run, nodes, _pairs(run, nodes))
+            nodes = nodes.take(np.argsort((nodes.bound[:, :count] - low) @ scale, kind="stable"))
+
+
+def _pairs(run: Search, nodes: Nodes) -> tuple[Index, Index]:
+    """Return nodes and pairs of use of a stage that is not the last one."""
+    level, rest = nodes.level, run.rest[0]
+    if level == 0:
+        pair = np.arange(len(run.tables[0].ratio))
+        return np.zeros(len(pair), dtype=np.int64), pair
+    cell = rest.cell(nodes.log_ratio)
+    lower = np.stack([own.onward(level, cell) for own in run.rest], axis=2)
+    lower += nodes.cost[:, None, :]
+    use = useful(lower.reshape(-1, lower.shape[2]), run.open).reshape(lower.shape[:2])
+    owner, column = np.nonzero(use)
+    start = rest.starts[level][column]
+    group, pair = ragged(start, rest.starts[level][column + 1] - start)
+    return owner[group], pair
+
+
+def _children(run: Search, nodes: Nodes, places: tuple[Index, Index]) -> Nodes:
+    """Return the children of use of nodes by pairs."""
+    (node, pair), level = places, nodes.level
+    table = run.tables[level]
+    run.clock.evaluations += len(pair)
+    log_ratio = nodes.log_ratio[node] + table.log_ratio[pair]
+    ahead = np.zeros((len(pair), nodes.cost.shape[1]))
+    if level < len(run.tables) - 1 and run.rest:
+        ahead = np.stack([r.to_go[level + 1][r.cell(log_ratio)] for r in run.rest], axis=1)
+    lower = nodes.cost[node] + ahead
+    torque = run.train.torque * np.exp(nodes.log_ratio[node])
+    parts = list(_rows(run, level, torque, pair, lower))
+    owner, module, width, option, cost = (np.concatenate(c) for c in zip(*parts, strict=True))
+    use = useful(lower[owner] + cost, run.open)
+    owner, cost = owner[use], cost[use]
+    own = Choice(pair[owner, None], module[use, None], width[use, None], option[use, None])
+    made = nodes.made.take(node[owner]).after(own)
+    whole = nodes.cost[node[owner]] + cost
+    return Nodes(level + 1, lower[owner] + cost, whole, log_ratio[owner], made)
+
+
+Rows = tuple[Index, Array, Array, Index, Array]
+
+
+def _rows(run: Search, level: int, torque: Array, pair: Index, lower: Array) -> Iterator[Rows]:
+    """Yield owners, modules, widths [mm], options and costs of pairs (n,) at torques.
+
+    lower (n, objectives + w): what a train with them costs beside them; pairs without use at the
+    narrowest face that the file allows are left out.
+    """
+    table = run.tables[level]
+    if table.one_module:
+        value, module, width = table.smallest(torque, pair)
+        some = np.flatnonzero(np.isfinite(value))
+        yield _row(run, level, pair, some, module[some], width[some], 0)
+        return
+    for option in range(max(1, len(table.stage.options))):
+        for k, module in enumerate(table.modules):
+            some = np.flatnonzero((table.first[pair] <= k) & (k <= table.last[pair]))
+            narrow = table.made(module, pair[some])
+            narrow = narrow.of_width(table.width_ends(narrow, k, pair[some])[0])
+            some = some[useful(lower[some] + _costs(run, level, narrow, option), run.open)]
+            width = table.carrying(torque[some], pair[some], k, option)
+            some, width = some[np.isfinite(width)], width[np.isfinite(width)]
+            yield _row(run, level, pair, some, np.full(len(some), module), width, option)
+
+
+def _row(
+    run: Search, level: int, pair: Index, some: Index, module: Array, width: Array, option: int
+) -> Rows:
+    one = run.tables[level].made(module, pair[some]).of_width(width)
+    options = np.full(len(some), option + run.number)
+    return some, module, width, options, _costs(run, level, one, option)
+
+
+def _costs(run: Search, level: int, pair: GearPair, option: int) -> Array:
+    """Return what pairs add to every objective and weighted sum (n, objectives + w)."""
+    names = run.train.objectives
+    made = [share(run.train, level, pair, option=option, objective=name) for name in names]
+    return weighed(np.stack([np.asarray(m, float) for m in made], axis=1), run.weights)
+
+
+def _complete(run: Search, nodes: Nodes) -> None:
+    """Add the last stage to nodes, and keep the trains that none beats."""
+    train, table = run.train, run.tables[-1]
+    low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
+    start = np.searchsorted(table.log_ratio, low - nodes.log_ratio - EDGE)
+    stop = np.searchsorted(table.log_ratio, high - nodes.log_ratio + EDGE)
+    made = _children(run, nodes, ragged(start, stop - start))
+    run.compared += len(made)
+    _keep(run, made)
+
+
+def _keep(run: Search, nodes: Nodes) -> None:
+    """Keep the trains that meet the ratio limits exactly and that none beats."""
+    count = len(run.train.objectives)
+    nodes = nodes.take(_within(run, nodes))
+    nodes = nodes.take(unbeaten(nodes.cost[:, :count], equal=True))
+    if not len(nodes):
+        return
+    values = np.vstack([run.values, nodes.cost[:, :count]])
+    made = nodes.made if run.made is None else run.made + nodes.made
+    columns = zip(run.tables, made.pair.T, strict=True)
+    teeth = [z for table, pair in columns for z in (table.z1[pair], table.z2[pair])]
+    order = np.lexsort((*teeth[::-1], np.sum(teeth, axis=0)))  # fewest teeth first, of ties kept
+    kept = order[unbeaten(values[order])]
+    fresh = values[kept[kept >= len(run.values)]]
+    run.values, run.made = values[kept], made.take(kept)
+    if run.rest:
+        run.open = weighed(corners(fresh, run.open[:, :count]), run.weights)
+
+
+def _within(run: Search, nodes: Nodes) -> Mask:
+    """Return which trains meet the ratio limits: by integers where logarithms leave it open."""
+    low, high = math.log(run.train.lowest_ratio), math.log(run.train.highest_ratio)
+    good = (nodes.log_ratio > low + EDGE) & (nodes.log_ratio < high - EDGE)
+    near = ~good & (nodes.log_ratio > low - EDGE) & (nodes.log_ratio < high + EDGE)
+    for k in np.flatnonzero(near):
+        good[k] = within(run.train, teeth_of(run, nodes.made, int(k)))
+    return np.asarray(good)
+
+
+def teeth_of(run: Search, made: Choice, k: int) -> Teeth:
+    """Return the teeth of a train."""
+    rows = zip(run.tables, made.pair[k], strict=False)
+    return tuple((int(t.z1[j]), int(t.z2[j])) for t, j in rows)

@@ -1,0 +1,388 @@
+"""The choices of a stage whose limits are ratings: tooth pairs, modules, ways of making them.
+
+Rows are (pair, module, option); each needs the first face width that carries. Every module is
+tried, as a larger one may be the better one where the load-distribution factor falls.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import chain
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.drive.shares import least_share, share
+from gearopt.formulations.drive.teeth.columns import Index
+from gearopt.formulations.drive.teeth.stage import EDGE, Cells, Table
+from gearopt.formulations.drive.train import Train
+from gearopt.formulations.strength import ALLOWANCE
+from gearopt.formulations.strength.rated import IndexRows, Rows, Standard
+from gearopt.formulations.strength.widths import STEPS, first_width, used
+from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
+
+FEW = 4  # steps towards a width, for a first lower bound
+NEAR = 1.01  # times the least of these: what is bounded again
+TOGETHER = 2000  # pairs bounded again at once, at least
+ROUGH = 0.01  # of what is used above 1, where a bound is only to compare
+BATCH = 20_000  # pairs bounded at once
+CLOSE = 0.02  # of what is used above 1, for that, over the width of a cell
+TEETH = 10**8  # more than a wheel has: pairs are told apart by z1 TEETH + z2
+FINEST = 0.005  # width of a cell where none is given
+
+
+@dataclass(frozen=True)
+class Found:
+    """The least cost of rows (n,), and the index of the first module that carries at all."""
+
+    cost: Array
+    first: Index
+
+
+@dataclass(frozen=True)
+class RatedTable(Table):
+    """Tooth pairs (n,) of a stage with options.
+
+    others: tables that may have these pairs, too. tick: called between options and modules, about
+    a hundred times a second; what it raises ends the work.
+    """
+
+    others: tuple["RatedTable", ...] = ()
+    tick: Callable[[], None] = field(default=lambda: None, compare=False, repr=False)
+
+    @cached_property
+    def _prepared(self) -> list[list[Any]]:
+        """What standards take of the pairs, by option and standard; (modules n,) by module."""
+        modules = self.modules if self._by_module else np.ones(1)
+        z1, z2 = (np.tile(z, len(modules)) for z in (self.z1, self.z2))
+        pair = self.train.pair(self.position, np.repeat(modules, len(self.z1)), z1, z2, 1.0)
+        found: list[list[Any]] = []
+        known: list[tuple[Standard, Any]] = []
+        for option in self.stage.options:
+            made = []
+            for standard in option.standards:
+                others = (p for table in self.others for p in table.known(self, standard))
+                own = (p for s, p in known if s.like(standard))
+                one = next(chain(own, others), None)
+                made.append(standard.prepared(pair) if one is None else one)
+                known.append((standard, made[-1]))
+            found.append(made)
+        return found
+
+    def known(self, other: "RatedTable", standard: Standard) -> Iterator[Any]:
+        """Yield what a like standard took of another table's pairs, where this one has them all."""
+        place = self._place(other)
+        if place is None:
+            return
+        if self._by_module:
+            rows = np.arange(len(self.modules))[:, None] * len(self.ratio)
+            place = (rows + place).ravel()
+        for option, made in zip(self.stage.options, self._prepared, strict=True):
+            for one, own in zip(option.standards, made, strict=True):
+                if one.like(standard):
+                    yield own if len(other.ratio) == len(self.ratio) else own.take(place)
+
+    def covers(self, other: Table) -> bool:
+        """Return whether this table has all pairs of another one, of the same toothing."""
+        return isinstance(other, RatedTable) and self._place(other) is not None
+
+    def _place(self, other: Table) -> Index | None:
+        """Return where the pairs of another table are in this one; None where one is not."""
+        alike = not self._by_module or np.array_equal(self.modules, other.modules)
+        alike = alike and self.stage.toothing == other.stage.toothing
+        if not alike or len(other.ratio) > len(self.ratio):
+            return None
+        own, asked = (t.z1 * TEETH + t.z2 for t in (self, other))
+        order = np.argsort(own, kind="stable")
+        place: Index = order[np.searchsorted(own, asked, sorter=order) % max(1, len(own))]
+        return place if np.array_equal(own[place], asked) else None
+
+    @property
+    def _by_module(self) -> bool:
+        """Whether teeth of different modules have different shapes."""
+        own = self.stage.toothing
+        return own.working_distance is not None or any(own.thickness_allowances)
+
+    @property
+    def one_module(self) -> bool:
+        """Return False: a larger module may be the better one."""
+        return False
+
+    @property
+    def monotone(self) -> bool:
+        """Whether at one power a stronger torque never takes less."""
+        return all(s.monotone for o in self.stage.options for s in o.standards)
+
+    def cost(self, torque: Array, pair: Index, most: Array | float = np.inf) -> Array:
+        """Return the minimum share of pairs at torques [N mm]; inf where nothing carries them.
+
+        most: values above which any is as good as inf.
+        """
+        return self._found((torque, torque), pair, most).cost
+
+    def choose(self, torque: float, pair: int) -> tuple[float, float, int]:
+        """Return the module, the face width [mm] and the option behind `cost`."""
+        module = np.arange(self.first[pair], self.last[pair] + 1)
+        own, at = np.full(len(module), pair), np.full(len(module), torque)
+        one = self.made(self.modules[module], own)
+        ends, best = self._ends(one, module, own), (math.inf, math.inf, math.inf, 0)
+        for option in range(len(self.stage.options)):
+            widths = self._narrowest((at, at), own, module, option, ends)
+            costs = np.where(np.isfinite(widths), self._worth(one, widths, option), np.inf)
+            for k in np.flatnonzero(np.isfinite(costs)):
+                if costs[k] < best[0] * (1.0 - ALLOWANCE):
+                    best = costs[k].item(), self.modules[module[k]].item(), widths[k].item(), option
+        return best[1:]
+
+    def rough_cost(self, torque: Array, pair: Index) -> Array:
+        """Return a rough lower bound of `cost`."""
+        return self._found((torque, torque), pair, close=ROUGH, steps=2 * FEW).cost
+
+    def least_cost(
+        self,
+        torque: tuple[Array, Array],
+        pair: Index,
+        group: Index,
+        delta: float,
+        most: float = np.inf,
+    ) -> Array:
+        """Return lower bounds of `cost` at torques [N mm] between two ends.
+
+        Only the least of every group (n,) of pairs is close, as cells of delta need it. most: costs
+        above which any is as good as inf.
+        """
+        cost = self._found(torque, pair, most, steps=FEW).cost
+        return self._closer(torque, pair, group, cost, CLOSE * delta, most)
+
+    def useful_ratio(self, least: float, most: float) -> float:
+        """Return the largest ratio whose share of a train is at most so much; at least `least`.
+
+        Any stage carries at least the input torque.
+        """
+        pair = np.flatnonzero(self.ratio > least)
+        low = np.full(len(pair), self.train.torque)
+        ends = low, low * float(self.train.highest_ratio)
+        cost = self._found(ends, pair, most, steps=FEW).cost
+        near = np.flatnonzero(cost <= most)
+        ends = ends[0][near], ends[1][near]
+        cost = self._found(ends, pair[near], most, close=CLOSE * FINEST).cost
+        return float(self.ratio[pair[near]][cost <= most].max(initial=least))
+
+    def _closer(
+        self,
+        torque: tuple[Array, Array],
+        pair: Index,
+        group: Index,
+        cost: Array,
+        close: float,
+        most: float,
+    ) -> Array:
+        """Return lower bounds of which the least one of every group is close."""
+        rough = np.isfinite(cost)
+        while rough.any():
+            least = np.full(group.max(initial=-1) + 1, np.inf)
+            np.minimum.at(least, group, cost)
+            above = np.divide(cost, least[group], np.full_like(cost, np.inf), where=rough)
+            if above.min() > NEAR:
+                break
+            few = min(TOGETHER, len(above)) - 1
+            near = np.flatnonzero(rough & (above <= max(NEAR, np.partition(above, few)[few])))
+            ends = torque[0][near], torque[1][near]
+            cost[near] = np.maximum(
+                cost[near], self._found(ends, pair[near], most, close=close).cost
+            )
+            rough[near] = False
+            if np.all(most == np.inf):  # without a train it counts alone which groups have a pair
+                rough &= ~np.isin(group, group[~rough & np.isfinite(cost)])
+        return cost
+
+    def grid(self, cells: Cells, tick: Callable[[], None]) -> Array:
+        """Return the minimum cost (torque cells, ratio cells).
+
+        A lower bound: the least over the torques of a cell, of its pairs the best.
+        """
+        found = np.full((cells.torque, cells.ratio), np.inf)
+        delta, most = cells.delta, cells.most
+        column = (self.log_ratio / delta).astype(np.int64)
+        highest = math.log(self.train.highest_ratio)
+        first = np.zeros(len(self.ratio), np.int64)
+        for rows in cells.batches(len(self.ratio), BATCH):
+            tick()
+            inside = self.log_ratio <= highest - rows[:, None] * delta + EDGE
+            if cells.useful is not None:
+                inside &= cells.useful[rows[:, None], column]
+            row, pair = np.nonzero(inside)
+            low = rows[row] * delta
+            ends = [self.train.torque * np.exp(e) for e in (low - EDGE, low + delta + EDGE)]
+            place = row * cells.ratio + column[pair]
+            made = self._found((ends[0], ends[1]), pair, most, first[pair], steps=FEW)
+            if self.monotone and most == np.inf:
+                first[pair[row == 0]] = made.first[row == 0]
+            cost = self._closer((ends[0], ends[1]), pair, place, made.cost, CLOSE * delta, most)
+            np.minimum.at(found, (rows[row], column[pair]), cost)
+        return found
+
+    def width(self, torque: Array, pair: Index, module: int) -> Array:
+        """Return the minimum face width [mm] of pairs of a module (index) at torques; inf: none."""
+        every = np.full(len(pair), module)
+        possible = (self.first[pair] <= module) & (module <= self.last[pair])
+        found = self.least_width((torque, torque), pair, every, ALLOWANCE)
+        return np.where(possible, found, np.inf)
+
+    def least_width(
+        self, torque: tuple[Array, Array], pair: Index, module: Index, close: float
+    ) -> Array:
+        """Return lower bounds of the minimum face widths [mm] at torques between two ends.
+
+        module: indices; close: as of `first_width`, with ALLOWANCE and one torque they are exact.
+        """
+        ends = self._ends(self.made(self.modules[module], pair), module, pair)
+        options = range(len(self.stage.options))
+        widths = [self._narrowest(torque, pair, module, o, ends, close) for o in options]
+        return np.asarray(np.minimum.reduce(widths))
+
+    def narrowest(self, module: int) -> Array:
+        """Return the narrowest face width [mm] (n,) that a module (index) allows; inf: none."""
+        every, at = np.arange(len(self.ratio)), np.full(len(self.ratio), module)
+        ends = self._ends(self.made(self.modules[module], every), at, every)
+        allowed = (self.first <= module) & (module <= self.last) & (ends[0] <= ends[1])
+        return np.where(allowed, ends[0], np.inf)
+
+    def of(self, train: Train) -> "RatedTable":
+        """Return the table of the same pairs for a drive with another objective."""
+        made = super().of(train)
+        assert isinstance(made, RatedTable)
+        return replace(made, others=(*self.others, self))
+
+    def carrying(self, torque: Array, pair: Index, module: int, option: int) -> Array:
+        """Return the minimum face width [mm] of pairs of a module (index) made in one way."""
+        at = np.full(len(pair), module)
+        ends = self._ends(self.made(self.modules[module], pair), at, pair)
+        return self._narrowest((torque, torque), pair, at, option, ends)
+
+    def _found(
+        self,
+        torque: tuple[Array, Array],
+        pair: Index,
+        most: Array | float = np.inf,
+        first: Index | int = 0,
+        close: float = ALLOWANCE,
+        steps: int = STEPS,
+    ) -> Found:
+        """Return the best choices at torques between two ends.
+
+        most: costs above which none counts; first: index of the module to begin with; close,
+        steps: as of `first_width`, for lower bounds.
+        """
+        best = Found(np.full(len(pair), np.inf), np.full(len(pair), len(self.modules)))
+        for option in range(len(self.stage.options)):
+            at = np.maximum(self.first[pair], first)
+            rows = np.arange(len(pair))
+            while True:
+                self.tick()
+                rows = rows[at[rows] <= self.last[pair[rows]]]
+                own, module = pair[rows], at[rows]
+                one = self.made(self.modules[module], own)
+                low, high = self._ends(one, module, own)
+                worth = self._worth(one, low, option)
+                limit = np.minimum(np.broadcast_to(most, len(pair))[rows], best.cost[rows])
+                larger, keep = self._floor(one, low, option) <= limit, worth <= limit
+                if not larger.any():
+                    break
+                if self.train.by_width:
+                    high = np.minimum(high, low * (limit / worth) * (1.0 + EDGE))
+                if keep.any():
+                    tried, ends = rows[keep], (low[keep], high[keep])
+                    loads = torque[0][tried], torque[1][tried]
+                    own, module = own[keep], module[keep]
+                    widths = self._narrowest(loads, own, module, option, ends, close, steps)
+                    self._improve(best, tried, own, module, option, widths)
+                rows = rows[larger]
+                at[rows] += 1
+        return best
+
+    def _worth(self, pair: GearPair, width: Array, option: int) -> Array:
+        """Return what pairs of these face widths [mm] add to the objective."""
+        made = share(self.train, self.position, pair.of_width(width), option=option)
+        return np.asarray(made)
+
+    def _floor(self, pair: GearPair, width: Array, option: int) -> Array:
+        """Return a lower bound of `_worth` that larger modules do not fall below."""
+        fewest = pair.pinion_teeth, pair.wheel_teeth
+        one = pair.of_width(width)
+        made = least_share(self.train, self.position, one, option=option, fewest=fewest)
+        return np.asarray(made)
+
+    def _improve(
+        self, best: Found, rows: Index, pair: Index, module: Index, option: int, width: Array
+    ) -> None:
+        """Put what carries and costs less in the place of what was best so far."""
+        some = np.isfinite(width)
+        rows, pair, module, width = rows[some], pair[some], module[some], width[some]
+        best.first[rows] = np.minimum(best.first[rows], module)
+        cost = self._worth(self.made(self.modules[module], pair), width, option)
+        best.cost[rows] = np.minimum(best.cost[rows], cost)
+
+    def _ends(self, one: GearPair, module: Index, pair: Index) -> tuple[Array, Array]:
+        """Return the minimum and maximum face width [mm] of pairs with modules (indices)."""
+        if self.steps is None:
+            return self.width_ends(one)
+        low, high = (count[module, pair] * self.step for count in self.steps)
+        return low, high
+
+    def _narrowest(
+        self,
+        torque: tuple[Array, Array],
+        pair: Index,
+        module: Index,
+        option: int,
+        ends: tuple[Array, Array],
+        close: float = ALLOWANCE,
+        steps: int = STEPS,
+    ) -> Array:
+        """Return the narrowest face widths [mm] of pairs with modules (indices); inf: none."""
+        one = self.made(self.modules[module], pair)
+        rows = self._rows(torque, one, pair, module, option)
+        found = first_width(rows, *ends, close, steps)
+        if self.steps is None:
+            return found
+        return self._stepped(rows, found, ends[1], close)
+
+    def _rows(
+        self,
+        torque: tuple[Array, Array],
+        one: GearPair,
+        pair: Index,
+        module: Index,
+        option: int,
+    ) -> list[Rows]:
+        place = module * len(self.ratio) + pair if self._by_module else pair
+        speed = self.train.speed_at(torque[0]), self.train.speed_at(torque[1])
+        scale = np.ones(len(pair)) if self._by_module else self.modules[module]
+        standards = zip(self.stage.options[option].standards, self._prepared[option], strict=True)
+        found: list[Rows] = [
+            standard.rows(prepared.take(place).scaled(scale), one, torque, speed, self.train.safety)
+            for standard, prepared in standards
+        ]
+        if self.train.law.limits:
+            assert self.load is not None
+            found.append(IndexRows(self.load[pair] * torque[0] / self.modules[module] ** 2))
+        return found
+
+    def _stepped(self, rows: list[Rows], width: Array, high: Array, close: float) -> Array:
+        """Return the first widths on the step from those on that carry; close: as `first_width`."""
+        step, found = self.step, np.full(len(width), np.inf)
+        active = np.flatnonzero(np.isfinite(width))
+        while len(active):
+            now = [one.take(active) for one in rows]
+            on = np.ceil(width[active] / step * (1.0 - ALLOWANCE)) * step
+            inside = on <= high[active] * (1.0 + ALLOWANCE)
+            carries = inside & (used(now, on, on) <= 1.0 + close)
+            found[active[carries]] = on[carries]
+            goes = inside & ~carries
+            active, now = active[goes], [one.take(goes) for one in now]
+            width[active] = first_width(now, on[goes] + step, high[active], close)
+            active = active[np.isfinite(width[active])]
+        return found

@@ -1,0 +1,77 @@
+"""How large the ratio of a stage may be: of pairs there are, of a first look, of trains of use."""
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+
+import numpy as np
+
+from gearopt.formulations.drive.shares import LENGTHS, least_share, share
+from gearopt.formulations.drive.teeth.columns import spans
+from gearopt.formulations.drive.teeth.rated import RatedTable
+from gearopt.formulations.drive.teeth.tables import stage_tables
+from gearopt.formulations.drive.train import Train
+from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
+
+
+def largest_ratio(train: Train) -> Fraction:
+    """Return the largest ratio of a pair that the limits of teeth and wheels leave a stage."""
+    rows = (row for k in range(len(train.stages)) for row in spans(train, k, train.highest_ratio))
+    ratios = (Fraction(stop, z) for z, start, stop in rows if stop >= start)
+    return max(ratios, default=train.highest_ratio)
+
+
+def first_cut(train: Train) -> Fraction:
+    """Return the largest stage ratio of a first look: three times that of an even split."""
+    even = float(train.ratio) ** (1.0 / len(train.stages))
+    return min(train.highest_ratio, Fraction(3.0 * even))
+
+
+def reach(
+    train: Train,
+    cut: Fraction,
+    maximum: Fraction,
+    threshold: float,
+    tick: Callable[[], None] = lambda: None,
+    shelf: list[RatedTable] | None = None,
+) -> Fraction:
+    """Return the largest stage ratio that a train at least as good as `threshold` may have.
+
+    tick: called several times a second; what it raises ends the work.
+    Any stage carries at least the input torque; its share alone then grows with its ratio, where
+    its law is proportional and the objective a volume, mass or length.
+    """
+    if train.rated:
+        every = stage_tables(train, maximum, tick, shelf)
+        names = (train.objective, *(name for name, _ in train.weights))
+        if "total_length" not in names:  # equal stages have the same shares
+            every = [t for k, t in enumerate(every) if train.stages[k] not in train.stages[:k]]
+        return Fraction(max(t.useful_ratio(float(cut), threshold) for t in every))
+    if not train.law.proportional or train.objective not in ("gear_volume", "mass", *LENGTHS):
+        return maximum
+    ratios = np.geomspace(float(cut), float(maximum), 2000)
+    useful = np.zeros(len(ratios), dtype=bool)
+    for k, stage in enumerate(train.stages):
+        load = _least_size(train, k, ratios)
+        if train.objective in ("gear_volume", "mass"):
+            one = GearPair.of_teeth(1.0, 1.0, ratios, load)  # d1 is 1 mm
+            lower = least_share(train, k, one)
+        else:
+            face = stage.face_width
+            d = (load / float(face.fixed or face.widest)) ** (0.5 if face.fixed else 1.0 / 3.0)
+            lower = share(
+                train, k, GearPair.of_teeth(d, 1.0, ratios, math.nan)
+            )  # a length, whatever the width
+        useful |= np.asarray(lower) <= threshold
+    beyond = [*ratios[1:], maximum]  # the next of the grid; at its end `maximum` itself, unrounded
+    last = np.flatnonzero(useful)
+    return Fraction(beyond[last[-1]]) if len(last) else cut
+
+
+def _least_size(train: Train, k: int, ratios: Array) -> Array:
+    """Return the minimum b d1^2 [mm3] for the input torque at given ratios, of the fewest teeth."""
+    stage = train.stages[k]
+    z = float(stage.pinion_teeth[0])
+    unit = stage.toothing.of_diameter(stage.toothing.cosine / z, z, 1.0, ratios, 1.0)
+    return train.law.load(unit, train.torque, train.speed, stage.allowable)

@@ -1,0 +1,400 @@
+"""Best-first branch and bound over the tooth pairs of the stages, with dives.
+
+A node is a choice of the first k pairs; its bound is what they cost plus `bound` on the rest. Nodes
+wait in chunks sorted by bound; the chunk with the minimum bound is taken, its best nodes are
+followed down to complete trains at once. The search ends when no open bound is below the best
+train.
+"""
+
+import heapq
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearopt.formulations.drive.teeth.later_stages import (
+    SLICE,
+    Bound,
+    bound,
+    first_costs,
+    ragged,
+    useful_cells,
+)
+from gearopt.formulations.drive.teeth.progress import TIE, Progress, Spent, Teeth
+from gearopt.formulations.drive.teeth.rated import RatedTable
+from gearopt.formulations.drive.teeth.reach import first_cut, largest_ratio, reach
+from gearopt.formulations.drive.teeth.stage import EDGE, Table
+from gearopt.formulations.drive.teeth.tables import stage_tables, thinned
+from gearopt.formulations.drive.train import Train
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.result import Budget, Watch
+from gearopt.optimise.terms import Array
+
+BEAM = 4  # nodes followed down at once; measured best for two to four stages
+LEAVES = 256  # nodes completed at once
+FIRST_LOOK = 20_000  # pairs examined for a first train
+PATIENCE = 2_000_000  # pairs examined before a finer grid pays
+COARSE, FINE = 32.0, 0.006  # first cells of rated drives, times usual ones; the last coarse ones
+PROMISING = 32  # children of a node that a first dive looks at
+DIVE = 1000  # pairs examined on each of these grids, for a train
+CELLS = 10_000_000  # largest grid of a stage, 80 MB
+
+
+Places = tuple[NDArray[np.int64], NDArray[np.int64]]
+Few = tuple[int, Array | None]
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Nodes of one level, by bound: cost so far, log of the ratio so far, pairs chosen."""
+
+    level: int
+    bound: Array
+    cost: Array
+    log_ratio: Array
+    path: NDArray[np.int64]
+
+    def part(self, which: slice | NDArray[np.bool_]) -> "Chunk":
+        """Some of the nodes."""
+        return Chunk(
+            self.level, self.bound[which], self.cost[which], self.log_ratio[which], self.path[which]
+        )
+
+
+def search(
+    train: Train,
+    wanted: int,
+    budget: Budget,
+    watch: Watch | None = None,
+    floor: float = -math.inf,
+    whole: bool = True,
+    shelf: list[RatedTable] | None = None,
+) -> Progress:
+    """Return the `wanted` best trains; `stopped` or `enough` where the search was not exhausted.
+
+    A first look at stage ratios near the even split gives a train; what it does not exclude by
+    the ratio of a single stage is then searched to the end. Of rated drives that look is a dive,
+    in each material alone where there is a choice; where time ends first, among far fewer. floor: a
+    bound known from elsewhere. whole: False where its own bound is of no use, as that of a part of
+    the caller's drive. shelf: tables of like drives, which spare this one work; its own are added.
+    """
+    shelf = [] if shelf is None else shelf
+    progress = Progress(wanted, Clock(budget, watch), floor)
+    maximum = largest_ratio(train)
+    cut = min(maximum, first_cut(train))
+    progress.whole = whole and cut == maximum
+    try:
+        for one in train.of_one_material if train.rated else ():
+            _glance(one, cut, progress, shelf)
+        closed = not progress.found and _look(train, cut, progress, FIRST_LOOK, shelf)
+        far = reach(train, cut, maximum, progress.threshold, progress.tick, shelf)
+        progress.whole = whole
+        if not (closed and far <= cut):
+            _look(train, max(cut, far), progress, math.inf, shelf)
+    except Spent:
+        pass  # `stopped` or `enough` holds the reason
+    return progress
+
+
+def _glance(train: Train, cut: Fraction, progress: Progress, shelf: list[RatedTable]) -> None:
+    """Look for a first train among few, whatever the budget's evaluations.
+
+    Where its seconds end before there is one, among far fewer; however short they are, this ends.
+    """
+    progress.patience = math.inf
+    tables = stage_tables(train, cut, progress.tick, shelf)
+    try:
+        progress.patience = 0.0
+        _first_dive(train, tables, tables, progress)
+    except Spent:
+        if progress.found or progress.clock.refused:
+            raise
+        progress.patience = math.inf
+        _first_dive(train, tables, thinned(tables), progress)
+    progress.patience = -math.inf
+    progress.tick()
+
+
+def _first_dive(train: Train, tables: list[Table], few: list[Table], progress: Progress) -> None:
+    """Look for a train of all pairs of the last stage and few of the others."""
+    if all(len(t.ratio) for t in tables):
+        delta = COARSE * _width(tables)
+        rest = bound(train, few, delta, progress.tick, None, progress.threshold)
+        _dive(train, [*few[:-1], tables[-1]], rest, progress)
+
+
+def _look(
+    train: Train, cut: Fraction, progress: Progress, patience: float, shelf: list[RatedTable]
+) -> bool:
+    """Search all ratios up to a cut, on ever finer grids; False when patience ran out.
+
+    Where all stages take the same option, the drives of one option each are searched in turn, that
+    of the least bound first.
+    """
+    waiting: list[tuple[float, int, Iterator[float]]] = []
+    for k, one in enumerate(train.of_one_option):
+        own = stage_tables(one, cut, progress.tick, shelf)
+        if all(len(t.ratio) for t in own):
+            waiting.append((-math.inf, k, _rounds(one, own, progress, patience)))
+    while waiting and waiting[0][0] <= progress.threshold:
+        _, k, rounds = heapq.heappop(waiting)
+        progress.beside = waiting[0][0] if waiting else math.inf
+        lower = next(rounds, None)
+        if lower is None:
+            return False
+        if lower < math.inf:
+            heapq.heappush(waiting, (lower, k, rounds))
+    return True
+
+
+def _rounds(
+    train: Train, tables: list[Table], progress: Progress, patience: float
+) -> Iterator[float]:
+    """Search on ever finer grids; yield the bound of what is left, inf: none; end impatiently."""
+    coarse, useful = train.rated, None  # whose bounds take long: few cells at first
+    delta = _width(tables) * (COARSE if coarse else 1.0)
+    first: Array | None = None
+    while True:
+        finer = math.log(train.highest_ratio) * tables[-1].log_ratio[-1] / (delta / 2) ** 2
+        last = not coarse and (len(tables) <= 2 or finer > CELLS)
+        own = DIVE if coarse else math.inf if last else PATIENCE
+        enough = progress.clock.evaluations + min(patience, own)
+        rest = bound(train, tables, delta, progress.tick, useful, progress.threshold)
+        if train.rated:
+            begins = first is None
+            if first is None:
+                first = first_costs(train, tables[0], FINE, progress.threshold)
+            progress.raise_lower(_least(tables, rest, first))
+            if begins:
+                _dive(train, tables, rest, progress, first)
+        lower = _closed(train, tables, rest, progress, enough)
+        if lower < math.inf and patience <= PATIENCE and not coarse:
+            return
+        yield lower
+        if train.rated:
+            assert first is not None
+            useful = useful_cells(tables, rest, first, progress.threshold)
+        delta /= 2
+        coarse = coarse and delta > FINE
+
+
+def _width(tables: list[Table]) -> float:
+    """Return the usual width of a cell of log ratio."""
+    return 0.01 if len(tables) <= 3 else 0.005
+
+
+def _least(tables: list[Table], rest: Bound, first: Array) -> float:
+    """Return a bound of all trains: first costs of the first stage, and of the rest to go."""
+    if len(tables) == 1:
+        return float(first.min(initial=math.inf))
+    ahead = rest.to_go[1][rest.cell(tables[0].log_ratio)]
+    return float((first + ahead).min(initial=math.inf))
+
+
+def _dive(
+    train: Train, tables: list[Table], rest: Bound, progress: Progress, first: Array | None = None
+) -> None:
+    """Look for a train among the most promising nodes, so that a search knows what is of use.
+
+    first: bounds of the first stage's pairs, where they are known.
+    """
+    chunk: Chunk | None = _root()
+    few: tuple[int, Array | None] = (PROMISING, first)
+    while chunk is not None:
+        width = LEAVES if chunk.level == len(tables) - 1 else BEAM
+        chunk = _expand(train, tables, rest, chunk.part(slice(0, width)), progress, few)
+        few = PROMISING, None
+
+
+def _root() -> Chunk:
+    """Return the node of no choice."""
+    zero = np.zeros(1)
+    return Chunk(0, np.array([-math.inf]), zero, zero, np.empty((1, 0), dtype=np.int64))
+
+
+def _closed(
+    train: Train, tables: list[Table], rest: Bound, progress: Progress, patience: float
+) -> float:
+    """Run one search; return the bound of what is left for a finer grid, inf where nothing is."""
+    order = itertools.count()
+    heap: list[tuple[float, int, Chunk]] = []
+
+    def wait(chunk: Chunk) -> None:
+        if len(chunk.bound):
+            heapq.heappush(heap, (float(chunk.bound[0]), next(order), chunk))
+
+    wait(_root())
+    while heap and heap[0][0] <= progress.threshold:
+        progress.raise_lower(heap[0][0])
+        progress.tick()
+        if progress.clock.evaluations > patience:
+            return heap[0][0]
+        chunk: Chunk | None = heapq.heappop(heap)[2]
+        while chunk is not None:
+            progress.nodes += 1
+            width = LEAVES if chunk.level == len(tables) - 1 else BEAM
+            wait(chunk.part(slice(width, None)))
+            chunk = _expand(train, tables, rest, chunk.part(slice(0, width)), progress)
+    return math.inf
+
+
+def _expand(
+    train: Train,
+    tables: list[Table],
+    rest: Bound,
+    chunk: Chunk,
+    progress: Progress,
+    few: Few = (0, None),
+) -> Chunk | None:
+    """Return the useful children of some nodes, or None (complete trains are kept).
+
+    few: of so many of the most promising children only, for each node, 0: of all; bounds of their
+    costs where they are known.
+    """
+    chunk = chunk.part(chunk.bound <= progress.threshold)
+    level, stage = chunk.level, tables[chunk.level]
+    if level == len(tables) - 1:
+        _complete(train, tables, rest, chunk, progress, few)
+        return None
+    if level == 0:
+        node, pair = np.zeros(len(stage.ratio), dtype=np.int64), np.arange(len(stage.ratio))
+    else:
+        onward = chunk.cost[:, None] + rest.onward(level, rest.cell(chunk.log_ratio))
+        owner, cell = np.nonzero(onward <= progress.threshold)
+        start = rest.starts[level][cell]
+        group, pair = ragged(start, rest.starts[level][cell + 1] - start)
+        node = owner[group]
+    if few[0]:
+        node, pair = _promising(train, stage, rest, chunk, (node, pair), *few)
+    progress.clock.evaluations += len(pair)
+    log_ratio = chunk.log_ratio[node] + stage.log_ratio[pair]
+    ahead = rest.to_go[level + 1][rest.cell(log_ratio)]
+    most = np.where(np.isfinite(ahead), progress.threshold - chunk.cost[node], -np.inf)
+    most -= np.where(np.isfinite(ahead), ahead, 0.0)
+    own = _costs(train, stage, chunk, (node, pair), most, progress)
+    if progress.wanted == 1:
+        keep = _best_of_ratio(node, stage.ratio[pair], own)
+        node, pair, own = node[keep], pair[keep], own[keep]
+        log_ratio, ahead = log_ratio[keep], ahead[keep]
+    cost = chunk.cost[node] + own
+    lower = cost + ahead
+    use = np.flatnonzero(np.isfinite(lower) & (lower <= progress.threshold))
+    use = use[np.argsort(lower[use], kind="stable")]
+    if not len(use):
+        return None
+    path = np.column_stack([chunk.path[node[use]], pair[use]])
+    return Chunk(level + 1, lower[use], cost[use], log_ratio[use], path)
+
+
+def _promising(
+    train: Train,
+    stage: Table,
+    rest: Bound,
+    chunk: Chunk,
+    places: Places,
+    few: int,
+    first: Array | None,
+) -> Places:
+    """Return the nodes and pairs of the least rough bounds, a few for each node."""
+    node, pair = places
+    ahead = np.zeros(len(pair))
+    if chunk.level < len(rest.to_go) - 1:
+        cell = rest.cell(chunk.log_ratio[node] + stage.log_ratio[pair])
+        ahead = rest.to_go[chunk.level + 1][cell]
+        goes = np.isfinite(ahead)
+        node, pair, ahead = node[goes], pair[goes], ahead[goes]
+    torque = (train.torque * np.exp(chunk.log_ratio))[node]
+    own = stage.rough_cost(torque, pair) if first is None else first[pair]
+    rough = chunk.cost[node] + own + ahead
+    best = np.sort(np.argsort(rough, kind="stable")[: few * len(chunk.cost)])
+    return node[best], pair[best]
+
+
+def _costs(
+    train: Train,
+    stage: Table,
+    chunk: Chunk,
+    places: Places,
+    most: Array,
+    progress: Progress,
+) -> Array:
+    """Return the cost of pairs of a stage behind nodes of a chunk, where it is at most so much."""
+    node, pair = places
+    torque = train.torque * np.exp(chunk.log_ratio)
+    found = np.empty(len(pair))
+    for start in range(0, len(pair), SLICE):
+        if start:  # a first dive, however short the budget, ends with a train
+            progress.tick()
+        part = slice(start, start + SLICE)
+        found[part] = stage.cost(torque[node[part]], pair[part], most[part])
+    return found
+
+
+def _best_of_ratio(node: NDArray[np.int64], ratio: Array, cost: Array) -> NDArray[np.bool_]:
+    """Mark of a node's pairs of equal ratio the one of lowest cost, then of fewest teeth.
+
+    What follows depends on the ratio alone. Pairs come by ratio, then by teeth.
+    """
+    if not len(node):
+        return np.empty(0, dtype=bool)
+    new = np.concatenate([[True], (np.diff(node) != 0) | (np.diff(ratio) != 0)])
+    group = np.cumsum(new) - 1
+    minimum = np.minimum.reduceat(cost, np.flatnonzero(new))
+    good = np.flatnonzero(np.isfinite(cost) & (cost <= minimum[group] * (1.0 + TIE)))
+    keep = np.zeros(len(node), dtype=bool)
+    keep[good[np.unique(group[good], return_index=True)[1]]] = True
+    return keep
+
+
+def _complete(
+    train: Train,
+    tables: list[Table],
+    rest: Bound,
+    chunk: Chunk,
+    progress: Progress,
+    few: Few,
+) -> None:
+    """Add the last stage to nodes and keep the best trains that meet the ratio limits exactly."""
+    stage = tables[-1]
+    low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
+    start = np.searchsorted(stage.log_ratio, low - chunk.log_ratio - EDGE)
+    stop = np.searchsorted(stage.log_ratio, high - chunk.log_ratio + EDGE)
+    node, pair = ragged(start, stop - start)
+    if few[0]:
+        node, pair = _promising(train, stage, rest, chunk, (node, pair), *few)
+    progress.clock.evaluations += len(pair)
+    most = progress.threshold - chunk.cost[node]
+    total = chunk.cost[node] + _costs(train, stage, chunk, (node, pair), most, progress)
+    progress.compared += int(np.isfinite(total).sum())
+    use = np.flatnonzero(np.isfinite(total) & (total <= progress.threshold))
+    use = use[np.argsort(total[use], kind="stable")]
+
+    def teeth(k: np.int64) -> Teeth:
+        path = [*chunk.path[node[k]], pair[k]]
+        return tuple((int(t.z1[j]), int(t.z2[j])) for t, j in zip(tables, path, strict=True))
+
+    kept: list[tuple[float, Teeth]] = []
+    maximum = math.inf
+    for k in use:
+        if total[k] > maximum:
+            break
+        candidate = teeth(k)
+        if within(train, candidate):
+            kept.append((float(total[k]), candidate))
+            if len(kept) == progress.wanted:
+                maximum = float(total[k]) * (1.0 + TIE)
+    progress.add(np.array([v for v, _ in kept]), iter([t for _, t in kept]))
+
+
+def within(train: Train, teeth: Teeth) -> bool:
+    """Return whether the total ratio lies within its limits, in integers."""
+    wheels, pinions = math.prod(z2 for _, z2 in teeth), math.prod(z1 for z1, _ in teeth)
+    low, high = train.lowest_ratio, train.highest_ratio
+    return (
+        low.numerator * pinions <= wheels * low.denominator
+        and wheels * high.denominator <= high.numerator * pinions
+    )

@@ -1,0 +1,301 @@
+"""The search over whole trains and their layouts: incumbents, depth-first passes, last checks.
+
+A pass drops whatever cannot be below the best value by more than a margin; margins narrow from pass
+to pass, so that a search which is stopped has the bound of its last full pass.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearopt.formulations.drive import layout
+from gearopt.formulations.drive.layout.chain import Chain, chain, turns
+from gearopt.formulations.drive.layout.exact import first_cell
+from gearopt.formulations.drive.layout.gearbox import Gearbox
+from gearopt.formulations.drive.layout.slabs import TOUCH, Arrangement, arrangements, clashes
+from gearopt.formulations.drive.teeth.rated import RatedTable
+from gearopt.formulations.drive.teeth.search import within
+from gearopt.formulations.drive.teeth.tables import stage_tables, table
+from gearopt.formulations.drive.together.rated_widths import STEPS, narrower, shortened
+from gearopt.formulations.drive.together.tables import (
+    KERNELS,
+    Drive,
+    Make,
+    Rest,
+    chains,
+    rest,
+    useful,
+)
+from gearopt.formulations.drive.train import Train
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.kernels import kernel
+from gearopt.optimise.result import Budget
+from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
+
+MARGINS = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4)  # of the passes
+CHOICES = 50_000  # pairs examined in a slice of an expansion
+CELLS = 100_000  # cells of angles in a slice of a sift
+CHILDREN = 4096  # nodes that an expansion makes at once
+PARENTS = 256  # nodes expanded together
+STALE = 0.9  # tables are recomputed for a best value this much better
+CLOSE = 1e-3  # relative gap to which a train is laid out, or the margin where it is smaller
+LOOKS = (400, 20_000)  # cells spent on a node's layout, on a whole train's
+
+Nodes = NDArray[np.int64]  # (n, N, 2): pair and module of each stage
+Made = tuple[tuple[GearPair, ...], tuple[int, ...]]  # gear pairs and their options
+
+
+@dataclass(frozen=True)
+class Design:
+    """A train with its layout: gear pairs, their options, slabs, link angles [rad]; its value."""
+
+    value: float
+    pairs: tuple[GearPair, ...]
+    options: tuple[int, ...]
+    slabs: tuple[tuple[int, ...], ...]
+    angles: Array
+
+
+@dataclass
+class Search:
+    """A search as it runs; its state is what a stopped one still knows.
+
+    clock: counts choices and cells examined; has the best value and what is proven. best: the best
+    design. Nodes by number of stages chosen: made, and left after a check of their layout. trains:
+    laid out to the end.
+    """
+
+    train: Train
+    make: Make
+    clock: Clock
+    seed: int
+    best: Design | None = None
+    trains: int = 0
+    made: dict[int, int] = field(default_factory=dict)
+    left: dict[int, int] = field(default_factory=dict)
+
+    @cached_property
+    def tables(self) -> list[RatedTable]:
+        """The tables of the stages of a drive that ratings limit."""
+        made = stage_tables(self.train, self.train.highest_ratio)
+        return [t for t in made if isinstance(t, RatedTable)]
+
+    @property
+    def value(self) -> float:
+        """The best value, inf without a design."""
+        return self.clock.best
+
+
+def cuts(value: float, margin: float) -> tuple[float, float]:
+    """Return two values: what is not below the first is dropped, what is below the second sought.
+
+    Between the two a search may do either: equal, it would resolve their level without end.
+    """
+    return value * (1.0 - margin), value * (1.0 - 0.8 * margin)
+
+
+def sized(train: Train, drive: Drive, node: Nodes) -> Iterator[Made]:
+    """Yield the gear pairs of a whole node with their options; none where one is too weak.
+
+    The widths of a node are bounds where the strength law has no closed form. Where all stages
+    take the same option, there are such pairs of each.
+    """
+    for option, one in enumerate(train.of_one_option):
+        if (made := _sized(one, drive, node)) is not None:
+            yield made if one is train else (made[0], (option,) * len(node))
+
+
+def _sized(train: Train, drive: Drive, node: Nodes) -> Made | None:
+    torque, found, options = train.torque, [], []
+    for j, (p, k) in enumerate(node):
+        z1, z2 = float(drive.z1[p]), float(drive.z2[p])
+        widths = widths_of(train.fixed_teeth(j, round(z1), round(z2)), j, torque, int(k))
+        option = min(range(len(widths)), key=widths.__getitem__)
+        if (width := widths[option]) == math.inf:
+            return None
+        found.append(train.pair(j, float(drive.modules[j, k]), z1, z2, width))
+        options.append(option)
+        torque *= z2 / z1
+    return tuple(found), tuple(options)
+
+
+def widths_of(train: Train, stage: int, torque: float, module: int) -> list[float]:
+    """Return the minimum face widths [mm] of the options of a stage whose teeth are given."""
+    own, found = train.stages[stage], []
+    for way in [replace(own, options=(o,)) for o in own.options] or [own]:
+        stages = (*train.stages[:stage], way, *train.stages[stage + 1 :])
+        one = replace(train, stages=stages, same_option=False)
+        only = table(one, stage, train.highest_ratio)
+        found.append(only.width(np.array([torque]), np.array([0]), module).item())
+    return found
+
+
+def orders_of(box: Gearbox) -> list[Arrangement]:
+    """Return the arrangements in which no shafts clash and the box is not too long."""
+    longest = box.largest[2] + TOUCH
+    return [a for a in arrangements(box) if not clashes(box, a) and a.length <= longest]
+
+
+def lay(search: Search, made: Made, margin: float) -> bool:
+    """Keep the best layout of a train if it improves the best value by more than a margin.
+
+    False where it is not proven that no other layout of the train does.
+    """
+    box, proven = search.make(made[0]), True
+    search.trains += 1
+    for order in orders_of(box):
+        if not _below(search, box, order, margin):
+            continue
+        one = replace(box, slabs=order.slabs)
+        budget, watch = Budget(gap=min(margin, CLOSE)), search.clock.inner(values=False)
+        outcome = layout.problem(one).methods["exact"](None, budget, search.seed, watch)
+        proven = proven and outcome.finished
+        if outcome.x is not None:
+            keep(search, made, order, outcome.x)
+    return proven
+
+
+def keep(search: Search, made: Made, order: Arrangement, angles: Array) -> None:
+    """Keep a layout if it is the best so far."""
+    text = layout.problem(replace(search.make(made[0]), slabs=order.slabs))
+    value = float(text.batch(angles[None]).F[0, 0])
+    if value < search.value:
+        search.clock.best = value
+        search.best = Design(value, *made, order.slabs, angles)
+
+
+def _below(search: Search, box: Gearbox, order: Arrangement, margin: float) -> bool:
+    """Return whether an order may have a layout that improves the best value by a margin."""
+    if search.best is None:
+        return True
+    cut, aim = cuts(search.value, margin)
+    kernels = kernel("gearopt.formulations.drive.layout.branch_kernel")
+    shape, theta = chain(box, (order,)), np.zeros(len(box.pairs))
+    cells, bounds = first_cell(theta.size, turns(box))
+    count, best, floor = 1, aim, math.inf
+    while count and best == aim and search.clock.tell():
+        count, best, _, floor, nodes = kernels.branch(
+            shape, 0, cells, bounds, count, best, 0.0, floor, 1.0 - cut / aim, 20_000, theta
+        )
+        search.clock.evaluations += nodes
+    return count > 0 or best < aim or floor < cut
+
+
+@dataclass(frozen=True)
+class Work:
+    """What passes work with: pairs of use and tables, made for a best value."""
+
+    value: float
+    drive: Drive
+    rest: Rest
+    chains: list[Chain]
+    turns: list[tuple[float, float]]
+
+
+def prepare(search: Search, drive: Drive, box: Gearbox, margin: float) -> Work | None:
+    """Return the tables for all cuts down to a margin; None if stopped. box: one of any sizes."""
+    cut = search.value * (1.0 - margin)
+    fewer = useful(drive, cut)
+    for step in STEPS if search.train.rated else ():
+        closer = narrower(search.tables, shortened(fewer, cut), step, search.clock.tell)
+        if closer is None:
+            return None
+        fewer = useful(closer, cut)
+    tables = rest(fewer, search.clock.tell)
+    # Before all shafts are there, only the sides of the box distinguish the directions.
+    bare = turns(replace(box, places=(), keep_outs=(), level=()))
+    ranges = [turns(box)] + [bare] * (drive.kind.size - 1)
+    made = chains(fewer, box)
+    return None if tables is None else Work(search.value, fewer, tables, made, ranges)
+
+
+def prove(search: Search, work: Work, margin: float) -> bool:
+    """Drop all that is not below the best value by more than a margin; False if not finished.
+
+    It is not finished where it was stopped, nor where the best value has improved so much that new
+    tables pay.
+    """
+    last = work.drive.kind.size - 1
+    stack: list[tuple[int, Nodes, Array, Any]] = [
+        (last, np.zeros((1, last + 1, 2), np.int64), np.zeros(1), np.array([0, -1]))
+    ]
+    while stack:
+        stage, parents, bounds, place = stack.pop()
+        cut, aim = cuts(search.value, margin)
+        of_use = int(np.searchsorted(bounds, cut))
+        if place[0] >= of_use:
+            continue
+        stop = min(of_use, (int(place[0]) // PARENTS + 1) * PARENTS)
+        nodes, own = _children(search, work, stage, parents, place, stop, (cut, aim))
+        stack.append((stage, parents, bounds, place))
+        if stage > 0:
+            stack.append((stage - 1, nodes, own, np.array([0, -1])))
+        else:
+            _last_looks(search, work.drive, nodes, own, margin)
+        if not search.clock.tell() or search.value < STALE * work.value:
+            return False
+    return True
+
+
+def _last_looks(search: Search, drive: Drive, nodes: Nodes, bounds: Array, margin: float) -> None:
+    """Lay out whole trains that may be below the cut; what is not proven of one ends the search."""
+    for node, value in zip(nodes, bounds, strict=True):
+        teeth = tuple((round(drive.z1[p]), round(drive.z2[p])) for p, _ in node)
+        if value < search.value * (1.0 - margin) and within(search.train, teeth):
+            for made in sized(search.train, drive, node):
+                proven = lay(search, made, margin)
+                search.clock.stopped = search.clock.stopped or not proven
+        if search.clock.stopped:
+            return
+
+
+def _children(
+    search: Search,
+    work: Work,
+    stage: int,
+    parents: Nodes,
+    place: Any,
+    stop: int,
+    levels: tuple[float, float],
+) -> tuple[Nodes, Array]:
+    """Return the children of some nodes that may lead below a cut, the best first."""
+    kernels = kernel(KERNELS)
+    count = work.drive.kind.size
+    nodes, bounds = np.zeros((CHILDREN, count, 2), np.int64), np.zeros(CHILDREN)
+    made, looked = kernels.expand(
+        work.drive, work.rest, stage, parents, place, stop, levels[0], CHOICES, nodes, bounds
+    )
+    search.clock.evaluations += looked
+    search.made[stage] = search.made.get(stage, 0) + made
+    order = np.argsort(bounds[:made], kind="stable")
+    nodes, bounds = nodes[order], bounds[order]
+    alive, found = np.zeros(made, np.int64), np.zeros((made, 2 + count - stage))
+    start, maximum = 0, LOOKS[0] if stage > 0 else LOOKS[1]
+    shape = work.chains[stage]
+    while start < made:
+        start, cells = kernels.sift(
+            work.drive,
+            work.rest,
+            shape,
+            work.turns[stage],
+            stage,
+            nodes,
+            start,
+            levels,
+            (maximum, CELLS),
+            alive,
+            found,
+        )
+        search.clock.evaluations += cells
+        if not search.clock.tell():
+            break
+    alive[start:] = 2
+    use = np.nonzero(alive)[0]
+    search.left[stage] = search.left.get(stage, 0) + len(use)
+    return nodes[use], bounds[use]

@@ -1,0 +1,399 @@
+"""A drive and its gearbox as the arrays that the kernels search, and the minimum cost of the rest.
+
+Gears follow from the teeth (`pairs`); shafts may depend on the torque they carry, and count with
+the minimum radius in a cell of it. Facing bodies follow from the order of the slabs alone, but for
+short bearings beside gears: those are left to the last check of a train.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearopt.errors import SolveError
+from gearopt.formulations.drive.layout.chain import Chain
+from gearopt.formulations.drive.layout.gearbox import ANYWHERE, Gearbox, Shaft
+from gearopt.formulations.drive.layout.slabs import Slabs, arrange, face_each_other, orders
+from gearopt.formulations.drive.teeth.rated import RatedTable
+from gearopt.formulations.drive.teeth.stage import Table
+from gearopt.formulations.drive.teeth.tables import table
+from gearopt.formulations.drive.train import Train
+from gearopt.optimise.kernels import kernel
+from gearopt.optimise.terms import Array
+from gearopt.physics.gears import GearPair
+
+Make = Callable[[tuple[GearPair, ...]], Gearbox]
+GoesOn = Callable[[], bool]
+Index = NDArray[np.int64]
+
+DELTA = 0.01  # cells of log ratio: a third of it in sizes, below the usual ratio tolerance
+ENTRIES = 20_000_000  # of bisected widths, 160 MB
+KERNELS = "gearopt.formulations.drive.together.together_kernel"
+ROUNDS = 3  # of dropping pairs; each uses the minimum widths of the one before
+SLICE = 2_000_000  # pairs sized between two checks of clock and watcher
+BINS = 48  # of wheel radii, for what a larger wheel saves in width
+
+
+class Drive(NamedTuple):
+    """N stages with their pairs one after the other (start), M arrangements of the slabs.
+
+    kind: of face widths, 0 tied, 1 free, 2 given, 3 on steps (given: the width or the step). load:
+    as in `teeth.stage.Table`; for a law without one (size 0), bisected holds minimum widths (rows,
+    modules) by log ratio reached, in cells of `step`: the rows of pair p are row[p] : row[p + 1],
+    the first one that of `cell[p]`. cosine (N,): of the helix angles;
+    addenda (N, 2): of pinion and wheel in modules. shaft, bearing (N+1, cells): minimum
+    radius by log ratio reached. gap: between gears, from shafts, to the wall, along the axis. faces
+    (M, N+1, 4, N+1, 4): whether bodies of two shafts face each other: wheel, pinion, shaft,
+    bearing. widths: minimum of each stage, others (M, N): minimum length that the stages before one
+    add. aim (8,): maximum width, height and length; constant of the objective and its factor of the
+    length; exponents of width and height; 1 for the longest side.
+    """
+
+    torque: float
+    low_ratio: float
+    log_low: float
+    log_high: float
+    cosine: Array
+    addenda: Array
+    delta: float
+    start: Index
+    z1: Array
+    z2: Array
+    log_ratio: Array
+    need: Array
+    first: Index
+    last: Index
+    least_steps: Array
+    most_steps: Array
+    modules: Array
+    exponent: Array
+    kind: Index
+    low: Array
+    high: Array
+    given: Array
+    load: Array
+    bisected: Array
+    row: Index
+    cell: Index
+    step: float
+    least_before: Array
+    shaft: Array
+    bearing: Array
+    gap: Array
+    ends: float
+    motor: float
+    faces: NDArray[np.uint8]
+    slabs: Index
+    slab_of: Index
+    widths: Array
+    others: Array
+    aim: Array
+
+
+class Rest(NamedTuple):
+    """Minimum cost of stages 0..k-1, by cell of their log ratio; filled in by the kernel.
+
+    least (N, N, cells): minimum width of each stage. edge (N, bins): tip radii of wheel k - 1.
+    front (N, M, cells, bins): length that is added in slabs of their own.
+    """
+
+    least: Array
+    edge: Array
+    front: Array
+
+
+def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
+    """Return the arrays of a drive, and a gearbox with its constants.
+
+    SolveError where its pairs are not those it is made of, where face widths decide which bodies
+    face each other, or where centre distances are not those of reference circles.
+    """
+    stages = train.stages
+    tables = [table(train, k, train.highest_ratio) for k in range(len(stages))]
+    cells = int(math.log(train.highest_ratio) / DELTA) + 2
+    boxes = [make(_loaded_like(train, math.exp(c * DELTA))) for c in range(cells)]
+    box = boxes[0]
+    if box.pairs != _loaded_like(train, 1.0):
+        raise SolveError("the gearbox must have the gear pairs that it is made of")
+    _refuse(train, box)
+    slabs, faces = _facing(box)
+    wide = max(s.bearing_width for s in box.shafts)
+    gap = box.clearances
+    end = max(gap.axial, wide) if box.partial else gap.axial + wide
+    power, factor = _objective(box)
+    maximum = (min(box.largest[0], box.width or math.inf), *box.largest[1:])
+    before = [math.prod(float(s.ratio[0]) for s in stages[:k]) for k in range(len(stages))]
+    columns: tuple[Any, ...] = (
+        train.torque,
+        float(train.lowest_ratio),
+        math.log(train.lowest_ratio),
+        math.log(train.highest_ratio),
+        np.array([s.toothing.cosine for s in stages]),
+        np.array([s.toothing.addenda for s in stages]),
+        DELTA,
+        *_pairs(tables),
+        *_stages(train, tables),
+        *_loads(train, tables),
+        np.array(before),
+        np.array([[b.shafts[x].radius for b in boxes] for x in range(len(box.shafts))]),
+        np.array([[_bearing(b.shafts[x]) for b in boxes] for x in range(len(box.shafts))]),
+        np.array([gap.gears, gap.shafts, gap.wall, gap.axial]),
+        2.0 * end,
+        box.motor,
+        faces,
+        np.array([len(s) for s in slabs]),
+        np.array([[_slab(s, k) for k in range(len(stages))] for s in slabs]),
+        np.zeros(len(stages)),
+        np.zeros((len(slabs), len(stages))),
+        np.array([*maximum, *factor, *power, float(box.objective == "longest_side")]),
+    )
+    return Drive(*columns), box
+
+
+def _loaded_like(train: Train, ratio: float) -> tuple[GearPair, ...]:
+    """Return gear pairs whose shafts all carry the torque behind a ratio."""
+    found = []
+    for k, stage in enumerate(train.stages):
+        z = float(stage.pinion_teeth[0])
+        found.append(train.pair(k, float(stage.modules[0]), z, z if k else z * ratio, 1.0))
+    return tuple(found)
+
+
+def _bearing(shaft: Shaft) -> float:
+    return shaft.bearing_radius if shaft.bearing_width > 0 else 0.0
+
+
+def _slab(slabs: Slabs, stage: int) -> int:
+    return next(k for k, own in enumerate(slabs) if stage in own)
+
+
+def _refuse(train: Train, box: Gearbox) -> None:
+    if not train.on_reference:
+        raise SolveError("together with its layout, a drive needs profile shifts that cancel")
+    if not all(s.face_width.plain for s in train.stages):
+        raise SolveError("together with its layout, face widths have limits of b/d1 alone")
+    choice = any(not s.face_width.tied and s.face_width.fixed is None for s in train.stages)
+    shared = box.slabs is None or any(len(s) > 1 for s in box.slabs)
+    widest = max(s.bearing_width for s in box.shafts)  # up to the gap, a bearing stays in it
+    bearings = box.partial and widest > (0.0 if shared else box.clearances.axial)
+    along = any(k.x != ANYWHERE for k in box.keep_outs)
+    if choice and (along or (bearings and len(box.pairs) > 2)):
+        what = "keep-outs with a range of x" if along else "bearings beside gears"
+        raise SolveError(f"together with {what}, face widths must be tied to d1 or given")
+
+
+def _objective(box: Gearbox) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the exponents of width and height; constant and factor of the length."""
+    if box.objective == "longest_side":
+        return (1.0, 1.0), (box.width or 0.0, 0.0)
+    wide = box.objective in ("box_volume", "plan_area", "face_area")
+    high = box.objective in ("box_volume", "face_area", "height")
+    size = box.width if box.width is not None and wide else 1.0
+    factor = (0.0, size) if box.objective in ("box_volume", "plan_area") else (size, 0.0)
+    return (float(wide and box.width is None), float(high)), factor
+
+
+def _facing(box: Gearbox) -> tuple[list[Slabs], NDArray[np.uint8]]:
+    """Return orders of slabs undominated for any sizes, and the bodies that face each other."""
+    shafts = tuple(Shaft(1.0, 1.0, 0.0 if box.partial else s.bearing_width) for s in box.shafts)
+    alike = replace(box, pairs=(GearPair.of_teeth(1.0, 2, 2, 1.0),) * len(box.pairs), shafts=shafts)
+    found: list[tuple[Slabs, NDArray[np.uint8]]] = []
+    for slabs in (box.slabs,) if box.slabs is not None else orders(box):
+        new = (slabs, _faces(alike, slabs))
+        if not any(_no_worse(old, new) for old in found):
+            found = [old for old in found if not _no_worse(new, old)] + [new]
+    return [slabs for slabs, _ in found], np.stack([faces for _, faces in found])
+
+
+def _no_worse(a: tuple[Slabs, NDArray[np.uint8]], b: tuple[Slabs, NDArray[np.uint8]]) -> bool:
+    """Return whether the same stages share slabs and bodies of a face each other only as in b."""
+    return sorted(a[0]) == sorted(b[0]) and bool((a[1] <= b[1]).all())
+
+
+def _faces(box: Gearbox, slabs: Slabs) -> NDArray[np.uint8]:
+    """(N+1, 4, N+1, 4): 1 where two bodies stand side by side and do not mesh."""
+    bodies = arrange(box, slabs).bodies
+    found = np.zeros((len(bodies), 4, len(bodies), 4), np.uint8)
+    for x, own in enumerate(bodies):
+        for y, other in enumerate(bodies):
+            for p in own:
+                for q in other:
+                    if x != y and face_each_other(p, q):
+                        found[x, _kind(p.name), y, _kind(q.name)] = 1
+    return found
+
+
+def _kind(name: str) -> int:
+    return ("wheel", "pinion", "shaft", "bearing").index(name.split()[0])
+
+
+def _pairs(tables: list[Table]) -> tuple[Any, ...]:
+    """Return the start of each stage's pairs, and their numbers one after the other."""
+    start = np.concatenate([[0], np.cumsum([len(t.z1) for t in tables])])
+    columns = [
+        np.concatenate([np.asarray(getattr(t, name), kind) for t in tables])
+        for name, kind in (
+            ("z1", float),
+            ("z2", float),
+            ("log_ratio", float),
+            ("need", float),
+            ("first", np.int64),
+            ("last", np.int64),
+        )
+    ]
+    maximum = max(len(t.modules) for t in tables)
+    stepped = any(t.steps is not None for t in tables)
+    steps = [
+        np.zeros((maximum if stepped else 1, int(start[-1]) if stepped else 1)) for _ in range(2)
+    ]
+    for k, t in enumerate(tables):
+        if t.steps is not None:
+            for own, values in zip(steps, t.steps, strict=True):
+                own[: len(t.modules), start[k] : start[k + 1]] = values
+    return start, *columns, *steps
+
+
+def _stages(train: Train, tables: list[Table]) -> tuple[Array, ...]:
+    """Return what belongs to a stage as a whole, from modules to its face width."""
+    faces = [s.face_width for s in train.stages]
+    modules = np.full((len(tables), max(len(t.modules) for t in tables)), np.inf)
+    for k, t in enumerate(tables):
+        modules[k, : len(t.modules)] = t.modules
+    kinds = [
+        3 if f.step is not None else 2 if f.fixed is not None else 0 if f.tied else 1 for f in faces
+    ]
+    return (
+        modules,
+        np.array([t.exponent for t in tables]),
+        np.array(kinds),
+        np.array([float(f.low) for f in faces]),
+        np.array([math.inf if f.high is None else float(f.high) for f in faces]),
+        np.array([float(f.step or f.fixed or 0) for f in faces]),
+    )
+
+
+def _loads(train: Train, tables: list[Table]) -> tuple[Array, Array, Index, Index, float]:
+    """Return the loads of all pairs, or minimum widths by cells of torque (up to ENTRIES).
+
+    Of ratings these are the narrowest widths, in one cell: `rated_widths` makes others of them.
+    """
+    loads = [t.load for t in tables if t.load is not None]
+    span = math.log(train.highest_ratio) + 2.0 * DELTA
+    none = np.zeros(1, np.int64)
+    if loads and not train.rated:
+        return np.concatenate(loads), np.empty((0, 0)), none, none, span
+    pairs, modules = sum(len(t.z1) for t in tables), max(len(t.modules) for t in tables)
+    cells = max(1, min(math.ceil(span / DELTA), ENTRIES // max(1, pairs * modules)))
+    cells = 1 if train.rated else cells
+    step = span / cells
+    found = np.full((pairs, cells, modules), np.inf)
+    stop = 0
+    for t in tables:
+        start, stop = stop, stop + len(t.z1)
+        every = np.arange(len(t.z1))
+        for cell in range(cells):
+            torque = np.full(len(t.z1), train.torque * math.exp(cell * step))
+            for k in range(len(t.modules)):
+                own = t.narrowest(k) if isinstance(t, RatedTable) else t.width(torque, every, k)
+                found[start:stop, cell, k] = own
+    rows = cells * np.arange(pairs + 1)
+    return np.empty(0), found.reshape(-1, modules), rows, np.zeros(pairs, np.int64), step
+
+
+def useful(drive: Drive, cut: float) -> Drive:
+    """Return the drive with those pairs alone whose stage does not exceed the cut by itself."""
+    kernels = kernel(KERNELS)
+    for _ in range(ROUNDS):
+        keep = np.zeros(drive.z1.size, bool)
+        count = drive.kind.size
+        widths = np.array([kernels.useful(drive, j, cut, keep) for j in range(count)])
+        kept = np.concatenate([[0], np.cumsum(keep)])[drive.start]
+        names = ("z1", "z2", "log_ratio", "need", "first", "last")
+        fewer = {n: getattr(drive, n)[keep] for n in names}
+        fewer["load"] = drive.load[keep] if drive.load.size else drive.load
+        if not drive.load.size:
+            count_of = np.diff(drive.row)
+            fewer["bisected"] = drive.bisected[np.repeat(keep, count_of)]
+            fewer["row"] = np.concatenate([[0], np.cumsum(count_of[keep])])
+            fewer["cell"] = drive.cell[keep]
+        if drive.least_steps.shape[1] == keep.size:
+            steps = {n: getattr(drive, n)[:, keep] for n in ("least_steps", "most_steps")}
+            fewer |= {n: np.ascontiguousarray(v) for n, v in steps.items()}
+        widths = np.where(np.isfinite(widths), widths, 0.0)
+        others = _others(drive, widths)
+        drive = drive._replace(start=kept, widths=widths, others=others, **fewer)
+    return drive
+
+
+def _others(drive: Drive, widths: Array) -> Array:
+    """Return the minimum length that stages before each one add in own slabs, (M, N)."""
+    found = np.zeros_like(drive.others)
+    for m, slab in enumerate(drive.slab_of):
+        for j in range(1, widths.size):
+            own = [s for s in range(drive.slabs[m]) if not (slab[j:] == s).any()]
+            found[m, j] = sum(widths[:j][slab[:j] == s].max() for s in own)
+    return found
+
+
+def rest(drive: Drive, goes_on: GoesOn) -> Rest | None:
+    """Return the tables of the stages before each one; None if stopped."""
+    kernels = kernel(KERNELS)
+    count, many = drive.kind.size, drive.slabs.size
+    cells = int(drive.log_high / drive.delta) + 3
+    tables = Rest(
+        np.full((count, count, cells), np.inf),
+        np.array([_edges(drive, k - 1) for k in range(count)]),
+        np.full((count, many, cells, BINS), np.inf),
+    )
+    for k in range(1, count):
+        size = max(1, int(drive.start[k] - drive.start[k - 1]) * drive.modules.shape[1])
+        step = max(1, SLICE // size)
+        for cell in range(0, cells - 1, step):  # the last one stays empty
+            kernels.fill(drive, k, cell, min(cells - 1, cell + step), tables)
+            if not goes_on():
+                return None
+    return tables
+
+
+def _edges(drive: Drive, j: int) -> Array:
+    """Radii that divide those of the wheels of a stage (none before the first: zeros)."""
+    own = slice(drive.start[j], drive.start[j + 1]) if j >= 0 else slice(0, 0)
+    modules = drive.modules[j][drive.first[own]], drive.modules[j][drive.last[own]]
+    cosine, addendum = drive.cosine[j], drive.addenda[j, 1]
+    radii = [m * (0.5 * drive.z2[own] / cosine + addendum) for m in modules]
+    if j < 0 or not radii[0].size:
+        return np.zeros(BINS)
+    return np.geomspace(radii[0].min() * (1.0 - 1e-9), radii[1].max(), BINS)
+
+
+def chains(drive: Drive, box: Gearbox) -> list[Chain]:
+    """For each first stage, a chain of the shafts from there on, for the kernel to fill."""
+    found = []
+    for first in range(drive.kind.size):
+        shafts = drive.kind.size + 1 - first
+        place = np.tile([-np.inf, np.inf], (shafts, 2))
+        for p in box.places if first == 0 else ():
+            place[p.shaft] = (*p.y, *p.z)
+        level = sorted(box.level) if first == 0 else []
+        found.append(
+            Chain(
+                np.zeros(shafts - 1),
+                np.zeros(shafts),
+                np.zeros((1, shafts, shafts)),
+                np.zeros((0, 4)),
+                np.zeros((1, 0, shafts)),
+                place,
+                np.array(level, np.int64),
+                np.zeros(shafts - 1, np.int64),
+                np.zeros((shafts - 1, 3)),
+                np.array([*drive.aim[:2], np.inf]),
+                drive.aim[5:7].copy(),
+                np.zeros(1),
+                bool(drive.aim[7]),
+                np.zeros(1),
+            )
+        )
+    return found

@@ -1,0 +1,398 @@
+"""The input of `sizing` and `teeth`: a multi-stage drive with its duty and limits.
+
+Numbers at which a tie may occur (ratios, modules, face-width proportions, diameters) are exact
+fractions; the rest are floats in mm, N, rad, MPa.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.drive.shares import BY_WIDTH, LENGTHS, MASSES, OBJECTIVES, WEIGHTED, share
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.strength import Law
+from gearopt.formulations.strength.rated import Option
+from gearopt.optimise.terms import Terms, each
+from gearopt.physics.blanks import SOLID, Blank
+from gearopt.physics.gears import GearPair
+
+CHOICES = (  # of `Train.numbers`, those that limit what a stage may choose
+    "width_low",
+    "width_high",
+    "module_low",
+    "module_high",
+    "pinion_low",
+    "pinion_high",
+    "wheel_low",
+    "wheel_high",
+    "ratio_low",
+    "ratio_high",
+    "wheel_diameter",
+)
+WIDTHS = ("over_module_low", "over_module_high", "least_width")  # where a stage has these limits
+
+
+@dataclass(frozen=True)
+class FaceWidth:
+    """How the face width b of a stage is chosen, from the pinion reference diameter d1.
+
+    low, high: limits of b/d1 (high may be None with `fixed`); equal ones tie b to d1. step: b is
+    a whole multiple of it [mm]. fixed: b itself is given [mm] (the limits still hold).
+    over_module: limits of b/m_n, None: no limit; least: minimum b [mm], 0: no limit.
+    """
+
+    low: Fraction
+    high: Fraction | None
+    step: Fraction | None = None
+    fixed: Fraction | None = None
+    over_module: tuple[Fraction | None, Fraction | None] = (None, None)
+    least: Fraction = Fraction(0)
+
+    @property
+    def tied(self) -> bool:
+        """Whether b = high d1."""
+        return self.low == self.high and self.step is None and self.fixed is None
+
+    @property
+    def widest(self) -> float:
+        """Largest b/d1; inf where there is no limit."""
+        return _or_inf(self.high)
+
+    @property
+    def plain(self) -> bool:
+        """Whether b has no limits but those of b/d1."""
+        return self.over_module == (None, None) and not self.least
+
+    def proportions(self, slenderness: Fraction) -> tuple[Fraction, Fraction | None]:
+        """Return the limits of b/m_n, least aside, of a pinion with d1/m_n = slenderness."""
+        low, high = self.over_module
+        most = [x for x in (high, self.high and self.high * slenderness) if x is not None]
+        return max(self.low * slenderness, low or Fraction(0)), min(most, default=None)
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One stage: its load limits and what it may choose.
+
+    allowable: the limits of the train's strength law, in its order. modules: allowed normal modules
+    [mm], increasing (for the continuous form its first and last are limits; empty: any).
+    pinion_teeth, wheel_teeth, ratio u = z2/z1 >= 1: minimum and maximum (None: no
+    limit). wheel_diameter: maximum [mm] of the wheel's reference diameter. toothing: of its gears.
+    options: ways of making them that are rated, of which one is chosen; none: the law limits alone.
+    blanks: of pinion and wheel.
+    """
+
+    allowable: tuple[float, ...]
+    face_width: FaceWidth
+    modules: tuple[Fraction, ...]
+    pinion_teeth: tuple[int, int | None]
+    wheel_teeth: tuple[int, int | None] = (1, None)
+    ratio: tuple[Fraction, Fraction | None] = (Fraction(1), None)
+    wheel_diameter: Fraction | None = None
+    toothing: Toothing = Toothing()
+    options: tuple[Option, ...] = ()
+    blanks: tuple[Blank, Blank] = (SOLID, SOLID)
+
+    @property
+    def pinion_fixed(self) -> bool:
+        """Whether z1 is given."""
+        return self.pinion_teeth[0] == self.pinion_teeth[1]
+
+    @property
+    def wheel_fixed(self) -> bool:
+        """Whether z2 is given."""
+        return self.wheel_teeth[0] == self.wheel_teeth[1]
+
+
+@dataclass(frozen=True)
+class Train:
+    """A drive: input torque [N mm], total ratio and its relative tolerance, and its stages.
+
+    coprime: z1 and z2 without common divisor (hunting teeth). objective: a key of OBJECTIVES; mass
+    needs density [t/mm3]; LENGTHS are those of reference circles: profile shifts must cancel.
+    others: further objectives, of a Pareto front; weights: what the objective WEIGHTED adds. law:
+    what limits the stages. speed: that of the input [rad/s], for laws that depend on it. safety:
+    S_F and S_H asked for of stages with options. same_option: all stages take their options of
+    one and the same number, which have the same materials. keys: places of `numbers` in a problem
+    file, one per stage for what a stage has of its own.
+    """
+
+    torque: float
+    ratio: Fraction
+    tolerance: Fraction
+    stages: tuple[Stage, ...]
+    coprime: bool = False
+    objective: str = "gear_volume"
+    others: tuple[str, ...] = ()
+    weights: tuple[tuple[str, float], ...] = ()
+    density: float | None = None
+    law: Law = field(kw_only=True)
+    speed: float = 0.0
+    safety: tuple[float, float] = (1.0, 1.0)
+    same_option: bool = False
+    keys: Mapping[str, str | tuple[str, ...]] = field(default_factory=dict, compare=False)
+
+    def __post_init__(self) -> None:
+        numbers = [self.torque, *(x for s in self.stages for x in s.allowable)]
+        if not all(math.isfinite(x) and x > 0 for x in numbers):
+            raise ValueError(f"torque and load limits must be positive numbers: {numbers}")
+        if any(len(s.allowable) != len(self.law.limits) for s in self.stages):
+            raise ValueError(f"every stage needs limits for {', '.join(self.law.names)}")
+        if any(s.pinion_teeth[0] < self.law.minimum_teeth for s in self.stages):
+            raise ValueError(f"{self.law.title} needs pinions of {self.law.minimum_teeth} teeth")
+        if self.ratio < 1 or not 0 <= self.tolerance < 1 or not self.stages:
+            raise ValueError("a drive needs stages, ratio >= 1 and a tolerance from 0 to below 1")
+        for objective in (*self.objectives, *(name for name, _ in self.weights)):
+            self._check(objective)
+
+    def _check(self, objective: str) -> None:
+        """Raise ValueError where an objective needs what the drive lacks."""
+        if objective in LENGTHS and not self.on_reference:
+            raise ValueError(f"the objective {objective} needs profile shifts that cancel")
+        solid = self.density is not None or all(
+            stage.options and all(all(option.densities) for option in stage.options)
+            for stage in self.stages
+        )
+        if objective == "cost" and not all(stage.options for stage in self.stages):
+            raise ValueError("the objective cost needs the price of every stage's materials")
+        if objective in MASSES and not solid:
+            raise ValueError(f"the objective {objective} needs a density")
+        made = {tuple(option.materials for option in stage.options) for stage in self.stages}
+        if self.same_option and len(made) > 1:
+            raise ValueError("stages that take the same option need options of the same materials")
+
+    @property
+    def objectives(self) -> tuple[str, ...]:
+        """Return all objectives, the first one first."""
+        return (self.objective, *self.others)
+
+    def minimising(self, objective: str) -> "Train":
+        """Return the drive with one objective alone."""
+        return replace(self, objective=objective, others=(), weights=())
+
+    def weighing(self, weights: Sequence[float]) -> "Train":
+        """Return the drive that minimises a weighted sum of its objectives."""
+        named = tuple(zip(self.objectives, map(float, weights), strict=True))
+        return replace(self, objective=WEIGHTED, others=(), weights=named)
+
+    @property
+    def rated(self) -> bool:
+        """Whether ratings limit the stages."""
+        return any(stage.options for stage in self.stages)
+
+    @property
+    def several_options(self) -> bool:
+        """Whether a stage has a choice of options."""
+        return any(len(stage.options) > 1 for stage in self.stages)
+
+    @property
+    def of_one_option(self) -> tuple["Train", ...]:
+        """The drives of which this one is the best: one for each option that all stages take."""
+        if not (self.same_option and self.several_options):
+            return (self,)
+        count = len(self.stages[0].options)
+        made = [[replace(s, options=(s.options[k],)) for s in self.stages] for k in range(count)]
+        return tuple(replace(self, stages=tuple(stages)) for stages in made)
+
+    @property
+    def of_one_material(self) -> tuple["Train", ...]:
+        """The drives of this one whose gears are all of one material; itself without a choice."""
+        if not self.several_options:
+            return (self,)
+        rows = [{o.materials: o for o in s.options} for s in self.stages]
+        alike = [n for n in rows[0] if n[0] == n[1] and all(n in row for row in rows)]
+        made = [
+            [replace(s, options=(row[n],)) for s, row in zip(self.stages, rows, strict=True)]
+            for n in alike
+        ]
+        return tuple(replace(self, stages=tuple(own), same_option=False) for own in made)
+
+    @property
+    def hollow(self) -> bool:
+        """Whether an objective counts gears that are no solid discs."""
+        blanks = [blank for stage in self.stages for blank in stage.blanks]
+        names = (*self.objectives, *(name for name, _ in self.weights))
+        counted = any(name in MASSES for name in names)
+        return counted and not all(blank.solid for blank in blanks)
+
+    @property
+    def by_width(self) -> bool:
+        """Whether the share of a stage is proportional to its face width."""
+        named = [name for name, _ in self.weights] or [self.objective]
+        return all(name in BY_WIDTH for name in named)
+
+    @property
+    def on_reference(self) -> bool:
+        """Whether every stage has the centre distance of its reference circles."""
+        return all(stage.toothing.on_reference for stage in self.stages)
+
+    @property
+    def lowest_ratio(self) -> Fraction:
+        """Minimum total ratio."""
+        return self.ratio * (1 - self.tolerance)
+
+    @property
+    def highest_ratio(self) -> Fraction:
+        """Maximum total ratio."""
+        return self.ratio * (1 + self.tolerance)
+
+    def fixed_teeth(self, stage: int, pinion: int, wheel: int) -> "Train":
+        """Return the drive with the teeth of one stage (counted from 0) given."""
+        one = replace(self.stages[stage], pinion_teeth=(pinion, pinion), wheel_teeth=(wheel, wheel))
+        return replace(self, stages=self.stages[:stage] + (one,) + self.stages[stage + 1 :])
+
+    def pair(
+        self, stage: int, module: Any, pinion_teeth: Any, wheel_teeth: Any, face_width: Any
+    ) -> GearPair:
+        """Return the gear pair of a stage (counted from 0); module, face_width [mm]."""
+        own = self.stages[stage].toothing
+        return own.pair(module, pinion_teeth, wheel_teeth, face_width)
+
+    def speed_at(self, torque: Any) -> Any:
+        """Return the speed [rad/s] of a shaft that carries a torque [N mm], without losses."""
+        return self.speed * (self.torque / torque)
+
+    @property
+    def by_stage(self) -> tuple[str, ...]:
+        """The names in `numbers` with a value for every stage."""
+        return (*self.law.names, *CHOICES, *self._widths())
+
+    @property
+    def unit(self) -> str:
+        """Unit of the objective."""
+        return OBJECTIVES.get(self.objective, "")
+
+    def numbers(self) -> dict[str, float | tuple[float, ...]]:
+        """Return every number of the drive by name, a float; one per stage for what stages have."""
+        stages = self.stages
+        return {
+            "torque": self.torque,
+            "helix_cosine": tuple(s.toothing.cosine for s in stages),
+            "density": 1.0 if self.density is None else self.density,
+            "lowest_ratio": float(self.lowest_ratio),
+            "highest_ratio": float(self.highest_ratio),
+            "speed": self.speed,
+            "bending_safety": self.safety[0],
+            "contact_safety": self.safety[1],
+            **{n: tuple(s.allowable[i] for s in stages) for i, n in enumerate(self.law.names)},
+            "width_low": tuple(float(s.face_width.low) for s in stages),
+            "width_high": tuple(s.face_width.widest for s in stages),
+            "module_low": tuple(float(min(s.modules, default=0)) for s in stages),
+            "module_high": tuple(_or_inf(max(s.modules, default=None)) for s in stages),
+            "pinion_low": tuple(float(s.pinion_teeth[0]) for s in stages),
+            "pinion_high": tuple(_or_inf(s.pinion_teeth[1]) for s in stages),
+            "wheel_low": tuple(float(s.wheel_teeth[0]) for s in stages),
+            "wheel_high": tuple(_or_inf(s.wheel_teeth[1]) for s in stages),
+            "ratio_low": tuple(float(s.ratio[0]) for s in stages),
+            "ratio_high": tuple(_or_inf(s.ratio[1]) for s in stages),
+            "wheel_diameter": tuple(_or_inf(s.wheel_diameter) for s in stages),
+            **self._widths(),
+        }
+
+    def _widths(self) -> dict[str, tuple[float, ...]]:
+        """Return the numbers of WIDTHS; none where no stage has such a limit."""
+        faces = [stage.face_width for stage in self.stages]
+        if all(face.plain for face in faces):
+            return {}
+        low = tuple(float(face.over_module[0] or 0) for face in faces)
+        high = tuple(_or_inf(face.over_module[1]) for face in faces)
+        return dict(zip(WIDTHS, (low, high, tuple(float(f.least) for f in faces)), strict=True))
+
+
+def _or_inf(number: Fraction | int | None) -> float:
+    return math.inf if number is None else float(number)
+
+
+def terms(
+    train: Train,
+    numbers: Any,
+    pairs: tuple[GearPair, ...],
+    options: Sequence[Any] = (),
+    rated: Callable[..., Mapping[str, Any]] | None = None,
+    shares: Callable[..., Any] = share,
+) -> Terms:
+    """Return objective and limits of a drive made of these pairs, as terms of a geometric program.
+
+    numbers: `train.numbers()` as attributes, floats or parameters; options: of every stage, counted
+    from 0, floats or arrays; none: the first. rated(stage, pair, torque, speed, safety): limits in
+    the place of those of the ratings. shares: what stages add to the objective, as `share`. A limit
+    is left out where the drive leaves it open or fixes the quantity.
+    """
+    totals: dict[str, Any] = dict.fromkeys(train.objectives, 0.0)
+    product, torque = 1.0, numbers.torque
+    limits: dict[str, Any] = {}
+    equal: dict[str, Any] = {}
+    for k, pair in enumerate(pairs):
+        own = {name: each(getattr(numbers, name))[k] for name in train.by_stage}
+        stage, option = train.stages[k], options[k] if options else 0
+        asked = np.unique(np.rint(option)).astype(int)
+        option = np.searchsorted(asked, np.rint(option))
+        for name in totals:
+            worth = [shares(train, k, pair, numbers.density, one, name) for one in asked]
+            totals[name] = totals[name] + _chosen(worth, option)
+        allowable = [own[name] for name in train.law.names]
+        rows = train.law.utilisations(pair, torque, numbers.speed / product, allowable)
+        if stage.options:
+            safety = numbers.bending_safety, numbers.contact_safety
+            load = torque, numbers.speed / product
+            if rated is not None:
+                rows |= rated(k, pair, *load, safety)
+            else:
+                made = [stage.options[o].utilisations(pair, *load, safety) for o in asked]
+                rows |= {name: _chosen([r[name] for r in made], option) for name in made[0]}
+        rows |= _choices(stage, own, pair)
+        if stage.wheel_fixed and not stage.pinion_fixed:
+            equal[f"wheel_teeth[{k + 1}]"] = pair.wheel_teeth / own["wheel_low"]
+        limits |= {f"{name}[{k + 1}]": value for name, value in rows.items()}
+        torque = torque * pair.ratio
+        product = product * pair.ratio
+    if train.tolerance > 0:
+        limits["ratio_low"] = numbers.lowest_ratio / product
+        limits["ratio_high"] = product / numbers.highest_ratio
+    else:
+        equal["ratio"] = product / numbers.highest_ratio
+    return Terms(totals, limits, equal=equal)
+
+
+def _chosen(values: Sequence[Any], option: Any) -> Any:
+    """Return the value of an option, by its place among the values."""
+    return values[0] if len(values) == 1 else np.choose(option, values)
+
+
+def _choices(stage: Stage, own: dict[str, Any], pair: GearPair) -> dict[str, Any]:
+    """Return the limits of a stage on its module, teeth, ratio, face width and wheel."""
+    limits: dict[str, Any] = {}
+
+    def between(name: str, value: Any, low: Any, high: Any) -> None:
+        """Add the ends of a range; None where there is none."""
+        limits.update({} if low is None else {f"{name}_low": low / value})
+        limits.update({} if high is None else {f"{name}_high": value / high})
+
+    face, d = stage.face_width, pair.pinion.reference_diameter
+    if not face.tied:
+        low = own["width_low"] * d if face.low > 0 else None
+        high = None if face.high is None else own["width_high"] * d
+        between("face_width_over_diameter", pair.face_width, low, high)
+    ends = (own[n] if end else None for n, end in zip(WIDTHS[:2], face.over_module, strict=True))
+    between("face_width_over_module", pair.face_width / pair.normal_module, *ends)
+    if face.least:
+        limits["minimum_face_width"] = own["least_width"] / pair.face_width
+    if len(stage.modules) > 1:
+        between("module", pair.normal_module, own["module_low"], own["module_high"])
+    if not stage.pinion_fixed:
+        high = None if stage.pinion_teeth[1] is None else own["pinion_high"]
+        between("pinion_teeth", pair.pinion_teeth, own["pinion_low"], high)
+    if not stage.wheel_fixed:
+        low = own["wheel_low"] if stage.wheel_teeth[0] > 1 else None
+        high = None if stage.wheel_teeth[1] is None else own["wheel_high"]
+        between("wheel_teeth", pair.wheel_teeth, low, high)
+    given = stage.pinion_fixed and stage.wheel_fixed  # then no bound of a variable keeps u >= 1
+    low = own["ratio_low"] if stage.ratio[0] > 1 or given else None
+    between("stage_ratio", pair.ratio, low, None if stage.ratio[1] is None else own["ratio_high"])
+    if stage.wheel_diameter is not None:
+        limits["wheel_diameter"] = pair.wheel.reference_diameter / own["wheel_diameter"]
+    return limits

@@ -1,0 +1,186 @@
+"""Fixed-step methods for the motion of a pair: explicit, symplectic, and Newmark's family."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache, partial
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.dynamics.motion.numbers import deformation, numbers
+from gearopt.formulations.dynamics.motion.timeline import Timeline
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.kernels import compiling_aside, kernel
+from gearopt.optimise.terms import Array
+from gearopt.physics.motion.accelerations import LEVELS
+from gearopt.physics.motion.moving_pair import MovingPair
+
+MARCH = "gearopt.formulations.dynamics.motion.march_kernel"
+ALPHA = "gearopt.formulations.dynamics.motion.alpha_kernel"
+SLICE = 50_000  # steps between two looks at a clock: some tenth of a second
+HHT, RHO = 0.05, 0.9  # numerical damping: alpha of HHT, spectral radius of generalised alpha
+
+
+@dataclass(frozen=True)
+class Marched:
+    """States (outputs, 2 n) at the times asked; steps, and what they cost: rates evaluated.
+
+    Where a clock stopped, at the first of the times alone. events: times that teeth part or meet.
+    jammed [s]: when both flanks are first pressed at once, as axes in the plane came together; None
+    where they never are, and of methods that locate no separation.
+    """
+
+    pair: MovingPair
+    level: str
+    states: Array
+    steps: int
+    rates: int
+    events: int = 0
+    jammed: float | None = None
+
+    @property
+    def delta(self) -> Array:
+        """Deformation at the outputs [mm]."""
+        return deformation(self.pair, self.level, self.states)
+
+
+@dataclass(frozen=True)
+class Stepper:
+    """A method of fixed steps: its order, rates a step (Newton's steps count two), and its run.
+
+    entry: module and name of the kernel that runs it.
+    undamped: only for pairs without damping, in coordinates whose forces are of positions alone.
+    """
+
+    order: int
+    rates: int
+    run: Callable[[Any, Any, Any, Array, Array, Array], int]
+    entry: tuple[str, str]
+    undamped: bool = False
+
+    @property
+    def kernel(self) -> Any:
+        """The kernel that runs it."""
+        return getattr(kernel(self.entry[0]), self.entry[1])
+
+
+def march(
+    pair: MovingPair,
+    level: str,
+    times: Timeline,
+    method: str,
+    longest: float,
+    state: Array,
+    clock: Clock | None = None,
+) -> Marched:
+    """Return the motion by a method of STEPPERS with steps of at most `longest` [s].
+
+    state (2 n,): coordinates and velocities at the start. clock: asked every SLICE steps; where it
+    stops, the motion ends there. It counts rates as evaluations.
+    """
+    stepper, model = STEPPERS[method], numbers(pair, level)
+    if stepper.undamped and not conservative(pair, level):
+        raise ValueError(f"{method} is for pairs without damping, not at the level {level!r}")
+    counts = times.counts(longest)
+    if clock is not None and counts.max() > SLICE:
+        times = times.divided(-(-counts // SLICE))
+        counts = times.counts(longest)
+    out = np.empty((len(counts), 2 * LEVELS[level][0]))
+    last, told = np.array(state, float), np.array([-1.0, np.inf])
+    newton, ends = method in ALPHAS, np.cumsum(counts)
+    events = rates = done = 0
+    steps, slowed = 0, math.inf if clock is None else SLICE
+    clock = clock or Clock()
+    while done < len(counts) and (done == 0 or clock.tell()):
+        stop = max(done + 1, int(np.searchsorted(ends, steps + slowed, "right")))
+        part = slice(done, stop)
+        given = model, times.between(done, stop), counts[part], last, out[part], told
+        found = compiling_aside(clock, stepper.kernel, partial(stepper.run, *given))
+        if found is None:
+            break
+        spent = 2 * found if newton else (int(ends[stop - 1]) - steps) * stepper.rates
+        events, rates, done = events + (0 if newton else found), rates + spent, stop
+        clock.evaluations, steps = clock.evaluations + spent, int(ends[stop - 1])
+    whole = np.concatenate([[state], out])[times.asked[times.asked < done] + 1]
+    jammed = float(told[1]) if np.isfinite(told[1]) else None
+    return Marched(pair, level, whole, steps, rates, events, jammed)
+
+
+def conservative(pair: MovingPair, level: str) -> bool:
+    """Return whether the forces of a level depend on positions alone."""
+    damped = pair.damping or pair.drag or any(c for r in pair.rotors for c in r.damping)
+    curved = level == "plane" and pair.kinematics in ("exact", "paper")
+    return not damped and not curved
+
+
+def _explicit(tableau: Callable[[], tuple[Array, Array, Array]]) -> Any:
+    def run(model: Any, pieces: Any, counts: Any, state: Array, out: Array, told: Array) -> int:
+        law, (table, weights, nodes) = kernel(MARCH).march, tableau()
+        return int(law(*model, table, weights, nodes, *pieces, counts, state, out, told))
+
+    return run
+
+
+def _composed(model: Any, pieces: Any, counts: Any, state: Array, out: Array, told: Array) -> int:
+    return int(kernel(MARCH).compose(*model, composition(), *pieces, counts, state, out))
+
+
+def _implicit(alphas: tuple[float, float, float, float]) -> Any:
+    def run(model: Any, pieces: Any, counts: Any, state: Array, out: Array, told: Array) -> int:
+        return int(kernel(ALPHA).advance(*model, alphas, *pieces, counts, state, out))
+
+    return run
+
+
+def generalised(rho: float) -> tuple[float, float, float, float]:
+    """Return alpha_m, alpha_f, beta, gamma of generalised alpha with the spectral radius rho.
+
+    Source: Chung and Hulbert, J. Appl. Mech. 60, 1993: alpha_m = (2 rho - 1)/(rho + 1),
+    alpha_f = rho/(rho + 1), beta = (1 - alpha_m + alpha_f)^2/4, gamma = 1/2 - alpha_m + alpha_f.
+    """
+    am, af = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
+    return am, af, 0.25 * (1.0 - am + af) ** 2, 0.5 - am + af
+
+
+@cache
+def fourth() -> tuple[Array, Array, Array]:
+    """Return the classical Runge-Kutta method of order 4: table, weights, nodes."""
+    table = np.diag([0.5, 0.5, 1.0], -1)
+    return table, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0, np.array([0.0, 0.5, 0.5, 1.0])
+
+
+@cache
+def eighth() -> tuple[Array, Array, Array]:
+    """Return the method of order 8 of Dormand and Prince, with 12 stages, as scipy has it."""
+    from scipy.integrate import DOP853
+
+    return tuple(np.ascontiguousarray(a, float) for a in (DOP853.A, DOP853.B, DOP853.C))  # type: ignore[return-value]
+
+
+@cache
+def composition() -> Array:
+    """Return weights of Yoshida's symmetric composition of order 6 (solution A).
+
+    Source: Yoshida, Phys. Lett. A 150, 1990; a test solves his order conditions to rounding.
+    """
+    w = [-1.17767998417887, 0.235573213359357, 0.784513610477560]
+    return np.array([*w[::-1], 1.0 - 2.0 * sum(w), *w])
+
+
+ALPHAS: Mapping[str, tuple[float, float, float, float]] = MappingProxyType(
+    {
+        "newmark": (0.0, 0.0, 0.25, 0.5),
+        "hht": (0.0, HHT, 0.25 * (1.0 + HHT) ** 2, 0.5 + HHT),
+        "generalised_alpha": generalised(RHO),
+    }
+)
+STEPPERS: Mapping[str, Stepper] = MappingProxyType(
+    {name: Stepper(2, 4, _implicit(alphas), (ALPHA, "advance")) for name, alphas in ALPHAS.items()}
+    | {
+        "rk4": Stepper(4, 4, _explicit(fourth), (MARCH, "march")),
+        "rk8": Stepper(8, 12, _explicit(eighth), (MARCH, "march")),
+        "symplectic": Stepper(6, 7, _composed, (MARCH, "compose"), undamped=True),
+    }
+)

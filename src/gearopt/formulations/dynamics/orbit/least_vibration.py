@@ -1,0 +1,184 @@
+"""Global search for the least vibration: screened designs, local optima from the best of them.
+
+Between the speeds that are judged resonances may hide; the exchange looks for them on a dense grid,
+adds the worst, and solves again.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.dynamics.orbit.climbing import (
+    NEAR,
+    Climbed,
+    climb,
+    growth,
+    measure,
+    posed,
+)
+from gearopt.formulations.dynamics.orbit.impossible import impossible
+from gearopt.formulations.dynamics.orbit.orbit_text import reduced
+from gearopt.formulations.dynamics.orbit.screening import apart, narrowed, screened
+from gearopt.formulations.dynamics.orbit.task import Task, worst
+from gearopt.optimise.box import box
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.optimise.terms import Array
+
+RANDOM = True
+COUNTS = "design measured or Ipopt iteration"
+STARTS, PARTING = 4, 2  # of Ipopt: of a mesh in contact, and of one whose teeth may part
+TRIED = 12  # screened designs that are simulated, of which PARTING are starts
+DENSE, SIMULATED = 361, 121  # speeds of the judge of an exchange: in contact, and simulated
+SAME = 1e-3  # by which the dense maximum may exceed that of another design met on the way
+ROUNDS = 12  # of an exchange at most
+SPREAD = 46  # equal steps of speed that are added once an exchange has ended, to look once more
+AROUND = 0.05  # of the ranges: first moves of the screened designs as speeds are added
+MORE, MOST = 4, 30  # harmonics added where the judge sees another motion; of a problem at most
+
+
+def methods(task: Task) -> dict[str, Callable[..., Outcome]]:
+    """Return the method `screened` of the problem of a task."""
+
+    def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        if (never := impossible(task)) is not None:
+            return never
+        clock = Clock(budget, watch)
+        ends = climbed(task, problem, starts(task, screened(task, clock, seed), clock), clock)
+        message = "no start led to a design"
+        found = ends[0].outcome if ends else Outcome(None, True, message=message)
+        return replace(found, finished=not clock.stopped, evaluations=clock.evaluations)
+
+    return {"screened": run}
+
+
+def starts(task: Task, pool: Array, clock: Clock) -> Array:
+    """Return the designs of a sorted pool (N, 5) from which local optima are looked for.
+
+    Where the multiplier has a limit, those within it come first; where teeth may part, those that
+    vibrate least when they are simulated.
+    """
+    space = box(reduced(task))
+    if task.most_growth is not None:
+        grown = np.array([growth(task, point) for point in pool])
+        over = np.maximum(grown - task.most_growth, 0.0)
+        pool = pool[np.argsort(over, kind="stable")]
+    if task.backlash is None:
+        return apart(space, pool, STARTS)
+    tried, speeds = apart(space, pool, TRIED), np.array(task.speeds_rpm)
+    values = [measure(task, point, speeds, clock).max() for point in tried]
+    return tried[np.argsort(values, kind="stable")][:PARTING]
+
+
+def climbed(task: Task, problem: Problem, points: Array, clock: Clock) -> list[Climbed]:
+    """Return the local optima that designs (N, 5) lead to, the best first."""
+    ends = []
+    for point in points:
+        made = climb(task, problem, point, clock)
+        if made is not None:
+            ends.append(made)
+            clock.best = min(made.judged, clock.best)
+        if not clock.tell():
+            break
+    return sorted(ends, key=lambda end: end.judged)
+
+
+@dataclass(frozen=True)
+class Exchanged:
+    """The task with the speeds (and harmonics) that it took, its best design, and the rounds.
+
+    rounds: of each its number of speeds, harmonics, objective and dense maximum [um]. met: the last
+    dense maximum is within NEAR of the objective.
+    """
+
+    task: Task
+    best: Climbed
+    rounds: tuple[dict[str, Any], ...]
+    met: bool
+
+
+def least(task: Task, clock: Clock, seed: int) -> Exchanged | None:
+    """Return the design of least vibration at the speeds of a task; None where none was found."""
+    points = starts(task, screened(task, clock, seed), clock)
+    ends = climbed(task, posed(task), points, clock)
+    return Exchanged(task, ends[0], (), False) if ends else None
+
+
+def exchange(task: Task, clock: Clock, seed: int) -> Exchanged | None:
+    """Solve, look at all speeds between the first and the last, add the worst, and solve again.
+
+    Until the dense maximum is the objective within NEAR, and no design that was met on the way has
+    a lower one or no speed is left to add. None where no design was found.
+    """
+    grid = dense(task)
+    rng, pool = np.random.default_rng(seed), screened(task, clock, seed)
+    points, known, last = starts(task, pool, clock), list[tuple[float, Array]](), None
+    rounds: list[dict[str, Any]] = []
+    again = np.linspace(task.speeds_rpm[0], task.speeds_rpm[-1], SPREAD)
+    while True:
+        clock.best = np.inf  # of another problem
+        ends = climbed(task, posed(task), points, clock)
+        if not ends:
+            return last
+        judged = [measure(task, end.point, grid, clock) for end in ends]
+        known += [(float(d.max()), end.point) for d, end in zip(judged, ends, strict=True)]
+        lowest, nearest = min(known, key=lambda one: one[0])
+        best, highest = ends[0], float(judged[0].max())
+        rounds.append(_round(task, best, highest))
+        near = highest <= (1.0 + NEAR) * best.objective
+        met = near and highest <= (1.0 + SAME) * lowest
+        peaks = _peaks(grid, judged[0], best.objective)
+        wider = _wider(_finer(task, best.point, peaks), again if met else peaks[0])
+        met |= near and wider == task  # there is no speed left to add
+        last = Exchanged(task, best, tuple(rounds), met)
+        if (met and not again.size) or wider == task or len(rounds) == ROUNDS or clock.over:
+            return last
+        task = wider
+        again = np.empty(0) if met else again
+        pool = narrowed(task, np.vstack([nearest, best.point, pool]), clock, rng, AROUND)
+        points = np.vstack([nearest, best.point, starts(task, pool, clock)])
+
+
+def dense(task: Task) -> Array:
+    """Return the speeds [rpm] on which a design is judged; of simulations the task's among them."""
+    ends = task.speeds_rpm[0], task.speeds_rpm[-1]
+    if task.backlash is None:
+        return np.linspace(*ends, DENSE)
+    return np.union1d(np.linspace(*ends, SIMULATED), task.speeds_rpm)
+
+
+def _round(task: Task, best: Climbed, highest: float) -> dict[str, Any]:
+    return {
+        "speeds": len(task.speeds_rpm),
+        "harmonics": task.harmonics,
+        "objective_um": best.objective,
+        "dense_um": highest,
+    }
+
+
+def _peaks(grid: Array, judged: Array, objective: float) -> tuple[Array, Array]:
+    """Return speeds and measures of the peaks above an objective, and of the highest of all."""
+    padded = np.concatenate([[-np.inf], judged, [-np.inf]])
+    peak = (judged >= padded[:-2]) & (judged >= padded[2:])
+    peak &= judged > (1.0 + 0.5 * NEAR) * objective
+    peak[judged.argmax()] = True
+    return grid[peak], judged[peak]
+
+
+def _finer(task: Task, point: Array, peaks: tuple[Array, Array]) -> Task:
+    """Return the task with more harmonics where the peaks need them."""
+    speeds, fine = peaks
+    if task.backlash is not None or not speeds.size or task.harmonics >= MOST:
+        return task
+    coarse = worst(task, point, speeds, task.harmonics)
+    if np.all(np.abs(coarse - fine) <= 0.5 * NEAR * fine):
+        return task
+    return replace(task, harmonics=min(MOST, task.harmonics + MORE))
+
+
+def _wider(task: Task, speeds: Array) -> Task:
+    """Return the task with more speeds [rpm]."""
+    return replace(task, speeds_rpm=tuple(sorted({*task.speeds_rpm, *map(float, speeds)})))

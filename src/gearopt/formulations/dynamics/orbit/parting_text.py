@@ -1,0 +1,193 @@
+"""The problem of the least vibration of teeth that may part: a collocated motion at every speed."""
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.dynamics.orbit.collocation import (
+    TENS,
+    Collocated,
+    Moving,
+    Piece,
+    Timing,
+    collocated,
+    gauss,
+    mesh_force,
+)
+from gearopt.formulations.dynamics.orbit.orbit_text import LARGEST, limits, parameters, shared
+from gearopt.formulations.dynamics.orbit.settled import marched, size
+from gearopt.formulations.dynamics.orbit.task import MICRO, Parts, Task, pair_of, parts
+from gearopt.formulations.dynamics.steady_motion import Motion
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Array, Param, Repeat, Terms, Var
+from gearopt.physics.motion.moving_pair import MovingPair
+from gearopt.physics.motion.stiffness_wave import PAIR_SHARE
+
+POINTS = 3  # of Gauss in an element: order 6 where the motion is smooth
+LEAST = 2  # elements of a piece
+WIDTHS = (0.1, 0.03, 0.01)  # over which contact begins, of F/k, one problem after the other
+MOST = 1e5  # um, of velocities and accelerations in the problem's time: the end of a search
+
+
+def middle(task: Task) -> Array:
+    """Return the middle of the ranges, (5,)."""
+    return np.array([float(np.ravel(v.guess)[0]) for v in shared(task)])
+
+
+def rate(task: Task) -> float:
+    """Return (k/m_e)^(1/2) [rad/s] in the middle of the ranges: the unit of the problem's time."""
+    kb, ratio, _, width, rim = middle(task)
+    made = parts(task, kb, ratio, width, rim)
+    return math.sqrt(made.mean / made.mesh_mass)
+
+
+def squeezed(task: Task) -> float:
+    """Return F/k [um] in the middle of the ranges."""
+    kb, ratio, _, width, rim = middle(task)
+    return float(MICRO * task.load / parts(task, kb, ratio, width, rim).mean)
+
+
+def lengths(ratio: Any, ramp: Any) -> list[Any]:
+    """Return the pieces of a mesh period: rise, two pairs, fall, one pair of teeth."""
+    return [ramp, ratio - 1.0 - ramp, ramp, 2.0 - ratio - ramp]
+
+
+def elements(task: Task) -> list[int]:
+    """Return the elements of each piece, by its length in the middle of the ranges."""
+    _, ratio, ramp, _, _ = middle(task)
+    shares = np.clip(lengths(ratio, ramp), 0.0, None)
+    return [max(LEAST, round(task.elements * s / shares.sum())) for s in shares]
+
+
+def pieces(task: Task, ratio: Any, ramp: Any, single: Any) -> list[Piece]:
+    """Return the pieces of all periods of a motion, each a share of the whole."""
+    one, two = single, (1.0 + PAIR_SHARE) * single
+    ends = [(one, two), (two, two), (two, one), (one, one)]
+    found = []
+    for length, count, (low, high) in zip(lengths(ratio, ramp), elements(task), ends, strict=True):
+
+        def stiffness(share: float, low: Any = low, high: Any = high) -> Any:
+            return low + share * (high - low)
+
+        shares = [k / count for k in range(count + 1)]
+        found.append(Piece(length / task.periods, shares, stiffness))
+    return found * task.periods
+
+
+def moving(task: Task, stiffness: Any, made: Parts, width: Any) -> Moving:
+    """Return a design as the equations of motion need it."""
+    assert task.backlash is not None
+    held = zip(made.masses, made.bearing_damping, strict=True)
+    axes = [(mass, stiffness, damping) for mass, damping in held]
+    backlash = MICRO * task.backlash
+    return Moving(made.mesh_mass, task.load, made.mesh_damping, backlash, width, axes)
+
+
+def problem(task: Task, methods: dict[str, Any] | None = None) -> Problem:
+    """Return the problem with the motion at every speed in E elements of S points.
+
+    minimise the largest measure over the speeds; rows of a speed: equations of motion at every
+    point and ends of elements (equal), the mean (equal), the measure under the objective. Its
+    parameter `width` [um] rounds the corner where teeth part.
+    """
+    top = Var(task.measure, "um", 1e-3, LARGEST, 20.0, log=True, search=True)
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        return Terms({task.measure: getattr(x, task.measure)}, limits(task, x, p))
+
+    def motion(x: Any, p: Any, row: Any) -> Terms:
+        made = parts(task, x.bearing_stiffness, x.contact_ratio, x.face_width, x.rim)
+        found = collocated(
+            moving(task, x.bearing_stiffness, made, p.width),
+            pieces(task, x.contact_ratio, x.ramp, made.single),
+            POINTS,
+            x,
+            Timing(row.period, rate(task)),
+        )
+        mean = sum(w * d for w, d in zip(found.weights, found.delta, strict=True))
+        equal = {name: tuple(1.0 + r for r in rows) for name, rows in found.rows.items()}
+        equal["mean"] = (1.0 + (mean - x.mean) / TENS,)
+        return Terms({}, {}, judged(task, x, found), equal)
+
+    omega = 2.0 * math.pi * task.teeth / 60.0 * np.array(task.speeds_rpm)
+    rows = {"period": 2.0 * math.pi * task.periods * rate(task) / omega}
+    corner = Param("width", "um", WIDTHS[-1] * squeezed(task))
+    given = (*parameters(task), corner)
+    repeat = Repeat("speed", _of_a_speed(task), rows, motion)
+    return Problem("orbit", (*shared(task), top), given, evaluate, (repeat,), methods or {})
+
+
+def _of_a_speed(task: Task) -> tuple[Var, ...]:
+    """Return the variables of a speed: the mean, and the motion in its elements."""
+    count, wide = 3 * sum(elements(task)) * task.periods, (-LARGEST, LARGEST)
+    own = [
+        Var("mean", "um", *wide, -15.0, search=True),
+        Var("places", "um", *wide, 0.0, count, search=True),
+        Var("speeds", "um", -MOST, MOST, 0.0, count, search=True),
+        Var("bends", "um", -MOST, MOST, 0.0, count * POINTS, search=True),
+    ]
+    if task.measure == "peak_to_peak":
+        own += [Var("lowest", "um", *wide, -20.0, search=True)]
+        own += [Var("highest", "um", *wide, -10.0, search=True)]
+    return tuple(own)
+
+
+def rounded(task: Task, problem: Problem, width: float) -> Problem:
+    """Return the problem with the corner rounded over a width in units of F/k."""
+    return problem.at(width=width * squeezed(task))
+
+
+def judged(task: Task, x: Any, found: Collocated) -> dict[str, Any]:
+    """Return the rows that hold a speed's measure under the objective."""
+    if task.measure == "rms":
+        each = zip(found.weights, found.delta, strict=True)
+        return {"worst": sum(w * (d - x.mean) ** 2 for w, d in each) / x.rms**2}
+    return {
+        "worst": 1.0 + (x.highest - x.lowest - x.peak_to_peak) / TENS,
+        "above": tuple(1.0 + (d - x.highest) / TENS for d in found.delta),
+        "below": tuple(1.0 + (x.lowest - d) / TENS for d in found.delta),
+    }
+
+
+def start(task: Task, whole: Problem, point: Array, motions: Sequence[Motion]) -> Array:
+    """Return the point of the whole problem of a design (5,) and its motions, one a speed."""
+    kb, ratio, ramp, width, rim = (float(v) for v in point)
+    made = parts(task, kb, ratio, width, rim)
+    cut = pieces(task, ratio, ramp, made.single)
+    law = moving(task, kb, made, float(np.ravel(whole.parameters[-1].value)[0]))
+    pairs = [pair_of(task, point, speed) for speed in task.speeds_rpm]
+    rows = [_row(task, *each, cut, law) for each in zip(pairs, motions, strict=True)]
+    low, high, _ = whole.bounds()
+    value = max(size(task, motion) for motion in motions)
+    return np.asarray(np.clip(np.concatenate([point, [value], *rows]), low, high))
+
+
+def _row(task: Task, pair: MovingPair, motion: Motion, cut: Sequence[Piece], law: Moving) -> Array:
+    """Return the variables of a speed whose motion is simulated from its state."""
+    unit, begun = rate(task), 0.0
+    begins, places, k, weights = [], [], [], []
+    for piece in cut:
+        for low, high in pairwise(piece.ends):
+            begins.append(begun + max(piece.length, 0.0) * low)
+            for c, weight in zip(*gauss(POINTS)[:2], strict=True):
+                at = low + c * (high - low)
+                places.append(begun + max(piece.length, 0.0) * at)
+                k.append(piece.stiffness(at))
+                weights.append(max(piece.length, 0.0) * (high - low) * weight)
+        begun += max(piece.length, 0.0)
+    marks, back = np.unique([0.0, *begins, *places], return_inverse=True)
+    states = MICRO * marched(pair, task.periods * marks, motion.state)[back[1:]]
+    first, inner = states[: len(begins)], states[len(begins) :]
+    force = mesh_force(law, np.array(k), inner[:, 1], inner[:, 4])
+    bends = np.zeros((len(inner), 3))
+    for i, sign, (mass, held, damped) in zip((0, 2), (1.0, -1.0), law.axes, strict=True):
+        bends[:, i] = (sign * force - held * inner[:, i] - damped * inner[:, 3 + i]) / mass
+    bends[:, 1] = bends[:, 2] - bends[:, 0] - (law.load * MICRO + force) / law.mesh_mass
+    own: list[Any] = [[weights @ inner[:, 1]], first[:, :3].ravel()]
+    own += [first[:, 3:].ravel() / unit, bends.ravel() / unit**2]
+    if task.measure == "peak_to_peak":
+        own.append([inner[:, 1].min(), inner[:, 1].max()])
+    return np.concatenate(own)

@@ -1,0 +1,1 @@
+"""A spur pair: load sharing, contact, relief."""

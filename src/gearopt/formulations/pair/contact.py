@@ -1,0 +1,304 @@
+"""The contact of a spur pair for its report: stiffness, load shares, transmission error, stress.
+
+Fields are keys of a result, with their units; lists of one table are columns of equal length.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.pair.relief.meshing import NO_RELIEF, Mesh
+from gearopt.formulations.pair.relief.rules import tip_amounts
+from gearopt.optimise.terms import Array
+from gearopt.physics.agma.factors import elastic_coefficient
+from gearopt.physics.geometry.contact import ContactPath, diameters_at
+from gearopt.physics.mesh_cycle import break_points, cycle
+from gearopt.physics.tooth.elastic import ElasticPair
+from gearopt.physics.tooth.ladder import LEVELS
+
+DEAR = 1000.0  # us a position: of dearer models a few positions are computed, others interpolated
+NODES = 33  # of those: the stiffness between them is off by less than 2e-3 (finite elements)
+HARMONICS = 5  # of the mesh frequency, that are told
+Columns = tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactPoint:
+    """A point of the path of contact with the stiffness of one pair of teeth there.
+
+    roll angles: from where the involutes begin. stiffness: force per face width and
+    approach along the line of action.
+    """
+
+    point: str
+    position_mm: float
+    pinion_diameter_mm: float
+    wheel_diameter_mm: float
+    pinion_roll_angle_deg: float
+    wheel_roll_angle_deg: float
+    pair_stiffness_MPa: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactLoad:
+    """What happens at one load: on the path of contact, and over one base pitch of travel.
+
+    load: relative to the torque of the duty. share, contact stress: of the pair of teeth at every
+    position of the path. transmission error: approach of the gears along the line of action at
+    every travel; its harmonics: amplitudes at the mesh frequency and its multiples. mesh stiffness:
+    normal force over face width and approach.
+    """
+
+    load: float
+    normal_force_N: float
+    largest_tooth_force_N: float
+    largest_share: float
+    largest_contact_stress_MPa: float
+    mean_transmission_error_mm: float
+    peak_to_peak_mm: float
+    harmonics_mm: Columns
+    mean_mesh_stiffness_MPa: float
+    least_mesh_stiffness_MPa: float
+    most_mesh_stiffness_MPa: float
+    share: Columns
+    contact_stress_MPa: Columns
+    transmission_error_mm: Columns
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairContact:
+    """The contact of a spur pair.
+
+    level, plane, coupling: models of the teeth's compliance; the load of one pair of teeth moves
+    the others by coupling_mm_per_N. error: least and largest of the level's stiffness against
+    finite elements, of all pairs it was measured on. bores: where the gears are held. iso: c' and
+    c_gamma_alpha of ISO 6336-1, beside. path: columns along the path of contact from SAP to EAP,
+    both sides of points where pairs come and go. rule_relief: what off the tips of pinion and wheel
+    lets pairs come and go without load at the duty's torque, by rule. travel_mm: of the pinion's
+    base circle over one base pitch, 0 where a pair comes into contact. validity: sentences on what
+    models do not cover.
+    """
+
+    level: str
+    error_percent: tuple[float, float]
+    plane: str
+    coupling: str
+    coupling_mm_per_N: float
+    pinion_bore_mm: float
+    wheel_bore_mm: float
+    base_pitch_mm: float
+    contact_ratio: float
+    iso_single_stiffness_MPa: float
+    iso_mesh_stiffness_MPa: float
+    rule_relief_mm: tuple[float, float]
+    points: tuple[ContactPoint, ...]
+    position_mm: Columns
+    pinion_diameter_mm: Columns
+    wheel_diameter_mm: Columns
+    pinion_roll_angle_deg: Columns
+    wheel_roll_angle_deg: Columns
+    pair_stiffness_MPa: Columns
+    travel_mm: Columns
+    loads: tuple[ContactLoad, ...]
+    validity: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class PairMesh:
+    """An elastic spur pair in mesh at its loads.
+
+    level: the model of its teeth; compliance: by it, of a pair of teeth [mm/N] at positions s [mm].
+    force [N]: the normal force at the duty's torque, at which the contact compliance is taken for
+    every load; loads: relative to it; mesh: at these.
+    """
+
+    elastic: ElasticPair
+    level: str
+    compliance: Callable[[Array], Array]
+    force: float
+    loads: tuple[float, ...]
+    mesh: Mesh
+
+    @classmethod
+    def of(
+        cls,
+        elastic: ElasticPair,
+        level: str,
+        torque: float,
+        coupling: float,
+        steps: int,
+        loads: Sequence[float],
+    ) -> "PairMesh":
+        """Return a pair over its cycle; torque [N mm] of the pinion, steps over a base pitch."""
+        force = torque / elastic.members[0].base_radius
+        model = LEVELS[level]
+
+        def exact(positions: Any) -> Any:
+            return model.compliance(elastic, positions, force)
+
+        compliance = _interpolated(exact, elastic.path) if model.cost > DEAR else exact
+        forces = tuple(load * force for load in loads)
+        made = Mesh.of(cycle(elastic.path, steps), compliance, coupling, forces)
+        return cls(elastic, level, compliance, force, tuple(loads), made)
+
+    def of_loads(self, loads: Sequence[float]) -> Mesh:
+        """Return the mesh at other loads, relative to that of the duty."""
+        return replace(self.mesh, loads=tuple(load * self.force for load in loads))
+
+
+def _interpolated(compliance: Callable[[Any], Any], path: ContactPath) -> Callable[[Any], Any]:
+    """Return a compliance by a cubic spline through NODES positions, dense towards the ends.
+
+    There, within half the width of the contact, it rises steeply as the pressure leaves the flank.
+    """
+    from scipy.interpolate import CubicSpline
+
+    turns = 0.5 - 0.5 * np.cos(np.pi * np.arange(NODES) / (NODES - 1))
+    nodes = path.start + turns * (path.end - path.start)
+    found: Callable[[Any], Any] = CubicSpline(nodes, compliance(nodes))
+    return found
+
+
+def contact(
+    made: PairMesh, coupling: str, iso: tuple[float, float], validity: Sequence[str]
+) -> PairContact:
+    """Return the contact of a pair of teeth without relief.
+
+    coupling: the name of its model; iso: c' and c_gamma_alpha [MPa].
+    """
+    elastic, path = made.elastic, made.mesh.cycle.path
+    known = LEVELS[made.level]
+    errors = (*known.error, *known.wider)
+    positions = made.mesh.cycle.along(made.mesh.cycle.positions)
+    return PairContact(
+        level=made.level,
+        error_percent=(100.0 * min(errors), 100.0 * max(errors)),
+        plane=elastic.plane,
+        coupling=coupling,
+        coupling_mm_per_N=made.mesh.coupling,
+        pinion_bore_mm=elastic.bores[0],
+        wheel_bore_mm=elastic.bores[1],
+        base_pitch_mm=float(path.base_pitch),
+        contact_ratio=float(path.transverse_ratio),
+        iso_single_stiffness_MPa=iso[0],
+        iso_mesh_stiffness_MPa=iso[1],
+        rule_relief_mm=tip_amounts(path, made.compliance, made.mesh.coupling, made.force),
+        points=tuple(_points(made)),
+        position_mm=column(positions),
+        **{name: column(values) for name, values in _columns(made, positions).items()},
+        travel_mm=column(made.mesh.cycle.travels * path.base_pitch),
+        loads=at_loads(made, made.mesh.separations(NO_RELIEF, NO_RELIEF)),
+        validity=tuple(validity),
+    )
+
+
+def column(values: Any) -> Columns:
+    """Return an array as a column of a result."""
+    return tuple(float(v) for v in values)
+
+
+def _columns(made: PairMesh, positions: Any) -> dict[str, Any]:
+    """Return what belongs to positions s [mm] on the path, by the names of fields."""
+    path, pair = made.mesh.cycle.path, made.elastic.pair
+    first, second = diameters_at(pair, path, positions)
+    rolled = [
+        np.degrees(curvature / member.base_radius)
+        for curvature, member in zip(
+            path.radii_of_curvature(positions), made.elastic.members, strict=True
+        )
+    ]
+    return {
+        "pinion_diameter_mm": first,
+        "wheel_diameter_mm": second,
+        "pinion_roll_angle_deg": rolled[0],
+        "wheel_roll_angle_deg": rolled[1],
+        "pair_stiffness_MPa": 1.0 / (made.compliance(positions) * float(pair.face_width)),
+    }
+
+
+def _points(made: PairMesh) -> list[ContactPoint]:
+    """Return the break points and the pitch point, in their order on the path."""
+    path = made.mesh.cycle.path
+    named = list(break_points(path).items())
+    if path.start < 0.0 < path.end:
+        named.append(("pitch point", 0.0))
+    names, places = zip(*sorted(named, key=lambda row: row[1]), strict=True)
+    columns = _columns(made, np.array(places))
+    return [
+        ContactPoint(
+            point=name,
+            position_mm=places[k],
+            **{key: float(values[k]) for key, values in columns.items()},
+        )
+        for k, name in enumerate(names)
+    ]
+
+
+def at_loads(made: PairMesh, separations: Array) -> tuple[ContactLoad, ...]:
+    """Return what happens at every load; separations (p, n) [mm] by relief, infinite if absent."""
+    found = made.mesh.sharing(separations)
+    return tuple(
+        _loaded(made, k, found.forces[k], found.approach[k]) for k in range(len(made.loads))
+    )
+
+
+def _loaded(made: PairMesh, k: int, forces: Array, error: Array) -> ContactLoad:
+    """Return what happens at a load (from 0): forces (p, n) [N], approach (p,) [mm]."""
+    force, round_ = made.mesh.loads[k], made.mesh.cycle
+    shares = forces / force if force else np.zeros_like(forces)
+    width = float(made.elastic.pair.face_width)
+    mean, *harmonics = spectrum(round_.travels, error)
+    stiffness = force / (width * error) if force else np.zeros_like(error)
+    stress = contact_stress(made.elastic, round_.along(round_.positions), round_.along(forces))
+    return ContactLoad(
+        load=made.loads[k],
+        normal_force_N=force,
+        largest_tooth_force_N=float(forces.max()),
+        largest_share=float(shares.max()),
+        largest_contact_stress_MPa=float(stress.max()),
+        mean_transmission_error_mm=mean,
+        peak_to_peak_mm=float(np.ptp(error)),
+        harmonics_mm=column(harmonics),
+        mean_mesh_stiffness_MPa=spectrum(round_.travels, stiffness)[0],
+        least_mesh_stiffness_MPa=float(stiffness.min()),
+        most_mesh_stiffness_MPa=float(stiffness.max()),
+        share=column(round_.along(shares)),
+        contact_stress_MPa=column(stress),
+        transmission_error_mm=column(error),
+    )
+
+
+def contact_stress(elastic: ElasticPair, positions: Any, forces: Any) -> Any:
+    """Return Hertz's line stress sigma_H = Z_E sqrt(F/b (1/rho_1 + 1/rho_2)) [MPa].
+
+    positions s [mm] and forces F [N] of one pair of teeth there. Source: Hertz's cylinders, as ISO
+    6336-2 and AGMA 908 take them; edge contact at the tips is not covered.
+    """
+    (e1, e2), (nu1, nu2) = elastic.moduli, elastic.poissons
+    coefficient = elastic_coefficient(e1, nu1, e2, nu2)
+    first, second = elastic.path.radii_of_curvature(positions)
+    load = forces / float(elastic.pair.face_width)
+    return coefficient * np.sqrt(load * (1.0 / first + 1.0 / second))
+
+
+def spectrum(travels: Any, values: Any, most: int = HARMONICS) -> list[float]:
+    """Return the mean and the amplitudes of the first harmonics of what repeats with travel 1.
+
+    values at ascending travels from 0 to 1, equal travels where it jumps, are joined by lines,
+    whose integrals against exp(-2 pi i k t) are exact: piecewise linear functions have exact
+    harmonics. Amplitudes 2 |c_k|: of cosines.
+    """
+    start, step = travels[:-1], np.diff(travels)
+    low, high = values[:-1], values[1:]
+    found = [float((0.5 * (low + high) * step).sum())]
+    for k in range(1, most + 1):
+        turn = 2j * math.pi * k
+        left, right = np.exp(-turn * start), np.exp(-turn * (start + step))
+        slope = np.divide(high - low, step, out=np.zeros_like(step), where=step > 0.0)
+        ends = (low * left - high * right) / turn  # of a line, by parts; a jump has none
+        lines = ends + slope * (left - right) / turn**2
+        found.append(2.0 * abs(complex(np.where(step > 0.0, lines, 0.0).sum())))
+    return found

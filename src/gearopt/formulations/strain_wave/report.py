@@ -1,0 +1,393 @@
+"""A strain wave gearing for its report: sizes, flank, clearances, loads, stresses, cutter.
+
+Fields are keys of a result, with their units; lists of one table are columns of equal length.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.strain_wave.cutter_report import Cutter, CutterDesign, cutter_of
+from gearopt.formulations.strain_wave.demand import Demand, limits, rim_of, slipping
+from gearopt.formulations.strain_wave.design import COUNT
+from gearopt.formulations.strain_wave.duty import (
+    Duty,
+    equal_pressure,
+    loads_at,
+    pressures,
+    shared_pressure,
+)
+from gearopt.formulations.strain_wave.exchange import CUTTING, STEP_DEG, stretched
+from gearopt.formulations.strain_wave.range_ends import RangeEnd
+from gearopt.formulations.strain_wave.sharing import REACH, Loads
+from gearopt.formulations.strain_wave.shift import (
+    ShiftPoint,
+    largest_addendum,
+    last_shift_of_one_pair,
+    shift_curve,
+)
+from gearopt.physics.strain_wave.clearance import interference, teeth_within, tooth_arcs
+from gearopt.physics.strain_wave.clearance import tooth_clearances as clearances_of
+from gearopt.physics.strain_wave.conjugate import Flank, contact, least_deflection
+from gearopt.physics.strain_wave.cutter import blank_profile
+from gearopt.physics.strain_wave.gearing import StrainWave
+from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, radii
+from gearopt.physics.strain_wave.tooth_motion import motion
+
+Columns = tuple[float, ...]
+INVOLUTE = "involute"  # law of the circular spline's teeth, to which the flexspline's are conjugate
+WITHIN = (1.0, 2.0, 5.0, 10.0, 20.0)  # um
+ROWS = 21  # of the flank's table
+DIGITS = 12  # of numbers in modules: a solver leaves 1e-13 of a 0
+OTHER_DEFLECTIONS = (-0.05, -0.02, 0.02, 0.05)  # modules beside the design's
+SHIFTS = (0.0, 0.3, 0.6, 0.9, 1.2, 1.5, 1.8, 2.1)  # profile shifts of the curve
+FINE = 80  # clearances that are listed on either side of the arc of contact
+GUARDS = ("curvature", "cusp")  # keep the flank regular
+NEAR = 0.5  # part of the teeth whose loads are listed
+TURNS = 8  # positions of the wave generator over one pitch
+
+
+@dataclass(frozen=True, kw_only=True)
+class ToothLoad:
+    """A tooth: its number from the middle of the arc of contact, and what it carries."""
+
+    tooth: int
+    wave_angle_deg: float
+    clearance_mm: float
+    force_N: float
+    contact_pressure_MPa: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShiftRow:
+    """A profile shift: pairs, least radius, pressures by equal, whole and shared loads."""
+
+    profile_shift: float
+    pairs: float
+    radius_mm: float
+    equal_MPa: float
+    whole_MPa: float
+    shared_MPa: float
+    least_clearance_mm: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Deflected:
+    """The same teeth on a wave generator of another deflection."""
+
+    deflection: float
+    least_clearance_mm: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoundRow:
+    """A round of the search: cuts so far, pressure, least clearance over the wave."""
+
+    cuts: int
+    pressure_MPa: float
+    least_clearance_mm: float
+    iterations: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class WaveDesign:
+    """A strain wave gearing and what is computed of it.
+
+    law: how the teeth are made; what only involutes have is None of others, or empty. arc to
+    relative_curvature: contacts by the tooth's angle on the wave, with heights over the neutral
+    curve, half thicknesses of the tooth, radius on the circular spline, radii of curvature.
+    wave_major, wave_minor: diameters of the wave generator inside the flexspline's rim.
+    elastic_rim: whether teeth share the load, and wind up, on a rim that yields.
+    touching: stretches of the wave on which flanks are conjugate. tooth: the flank from root to
+    tip, height and half thickness; space: that of the circular spline from its tip, across from the
+    middle of the space and out from the axis. wave: clearances of a tooth by its angle; load: what
+    it carries there. teeth: of one lobe with the wave generator at its middle position;
+    effective_teeth: how many would carry the largest load alike.
+    """
+
+    law: str = INVOLUTE
+    thickness_mm: float | None = None
+    arc_radii_mm: Columns = ()
+    tangent_mm: float | None = None
+    ratio: float
+    flexspline_teeth: int
+    circular_spline_teeth: int
+    module_mm: float
+    pressure_angle_deg: float
+    profile_shift: float
+    addendum: float
+    clearance: float
+    deflection: float
+    rim_mm: float
+    elastic_rim: bool = False
+    wave_generator: str
+    wrap_angle_deg: float
+    face_width_mm: float
+    torque_Nm: float
+    outer_diameter_mm: float
+    base_diameter_mm: float | None = None
+    tip_diameter_mm: float
+    active_diameter_mm: float
+    root_diameter_mm: float
+    neutral_diameter_mm: float
+    wave_major_mm: float
+    wave_minor_mm: float
+    pairs_in_contact: float
+    effective_teeth: float
+    carrying_teeth: int
+    windup_mrad: float
+    equal_pressure_MPa: float
+    whole_pairs_pressure_MPa: float
+    shared_pressure_MPa: float
+    rim_bending_MPa: float
+    rim_shear_MPa: float
+    ratcheting_torque_Nm: float
+    least_clearance_mm: float
+    least_clearance_at_deg: float
+    least_deflection: float | None = None
+    shift_of_one_pair: float | None = None
+    largest_addendum: float | None = None
+    within_um: Columns
+    teeth_within: Columns
+    arc_deg: Columns
+    radius_mm: Columns
+    height_mm: Columns
+    half_thickness_mm: Columns
+    flexspline_curvature_mm: Columns
+    circular_curvature_mm: Columns
+    relative_curvature_mm: Columns
+    touching_deg: tuple[tuple[float, float], ...]
+    tooth_height_mm: Columns
+    tooth_half_mm: Columns
+    space_across_mm: Columns
+    space_out_mm: Columns
+    wave_angle_deg: Columns
+    wave_clearance_mm: Columns
+    load_angle_deg: Columns
+    load_N: Columns
+    load_pressure_MPa: Columns
+    teeth: tuple[ToothLoad, ...]
+    shifts: tuple[ShiftRow, ...] = ()
+    deflections: tuple[Deflected, ...]
+    cutter: CutterDesign | None = None
+    rounds: tuple[RoundRow, ...] = ()
+    range_ends: tuple[RangeEnd, ...] = ()
+
+
+def described(
+    demand: Demand, made: Flank, cutter: Cutter | None, rounds: Sequence[RoundRow] = ()
+) -> WaveDesign:
+    """Return all that is told of a gearing and its flank; cutter: the tool that is asked for."""
+    gearing, duty = made.gearing, demand.duty
+    own = _carried(duty, made)
+    found = interference(made, STEP_DEG)
+    return WaveDesign(
+        **_sizes(demand, made),
+        **_columns(made),
+        **load_columns([_carried(duty, made, k / TURNS) for k in range(TURNS)], NEAR),
+        **shares(own),
+        equal_pressure_MPa=equal_pressure(duty, made),
+        whole_pairs_pressure_MPa=equal_pressure(duty, made, whole=True),
+        shared_pressure_MPa=shared_pressure(duty, made),
+        least_clearance_mm=gap_of(found.gap),
+        least_clearance_at_deg=math.degrees(found.angle),
+        least_deflection=least_deflection(gearing),
+        shift_of_one_pair=last_shift_of_one_pair(gearing),
+        largest_addendum=largest_addendum(gearing),
+        within_um=WITHIN,
+        teeth_within=floats(teeth_within(made, 1e-3 * np.array(WITHIN))),
+        shifts=tuple(_shift(p) for p in shift_curve(gearing, duty, SHIFTS)),
+        deflections=tuple(_deflected(made, by) for by in OTHER_DEFLECTIONS),
+        cutter=cutter_of(gearing, blank_profile(made), cutter) if cutter else None,
+        rounds=tuple(rounds),
+    )
+
+
+def sketched(demand: Demand, made: Flank) -> dict[str, Any]:
+    """Return sizes, pairs, pressures and the least clearance of a gearing, under the same keys."""
+    return {
+        **_sizes(demand, made),
+        "pairs_in_contact": float(made.pairs_in_contact),
+        "equal_pressure_MPa": equal_pressure(demand.duty, made),
+        "shared_pressure_MPa": shared_pressure(demand.duty, made),
+        "least_clearance_mm": gap_of(interference(made, STEP_DEG).gap),
+    }
+
+
+def used(demand: Demand, made: Flank) -> dict[str, float]:
+    """Return the utilisation of every limit by a gearing: the largest of a limit on several points.
+
+    interference: above 1, in modules, where teeth cut each other at some pose. Limits that only
+    keep the flank regular are named where they are exceeded.
+    """
+    angle = np.linspace(made.contacts.motion.angle[0], made.contacts.motion.angle[-1], COUNT)
+    at = [contact(made.gearing, motion(made.gearing, made.curve, p)) for p in angle]
+    found = limits(demand, made.gearing, made.curve, at)
+    least = interference(made, STEP_DEG)
+    flat = {k: float(max(v) if isinstance(v, tuple) else v) for k, v in found.items()}
+    if least.gap < CUTTING:
+        flat["interference"] = 1.0 - least.gap / float(made.gearing.module)
+    return {k: v for k, v in flat.items() if k not in GUARDS or v > 1.0}
+
+
+def _sizes(demand: Demand, made: Flank) -> dict[str, Any]:
+    gearing = made.gearing
+    tip = contact(gearing, motion(gearing, made.curve, made.contacts.motion.angle[-1]))
+    return {
+        **sizes_of(demand, gearing, made.curve),
+        "base_diameter_mm": 2.0 * float(gearing.base_radius),
+        "pairs_in_contact": float(made.pairs_in_contact),
+        "ratcheting_torque_Nm": 1e-3 * float(slipping(demand, gearing, tip)),
+    }
+
+
+def sizes_of(demand: Demand, gearing: StrainWave, curve: NeutralCurve) -> dict[str, Any]:
+    """Return the sizes of a gearing and the stresses of its rim, of teeth of any law."""
+    duty = demand.duty
+    major, minor = (float(radii(curve, angle)[0]) for angle in (0.0, 0.5 * math.pi))
+    bending, shear = rim_of(demand, gearing, curve)
+    return {
+        "ratio": float(gearing.ratio),
+        "flexspline_teeth": int(gearing.teeth),
+        "circular_spline_teeth": int(gearing.circular_teeth),
+        "module_mm": float(gearing.module),
+        "pressure_angle_deg": math.degrees(gearing.pressure_angle),
+        "profile_shift": round(float(gearing.profile_shift), DIGITS),
+        "addendum": round(float(gearing.addendum), DIGITS),
+        "clearance": float(gearing.clearance),
+        "deflection": round(float(gearing.deflection), DIGITS),
+        "rim_mm": float(gearing.rim),
+        "elastic_rim": duty.elastic,
+        "wave_generator": gearing.wave,
+        "wrap_angle_deg": math.degrees(gearing.wrap) if gearing.wave == "discs" else 0.0,
+        "face_width_mm": duty.face_width,
+        "torque_Nm": 1e-3 * duty.torque,
+        "outer_diameter_mm": 2.0 * float(demand.radius_needed(gearing)),
+        "tip_diameter_mm": 2.0 * float(gearing.tip_radius),
+        "active_diameter_mm": 2.0 * float(gearing.active_radius),
+        "root_diameter_mm": 2.0 * float(gearing.root_radius),
+        "neutral_diameter_mm": 2.0 * float(gearing.neutral_radius),
+        "wave_major_mm": 2.0 * major - float(gearing.rim),
+        "wave_minor_mm": 2.0 * minor - float(gearing.rim),
+        "rim_bending_MPa": float(bending),
+        "rim_shear_MPa": float(shear),
+    }
+
+
+def _columns(made: Flank) -> dict[str, Any]:
+    at = made.contacts
+    k = np.rint(np.linspace(0, len(at.tangent) - 1, ROWS)).astype(int)
+    middle = float(tooth_arcs(made, 0))
+    arcs = middle + np.linspace(-REACH, REACH, 2 * FINE + 1)
+    involute = made.gearing.half_angle - (at.tangent - np.arctan(at.tangent))
+    return {
+        "arc_deg": floats(np.degrees(at.motion.arc[k])),
+        "radius_mm": floats(at.radius[k]),
+        "height_mm": floats(at.point.x[k]),
+        "half_thickness_mm": floats(at.point.y[k]),
+        "flexspline_curvature_mm": floats(1.0 / np.abs(at.curvatures[1][k])),
+        "circular_curvature_mm": floats(1.0 / np.abs(at.curvatures[0][k])),
+        "relative_curvature_mm": floats(1.0 / at.gap_curvature[k]),
+        "touching_deg": (floats(np.degrees(at.motion.arc[[0, -1]])),),
+        "tooth_height_mm": floats(at.point.x[k]),
+        "tooth_half_mm": floats(at.point.y[k]),
+        "space_across_mm": floats((at.radius * np.sin(involute))[k]),
+        "space_out_mm": floats((at.radius * np.cos(involute))[k]),
+        **clearance_columns(arcs, clearances_of(made, arcs)),
+    }
+
+
+def clearance_columns(arcs: Any, gaps: Any) -> dict[str, Any]:
+    """Return clearances [mm] by the angle phi [rad] where they are finite."""
+    near = np.isfinite(gaps)
+    return {
+        "wave_angle_deg": floats(np.degrees(arcs[near])),
+        "wave_clearance_mm": tuple(map(gap_of, gaps[near])),
+    }
+
+
+@dataclass(frozen=True)
+class Carried:
+    """What the teeth of a lobe carry: number, angle phi [rad], gap [mm], load, pressure [MPa]."""
+
+    numbers: Any
+    arcs: Any
+    gaps: Any
+    loads: Loads
+    stresses: Any
+
+
+def _carried(duty: Duty, made: Flank, shift: float = 0.0) -> Carried:
+    teeth, loads = loads_at(duty, made, shift)
+    stress = pressures(duty, made, teeth, loads)
+    return Carried(teeth.numbers, teeth.arcs, teeth.gaps, loads, stress)
+
+
+def load_columns(turned: Sequence[Carried], share: float = 1.0) -> dict[str, Any]:
+    """Return the load of a tooth by its angle, from turns of the wave generator over a pitch.
+
+    share: part of the teeth that is told, those nearest to the middle.
+    """
+    rows: list[tuple[float, float, float]] = []
+    for at in turned:
+        near = np.abs(at.numbers) <= share * at.numbers.max()
+        rows += zip(at.arcs[near], at.loads.forces[near], at.stresses[near], strict=True)
+    arcs, forces, stresses = np.array(sorted(rows)).T
+    return {
+        "load_angle_deg": floats(np.degrees(arcs)),
+        "load_N": floats(forces),
+        "load_pressure_MPa": floats(stresses),
+    }
+
+
+def shares(at: Carried) -> dict[str, Any]:
+    """Return the teeth that carry with three neighbours on either side, and their windup."""
+    carries = np.flatnonzero(at.loads.forces > 0.0)
+    shown = range(max(0, carries[0] - 3), min(len(at.stresses), carries[-1] + 4))
+    rows = tuple(
+        ToothLoad(
+            tooth=int(at.numbers[k]),
+            wave_angle_deg=math.degrees(at.arcs[k]),
+            clearance_mm=gap_of(at.gaps[k]),
+            force_N=float(at.loads.forces[k]),
+            contact_pressure_MPa=float(at.stresses[k]),
+        )
+        for k in shown
+    )
+    return {
+        "teeth": rows,
+        "carrying_teeth": len(carries),
+        "effective_teeth": at.loads.effective,
+        "windup_mrad": 1e3 * at.loads.windup,
+    }
+
+
+def _shift(point: ShiftPoint) -> ShiftRow:
+    return ShiftRow(
+        profile_shift=point.shift,
+        pairs=point.pairs,
+        radius_mm=point.radius,
+        equal_MPa=point.equal,
+        whole_MPa=point.whole,
+        shared_MPa=point.shared,
+        least_clearance_mm=gap_of(point.least_gap),
+    )
+
+
+def _deflected(made: Flank, by: float) -> Deflected:
+    deflection = float(made.gearing.deflection) + by
+    found = interference(stretched(made, deflection), STEP_DEG)
+    return Deflected(deflection=deflection, least_clearance_mm=gap_of(found.gap))
+
+
+def gap_of(value: float) -> float:
+    """Return a clearance [mm] without what rounding leaves of a contact."""
+    return round(float(value), 9) + 0.0
+
+
+def floats(values: Any) -> Columns:
+    """Return a column."""
+    return tuple(map(float, values))

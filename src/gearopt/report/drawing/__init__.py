@@ -1,0 +1,1 @@
+"""What any kind draws with: sheets, solids, bodies that move."""

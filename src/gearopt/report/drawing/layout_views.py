@@ -1,0 +1,394 @@
+"""A gearbox layout as a technical drawing: along the shafts, from the side, from above."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+from gearopt.formulations.drive.layout.layout_design import (
+    GearDesign,
+    KeepOutDesign,
+    LayoutDesign,
+    ShaftDesign,
+)
+from gearopt.optimise.result import Result
+from gearopt.report.drawing.bodies import (
+    Disc,
+    Turning,
+    along,
+    box_corners,
+    drawn_corners,
+    gear_disc,
+    keep_outs,
+    layout_of,
+    meaning,
+    motor,
+    nearest,
+    sides,
+)
+from gearopt.report.drawing.sheet import SIZE, Drawing, Place, Point, Sheet, Window, around, series
+from gearopt.report.measures import Measures
+from gearopt.report.section import Section
+
+WIDE, HIGH = 640.0, 780.0  # largest drawing [px]: two side by side, or one on a printed page
+BESIDE = 400.0  # px of the widest of several front views that stand beside each other
+LEVEL = 32.0  # px from the upper edge: where face widths stand
+
+
+Over = Callable[[Sheet], None]  # draws more over a view
+
+
+def section(result: Result, measures: Measures) -> Section | None:
+    """Draw the views of a layout, all at one scale; None where there is no layout."""
+    if (found := layout_of(result)) is None:
+        return None
+    windows = [window_of(found, axis) for axis in ("", "z", "y")]
+    scale = min(window.scale(WIDE, HIGH) for window in windows)
+    words = [
+        f"Drawn to one scale; dimensions in {measures.lengths}. The axis of shaft 1, the input, "
+        f"is y = z = 0; shaft {len(found.shafts)} is the output. Dash-dotted circles are "
+        "reference circles, solid ones tip circles; numbers in circles are shafts. The thin dashed "
+        "line marks the wall clearance."
+    ]
+    if found.obstacles:
+        words.append("Hatched boxes are keep-outs; those that reach far out are cut off.")
+    if found.motor:
+        words.append("No length of the motor was given: it is drawn as long as it is wide.")
+    views = (
+        front_view(found, windows[0], scale, measures),
+        side_view(found, windows[1], scale, "z", measures),
+        side_view(found, windows[2], scale, "y", measures),
+    )
+    return Section("Layout", words=words, drawings=views)
+
+
+def beside(designs: Mapping[str, LayoutDesign], measures: Measures) -> tuple[Drawing, ...]:
+    """Draw the front views of layouts, all at one scale; designs: by what they are called."""
+    windows = {name: window_of(found, "") for name, found in designs.items()}
+    scale = min(window.scale(BESIDE, HIGH) for window in windows.values())
+    return tuple(
+        replace(front_view(found, windows[name], scale, measures), caption=f"{name.capitalize()}.")
+        for name, found in designs.items()
+    )
+
+
+def window_of(found: LayoutDesign, axis: str) -> Window:
+    """Return the window of the front view, or of the view with this upright axis."""
+    ends = drawn_corners(found)
+    (bottom, top), (left, right) = along(ends, axis or "z"), along(ends, "x" if axis else "y")
+    free = (20.0, 44.0, 48.0, 44.0) if axis else (52.0, 20.0, 48.0, 44.0)
+    return Window(left, right, bottom, top, free)
+
+
+def walls(found: LayoutDesign, axis: str) -> tuple[float, float]:
+    """Return both ends of the box along an axis [mm]."""
+    return along(box_corners(found), axis)
+
+
+def box_lines(sheet: Sheet, found: LayoutDesign, across: str, upright: str) -> None:
+    """Draw the box, and in the front view the wall clearance."""
+    (left, right), (bottom, top) = walls(found, across), walls(found, upright)
+    sheet.rectangle((left, bottom), (right, top), "box")
+    wall = found.clearances.wall_mm
+    if wall and across == "y":
+        sheet.rectangle((left + wall, bottom + wall), (right - wall, top - wall), "wall")
+
+
+def across_dimension(
+    sheet: Sheet, found: LayoutDesign, across: str, upright: str, measures: Measures
+) -> None:
+    """Draw the box's dimension across, below all that is drawn."""
+    (left, right), bottom = walls(found, across), walls(found, upright)[0]
+    away = sheet.height - 18.0 - sheet.at(left, bottom)[1]
+    sheet.dimension((left, bottom), (right, bottom), away, measures.length(right - left))
+
+
+def keep_out(
+    sheet: Sheet, it: KeepOutDesign, across: str, upright: str, hatched: bool = True
+) -> None:
+    """Draw a rectangle with its name; only its outline where what is behind it must be seen."""
+    a, b = zip(sides(it, across), sides(it, upright), strict=True)
+    title = f"keep-out: {it.name}"
+    if not hatched:
+        sheet.rectangle(a, b, "obstacle before", title=title)
+        return
+    sheet.rectangle(a, b, "obstacle", title=title)
+    sheet.hatch(a, b)
+    x, y = sheet.at((a[0] + b[0]) / 2, (a[1] + b[1]) / 2)
+    half = sheet.scale * abs(b[1] - a[1]) / 2
+    offsets = (0.0, 0.5 * half, -0.5 * half, half + SIZE, -half - SIZE)
+    places = [Place(x, y + dy, 0.0, 3.0 * k) for k, dy in enumerate(offsets)]
+    sheet.label(it.name, places, "obstacle")
+
+
+def front_view(
+    found: LayoutDesign,
+    window: Window,
+    scale: float,
+    measures: Measures,
+    over: Over | None = None,
+) -> Drawing:
+    """Draw the view along the shafts, y to the right and z up; over: what is drawn over it."""
+    sheet = Sheet(window, scale)
+    box_lines(sheet, found, "y", "z")
+    if place := motor(found):
+        sheet.circle(0.0, 0.0, place[0], "motor", title="motor")
+    for it in keep_outs(found):
+        keep_out(sheet, it, "y", "z")
+    places = {s.shaft: (s.y_mm, s.z_mm) for s in found.shafts}
+    gear_circles(sheet, found, places, lambda gear: meaning(gear, measures))
+    for shaft in found.shafts:
+        y, z = places[shaft.shaft]
+        size = f"{measures.length(shaft.diameter_mm)} {measures.unit('mm')}"
+        title = f"shaft {shaft.shaft}: diameter {size}"
+        sheet.circle(y, z, 0.5 * shaft.diameter_mm, "shaft", title=title)
+        sheet.cross(y, z, 0.5 * shaft.diameter_mm)
+    _split(sheet, found, places)
+    across_dimension(sheet, found, "y", "z", measures)
+    left, (bottom, top) = walls(found, "y")[0], walls(found, "z")
+    away = sheet.at(left, 0.0)[0] - 20.0
+    sheet.dimension((left, bottom), (left, top), away, measures.length(top - bottom))
+    _centre_distances(sheet, found, places, measures)
+    _narrowest(sheet, found, measures)
+    for number, (y, z) in places.items():
+        sheet.balloon(str(number), around(sheet.at(y, z), (26.0, 36.0, 50.0), 0.0))
+    gear_names(sheet, found)
+    if over is not None:
+        over(sheet)
+    caption = (
+        "Front view along the shafts, y to the right and z up, from the end of largest x: "
+        "each gear is drawn over those behind it."
+    )
+    return sheet.drawing("front view", caption)
+
+
+def gear_circles(
+    sheet: Sheet,
+    found: Turning,
+    places: Mapping[int, tuple[float, float]],
+    title: Callable[[GearDesign], str],
+) -> None:
+    """Draw the tip and reference circles, those behind first; places: (y, z) of the shafts.
+
+    title: what a gear says where the pointer rests.
+    """
+    gears = sorted(found.gears, key=lambda g: (g.from_mm, -g.tip_diameter_mm))
+    for gear in gears:
+        y, z = places[gear.shaft]
+        colour = series(gear.stage)
+        sheet.circle(y, z, 0.5 * gear.tip_diameter_mm, "tip", colour, title(gear))
+        sheet.circle(y, z, 0.5 * gear.reference_diameter_mm, "reference", colour)
+
+
+def gear_names(sheet: Sheet, found: Turning) -> None:
+    """Write the name of every gear, the largest first."""
+    for gear in sorted(found.gears, key=lambda g: -g.tip_diameter_mm):
+        _name(sheet, found, gear)
+
+
+def _split(sheet: Sheet, found: LayoutDesign, places: Mapping[int, tuple[float, float]]) -> None:
+    """Draw the split line of the housing: through its shafts, level where there is one."""
+    on = [places[k] for k in found.split]
+    if not on:
+        return
+    left, right = walls(found, "y")
+    (y0, z0), (y1, z1) = min(on), max(on)
+    slope = (z1 - z0) / (y1 - y0) if y1 - y0 > 1e-9 else 0.0
+    ends = [(y, z0 + slope * (y - y0)) for y in (left, right)]
+    sheet.line(ends[0], ends[1], "split")
+    spots = [ends[0][0] + share * (right - left) for share in (0.1, 0.9, 0.3, 0.7)]
+    points = [sheet.at(y, z0 + slope * (y - y0)) for y in spots]
+    sheet.label("split", [Place(x, v + s * 9.0) for x, v in points for s in (-1, 1)], "split")
+
+
+def _centre_distances(
+    sheet: Sheet,
+    found: LayoutDesign,
+    places: Mapping[int, tuple[float, float]],
+    measures: Measures,
+) -> None:
+    """Draw the centre distance of every stage, along the line of centres."""
+    for stage in sorted({gear.stage for gear in found.gears}):
+        ends = [places[gear.shaft] for gear in found.gears if gear.stage == stage]
+        if len(ends) == 2:
+            text = f"a{stage} = {measures.length(math.dist(*ends))}"
+            centre_distance(sheet, ends[0], ends[1], text)
+
+
+def centre_distance(sheet: Sheet, a: Point, b: Point, text: str) -> None:
+    """Draw a line of centres between two axes [mm], with its text along it."""
+    sheet.line(a, b, "centres")
+    start, end = sheet.at(*a), sheet.at(*b)
+    angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0]))
+    angle = (angle + 90.0) % 180.0 - 90.0  # never upside down
+    nx, ny = -math.sin(math.radians(angle)), math.cos(math.radians(angle))
+    spots = []
+    for k, share in enumerate((0.5, 0.42, 0.58, 0.35, 0.65, 0.28, 0.72)):
+        x, y = (s + share * (e - s) for s, e in zip(start, end, strict=True))
+        spots += [
+            Place(x + side * 9.0 * nx, y + side * 9.0 * ny, angle, 2.0 * k) for side in (-1, 1)
+        ]
+    sheet.label(text, spots, "size")
+
+
+def _narrowest(sheet: Sheet, found: LayoutDesign, measures: Measures) -> None:
+    """Draw the smallest gap between two bodies, with its value."""
+    gap = next(iter(found.gaps), None)
+    if gap is None or (ends := nearest(found, *gap.between)) is None:
+        return
+    start, end = sheet.at(*ends[0][1:]), sheet.at(*ends[1][1:])
+    sheet.arrows(start, end, "gap")
+    middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2)
+    text = f"gap {measures.length(gap.gap_mm)}"
+    sheet.label(text, around(middle, (44.0, 60.0, 80.0), 4.0), "gap")
+
+
+def _name(sheet: Sheet, found: Turning, gear: GearDesign) -> None:
+    """Write the gear's name where it is alone inside it, else outside with a line to it."""
+    own, others = gear_disc(found, gear), [g for g in found.gears if g.name != gear.name]
+    discs = [gear_disc(found, g) for g in others]
+    centre, r = sheet.at(*own.centre), own.radius * sheet.scale
+    half = Place(0, 0).half_width(gear.name)
+    inside = around(centre, [share * r for share in (0.6, 0.75, 0.45) if share * r > 24.0])
+    inside = [p for p in inside if math.dist((p.x, p.y), centre) + 0.8 * half < r]
+    shared = [sum(_within(sheet, p, one) for one in discs) for p in inside]
+    alone = [replace(p, cost=p.cost + 8.0 * n) for p, n in zip(inside, shared, strict=True)]
+    outside = around(centre, (r + half + 6, r + half + 20, r + half + 40), r, 20.0)
+    outside = [p for p in outside if abs(p.x - centre[0]) > 1.0]  # no leader on a centre line
+    sheet.label(gear.name, alone + outside, "name", series(gear.stage))
+
+
+def _within(sheet: Sheet, spot: Place, one: Disc) -> bool:
+    return math.dist(sheet.at(*one.centre), (spot.x, spot.y)) < one.radius * sheet.scale + SIZE
+
+
+def side_view(
+    found: LayoutDesign,
+    window: Window,
+    scale: float,
+    axis: str,
+    measures: Measures,
+    over: Over | None = None,
+) -> Drawing:
+    """Draw the view along x to the right and z (from the side) or y (from above) up.
+
+    over: what is drawn over it.
+    """
+    sheet = Sheet(window, scale)
+    box_lines(sheet, found, "x", axis)
+    for it in keep_outs(found):
+        aside = any(
+            start >= high or end <= low
+            for (start, end), (low, high) in ((sides(it, a), walls(found, a)) for a in ("x", axis))
+        )
+        keep_out(sheet, it, "x", axis, hatched=aside)
+    _motor(sheet, found, measures)
+    above = axis == "y"
+    heights = {s.shaft: s.y_mm if above else s.z_mm for s in found.shafts}
+    far = sorted(found.shafts, key=lambda s: s.z_mm if above else s.y_mm, reverse=not above)
+    for shaft in far:
+        _shaft(sheet, found, shaft, heights[shaft.shaft], measures)
+    across_dimension(sheet, found, "x", axis, measures)
+    top = walls(found, axis)[1]
+    face_widths(sheet, found, {gear.stage: top for gear in found.gears}, measures)
+    right = sheet.at(walls(found, "x")[1], 0.0)[0]
+    for shaft in found.shafts:
+        x = sheet.at(shaft.to_mm, 0.0)[0]
+        y = sheet.at(0.0, heights[shaft.shaft])[1]
+        spots = [
+            Place(right + dx, y + dy, 0.0, abs(dx - 18.0) + abs(dy), (x, y))
+            for dx in (18.0, 34.0)
+            for dy in (0.0, -12.0, 12.0, -24.0, 24.0, -36.0, 36.0)
+        ]
+        sheet.balloon(str(shaft.shaft), spots)
+    for gear in sorted(found.gears, key=lambda g: -g.tip_diameter_mm):
+        side_name(sheet, gear, heights[gear.shaft], gear.name)
+    if over is not None:
+        over(sheet)
+    if axis == "z":
+        return sheet.drawing("side view", "Side view, x to the right and z up.")
+    return sheet.drawing("top view", "Top view, x to the right and y up.")
+
+
+def _shaft(
+    sheet: Sheet, found: LayoutDesign, shaft: ShaftDesign, height: float, measures: Measures
+) -> None:
+    """Draw a shaft with what sits on it, as rectangles."""
+    r = 0.5 * shaft.diameter_mm
+    start, end = shaft.from_mm, shaft.to_mm
+    sheet.rectangle((start, height - r), (end, height + r), "shaft")
+    for it in found.bearings:
+        if it.shaft == shaft.shaft:
+            half = 0.5 * it.diameter_mm
+            a, b = (it.from_mm, height - half), (it.to_mm, height + half)
+            sheet.rectangle(a, b, "bearing", title=f"bearing of shaft {shaft.shaft}")
+            sheet.line(a, b, "bearing")
+            sheet.line((a[0], b[1]), (b[0], a[1]), "bearing")
+    gears_on(sheet, found, shaft, height, measures)
+
+
+def gears_on(
+    sheet: Sheet, found: Turning, shaft: ShaftDesign, height: float, measures: Measures
+) -> None:
+    """Draw the gears of a shaft as rectangles, and its centre line."""
+    for gear in found.gears:
+        if gear.shaft == shaft.shaft:
+            half = 0.5 * gear.tip_diameter_mm
+            a, b = (gear.from_mm, height - half), (gear.to_mm, height + half)
+            sheet.rectangle(a, b, "tip", series(gear.stage), meaning(gear, measures))
+            for z in (-0.5, 0.5):
+                level = height + z * gear.reference_diameter_mm
+                sheet.line((a[0], level), (b[0], level), "reference", series(gear.stage))
+    past = 6.0 / sheet.scale
+    sheet.line((shaft.from_mm - past, height), (shaft.to_mm + past, height), "axis")
+
+
+def _motor(sheet: Sheet, found: LayoutDesign, measures: Measures) -> None:
+    if (place := motor(found)) is None:
+        return
+    r, start, end = place
+    sheet.rectangle((start, -r), (end, r), "motor", title="motor", round_=6.0)
+    sheet.line((start, 0.0), (end, 0.0), "axis")
+    x, y = sheet.at((start + end) / 2, 0.0)
+    wide = f"{measures.of(2 * r, 'mm'):.4g}"
+    sheet.label(f"motor ⌀ {wide}", [Place(x, y - 12.0), Place(x, y + 12.0)], "obstacle")
+
+
+def face_widths(
+    sheet: Sheet, found: Turning, tops: Mapping[int, float], measures: Measures
+) -> None:
+    """Draw face widths above all that is drawn; tops: where their lines begin, by stage [mm]."""
+    wheels = {g.stage: g for g in found.gears if g.member == "wheel"}
+    for slab in found.slabs:
+        for stage in slab:
+            if stage not in wheels:
+                continue
+            (x0, wall), (x1, _) = (
+                sheet.at(x, tops[stage]) for x in (wheels[stage].from_mm, wheels[stage].to_mm)
+            )
+            for x in (x0, x1):
+                sheet.tick((x, wall), (x, LEVEL - 4.0))
+            sheet.arrows((x0, LEVEL), (x1, LEVEL))
+            wide = wheels[stage].to_mm - wheels[stage].from_mm
+            text = f"b{stage} {measures.length(wide, 1)}"
+            levels = [Place((x0 + x1) / 2, LEVEL - up, 0.0, up / 10) for up in (9.0, 24.0)]
+            sheet.label(text, levels, "size")
+
+
+def side_name(sheet: Sheet, gear: GearDesign, height: float, text: str) -> None:
+    """Write the name of a gear in its rectangle, level or upright, else beside it."""
+    r = 0.5 * gear.tip_diameter_mm * sheet.scale
+    wide = (gear.to_mm - gear.from_mm) * sheet.scale
+    x, y = sheet.at(0.5 * (gear.from_mm + gear.to_mm), height)
+    half = Place(0, 0).half_width(text)
+    shares = (0.0, 0.25, -0.25, 0.5, -0.5, 0.75, -0.75)
+    places = []
+    if wide > 2.0 * half:
+        places += [Place(x, y + s * r) for s in shares if abs(s) * r + SIZE / 2 < r]
+    if wide > SIZE:
+        places += [Place(x, y + s * r, -90.0, 4.0) for s in shares if abs(s) * r + half < r + 6.0]
+    for side in (-1, 1):
+        for dy in (0.0, -16.0, 16.0, -32.0, 32.0, -r - 14.0, r + 14.0):
+            u = x + side * (wide / 2 + half + 8.0)
+            edge = (x + side * wide / 2, y + max(-0.7 * r, min(0.7 * r, dy)))
+            places.append(Place(u, y + dy, 0.0, 20.0 + abs(dy) / 8, edge))
+    sheet.label(text, places, "name", series(gear.stage))

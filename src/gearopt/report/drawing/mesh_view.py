@@ -1,0 +1,123 @@
+"""The teeth of each stage in mesh, as their tools cut them: a transverse section to scale."""
+
+import math
+
+from gearopt.formulations.drive.design import drive_design
+from gearopt.optimise.result import Result
+from gearopt.physics.gears import MEMBERS, Gear, GearPair
+from gearopt.physics.geometry.contact import ContactPath, contact_path
+from gearopt.physics.geometry.fillet import half_angle, profile
+from gearopt.report.drawing.sheet import Drawing, Place, Point, Sheet, Window, series
+from gearopt.report.measures import Measures
+from gearopt.report.section import Section
+
+WIDE, HIGH = 560.0, 340.0  # px of a drawing, at most
+ALONG, ACROSS = 4.6, 0.9  # normal modules: to either side of the pitch point, below the roots
+FILLET, FLANK = 8, 13  # points of a tooth's side
+DOT = 2.6  # px: radius of a point of contact
+WORDS = (
+    "Transverse sections of the teeth as their tools cut them, touching at the pitch point C; the "
+    "pinion, below, turns clockwise and drives. Dash-dotted: working pitch circles. The line of "
+    "action from A to E is that of contact; from B to D one pair of teeth carries alone."
+)
+
+
+def section(result: Result, measures: Measures) -> Section | None:
+    """Draw the mesh of every stage of a rating; None without one, or of teeth of no whole number.
+
+    Stages whose contact is none are left out.
+    """
+    if not result.design.get("rating"):
+        return None
+    stages = drive_design(result.design).stages
+    drawn = [_mesh(stage.pair, k, len(stages)) for k, stage in enumerate(stages, 1)]
+    found = tuple(one for one in drawn if one is not None)
+    return Section("Teeth in mesh", words=(WORDS,), drawings=found) if found else None
+
+
+def _mesh(pair: GearPair, stage: int, stages: int) -> Drawing | None:
+    """Draw a pair with its pitch point in the middle; None where its teeth are not whole."""
+    path = contact_path(pair)
+    if not all(float(g.teeth).is_integer() for g in pair.gears) or not path.length > 0.0:
+        return None
+    sheet = sheet_of(pair, (8.0, 8.0, 8.0, 8.0))
+    for name, gear, at in zip(MEMBERS, pair.gears, axes(pair), strict=True):
+        rim = [(x, y + at) for x, y in sector(gear, at)]
+        path_ = "M " + " L ".join(f"{x:.1f} {y:.1f}" for x, y in (sheet.at(*p) for p in rim)) + " Z"
+        sheet.shape(path_, "tip", series(stage), f"{name} {stage}" if stages > 1 else name)
+        pitch_circle(sheet, at, pair.normal_module, series(stage))
+    action(sheet, pair, path)
+    caption = f"Stage {stage}." if stages > 1 else ""
+    return sheet.drawing(f"teeth of stage {stage} in mesh", caption, cut=True)
+
+
+def sheet_of(pair: GearPair, free: tuple[float, float, float, float], larger: float = 1.0) -> Sheet:
+    """Return an empty sheet about the pitch point, from root circle to root circle.
+
+    free: px around it. larger: than one of WIDE x HIGH px.
+    """
+    m, roots = pair.normal_module, [0.5 * float(g.root_diameter) for g in pair.gears]
+    first, second = axes(pair)
+    low, high = first + roots[0] - ACROSS * m, second - roots[1] + ACROSS * m
+    window = Window(-ALONG * m, ALONG * m, low, high, free)
+    return Sheet(window, window.scale(larger * WIDE, larger * HIGH))
+
+
+def axes(pair: GearPair) -> Point:
+    """Return y [mm] of both axes from the pitch point: the pinion's below it, the wheel's above."""
+    first, second = (0.5 * float(d) for d in pair.working_diameters)
+    return -first, second
+
+
+def pitch_circle(sheet: Sheet, at: float, module: float, colour: str) -> None:
+    """Draw the working pitch circle of the gear whose axis is at y = at, near the pitch point."""
+    half = math.asin(min(1.0, ALONG * module / abs(at)))
+    middle = -math.copysign(0.5 * math.pi, at)
+    sheet.slice((0.0, at), abs(at), (middle - half, middle + half), "reference", colour, rim=True)
+
+
+def sector(gear: Gear, at: float, turned: int = 0) -> list[Point]:
+    """Return the outline [mm] about its axis of the teeth that a sheet may show, and of the axis.
+
+    at: y of the axis from the pitch point [mm], below 0 for the pinion. One flank passes the pitch
+    point, at which the pinion drives to the right. turned: pitches that it turns to either side.
+    """
+    lowest = 0.5 * float(gear.root_diameter) - ACROSS * gear.normal_module
+    seen = ALONG * gear.normal_module / lowest if lowest > 0.0 else 1.0
+    reach = math.asin(min(1.0, seen)) * gear.teeth / (2.0 * math.pi)  # pitches
+    count = min(math.ceil(reach) + 1 + turned, int(gear.teeth) // 2)
+    teeth = [tooth(gear, at, number) for number in range(-count, count + 1)]
+    return [(0.0, 0.0), *(point for outline in teeth for point in outline)]
+
+
+def tooth(gear: Gear, at: float, number: int) -> list[Point]:
+    """Return the outline [mm] about its axis of one tooth, as `sector` has it, left to right.
+
+    number: 0 has the flank through the pitch point, 1 is the next one to the right, and so on.
+    """
+    sign = -math.copysign(1.0, at)
+    points = zip(*profile(gear, FILLET, FLANK), strict=True)  # from the root to the tip
+    side = [(math.atan2(x, y), math.hypot(x, y)) for x, y in points]
+    middle = number * 2.0 * math.pi / gear.teeth - sign * float(half_angle(gear, abs(at)))
+    rim = [(middle - angle, r) for angle, r in side]
+    rim += [(middle + angle, r) for angle, r in reversed(side)]
+    return [(r * math.sin(angle), sign * r * math.cos(angle)) for angle, r in rim]
+
+
+def action(sheet: Sheet, pair: GearPair, path: ContactPath) -> None:
+    """Draw the line of action with the points A to E; B and D where one pair carries alone."""
+    places = {"A": path.start, "E": path.end, "C": 0.0}
+    if 1.0 < float(path.transverse_ratio) < 2.0:
+        places |= {"B": path.lowest_single, "D": path.highest_single}
+    sheet.line(on_action(pair, path.start), on_action(pair, path.end), "size")
+    for name, s in places.items():
+        x, y = sheet.at(*on_action(pair, s))
+        sheet.circle(*on_action(pair, s), DOT / sheet.scale, "tip", "--ink")
+        away = ((-11.0, -11.0), (11.0, 11.0), (0.0, -14.0), (0.0, 14.0), (12.0, -9.0), (-12.0, 9.0))
+        sheet.label(name, [Place(x + dx, y + dy) for dx, dy in away], "size")
+
+
+def on_action(pair: GearPair, position: float) -> Point:
+    """Return the point [mm] of the line of action at a position s [mm] from the pitch point."""
+    angle, s = float(pair.working_angle), float(position)
+    return s * math.cos(angle), s * math.sin(angle)

@@ -1,0 +1,288 @@
+"""A train without a layout, drawn to scale with all its shafts in one line."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from itertools import pairwise
+from typing import Any
+
+from gearopt.formulations.drive.layout.layout_design import GearDesign, ShaftDesign
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import typed
+from gearopt.physics.gears import MEMBERS
+from gearopt.report.drawing.bodies import Bodies, meaning
+from gearopt.report.drawing.layout_views import (
+    LEVEL,
+    face_widths,
+    gear_circles,
+    gear_names,
+    gears_on,
+    side_name,
+)
+from gearopt.report.drawing.sheet import Drawing, Place, Sheet, Window, series
+from gearopt.report.measures import Measures
+from gearopt.report.section import Section
+from gearopt.report.words import number
+
+WIDE = 640.0  # widest drawing [px], as those of a layout
+BESIDE = 340.0  # px of the longest of several trains: three stand beside each other
+EDGE = 20.0  # px kept free left and right of the front view
+PITCH = 76.0  # px from stage to stage along the shafts, at least: its face width and module fit
+GAP = 16.0  # px between the gears of two stages, at least
+ROWS, ROW = 3, 15.0  # of centre distances that do not fit above their line; px between them
+LOW, NAMES = 100.0, 46.0  # px: circles of radii below the one leave names the other above, below
+CHAIN = 30.0  # px from the lowest circle to the dimensions of the centre distances
+MODULES = 26.0  # px from the face widths up to the modules: two lines that keep apart
+SIDE = (24.0, 44.0, 24.0, 60.0)  # px kept free around the side view
+MOST_STAGES = 100  # in one line; a drive has six at most
+
+
+@dataclass(frozen=True)
+class DrawnStage:
+    """What is drawn of a stage, by the keys of a result."""
+
+    normal_module_mm: float
+    pinion_teeth: float
+    wheel_teeth: float
+    face_width_mm: float
+    pinion_diameter_mm: float
+    wheel_diameter_mm: float
+    pinion_tip_diameter_mm: float
+    wheel_tip_diameter_mm: float
+    centre_distance_mm: float
+
+
+def section(result: Result, measures: Measures, hint: str = "") -> Section | None:
+    """Draw both views at one scale; None without gears or where they are laid out.
+
+    hint: what a file may ask for beside.
+    """
+    drawn = views(result.design.get("stages", ()), measures)
+    if not drawn or result.design.get("layout"):
+        return None
+    name, sign, one = measures.module
+    webs = [circles(s, m) for s in result.design["stages"] for m in MEMBERS]
+    inside = ", thin ones the insides of rims, hubs and bores" if any(webs) else ""
+    plural = f"modules {sign} in {one}" if one == "mm" else f"{name}es {sign} in {one}"
+    words = (
+        "All shafts are drawn in one line: their places are not optimised, and the gaps between "
+        f"the stages are only as wide as the labels need.{hint}",
+        f"Drawn to one scale; dimensions in {measures.lengths}: centre distances, length over "
+        "tip circles (the total length of the design is that over reference circles), face widths "
+        f"b; {plural}; teeth z. Solid lines are tip circles, "
+        f"dash-dotted ones reference circles{inside}; numbers in circles name the "
+        "shafts, which are not drawn.",
+    )
+    return Section("Gears in one line", words=words, drawings=drawn)
+
+
+def beside(
+    designs: Mapping[str, Sequence[Mapping[str, Any]]], measures: Measures
+) -> tuple[Drawing, ...]:
+    """Draw trains along their shafts, all at one scale; designs: stages by what they are called."""
+    rows = {name: in_one_line(_picked(stages))[0] for name, stages in designs.items()}
+    ends = [_ends(found) for found in rows.values()]
+    scale = (BESIDE - 2.0 * EDGE) / max(right - left for left, right in ends)
+
+    def title(gear: GearDesign) -> str:
+        return meaning(gear, measures)
+
+    return tuple(
+        replace(along_shafts(found, scale, measures.length, title), caption=f"{name.capitalize()}.")
+        for name, found in rows.items()
+    )
+
+
+def _picked(stages: Sequence[Mapping[str, Any]]) -> Sequence[DrawnStage]:
+    """Return what is drawn of stages; KeyError where a size is not known."""
+    picked = [{f.name: stage[f.name] for f in fields(DrawnStage)} for stage in stages]
+    found: Sequence[DrawnStage] = typed(tuple[DrawnStage, ...], picked, "stages")
+    return found
+
+
+def is_drawn(stages: Sequence[Mapping[str, Any]]) -> bool:
+    """Return whether there are stages, and all sizes that are drawn of them."""
+    keys = [f.name for f in fields(DrawnStage)]
+    return bool(stages) and all(key in stage for stage in stages for key in keys)
+
+
+def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Drawing, ...]:
+    """Draw a train along its shafts and across them; nothing where a size is not known."""
+    if not is_drawn(stages):
+        return ()
+    found, scale = in_one_line(_picked(stages))
+    inner = {g.name: circles(stages[g.stage - 1], g.member) for g in found.gears}
+    front = along_shafts(found, scale, measures.length, lambda g: meaning(g, measures), inner)
+    return front, _side(found, scale, measures)
+
+
+def circles(stage: Mapping[str, Any], member: str) -> list[float]:
+    """Return the diameters [mm] inside the rim, of the hub and of the bore, of what a gear has."""
+    found = [stage.get(f"{member}_{name}_mm") for name in ("hub_diameter", "bore")]
+    if stage.get(f"{member}_web_thickness_mm") is not None:
+        rim: float = stage[f"{member}_rim_thickness_mm"]
+        found = [stage[f"{member}_root_diameter_mm"] - 2.0 * rim, *found]
+    return [diameter for diameter in found if diameter is not None]
+
+
+def in_one_line(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
+    """Return shafts and gears with every shaft at z = 0; and the scale [px/mm].
+
+    Diameters of shafts are 0: they are not known. ValueError for stages that cannot be drawn: more
+    than MOST_STAGES, or of no finite size.
+    """
+    if len(stages) > MOST_STAGES:
+        raise ValueError(f"{len(stages):,} stages cannot be drawn")
+    axes = [0.0]
+    for stage in stages:
+        axes.append(axes[-1] + stage.centre_distance_mm)
+    rims = [
+        (axes[k + end], 0.5 * tip)
+        for k, stage in enumerate(stages)
+        for end, tip in enumerate((stage.pinion_tip_diameter_mm, stage.wheel_tip_diameter_mm))
+    ]
+    long = max(y + r for y, r in rims) - min(y - r for y, r in rims)
+    scale = (WIDE - 2.0 * EDGE) / long  # no wheel is higher than the row is long
+    if not 0.0 < scale < math.inf:
+        raise ValueError(f"stages {long:g} mm long cannot be drawn")
+    scale, starts = _along([s.face_width_mm for s in stages], scale)
+    gears = [
+        GearDesign(
+            name=f"{member} {k}",
+            stage=k,
+            member=member,
+            shaft=shaft,
+            teeth=getattr(stage, f"{member}_teeth"),
+            normal_module_mm=stage.normal_module_mm,
+            reference_diameter_mm=getattr(stage, f"{member}_diameter_mm"),
+            tip_diameter_mm=getattr(stage, f"{member}_tip_diameter_mm"),
+            root_diameter_mm=0.0,
+            helix_angle_deg=0.0,
+            from_mm=start,
+            to_mm=start + stage.face_width_mm,
+        )
+        for k, (stage, start) in enumerate(zip(stages, starts, strict=True), 1)
+        for member, shaft in (("pinion", k), ("wheel", k + 1))
+    ]
+    shafts = []
+    for k, y in enumerate(axes, 1):
+        on = [g for g in gears if g.shaft == k]
+        start, end = min(g.from_mm for g in on), max(g.to_mm for g in on)
+        shafts.append(
+            ShaftDesign(shaft=k, y_mm=y, z_mm=0.0, diameter_mm=0.0, from_mm=start, to_mm=end)
+        )
+    slabs = tuple((k,) for k in range(1, len(stages) + 1))
+    return Bodies(tuple(shafts), tuple(gears), slabs), scale
+
+
+def _along(widths: Sequence[float], scale: float) -> tuple[float, list[float]]:
+    """Return where each stage begins along the shafts [mm], and a scale at which all fit."""
+    while True:
+        rooms = [max(PITCH, scale * b + GAP) for b in widths]
+        if sum(rooms) <= WIDE - SIDE[0] - SIDE[1] or max(rooms) <= PITCH:  # no room to save
+            break
+        scale *= 0.98
+    ends = [sum(rooms[:k]) for k in range(len(rooms))]
+    middles = [(end + 0.5 * room) / scale for end, room in zip(ends, rooms, strict=True)]
+    return scale, [middle - 0.5 * b for middle, b in zip(middles, widths, strict=True)]
+
+
+def _ends(found: Bodies) -> tuple[float, float]:
+    """Return the ends of the row of gears, over tip circles [mm]."""
+    places = {s.shaft: s.y_mm for s in found.shafts}
+    rims = [(places[g.shaft], 0.5 * g.tip_diameter_mm) for g in found.gears]
+    return min(y - r for y, r in rims), max(y + r for y, r in rims)
+
+
+def along_shafts(
+    found: Bodies,
+    scale: float,
+    length: Callable[[float], str],
+    title: Callable[[GearDesign], str],
+    inner: Mapping[str, Sequence[float]] | None = None,
+) -> Drawing:
+    """Draw the view along the shafts: circles in a row, centre distances and length below.
+
+    length: a length as it is written. title: what a gear says where the pointer rests. inner:
+    diameters [mm] of circles inside the teeth, by the name of a gear.
+    """
+    left, right = _ends(found)
+    high = max(0.5 * g.tip_diameter_mm for g in found.gears)
+    if scale * high < LOW:
+        high += NAMES / scale
+    axes = [s.y_mm for s in found.shafts]
+    texts = [length(b - a) for a, b in pairwise(axes)]
+    narrow = sum(
+        scale * (b - a) < _room(text) for (a, b), text in zip(pairwise(axes), texts, strict=True)
+    )
+    below = CHAIN + min(narrow, ROWS) * ROW + 46.0
+    sheet = Sheet(Window(left, right, -high, high, (EDGE, EDGE, below, 44.0)), scale)
+    places = {s.shaft: (s.y_mm, 0.0) for s in found.shafts}
+    gear_circles(sheet, found, places, title)
+    for gear in found.gears:
+        for diameter in (inner or {}).get(gear.name, ()):
+            sheet.circle(*places[gear.shaft], 0.5 * diameter, "body", series(gear.stage))
+    level = sheet.at(0.0, -high)[1] + CHAIN
+    for shaft in found.shafts:
+        x = sheet.at(shaft.y_mm, 0.0)[0]
+        sheet.line((shaft.y_mm, high + 16.0 / scale), (shaft.y_mm, -high), "axis")
+        sheet.tick((x, level - CHAIN), (x, level + 5.0))
+        spots = [Place(x + dx, 16.0, 0.0, abs(dx), (x, 28.0)) for dx in (0.0, -12.0, 12.0)]
+        sheet.balloon(str(shaft.shaft), spots)
+    sheet.line((left - 6.0 / scale, 0.0), (right + 6.0 / scale, 0.0), "axis")
+    away = sheet.height - 18.0 - sheet.at(0.0, -high)[1]
+    sheet.dimension((left, -high), (right, -high), away, length(right - left))
+    for (a, b), text in reversed(list(zip(pairwise(axes), texts, strict=True))):
+        _distance(sheet, sheet.at(a, 0.0)[0], sheet.at(b, 0.0)[0], level, text)
+    gear_names(sheet, found)
+    return sheet.drawing("front view", "Front view, along the shafts.")
+
+
+def _distance(sheet: Sheet, start: float, end: float, level: float, text: str) -> None:
+    """Draw a centre distance between two px, its text above the line or in a row below."""
+    sheet.arrows((start, level), (end, level))
+    middle = 0.5 * (start + end)
+    if _room(text) <= end - start:
+        sheet.label(text, [Place(middle, level - 9.0)], "size")
+        return
+    rows = [
+        Place(middle + dx, level + 14.0 + row * ROW, 0.0, 3.0 * row + abs(dx) / 4, (middle, level))
+        for row in range(ROWS)
+        for dx in (0.0, -10.0, 10.0, -20.0, 20.0, -30.0, 30.0)
+    ]
+    sheet.label(text, rows, "size")
+
+
+def _room(text: str) -> float:
+    """Return the length of a dimension line [px] that a text fits above."""
+    return 2.0 * Place(0, 0).half_width(text) + 4.0
+
+
+def _side(found: Bodies, scale: float, measures: Measures) -> Drawing:
+    """Draw the view across the shafts: gears as rectangles, with face width and module."""
+    (left, right), shafts = _ends(found), found.shafts
+    places = {s.shaft: s.y_mm for s in shafts}
+    long = sum(max(PITCH, scale * b + GAP) for b in _widths(found)) / scale
+    sheet = Sheet(Window(0.0, long, left, right, SIDE), scale)
+    tops: dict[int, float] = {}
+    for shaft in shafts:
+        gears_on(sheet, found, shaft, shaft.y_mm, measures)
+    for gear in found.gears:
+        top = places[gear.shaft] + 0.5 * gear.tip_diameter_mm
+        tops[gear.stage] = max(top, tops.get(gear.stage, top))
+    for gear in (g for g in found.gears if g.member == "wheel"):
+        x = sheet.at(0.5 * (gear.from_mm + gear.to_mm), 0.0)[0]
+        module = measures.of_module(gear.normal_module_mm)
+        sheet.label(f"{measures.module[1]} {number(module)}", [Place(x, LEVEL - MODULES)], "size")
+    face_widths(sheet, found, tops, measures)
+    for shaft in shafts:
+        x, y = sheet.at(shaft.to_mm, shaft.y_mm)
+        spots = [Place(x + 20.0, y + dy, 0.0, abs(dy), (x, y)) for dy in (0.0, -14.0, 14.0)]
+        sheet.balloon(str(shaft.shaft), spots)
+    for gear in sorted(found.gears, key=lambda g: -g.tip_diameter_mm):
+        side_name(sheet, gear, places[gear.shaft], f"z {number(gear.teeth)}")
+    return sheet.drawing("side view", "View across the shafts.")
+
+
+def _widths(found: Bodies) -> list[float]:
+    return [g.to_mm - g.from_mm for g in found.gears if g.member == "wheel"]

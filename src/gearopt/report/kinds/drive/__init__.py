@@ -1,0 +1,401 @@
+"""Drives of cylindrical gears, laid out or not: drawings, stages, processes, next best trains."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from gearopt.formulations.drive.design import drive_design
+from gearopt.formulations.drive.layout.layout_design import LayoutDesign
+from gearopt.optimise.result import Result
+from gearopt.report.answer import asked, assumptions, limits, summary
+from gearopt.report.deciding import of_limits
+from gearopt.report.design_tables import (
+    ratio_tile,
+    teeth_head,
+    teeth_heads,
+    trains,
+)
+from gearopt.report.drawing import layout_views, mesh_view, train_views
+from gearopt.report.drawing.bodies import layout_of
+from gearopt.report.kinds import Kind
+from gearopt.report.kinds.drive import (
+    impossible_layout,
+    layout_solid,
+    rating_factors,
+    rating_gears,
+    rating_tables,
+    rating_words,
+)
+from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
+from gearopt.report.measures import Measures, gap_percent, rounded
+from gearopt.report.section import Cell, Section, Table, Tile, cell
+from gearopt.report.words import (
+    MODULE,
+    REACHED,
+    RULED,
+    VERDICTS,
+    amount,
+    grouped,
+    heading,
+    limit_words,
+    number,
+    objective,
+    parted,
+    series_of,
+)
+
+DRAWN = ("layout", "bearings", "clearances", "motor")  # tables of a layout
+WALL = 1e-6  # of the box: a gear so near to a wall's clearance is at it
+STAGED = {  # tables of a layout: keys that the table of stages or the box shows
+    "shafts": ("from_mm", "to_mm"),
+    "gears": (
+        *("stage", "member", "teeth", "normal_module_mm", "reference_diameter_mm"),
+        *("tip_diameter_mm", "root_diameter_mm", "helix_angle_deg"),
+        *("pressure_angle_deg", "profile_shift", "tip_alteration", "thickness_allowance_mm"),
+        *("addendum", "tool_addendum", "tool_tip_radius", "tool_protuberance", "hand"),
+    ),
+    "gaps": ("axes_mm",),
+    "obstacles": ("from_mm", "to_mm"),
+}
+OF_STAGE = {"ratio": "ratio u", "centre_distance_mm": "a", "face_width_mm": "b"}
+OF_DRIVE = ("ratio", "ratio_error_percent", "gear_volume_mm3")
+
+
+def numbers(result: Result, measures: Measures) -> Section | None:
+    """Return all tables of the design; of a layout what its stages and drawings do not show."""
+    if (found := rating_tables.design(result, measures)) is None:
+        return None
+    if result.design.get("rating"):
+        made = [rating_tables.beside(table, result, measures) for table in found.tables]
+        found = replace(
+            found, tables=made, half=len(result.design["stages"]) <= rating_tables.ABREAST
+        )
+    shown = [
+        replace(t, csv_only=[heading(key, measures) for key in STAGED.get(t.name, ())])
+        if t.name in STAGED
+        else replace(t, folded=t.name in DRAWN)
+        for t in found.tables
+    ]
+    return replace(found, tables=sorted(shown, key=lambda t: t.folded))
+
+
+def clearances(result: Result) -> set[str]:
+    """Return the limits of a layout that its table of gaps shows in mm."""
+    gaps = result.design.get("layout", {}).get("gaps", ())
+    return {" to ".join(gap["between"]).replace(" ", "_") for gap in gaps}
+
+
+def decides(result: Result) -> str:
+    """Return what decides the box of a layout; nothing without one, where limits say it."""
+    if result.value is None or (found := layout_of(result)) is None:
+        return ""
+    gaps = clearances(result)
+    full = [n for n in gaps if result.limits.get(n, 0.0) >= 1.0 - REACHED]
+    walls, apart = _at_walls(found), any(part.name == "gears" for part in result.parts)
+    first = "the gears were sized first" if apart else "gears and box were chosen at once"
+    words = [first, *([f"{series_of(walls)} touch the wall clearance"] if walls else [])]
+    words += [f"{series_of(list(map(limit_words, full)))} at the minimum clearance"] if full else []
+    return "; ".join(words if apart else [*words, of_limits(result, gaps)])
+
+
+def _at_walls(found: LayoutDesign) -> list[str]:
+    """Return the gears that reach to the clearance of a wall, seen along the shafts."""
+    places, box, wall = {s.shaft: s for s in found.shafts}, found.box, found.clearances.wall_mm
+    near = WALL * max(box.sides)
+    sides = {"y": (box.left_mm, box.width_mm), "z": (box.bottom_mm, box.height_mm)}
+    names = []
+    for gear in found.gears:
+        for axis_, (start, size) in sides.items():
+            at, r = getattr(places[gear.shaft], f"{axis_}_mm"), 0.5 * gear.tip_diameter_mm
+            free = min(at - r - start, start + size - at - r) - wall
+            if free < near and gear.name not in names:
+                names.append(gear.name)
+    return names
+
+
+def places(result: Result, measures: Measures) -> Section | None:
+    """Return box, shafts and gaps; None where there is no layout."""
+    if result.value is None or (found := layout_of(result)) is None:
+        return None
+    unit = measures.unit("mm")
+    sides = " x ".join(map(measures.length, found.box.sides))
+    rows = [
+        [f"{words} [{unit}]", *(cell(v, "mm", measures) for v in values)]
+        for words, values in (
+            ("y, right of the input", [s.y_mm for s in found.shafts]),
+            ("z, above the input", [s.z_mm for s in found.shafts]),
+            ("diameter", [s.diameter_mm for s in found.shafts]),
+        )
+    ]
+    table = Table("places of shafts", ["", *(f"shaft {s.shaft}" for s in found.shafts)], rows)
+    slabs = ", ".join(" and ".join(map(str, slab)) for slab in found.slabs)
+    heads = ("gap", unit, f"minimum, {unit}")
+    gaps = [
+        [" to ".join(g.between), *(cell(v, "mm", measures) for v in (g.gap_mm, g.needed_mm))]
+        for g in found.gaps
+    ]
+    size = f"Box {sides} {unit} (width, height, length). Stages along the shafts: {slabs}."
+    return Section("Layout", terminal=(size, table, Table("gaps", heads, gaps)))
+
+
+def processes(result: Result, measures: Measures) -> Section | None:
+    """Return the designs as columns; None where the file asks for no process.
+
+    The first column is the result itself, or the gears that its layout is of.
+    """
+    best = next((part for part in result.parts if part.name == "gears"), result)
+    ruled = [part for part in best.parts if part.name in RULED]
+    if best.value is None or not ruled:
+        return None
+    missing = [_missing(part) for part in ruled if part.value is None]
+    designs = [best, *(part for part in ruled if part.design)]
+    heads = ["", best.method, *(part.name for part in designs[1:])]
+    rows = [*_stages(designs, measures), *_totals(designs, best.bound, measures)]
+    rows += rating_words.least_safeties(designs)
+    words = (
+        "Processes follow design rules, without a search; limits and bound are those of the drive."
+    )
+    stages = len(best.design["stages"])
+    table = Table(
+        "processes and optimum",
+        heads,
+        rows,
+        across=True,
+        csv_only=[*_labels(stages, *teeth_heads(measures)), best.method],
+        read_only=_labels(stages, teeth_head(measures)),
+    )
+    shown: list[str | Table] = [table, *missing] if result.value is not None else []
+    names = ["optimum" if best.method == "exact" else best.method, *heads[2:]]
+    trains = {name: one.design["stages"] for name, one in zip(names, designs, strict=True)}
+    drawings = train_views.beside(trains, measures) if len(designs) > 1 else ()
+    return Section(
+        "Processes and optimum", (), (words, *missing), drawings, tables=(table,), terminal=shown
+    )
+
+
+def _stages(designs: Sequence[Result], measures: Measures) -> list[list[Any]]:
+    rows: list[list[Any]] = []
+    for k in range(len(designs[0].design["stages"])):
+        stages = [one.design["stages"][k] for one in designs]
+        gears = [
+            (measures.of_module(s[MODULE]), s["pinion_teeth"], s["wheel_teeth"]) for s in stages
+        ]
+        teeth = [f"{number(m)}, {number(a)}/{number(b)}" for m, a, b in gears]
+        rows.append([f"stage {k + 1}: {teeth_head(measures)}", *teeth])
+        for label, each in zip(teeth_heads(measures), zip(*gears, strict=True), strict=True):
+            rows.append([f"stage {k + 1}: {label}", *each])
+        for key, label in OF_STAGE.items():
+            unit = parted(key)[1]
+            sign = f" [{measures.unit(unit)}]" if unit else ""
+            values = (cell(s[key], unit, measures) for s in stages)
+            rows.append([f"stage {k + 1}: {label}{sign}", *values])
+    return rows
+
+
+def _labels(stages: int, *labels: str) -> list[str]:
+    return [f"stage {k}: {label}" for k in range(1, stages + 1) for label in labels]
+
+
+def _totals(designs: Sequence[Result], bound: float | None, measures: Measures) -> list[list[Any]]:
+    rows: list[list[Any]] = []
+    for key in OF_DRIVE:
+        values = (cell(one.design[key], parted(key)[1], measures) for one in designs)
+        rows.append([heading(key, measures), *values])
+    name, unit = objective(designs[0])
+    if name != "gear volume":
+        shown = (cell(one.value, unit, measures) for one in designs)
+        rows.append([f"{name} [{measures.unit(unit)}]", *shown])
+    if bound is not None and bound > 0.0:
+        over = (cell(_over(one, bound), "percent", measures) for one in designs)
+        rows.append(["above the bound [%]", *over])
+    return rows
+
+
+def _over(one: Result, bound: float) -> float | None:
+    """Return by how much a design exceeds the bound [%]; None where it breaks a limit."""
+    return None if one.value is None else max(100.0 * (one.value / bound - 1.0), 0.0)
+
+
+def _missing(part: Result) -> str:
+    """Say why a process has no design that counts, and which limit is violated."""
+    first, _, rest = part.message.partition(" ")
+    shown = "The design" if part.design else "No design"
+    return f"{shown} by {part.name}: {limit_words(first)} {rest}".rstrip(". ") + "."
+
+
+def counts(result: Result, measures: Measures) -> Section | None:
+    """Return every number of stages that was solved; None where the file gives one."""
+    gears = (part for part in result.parts if part.name == "gears")
+    found = next((one for one in (result, *gears) if one.report.get("counts")), None)
+    if found is None:
+        return None
+    rows, (name, unit) = found.report["counts"], objective(found)
+    sign = f"\n[{measures.unit(unit)}]" if unit else ""
+    most = max(len(row["ratios"]) for row in rows)
+    heads: tuple[str, ...] = teeth_heads(measures)
+    single = [f"{words} {k}" for k in range(1, most + 1) for words in ("ratio", *heads)]
+    long = (f"{name}{sign}", "above the best,\n%", f"bound{sign}", "gap,\n%")
+    names = {head.replace("\n", " "): head for head in long}
+    read = ("ratio of each stage", teeth_head(measures))
+    heads = ("stages", "status", *names, *read, "seconds", *single)
+    cells = [[*_count(row, found, measures), *_each(row, most, measures)] for row in rows]
+    table = Table(
+        "numbers of stages",
+        heads,
+        cells,
+        page_only=(*[*names][2:], read[1]),
+        csv_only=single,
+        read_only=read,
+        short=names,
+        left=2,
+        wrap=9,
+    )
+    words = [
+        f"Impossible with {row['stages']} {'stage' if row['stages'] == 1 else 'stages'}: in "
+        f"conflict are {series_of(grouped(row['conflict']))}."
+        for row in rows
+        if row["conflict"]
+    ]
+    shown = (table, "\n".join(words)) if words else (table,)
+    return Section("Number of stages", words=words, tables=(table,), terminal=shown)
+
+
+def _count(row: Mapping[str, Any], best: Result, measures: Measures) -> list[Any]:
+    """Return number, status, objective and bound of a number of stages."""
+    unit, value, bound, gap = objective(best)[1], row["objective"], row["bound"], row["gap"]
+    more = None if value is None or not best.value else 100.0 * (value / best.value - 1.0)
+    beyond = row["status"] == "limit" and None not in (bound, best.value) and bound > best.value
+    return [
+        row["stages"],
+        "not better, by its bound" if beyond else VERDICTS[row["status"]][0],
+        cell(value, unit, measures),
+        None if more is None else Cell(more, f"{more:.2f}"),
+        None if bound is None else Cell(measures.of(bound, unit), measures.number(bound, unit, -1)),
+        None if gap is None else Cell(100.0 * gap, gap_percent(gap).rstrip(" %")),
+    ]
+
+
+def _each(row: Mapping[str, Any], most: int, measures: Measures) -> list[Any]:
+    """Return ratios, gears and seconds of a number of stages; then each ratio and gear alone."""
+    modules = map(measures.of_module, row["modules_mm"])
+    gears = list(zip(row["ratios"], modules, row["teeth"], strict=True))
+    teeth = "; ".join(f"{number(m)}, {number(a)}/{number(b)}" for _, m, (a, b) in gears)
+    single = [value for u, m, (a, b) in gears for value in (u, m, a, b)]
+    return [
+        "  ".join(f"{u:.3f}" for u, *_ in gears),
+        teeth,
+        Cell(row["seconds"], f"{row['seconds']:.2g}"),
+        *single,
+        *[None] * (4 * (most - len(gears))),
+    ]
+
+
+def tiles(result: Result, measures: Measures) -> list[Tile]:
+    """Return ratio, torque, mass and box as key figures."""
+    if not result.design:
+        return []
+    design = drive_design(result.design)
+    torque = amount(design.output_torque_Nm, "Nm", measures)
+    found = [
+        ratio_tile(design.ratio, design.ratio_error_percent),
+        Tile("output torque", torque),
+    ]
+    if objective(result)[0] != "mass":
+        found.append(Tile("mass of the gears", amount(design.mass_kg, "kg", measures)))
+    if design.layout is not None:
+        sides = " x ".join(measures.length(side, 1) for side in design.layout.box.sides)
+        size = f"{sides} {measures.unit('mm')}"
+        found.append(Tile("box", size, "width, height, length"))
+    return [*found, *rating_words.tiles(result, measures)]
+
+
+def beside(result: Result, measures: Measures) -> list[str]:
+    """Compare with other optima: real-valued sizes, or gears first and then the layout."""
+    found = []
+    if result.status == "infeasible" and "least_violation" in result.proof:
+        found.append("This holds even with real-valued teeth and modules.")
+    for part in result.parts:
+        alike = part.objective["name"] == result.objective["name"]
+        if part.name in ("sizing", "apart") and alike and result.status == "optimal":
+            found += _other_way(result, part)
+        if part.name == "sizing" and result.status == "limit" and result.value is None:
+            found += _instead(part, measures)
+    return found
+
+
+def _other_way(result: Result, part: Result) -> list[str]:
+    if part.value is None or result.value is None:
+        return []
+    more = percent_more(result.value, part.value)
+    if part.name == "apart":
+        return [f"Gears and layout optimised together save {more} % of gears first, then layout."]
+    return [f"Whole teeth and standard modules cost {more} % more than real-valued ones."]
+
+
+def percent_more(value: float, other: float) -> str:
+    """Return by how many per cent two values differ."""
+    return rounded(abs(100.0 * (value / other - 1.0)), 3)
+
+
+def _instead(part: Result, measures: Measures) -> list[str]:
+    """Report the design with real-valued teeth where the run has none with whole teeth."""
+    name, unit = objective(part)
+    if part.value is None or part.bound is None:
+        return []
+    return [
+        f"With real-valued teeth and modules a {name} of {amount(part.value, unit, measures)} is "
+        f"feasible; with whole teeth no design is below {amount(part.bound, unit, measures)}."
+    ]
+
+
+def _in_one_line(result: Result, measures: Measures) -> Section | None:
+    """Draw the gears; None where they are laid out."""
+    asks = " A [layout] table in the file places the gears in the smallest box."
+    hint = "" if result.status == "evaluated" else asks
+    return train_views.section(result, measures, hint)
+
+
+DRAWINGS = (layout_views.section, layout_solid.section, _in_one_line)
+RATINGS = (
+    *(rating_gears.gears, rating_tables.forces, rating_factors.factors),
+    *(rating_gears.levels, mesh_view.section, rating_tables.teeth),
+)
+GIVEN = Kind(
+    sections=(summary, *RATINGS[:2], *DRAWINGS, *RATINGS[2:], numbers, asked, assumptions),
+    terminal=(rating_gears.gears, rating_factors.factors, rating_tables.forces),
+    tiles=rating_words.tiles,
+    decides=rating_words.decides,
+    figures=rating_words.figures,
+    warns=rating_words.warns,
+)
+KIND = Kind(
+    sections=(
+        *FIRST,
+        impossible_layout.section,
+        *DRAWINGS,
+        numbers,
+        *RATINGS,
+        processes,
+        counts,
+        *ASKED,
+        trains,
+        *LAST,
+    ),
+    terminal=(
+        rating_tables.design,
+        places,
+        counts,
+        limits,
+        rating_gears.gears,
+        trains,
+        processes,
+        *TOLD,
+    ),
+    tiles=tiles,
+    beside=beside,
+    elsewhere=clearances,
+    decides=decides,
+    warns=rating_words.warns,
+    whole="drive",
+    given=GIVEN,
+)

@@ -1,0 +1,236 @@
+"""What every gear of a rating bears and lasts, by every standard; its load spectrum."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from gearopt.formulations.drive.rating import DriveRating, GearRating, LoadLevel
+from gearopt.optimise.result import Result
+from gearopt.report.kinds.drive.rating_symbols import SHORT, greek, of_standards, stress_words
+from gearopt.report.kinds.drive.rating_tables import figure, label, name, names, rows_of, single
+from gearopt.report.kinds.drive.rating_words import (
+    AT_ONCE,
+    LONGEST,
+    efficiency,
+    life,
+    nearest,
+    rating_of,
+    safety,
+    told,
+    unsure,
+    unverified,
+)
+from gearopt.report.measures import Measures, rounded
+from gearopt.report.section import Cell, Section, Table, cell, percent
+from gearopt.report.words import RATING, parted
+
+GEARS = {  # keys of a gear's rating: what they are called
+    "material": "material",
+    "bending_stress_MPa": "bending stress",
+    "permissible_bending_stress_MPa": "permissible",
+    "bending_safety": "S_F",
+    "contact_stress_MPa": "contact stress",
+    "permissible_contact_stress_MPa": "permissible",
+    "contact_safety": "S_H",
+    "cycles": "load cycles",
+    "bending_damage": "Miner's sum, bending",
+    "contact_damage": "Miner's sum, contact",
+    "bending_life_cycles": "life, bending",
+    "contact_life_cycles": "life, contact",
+    "life_h": "life",
+}
+STRESSES = [key for key in GEARS if key.endswith("_MPa")]
+LIVES = [key for key in GEARS if "life" in key]
+LEVELS = {
+    "level": "level",
+    "power_kW": "power",
+    "input_speed_rpm": "input speed",
+    "share_percent": "share of life",
+    "cycles": "cycles",
+    "bending_stress_MPa": "bending stress",
+    "contact_stress_MPa": "contact stress",
+    "bending_damage": "damage, bending",
+    "contact_damage": "damage, contact",
+}
+ONCE = ("level", "power_kW", "input_speed_rpm", "share_percent")  # of a level, for all gears
+DAMAGE_DIGITS = 3
+LOAD_FACTORS = (
+    "By ISO 6336, K_v and the face and transverse load factors depend on the load: the power "
+    "capacity is rated with their values at that power."
+)
+
+
+def gears(result: Result, measures: Measures) -> Section | None:
+    """Return stresses, safety factors and lives of every gear; None without a rating."""
+    if (found := rating_of(result)) is None:
+        return None
+    words = _words(found, GEARS)
+    rows = [[Cell(row[0], greek(row[0])), *row[1:]] for row in _gear_rows(found, words, measures)]
+    hidden = [label(key, words, measures) for key in STRESSES] if found.levels else []
+    heads = [_head(found, one, gear) for one, gear in _columns(found)]
+    table = Table("gears", ["", *heads], rows, csv_only=hidden, across=True)
+    half = single(found) and found.beside is None
+    shown = _told(result, found, measures)
+    return Section("Rating", words=_said(found), tables=(table,), half=half, terminal=shown)
+
+
+def _said(found: DriveRating) -> list[str]:
+    """Return what the standards are, and what safety factors and lives mean."""
+    words = [
+        _standards(found),
+        "S_F and S_H are permissible over actual stress; S_H squared is the safety factor of the "
+        "load.",
+    ]
+    if any(one.by == "ISO 6336" for one in found.each):
+        words.append(LOAD_FACTORS)
+    if len(found.meshes) > 1:
+        words.append(f"Nearest to the safety factors asked for: {', '.join(nearest(found))}.")
+    if found.levels:
+        words.append("Safety factors are those of all load levels together, by Miner's rule.")
+    lives = [(g.bending_life_cycles, g.contact_life_cycles) for _, g in _columns(found)]
+    if any(None in both for both in lives):
+        words.append(f"Beyond: more than {LONGEST}, where the life curves end.")
+    return words
+
+
+def _standards(found: DriveRating) -> str:
+    return f"By {'; and by '.join(one.standard for one in found.each)}."
+
+
+def _columns(found: DriveRating) -> list[tuple[DriveRating, GearRating]]:
+    """Return every gear by every standard, those of one gear side by side."""
+    each = [[(one, gear) for gear in one.gears] for one in found.each]
+    return [column for columns in zip(*each, strict=True) for column in columns]
+
+
+def _head(found: DriveRating, one: DriveRating, gear: GearRating) -> str:
+    """Return the name of a gear; of two standards with its own."""
+    own = name(found, gear)
+    return own if found.beside is None else f"{own}, {SHORT[one.by]}"
+
+
+def _words(found: DriveRating, words: Mapping[str, str]) -> dict[str, str]:
+    """Return what keys are called, stresses with their symbols."""
+    return {key: stress_words(found, key, text) for key, text in words.items()}
+
+
+def _gear_rows(
+    found: DriveRating, words: Mapping[str, str], measures: Measures
+) -> Iterator[list[Any]]:
+    """Yield the rows of gears, and below every safety factor how much of it is used."""
+    asked = {
+        "bending_safety": found.minimum_bending_safety,
+        "contact_safety": found.minimum_contact_safety,
+    }
+    items = [gear for _, gear in _columns(found)]
+    known = dict(rows_of(items, words, measures))
+    steels = (gear.material for gear in items)
+    known["material"] = ["material", *(Cell(s, s.replace(", ", "\n")) for s in steels)]
+    for key in GEARS:
+        if key in LIVES:
+            lives = (_life(getattr(gear, key), key, measures) for gear in items)
+            yield [label(key, words, measures), *lives]
+        elif found.levels and key.endswith("_damage"):
+            yield [GEARS[key], *(_damage(getattr(gear, key)) for gear in items)]
+        elif key in known:
+            yield known[key]
+        if key in asked:
+            used = (_used(asked[key], getattr(gear, key)) for gear in items)
+            yield [f"utilisation, {GEARS[key]} {asked[key]:g} asked for [%]", *used]
+
+
+def _used(asked: float, own: float) -> Cell:
+    return percent(asked / own) if own > 0.0 else Cell(None, AT_ONCE, 1.0)
+
+
+def _life(value: float | None, key: str, measures: Measures) -> Cell:
+    """Return a life; None beyond the end of the curves, 0 before they begin."""
+    if not value:
+        return Cell(value, "beyond" if value is None else AT_ONCE)
+    return Cell(value, safety(value)) if key == "life_h" else cell(value, parted(key)[1], measures)
+
+
+def _damage(value: float | None) -> Cell:
+    """Return a part of Miner's sum; None where the tooth breaks or pits at once."""
+    return Cell(None, AT_ONCE) if value is None else Cell(value, rounded(value, DAMAGE_DIGITS))
+
+
+def _told(result: Result, found: DriveRating, measures: Measures) -> list[str | Table]:
+    """Return what the terminal shows of all gears; of an optimum first how it is rated."""
+    keys = [key for key in GEARS if key.endswith(("_MPa", "_safety"))]
+    sign, named = measures.unit("MPa"), found.beside is not None
+    strong = f"permissible\n{sign}"
+    short = (f"bending\n{sign}", strong, "S_F", f"contact\n{sign}", strong, "S_H")
+    rows = [
+        [
+            name(found, gear),
+            *[SHORT[one.by]] * named,
+            *(figure(getattr(gear, key), key, measures) for key in keys),
+        ]
+        for one, gear in _columns(found)
+    ]
+    heads = ["gear", *["by"] * named, *keys]
+    read = dict(zip(keys, short, strict=True))
+    table = Table("gears", heads, rows, short=read, left=1 + named, wrap=9)
+    lives = of_standards(found, [life(one.life_h) for one in found.each])
+    asked = f"{';' if named else ','} {life(found.required_life_h)} asked for."
+    lasts = f"Life at safety factors of 1: {lives}{asked}"
+    if found.efficiency_percent is not None:
+        lasts += f" Efficiency of the meshes: {efficiency(found)}{unsure(found)}."
+    first = [] if result.name == RATING else [measures.words(told(found))]
+    end = unverified(found) if first else []
+    return [*first, table, "\n".join([lasts, _standards(found), *end])]
+
+
+def levels(result: Result, measures: Measures) -> Section | None:
+    """Return the load spectrum with the damage of every level; None without one."""
+    found = rating_of(result)
+    if found is None or not found.levels:
+        return None
+    words, named = _level_words(found), found.beside is not None
+    of_gear = [key for key in LEVELS if key not in ONCE]
+    heads = [label(key, words, measures) for key in (*ONCE, *of_gear)]
+    heads[len(ONCE) : len(ONCE)] = ["gear", *["by"] * named]
+    each = [[(one, level) for level in one.levels] for one in found.each]
+    pairs = [pair for both in zip(*each, strict=True) for pair in both]
+    rows = []
+    for one, level in sorted(pairs, key=lambda pair: pair[1].level):
+        row = _level_row(found, level, of_gear, measures, one is found)
+        at = len(ONCE) + 1
+        rows.append([*row[:at], *[SHORT[one.by]] * named, *row[at:]])
+    said = [
+        "The damage of a level is its load cycles over those that the gear would bear at this "
+        "level alone; the gear fails where the sum of the damages (Miner's sum) reaches 1."
+    ]
+    said += [
+        f"Unverified by {one.by}: a published spectrum confirms the sum for contact, none for "
+        "bending."
+        for one in found.each
+        if any(name.startswith("load spectrum") for name in one.unverified)
+    ]
+    return Section("Load spectrum", words=said, tables=(Table("levels", heads, rows),))
+
+
+def _level_words(found: DriveRating) -> dict[str, str]:
+    """Return what keys of a level are called; stresses by their symbols of AGMA alone."""
+    both = {"bending_stress_MPa": "s_t", "contact_stress_MPa": "s_c"}
+    return LEVELS | (both if {one.by for one in found.each} == {"AGMA"} else {})
+
+
+def _level_row(
+    found: DriveRating,
+    level: LoadLevel,
+    of_gear: Sequence[str],
+    measures: Measures,
+    first: bool,
+) -> list[Any]:
+    """Return a level of a gear; the page shows its load once, at the first gear and standard."""
+    load = [cell(getattr(level, key), parted(key)[1], measures) for key in ONCE]
+    if not first or name(found, level) != names(found)[0]:
+        load = [replace(one, text="") for one in load]
+    values = ((key, getattr(level, key)) for key in of_gear)
+    cells = (
+        _damage(value) if key.endswith("damage") else cell(value, parted(key)[1], measures)
+        for key, value in values
+    )
+    return [*load, name(found, level), *cells]

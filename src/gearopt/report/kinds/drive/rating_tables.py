@@ -1,0 +1,228 @@
+"""A rating as sections of tables: forces and contact, teeth; names and rows of its tables."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from math import isclose
+from typing import Any
+
+from gearopt.formulations.drive.rating import DriveRating, MeshRating
+from gearopt.optimise.result import Result
+from gearopt.report.design_tables import stage_label, tables
+from gearopt.report.kinds.drive.rating_words import FRICTION, ROUNDING, rating_of, safety
+from gearopt.report.measures import Measures
+from gearopt.report.section import Cell, Section, Table, cell
+from gearopt.report.words import MODULE, heading, module_words, number, parted
+
+LEAST = {"governs": "governs", "power_capacity_kW": "power capacity"}
+MESHES = {
+    "tangential_force_N": "tangential force F_t",
+    "radial_force_N": "radial force F_r",
+    "axial_force_N": "axial force F_a",
+    "pitch_line_velocity_m_per_s": "pitch-line velocity v",
+    "working_pressure_angle_deg": "working pressure angle α_wt",
+    "working_helix_angle_deg": "working helix angle β_w",
+    "transverse_contact_ratio": "transverse contact ratio ε_α",
+    "overlap_ratio": "overlap ratio ε_β",
+    "total_contact_ratio": "total contact ratio ε_γ",
+    "usable_contact_ratio": "transverse contact ratio that undercut leaves",
+    "circumferential_backlash_mm": "circumferential backlash j_wt",
+    "normal_backlash_mm": "normal backlash j_bn",
+    "tooth_loss_factor": "tooth loss factor H_V",
+    "friction_coefficient": "coefficient of friction μ",
+    "mesh_efficiency_percent": "efficiency of the mesh",
+    "mesh_efficiency_error_percent": "its error, up or down",
+}
+SHAFTS = {
+    "torque_Nm": "torque",
+    "speed_rpm": "speed",
+    "rotation": "turns",
+    "axial_force_N": "axial force",
+}
+TEETH = {  # ISO 21771
+    "hand": "hand of the helix",
+    "teeth": "teeth z",
+    "profile_shift": "profile shift x",
+    "generating_shift": "generating shift x_E",
+    "reference_diameter_mm": "reference diameter d",
+    "working_pitch_diameter_mm": "working pitch diameter d_w",
+    "base_diameter_mm": "base diameter d_b",
+    "tip_diameter_mm": "tip diameter d_a",
+    "root_diameter_mm": "root diameter d_f",
+    "form_diameter_mm": "root form diameter d_Ff",
+    "active_root_diameter_mm": "active root diameter d_Nf",
+    "tip_thickness_mm": "tip thickness s_a",
+    "tip_clearance_mm": "tip clearance c",
+    "largest_specific_sliding": "largest specific sliding ζ",
+    "span_teeth": "teeth spanned k",
+    "span_mm": "span W_k",
+    "ball_diameter_mm": "ball diameter D_M",
+    "over_balls_mm": "diameter over balls M_dK",
+}
+IN_DESIGN = {  # keys of stages and totals that tables of a rating show
+    *("pinion_diameter_mm", "wheel_diameter_mm", "pinion_tip_diameter_mm"),
+    *("wheel_tip_diameter_mm", "pinion_root_diameter_mm", "wheel_root_diameter_mm"),
+    *("transverse_contact_ratio", "overlap_ratio", "pitch_line_velocity_m_per_s"),
+    *("working_pressure_angle_deg", "pinion_profile_shift", "wheel_profile_shift"),
+    *("pinion_torque_Nm", "output_torque_Nm"),
+}
+ABREAST = 2  # stages whose teeth fit beside another table
+
+
+def single(found: DriveRating) -> bool:
+    """Return whether there is one stage, whose tables leave room beside them."""
+    return len(found.meshes) == 1
+
+
+def design(result: Result, measures: Measures) -> Section | None:
+    """Return the tables of a design, without those of its rating; None without a design."""
+    own = {key: value for key, value in result.design.items() if key != "rating"}
+    return tables(replace(result, design=own), measures)
+
+
+def beside(table: Table, result: Result, measures: Measures) -> Table:
+    """Return stages or totals without what a rating, or the only stage, shows of them."""
+    stages, hidden = result.design["stages"], set(IN_DESIGN)
+    if table.name == "stages":
+        return replace(table, csv_only=[stage_label(key, measures) for key in hidden])
+    if table.name != "totals":
+        return table
+    if len(stages) == 1:
+        hidden |= {*stages[0], "sum_of_centre_distances_mm"}
+    if not {"ratio", "output_speed"} & set(result.asked.get("duty", ())):
+        hidden.add("ratio_error_percent")
+    return replace(table, csv_only=[heading(key, measures) for key in hidden])
+
+
+def names(found: DriveRating) -> list[str]:
+    """Return the names of all gears: of several stages with their stage."""
+    return [name(found, gear) for gear in found.gears]
+
+
+def name(found: DriveRating, gear: Any) -> str:
+    """Return the name of a gear of some table, with its stage where there are several."""
+    return gear.member if len(found.meshes) == 1 else f"{gear.member} {gear.stage}"
+
+
+def label(key: str, words: Mapping[str, str], measures: Measures) -> str:
+    """Return what a key is called, with its unit."""
+    unit = parted(key, measures)[1]
+    return f"{words[key]} [{measures.unit(unit)}]" if unit else words[key]
+
+
+def rows_of(
+    items: Sequence[Any], words: Mapping[str, str], measures: Measures
+) -> Iterator[tuple[str, list[Any]]]:
+    """Yield key and row of everything that is known of some item."""
+    for key in words:
+        values = [getattr(item, key) for item in items]
+        if any(value is not None for value in values):
+            yield key, [label(key, words, measures), *(figure(v, key, measures) for v in values)]
+
+
+def figure(value: Any, key: str, measures: Measures) -> Any:
+    """Return a value as its sentence has it, of what is never rounded up."""
+    unit = parted(key, measures)[1]
+    if value is None or not key.endswith(("_safety", "capacity_kW")):
+        return cell(value, unit, measures)
+    text = measures.words(f"{safety(value)} kW").split()[0] if unit else safety(value)
+    return Cell(measures.of(value, unit), text)
+
+
+def _across(
+    name: str,
+    heads: Sequence[str],
+    items: Sequence[Any],
+    words: Mapping[str, str],
+    measures: Measures,
+) -> Table:
+    """Return a table of items side by side."""
+    rows = [row for _, row in rows_of(items, words, measures)]
+    return Table(name, ["", *heads], rows, across=True)
+
+
+def forces(result: Result, measures: Measures) -> Section | None:
+    """Return contact and forces of every mesh, and what shafts carry; None without a rating."""
+    if (found := rating_of(result)) is None:
+        return None
+    heads = [f"stage {mesh.stage}" for mesh in found.meshes]
+    meshes = _across("meshes", heads, found.meshes, MESHES, measures)
+    meshes = replace(meshes, rows=[*_least_rows(found, measures), *meshes.rows])
+    heads = [f"shaft {shaft.shaft}" for shaft in found.shafts]
+    shafts = _across("shafts", heads, found.shafts, SHAFTS, measures)
+    axial = [label("axial_force_N", SHAFTS, measures), *_end_words(found, measures)]
+    shafts = replace(shafts, rows=[*shafts.rows[:-1], axial])
+    level = ", at the load level of largest force" if found.levels else ""
+    words = [
+        f"Forces of a mesh act at the working pitch circles{level}. Shafts transmit torques "
+        "without losses. Rotations are seen from the input end, for an input that turns "
+        "clockwise; positive axial forces point away from that end, and all reverse with the "
+        "rotation of the input."
+    ]
+    if found.efficiency_percent is not None:
+        words.append(
+            "Efficiencies are those of tooth friction alone, without bearings, seals and oil "
+            "churning" + ("." if found.efficiency_error_percent is None else f"; {FRICTION}.")
+        )
+    stages = result.design["stages"]
+    told = "\n".join(f"{_mesh_words(found, stage, k, measures)}" for k, stage in enumerate(stages))
+    half = single(found)
+    return Section(
+        "Forces and contact", words=words, tables=(meshes, shafts), half=half, terminal=(told,)
+    )
+
+
+def _least_rows(found: DriveRating, measures: Measures) -> Iterator[list[Any]]:
+    """Yield what governs every mesh and what it may transmit, by every standard."""
+    for key, words in LEAST.items():
+        for one in found.each:
+            of = "" if found.beside is None else f" by {one.by}"
+            yield from (row for _, row in rows_of(one.meshes, {key: words + of}, measures))
+
+
+def _mesh_words(found: DriveRating, stage: Mapping[str, Any], k: int, measures: Measures) -> str:
+    """Return sizes, contact and forces of a stage (from 0) in a sentence."""
+    mesh, size = found.meshes[k], measures.amount
+    parts = [
+        f"Stage {k + 1}: {module_words(stage[MODULE], measures)}",
+        f"z {number(stage['pinion_teeth'])}/{number(stage['wheel_teeth'])}",
+        f"b {size(stage['face_width_mm'], 'mm')}",
+        f"a {size(stage['centre_distance_mm'], 'mm')}; contact ratio "
+        f"{number(mesh.total_contact_ratio)}{_left(mesh)}",
+        f"v {size(mesh.pitch_line_velocity_m_per_s, 'm_per_s')}; "
+        f"F_t {size(mesh.tangential_force_N, 'N')}",
+        f"F_r {size(mesh.radial_force_N, 'N')}",
+        f"F_a {size(mesh.axial_force_N, 'N')}.",
+    ]
+    return ", ".join(parts)
+
+
+def _left(mesh: MeshRating) -> str:
+    """Return how much of the transverse contact ratio undercut leaves, where it leaves less."""
+    left, whole = mesh.usable_contact_ratio, mesh.transverse_contact_ratio
+    return (
+        "" if left is None else f" (undercut leaves {number(left)} of {number(whole)} transverse)"
+    )
+
+
+def teeth(result: Result, measures: Measures) -> Section | None:
+    """Return the geometry of the teeth of every gear; None without a rating."""
+    if (found := rating_of(result)) is None:
+        return None
+    table = _across("teeth", names(found), found.teeth, TEETH, measures)
+    words = [
+        "Terms of ISO 21771; shifts in normal modules. The generating shift is that of the tool, "
+        "with the allowance of the tooth thickness; contact with the mate ends at the active root "
+        "diameter."
+    ]
+    return Section("Teeth", words=words, tables=(table,), half=len(found.meshes) <= ABREAST)
+
+
+def _end_words(found: DriveRating, measures: Measures) -> list[Any]:
+    """Return the axial forces of shafts, those of one gear by the name of its mesh's."""
+    cells = [cell(shaft.axial_force_N, "N", measures) for shaft in found.shafts]
+    for k, mesh in ((0, found.meshes[0]), (-1, found.meshes[-1])):
+        own = found.shafts[k].axial_force_N
+        if own and isclose(abs(own), mesh.axial_force_N, rel_tol=ROUNDING):
+            sign = "−" if own < 0.0 else ""
+            cells[k] = replace(cells[k], text=f"{sign}F_a of stage {mesh.stage}")
+    return cells

@@ -1,0 +1,291 @@
+"""A pair on moving axes: how it rests, moves, where it is unstable, and what vibrates least."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.dynamics.design import DynamicsDesign, Speeds
+from gearopt.formulations.dynamics.motion.stability import UNSTABLE
+from gearopt.formulations.dynamics.motions_over_speed import ranges, spans
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import typed
+from gearopt.report.answer import assumptions, limits, progress, summary
+from gearopt.report.explained import remedies, sensitivities
+from gearopt.report.kinds import Kind
+from gearopt.report.kinds.dynamics import plots
+from gearopt.report.kinds.generic import FIRST
+from gearopt.report.measures import Measures, rounded
+from gearopt.report.section import Section, Table, Tile, cell, percent
+from gearopt.report.words import amount, number
+
+TWO = 0.02  # of an RMS by which rising and falling speeds differ where there are two motions
+MEASURES = {"rms": "RMS", "peak_to_peak": "peak to peak"}
+
+
+def design_of(result: Result) -> DynamicsDesign | None:
+    """Return the design of a result; None without one."""
+    found: DynamicsDesign | None = None
+    if result.design.get("equilibrium"):
+        found = typed(DynamicsDesign, result.design, "design")
+    return found
+
+
+def tiles(result: Result, measures: Measures) -> list[Tile]:
+    """Return load, response and stability as key figures."""
+    if (found := design_of(result)) is None:
+        return []
+    rest = found.equilibrium
+    made = [
+        Tile("normal load", amount(rest.normal_load_N, "N", measures), "along the line of action")
+    ]
+    if (chosen := found.chosen) is not None:
+        worst = amount(chosen.dense_maximum_mm, "um", measures)
+        made.append(Tile("largest over all speeds", worst, "on the dense grid"))
+    if (moved := found.response) is not None:
+        made.append(
+            Tile(
+                "deformation, peak to peak",
+                amount(moved.peak_to_peak_mm, "um", measures),
+                f"by {moved.method}, error {moved.error:.1e}",
+            )
+        )
+    if found.stability is not None and found.stability.here is not None:
+        verdict = "unstable" if found.stability.here > 1.0 + UNSTABLE else "stable"
+        made.append(Tile("largest multiplier", number(found.stability.here), verdict))
+    fastest = f"{rest.frequencies_Hz[-1]:,.0f} Hz"
+    return [*made, Tile("highest natural frequency", fastest, "at the mean stiffness")]
+
+
+def decides(result: Result) -> str:
+    """Return how far the mesh deforms."""
+    if (found := design_of(result)) is None or found.chosen is not None:
+        return ""
+    rest = abs(found.equilibrium.deformation_mm)
+    moved = found.response
+    told = f"the mean load deforms the mesh by {1e3 * rest:.4g} µm"
+    if moved is None:
+        return told
+    return (
+        f"{told}; in motion the deformation varies by {rounded(1e3 * moved.peak_to_peak_mm, 4)} µm"
+    )
+
+
+def warns(result: Result) -> Sequence[str]:
+    """Return what is unstable, parts, or was not reached."""
+    found = design_of(result)
+    return found.warnings if found else ()
+
+
+def motion(result: Result, measures: Measures) -> Section | None:
+    """Show the motion in time, its spectrum, and the axes that move."""
+    found = design_of(result)
+    if found is None or (moved := found.response) is None:
+        return None
+    rows: list[list[Any]] = [
+        ["method", moved.method],
+        ["error reached, of the largest deformation", f"{moved.error:.2e}"],
+        ["steps", moved.steps],
+        ["times that teeth part", moved.separations],
+        [f"RMS [{measures.unit('um')}]", cell(moved.rms_mm, "um", measures)],
+        [f"peak to peak [{measures.unit('um')}]", cell(moved.peak_to_peak_mm, "um", measures)],
+        [f"largest [{measures.unit('um')}]", cell(moved.highest_mm, "um", measures)],
+    ]
+    table = Table("response", ("", ""), rows, "RMS and peak to peak of the second half.")
+    moving = [plots.orbit(moved, measures)] if moved.axes_mm else []
+    figures = [
+        plots.response(moved, measures),
+        plots.spectrum(moved, found.mesh_frequency_Hz, measures),
+    ]
+    return Section("Motion", animations=moving, figures=figures, tables=(table,), terminal=(table,))
+
+
+def stability(result: Result, measures: Measures) -> Section | None:
+    """Show the map of stability, its bands and its tongues."""
+    found = design_of(result)
+    if found is None or (held := found.stability) is None:
+        return None
+    rows = [
+        [
+            " + ".join(map(str, t.modes)),
+            t.harmonic,
+            cell(t.frequency_Hz, "", measures),
+            cell(t.half_width_percent, "percent", measures),
+            cell(t.damping_percent, "percent", measures),
+        ]
+        for t in held.tongues
+    ]
+    heads = ("modes", "harmonic", "mesh frequency [Hz]", "half width [%]", "damping against it [%]")
+    table = Table("tongues", heads, rows, "Widest instability tongues by the first-order formulas.")
+    ends = f"{spans(held.bands_Hz)} Hz" if held.bands_Hz else "none"
+    words = (
+        f"{held.unstable_percent:.3g} % of the map is unstable. Unstable mesh frequencies at the "
+        f"pair's own depth of {held.own_depth:.3g}: {ends}.",
+    )
+    return Section(
+        "Stability",
+        words=words,
+        figures=(plots.stability(held),),
+        tables=(table,),
+        terminal=("\n".join(words),),
+    )
+
+
+def speeds(result: Result, measures: Measures) -> Section | None:
+    """Show motions over speed: where they are largest, where there are two, and what they are."""
+    found = design_of(result)
+    if found is None or (held := found.speeds) is None:
+        return None
+    figures = (plots.over_speed(held, measures), plots.waterfall(held, measures))
+    words = (_worst(held, measures), *_two(held))
+    return Section(
+        "Speeds", words=words, figures=figures, tables=(_speeds(held, measures),), terminal=words
+    )
+
+
+def _worst(held: Speeds, measures: Measures) -> str:
+    """Say where the RMS of a stable motion is largest."""
+    ways = [("", held.rms_mm, held.peak_to_peak_mm)]
+    if held.falling_rms_mm and held.falling_rms_mm != held.rms_mm:
+        ways.append((" as speed falls", held.falling_rms_mm, held.falling_peak_to_peak_mm))
+    ends = [
+        (rms, speed, way, height)
+        for way, all_rms, heights in ways
+        for rms, height, speed in zip(all_rms, heights, held.speed_rpm, strict=True)
+        if rms is not None and height is not None
+    ]
+    if not ends:
+        return "The motion is unstable at all speeds."
+    rms, speed, way, height = max(ends)
+    return (
+        f"The RMS of the deformation is largest at {speed:,.0f} rpm{way}: "
+        f"{amount(rms, 'um', measures)}, peak to peak {amount(height, 'um', measures)}."
+    )
+
+
+def _two(held: Speeds) -> list[str]:
+    """Say where speed that rises and speed that falls lead to two motions."""
+    falling = held.falling_rms_mm or held.rms_mm
+    pairs = [(a or 0.0, b or 0.0) for a, b in zip(held.rms_mm, falling, strict=True)]
+    where = [min(pair) > 0.0 and np.ptp(pair) > TWO * max(pair) for pair in pairs]
+    if not any(where):
+        return []
+    most = max(max(pair) / min(pair) for pair, two in zip(pairs, where, strict=True) if two)
+    return [
+        f"There are two motions at {ranges(held.speed_rpm, where)}, one up to {most:.3g} times "
+        "as large as the other: which one occurs depends on whether speed rises or falls."
+    ]
+
+
+def _speeds(held: Speeds, measures: Measures) -> Table:
+    """Return every speed's motion as a table, of falling speeds beside the rising ones."""
+    micro = measures.unit("um")
+    heads = [f"RMS [{micro}]", f"peak to peak [{micro}]", f"largest [{micro}]", "motion"]
+    rising = held.rms_mm, held.peak_to_peak_mm, held.highest_mm, held.repeats
+    falling = (
+        held.falling_rms_mm,
+        held.falling_peak_to_peak_mm,
+        held.falling_highest_mm,
+        held.falling_repeats,
+    )
+    ways = [rising, falling] if held.falling_rms_mm and rising != falling else [rising]
+    rows: list[list[Any]] = []
+    for k, speed in enumerate(held.speed_rpm):
+        row: list[Any] = [speed]
+        for rms, height, highest, repeats in ways:
+            row += [cell(values[k], "um", measures) for values in (rms, height, highest)]
+            row.append(_said(repeats[k], highest[k]))
+        rows.append(row)
+    names = heads if len(ways) == 1 else [f"{h}, {w}" for w in ("rising", "falling") for h in heads]
+    return Table("motions over speed", ("speed [rpm]", *names), rows, folded=True)
+
+
+def _said(repeats: int, highest: float | None) -> str:
+    """Return in a few words what kind of motion there is."""
+    if highest is None:
+        return "unstable"
+    if repeats != 1:
+        return f"repeats after {repeats} periods" if repeats else "does not repeat"
+    return "teeth part" if highest > 0.0 else "in contact"
+
+
+def chosen(result: Result, measures: Measures) -> Section | None:
+    """Show the design of least vibration beside the pair of the file."""
+    found = design_of(result)
+    if found is None or (best := found.chosen) is None:
+        return None
+    length, micro = measures.unit("mm"), measures.unit("um")
+    rows = [
+        [
+            f"bearing stiffness [{measures.unit('N_per_mm')}]",
+            cell(best.bearing_stiffness_N_per_mm, "N_per_mm", measures),
+        ],
+        ["contact ratio", best.contact_ratio],
+        ["ramp of the stiffness, of the period", best.ramp],
+        [f"face width [{length}]", cell(best.face_width_mm, "mm", measures)],
+        ["rim factor", best.rim],
+        [f"mass of both gears [{measures.unit('kg')}]", cell(best.mass_kg, "kg", measures)],
+        [f"displacement of an axis [{micro}]", cell(best.displacement_mm, "um", measures)],
+        [f"largest over all speeds [{micro}]", cell(best.dense_maximum_mm, "um", measures)],
+        [f"largest deformation [{micro}]", cell(best.highest_mm, "um", measures)],
+        ["largest multiplier of all speeds", best.largest_multiplier],
+    ]
+    design = Table("design", ("", ""), rows)
+    heads = ("speeds", "harmonics", f"objective [{micro}]", f"over all speeds [{micro}]")
+    rounds = [
+        [int(n), int(h), *(cell(1e-3 * v, "um", measures) for v in values)]
+        for n, h, *values in best.rounds
+    ]
+    exchange = Table("exchange", heads, rounds, "Speeds added until the dense grid agrees.")
+    measure = MEASURES.get(result.objective.get("name", ""), "vibration")
+    tables = (design, exchange) if rounds else (design,)
+    figures = (plots.before_and_after(best, measure, measures),)
+    return Section("Least vibration", figures=figures, tables=tables, terminal=tables)
+
+
+def rest(result: Result, measures: Measures) -> Section | None:
+    """Say how the pair rests under its load, and how it could swing."""
+    if (found := design_of(result)) is None:
+        return None
+    at = found.equilibrium
+    length, micro = measures.unit("mm"), measures.unit("um")
+    rows = [
+        [f"normal load [{measures.unit('N')}]", cell(at.normal_load_N, "N", measures)],
+        [
+            f"mean mesh stiffness [{measures.unit('N_per_mm')}]",
+            cell(at.mean_stiffness_N_per_mm, "N_per_mm", measures),
+        ],
+        [f"mesh mass [{measures.unit('kg')}]", cell(at.mesh_mass_kg, "kg", measures)],
+        [f"deformation [{micro}]", cell(at.deformation_mm, "um", measures)],
+        [f"centre distance [{length}]", cell(at.centre_distance_mm, "mm", measures)],
+        [f"its growth [{length}]", cell(at.centre_distance_growth_mm, "mm", measures)],
+        ["pressure angle [°]", at.pressure_angle_deg],
+        [f"force of a bearing [{measures.unit('N')}]", cell(at.bearing_force_N, "N", measures)],
+    ]
+    state = Table("under load", ("", ""), rows, "At the mean stiffness, under the mean load.")
+    modes = [
+        [k, f, percent(share)]
+        for k, (f, share) in enumerate(zip(at.frequencies_Hz, at.mesh_shares, strict=True), 1)
+    ]
+    heads = ("mode", "frequency [Hz]", "energy in the mesh [%]")
+    swing = Table("modes", heads, modes, "Undamped modes, and their strain energy in the mesh.")
+    return Section("At rest", tables=(state, swing), terminal=(state, swing))
+
+
+SECTIONS = (chosen, motion, speeds, stability, rest)
+KIND = Kind(
+    sections=(*FIRST, *SECTIONS, limits, sensitivities, progress, assumptions),
+    terminal=(rest, stability, motion, speeds, chosen, limits, sensitivities, remedies, summary),
+    tiles=tiles,
+    decides=decides,
+    warns=warns,
+    drawn=False,
+    given=Kind(
+        sections=(summary, *SECTIONS, assumptions),
+        terminal=(rest, stability, motion, speeds, summary),
+        tiles=tiles,
+        decides=decides,
+        warns=warns,
+        drawn=False,
+    ),
+)

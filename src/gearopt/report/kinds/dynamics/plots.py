@@ -1,0 +1,290 @@
+"""Plots of a pair on moving axes: response, spectrum, orbit, stability, speeds."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.dynamics.design import Chosen, Response, Speeds, Stability
+from gearopt.formulations.dynamics.motion.stability import UNSTABLE, bands
+from gearopt.report.drawing.player import Animation, Body, Reading, View
+from gearopt.report.drawing.sheet import Sheet, Window, around, series
+from gearopt.report.measures import Measures
+from gearopt.report.section import Figure, axis, layout
+
+ORBIT = "motion of the axes"  # the animation that the response follows
+MOMENTS = 240  # of the animation
+SECONDS = 12.0  # in which it passes at normal speed
+LAST = 0.5  # of the response that it shows: the later half
+SIZE = 300.0  # px of a view of an orbit
+ROOM = 1.15  # of the largest displacement that a view shows
+DOT, CORNERS = 5.0, 20  # px and corners of the point that moves
+HEIGHT = 320  # px of a plot
+QUIET, LOUD = "--card", "--series-1"  # ends of a map's colours
+Values = Sequence[Any]
+
+
+def line(
+    x: Values, y: Values, name: str = "", colour: int = 1, dash: str = "solid"
+) -> dict[str, Any]:
+    """Return a curve as plotly has it."""
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "name": name,
+        "x": list(x),
+        "y": list(y),
+        "line": {"color": series(colour), "width": 1.8, "dash": dash},
+        "hovertemplate": "%{x:.5g}: %{y:.4g}",
+        "showlegend": bool(name),
+    }
+
+
+def response(found: Response, measures: Measures) -> Figure:
+    """Plot the deformation over time; the line at zero is where teeth part."""
+    micro = _micro(found.deformation_mm, measures)
+    plot = layout(
+        axis("time [ms]"), axis(f"deformation δ [{measures.unit('um')}]"), HEIGHT, hovermode="x"
+    )
+    plot["shapes"] = [_across(0.0)]
+    caption = "Deformation of the mesh, negative under compression; above the line teeth part."
+    follows = ORBIT if found.axes_mm else ""
+    return Figure([line(found.time_ms, micro)], plot, caption, follows=follows)
+
+
+def spectrum(found: Response, mesh_frequency: float, measures: Measures) -> Figure:
+    """Plot the amplitudes of the second half over frequency, with the mesh frequency's orders."""
+    micro = _micro(found.amplitude_mm, measures)
+    high = found.frequency_Hz[-1]
+    plot = layout(
+        axis("frequency [Hz]"),
+        axis(f"amplitude [{measures.unit('um')}]", type="log", dtick=2, exponentformat="power"),
+        HEIGHT,
+        hovermode="x",
+    )
+    orders = range(1, int(high / mesh_frequency) + 1) if mesh_frequency else range(0)
+    plot["shapes"] = [_upright(k * mesh_frequency) for k in orders]
+    caption = "Spectrum of the second half of the motion"
+    caption += "; dotted: the mesh frequency and its multiples." if mesh_frequency else "."
+    kept = [max(v, 1e-9) for v in micro]
+    return Figure([line(found.frequency_Hz, kept)], plot, caption)
+
+
+def orbit(found: Response, measures: Measures) -> Animation:
+    """Show the axes of both gears moving about their places at rest, much enlarged."""
+    x1, y1, x2, y2 = (np.asarray(c) for c in found.axes_mm)
+    time = np.asarray(found.time_ms)
+    first = int((1.0 - LAST) * (len(time) - 1))
+    shown = np.unique(np.linspace(first, len(time) - 1, MOMENTS).astype(int))
+    later = slice(first, len(time))
+    views = []
+    for k, (name, x, y) in enumerate((("pinion", x1, y1), ("wheel", x2, y2))):
+        views.append(_view(name, x[later], y[later], x[shown], y[shown], 1 + 3 * k, measures))
+    delta = np.asarray(found.deformation_mm)[shown]
+    unit = measures.unit("um")
+    readings = [
+        Reading("time", time[shown], "ms", 3),
+        Reading("deformation", np.array(_micro(delta, measures)), unit, 2),
+    ]
+    times = (time[shown] - time[shown[0]]) * SECONDS / (time[-1] - time[first])
+    caption = (
+        "Each axis moves on its bearings, here over the second half of the time. The views are "
+        "enlarged, each to its own scale; the crossing of the thin lines is the unloaded place."
+    )
+    return Animation(ORBIT, views, times, caption, readings, marks=time[shown])
+
+
+def _view(
+    name: str, track_x: Any, track_y: Any, x: Any, y: Any, colour: int, measures: Measures
+) -> View:
+    """Draw the track of an axis, and the point that moves on it."""
+    ends = np.array([min(track_x.min(), 0.0), max(track_x.max(), 0.0)])
+    tops = np.array([min(track_y.min(), 0.0), max(track_y.max(), 0.0)])
+    half = 0.5 * ROOM * max(np.ptp(ends), np.ptp(tops), 1e-9)
+    cx, cy = ends.mean(), tops.mean()
+    free = (16.0, 16.0, 30.0, 16.0)
+    window = Window(cx - half, cx + half, cy - half, cy + half, free)
+    sheet = Sheet(window, window.scale(SIZE, SIZE))
+    sheet.line((window.left, 0.0), (window.right, 0.0), "axis")
+    sheet.line((0.0, window.bottom), (0.0, window.top), "axis")
+    thin = max(1, len(track_x) // 600)
+    track = np.stack([track_x, track_y], axis=1)[::thin]
+    dot = [
+        (DOT / sheet.scale * math.cos(a), DOT / sheet.scale * math.sin(a))
+        for a in np.linspace(0.0, 2.0 * math.pi, CORNERS, endpoint=False)
+    ]
+    places = np.stack([x, y, np.zeros_like(x)], axis=1)
+    bodies = [Body(track, style="tip", colour=series(colour), title="track", line=True)]
+    mover = [Body(dot, places, "picked", "--ink", f"axis of the {name}")]
+    scale = _round(half)
+    length = measures.of(scale, "um")
+    left = window.left + 0.04 * half
+    low = window.bottom - 14.0 / sheet.scale
+    sheet.line((left, low), (left + scale, low), "size")
+    text = f"{length:,.4g} {measures.unit('um')}"
+    sheet.label(text, around(sheet.at(left + 0.5 * scale, low), (12.0, 16.0)), "size")
+    return View(sheet, f"axis of the {name}", bodies, mover, f"Axis of the {name}")
+
+
+def _round(length: float) -> float:
+    """Return a round number of at most a length: 1, 2 or 5 times a power of ten."""
+    power = 10.0 ** math.floor(math.log10(length))
+    return max(k * power for k in (1.0, 2.0, 5.0) if k * power <= length)
+
+
+def stability(found: Stability) -> Figure:
+    """Draw the map of unstable depths and mesh frequencies with the pair's own point."""
+    growth = np.asarray(found.growth)
+    size = [[max(0.0, min(float(v) - 1.0, 1.0)) or None for v in row] for row in growth]
+    heat = {
+        "type": "heatmap",
+        "x": [f / 1e3 for f in found.frequency_Hz],
+        "y": list(found.depth),
+        "z": [[None if v is None else 100.0 * v for v in row] for row in size],
+        "colorscale": [[0.0, "--series-2/0.35"], [1.0, "--series-2"]],
+        "hovertemplate": "%{x:.4g} kHz, depth %{y:.3g}: +%{z:.3g} % a period",
+        "colorbar": {"title": {"text": "growth [%]"}, "thickness": 12, "outlinewidth": 0},
+        "name": "",
+    }
+    traces = [heat]
+    for tongue in found.tongues:
+        x = tongue.frequency_Hz / 1e3
+        half = x * tongue.half_width_percent / 100.0 * found.depth[-1] / found.own_depth
+        look = line([x - half, x, x + half], [found.depth[-1], 0.0, found.depth[-1]], "", 1, "dot")
+        traces.append(look | {"hoverinfo": "skip", "opacity": 0.7})
+    if found.own_frequency_Hz > 0.0:
+        point = line([found.own_frequency_Hz / 1e3], [found.own_depth], "this pair")
+        point |= {"mode": "markers", "marker": {"color": "--ink", "size": 10, "symbol": "x"}}
+        traces.append(point)
+    low, high = (found.frequency_Hz[k] / 1e3 for k in (0, -1))
+    plot = layout(
+        axis("mesh frequency [kHz]", range=[low, high]),
+        axis("depth of the stiffness wave", range=[0.0, found.depth[-1]]),
+        HEIGHT + 40,
+    )
+    caption = (
+        "Coloured: the motion of teeth in contact grows without limit; colour: growth per mesh "
+        "period. Dotted: instability tongues by the first-order formulas, without damping."
+    )
+    return Figure(traces, plot, caption)
+
+
+def over_speed(found: Speeds, measures: Measures) -> Figure:
+    """Plot the RMS of the deformation over speed, rising and falling where they differ."""
+    ways = found.rms_mm, found.falling_rms_mm or found.rms_mm
+    rising, falling = ([_shown(v, measures) for v in way] for way in ways)
+    two = falling != rising
+    traces = [line(found.speed_rpm, rising, "speed rising" if two else "")]
+    if two:
+        traces.append(line(found.speed_rpm, falling, "speed falling", 2, "dash"))
+    told = [(rising, found.repeats), (falling, found.falling_repeats)]
+    longer = {
+        (n, v)
+        for values, repeats in told[: 1 + two]
+        for n, v, r in zip(found.speed_rpm, values, repeats, strict=True)
+        if r != 1 and v is not None
+    }
+    if longer:
+        places = [[one[k] for one in sorted(longer)] for k in range(2)]
+        marks = line(places[0], places[1], "several periods, or no repetition")
+        look = {"color": "--ink", "size": 5, "symbol": "circle-open"}
+        traces.append(marks | {"mode": "markers", "marker": look})
+    plot = layout(
+        axis("speed of the pinion [rpm]", tickformat=","),
+        axis(f"RMS of the deformation [{measures.unit('um')}]", rangemode="tozero"),
+        HEIGHT,
+        hovermode="x",
+    )
+    unstable = [g > 1.0 + UNSTABLE for g in found.growth]
+    half = 0.5 * (found.speed_rpm[1] - found.speed_rpm[0])
+    ends = bands(found.speed_rpm, unstable)
+    plot["shapes"] = [_band(low - half, high + half) for low, high in ends]
+    if len(traces) > 1:
+        plot["margin"] |= {"t": 44}
+    caption = "Motions over speed: RMS of the deformation about its mean."
+    if any(unstable):
+        caption += " Shaded: teeth in contact are unstable."
+    return Figure(traces, plot, caption)
+
+
+def waterfall(found: Speeds, measures: Measures) -> Figure:
+    """Draw the orders of the mesh frequency over speed."""
+    values = [[_shown(v, measures) for v in row] for row in found.harmonics_mm]
+    heat = {
+        "type": "heatmap",
+        "x": list(found.speed_rpm),
+        "y": list(range(1, len(values) + 1)),
+        "z": [[v and math.log10(max(v, 1e-4)) for v in row] for row in values],
+        "customdata": values,
+        "colorscale": [[0.0, QUIET], [1.0, LOUD]],
+        "hovertemplate": "%{x:.5g} rpm, order %{y}: %{customdata:.3g} " + measures.unit("um"),
+        "colorbar": {
+            "title": {"text": f"lg amplitude [{measures.unit('um')}]"},
+            "thickness": 12,
+            "outlinewidth": 0,
+        },
+        "name": "",
+    }
+    plot = layout(
+        axis("speed of the pinion [rpm]", tickformat=","),
+        axis("order of the mesh frequency", dtick=1),
+        HEIGHT,
+    )
+    caption = "Waterfall: amplitudes of the orders of the mesh frequency over speed"
+    caption += ", speed rising." if found.falling_rms_mm not in ((), found.rms_mm) else "."
+    return Figure([heat], plot, caption)
+
+
+def before_and_after(found: Chosen, measure: str, measures: Measures) -> Figure:
+    """Plot the measure that is minimised over all speeds, of the file's pair and of the best."""
+    after = _micro(found.dense_mm, measures)
+    traces = [
+        line(
+            found.dense_rpm,
+            [_shown(v, measures) for v in found.before_mm],
+            "the pair of the file",
+            4,
+            "dash",
+        ),
+        line(found.dense_rpm, after, "least vibration", 1),
+    ]
+    traces = traces[set(found.before_mm) == {None} :]  # none where the run was stopped
+    judged = [float(np.interp(n, found.dense_rpm, after)) for n in found.speed_rpm]
+    marks = line(found.speed_rpm, judged, "speeds of the problem")
+    traces.append(marks | {"mode": "markers", "marker": {"color": series(1), "size": 6}})
+    plot = layout(
+        axis("speed of the pinion [rpm]", tickformat=","),
+        axis(f"{measure} of the deformation [{measures.unit('um')}]", rangemode="tozero"),
+        HEIGHT,
+        hovermode="x",
+    )
+    plot["margin"] |= {"t": 44}
+    caption = "Vibration over speed before and after; between the marks nothing was asked for."
+    return Figure(traces, plot, caption)
+
+
+def _micro(values: Values | Any, measures: Measures) -> list[float]:
+    return [float(f"{measures.of(float(v), 'um'):.6g}") for v in values]
+
+
+def _shown(value: float | None, measures: Measures) -> float | None:
+    return None if value is None else _micro([value], measures)[0]
+
+
+def _across(level: float) -> dict[str, Any]:
+    look = {"color": "--axis", "width": 1}
+    ends = {"x0": 0.0, "x1": 1.0, "y0": level, "y1": level}
+    return {"type": "line", "xref": "paper", "line": look} | ends
+
+
+def _band(low: float, high: float) -> dict[str, Any]:
+    look = {"fillcolor": series(2), "opacity": 0.12, "line": {"width": 0}, "layer": "below"}
+    ends = {"x0": low, "x1": high, "y0": 0.0, "y1": 1.0}
+    return {"type": "rect", "yref": "paper"} | look | ends
+
+
+def _upright(place: float) -> dict[str, Any]:
+    look = {"color": "--axis", "width": 1, "dash": "dot"}
+    ends = {"x0": place, "x1": place, "y0": 0.0, "y1": 1.0}
+    return {"type": "line", "yref": "paper", "layer": "below", "line": look} | ends

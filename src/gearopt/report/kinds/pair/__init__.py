@@ -1,0 +1,184 @@
+"""A spur pair: how its teeth share the load, how smoothly they run, and how well that is known."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+from gearopt.formulations.pair.contact import ContactLoad, PairContact
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import typed
+from gearopt.report.answer import asked, assumptions, limits, summary
+from gearopt.report.drawing import mesh_view, train_views
+from gearopt.report.kinds import Kind, drive
+from gearopt.report.kinds.drive import rating_words
+from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
+from gearopt.report.kinds.pair import relief as pair_relief
+from gearopt.report.kinds.pair import relief_plots
+from gearopt.report.kinds.pair.relief import relief_of
+from gearopt.report.kinds.pair.sections import in_space, moving, pair_of, teeth
+from gearopt.report.kinds.pair.tables import TABLES
+from gearopt.report.kinds.pair.words import answers, of_duty
+from gearopt.report.measures import METRIC, Measures
+from gearopt.report.section import Section, Table, Tile
+from gearopt.report.words import amount, number, share
+
+STIFFNESS = "N_per_mm_um"  # of MPa
+
+
+def contact_of(result: Result) -> PairContact | None:
+    """Return the contact that a design holds; None without one."""
+    held = result.design.get("contact")
+    found: PairContact | None = typed(PairContact, held, "contact") if held else None
+    return found
+
+
+def tiles(result: Result, measures: Measures) -> list[Tile]:
+    """Return load on a tooth, transmission error and stiffness as key figures."""
+    if (found := contact_of(result)) is None:
+        return []
+    relief = relief_of(result)
+    modified = pair_relief.tiles(relief, measures) if relief else []
+    own = _contact_tiles(found, of_duty(found), measures, relief is not None)
+    return [*modified, *own, *rating_words.tiles(result, measures)]
+
+
+def _contact_tiles(
+    found: PairContact, load: ContactLoad, measures: Measures, relieved: bool
+) -> list[Tile]:
+    """Return the figures of contact without relief; relieved: those with it stand beside."""
+    part = f"{share(load.largest_share)} % of the normal force"
+    iso = amount(found.iso_mesh_stiffness_MPa, STIFFNESS, measures)
+    return [
+        Tile("largest load on a tooth", amount(load.largest_tooth_force_N, "N", measures), part),
+        Tile(
+            "peak to peak without relief" if relieved else "transmission error, peak to peak",
+            amount(load.peak_to_peak_mm, "um", measures),
+            f"at {share(load.load)} % of the duty's torque",
+        ),
+        Tile(
+            "mean mesh stiffness",
+            amount(load.mean_mesh_stiffness_MPa, STIFFNESS, measures),
+            f"c_γα of ISO 6336-1: {iso}",
+        ),
+        Tile("contact ratio", number(found.contact_ratio), "of the flanks that undercut leaves"),
+    ]
+
+
+def decides(result: Result) -> str:
+    """Return how much one tooth carries and how evenly the pair runs."""
+    if relief := relief_of(result):
+        return pair_relief.decides(relief)
+    if (found := contact_of(result)) is None or result.value is not None:
+        return ""
+    load = of_duty(found)
+    force = amount(load.largest_tooth_force_N, "N", METRIC)
+    error = amount(load.peak_to_peak_mm, "um", METRIC)
+    words = f"one tooth carries up to {force}; the transmission error varies by {error}"
+    rated = rating_words.decides(result)
+    return f"{rated}; {words}" if rated else words
+
+
+def beside(result: Result, measures: Measures) -> list[str]:
+    """Return what whole teeth cost; nothing of a relief, whose part is the gears."""
+    return [] if relief_of(result) else drive.beside(result, measures)
+
+
+def warns(result: Result) -> Sequence[str]:
+    """Return what is unsafe by the rating, and what the models of contact do not cover."""
+    found = contact_of(result)
+    told = rating_words.warns(result)
+    return [*told, *(s for s in (found.validity if found else ()) if s not in told)]
+
+
+def contact(result: Result, measures: Measures) -> Section | None:
+    """Say how the load passes from tooth to tooth, with tables; None without contact."""
+    if (found := contact_of(result)) is None:
+        return None
+    tables = [table(found, measures) for table in TABLES]
+    relieved = bool(result.design.get("relief"))
+    told = answers(found, pair_of(result), _frequency(result), relieved)
+    words = list(map(measures.words, told))
+    shown = [table for table in tables if not table.folded]
+    return Section("Contact", words=words, tables=tables, terminal=("\n".join(words), *shown))
+
+
+def _frequency(result: Result) -> float:
+    """Return the mesh frequency [Hz]: reference circles pass a pitch of pi times the module."""
+    stage = result.design["stages"][0]
+    speed, module = stage["pitch_line_velocity_m_per_s"], stage["normal_module_mm"]
+    return float(1e3 * speed / (math.pi * module))
+
+
+def relief(result: Result, measures: Measures) -> Section | None:
+    """Say what to grind, and what it does at every load; None without relief."""
+    found, made = relief_of(result), contact_of(result)
+    if found is None or made is None:
+        return None
+    tables = [
+        pair_relief.grinding(found, measures),
+        pair_relief.after(made, found, measures),
+        pair_relief.rules(found, measures),
+        pair_relief.profile(made, found, measures),
+        pair_relief.travel(made, found, measures),
+    ]
+    words = list(map(measures.words, pair_relief.answers(found)))
+    shown = [table for table in tables if not table.folded]
+    told: tuple[str | Table, ...] = ("\n".join(words), *shown)
+    if (pair := pair_of(result)) is None:
+        return Section("Relief", words=words, tables=tables, terminal=told)
+    flanks = relief_plots.flanks(made, found, pair)
+    figures = [relief_plots.profile(flank, measures) for flank in flanks]
+    tables += [relief_plots.steps(flank, measures) for flank in flanks]
+    return Section("Relief", words=words, figures=figures, tables=tables, terminal=told)
+
+
+def mesh(result: Result, measures: Measures) -> Section | None:
+    """Show the teeth in mesh; None without contact or whole teeth."""
+    found, pair = contact_of(result), pair_of(result)
+    if found is None or pair is None:
+        return None
+    return moving(found, relief_of(result), pair, measures)
+
+
+def harmonics(result: Result, measures: Measures) -> Section | None:
+    """Show the harmonics of the transmission error before and after; None without relief."""
+    found, made = contact_of(result), relief_of(result)
+    if found is None or made is None:
+        return None
+    return relief_plots.harmonics(found, made, measures)
+
+
+def numbers(result: Result, measures: Measures) -> Section | None:
+    """Return the tables of the gears, as a drive of one stage has them."""
+    gears = {k: v for k, v in result.design.items() if k not in ("contact", "relief")}
+    return drive.numbers(replace(result, design=gears), measures)
+
+
+CONTACT = (relief, mesh, harmonics, contact)
+DRAWINGS = (teeth, in_space, train_views.section)
+RATINGS = tuple(make for make in drive.RATINGS if make is not mesh_view.section)  # mesh is better
+GIVEN = Kind(
+    sections=(summary, *CONTACT, *DRAWINGS, *RATINGS, numbers, asked, assumptions),
+    terminal=(numbers, contact, relief, *drive.GIVEN.terminal, summary),
+    tiles=tiles,
+    decides=decides,
+    warns=warns,
+)
+KIND = Kind(
+    sections=(
+        *FIRST,
+        *CONTACT,
+        *DRAWINGS,
+        numbers,
+        *RATINGS,
+        *ASKED,
+        *LAST,
+    ),
+    terminal=(numbers, limits, *drive.GIVEN.terminal, contact, relief, *TOLD),
+    tiles=tiles,
+    decides=decides,
+    beside=beside,
+    warns=warns,
+    whole="pair",
+    given=GIVEN,
+)

@@ -1,0 +1,168 @@
+"""A spur pair drawn: teeth in mesh that move, plots over its path, tooth sections, in space."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from gearopt.formulations.drive.design import StageDesign, drive_design
+from gearopt.formulations.pair.contact import ContactLoad, PairContact
+from gearopt.formulations.pair.relief_map import PairRelief
+from gearopt.optimise.result import Result
+from gearopt.physics.blanks import Body
+from gearopt.physics.gears import GearPair
+from gearopt.physics.geometry.contact import usable_path
+from gearopt.report.kinds.pair import solid as pair_solid
+from gearopt.report.kinds.pair import tooth_section
+from gearopt.report.kinds.pair.mesh_motion import CAPTION, Carried, in_mesh
+from gearopt.report.kinds.pair.path_plots import Line, over_path, zone_words
+from gearopt.report.kinds.pair.words import of_duty
+from gearopt.report.measures import Measures
+from gearopt.report.section import Figure, Section
+
+MESH = "teeth in mesh"  # the animation that plots follow
+STIFFNESS = "N_per_mm_um"  # of MPa
+DASHES = ("solid", "dash", "dashdot", "longdash")  # of one load after the other
+SECTIONS = (
+    "A tooth of each gear in its transverse section, both at one scale; dimensions in {unit}: "
+    "diameters of tip d_a, reference d, root form d_Ff, base d_b and root circle d_f; thickness s "
+    "on the reference circle and s_a on the tip circle; least radius of the fillet ρ_F. F_n acts "
+    "where {where}, at the angle α_L to the normal of the tooth's centre line."
+)
+
+
+def pair_of(result: Result) -> GearPair | None:
+    """Return the gears of a design; None without them or where their teeth are not whole."""
+    stages = drive_design(result.design).stages if result.design.get("stages") else ()
+    if not stages:
+        return None
+    pair = stages[0].pair
+    return pair if all(float(gear.teeth).is_integer() for gear in pair.gears) else None
+
+
+def carried(found: PairContact, load: ContactLoad) -> Carried:
+    """Return what the pairs of teeth carry at a load, as drawings and plots have it."""
+    travels = np.asarray(found.travel_mm) / found.base_pitch_mm
+    return Carried.of_columns(travels, found.position_mm, load.share, load.transmission_error_mm)
+
+
+def moving(
+    found: PairContact, relief: PairRelief | None, pair: GearPair, measures: Measures
+) -> Section:
+    """Show the pair in mesh at the torque of the duty, and every load over the path of contact.
+
+    With a relief before and after it, side by side and in every plot.
+    """
+    duty, path = of_duty(found), usable_path(pair)
+    shown = {"": carried(found, duty)}
+    if relief:
+        after = relief.at[found.loads.index(duty)]
+        shown = {"without relief": shown[""], "with relief": carried(found, after)}
+    at = f"At {100.0 * duty.load:g} % of the duty's torque. {CAPTION}"
+    figures = [*_of_loads(found, relief, pair, measures), _stiffness(found, pair, measures)]
+    return Section(
+        "Teeth in mesh",
+        words=(f"Line of action and plots: {zone_words(path)}",),
+        animations=[in_mesh(pair, MESH, shown, measures, at)],
+        figures=figures,
+    )
+
+
+def _of_loads(
+    found: PairContact, relief: PairRelief | None, pair: GearPair, measures: Measures
+) -> list[Figure]:
+    """Plot shares and transmission error at every load, before and after a relief."""
+    shown, path = carried(found, of_duty(found)), usable_path(pair)
+    shares, errors = _lines(found.loads, measures)
+    said = "by the load"
+    if relief:
+        before, after = (shares, errors), _lines(relief.at, measures)
+        shares, errors = ([*_pale(b), *a] for b, a in zip(before, after, strict=True))
+        said = "by the load; dotted: without relief"
+    return [
+        over_path(
+            *(shown, path, shares, "share of the normal force [%]"),
+            f"Share of the load that one pair of teeth carries along its path, {said}.",
+            *(measures, MESH),
+        ),
+        over_path(
+            *(shown, path, errors, f"transmission error [{measures.unit('um')}]"),
+            f"Transmission error: approach of the gears along the line of action, {said}.",
+            *(measures, MESH),
+        ),
+    ]
+
+
+def _lines(loads: Sequence[ContactLoad], measures: Measures) -> tuple[list[Line], list[Line]]:
+    """Return curves of shares and of transmission errors, one for each load."""
+    micro = measures.of(1.0, "um")
+    shares, errors = [], []
+    for k, one in enumerate(loads):
+        look = f"at {100.0 * one.load:g} %", k + 1, DASHES[k % len(DASHES)]
+        shares.append(Line(100.0 * np.asarray(one.share), *look))
+        errors.append(Line(micro * np.asarray(one.transmission_error_mm), *look))
+    return shares, errors
+
+
+def _pale(lines: Sequence[Line]) -> list[Line]:
+    """Return curves as they are shown behind those that matter."""
+    return [replace(line, name="", dash="dot", width=1.2) for line in lines]
+
+
+def _stiffness(found: PairContact, pair: GearPair, measures: Measures) -> Figure:
+    """Plot the stiffness of one pair of teeth and of the mesh beside those of ISO 6336-1."""
+    duty, factor = of_duty(found), measures.of(1.0, STIFFNESS)
+    lines = [Line(factor * np.asarray(found.pair_stiffness_MPa), "one pair of teeth", 1)]
+    if duty.normal_force_N:
+        error = float(pair.face_width) * np.asarray(duty.transmission_error_mm)
+        lines.append(Line(factor * duty.normal_force_N / error, "mesh", 2))
+    beside = [
+        ("c_γα of ISO 6336-1", factor * found.iso_mesh_stiffness_MPa),
+        ("c' of ISO 6336-1", factor * found.iso_single_stiffness_MPa),
+    ]
+    return over_path(
+        *(carried(found, duty), usable_path(pair), lines),
+        f"stiffness [{measures.unit(STIFFNESS)}]",
+        f"Stiffness, normal force over face width and approach: of one pair of teeth, and of the "
+        f"mesh at {100.0 * duty.load:g} % of the torque.",
+        *(measures, MESH, beside),
+    )
+
+
+def teeth(result: Result, measures: Measures) -> Section | None:
+    """Draw a tooth of each gear with its dimensions; None without gears of whole teeth."""
+    if (pair := pair_of(result)) is None:
+        return None
+    single = tooth_section.carries_alone(usable_path(pair))
+    where = "one pair of teeth carries alone, farthest out" if single else "contact reaches the tip"
+    words = SECTIONS.format(unit=measures.lengths, where=where)
+    return Section(
+        "Tooth sections", words=(words,), drawings=tooth_section.sections(pair, measures)
+    )
+
+
+def in_space(result: Result, measures: Measures) -> Section | None:
+    """Draw the gears in three dimensions; None without gears of whole teeth."""
+    if (pair := pair_of(result)) is None:
+        return None
+    stage = drive_design(result.design).stages[0]
+    figure = pair_solid.figure(pair, bodies(stage), measures)
+    return Section("In three dimensions", figures=(figure,))
+
+
+def bodies(stage: StageDesign) -> tuple[Body, Body]:
+    """Return the bodies of both gears below their teeth."""
+    return (
+        Body(
+            stage.pinion_rim_thickness_mm,
+            stage.pinion_web_thickness_mm,
+            stage.pinion_hub_diameter_mm,
+            stage.pinion_bore_mm,
+        ),
+        Body(
+            stage.wheel_rim_thickness_mm,
+            stage.wheel_web_thickness_mm,
+            stage.wheel_hub_diameter_mm,
+            stage.wheel_bore_mm,
+        ),
+    )

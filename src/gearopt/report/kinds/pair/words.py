@@ -1,0 +1,150 @@
+"""What an engineer asks of a pair's contact, answered in sentences."""
+
+import math
+
+from gearopt.formulations.pair.contact import ContactLoad, PairContact
+from gearopt.physics.gears import GearPair
+from gearopt.physics.iso6336.accuracy import deviations
+from gearopt.physics.mesh_cycle import NARROW
+from gearopt.report.measures import rounded
+from gearopt.report.words import share
+
+# per cent by which the peak-to-peak transmission error exceeds that with the coupling by finite
+# elements, on the pairs of problems/shifted_pair.toml and problems/reference_pair.toml
+OVERSTATED = {"none": (22, 46), "ring torsion": (14, 24)}
+ALWAYS = {2: "two", 3: "three"}  # pairs, by the whole part of the contact ratio
+
+
+def of_duty(found: PairContact) -> ContactLoad:
+    """Return what happens at the torque of the duty, else at the largest load."""
+    loads = {one.load: one for one in found.loads}
+    return loads.get(1.0) or loads[max(loads)]
+
+
+def answers(
+    found: PairContact,
+    pair: GearPair | None = None,
+    frequency: float | None = None,
+    relieved: bool = False,
+) -> list[str]:
+    """Return how load passes, how even the motion is, what to change, how sure that all is.
+
+    pair: its gears, of whole teeth. frequency: of the mesh [Hz]. relieved: the gears have relief,
+    which is told elsewhere; the contact told here is without it.
+    """
+    load = of_duty(found)
+    even = _even(found, load, frequency)
+    if pair is not None and (alike := graded(pair, load.peak_to_peak_mm)):
+        even = f"{even} {alike}"
+    first = ["The results below are those of the gears without relief."] if relieved else []
+    change = [] if relieved or not load.normal_force_N else [_changed(found)]
+    return [*first, _shared(found, load), even, *change, _stiff(found, load), _sure(found)]
+
+
+def graded(pair: GearPair, error: float) -> str:
+    """Return how a peak-to-peak transmission error [mm] compares with accuracy; "" for none.
+
+    The form deviation of a profile doubles with two grades of ISO 1328-1 (1995).
+    """
+    if error <= 0.0:
+        return ""
+    middle = float(deviations(pair, (5.0, 5.0), smooth=True).profile_form)
+    grade = 5.0 + 2.0 * math.log2(error / middle)
+    alike = f"about the profile form tolerance of accuracy grade {grade:.0f} of ISO 1328-1"
+    if grade < 0.5:
+        alike = "below the profile form tolerance of every accuracy grade of ISO 1328-1"
+    elif grade > 12.5:
+        alike = "above the profile form tolerance of every accuracy grade of ISO 1328-1"
+    return (
+        f"The peak-to-peak value is {alike}: in coarser gears manufacturing errors matter more, "
+        "in finer ones the load."
+    )
+
+
+def _changed(found: PairContact) -> str:
+    """Say what relief by rule would do."""
+    first, second = (rounded(1e3 * amount, 3) for amount in found.rule_relief_mm)
+    return (
+        f"Tip relief of about {first} µm on the pinion and {second} µm on the wheel would "
+        "let every pair of teeth enter and leave contact without load at the torque of [duty]. A "
+        "table [relief] finds the best amounts for several loads."
+    )
+
+
+def _shared(found: PairContact, load: ContactLoad) -> str:
+    """Say how much one pair of teeth carries and where."""
+    first, last = load.share[0], load.share[-1]
+    ends = (
+        f"comes into contact with {share(first)} % of the load and leaves it with {share(last)} %"
+    )
+    if not load.normal_force_N:
+        return "Without load no pair of teeth carries anything."
+    alone = 2.0 - found.contact_ratio
+    if alone <= NARROW:
+        least = ALWAYS.get(int(found.contact_ratio + NARROW), "several")
+        most = f"at most {share(load.largest_share)} % of the load"
+        return f"One pair of teeth carries {most}, as {least} pairs always touch; it {ends}."
+    length = rounded(alone * found.base_pitch_mm, 3)
+    return (
+        f"One pair of teeth carries the whole load, {rounded(load.normal_force_N, 4)} N, over "
+        f"{length} mm of its path ({share(alone / found.contact_ratio)} %); a pair {ends}."
+    )
+
+
+def _even(found: PairContact, load: ContactLoad, frequency: float | None) -> str:
+    """Say how much the transmission error varies."""
+    each = [
+        f"{rounded(1e3 * one.peak_to_peak_mm, 3)} µm at {100.0 * one.load:g} % of the torque"
+        for one in found.loads
+        if one.load
+    ]
+    if not each:
+        return "Without load the transmission error does not vary."
+    of = f" of {rounded(frequency, 3)} Hz" if frequency else ""
+    return (
+        f"The transmission error varies by {', '.join(each)}, peak to peak. Its first harmonic, at "
+        f"the mesh frequency{of}, has an amplitude of {rounded(1e3 * load.harmonics_mm[0], 3)} µm "
+        f"at {100.0 * load.load:g} %."
+    )
+
+
+def _stiff(found: PairContact, load: ContactLoad) -> str:
+    """Say how the mesh stiffness compares with ISO 6336-1."""
+    if not load.mean_mesh_stiffness_MPa:
+        return "Without load there is no mesh stiffness."
+    off = 100.0 * (load.mean_mesh_stiffness_MPa / found.iso_mesh_stiffness_MPa - 1.0)
+    return (
+        f"The mean mesh stiffness is {rounded(abs(off), 2)} % {'above' if off > 0 else 'below'} "
+        "c_γα of ISO 6336-1, which does not depend on the bores."
+    )
+
+
+def _sure(found: PairContact) -> str:
+    """Say how wrong stiffness and transmission error may be."""
+    low, high = found.error_percent
+    stiff = (
+        f"Accuracy: for 34 pairs of steel gears the stiffness by {found.level} was "
+        f"{_between(low, high)} that by finite elements"
+    )
+    if found.coupling not in OVERSTATED:
+        return (
+            f"{stiff}. The error of the mean transmission error is about as large, that of its "
+            "peak-to-peak value up to twice as large."
+        )
+    least, most = OVERSTATED[found.coupling]
+    name = {"none": "Without coupling of neighbouring teeth"}.get(
+        found.coupling, f"With neighbouring teeth coupled by {found.coupling}"
+    )
+    return (
+        f"{stiff}. {name} the peak-to-peak transmission error of two of them was {least} to "
+        f'{most} % larger than with coupling = "finite elements".'
+    )
+
+
+def _between(low: float, high: float) -> str:
+    """Return two errors in per cent in words."""
+    if low < 0.0 < high:
+        return f"from {rounded(-low, 2)} % below to {rounded(high, 2)} % above"
+    near, far = sorted((abs(low), abs(high)))
+    way = "above" if low >= 0.0 else "below"
+    return f"{rounded(near, 2)} to {rounded(far, 2)} % {way}"

@@ -1,0 +1,385 @@
+"""The accuracy of a servo axis: sources of its error, tolerances, and what draws of them give."""
+
+import math
+from collections.abc import Sequence
+from html import escape
+from itertools import pairwise
+from typing import Any
+
+from gearopt.formulations.servo.servo_design import (
+    Allocation,
+    BudgetUse,
+    DrawnErrors,
+    ErrorSource,
+    Histogram,
+    MeshBacklash,
+    ToleranceRow,
+)
+from gearopt.optimise.result import Result
+from gearopt.report.drawing.sheet import series
+from gearopt.report.kinds.servo.words import (
+    ARCMIN,
+    arc_minutes,
+    degrees,
+    design_of,
+    error_limit,
+    limit_line,
+)
+from gearopt.report.measures import Measures
+from gearopt.report.section import Cell, Figure, Section, Table, axis, layout, percent
+from gearopt.report.words import number, share
+
+ROW = 23.0  # px of a source
+REST = 120.0  # px of legend and axis
+ROOM = 1.04  # of the longest bar
+ENDS = 1e-6  # relative: a tolerance as near to an end of its range stands at it
+SHORT = 0.999  # of a cell: a full bar would mark a limit that is reached
+RULES = {
+    "worst_case": "worst case",
+    "rss": "root sum of squares",
+    "mean_plus_sd": "mean + {kappa} sd",
+}
+
+
+def errors(result: Result, measures: Measures) -> Section | None:
+    """Show every source at its limit, one after the other; None where the file has none."""
+    design = design_of(result)
+    found, limit = design.errors, error_limit(design, result.limits)
+    if not found:
+        return None
+    total = sum(e.error_deg for e in found)
+    names = _names([e.source for e in found])
+    order = [f"total {degrees(total)}", *reversed(names)]  # from below
+    traces = _steps(found, names, measures)
+    traces.append(
+        {
+            "type": "bar",
+            "orientation": "h",
+            "name": "total",
+            "y": [order[0]],
+            "x": [total],
+            "hovertemplate": f"total {degrees(total)}, {arc_minutes(total)}<extra></extra>",
+            "marker": {"color": "--series-8"},
+            "showlegend": False,
+        }
+    )
+    shapes = [] if limit is None else [limit_line("limit", limit, "y", 2.0)]
+    across = axis("error at the output [°]", range=[0.0, ROOM * max(total, limit or 0.0)])
+    up = axis("", type="category", categoryorder="array", categoryarray=order, ticks="")
+    up["showgrid"] = False
+    high = round(REST + ROW * len(order))
+    plot = layout(across, up, high, barmode="overlay", bargap=0.25, shapes=shapes)
+    caption = (
+        "Each bar begins where the last one ends: the worst case, all at their limits at once."
+    )
+    words, table = _error_words(total, limit), _error_table(found, total, measures)
+    tables = (table, *_backlash_table(design.backlash, measures))
+    return Section(
+        "Where the error comes from",
+        words=[*words, *_by_kind(found, total)],
+        figures=(Figure(traces, plot, caption),),
+        tables=tables,
+        terminal=(*tables, *words),
+    )
+
+
+def _backlash_table(found: Sequence[MeshBacklash], measures: Measures) -> tuple[Table, ...]:
+    """Return minimum and maximum backlash of every stage; nothing where the file asks for none."""
+    if not found:
+        return ()
+    unit = measures.unit("um")
+
+    def cell(length: float | None) -> Cell | str:
+        if length is None:
+            return ""
+        size = measures.of(length, "um")
+        return Cell(size, f"{size:.2f}")
+
+    heads = ("stage", f"minimum backlash [{unit}]", f"maximum [{unit}]", f"required [{unit}]")
+    rows = [
+        [row.stage, cell(row.minimum_mm), cell(row.maximum_mm), cell(row.asked_mm)] for row in found
+    ]
+    return (Table("backlash", heads, rows),)
+
+
+def _error_words(total: float, limit: float | None) -> list[str]:
+    """Say what all sources [deg] add up to where no limit shows it, and what is too much."""
+    if limit is None:
+        return [f"All sources at their limits add up to {arc_minutes(total)} at the output."]
+    if total <= limit * (1.0 + 1e-9):
+        return []
+    return [f"All sources at their limits exceed the limit by {degrees(total - limit)}."]
+
+
+def _error_table(found: Sequence[ErrorSource], total: float, measures: Measures) -> Table:
+    """Return every source, and on the terminal their sum."""
+    heads = ["source", "kind", "stage", f"tolerance [{measures.unit('um')}]"]
+    short = {
+        "source": "error at the output",
+        "stage": "where",
+        "error at the output [°]": "°",
+        "of the sum, %": "%",
+    }
+
+    def row(name: str, kind: str, error: float, *place: Any) -> list[Any]:
+        share = 100.0 * error / total if total else None
+        angle = Cell(error, number(error), short=f"{error:.5f}")
+        arc = Cell(ARCMIN * error, f"{ARCMIN * error:.3f}")
+        return [name, kind, *place, angle, arc, Cell(share, "", short=f"{share or 0.0:.1f}")]
+
+    rows = []
+    for e in found:
+        size = measures.of(e.tolerance_mm, "um")
+        place = Cell(e.stage, number(e.stage), short=f"stage {e.stage}")
+        rows.append(row(e.source, e.kind, e.error_deg, place, Cell(size, f"{size:.2f}")))
+    rows.append(row("sum", "", total, "", ""))
+    heads += ["error at the output [°]", "'", "of the sum, %"]
+    return Table("errors", heads, rows, folded=True, terminal_only=("'", "sum"), short=short)
+
+
+def _names(sources: list[str]) -> list[str]:
+    """Return names of bars: spaces without width tell equal ones apart, which a plot would add."""
+    return [escape(name) + "\u200b" * sources[:k].count(name) for k, name in enumerate(sources)]
+
+
+def _steps(
+    found: Sequence[ErrorSource], names: list[str], measures: Measures
+) -> list[dict[str, Any]]:
+    """Return a trace for every kind in every stage, so that the legend names it."""
+    starts = [sum(e.error_deg for e in found[:k]) for k in range(len(found))]
+    groups: dict[tuple[str, int], list[int]] = {}
+    for k, e in enumerate(found):
+        groups.setdefault((e.kind, e.stage), []).append(k)
+    return [
+        {
+            "type": "bar",
+            "orientation": "h",
+            "name": f"{escape(kind)}, stage {stage}",
+            "y": [names[k] for k in rows],
+            "x": [found[k].error_deg for k in rows],
+            "base": [starts[k] for k in rows],
+            "text": [_told(found[k], measures) for k in rows],
+            "textposition": "none",
+            "hovertemplate": "%{text}<extra></extra>",
+            "marker": {"color": series(place)},
+        }
+        for place, ((kind, stage), rows) in enumerate(groups.items(), 1)
+    ]
+
+
+def _told(one: ErrorSource, measures: Measures) -> str:
+    tolerance = f"{measures.of(one.tolerance_mm, 'um'):.4g} {measures.unit('um')}"
+    return (
+        f"{escape(one.source)}: {degrees(one.error_deg)}, {arc_minutes(one.error_deg)}, "
+        f"tolerance {tolerance}"
+    )
+
+
+def _by_kind(found: Sequence[ErrorSource], total: float) -> tuple[str, ...]:
+    """Say how much each kind has of the sum."""
+    sums: dict[str, float] = {}
+    for e in found:
+        sums[e.kind] = sums.get(e.kind, 0.0) + e.error_deg
+    if len(sums) < 2 or not total:
+        return ()
+    parts = (f"{kind} {degrees(v)} ({100.0 * v / total:.1f} %)" for kind, v in sums.items())
+    return (f"By kind: {', '.join(parts)}.",)
+
+
+def tolerances(result: Result, measures: Measures) -> Section | None:
+    """Show the tolerances before and after with their cost; None where the file has none."""
+    design = design_of(result)
+    rows, cost = design.tolerances, design.allocation
+    if not rows or cost is None:
+        return None
+    unit = measures.unit("um")
+    heads = ["tolerance", "stage", "kind", f"old [{unit}]", f"new [{unit}]", "new/old"]
+    heads += ["of the error, %", "cost, old", "cost, new"]
+    total = sum(r.sensitivity_deg_per_mm * r.new_mm for r in rows)
+    highest = max(max(r.old_cost, r.new_cost) for r in rows)
+    table = Table(
+        "tolerances",
+        heads,
+        [*(_row(r, total, highest, measures) for r in rows), _sums(rows, measures)],
+        page_only=("stage", "kind", "of the error, %"),
+        short={"cost, old": "cost", "cost, new": "new cost"},
+    )
+    words = _cost_words(cost, None if design.train is None else design.train.error_deg)
+    ends = (
+        "Share of the error: sensitivity times new tolerance over the sum of these. Min and max: "
+        "the new tolerance is the minimum or the maximum that the file allows."
+    )
+    terminal = (table, "\n".join(words))
+    return Section("Tolerances", words=[*words, ends], tables=(table,), terminal=terminal)
+
+
+def _cost_words(found: Allocation, error: float | None) -> list[str]:
+    """Say how the cost changes, and what the budgets are; error: of the train [deg]."""
+    change = 100.0 * (found.cost / found.old_cost - 1.0)
+    limits = (
+        f"{_rule(b)}, limit equal to the error at the output"
+        if error is not None and degrees(b.limit_deg) == degrees(error)
+        else f"{_rule(b)} {degrees(b.limit_deg)}"
+        for b in found.budgets
+    )
+    return [f"The cost changes by {change:+.1f} %. Budgets: {', '.join(limits)}."]
+
+
+def _rule(budget: BudgetUse) -> str:
+    kappa = "" if budget.kappa is None else number(budget.kappa)
+    return RULES[budget.rule].format(kappa=kappa)
+
+
+def _row(row: ToleranceRow, total: float, highest: float, measures: Measures) -> list[Any]:
+    old, new = (measures.of(t, "um") for t in (row.old_mm, row.new_mm))
+    ratio = row.new_mm / row.old_mm
+    return [
+        row.name,
+        row.stage,
+        row.kind,
+        Cell(old, f"{old:.2f}"),
+        Cell(new, f"{_end(row)} {new:.2f}".strip(), short=f"{new:.2f}"),
+        Cell(ratio, f"{ratio:.3f}"),
+        percent(row.sensitivity_deg_per_mm * row.new_mm / total if total else None),
+        *(_cost(cost, highest) for cost in (row.old_cost, row.new_cost)),
+    ]
+
+
+def _end(row: ToleranceRow) -> str:
+    """Return whether a new tolerance is the minimum or the maximum allowed."""
+    for name, end in (("min", row.lower_mm), ("max", row.upper_mm)):
+        if end and abs(row.new_mm / end - 1.0) < ENDS:
+            return name
+    return ""
+
+
+def _cost(cost: float, highest: float) -> Cell:
+    """Return a cost with its bar; all bars of the table have one scale."""
+    share = SHORT * max(0.0, cost) / highest if highest > 0.0 else None
+    return Cell(cost, f"{cost:.3f}", share)
+
+
+def _sums(rows: Sequence[ToleranceRow], measures: Measures) -> list[Any]:
+    """Return the last row: sums of tolerances and costs."""
+    old, new = (
+        sum(measures.of(t, "um") for t in column)
+        for column in ([r.old_mm for r in rows], [r.new_mm for r in rows])
+    )
+    costs = sum(r.old_cost for r in rows), sum(r.new_cost for r in rows)
+    cells = [Cell(v, f"{v:.2f}") for v in (old, new)]
+    ratio, whole = Cell(new / old, f"{new / old:.3f}"), Cell(100.0, "100.0")
+    return ["sum", None, "", *cells, ratio, whole, *(Cell(cost, f"{cost:.3f}") for cost in costs)]
+
+
+def drawn(result: Result, measures: Measures) -> Section | None:
+    """Show what drawn deviations make of the error; None without draws."""
+    design = design_of(result)
+    found = design.drawn
+    if found is None:
+        return None
+    most = max(found.histogram.counts)
+    plot = layout(
+        axis("error at the output [°]"),
+        axis("Monte Carlo trains", range=[0, 1.08 * most]),
+        380,
+        bargap=0.0,
+        shapes=_interval(found),
+    )
+    caption = (
+        f"{found.count:,} Monte Carlo trains with every deviation at random within its tolerance "
+        f"(seed {found.seed}); the band is the interval of the quantile."
+    )
+    worst = share(found.worst_case_deg / found.limit_deg)
+    normal = (
+        f"Mean {degrees(found.mean_deg)}, standard deviation {degrees(found.sd_deg)}; all "
+        f"tolerances at their limits at once would be {worst} % of the limit."
+    )
+    budgets = () if design.allocation is None else design.allocation.budgets
+    said = any(budget.limit_deg == found.limit_deg for budget in budgets)
+    words, bins = _drawn_words(found, said), _bins(found.histogram)
+    heads = ("from [°]", "to [°]", "Monte Carlo trains")
+    traces = [_bars(bins, found.count), *_lines(found, 1.05 * most)]
+    return Section(
+        "Monte Carlo errors",
+        words=[*words, normal],
+        figures=(Figure(traces, plot, caption),),
+        tables=(Table("Monte Carlo errors", heads, bins, folded=True),),
+        half=design.stiffness is not None,
+        terminal=("\n".join(words),),
+    )
+
+
+def _drawn_words(found: DrawnErrors, said: bool) -> list[str]:
+    """Say what yield and quantile are, with their intervals; said: the limit is known."""
+    sure = f"{100.0 * found.confidence:g} %"
+    low = f"{math.floor(1e6 * found.yield_low) / 1e4:.4f}"  # outwards, to hold what is said
+    high = f"{math.ceil(1e6 * found.yield_high) / 1e4:.4f}"
+    share, ends = f"{100.0 * found.probability:g} %", _ends(found)
+    limit = "" if said else f" of {degrees(found.limit_deg)}"
+    words = [
+        f"{100.0 * found.yield_share:.4f} % of the Monte Carlo trains keep the limit{limit}; with "
+        f"{sure} confidence the yield lies between {low} and {high} %."
+    ]
+    between = " (too few draws for an interval with this confidence)"
+    if ends:
+        interval = f"between {' and '.join(map(degrees, ends))}"
+        between = f" (this quantile lies {interval} with {sure} confidence)"
+    quantile = f"{share} of them have an error of at most {degrees(found.quantile_deg)}"
+    words.append(f"{quantile}{between}; the maximum is {degrees(found.largest_deg)}.")
+    return words
+
+
+def _ends(found: DrawnErrors) -> tuple[float, ...]:
+    """Return the interval of the quantile; nothing where the draws were too few."""
+    low, high = found.quantile_low_deg, found.quantile_high_deg
+    return () if low is None or high is None else (low, high)
+
+
+def _bins(histogram: Histogram) -> list[tuple[float, float, int]]:
+    """Return between which errors how many trains were drawn."""
+    ends = pairwise(histogram.edges_deg)
+    return [(a, b, n) for (a, b), n in zip(ends, histogram.counts, strict=True)]
+
+
+def _bars(bins: list[tuple[float, float, int]], count: int) -> dict[str, Any]:
+    texts = [f"{a:.4f} to {b:.4f}°: {n:,} ({100.0 * n / count:.3g} %)" for a, b, n in bins]
+    return {
+        "type": "bar",
+        "name": "drawn",
+        "x": [0.5 * (a + b) for a, b, _ in bins],
+        "width": [b - a for a, b, _ in bins],
+        "y": [n for _, _, n in bins],
+        "text": texts,
+        "textposition": "none",
+        "hovertemplate": "%{text}<extra></extra>",
+        "marker": {"color": "--series-1/0.55", "line": {"color": "--series-1", "width": 0.6}},
+        "showlegend": False,
+    }
+
+
+def _lines(found: DrawnErrors, top: float) -> list[dict[str, Any]]:
+    """Return mean, quantile and limit as upright lines, with their values in the legend."""
+    marks = (
+        ("mean", found.mean_deg, "--series-4", "dot"),
+        (f"{100.0 * found.probability:g} % quantile", found.quantile_deg, "--series-5", "solid"),
+        ("limit", found.limit_deg, "--warn", "dash"),
+    )
+    return [
+        {
+            "type": "scatter",
+            "mode": "lines",
+            "name": f"{name} {degrees(at)}",
+            "x": [at, at],
+            "y": [0.0, top],
+            "hovertemplate": f"{name} {degrees(at)}<extra></extra>",
+            "line": {"color": colour, "width": 2.0, "dash": dash},
+        }
+        for name, at, colour, dash in marks
+    ]
+
+
+def _interval(found: DrawnErrors) -> list[dict[str, Any]]:
+    """Return the interval of the quantile as a band."""
+    band = {"type": "rect", "yref": "paper", "y0": 0, "y1": 1, "layer": "below"}
+    ends = dict(zip(("x0", "x1"), _ends(found), strict=False))
+    return [band | ends | {"fillcolor": "--series-5/0.2", "line": {"width": 0}}] if ends else []

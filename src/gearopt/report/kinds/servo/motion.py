@@ -1,0 +1,206 @@
+"""What a servo axis achieves over its total ratio: in sentences, as a curve, in a table."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from gearopt.formulations.servo.servo_design import MOTIONS, Achieved, RatioDesign, ServoReport
+from gearopt.optimise.result import Result
+from gearopt.report.kinds.servo.words import design_of, report_of
+from gearopt.report.measures import METRIC, Measures
+from gearopt.report.section import Cell, Figure, Section, Table, axis, cell, layout
+from gearopt.report.words import amount, number
+
+LARGEST = "acceleration"  # the duty whose value is made largest
+WHO = {  # field of a `RatioDesign`: the head of its column, in two lines on the terminal
+    "best": "best ratio,\nno gears",
+    "best_with_train": "best ratio,\nsame inertia",
+    "chosen": "chosen\ntrain",
+    "given_train": "given\ntrain",
+    "given": "given ratio,\nno gears",
+}
+ROWS = {  # field of `Achieved`: its name, and its unit
+    "loss_percent": ("worse than the best", "percent"),
+    "gear_inertia_kg_m2": ("inertia of the train", "kg_m2"),
+    "inertia_ratio": ("inertia ratio, load to motor", ""),
+    "motor_speed_rpm": ("maximum motor speed", "rpm"),
+    "motor_speed_used_percent": ("motor speed used", "percent"),
+    "motor_torque_used_percent": ("motor torque used", "percent"),
+    "peak_load_torque_Nm": ("peak torque at the load", "Nm"),
+    "peak_motor_torque_Nm": ("peak motor torque", "Nm"),
+    "torque_to_load_percent": ("torque to the load", "percent"),
+    "torque_to_rotor_percent": ("torque to the motor's rotor", "percent"),
+    "torque_to_gears_percent": ("torque to the train", "percent"),
+    "torque_to_friction_percent": ("torque to friction", "percent"),
+}
+NOTE = (
+    "Inertias are referred to the motor shaft; their ratio is that of the load to rotor plus train."
+)
+SPEEDING = " Torques are in per cent of the motor's torque while the load accelerates."
+BRAKING = " The motor also brakes with its full torque, and friction helps: the two ramps differ."
+WITH_TRAIN = "with the chosen train's inertia"
+TICKS = (1.0, 2.0, 5.0)  # of a decade
+MARKS = (  # of what is judged beside the best ratio: colour and symbol
+    ("chosen", "--series-3", "diamond"),
+    ("given_train", "--series-8", "x"),
+    ("given", "--series-4", "circle"),
+)
+
+
+def section(result: Result, measures: Measures) -> Section | None:
+    """Show the curve of a duty, and what trains achieve; None where the file has none."""
+    found = design_of(result).ratio
+    if found is None:
+        return None
+    curve, known = _curve(found, measures), found.best is not None
+    words = [_flat(found), *bound_words(report_of(result), found, measures)]
+    achieved = [_achieved(found, measures)] if known else []
+    motion = (SPEEDING if found.duty != "swing" else "") + (BRAKING if found.duty == "move" else "")
+    note = [NOTE + motion] if known else []
+    told = words if known else [*best_words(found, measures), *words]
+    return Section(
+        "Total ratio",
+        words=[*words, *note],
+        figures=(_figure(found, curve, measures),),
+        tables=(*achieved, curve),
+        terminal=("\n".join(told), *achieved, *note),
+    )
+
+
+def best_words(found: RatioDesign, measures: Measures = METRIC) -> list[str]:
+    """Say what the best total ratio is, and what the given one loses."""
+    best = "Maximum" if found.duty == LARGEST else "Minimum"
+    without = ", if gears had no inertia" if found.chosen else ""
+    words = [
+        f"{best} {found.name}: {amount(found.value, found.unit, measures)} at a total ratio "
+        f"of {number(found.total_ratio)}{without}."
+    ]
+    if found.given:
+        ratio = number(found.given.total_ratio)
+        words.append(f"At the given ratio of {ratio} it is {_value(found.given, found, measures)}.")
+    return words
+
+
+def bound_words(report: ServoReport, found: RatioDesign, measures: Measures) -> list[str]:
+    """Say what not even real-valued gears achieve; nothing where that is not known."""
+    bound = report.figures.get(f"real_valued_bound_{MOTIONS[found.duty].key}")
+    if bound is None:
+        return []
+    better, most = "more" if found.duty == LARGEST else "less", amount(bound, found.unit, measures)
+    reached = found.chosen and amount(found.chosen.value, found.unit, measures) == most
+    than = "" if reached else f" than {most}"
+    return [f"Not even real-valued teeth and modules within the limits give {better}{than}."]
+
+
+def _value(one: Achieved, found: RatioDesign, measures: Measures) -> str:
+    """Return a value with how far it is from the best."""
+    less = "less" if (found.duty == LARGEST) == (one.loss_percent >= 0.0) else "more"
+    value = amount(one.value, found.unit, measures)
+    return f"{value}, {abs(one.loss_percent):.3g} % {less}"
+
+
+def _achieved(found: RatioDesign, measures: Measures) -> Table:
+    """Return what the axis achieves, a column for every train and ratio."""
+    columns = {who: one for who in WHO if (one := getattr(found, who)) is not None}
+
+    def row(name: str, key: str, unit: str) -> list[Any]:
+        values = [getattr(one, key) for one in columns.values()]
+        label = f"{name} [{measures.unit(unit)}]" if unit else name
+        return [label, *(_cell(v, unit, measures) for v in values)]
+
+    rows = [row("total ratio", "total_ratio", ""), row(found.name, "value", found.unit)]
+    for key, (name, unit) in ROWS.items():
+        if any(getattr(one, key) is not None for one in columns.values()):
+            rows.append(row(name, key, unit))
+    short = {"": "\nmotor and load"} | {WHO[who].replace("\n", " "): WHO[who] for who in columns}
+    return Table("motor and load", list(short), rows, short=short, across=True)
+
+
+def _cell(value: float | None, unit: str, measures: Measures) -> Cell | None:
+    if value is None:
+        return None
+    return cell(value, unit, measures)
+
+
+def _curve(found: RatioDesign, measures: Measures) -> Table:
+    """Return the value over the ratio, without gears and with the chosen train."""
+    unit = measures.unit(found.unit)
+    heads = ["total ratio", f"{found.name} [{unit}]"]
+    columns: list[Sequence[Any]] = [found.curve.total_ratio]
+    columns.append([measures.of(v, found.unit) for v in found.curve.value])
+    if less := found.curve.value_with_train:
+        heads.append(f"{WITH_TRAIN} [{unit}]")
+        columns.append([None if v is None else measures.of(v, found.unit) for v in less])
+    return Table("ratio curve", heads, list(zip(*columns, strict=True)), folded=True)
+
+
+def _figure(found: RatioDesign, curve: Table, measures: Measures) -> Figure:
+    """Draw the curves, the best ratio, and what else is judged."""
+    ratios, *values = (list(column) for column in zip(*curve.rows, strict=True))
+    unit = measures.unit(found.unit)
+    lines = [(found.name, "solid", "--series-1", False)]
+    if len(values) > 1:
+        lines = [
+            ("no gears", "solid", "--series-1", True),
+            (WITH_TRAIN, "dash", "--series-3", True),
+        ]
+    traces = [
+        {
+            "type": "scatter",
+            "mode": "lines",
+            "name": name,
+            "x": ratios,
+            "y": column,
+            "hovertemplate": f"ratio %{{x:.5g}}: %{{y:.5g}} {unit}<extra></extra>",
+            "line": {"color": colour, "width": 2.2, "simplify": False, "dash": dash},
+            "showlegend": named,
+        }
+        for (name, dash, colour, named), column in zip(lines, values, strict=True)
+    ]
+    at = found.total_ratio, measures.of(found.value, found.unit)
+    traces.append(_mark("best", *at, unit, "--series-2", "star", 14))
+    for who, colour, symbol in MARKS:
+        if (one := getattr(found, who)) is not None:
+            at = one.total_ratio, measures.of(one.value, found.unit)
+            traces.append(_mark(who.replace("_", " "), *at, unit, colour, symbol, 10))
+    plot = layout(
+        axis("total ratio", type="log", tickvals=_ticks(ratios), tickformat="~g"),
+        axis(f"{found.name} [{unit}]"),
+        360,
+    )
+    caption = f"{found.name.capitalize()} over the total ratio, motor over load speed."
+    return Figure(traces, plot, caption)
+
+
+def _mark(
+    name: str, ratio: float, value: float, unit: str, colour: str, symbol: str, size: int
+) -> dict[str, Any]:
+    """Mark a ratio with its value, which its name in the legend shows too."""
+    label = f"{name} {number(ratio)}: {number(float(value))} {unit}"
+    return {
+        "type": "scatter",
+        "mode": "markers",
+        "name": label,
+        "x": [ratio],
+        "y": [value],
+        "hovertemplate": f"{label}<extra></extra>",
+        "marker": {"color": colour, "size": size, "symbol": symbol},
+    }
+
+
+def _ticks(ratios: list[float]) -> list[float]:
+    """Return 1, 2, 5, 10, ... within the curve."""
+    decades = (10.0**k for k in range(-6, 13))
+    marks = [tick * decade for decade in decades for tick in TICKS]
+    return [mark for mark in marks if ratios[0] <= mark <= ratios[-1]]
+
+
+def _flat(found: RatioDesign) -> str:
+    """Say between which ratios the value is within one per cent of the best."""
+    most = found.duty == LARGEST
+    limit = found.value / 1.01 if most else found.value * 1.01
+    pairs = zip(found.curve.total_ratio, found.curve.value, strict=True)
+    near = [n for n, v in pairs if (v >= limit if most else v <= limit)]
+    return (
+        f"The optimum is flat: total ratios from {number(round(near[0], 1))} to "
+        f"{number(round(near[-1], 1))} are within 1 % of the best {found.name}."
+    )

@@ -1,0 +1,312 @@
+"""A strain wave gearing: it runs, how near its teeth come, what they carry, and its cutter."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from gearopt.formulations.strain_wave.cutter_report import CutterDesign
+from gearopt.formulations.strain_wave.exchange import CUTTING
+from gearopt.formulations.strain_wave.report import INVOLUTE, WaveDesign
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import typed
+from gearopt.report.answer import asked, assumptions, limits, summary
+from gearopt.report.deciding import of_limits
+from gearopt.report.drawing.sheet import series
+from gearopt.report.kinds import Kind
+from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
+from gearopt.report.kinds.strain_wave import tables
+from gearopt.report.kinds.strain_wave.cutter import drawing, usual_scale
+from gearopt.report.kinds.strain_wave.motion import running
+from gearopt.report.measures import METRIC, Measures
+from gearopt.report.section import Figure, Section, Tile, axis, layout
+from gearopt.report.words import amount, number, series_of
+
+RUNS = "strain wave gearing"  # the animation that plots follow
+ANGLE = "angle of the tooth on the wave [°]"
+NEAR_DEG = 25.0  # of the wave, that the plot of clearances shows at least on either side
+BEYOND_DEG = 10.0  # and beyond the last contact
+
+
+def design_of(result: Result) -> WaveDesign | None:
+    """Return the gearing of a result; None without one."""
+    if not result.design:
+        return None
+    found: WaveDesign = typed(WaveDesign, result.design, "design")
+    return found
+
+
+def tiles(result: Result, measures: Measures) -> list[Tile]:
+    """Return pressure, teeth that carry, clearance and size as key figures."""
+    if (found := design_of(result)) is None:
+        return []
+    equal = amount(found.equal_pressure_MPa, "MPa", measures)
+    touching = found.least_clearance_mm >= CUTTING
+    least = max(0.0, found.least_clearance_mm) if touching else found.least_clearance_mm
+    return [
+        Tile(
+            "largest pressure, shared loads",
+            amount(found.shared_pressure_MPa, "MPa", measures),
+            f"{equal} if conjugate pairs alone carried",
+        ),
+        Tile(
+            "teeth that carry",
+            f"{found.carrying_teeth} per lobe",
+            f"equivalent to {number(found.effective_teeth)} equally loaded; "
+            f"{number(found.pairs_in_contact)} are conjugate",
+        ),
+        Tile(
+            "least clearance over the wave",
+            amount(least, "um", measures),
+            "where conjugate flanks touch" if touching else "interference",
+        ),
+        Tile(
+            "outer diameter",
+            amount(found.outer_diameter_mm, "mm", measures),
+            f"module {amount(found.module_mm, 'mm', measures)}",
+        ),
+    ]
+
+
+def decides(result: Result) -> str:
+    """Return what was reached: of a given gearing its loads, else its teeth and what decides."""
+    if (found := design_of(result)) is None:
+        return ""
+    if result.value is None and found.least_clearance_mm < CUTTING:
+        return ""
+    if result.value is None:
+        pressure = amount(found.shared_pressure_MPa, "MPa", METRIC)
+        carry = "1 tooth of a lobe carries"
+        if found.carrying_teeth > 1:
+            carry = f"{found.carrying_teeth} teeth of a lobe carry"
+        return f"{carry}, at up to {pressure}"
+    sizes = (
+        f"{found.flexspline_teeth} and {found.circular_spline_teeth} teeth of module "
+        f"{amount(found.module_mm, 'mm', METRIC)} carry {amount(found.torque_Nm, 'Nm', METRIC)} "
+        f"in {amount(found.outer_diameter_mm, 'mm', METRIC)}"
+    )
+    ends = [end.name.replace("_", " ") for end in found.range_ends]
+    rest = f"; at ends of their ranges: {series_of(ends)}" if ends else ""
+    return f"{sizes}; {of_limits(result)}{rest}"
+
+
+def warns(result: Result) -> Sequence[str]:
+    """Return that teeth interfere, or that the cutter has a cusp."""
+    if (found := design_of(result)) is None:
+        return ()
+    told = []
+    if found.least_clearance_mm < CUTTING:
+        told.append(
+            f"Interference: teeth overlap by {-1e3 * found.least_clearance_mm:.3g} µm, at "
+            f"{found.least_clearance_at_deg:.3g}° from the major axis: loads and pressures are "
+            "not valid."
+        )
+    if found.cutter and not found.cutter.regular:
+        told.append(f"No such cutter: its edge would have a cusp. {_least(found.cutter)}")
+    return told
+
+
+def moving(result: Result, measures: Measures) -> Section | None:
+    """Show the gearing running, and clearances and loads over the wave."""
+    if (found := design_of(result)) is None:
+        return None
+    loaded = max(found.load_N) > 0.0  # teeth absurdly stiff carry what is rounding of the torque
+    words = (
+        f"{number(found.pairs_in_contact)} pairs per lobe and flank are conjugate: their flanks "
+        "touch without load. Other pairs come close; elastic deformation brings them into contact.",
+    )
+    return Section(
+        "Teeth in mesh",
+        words=words,
+        animations=[running(found, RUNS, measures)] if loaded else [],
+        figures=[_clearances(found, measures), *([_loads(found, measures)] if loaded else [])],
+        tables=[
+            *(tables.within(found, measures), tables.teeth(found, measures)),
+            *(tables.wave(found, measures), tables.load(found, measures)),
+        ],
+        terminal=(tables.teeth(found, measures),),
+    )
+
+
+def _line(x: Sequence[float], y: Any, name: str, colour: int) -> dict[str, Any]:
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "x": list(x),
+        "y": list(y),
+        "name": name,
+        "line": {"color": series(colour), "width": 2},
+        "hovertemplate": "%{y:.4g}",
+    }
+
+
+def _clearances(found: WaveDesign, measures: Measures) -> Figure:
+    """Plot the clearance of a tooth near the arc of contact."""
+    factor, unit = measures.of(1.0, "um"), measures.unit("um")
+    rows = [
+        (a, factor * c)
+        for a, c in zip(found.wave_angle_deg, found.wave_clearance_mm, strict=True)
+        if -NEAR_DEG <= a <= max(NEAR_DEG, found.touching_deg[-1][1] + BEYOND_DEG)
+    ]
+    x, y = zip(*rows, strict=True)
+    plot = layout(axis(ANGLE), axis(f"clearance [{unit}]"), hovermode="x")
+    shade = {
+        "type": "rect",
+        "layer": "below",
+        "yref": "paper",
+        "y0": 0.0,
+        "y1": 1.0,
+        "fillcolor": "--grid",
+        "line": {"width": 0},
+    }
+    plot["shapes"] = [shade | {"x0": a, "x1": b} for a, b in found.touching_deg]
+    caption = "Least clearance of a tooth by its place on the wave; shaded: conjugate flanks touch."
+    return Figure([_line(x, y, "clearance", 1)], plot, caption, follows=RUNS)
+
+
+def _loads(found: WaveDesign, measures: Measures) -> Figure:
+    """Plot load and pressure of a tooth on its way over the wave."""
+    force = measures.of(1.0, "N")
+    load = [force * v for v in found.load_N]
+    plot = layout(
+        axis(ANGLE), axis(f"load [{measures.unit('N')}]", rangemode="tozero"), hovermode="x"
+    )
+    carrying = [a for a, v in zip(found.load_angle_deg, found.load_N, strict=True) if v > 0.0]
+    room = 0.3 * (carrying[-1] - carrying[0])
+    plot["xaxis"] |= {"range": [carrying[0] - room, carrying[-1] + room]}
+    caption = "Load of a tooth at the duty's torque on its way over the wave."
+    return Figure([_line(found.load_angle_deg, load, "load", 1)], plot, caption, follows=RUNS)
+
+
+def shift(result: Result, measures: Measures) -> Section | None:
+    """Plot the pressure against the profile shift, as the search of the paper had it."""
+    found = design_of(result)
+    if found is None or len(found.shifts) < 2:
+        return None
+    factor, x = measures.of(1.0, "MPa"), [r.profile_shift for r in found.shifts]
+    lines = [
+        _line(x, [factor * r.equal_MPa for r in found.shifts], "equal loads", 1),
+        _line(x, [factor * r.whole_MPa for r in found.shifts], "whole pairs", 2),
+        _line(x, [factor * r.shared_MPa for r in found.shifts], "shared loads", 4),
+    ]
+    plot = layout(
+        axis("profile shift, modules"),
+        axis(f"largest pressure [{measures.unit('MPa')}]", rangemode="tozero"),
+        hovermode="x",
+    )
+    plot["margin"] |= {"t": 34}
+    mark = {
+        "type": "line",
+        "yref": "paper",
+        "y0": 0.0,
+        "y1": 1.0,
+        "x0": found.profile_shift,
+        "x1": found.profile_shift,
+        "line": {"color": "--axis", "width": 1, "dash": "dot"},
+    }
+    plot["shapes"] = [mark]
+    caption = "Pressure against profile shift, all else unchanged; dotted: this gearing."
+    return Section(
+        "Pressure against profile shift",
+        words=_ends_of_shift(found),
+        figures=[Figure(lines, plot, caption)],
+        tables=[tables.shifts(found, measures)],
+    )
+
+
+def _ends_of_shift(found: WaveDesign) -> list[str]:
+    """Return what ends a search over the profile shift."""
+    words = ["The pressure has no minimum over the profile shift: other limits end the search."]
+    if found.shift_of_one_pair is not None:
+        words.append(
+            f"One conjugate pair always touches up to a shift of {found.shift_of_one_pair:.3f}."
+        )
+    if found.largest_addendum is not None:
+        words.append(
+            f"With an addendum above {found.largest_addendum:.3f} modules teeth would interfere."
+        )
+    return words
+
+
+def cutter(result: Result, measures: Measures) -> Section | None:
+    """Draw the cutter's edge on a grid, with straight and circular edges that may replace it."""
+    found = design_of(result)
+    if found is None or (tool := found.cutter) is None:
+        return None
+    if not tool.regular:
+        words = (f"No such cutter: its edge would have a cusp. {_least(tool)}",)
+        return Section("Cutter of the flexspline", words=words, terminal=words)
+    words = (
+        f"{_tool(tool)}, rolling on a pitch radius of "
+        f"{amount(tool.pitch_radius_mm, 'mm', measures)}: it is regular and generates the flank "
+        f"to within {1e3 * tool.round_trip_mm:.0e} µm. {_least(tool)}",
+    )
+    shown, pitch = result.report["cutter_drawing"], math.pi * found.module_mm
+    scale = shown["scale"] or usual_scale(tool, pitch, shown["grid_mm"])
+    edges = [tables.edges(tool, measures)] if found.law == INVOLUTE else []
+    return Section(
+        "Cutter of the flexspline",
+        words=words,
+        drawings=[drawing(tool, pitch, scale, shown["grid_mm"], measures)],
+        tables=[*edges, tables.edge_points(tool, measures)],
+        terminal=(words[0], *edges),
+    )
+
+
+def _tool(tool: CutterDesign) -> str:
+    return f"A pinion-type cutter of {tool.teeth} teeth" if tool.teeth else "A rack (as of a hob)"
+
+
+def _least(tool: CutterDesign) -> str:
+    """Return how small a pinion-type cutter on the same pitch circle of the blank may be."""
+    if tool.least_teeth is None:
+        return (
+            "No pinion-type cutter of up to 60 teeth is regular on this pitch circle of the blank: "
+            "another [cutter] pitch_diameter may do."
+        )
+    return f"On this pitch circle pinion-type cutters are regular from {tool.least_teeth} teeth on."
+
+
+def numbers(result: Result, measures: Measures) -> Section | None:
+    """Return the gearing in numbers, its flank, and other deflections."""
+    if (found := design_of(result)) is None:
+        return None
+    shown = tables.sizes(found, measures), tables.loads(found, measures)
+    columns = (tables.flank, tables.tooth_points, tables.space_points)
+    return Section(
+        "Sizes and flanks",
+        tables=[
+            *(*shown, tables.deflections(found, measures)),
+            *(table(found, measures) for table in columns),
+        ],
+        terminal=shown,
+    )
+
+
+def search(result: Result, measures: Measures) -> Section | None:
+    """Return the rounds of a search; None without one."""
+    found = design_of(result)
+    if found is None or not found.rounds:
+        return None
+    words = (
+        "Each round adds a limit where the flank of the last design cut the tip circle of the "
+        "circular spline; then all positions of the wave are checked again.",
+    )
+    return Section("Search", words=words, tables=[tables.rounds(found, measures)], half=True)
+
+
+OWN = (moving, cutter, shift, numbers)
+GIVEN = Kind(
+    sections=(summary, *OWN, limits, asked, assumptions),
+    terminal=(numbers, moving, cutter, limits, summary),
+    tiles=tiles,
+    decides=decides,
+    warns=warns,
+    whole="gearing",
+)
+KIND = replace(
+    GIVEN,
+    sections=(*FIRST, *OWN, *ASKED, search, *LAST),
+    terminal=(numbers, moving, cutter, limits, *TOLD),
+    given=GIVEN,
+)

@@ -1,0 +1,233 @@
+"""What a drive takes for granted, and what a reader of its result should know."""
+
+from dataclasses import replace
+
+from gearopt.formulations.drive.design import STEEL_DENSITY
+from gearopt.physics.gears import ISO_53_A, MEMBERS
+from gearopt.physics.iso6336.case import Practice
+from gearopt.scenes.drive.rating.gears import gear_choices
+from gearopt.scenes.drive.rating.iso_material import steel
+from gearopt.scenes.drive.rating.materials import unused
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.blanks import blank
+from gearopt.scenes.drive.tables.drive import ORIGINS, StageTable
+from gearopt.scenes.drive.tables.layout import Layout
+from gearopt.scenes.drive.tables.rating import RatingTable, with_shared
+from gearopt.scenes.drive.tables.teeth import toothing
+from gearopt.scenes.reading.module_series import unverified
+
+CLEARANCES = {
+    "gear_clearance": "between gears that do not mesh",
+    "shaft_clearance": "between a shaft and what is not on it",
+    "wall_clearance": "to the walls across the shafts",
+    "axial_clearance": "along the shafts",
+}
+
+
+def notes(scene: Scene, exact: bool) -> list[str]:
+    """Return what a reader of the result should know beside the numbers."""
+    found = []
+    limits, stages = scene.limits, scene.stage
+    if limits.preset is not None:
+        found.append(f"The load limits are those of preset {limits.preset}, not of a standard.")
+    if scene.teeth is not None and not exact:
+        found.append("Teeth and modules are real numbers here; the table [teeth] was not used.")
+    names = ("wheel_teeth", "stage_ratio", "wheel_diameter")
+    if not any(getattr(table, name) for table in (limits, *stages) for name in names):
+        found.append("No limit on wheel teeth, stage ratio or wheel diameter was set.")
+    if exact and scene.gears.same_materials and scene.by_ratings:
+        found.append("All pinions have one material, and all wheels have one.")
+    if exact and scene.teeth is not None:
+        found += unverified(scene.teeth.modules)
+    if scene.objective.density is None and not _dense(scene):
+        found.append(f"Masses are those of steel, {1e9 * STEEL_DENSITY:g} kg/dm³ (assumed).")
+    return found + unused_materials(scene)
+
+
+def unused_materials(scene: Scene) -> list[str]:
+    """Return a note on the materials of the file that no gear may have, if there are any."""
+    names = unused(scene.stage or (StageTable(),), scene.gears, scene.material)
+    return [f"[[material]] in no list of a gear: {', '.join(names)}."] if names else []
+
+
+def _dense(scene: Scene) -> bool:
+    """Return whether every gear has the density of its material."""
+    known = [gear_choices(scene, k, m) for k in range(len(scene.stage) or 1) for m in MEMBERS]
+    return all(one and one.density for choices in known for _, one in choices)
+
+
+def assumptions(scene: Scene) -> list[str]:
+    """Return what a design takes for granted, in sentences."""
+    density, stages = scene.objective.density, scene.stage or (StageTable(),)
+    angles = dict.fromkeys(str(own.pressure_angle or scene.gears.pressure_angle) for own in stages)
+    angle = " and ".join(angles)
+    stated = "pressure_angle" in scene.gears.model_fields_set or any(
+        own.pressure_angle for own in stages
+    )
+    assumed = "" if stated else " (default)"
+    mass = (
+        f"the density of the file, {density}"
+        if density
+        else "the density of steel, because the file gives none"
+    )
+    if scene.material:
+        mass = f"the densities of the materials, else with {mass}"
+    found = [
+        *_teeth(scene),
+        *_loads(scene, angle, assumed),
+        f"{_bodies(scene)}; masses with {mass}.",
+    ]
+    if scene.limits.preset is not None:
+        name = scene.limits.preset
+        found.insert(3, f"The load limits are those of preset {name}: {ORIGINS[name]}.")
+    return found if scene.layout is None else [*found, *_layout_assumptions(scene.layout)]
+
+
+def _bodies(scene: Scene) -> str:
+    """Return what volumes and masses are those of."""
+    stages = scene.stage or (StageTable(),)
+    tables = [with_shared(getattr(own, m), scene.gears) for own in stages for m in MEMBERS]
+    if all(blank(table, None).solid and not table.web_thickness for table in tables):
+        return "Volumes and masses are those of solid reference cylinders"
+    return (
+        "Volumes are those of solid reference cylinders; masses those of rims, webs and hubs, with "
+        "the teeth as a ring between root and reference circle"
+    )
+
+
+def _loads(scene: Scene, angle: str, assumed: str) -> list[str]:
+    """Return what limits the loads, and what the pressure angle enters."""
+    if scene.by_ratings:
+        title = scene.limits.LAW.title
+        beside = f"and by {title}" if scene.limits.loaded else "alone"
+        return [
+            f"Loads are limited by the safety factors of the rating {beside}, at nominal sizes.",
+            f"The normal pressure angle is {angle}{assumed}.",
+            *rating_assumptions(scene),
+        ]
+    law = scene.limits.LAW
+    alone = f"and {law.title}" if law.pressure_angle else f"alone; {law.title} do not depend on it"
+    return [
+        f"Loads are limited by {law.title} alone: {law.kind}.",
+        f"The normal pressure angle of {angle}{assumed} enters contact ratio and undercut {alone}.",
+    ]
+
+
+def _teeth(scene: Scene) -> list[str]:
+    """Return what is taken for granted of the teeth: shifts, tools, backlash."""
+    each = [toothing(own, scene.gears) for own in scene.stage or (StageTable(),)]
+    shifted = any(any(one.profile_shifts) for one in each)
+    shifts = "with the profile shifts of the file" if shifted else "without profile shift"
+    ends = "no losses in mesh and bearings"
+    found = [f"External cylindrical gears {shifts}; {ends}."]
+    usual = {replace(ISO_53_A, pressure_angle=r.pressure_angle) for one in each for r in one.racks}
+    if {rack for one in each for rack in one.racks} <= usual:
+        found.append(
+            "Tip and root circles by the basic rack ISO 53 profile A: addendum "
+            f"{ISO_53_A.addendum:g} m_n, dedendum {ISO_53_A.dedendum:g} m_n; nominal sizes, "
+            "without backlash."
+        )
+    else:
+        found.append("Tip and root circles by the tools of the file; nominal sizes.")
+    if shifted and scene.limits.loaded:
+        found.append(f"{scene.limits.LAW.title} are those of the reference circles.")
+    return found
+
+
+def rating_assumptions(scene: Scene) -> list[str]:
+    """Return what a rating takes for granted, in sentences."""
+    asked = scene.rating
+    assert asked
+    by_agma, by_iso = asked.standard != "iso6336", asked.standard != "agma"
+    found = [
+        "External cylindrical steel gears on parallel shafts; the pinions drive. No losses except "
+        "those of the mesh, where they are reported.",
+        "The standards themselves were not read: formulas and values are those of textbooks, "
+        "tables and public programs; those from a single source are marked unverified.",
+        *(_agma_assumptions(asked) if by_agma else []),
+        *(_iso_assumptions(scene, asked) if by_iso else []),
+        "Scuffing, micropitting, wear, shafts and bearings are not rated.",
+        "S_H is a ratio of contact stresses, its square one of loads. Lives are those at which a "
+        "safety factor is 1.",
+    ]
+    unstated = _unstated(asked, by_agma, by_iso)
+    return [*found, f"Not in the file: {', '.join(unstated)}."] if unstated else found
+
+
+def _agma_assumptions(asked: RatingTable) -> list[str]:
+    """Return what a rating by AGMA takes for granted."""
+    load = (
+        "at the highest point of single tooth contact"
+        if asked.bending_load == "highest single"
+        else "at the tip"
+    )
+    return [
+        f"K_m by the curve of {asked.mounting} gearing"
+        + (", crowned" if asked.crowned else ", teeth without crowning")
+        + f"; pinion offset S_1/S {float(asked.pinion_offset):g}.",
+        f"Bending of spur gears, and of helical ones of low overlap ratio: load {load}"
+        f"{' (AGMA)' * (asked.standard == 'both')}.",
+    ]
+
+
+def _iso_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
+    """Return what a rating by ISO 6336 takes for granted: materials, misalignment."""
+    tables = [
+        table
+        for k in range(max(1, len(scene.stage)))
+        for member in MEMBERS
+        for table, _ in gear_choices(scene, k, member)
+    ]
+    chosen = dict.fromkeys(
+        f"{table.treatment or 'none given'} as {steel(table).name}"
+        for table in tables
+        if table.iso_material is None
+    )
+    helix = asked.iso6336.helix_modification
+    modified = "without helix modification" if helix == "none" else f"helix modification: {helix}"
+    overloaded = bool(scene.load) and asked.overload_factor != 1
+    words = [f"Materials of ISO 6336-5 by treatment: {', '.join(chosen)}."] if chosen else []
+    return [
+        *words,
+        "K_Hβ by method C of ISO 6336-1, for a pinion midway between its bearings on a solid "
+        f"shaft; {modified}. Bending by method B: load at the outer point of single pair contact.",
+        *[f"K_A = {float(asked.overload_factor):g} multiplies every level of load."][:overloaded],
+    ]
+
+
+def _unstated(asked: RatingTable, by_agma: bool, by_iso: bool) -> list[str]:
+    """Return defaults that a rating takes where the file says nothing."""
+    given, iso = asked.model_fields_set, asked.iso6336.model_fields_set
+    usual = Practice()
+    rows = (
+        (True, "overload_factor" in given, "overload factor 1"),
+        (by_agma, "reliability" in given, "reliability 99 %"),
+        (by_agma, "mounting" in given, f"mounting {asked.mounting}"),
+        (by_iso, "oil_grade" in iso, f"oil of {usual.viscosity:g} mm²/s at 40 °C"),
+    )
+    return [f"{words} (default)" for enters, stated, words in rows if enters and not stated]
+
+
+def _layout_assumptions(layout: Layout) -> list[str]:
+    """Return of a layout: clearances, shafts, bearings, walls."""
+    clear = [
+        f"{words} {getattr(layout, name)}{'' if name in layout.model_fields_set else ' (default)'}"
+        for name, words in CLEARANCES.items()
+    ]
+    shafts = (
+        "Shaft diameters are those of the file; they are not checked."
+        if layout.shaft_stress is None
+        else f"Shaft diameters follow from torsion alone at {layout.shaft_stress}: no bending, no "
+        "keyways or other notches."
+    )
+    bearings = (
+        "Bearings are those of the file; their life is not checked."
+        if layout.bearing_diameters
+        else "The file gives no bearings: there is no room for them in the box."
+    )
+    ends = "run from wall to wall" if layout.span == "full" else "end beside their gears"
+    return [
+        f"Clearances of the layout: {', '.join(clear)}.",
+        f"{shafts} Shafts {ends}.",
+        f"{bearings} The box is measured inside its walls.",
+    ]

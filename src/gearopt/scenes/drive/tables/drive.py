@@ -1,0 +1,381 @@
+"""Stages and limits of a drive, what is best, and design processes beside it."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Annotated, Any, ClassVar, TypeVar, cast
+
+from pydantic import Field, create_model, model_validator
+
+from gearopt import units
+from gearopt.formulations.drive.processes import ProcessOne, ProcessTwo
+from gearopt.formulations.drive.shares import OBJECTIVES
+from gearopt.formulations.strength import Law
+from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.scenes.drive.tables.iso6336 import IsoGiven
+from gearopt.scenes.drive.tables.rating import GearKeys, GearTable, GivenTable
+from gearopt.scenes.reading.fields import (
+    Table,
+    advised,
+    choice,
+    number,
+    quantity,
+    refuse,
+    speed_ratio,
+    truth,
+    whole,
+)
+from gearopt.scenes.reading.lists import several, span
+from gearopt.scenes.reading.module_series import MODULE, SERIES, series
+from gearopt.units import Quantity
+
+LAW = K_FACTOR  # that limits a drive
+LENGTH = quantity("length", "400 mm")
+STEP = quantity("length", "1 mm")
+HELIX = quantity("angle", "25 deg", "45 deg", zero=True)
+PRESSURE = quantity("angle", "20 deg", "45 deg")
+TOOTH_COUNT = whole(21, 5, 1000)
+WHEEL_TEETH = advised(
+    whole(100, 5, 100_000),
+    {r"-\d+": "Internal gears are not supported yet; numbers of external teeth are above zero"},
+)
+PITCH = advised(
+    number(10, 0, 2000),
+    {r"([\d.]+) *(?:1?/in|1/inch|dp|in\^-1)": r"Write diametral_pitch = \1, without a unit"},
+)
+PROPORTION = span(number(0.6, 0, 10), [0.3, 0.6], single=True)
+AIM = choice(
+    *OBJECTIVES,
+    means={"weight": "mass"},
+    other={
+        "volume": 'Write "gear_volume" for that of the gears; for that of the box minimise = '
+        '"box_volume" in a table [layout]',
+        "size": 'Write "gear_volume" or "total_length" for that of the gears; for that of the box '
+        'minimise = "box_volume" in a table [layout]',
+        "efficiency": 'Write "mesh_loss"',
+        "losses": 'Write "mesh_loss"',
+        "centre_distance": 'Write "sum_of_centre_distances", of all stages',
+    },
+)
+OVER_MODULE = span(number(10, 0, 1000), [8, 14])
+RATIOS = span(speed_ratio(5, 1), [1, 10])
+
+Proportion = Annotated[tuple[Fraction, Fraction] | None, PROPORTION]
+Ratios = Annotated[tuple[Fraction, Fraction] | None, RATIOS]
+OverModule = Annotated[tuple[Fraction, Fraction] | None, OVER_MODULE]
+Length = Annotated[Quantity | None, LENGTH]
+Step = Annotated[Quantity | None, STEP]
+Lengths = tuple[Quantity, Quantity]
+
+PROPORTION_IS = (
+    "Face width over pinion diameter b/d1: a number ties b to d1, a range leaves it free within it"
+)
+OVER_MODULE_IS = "Range of face width over normal module b/m_n"
+LEAST_IS = "Smallest face width that a stage may have"
+STEP_IS = "Face widths are whole multiples of this"
+WHEEL_IS = "Largest reference diameter of a wheel"
+
+
+class Loaded(Table):
+    """A table that has the limits of a strength law as its first keys."""
+
+    LAW: ClassVar[Law]
+
+
+T = TypeVar("T", bound=Loaded)
+
+
+def limited_by(law: Law) -> Callable[[type[T]], type[T]]:
+    """Return the decorator that gives a table the limits of a law as keys."""
+    keys: dict[str, Any] = {}
+    for limit in law.limits:
+        dimension = next(name for name, known in units.UNITS.items() if limit.unit in known)
+        value = Annotated[Quantity | None, quantity(dimension, limit.example)]
+        keys[limit.name] = (value, Field(None, description=limit.meaning))
+    loads = create_model("Loads", __base__=Loaded, **keys)
+
+    def limited(table: type[T]) -> type[T]:
+        inside = {"LAW": law, "__module__": table.__module__, "__doc__": table.__doc__}
+        made: Any = type(table)
+        return cast(type[T], made(table.__name__, (table, loads), inside))
+
+    return limited
+
+
+class Gears(GearKeys):
+    """What all stages share, and all gears that have nothing else of their own."""
+
+    helix_angle: Annotated[Quantity, HELIX] = Field(
+        default_factory=lambda: units.parse("0 deg", "angle"),
+        description="Helix angle at the reference cylinder",
+        json_schema_extra={"default": "0 deg"},
+    )
+    pressure_angle: Annotated[Quantity, PRESSURE] = Field(
+        default_factory=lambda: units.parse("20 deg", "angle"),
+        description="Normal pressure angle: it gives the contact ratio"
+        + ("" if LAW.pressure_angle else f"; {LAW.title} do not depend on it"),
+        json_schema_extra={"default": "20 deg"},
+    )
+    face_width_over_diameter: Proportion = Field(
+        None,
+        description=f"{PROPORTION_IS}; needed, here or in every [[stage]] without face_width",
+    )
+    face_width_step: Step = Field(None, description=STEP_IS)
+    face_width_over_module: OverModule = Field(None, description=OVER_MODULE_IS)
+    minimum_face_width: Length = Field(None, description=LEAST_IS)
+    same_materials: Annotated[bool, truth()] = Field(
+        False,
+        description="One material for the pinions of all stages and one for all wheels, of those "
+        "in their materials",
+    )
+
+
+@limited_by(LAW)
+class StageTable(Loaded):
+    """One stage: what differs from the other tables, and what is fixed."""
+
+    module: Annotated[Lengths | None, span(MODULE, "2 mm", single=True)] = Field(
+        None, description="Normal module: fixed, or a range; or a diametral pitch in 1/in"
+    )
+    diametral_pitch: Annotated[Fraction | None, PITCH] = Field(
+        None, description="Normal diametral pitch in 1/in, fixed, instead of module"
+    )
+    pinion_teeth: Annotated[tuple[int, int] | None, span(TOOTH_COUNT, 21, single=True)] = Field(
+        None, description="Number of pinion teeth: fixed, or a range"
+    )
+    wheel_teeth: Annotated[tuple[int, int] | None, span(WHEEL_TEETH, 100, single=True)] = Field(
+        None, description="Number of wheel teeth: fixed, or a range"
+    )
+    face_width: Annotated[Quantity | None, quantity("length", "40 mm")] = Field(
+        None, description="Face width, fixed"
+    )
+    face_width_over_diameter: Proportion = Field(
+        None,
+        description=f"{PROPORTION_IS}; without face_width needed, here or in [gears]",
+    )
+    face_width_step: Step = Field(None, description=STEP_IS)
+    face_width_over_module: OverModule = Field(None, description=OVER_MODULE_IS)
+    minimum_face_width: Length = Field(None, description=LEAST_IS)
+    stage_ratio: Ratios = Field(None, description="Range of the stage's ratio")
+    wheel_diameter: Length = Field(None, description=WHEEL_IS)
+    helix_angle: Annotated[Quantity | None, HELIX] = Field(
+        None, description="Helix angle of this stage, instead of that of [gears]"
+    )
+    pressure_angle: Annotated[Quantity | None, PRESSURE] = Field(
+        None, description="Normal pressure angle of this stage, instead of that of [gears]"
+    )
+    pinion_hand: Annotated[str | None, choice("right", "left")] = Field(
+        None,
+        description="Hand of the pinion's helix; by default right, and of later stages the one "
+        "whose thrust opposes that of the wheel on the same shaft",
+    )
+    centre_distance: Length = Field(
+        None, description="Working centre distance; by default without backlash"
+    )
+    pinion: GearTable = Field(default_factory=GearTable, description="Data of the pinion alone")
+    wheel: GearTable = Field(default_factory=GearTable, description="Data of the wheel alone")
+    given: GivenTable = Field(
+        default_factory=GivenTable, description="Factors of a rating, instead of computed ones"
+    )
+    given_iso6336: IsoGiven = Field(
+        default_factory=IsoGiven,
+        description="Factors of a rating by ISO 6336, instead of computed ones",
+    )
+
+    @model_validator(mode="after")
+    def _one_size(self) -> "StageTable":
+        if self.diametral_pitch is not None and self.module is not None:
+            rule = "conflicts with module; one is enough"
+            raise refuse(rule, at=("diametral_pitch",), action="remove")
+        return self
+
+    @property
+    def size(self) -> Lengths | None:
+        """Return the ends of the range of the normal module, by whichever key."""
+        if self.diametral_pitch is None:
+            return self.module
+        return (Quantity(self.diametral_pitch, "1/in", "module"),) * 2
+
+
+# Load limits a source states for its own drive (Chong and Lee print 2.07 MPa and 48 MPa).
+PRESETS = {"chong-lee-elevator": {"k_factor": "300 psi", "unit_load": "7000 psi"}}
+ORIGINS = {
+    "chong-lee-elevator": "300 psi (2.07 MPa) and 7000 psi (48 MPa), as Chong and Lee state them "
+    "for their elevator drive"
+}
+
+
+@limited_by(LAW)
+class Limits(Loaded):
+    """Limits of every stage, unless its own table says otherwise."""
+
+    preset: Annotated[str | None, choice(*PRESETS)] = Field(
+        None,
+        description="K-factor and unit load that a source states: chong-lee-elevator is 300 psi "
+        "and 7000 psi. This key or the two limits are needed, unless [rating] limits the gears",
+    )
+    pinion_teeth: Annotated[tuple[int, int], span(TOOTH_COUNT, [20, 40])] = Field(
+        description="Range of the number of pinion teeth"
+    )
+    wheel_teeth: Annotated[tuple[int, int] | None, span(WHEEL_TEETH, [20, 400])] = Field(
+        None, description="Range of the number of wheel teeth"
+    )
+    module: Annotated[Lengths | None, span(MODULE, ["1 mm", "10 mm"])] = Field(
+        None, description="Range of the normal module, or of diametral pitches in 1/in"
+    )
+    stage_ratio: Ratios = Field(
+        None, description="Range of every stage's ratio (without it: 1 and up)"
+    )
+    wheel_diameter: Length = Field(None, description=WHEEL_IS)
+
+    @classmethod
+    def open(cls) -> "Limits":
+        """Return the limits of a drive whose gears are all given, to be rated: none."""
+        return cls.model_construct(pinion_teeth=(5, 1000))
+
+    @model_validator(mode="after")
+    def _loads(self) -> "Limits":
+        given = [name for name in self.LAW.names if getattr(self, name) is not None]
+        for name in self.LAW.names:
+            if name in given and self.preset is not None:
+                raise refuse("conflicts with preset, which sets it", at=(name,), action="remove")
+            if given and name not in given:
+                raise refuse("is missing (or give preset)", at=(name,))
+        return self
+
+    @property
+    def loaded(self) -> bool:
+        """Return whether they limit the loads by the strength law: else a rating does."""
+        names = ("preset", *self.LAW.names)
+        return any(getattr(self, name) is not None for name in names)
+
+    def load(self, name: str) -> Quantity:
+        """Return a limit of the strength law, from the file or the preset."""
+        own: Quantity | None = getattr(self, name)
+        return own or units.parse(PRESETS[str(self.preset)][name], "stress")
+
+
+class Teeth(Table):
+    """Whole teeth and standard modules; without this table sizes are continuous."""
+
+    modules: Annotated[tuple[Quantity, ...], series()] = Field(
+        default_factory=lambda: SERIES["ISO 54 I"],
+        description='"ISO 54 I", "ISO 54 I+II", or a list of modules; diametral pitches: '
+        '"DP coarse", "DP fine", "DP coarse+fine", or a list in 1/in',
+        json_schema_extra={"default": "ISO 54 I"},
+    )
+    coprime: Annotated[bool, truth()] = Field(
+        False, description="Hunting teeth: z1 and z2 without a common divisor"
+    )
+
+    @property
+    def sizes(self) -> tuple[Fraction, ...]:
+        """Return the normal modules [mm], ascending."""
+        return tuple(sorted(m.exact[0] for m in self.modules))
+
+
+class Objective(Table):
+    """What to minimise."""
+
+    minimise: Annotated[str, AIM] = Field(
+        "gear_volume",
+        description="gear_volume (solid reference cylinders), mass (or weight), cost (mass times "
+        "the prices of [[material]]), "
+        "sum_of_centre_distances, or total_length (shafts in one line, over reference circles)",
+    )
+    density: Annotated[Quantity | None, quantity("density", "7.85 kg/dm^3")] = Field(
+        None, description="Density of the gears; mass and cost need it, or that of every material"
+    )
+
+
+EACH_RATIO = several(speed_ratio(5, 1), [4.96, 4.36])
+EACH_PINION = several(TOOTH_COUNT, [23, 25])
+EACH_MODULE = several(MODULE, ["2 mm", "3 mm"])
+
+Pinions = Annotated[tuple[int, ...] | None, EACH_PINION]
+Modules = Annotated[tuple[Quantity, ...] | None, EACH_MODULE]
+
+
+class ProcessOneTable(Table):
+    """Design by K-factor and unit load (Chong and Lee, process one), shown beside the best.
+
+    Lists have one entry per stage.
+    """
+
+    stage_ratios: Annotated[tuple[Fraction, ...], EACH_RATIO] = Field(
+        description="Ratios of the stages; wheel teeth are u z1, cut. The paper's rule for them is "
+        "not known"
+    )
+    pinion_teeth: Pinions = Field(
+        None, description="Pinion teeth, instead of those balanced between K-factor and unit load"
+    )
+    modules: Modules = Field(
+        None, description="Normal modules, instead of the smallest that carry the load"
+    )
+
+    def check(self, stages: int, name: str) -> None:
+        """Check that every list fits a drive of so many stages; places count from the file."""
+        _check_lists(self, stages, name)
+
+    def inputs(self) -> ProcessOne:
+        """Return the table as plain numbers."""
+        return ProcessOne(self.stage_ratios, self.pinion_teeth, _plain(self.modules))
+
+
+class ProcessTwoTable(Table):
+    """Design from the first centre distance (Chong and Lee, process two, after Niemann).
+
+    It is shown beside the best. Lists have one entry per stage. Modules or pinion_teeth, or both,
+    are needed; what is not given is rounded up from the centre distance.
+    """
+
+    first_centre_distance: Annotated[Quantity, quantity("length", "150 mm")] = Field(
+        description="Centre distance of the first stage, before teeth or modules are rounded up"
+    )
+    stage_ratios: Annotated[tuple[Fraction, ...] | None, EACH_RATIO] = Field(
+        None, description="Ratios of the stages, instead of Niemann's for two and three stages"
+    )
+    pinion_teeth: Pinions = Field(
+        None, description="Pinion teeth (or give modules); wheel teeth are u z1, cut"
+    )
+    modules: Modules = Field(None, description="Normal modules (or give pinion_teeth)")
+
+    @model_validator(mode="after")
+    def _complete(self) -> "ProcessTwoTable":
+        if self.modules is None and self.pinion_teeth is None:
+            raise refuse("is missing (or give pinion_teeth)", at=("modules",))
+        return self
+
+    def check(self, stages: int, name: str) -> None:
+        """Check that every list fits a drive of so many stages; places count from the file."""
+        _check_lists(self, stages, name)
+        if self.stage_ratios is None and stages not in (2, 3):
+            rule = f"is missing: Niemann's ratios are for two and three stages, not for {stages}"
+            raise refuse(rule, [5] * stages, (name, "stage_ratios"), "sample")
+
+    def inputs(self) -> ProcessTwo:
+        """Return the table as plain numbers."""
+        return ProcessTwo(
+            self.first_centre_distance.value,
+            self.stage_ratios,
+            self.pinion_teeth,
+            _plain(self.modules),
+        )
+
+
+def _check_lists(table: Table, stages: int, name: str) -> None:
+    for key in ("stage_ratios", "pinion_teeth", "modules"):
+        found = getattr(table, key)
+        if found is not None and len(found) != stages:
+            fit = [_written(v) for v in (*found, *found[-1:] * stages)[:stages]]
+            rule = f"does not have one entry for each of the {stages} stages"
+            raise refuse(rule, fit, (name, key), "sample")
+
+
+def _written(value: Quantity | Fraction | int) -> str | float | int:
+    if isinstance(value, Fraction):
+        return float(value)
+    return value if isinstance(value, int) else str(value)
+
+
+def _plain(modules: tuple[Quantity, ...] | None) -> tuple[Fraction, ...] | None:
+    return tuple(m.exact[0] for m in modules) if modules else None

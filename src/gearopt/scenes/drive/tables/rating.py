@@ -1,0 +1,357 @@
+"""What a rating needs beside the gears: materials and tools of gears, service, factors, loads."""
+
+from fractions import Fraction
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from gearopt.physics.agma.allowables import CONTACT, TREATMENTS
+from gearopt.physics.agma.bending import LOADS
+from gearopt.physics.agma.factors import ALIGNMENT, QUALITIES
+from gearopt.physics.agma.life import SERVICES
+from gearopt.physics.agma.rating_factors import EDITIONS
+from gearopt.scenes.drive.rating.given import Given
+from gearopt.scenes.drive.tables.blanks import BlankKeys, beside
+from gearopt.scenes.drive.tables.iso6336 import ISO_KEYS, IsoGearKeys, IsoTable
+from gearopt.scenes.reading.fields import (
+    Table,
+    advised,
+    choice,
+    number,
+    quantity,
+    refuse,
+    truth,
+    whole,
+    words,
+)
+from gearopt.scenes.reading.lists import each_gear, several
+from gearopt.units import Quantity
+
+SURFACES = tuple(dict.fromkeys(surface for _, surface, _ in CONTACT if surface))
+FACTOR = number(1.25, 0, 1000)
+Number = Annotated[Fraction | None, FACTOR]
+Numbers = Annotated[tuple[Fraction, Fraction] | None, each_gear(FACTOR)]
+LOAD = number(1.25, 1, 1000)  # factors that by their definition only add to a load or a stress
+Load = Annotated[Fraction | None, LOAD]
+Loads = Annotated[tuple[Fraction, Fraction] | None, each_gear(LOAD)]
+Stresses = Annotated[
+    tuple[Quantity, Quantity] | None, each_gear(quantity("stress", "220 MPa", "10 GPa"))
+]
+MATERIAL = (  # keys of a gear that only a rating needs
+    *("treatment", "grade", "hardness", "surface_hardness", "elastic_modulus", "poisson_ratio"),
+    *("roughness", "reversed_load", "contacts", "materials", "quality"),
+    *ISO_KEYS,
+)
+MATERIALS = several(words(), ["case-hardened", "through-hardened"])
+TREATMENT = choice(
+    *TREATMENTS,
+    means={
+        "carburized": "carburised",
+        "through hardened": "through-hardened",
+        "quenched and tempered": "through-hardened",
+    },
+    other=dict.fromkeys(
+        ("case hardened", "case-hardened", "surface hardened", "surface-hardened"),
+        'Write "carburised"; or "nitrided", or "induction, roots" and "induction, flanks", which '
+        "harden a case too",
+    )
+    | dict.fromkeys(
+        ("induction", "induction hardened", "induction-hardened", "flame hardened"),
+        'Write "induction, roots" where roots are hardened with the flanks, "induction, flanks" '
+        "where they are not",
+    ),
+)
+HARDNESS = advised(
+    quantity("hardness", "240 HB", "800 HB"),
+    {
+        r".*h(rc?|v|ra|r15n)\d*": "Brinell hardness is asked for, of through-hardened steel and of "
+        "the core of nitrided steel. The strength of carburised and induction hardened steel "
+        "follows from its grade: remove hardness",
+    },
+)
+GRADE = advised(
+    whole(1, 1, 3),
+    {"m[lqe]": "AGMA has grades 1, 2 and 3; ML, MQ and ME are those of ISO 6336-5"},
+)
+SHIFT = advised(
+    number(0.2, -3, 3, zero=True),
+    {r".*\d\s*(mm|in)": "Write the coefficient x, the shift over the normal module"},
+)
+GRADES = "(?:a|iso|iso 1328|din|grade)[ -]*"
+QUALITY = advised(
+    number(8, int(QUALITIES[0]), int(QUALITIES[1])),
+    {
+        f"{GRADES}{grade}": "Q_v grows with accuracy. A grade of AGMA 2015 or ISO 1328, which "
+        f"falls, is about A_v: write accuracy = {grade} instead of quality"
+        for grade in range(6, 13)
+    }
+    | {
+        f"{GRADES}[1-5]|1[2-9]": "So accurate gears have no curve of K_v: write quality = 11, or "
+        "give K_v in [rating.given]",
+    },
+)
+STANDARD = advised(
+    choice("agma", "iso6336", "both", means={"AGMA": "agma", "ISO 6336": "iso6336"}),
+    {
+        "din.*": 'DIN 3990 is not supported. Nearest: standard = "iso6336"',
+        "iso.*": 'Write standard = "iso6336"; [rating.iso6336] has its edition',
+        ".*agma.*": 'Write standard = "agma"; edition = "D04" or "B88" says which',
+    },
+)
+
+EDITION = advised(
+    choice(*EDITIONS),
+    {
+        "2006|2019": "edition of [rating] is that of AGMA 2001; that of ISO 6336 is edition of "
+        "[rating.iso6336]",
+    },
+)
+
+
+class GearKeys(BlankKeys, IsoGearKeys):
+    """What gears share unless they have their own: the tool that cuts them, and their steel."""
+
+    addendum: Annotated[Fraction | None, number(1.0, 0, 3)] = Field(
+        None, description="Addendum of the basic rack, in normal modules; by default 1"
+    )
+    tool_addendum: Annotated[Fraction | None, number(1.25, 0, 3)] = Field(
+        None, description="Addendum of the tool, in normal modules; by default 1.25 (ISO 53 A)"
+    )
+    tool_tip_radius: Annotated[Fraction | None, number(0.38, 0, 1, zero=True)] = Field(
+        None, description="Tip radius of the tool, in normal modules; by default 0.38 (ISO 53 A)"
+    )
+    tool_protuberance: Annotated[Fraction | None, number(0.02, 0, 1, zero=True)] = Field(
+        None,
+        description="Protuberance of the tool in normal modules; by default 0",
+    )
+    treatment: Annotated[str | None, TREATMENT] = Field(
+        None, description="Heat treatment of the steel; a rating needs it"
+    )
+    grade: Annotated[int | None, GRADE] = Field(
+        None, description="Metallurgical grade of AGMA; by default 1"
+    )
+    hardness: Annotated[Quantity | None, HARDNESS] = Field(
+        None,
+        description="Brinell hardness of through-hardened steel; of nitrided steel its core",
+    )
+    surface_hardness: Annotated[str | None, choice(*SURFACES)] = Field(
+        None,
+        description="Hardness of nitrided and induction hardened flanks; by default the lower one "
+        "of the tables",
+    )
+    elastic_modulus: Annotated[Quantity | None, quantity("stress", "206 GPa")] = Field(
+        None, description="Modulus of elasticity; by default 206 GPa"
+    )
+    poisson_ratio: Annotated[Fraction | None, number(0.3, 0, Fraction(1, 2), zero=True)] = Field(
+        None, description="Poisson's ratio; by default 0.3"
+    )
+    roughness: Annotated[Quantity | None, quantity("length", "0.8 um", "100 um")] = Field(
+        None,
+        description="Arithmetic roughness R_a of the flanks, for friction by oil_viscosity, C_H, "
+        "and R_z where flank_rz is not given; by default 0.8 um",
+    )
+    reversed_load: Annotated[bool | None, truth()] = Field(
+        None, description="The load reverses, as on idlers: 0.7 of the bending strength"
+    )
+    contacts: Annotated[int | None, whole(1, 1, 100)] = Field(
+        None, description="Load cycles of a tooth per revolution; by default 1"
+    )
+    quality: Annotated[Fraction | None, QUALITY] = Field(
+        None,
+        description="Q_v of this gear, the lower of a pair counts; by default that of [rating]",
+    )
+    materials: Annotated[tuple[str, ...] | None, MATERIALS] = Field(
+        None,
+        description="Names of [[material]], of which the best one is chosen, instead of a steel",
+    )
+
+
+class GearTable(GearKeys):
+    """One gear of a stage."""
+
+    profile_shift: Annotated[Fraction | None, SHIFT] = Field(
+        None, description="Profile shift coefficient x; by default 0"
+    )
+    tip_alteration: Annotated[Fraction | None, number(-0.05, -2, 2, zero=True)] = Field(
+        None, description="Tip alteration coefficient k, negative: shorter teeth; by default 0"
+    )
+    thickness_allowance: Annotated[
+        Quantity | None, quantity("length", "-0.05 mm", zero=True, signed=True)
+    ] = Field(
+        None,
+        description="Allowance of the normal tooth thickness, negative: thinner; by default 0",
+    )
+
+    @model_validator(mode="after")
+    def _thinner(self) -> "GearTable":
+        allowance = self.thickness_allowance
+        if allowance is not None and allowance.number > 0:
+            rule = "is above zero: teeth are thinned, not thickened"
+            raise refuse(rule, f"-{allowance}", ("thickness_allowance",))
+        return self
+
+
+def with_shared(own: GearTable, shared: GearKeys) -> GearTable:
+    """Return what a gear has, of its own or of all gears."""
+    fields = GearKeys.model_fields
+    names = [n for n in fields if all(getattr(own, key) is None for key in beside(n))]
+    return own.model_copy(update={n: getattr(shared, n) for n in names})
+
+
+class GivenTable(Given):
+    """Factors instead of computed ones; [pinion, wheel], or one value for both."""
+
+    K_o: Load = Field(None, description="Overload factor")
+    K_v: Load = Field(
+        None,
+        description="Dynamic factor, 1 or more (C_v of editions before 1995 is its reciprocal)",
+    )
+    K_m: Load = Field(None, description="Load distribution factor")
+    K_R: Number = Field(None, description="Reliability factor")
+    K_T: Load = Field(None, description="Temperature factor")
+    C_f: Load = Field(None, description="Surface condition factor")
+    C_p: Annotated[Quantity | None, quantity("elastic coefficient", "190 sqrt(MPa)")] = Field(
+        None, description="Elastic coefficient"
+    )
+    I: Number = Field(None, description="Geometry factor of pitting resistance")  # noqa: E741
+    K_s: Loads = Field(None, description="Size factor")
+    K_B: Loads = Field(None, description="Rim thickness factor")
+    J: Numbers = Field(None, description="Geometry factor of bending strength")
+    s_at: Stresses = Field(None, description="Allowable bending stress number")
+    s_ac: Stresses = Field(None, description="Allowable contact stress number")
+    Y_N: Numbers = Field(None, description="Stress cycle factor of bending")
+    Z_N: Numbers = Field(None, description="Stress cycle factor of pitting")
+    C_H: Numbers = Field(None, description="Hardness ratio factor")
+
+
+class RatingTable(Table):
+    """How the gears are rated: standard, service, quality, mounting, oil."""
+
+    standard: Annotated[str, STANDARD] = Field(
+        "agma",
+        description="agma: ANSI/AGMA 2001 (2101) with AGMA 908; iso6336: ISO 6336; both: side by "
+        "side",
+    )
+    edition: Annotated[str, EDITION] = Field(
+        "D04", description="Edition of AGMA 2001: rim factors and strengths differ"
+    )
+    life: Annotated[Quantity | None, quantity("time", "20000 h", "1e9 h")] = Field(
+        None, description="Life at this duty (or give input_revolutions)"
+    )
+    input_revolutions: Annotated[Fraction | None, number(1e8, 1, 10**15)] = Field(
+        None, description="Life as revolutions of the input shaft"
+    )
+    reliability: Annotated[Fraction, number("99 %", 0, 1, percent=True)] = Field(
+        default_factory=lambda: Fraction(99, 100),
+        description="Reliability, from 50 % to 99.99 %",
+        json_schema_extra={"default": "99 %"},
+    )
+    overload_factor: Annotated[Fraction, number(1.25, 1, 10)] = Field(
+        default_factory=lambda: Fraction(1),
+        description="K_o: loads beyond the nominal one, of driving and driven machine",
+        json_schema_extra={"default": 1},
+    )
+    temperature: Annotated[
+        Quantity | None, quantity("temperature", "80 degC", zero=True, signed=True)
+    ] = Field(
+        None, description="Temperature of the gear blanks; by default below 120 degC, K_T = 1"
+    )
+    quality: Annotated[Fraction | None, QUALITY] = Field(
+        None,
+        description="Transmission accuracy Q_v of AGMA 2001-C95, larger is better: sets K_v (or "
+        "give accuracy)",
+    )
+    accuracy: Annotated[Fraction | None, number(9, 6, 12)] = Field(
+        None, description="Transmission accuracy A_v of AGMA 2001-D04, smaller is better: 17 - Q_v"
+    )
+    mounting: Annotated[str, choice(*ALIGNMENT)] = Field(
+        "commercial", description="Housing, as its curve of mesh alignment in K_m"
+    )
+    crowned: Annotated[bool, truth()] = Field(False, description="Teeth are crowned (K_m)")
+    adjusted: Annotated[bool, truth()] = Field(
+        False, description="Contact is improved at assembly, by lapping or adjusting (K_m)"
+    )
+    pinion_offset: Annotated[Fraction, number(0.1, 0, Fraction(1, 2), zero=True)] = Field(
+        default_factory=lambda: Fraction(0),
+        description="S_1/S: offset of the pinion from mid-span over bearing span (K_m)",
+        json_schema_extra={"default": 0},
+    )
+    size_factor: Annotated[str, choice("one", "shigley")] = Field(
+        "one", description="K_s: 1, as the standard allows, or Shigley's formula"
+    )
+    bending_load: Annotated[str, choice(*LOADS)] = Field(
+        "highest single",
+        description="Where the load of J acts on spur teeth: highest point of single tooth "
+        "contact, or tip",
+    )
+    service: Annotated[str, choice(*SERVICES)] = Field(
+        "general", description="Branch of the life curves beyond 1e7 cycles"
+    )
+    minimum_bending_safety: Annotated[Fraction, number(1.2, 0, 100)] = Field(
+        default_factory=lambda: Fraction(1),
+        description="Safety factor asked for against bending",
+        json_schema_extra={"default": 1},
+    )
+    minimum_contact_safety: Annotated[Fraction, number(1.1, 0, 100)] = Field(
+        default_factory=lambda: Fraction(1),
+        description="Safety factor asked for against pitting, of stress: its square is of load",
+        json_schema_extra={"default": 1},
+    )
+    friction_coefficient: Annotated[Fraction | None, number(0.05, 0, 1)] = Field(
+        None, description="Mean coefficient of friction of a mesh, for its efficiency"
+    )
+    oil_viscosity: Annotated[Quantity | None, quantity("viscosity", "40 mPa s")] = Field(
+        None,
+        description="Dynamic viscosity of the oil at its temperature, from which the friction is "
+        "computed",
+    )
+    given: GivenTable = Field(
+        default_factory=GivenTable, description="Factors of all stages, instead of computed ones"
+    )
+    iso6336: IsoTable = Field(
+        default_factory=IsoTable, description="Further data of a rating by ISO 6336"
+    )
+
+    @property
+    def by_agma(self) -> bool:
+        """Return whether AGMA is a standard of the rating."""
+        return self.standard != "iso6336"
+
+    @property
+    def by_iso6336(self) -> bool:
+        """Return whether ISO 6336 is."""
+        return self.standard != "agma"
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> "RatingTable":
+        if self.life is not None and self.input_revolutions is not None:
+            rule = "conflicts with life; one is enough"
+            raise refuse(rule, at=("input_revolutions",), action="remove")
+        if self.life is None and self.input_revolutions is None:
+            raise refuse("is missing (or give input_revolutions)", "20000 h", ("life",), "sample")
+        if self.friction_coefficient is not None and self.oil_viscosity is not None:
+            rule = "conflicts with oil_viscosity, from which it is computed"
+            raise refuse(rule, at=("friction_coefficient",), action="remove")
+        if self.quality is not None and self.accuracy is not None:
+            rule = "conflicts with quality; one is enough"
+            raise refuse(rule, at=("accuracy",), action="remove")
+        bare = self.quality is None and self.accuracy is None and self.given.K_v is None
+        if bare and self.by_agma:
+            raise refuse("is missing (or give accuracy)", 8, ("quality",), "sample")
+        if not Fraction(1, 2) <= self.reliability <= Fraction(9999, 10000):
+            raise refuse("is not from 50 % to 99.99 %", "99 %", ("reliability",), "sample")
+        return self
+
+
+class LoadTable(Table):
+    """One level of a load spectrum; without any the drive runs at the duty's power."""
+
+    power: Annotated[Quantity, quantity("power", "5 kW")] = Field(
+        description="Power at the input shaft"
+    )
+    input_speed: Annotated[Quantity | None, quantity("speed", "1450 rpm")] = Field(
+        None, description="Speed of the input shaft; by default the duty's"
+    )
+    share: Annotated[Fraction, number("20 %", 0, 1, percent=True)] = Field(
+        description="Share of the life; those of all levels add up to 100 %"
+    )

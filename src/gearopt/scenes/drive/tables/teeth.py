@@ -1,0 +1,139 @@
+"""From the tables of a stage to its teeth: helix, tools, shifts; and where shifts do not fit."""
+
+import math
+from fractions import Fraction
+
+from gearopt.formulations.drive.shares import LENGTHS
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import Stage
+from gearopt.physics.gears import ISO_53_A, MEMBERS, Rack
+from gearopt.scenes.drive.tables.drive import Gears, StageTable
+from gearopt.scenes.drive.tables.rating import GearTable, with_shared
+from gearopt.scenes.reading.fields import refuse
+
+USUAL = {"profile_shift": 0, "tip_alteration": 0, "addendum": 1, "tool_addendum": 1.25}
+SAME = 1e-9  # m_n
+ROOT: tuple[str, ...] = ("profile_shift", "tool_addendum")  # what sets a root circle
+TIP: tuple[str, ...] = ("profile_shift", "tip_alteration", "addendum")
+
+
+def toothing(own: StageTable, gears: Gears) -> Toothing:
+    """Return the teeth of a stage."""
+    helix, pressure = (
+        (getattr(own, name) or getattr(gears, name)).value
+        for name in ("helix_angle", "pressure_angle")
+    )
+    pinion, wheel = with_shared(own.pinion, gears), with_shared(own.wheel, gears)
+    return Toothing(
+        helix,
+        (_rack(pinion, pressure), _rack(wheel, pressure)),
+        (_or(pinion.profile_shift, 0.0), _or(wheel.profile_shift, 0.0)),
+        (_or(pinion.tip_alteration, 0.0), _or(wheel.tip_alteration, 0.0)),
+        (_allowance(pinion), _allowance(wheel)),
+        own.centre_distance.value if own.centre_distance else None,
+    )
+
+
+def _rack(gear: GearTable, pressure_angle: float) -> Rack:
+    usual = ISO_53_A
+    return Rack(
+        pressure_angle,
+        _or(gear.addendum, usual.addendum),
+        _or(gear.tool_addendum, usual.dedendum),
+        _or(gear.tool_tip_radius, usual.tip_radius),
+        _or(gear.tool_protuberance, usual.protuberance),
+    )
+
+
+def _or(value: Fraction | None, usual: float) -> float:
+    return usual if value is None else float(value)
+
+
+def _allowance(gear: GearTable) -> float:
+    return gear.thickness_allowance.value if gear.thickness_allowance else 0.0
+
+
+def check_teeth(
+    stages: tuple[StageTable, ...], gears: Gears, given: bool, objective: str, asked: str
+) -> None:
+    """Refuse centre distances off the reference circles where what is sought cannot take them.
+
+    given: whether all gears are; objective: what is minimised; asked: what else takes reference
+    circles, such as gears and box at once, or nothing.
+    """
+    for k, own in enumerate(stages):
+        if own.centre_distance is not None and not given:
+            rule = "needs gears that are all given: of others it follows from teeth and shifts"
+            raise refuse(rule, at=("stage", k, "centre_distance"), action="remove")
+        if toothing(own, gears).on_reference or not (objective in LENGTHS or asked):
+            continue
+        place: tuple[str | int, ...] = ("stage", k, "centre_distance")
+        if own.centre_distance is None:
+            member = "wheel" if own.pinion.profile_shift is None else "pinion"
+            place = ("stage", k, member, "profile_shift")
+        what = f"minimise = {objective}" if objective in LENGTHS else asked
+        rule = f"moves the centre distance, which {what} takes from the reference circles"
+        raise refuse(rule, "Give shifts whose sum is 0, or none", place, "tell")
+
+
+def check_mesh(stage: Stage, k: int, own: StageTable, gears: Gears) -> None:
+    """Refuse a stage (from 0) whose fewest teeth have no root, no involute or no centre distance.
+
+    And one whose tips reach into the roots of their mates, whatever the teeth. own, gears: its
+    tables.
+    """
+    _check_tips(stage, k, own, gears)
+    made, fewest = stage.toothing, stage.pinion_teeth[0]
+    teeth = fewest, max(stage.wheel_teeth[0], math.ceil(stage.ratio[0] * fewest))
+    pair = made.pair(float(min(stage.modules, default=1)), *teeth, 1.0)
+    for member, gear in zip(MEMBERS, pair.gears, strict=True):
+        if gear.root_diameter <= 0.0:
+            rule, keys = "leaves the root circle of {} teeth no diameter", ROOT
+        elif gear.tip_diameter <= gear.base_diameter:
+            rule, keys = "leaves {} teeth no involute below their tips", TIP
+        else:
+            continue
+        place, write = cause(k, member, own, gears, keys)
+        raise refuse(rule.format(gear.teeth), write, place, "sample")
+    if math.isfinite(pair.working_angle):
+        return
+    if made.working_distance is not None:
+        rule = f"lets the base circles of {teeth[0]} and {teeth[1]} teeth overlap"
+        raise refuse(rule, f"{pair.reference_distance:.3f} mm", ("stage", k, "centre_distance"))
+    rule = f"and that of its mate leave no centre distance to {teeth[0]} and {teeth[1]} teeth"
+    low = min((0, 1), key=lambda i: made.profile_shifts[i])
+    raise refuse(rule, 0, ("stage", k, MEMBERS[low], "profile_shift"))
+
+
+def _check_tips(stage: Stage, k: int, own: StageTable, gears: Gears) -> None:
+    """Refuse tips that reach deeper than the mate's tool cuts: no numbers of teeth mend it.
+
+    c = (y - x1 - x2 + h_fP2 - h_aP1 - k_1) m_n, in which y never exceeds x1 + x2 (ISO 21771).
+    """
+    racks, shorter = stage.toothing.racks, stage.toothing.tip_alterations
+    if stage.toothing.working_distance is not None:
+        return
+    for i, member in enumerate(MEMBERS):
+        deep = racks[i].addendum + shorter[i] - racks[1 - i].dedendum
+        if deep <= SAME:
+            continue
+        long = racks[i].addendum + shorter[i] > USUAL["addendum"]
+        which, keys = (member, TIP[1:]) if long else (MEMBERS[1 - i], ROOT[1:])
+        place, write = cause(k, which, own, gears, keys)
+        rule = f"makes the tips of the {member} reach {deep:.4g} m_n into the roots of its mate"
+        raise refuse(f"{rule}, whatever the teeth", write, place, "sample")
+
+
+def cause(
+    k: int, member: str, own: StageTable, gears: Gears, keys: tuple[str, ...]
+) -> tuple[tuple[str | int, ...], float]:
+    """Return the place of the key that is farthest from its usual value, and that value."""
+    table = with_shared(getattr(own, member), gears)
+
+    def away(key: str) -> float:
+        value = getattr(table, key, None)
+        return 0.0 if value is None else abs(float(value) - USUAL[key])
+
+    key = max(keys, key=away)
+    alone = getattr(getattr(own, member), key) is not None
+    return ("stage", k, member, key) if alone else ("gears", key), USUAL[key]

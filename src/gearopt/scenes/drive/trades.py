@@ -1,0 +1,129 @@
+"""The objectives of a drive, and the problem of several of them at once."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive.shares import OBJECTIVES
+from gearopt.formulations.drive.teeth import load_front
+from gearopt.formulations.drive.train import Train
+from gearopt.optimise.pareto.epsilon import Limiting
+from gearopt.optimise.pareto.front import Objective
+from gearopt.optimise.pareto.pareto import EPSILON, EXACT
+from gearopt.optimise.pareto.several import Several
+from gearopt.optimise.terms import Array
+from gearopt.optimise.typed import untyped
+from gearopt.scenes.drive.box import sides
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.reading.ask import Ask
+
+
+def objectives(scene: Scene) -> dict[str, str]:
+    """Return what a front of the drive may minimise: name and unit."""
+    to_choose(scene)
+    found = {name: unit for name, unit in OBJECTIVES.items() if not _lacking(scene, name)}
+    used = {load_front.UTILISATION: ""} if scene.teeth is not None else {}
+    return found | used | sides.objectives(scene)
+
+
+def to_choose(scene: Scene) -> None:
+    """Raise SolveError for a drive that can only be rated."""
+    if not scene.limited:
+        raise SolveError(
+            "the file has no [limits] and no ratio, so there is nothing to choose: gearopt rate "
+            "FILE rates its gears"
+        )
+
+
+def _lacking(scene: Scene, name: str) -> str:
+    """Return what an objective needs and the drive lacks; "" where it has it."""
+    try:
+        replace(_train(scene), objective=name)
+    except ValueError as reason:
+        return str(reason)
+    return ""
+
+
+def advice(scene: Scene, names: Sequence[str]) -> str:
+    """Return why the drive has not one of these objectives; "" where nothing is known of it."""
+    why = (_lacking(scene, name) for name in names if name in OBJECTIVES)
+    what = next(filter(None, why), "")
+    hint = ', as in [objective] density = "7.85 kg/dm^3"' if "density" in what else ""
+    return what + hint
+
+
+def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
+    """Return the problem of a front; SolveError where the drive has none.
+
+    With a [teeth] table it is of whole teeth, but for epsilon constraints, which are for
+    real-valued sizes. Objectives of a box are those of gears that are sized first.
+    """
+    boxed = [name for name in names if name in sides.objectives(scene)]
+    if boxed:
+        if len(boxed) < len(names):
+            raise SolveError(
+                f"{', '.join(boxed)} of the box and objectives of the gears are no front together: "
+                "the gears are sized first, and laid out then"
+            )
+        from gearopt.scenes.drive import bare, solve
+
+        sized = solve(bare(scene), Ask())
+        held = scene.held(len(sized.design["stages"])) if sized.value is not None else scene
+        return sides.several(held, names, sized)
+    if scene.several:
+        each = [several(scene.held(count), names, method) for count in scene.counts]
+        curves = any(one.limiting is not None and not one.limiting.whole for one in each)
+        if scene.teeth is None or method not in (None, EXACT) or curves:
+            raise SolveError(
+                "numbers of stages are compared by complete fronts alone, of whole teeth: write "
+                "stages = 2, or another number"
+            )
+        return replace(each[0], others=tuple(each[1:]))
+    if load_front.UTILISATION in names:
+        return _loaded(scene, names, method)
+    train = replace(_train(scene), objective=names[0], others=tuple(names[1:]))
+    listed = tuple(Objective(name, OBJECTIVES[name]) for name in names)
+    whole = scene.teeth is not None and method != EPSILON
+    if not whole and train.rated:
+        raise SolveError(
+            "ratings limit whole teeth alone where there are several objectives: write a table "
+            f"[teeth], and a method other than {EPSILON}"
+        )
+    if not whole:
+        return Several(sizing.problem(train), listed, lambda x: _real(scene, train, x))
+    return Several(teeth.problem(train), listed, lambda x: _whole(scene, train, x))
+
+
+def _loaded(scene: Scene, names: Sequence[str], method: str | None) -> Several:
+    """Return the problem of a front against the utilisation of the load limits."""
+    if len(names) != 2 or names[1] != load_front.UTILISATION:
+        raise SolveError(
+            f"{load_front.UTILISATION} is a maximum over the stages, which does not add up: it is "
+            f"the second of two objectives, as in gear_volume,{load_front.UTILISATION}"
+        )
+    train = replace(_train(scene), objective=names[0])
+    listed = Objective(names[0], OBJECTIVES[names[0]]), Objective(names[1])
+    limiting = Limiting(
+        lambda name, most: load_front.limited(train, name, most),
+        tuple(names),
+        load_front.discrete(train),
+    )
+    problem = load_front.problem(train, tuple(names))
+    return Several(problem, listed, lambda x: _whole(scene, train, x), limiting)
+
+
+def _train(scene: Scene) -> Train:
+    return scene.held(scene.counts[0]).train()
+
+
+def _real(scene: Scene, train: Train, x: Array) -> Mapping[str, Any]:
+    found: Mapping[str, Any] = untyped(scene.design(sizing.pairs(train, x)))
+    return found
+
+
+def _whole(scene: Scene, train: Train, x: Array) -> Mapping[str, Any]:
+    chosen = teeth.options(train, x) if train.several_options else ()
+    found: Mapping[str, Any] = untyped(scene.design(teeth.pairs(train, x), chosen))
+    return found

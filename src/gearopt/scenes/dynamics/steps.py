@@ -1,0 +1,189 @@
+"""The table [optimise]: the search, what proves it impossible, and what is said of the best."""
+
+from dataclasses import asdict, replace
+from typing import Any
+
+from pydantic import ValidationError
+
+from gearopt.formulations.dynamics.design import Chosen
+from gearopt.formulations.dynamics.orbit.chosen import chosen
+from gearopt.formulations.dynamics.orbit.climbing import NEAR, begun, posed
+from gearopt.formulations.dynamics.orbit.impossible import impossible, limited
+from gearopt.formulations.dynamics.orbit.least_vibration import Exchanged, exchange, least, methods
+from gearopt.formulations.dynamics.orbit.task import MICRO, VARIABLES, Task
+from gearopt.optimise.clock import Clock, of_others
+from gearopt.optimise.explaining.explain import THERE
+from gearopt.optimise.explaining.explanation import Remedies, Remedy
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Outcome, Result
+from gearopt.optimise.solve import run
+from gearopt.physics.motion.moving_pair import MovingPair
+from gearopt.scenes.dynamics.scene import Scene
+from gearopt.scenes.explaining.default import remedies
+from gearopt.scenes.explaining.numbers import content
+from gearopt.scenes.explaining.shorter import shorter
+from gearopt.scenes.reading.ask import Ask
+
+BEST = ("bearing_stiffness_N_per_mm", "contact_ratio", "ramp", "face_width_mm", "rim")
+
+
+def whole_problem(task: Task) -> Problem:
+    """Return the problem on the speeds of a task, with its own method."""
+    return posed(task, methods(task))
+
+
+def resolvable(scene: Scene, result: Result) -> bool:
+    """Return whether a changed file can be solved from the answer of this one."""
+    task = scene.task
+    return result.status == "stationary" and task.backlash is None and task.most_growth is None
+
+
+def beside(scene: Scene, other: Scene, result: Result) -> Problem:
+    """Return the problem of a changed file over the speeds of an answer, which is its guess.
+
+    Where the range of speeds changes, those of the answer are stretched to it.
+    """
+    best, task, own = result.design["chosen"], other.task, scene.task.speeds_rpm
+    if len(task.speeds_rpm) == len(own):
+        low, high = task.speeds_rpm[0], task.speeds_rpm[-1]
+        stretch = (high - low) / (own[-1] - own[0])
+        moved = tuple(low + stretch * (speed - own[0]) for speed in best["speed_rpm"])
+        task = replace(task, speeds_rpm=moved, harmonics=best["harmonics"])
+    return begun(task, [best[name] for name in BEST])
+
+
+def optimised(
+    scene: Scene, ask: Ask, before: MovingPair, clock: Clock
+) -> tuple[Result, Chosen | None, Task]:
+    """Return the certified result, the design over all speeds, and the task with its speeds.
+
+    before: the pair of the file, to compare with. No design: the result says why.
+    """
+    assert scene.optimise is not None
+    task, made = scene.task, None
+    if impossible(task) is not None:
+        result, _ = run(whole_problem(task), "screened", clock.left, ask.seed, clock.watch)
+    elif ask.method is None:
+        inner = Clock(ask.budget, of_others(ask.watch), clock.start)
+        made = (exchange if scene.optimise.exchange else least)(task, inner, ask.seed)
+        task = task if made is None else made.task
+        result = _certified(task, made, inner, ask)
+        clock.stopped = inner.stopped
+    else:
+        result, _ = run(whole_problem(task), ask.method, clock.left, ask.seed, clock.watch, ask.gap)
+    result = replace(result, name="dynamics", seconds=clock.seconds)
+    if result.status == "infeasible":
+        ways = {"ways_out": asdict(_ways_out(scene, task, clock))}
+        return replace(result, report=result.report | ways, seconds=clock.seconds), None, task
+    if result.value is None:
+        return result, None, task
+    values = tuple(float(v) for v in list(result.design.values())[: len(VARIABLES)])
+    beside_it = None if clock.stopped else before
+    best = chosen(task, values, beside_it, made.rounds if made else ())
+    return _judged(result, best, task), best, task
+
+
+def _certified(task: Task, made: Exchanged | None, clock: Clock, ask: Ask) -> Result:
+    """Return the certified result of a search, which has spent a clock."""
+    if made is None:
+        nothing = Outcome(None, not clock.stopped, message="no start led to a design")
+        problem = posed(task, {"screened": lambda *_: nothing})
+    else:
+        problem = made.best.problem.starting(made.best.whole)
+    result, _ = run(problem, "screened", seed=ask.seed, gap=ask.gap)
+    status = "limit" if clock.stopped else result.status
+    return replace(result, status=status, evaluations=clock.evaluations)
+
+
+def _judged(result: Result, best: Chosen, task: Task) -> Result:
+    """Return the result with its objective in mm: simulated, where motions were collocated.
+
+    What is simulated NEAR the objective of the problem leaves the status as it is.
+    """
+    assert result.value is not None
+    value, limits = result.value / MICRO, {k: v for k, v in result.limits.items() if "[" not in k}
+    parted = [v for k, v in result.limits.items() if "separation" in k]
+    limits |= {"separation": max(parted)} if parted else {}
+    if task.most_growth is not None:
+        limits["stability"] = best.largest_multiplier / task.most_growth
+    if task.backlash is not None:
+        at = dict(zip(best.dense_rpm, best.dense_mm, strict=True))
+        simulated = max(at[speed] for speed in best.speed_rpm)
+        if simulated > (1.0 + NEAR) * value and result.status == "stationary":
+            text = (
+                f"simulated, the objective is {MICRO * simulated:.4g} µm, not that of its problem"
+            )
+            result = replace(result, status="feasible", message=text)
+        value = simulated
+    told = result.objective | {"value": value, "unit": "mm (shown in um)"}
+    return replace(result, objective=told, limits=limits)
+
+
+def told(best: Chosen, result: Result, periods: int) -> list[str]:
+    """Return what must be known of the best design before its numbers."""
+    found, objective = [], result.value or 0.0
+    if best.dense_maximum_mm > (1.0 + NEAR) * objective:
+        more = 100.0 * (best.dense_maximum_mm / objective - 1.0)
+        found.append(
+            f"Between the {len(best.speed_rpm)} speeds the deformation reaches "
+            f"{MICRO * best.dense_maximum_mm:.4g} µm, {more:.0f} % above the objective: "
+            "exchange = true adds the speeds where it does."
+        )
+    if best.parting_speeds:
+        found.append(
+            f"Teeth part at {best.parting_speeds} of {len(best.dense_rpm)} speeds: the "
+            f"deformation rises to {MICRO * best.highest_mm:.3g} µm."
+        )
+    if best.longest_repeat > periods:
+        found.append(
+            f"A motion repeats after {best.longest_repeat} mesh periods, not after {periods}: "
+            f"write periods = {best.longest_repeat}."
+        )
+    return found
+
+
+def _ways_out(scene: Scene, task: Task, clock: Clock) -> Remedies:
+    """Return each number of the file that alone makes it possible, with few digits.
+
+    Without a limit of motions, what the ranges allow is possible; with one the file is solved.
+    """
+    left = Clock(clock.left, of_others(clock.watch))
+
+    def status(other: Scene) -> str:
+        asked = other.task
+        if impossible(asked) is not None:
+            return "infeasible"
+        if asked.margin is None and asked.most_growth is None:
+            return "feasible"
+        found, _ = run(whole_problem(asked), None, left.left, watch=left.watch)
+        return found.status
+
+    def works(edits: dict[str, Any], seconds: float) -> bool:
+        other = _edited(scene, edits)
+        return other is not None and status(other) in THERE
+
+    found = remedies(scene, limited(task), left, status)
+    short = shorter(found.remedies, left, works)
+    return replace(found, remedies=tuple(map(_written_short, short)))
+
+
+def _edited(scene: Scene, edits: dict[str, Any]) -> Scene | None:
+    """Return the scene with other numbers of [optimise], by their keys; None where refused."""
+    tables = content(scene)
+    for key, value in edits.items():
+        name, _, end = key.removeprefix("optimise.").rstrip("]").partition("[")
+        held = tables["optimise"]
+        if end:
+            held[name] = [value if k == int(end) - 1 else v for k, v in enumerate(held[name])]
+        else:
+            held[name] = value
+    try:
+        return Scene.model_validate(tables)
+    except ValidationError:
+        return None
+
+
+def _written_short(remedy: Remedy) -> Remedy:
+    """Return a remedy that is written as it was rounded, so that nothing rounds it again."""
+    changes = tuple(replace(c, write=c.short or c.write, short="") for c in remedy.changes)
+    return replace(remedy, changes=changes)

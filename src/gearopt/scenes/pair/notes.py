@@ -1,0 +1,49 @@
+"""What the contact of a pair takes for granted."""
+
+from collections.abc import Iterator
+
+from gearopt.formulations.pair.contact import PairContact
+from gearopt.physics.gears import MEMBERS, GearPair
+from gearopt.physics.iso6336.stiffness import LEAST_LINE_LOAD
+from gearopt.scenes.drive.tables.rating import with_shared
+from gearopt.scenes.pair.contact import UNBORED, line_load
+from gearopt.scenes.pair.scene import Scene
+
+
+def contact_assumptions(scene: Scene, made: PairContact, pair: GearPair) -> list[str]:
+    """Return what the contact takes for granted, in sentences."""
+    strain = "strain (wide gears)" if made.plane == "strain" else "stress (narrow gears)"
+    coupled = 1e6 * made.coupling_mm_per_N
+    return [
+        "Contact: exact involutes without errors and modifications, plane models, no friction, "
+        "no dynamics; shafts and bearings are rigid, and gears are held at their bores. Loads are "
+        "those of the duty without application, dynamic and face load factors, spread evenly over "
+        "the face width. Teeth are taken to meet at SAP; without relief deflected teeth meet "
+        "before it, at the edge of a tip.",
+        f"Teeth by {made.level}, in plane {strain}; the contact compliance is that at the torque "
+        "of the duty, at every load.",
+        f"Neighbouring teeth are coupled by {coupled:.3g} µm/kN ({made.coupling}).",
+        *_held(scene, made),
+        *_light(line_load(scene, pair)),
+    ]
+
+
+def _light(line: float) -> Iterator[str]:
+    """Yield what is unverified of the stiffness by ISO 6336-1 at a line load F_t/b [N/mm]."""
+    if line < LEAST_LINE_LOAD:
+        yield (
+            f"Unverified: stiffness by ISO 6336-1 is reduced by (F_t/b / {LEAST_LINE_LOAD:g} "
+            f"N/mm)^0.25 at light loads, here {line:.3g} N/mm (without K_A)."
+        )
+
+
+def _held(scene: Scene, made: PairContact) -> Iterator[str]:
+    """Yield where a gear without a bore is taken to be held."""
+    own = scene.drive.stage[0]
+    for member in MEMBERS:
+        if not with_shared(getattr(own, member), scene.gears).bore:
+            held = getattr(made, f"{member}_bore_mm")
+            yield (
+                f"The {member} has no bore in the file: it is taken as held at {held:.4g} mm, "
+                f"1/{UNBORED:g} of its root circle."
+            )

@@ -1,0 +1,249 @@
+"""What the answer for a servo axis takes for granted, in sentences."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+from gearopt.formulations.servo.ratio.achieved import why_not
+from gearopt.formulations.servo.servo_design import ServoDesign, ServoReport
+from gearopt.formulations.servo.split.bodies import broken
+from gearopt.optimise.result import Result
+from gearopt.physics.gears import GearPair, Rack
+from gearopt.scenes.parts import tooth_warnings
+from gearopt.scenes.reading.module_series import unverified
+from gearopt.scenes.servo.scene import Scene
+from gearopt.scenes.servo.tables.trains import Train
+from gearopt.scenes.servo.train import candidates, given_gears
+
+SLOWEST = "acceleration"  # what nobody minimises
+FRICTION = {
+    "acceleration": "The motor accelerates the load with its full torque at that speed, "
+    "and the efficiency is constant; friction is Coulomb's and opposes the motion. Heating of the "
+    "motor is not checked.",
+    "move": "The motor accelerates and brakes the load with its full torque, which is the same up "
+    "to its speed limit. Coulomb friction opposes acceleration and helps braking, so the ramps "
+    "differ; losses of the train are not counted while the motor brakes. Heating of the motor, "
+    "by its rms torque, is not checked.",
+    "swing": "Coulomb friction is in phase with the speed, inertia with the acceleration; no "
+    "losses in the train. Where [motor] has a torque, it is the maximum rms torque.",
+}
+
+
+def assumptions(scene: Scene) -> list[str]:
+    """Return all assumptions that hold for this file."""
+    found = []
+    if scene.duty is not None:
+        found.append(FRICTION[scene.duty.motion])
+        found.append(
+            "The best total ratio is computed with the motor's inertia, without that of a train."
+        )
+    if scene.train is not None:
+        found += _of_train(scene)
+    if scene.mesh:
+        sides = "" if any(mesh.two_sided for mesh in scene.mesh) else "one-sided and "
+        found.append(
+            "Error: lost motion between both flanks at the output, by small angles; every "
+            f"deviation is {sides}at its limit at the same time."
+        )
+    if any(mesh.two_sided or mesh.minimum_backlash for mesh in scene.mesh):
+        found.append(
+            "Backlash: at the reference circle, -(sum of thickness allowances) + 2 tan(alpha) "
+            "times what moves the gears apart (ISO 21771, DIN 3967); at its minimum one-sided "
+            "deviations are zero and run-outs close the mesh by as much as they open it. Pitch and "
+            "helix deviations, heat and swelling are not counted."
+        )
+    if scene.tolerances is not None and any(mesh.two_sided for mesh in scene.mesh):
+        found.append(
+            "Of two-sided allowances the end that gives less backlash stays as it is; their width "
+            "is the tolerance that is chosen."
+        )
+    if any(mesh.grade is not None for mesh in scene.mesh):
+        found.append(
+            "Pitch deviations by grade are F_pT of ISO 1328-1:2013, not rounded, of both gears."
+        )
+    if scene.tolerances is not None:
+        found.append(
+            "Cost of a tolerance: that of the old one times (old/new)^exponent. Monte Carlo "
+            "errors: run-outs t cos(phi), phi uniform; all else uniform from 0 to t."
+        )
+    if any(budget.rule == "rss" for budget in scene.budget):
+        found.append(
+            "The root of the sum of squares neglects the mean of one-sided deviations, which is "
+            "above zero; the Monte Carlo yield includes it."
+        )
+    return found
+
+
+def _of_train(scene: Scene) -> list[str]:
+    assert scene.train is not None
+    found = [
+        "External spur gears without profile shift, solid discs of one face width; addendum 1 m.",
+        *_sector(scene.train),
+        *_carried(scene),
+        "Bending stress after Lewis at the tip of one tooth, form factor pi (0.154 - 0.912/z) of "
+        "full-depth teeth of 20 degrees (up to 8 % above tables, so that stresses may be that much "
+        "higher): no dynamic, load distribution or notch factor, and no contact stress. It is no "
+        "rating by ISO 6336 or AGMA 2101.",
+        _counted(scene),
+        *unverified(scene.train.modules),
+    ]
+    found += _of_bodies(scene)
+    if scene.stiffness is not None:
+        found.append(
+            "Stiffness: one pair of teeth in mesh, the shaft between the stages twisted over its "
+            "length; bearings, housing, motor and output shaft are rigid; motor locked."
+        )
+        if scene.stiffness.line_stiffness is None:
+            found.append(
+                "Line stiffness of a mesh after Buckingham and Lewis: formula not checked against "
+                "any source."
+            )
+    if scene.space is not None:
+        found.append(
+            "The box holds all gears, the last wheel wherever it swings, shafts, hub and motor, "
+            "seen along the shafts, without clearances; its depth is not checked. Lists and plots "
+            "of other trains ignore the box."
+        )
+    return found
+
+
+def _sector(train: Train) -> tuple[str, ...]:
+    """Say what part of a disc the last wheel is, where it is no whole one."""
+    share = 100.0 * float(train.sector)
+    return () if share == 100.0 else (f"The last wheel is {share:g} % of a disc.",)
+
+
+def _carried(scene: Scene) -> tuple[str, ...]:
+    """Say which torques the teeth carry."""
+    assert scene.train is not None
+    if scene.duty is None:
+        return ("Teeth carry output_torque; no motion of [duty] is known.",)
+    given = "output_torque or, where it is larger, " if scene.train.output_torque else ""
+    motion = (
+        ""
+        if scene.duty.motion == "swing"
+        else (
+            ", with all the motor's torque: what its rotor and the gears before a mesh do not take "
+            "loads the mesh, before losses"
+        )
+    )
+    lightest = " The lightest train carries output_torque alone." if scene.lightest else ""
+    return (f"Teeth carry {given}the peak torque of the motion{motion}.{lightest}",)
+
+
+def _counted(scene: Scene) -> str:
+    """Say what mass and inertia count."""
+    if scene.shaft is None:
+        return "Mass and inertia of a train are those of its gears; no shaft is counted."
+    lightest = ", and so has the mass of [lightest]" if scene.lightest is not None else ""
+    return (
+        "The mass of a train is that of its gears; its inertia has the shaft between the stages in "
+        f"it{lightest}."
+    )
+
+
+def _of_bodies(scene: Scene) -> list[str]:
+    """Say what keeps clear of what, and how thick the output shaft is taken to be."""
+    assert scene.train is not None
+    bodies = scene.servo_train().bodies
+    assert bodies is not None
+    thick = f"{float(bodies.output_shaft):g} mm"
+    if scene.space is not None:
+        thick += ", hub_diameter of [space]"
+    elif scene.train.output_shaft_diameter is None and scene.shaft is None:
+        thick = "not given, taken as 0"
+    elif scene.train.output_shaft_diameter is None:
+        thick += ", as thick as the shaft between the stages"
+    thin = "" if scene.shaft is not None else " The middle shaft is not given and taken as a line."
+    solid = "Gears, shafts and motor" if scene.space is not None else "Gears and shafts"
+    return [
+        "There are three planes along the shafts: motor, stage 1, stage 2. The motor's shaft ends "
+        f"at its pinion, the other two pass through all three. {solid} in the same plane do not "
+        "overlap; no clearance is added. Root circles, 1.25 m inside the reference circle, lie "
+        f"outside their shafts. Diameter of the output shaft with hub: {thick}.{thin}"
+    ]
+
+
+WHAT = {
+    "output_shaft": "the first wheel runs into the output shaft",
+    "hub": "the output shaft is thicker than the last wheel's root circle",
+    "shaft": "the middle shaft is thicker than the root circle of a gear on it",
+    "motor": "the motor runs into the middle shaft",
+}
+
+
+def given_overlap(scene: Scene) -> str:
+    """Say which gears of [[mesh]] overlap something; empty where none do."""
+    gears = given_gears(scene)
+    if scene.train is None or gears is None:
+        return ""
+    bodies = scene.servo_train().bodies
+    assert bodies is not None
+    return _told("In the given train", broken(bodies, gears))
+
+
+def _overlaps(scene: Scene, results: tuple[Result, ...]) -> str:
+    """Say the same of the lightest train, whose limits are relaxed: its mass is a lower bound."""
+    found = [r for r in results if r.name == "stiff" and r.value is not None]
+    if not found:
+        return ""
+    design, train = found[0].design, scene.servo_train()
+    assert train.bodies is not None
+    m = float(train.modules[0])
+    first, second = (
+        GearPair.of_diameter(m, d / m, d, n, b)
+        for d, n, b in zip(
+            design["pinion_diameter_mm"], design["ratio"], design["face_width_mm"], strict=True
+        )
+    )
+    bodies = replace(train.bodies, shaft=Fraction(design["shaft_diameter_mm"]))
+    return _told("In the lightest train", broken(bodies, (first, second)))
+
+
+def _told(whose: str, broken: list[str]) -> str:
+    return f"{whose} {' and '.join(WHAT[name] for name in broken)}." if broken else ""
+
+
+UNLISTED = "Other trains are not listed: time ran out before all were compared."
+
+
+def notes(
+    scene: Scene, results: tuple[Result, ...], design: ServoDesign, report: ServoReport
+) -> list[str]:
+    """Return what a reader should know beside the numbers."""
+    duty, found = scene.servo_duty(), []
+    if duty is not None and design.ratio is not None:
+        judged = candidates(scene, design.train).values()
+        found = [said for one in judged if (said := why_not(duty, one))]
+    if scene.train is not None and scene.train.maximise is None and scene.train.aim == SLOWEST:
+        found.append(f'minimise = "{SLOWEST}" was read as maximise: the maximum was searched for.')
+    if design.box is not None and not design.box.fits:
+        found.append("The best train does not fit the box of [space].")
+    asked, drawn = scene.accuracy.error, design.drawn
+    if asked is not None and drawn is not None:
+        limit = math.degrees(asked.value)
+        worst = drawn.worst_case_deg
+        if worst > limit * (1.0 + 1e-9):
+            found.append(
+                f"With all new tolerances at their limits the error is {worst:.5g} degrees, above "
+                f"the {limit:.5g} of [accuracy]: their budget is not by the rule worst_case."
+            )
+    stages = () if design.train is None else design.train.stages
+    rack = Rack(scene.accuracy.pressure_angle.value)
+    found += tooth_warnings(
+        GearPair.of_teeth(s.normal_module_mm, s.pinion_teeth, s.wheel_teeth, 1.0, rack=rack)
+        for s in stages
+    )
+    if scene.lightest is not None:
+        found.append(
+            "The lightest train has real-valued sizes: its mass is a lower bound for whole teeth."
+        )
+    found += [said for said in (_overlaps(scene, results), given_overlap(scene)) if said]
+    if report.trains == ():
+        found.append(UNLISTED)
+    found += [
+        f"There is no answer for the part {part.name}: {(part.message or part.status).rstrip('.')}."
+        for part in results[1:]
+        if part.value is None
+    ]
+    return found

@@ -1,0 +1,109 @@
+"""The objectives of a servo axis, and the problem of several of them at once."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.formulations.servo.front import front_problem
+from gearopt.formulations.servo.servo_design import GOALS, ServoDesign
+from gearopt.formulations.servo.split.bodies import Pairs
+from gearopt.formulations.servo.tolerance import conic, grades
+from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.pareto.front import Objective
+from gearopt.optimise.pareto.pareto import EPSILON, EXACT
+from gearopt.optimise.pareto.several import Several, impossible
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Array
+from gearopt.optimise.typed import untyped
+from gearopt.scenes.servo import tolerances as tolerance_part
+from gearopt.scenes.servo.scene import Scene
+from gearopt.scenes.servo.tables.mesh import BudgetTable
+from gearopt.scenes.servo.train import described, given_gears, of_point
+
+COST, ERROR = "cost", "error"
+
+
+def objectives(scene: Scene) -> dict[str, str]:
+    """Return what a front of the axis may minimise: name and unit.
+
+    Of a train what it is judged by; of tolerances of given gears cost and error, by the rule of the
+    budget, or of each budget where there are several.
+    """
+    if scene.train is not None:
+        return {name: GOALS[name].shown for name in scene.servo_train().goals}
+    if scene.tolerances is None:
+        return {}
+    return {COST: "", **dict.fromkeys(_errors(scene).values(), "deg")}
+
+
+def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
+    """Return the problem of a front; SolveError where a method does not fit it."""
+    units = objectives(scene)
+    listed = tuple(Objective(name, units[name]) for name in names)
+    if scene.train is not None:
+        return Several(_trains(scene, names, method), listed, lambda x: _train(scene, x))
+    gears = given_gears(scene)
+    assert gears is not None
+    problem = _tolerances(scene, gears, names, method)
+    return Several(problem, listed, lambda x: _allotted(scene, gears, x))
+
+
+def _trains(scene: Scene, names: Sequence[str], method: str | None) -> Problem:
+    choice = scene.choice()
+    if method == EPSILON:
+        raise SolveError(
+            f"{EPSILON} is for real-valued sizes; a servo train's teeth are whole: leave the "
+            f"method out, or write {EXACT}"
+        )
+    if choice.room is not None and method not in (None, EXACT):
+        raise SolveError(f"a box that is required is kept by {EXACT} alone, not by {method}")
+    return front_problem(choice, names)
+
+
+def _train(scene: Scene, x: Array) -> Mapping[str, Any]:
+    gears, springs = of_point(scene, x), scene.springs
+    stiffness = None if springs is None else springs.design(gears)
+    found: Mapping[str, Any] = untyped(
+        ServoDesign(train=described(scene, gears), stiffness=stiffness)
+    )
+    return found
+
+
+def _errors(scene: Scene) -> dict[str, str]:
+    """Return the objective of every budget, by its rule."""
+    rules = [b.rule for b in scene.budget] or [BudgetTable().rule]
+    return {rule: ERROR if len(rules) == 1 else f"{rule}_{ERROR}" for rule in rules}
+
+
+def _tolerances(
+    scene: Scene, gears: Pairs, names: Sequence[str], method: str | None
+) -> Problem | Conic:
+    """Return cost and errors of tolerances: cones, or grades; the limits of the budgets hold."""
+    table, lost = scene.tolerances, tolerance_part.start(scene, gears)
+    assert table is not None
+    if (none := tolerance_part.spent(scene, gears)) is not None:
+        return impossible("tolerance", names, none)
+    if table.grades is not None:
+        if method == EPSILON:
+            raise SolveError(f"{EPSILON} is for real-valued tolerances; grades are for {EXACT}")
+        return grades.problem(tolerance_part.grades(scene, gears), names, lost)
+    own = tolerance_part.stack(scene, gears)
+    if not own.exponent.all():
+        raise SolveError(
+            "a cost of exponent 0 grows with the logarithm, which cones do not have: write an "
+            "exponent above 0 in [tolerances] and every [[cost]]"
+        )
+    if not own.least.all():
+        raise SolveError(
+            "the error has no least value where tolerances may be as small as one likes: write "
+            "least_factor = 0.25 in [tolerances], or another part of the old ones"
+        )
+    return conic.several(own, {v: k for k, v in _errors(scene).items()}, names, lost)
+
+
+def _allotted(scene: Scene, gears: Pairs, x: Array) -> Mapping[str, Any]:
+    """Return the tolerances of a point, each beside the old one, with the gears."""
+    own, t = tolerance_part.stack(scene, gears), tolerance_part.widths(scene, x)
+    rows = tolerance_part.rows(scene, own, t)
+    found: Mapping[str, Any] = untyped(ServoDesign(train=described(scene, gears), tolerances=rows))
+    return found

@@ -1,0 +1,110 @@
+"""What to write instead of an impossible file, and what every number does to a possible one."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from gearopt.formulations.strain_wave.demand import GAP_UNIT
+from gearopt.formulations.strain_wave.design import problem
+from gearopt.formulations.strain_wave.exchange import Exchanged, exchange
+from gearopt.formulations.strain_wave.impossible import least_factor, nearest
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.explaining.explanation import Change, Explanation, Remedies, Remedy
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Result
+from gearopt.scenes.explaining.default import at_point, eases, of_design
+from gearopt.scenes.explaining.numbers import Number, apart, at, eased, moved, times, written
+from gearopt.scenes.reading.toml import toml_text
+from gearopt.scenes.strain_wave.scene import Scene
+
+MOVED = {  # the way that eases them, and the power of them that loads go with
+    ("duty", "torque"): (-1, 1.0),
+    ("duty", "outer_diameter"): (1, 3.0),
+}
+EASES = {  # beside ends of ranges: what eases a limit
+    "design.pairs": -1,
+    "design.safety": -1,
+    "design.ratcheting": -1,
+    "material.bending_limit": 1,
+    "material.shear_limit": 1,
+    "duty.outer_diameter": 1,
+}
+LIMITS = (  # but for those that only keep the flank regular
+    *("outer_radius", "interference", "ratcheting", "rim_fatigue", "pairs", "base_circle"),
+    *("minor_axis", "flexspline_land", "flexspline_space", "spline_land"),
+)
+NOTHING = 1e-6  # MPa: a multiplier below it is rounding
+ROOMY = (1.0, 1.001, 1.01)  # factors by which a change is made larger until a design is found
+
+
+def ways_out(scene: Scene, found: Exchanged, clock: Clock) -> Remedies:
+    """Return the limits in conflict, and torque and outer diameter moved alone until they do."""
+    used = found.nearest.used if found.nearest else {}
+    over = sorted((n for n, u in used.items() if u > 1.0), key=lambda n: -used[n])
+    names = tuple(found.result.proof.get("conflict", over))
+    tried = (_moved(scene, path, *how, clock) for path, how in MOVED.items())
+    late = "the budget ended before all remedies were tried"
+    return Remedies(names, tuple(r for r in tried if r), late if clock.over else "")
+
+
+def _moved(
+    scene: Scene, path: tuple[str, ...], way: int, power: float, clock: Clock
+) -> Remedy | None:
+    """Return a number of the file moved as little as a design takes; None where none helps."""
+    number = Number(path, at(scene, path))
+
+    def excess(factor: float) -> float | None:
+        other = None if clock.over else moved(scene, path, times(number.value, factor))
+        least = None if other is None else nearest(other.demand(), other.start(), clock)
+        return None if least is None else least.excess
+
+    factor = least_factor(excess, way, power)
+    for room in ROOMY if factor else ():
+        assert factor is not None
+        value = eased(number.value, factor * room, way)
+        other = moved(scene, path, value)
+        if other is not None and exchange(other.demand(), other.start(), clock).clear:
+            was, write = (toml_text(written(v, path)) for v in (number.value, value))
+            change = Change(number.key, was, write, apart(number.value, value))
+            sure = {"with": "feasible", "with_less": "undecided"}
+            kind = "less" if way < 0 else "alone"
+            return Remedy(kind, number.key, (change,), change.factor, None, sure)
+    return None
+
+
+def influences(scene: Scene, result: Result, clock: Clock, gap: float) -> Explanation:
+    """Return what every number of a file does to its pressure, by multipliers and solving again."""
+    found = exchange(scene.demand(), scene.start(), clock, gap)
+    x = found.outcome.x
+    assert x is not None and found.result.value is not None
+
+    def solved(other: Scene) -> float | None:
+        again = exchange(other.demand(), other.start(), Clock(clock.left, clock.watch), gap)
+        return again.result.value if again.result.status == "stationary" and again.clear else None
+
+    def posed(other: Scene) -> Problem:
+        return problem(other.demand(), x[:6], found.passages)
+
+    note = costs(found.result.multipliers)
+    basis = at_point(found.result.value, solved, posed, scene, x)
+    ways = eases(found.problem) | EASES
+    return replace(
+        of_design(scene, result, clock, basis, solved, note, ways), seconds=clock.seconds
+    )
+
+
+def costs(multipliers: Mapping[str, float]) -> str:
+    """Return what the pressure [MPa] owes to each limit that decides, by multipliers.
+
+    1 % of a limit, 1 um of overlap where teeth pass each other.
+    """
+    total: dict[str, float] = {}
+    for name, value in multipliers.items():
+        stem = name.split("[")[0]
+        total[stem] = total.get(stem, 0.0) - value
+    words = []
+    for name in (n for n in LIMITS if total.get(n, 0.0) > NOTHING):
+        step, part = (1e-3 / GAP_UNIT, "1 µm") if name == "interference" else (0.01, "1 %")
+        words.append(f"{name.replace('_', ' ')} {total[name] * step:.3g} MPa for {part}")
+    return (
+        f"to first order, relaxing a limit lowers the pressure: {', '.join(words)}" if words else ""
+    )
