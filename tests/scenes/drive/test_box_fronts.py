@@ -1,0 +1,38 @@
+"""Fronts of the box of a drive's file, and what is told where it has none."""
+
+from pathlib import Path
+
+import pytest
+
+import gearopt
+from gearopt import SolveError
+
+FILE = Path(__file__).parents[3] / "problems" / "elevator_box.toml"
+
+
+def test_the_end_of_a_front_is_the_box_that_the_file_asks_for(solved):
+    front = gearopt.pareto(FILE, objectives="box_volume,height", points=2)
+    best = solved("elevator_box")
+    assert front.points[0].values[0] == pytest.approx(best.value, rel=1e-6)
+    assert front.points[0].proven and front.method == "epsilon"
+    box = front.points[0].design["layout"]["box"]
+    assert box["height_mm"] == pytest.approx(front.points[0].values[1], rel=1e-12)
+    assert front.points[0].design["stages"] == best.design["stages"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "names", "words"),
+    [
+        ({}, "gear_volume,height", "are no front together"),
+        ({}, "height,box_volume", "box_volume cannot be limited, only width, height, length"),
+        ({"layout.together": True}, "width,height", "write together = false"),
+    ],
+)
+def test_what_has_no_front_is_said(changes, names, words):
+    with pytest.raises(SolveError, match=words):
+        gearopt.pareto(FILE, changes, objectives=names)
+
+
+def test_gears_that_cannot_be_laid_out_have_no_front():
+    front = gearopt.pareto(FILE, {"layout.largest_height": "200 mm"}, objectives="width,height")
+    assert front.status == "infeasible" and not front.points and front.message
