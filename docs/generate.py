@@ -18,7 +18,7 @@ import pictures
 import python_api
 import rate_page
 
-from gearopt.scenes.reading.load import kinds, scene_module
+from gearopt.scenes.reading.load import kind_named, kinds
 from gearopt.scenes.reading.schema import reference as tables
 
 DOCS = Path(__file__).parent
@@ -38,7 +38,7 @@ def page_of(kind: str) -> str:
     if not path.exists():
         raise SystemExit(f"kind {kind} needs a page docs/{kind}.md: see docs/compound.md")
     page = path.read_text(encoding="utf-8")
-    example = f"```toml\n{scene_module(kind).EXAMPLE}```"
+    example = f"```toml\n{kind_named(kind).example.text}```"
     page = re.sub(r"```toml\ngearopt = 1\n.*?```", lambda _: example, page, count=1, flags=re.S)
     keys = r"### top of the file\n.*?(?=\n## |\Z)"
     return re.sub(keys, lambda _: tables(kind), page, count=1, flags=re.S)

@@ -8,7 +8,7 @@ import re
 import tempfile
 from pathlib import Path
 
-from gearopt.scenes.reading.load import scene_module
+from gearopt.scenes.reading.load import kind_named
 
 PAGE = Path(__file__).parent / "notebook.md"
 FILE = "drive.toml"
@@ -23,7 +23,7 @@ def run(page: str, first: int | None = None) -> list[str]:
     with tempfile.TemporaryDirectory() as room:
         os.chdir(room)
         try:
-            Path(FILE).write_text(scene_module("drive").EXAMPLE, encoding="utf-8")
+            Path(FILE).write_text(kind_named("drive").example.text, encoding="utf-8")
             for code, _ in BLOCK.findall(page)[:first]:
                 with contextlib.redirect_stdout(io.StringIO()) as out:
                     exec(compile(code, "docs/notebook.md", "exec"), scope)

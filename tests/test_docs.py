@@ -12,7 +12,7 @@ from gearopt import api, cli
 from gearopt.formulations.drive import sizing, teeth
 from gearopt.optimise.own_methods import back_ends
 from gearopt.report.measures import METRIC
-from gearopt.scenes.reading.load import kinds, read, scene_module
+from gearopt.scenes.reading.load import kind_named, kinds, read
 from gearopt.scenes.reading.schema import reference
 from gearopt.units import UNITS
 
@@ -29,7 +29,7 @@ def test_the_reference_page_holds_the_generated_tables_and_the_example_file(kind
     assert (DOCS / f"{kind}.md").exists(), f"kind {kind} needs a page docs/{kind}.md"
     page = text(f"docs/{kind}.md")
     assert reference(kind) in page
-    assert scene_module(kind).EXAMPLE in page
+    assert kind_named(kind).example.text in page
 
 
 def test_the_reference_page_holds_every_unit():

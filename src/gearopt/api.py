@@ -28,11 +28,12 @@ from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch, plain  # noqa: F401
 from gearopt.optimise.solve import GAP, evaluate  # noqa: F401
 from gearopt.optimise.terms import Param, Repeat, Terms, Var  # noqa: F401
-from gearopt.scenes.explaining.default import of_report
+from gearopt.scenes.explaining.default import explanation, of_report
 from gearopt.scenes.explaining.shorter import shorter
-from gearopt.scenes.reading.ask import Ask, idle
+from gearopt.scenes.kind import Kind
+from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.inputs import inputs_of
-from gearopt.scenes.reading.load import FORMAT, bare, kind_of, scene_module
+from gearopt.scenes.reading.load import FORMAT, bare, kind_named, kind_of
 from gearopt.scenes.reading.load import load as load_file
 
 ENOUGH = 1.0  # gap at which a search for any design may end
@@ -94,19 +95,19 @@ def solve(
     if start is not None:
         raise SolveError("start changes nothing here: it is for a Problem; leave it out")
     ask = Ask(method, budget, seed, watch, gap, top)
-    scene, module, names = _opened(what, changes)
-    if why := idle(module, scene, method).get("top"):
+    scene, kind, names = _opened(what, changes)
+    if why := kind.idle(scene, method).get("top"):
         if top > 1:
             raise SolveError(f"top={top} changes nothing here: {why}; leave it out")
         asked["top"] = None
-    result: Result = module.solve(scene, ask)
+    result = kind.solve(scene, ask)
     if prices and result.value is not None and result.status != "evaluated":
         left = ask.for_prices(prices, result.seconds)
-        found = _explained(module, scene, left, result)
+        found = explanation(kind, scene, left, result)
         result = replace(result, report=result.report | {"prices": found.prices})
     if (ways := result.report.get("ways_out")) and result.status == "infeasible":
         left = replace(ask, budget=budget.less(result.seconds))
-        short = _shortened(of_report(result).remedies, what, changes, module, left)
+        short = _shortened(of_report(result).remedies, what, changes, kind, left)
         ways = ways | {"remedies": [asdict(remedy) for remedy in short]}
         result = replace(result, report=result.report | {"ways_out": ways})
     if inputs := inputs_of(scene):
@@ -123,12 +124,11 @@ def rate(what: File, changes: Changes = None) -> Result:
     design["rating"] stresses, safety factors, lives, factors, forces and tooth geometry.
     SceneError for a wrong file or change, SolveError names what cannot be rated.
     """
-    scene, module, names = _opened(what, changes)
-    if not hasattr(module, "rate"):
-        kind = names["scene"]
-        raise SolveError(f'rate takes kind = "drive", not "{kind}"; gearopt solve rates a pair')
-    result: Result = module.rate(scene, Ask())
-    return _named(result, **names)
+    scene, kind, names = _opened(what, changes)
+    if kind.rate is None:
+        name = names["scene"]
+        raise SolveError(f'rate takes kind = "drive", not "{name}"; gearopt solve rates a pair')
+    return _named(kind.rate(scene, Ask()), **names)
 
 
 @in_turn
@@ -158,15 +158,15 @@ def explain(
         _unchanged(what, changes)
         return explain_problem(what, budget, watch)
     ask = Ask(budget=budget, watch=watch)
-    scene, module, names = _opened(what, changes)
-    found = _explained(module, scene, ask)
+    scene, kind, names = _opened(what, changes)
+    found = explanation(kind, scene, ask)
     left = replace(ask, budget=budget.less(found.seconds))
-    short = _shortened(found.remedies, what, changes, module, left)
+    short = _shortened(found.remedies, what, changes, kind, left)
     return replace(found, remedies=short, result=_named(found.result, **names))
 
 
 def _shortened(
-    found: Sequence[Remedy], what: Any, changes: Changes, module: Any, ask: Ask
+    found: Sequence[Remedy], what: Any, changes: Changes, kind: Kind[Any], ask: Ask
 ) -> tuple[Remedy, ...]:
     """Return remedies with what one would write, where the file with it has a design."""
     if not found:
@@ -179,7 +179,7 @@ def _shortened(
         except SceneError:
             return False
         budget = replace(clock.left, seconds=seconds, gap=ENOUGH)
-        answer = module.solve(scene, replace(ask, budget=budget, watch=clock.watch, top=1))
+        answer = kind.solve(scene, replace(ask, budget=budget, watch=clock.watch, top=1))
         return answer.value is not None and answer.feasible
 
     return shorter(found, clock, works)
@@ -187,8 +187,8 @@ def _shortened(
 
 def idle_options(what: File, method: str | None) -> dict[str, str]:
     """Return the options of `solve` that change nothing for a file, each with the reason."""
-    scene, module, _ = _opened(what, None)
-    return idle(module, scene, method)
+    scene, kind, _ = _opened(what, None)
+    return kind.idle(scene, method)
 
 
 def _only_of_files(name: str, top: int, prices: bool | float) -> None:
@@ -197,16 +197,6 @@ def _only_of_files(name: str, top: int, prices: bool | float) -> None:
         raise SolveError(f"top={top} changes nothing here: {name} has no next best answers")
     if prices:
         raise SolveError(f"prices=True is for files: explain({name}) has its sensitivities")
-
-
-def _explained(module: Any, scene: Any, ask: Ask, result: Result | None = None) -> Explanation:
-    """Return the explanation by the kind itself, or by its `solve` and `model`."""
-    if hasattr(module, "explain"):
-        found: Explanation = module.explain(scene, ask, result)
-        return found
-    from gearopt.scenes.explaining.default import explain as explain_scene
-
-    return explain_scene(module, scene, ask, result)
 
 
 DEFAULT = ("ipopt", "annealing", "nsga2")  # compared beside exact algorithms where none are named
@@ -257,9 +247,9 @@ def compare(
         own = Model(what)
         found = compare_methods(chosen, lambda method: own, plan, watch, bound_from)
         return replace(found, title=what.name)
-    scene, module, about = _opened(what, changes)
-    chosen = module.compared(scene) if methods is None else methods
-    found = compare_methods(chosen, lambda m: module.model(scene, m), plan, watch, bound_from)
+    scene, kind, about = _opened(what, changes)
+    chosen = kind.compared(scene) if methods is None else methods
+    found = compare_methods(chosen, lambda m: kind.posed(scene, m), plan, watch, bound_from)
     title = getattr(scene, "title", "") or about["scene"]
     return replace(found, title=title, **_of_comparison(about))
 
@@ -304,15 +294,15 @@ def _traded(
         _unchanged(what, changes)
         own = several(what, names)
         return lambda method: own, tuple(o.name for o in own.objectives), {"title": what.name}
-    scene, module, about = _opened(what, changes)
-    known = module.objectives(scene) if hasattr(module, "objectives") else {}
+    scene, kind, about = _opened(what, changes)
+    known = kind.trades.objectives(scene)
     left = [name for name in names or () if name not in known]
-    if left and hasattr(module, "advice") and (why := module.advice(scene, left)):
+    if left and (why := kind.trades.advice(scene, left)):
         raise SolveError(why)
     chosen = chosen_of(names, list(known), f'this file of kind "{about["scene"]}"')
-    report = {"assumptions": module.assumptions(scene)} if hasattr(module, "assumptions") else {}
+    report = {"assumptions": told} if (told := kind.assumptions(scene)) else {}
     about |= {"title": getattr(scene, "title", ""), "report": report}
-    return lambda method: module.several(scene, chosen, method), chosen, about
+    return lambda method: kind.trades.several(scene, chosen, method), chosen, about
 
 
 @in_turn
@@ -364,8 +354,8 @@ def _unchanged(problem: Problem | Conic, changes: Changes) -> None:
         )
 
 
-def _opened(what: File, changes: Changes) -> tuple[BaseModel, Any, dict[str, Any]]:
-    """Return the scene of what was given, the module of its kind, and its names for a result."""
+def _opened(what: File, changes: Changes) -> tuple[BaseModel, Kind[Any], dict[str, Any]]:
+    """Return the scene of what was given, its kind, and its names for a result."""
     if not isinstance(changes, Mapping | NoneType):
         raise ValueError(
             f"{changes!r} is not a dict of changes, such as {{'duty.power': '9 kW'}}; options have "
@@ -384,7 +374,7 @@ def _opened(what: File, changes: Changes) -> tuple[BaseModel, Any, dict[str, Any
         scene, kind = what, kind_of(what)
         what = {"gearopt": FORMAT, "kind": kind, **content(scene)}
         if not changes:
-            return scene, scene_module(kind), {"scene": kind, "asked": bare(what), "options": {}}
+            return scene, kind_named(kind), {"scene": kind, "asked": bare(what), "options": {}}
     loaded = load_file(what, changes)
     names: dict[str, Any] = {
         "scene": loaded.kind,
@@ -393,7 +383,7 @@ def _opened(what: File, changes: Changes) -> tuple[BaseModel, Any, dict[str, Any
         "asked": loaded.asked,
         "options": {"changes": loaded.changes} if loaded.changes else {},
     }
-    return loaded.scene, scene_module(loaded.kind), names
+    return loaded.scene, kind_named(loaded.kind), names
 
 
 def _named(result: Result, **names: Any) -> Result:

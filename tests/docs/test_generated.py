@@ -13,7 +13,7 @@ import python_api
 import gearopt
 from gearopt.cli import app
 from gearopt.cli.app import EXIT
-from gearopt.scenes.reading.load import kinds, scene_module
+from gearopt.scenes.reading.load import kind_named, kinds
 from gearopt.scenes.reading.schema import reference as tables
 
 ROOT = Path(__file__).parents[2]
@@ -70,7 +70,7 @@ def test_tables_of_keys_are_written_where_they_belong(kind, tmp_path, monkeypatc
     assert generate.page_of(kind) == page(f"{kind}.md")
     monkeypatch.setattr(generate, "DOCS", tmp_path)
     made = generate.page_of(kind)
-    assert scene_module(kind).EXAMPLE in made and tables(kind) in made
+    assert kind_named(kind).example.text in made and tables(kind) in made
     assert made.startswith("# A page\n") and made.endswith(f"\n## More\n\n{kind}\n")
 
 

@@ -19,7 +19,9 @@ from gearopt.physics.strain_wave.neutral_curve import angle_of_arc, neutral_curv
 from gearopt.physics.strain_wave.rim import Cup
 from gearopt.physics.strain_wave.tooth_motion import motion
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.strain_wave import EXAMPLE
+from gearopt.scenes.strain_wave import KIND
+
+EXAMPLE = KIND.example.text
 
 BASE = StrainWave(0.5, 160, profile_shift=0.9)
 

@@ -6,7 +6,9 @@ import tomllib
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 
-from gearopt.scenes.drive import EXAMPLE
+from gearopt.scenes.drive import KIND
+
+EXAMPLE = KIND.example.text
 
 ELEVATOR = (Path(__file__).parents[2] / "problems" / "elevator.toml").read_text(encoding="utf-8")
 

@@ -17,7 +17,7 @@ from gearopt.scenes import compound, drive, packing, pair, servo
 from gearopt.scenes.reading.ask import Ask
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
-ROOMS = {room.Scene: room for room in (compound, drive, packing, pair, servo)}
+ROOMS = {room.KIND.scene: room.KIND for room in (compound, drive, packing, pair, servo)}
 FILES = (
     *("elevator", "elevator_box", "sandgren_train", "seven_points"),
     pytest.param("three_stage_together", marks=pytest.mark.slow),
@@ -30,7 +30,7 @@ FILES = (
 def posed(name, method):
     scene = gearopt.load(PROBLEMS / f"{name}.toml")
     scene = getattr(scene, "scene", scene)
-    return ROOMS[type(scene)].model(scene, method)
+    return ROOMS[type(scene)].posed(scene, method)
 
 
 def own_methods(name):
@@ -41,7 +41,7 @@ def own_methods(name):
     found = {}
     for method in room.compared(scene):
         try:
-            problem = room.model(scene, method).problem
+            problem = room.posed(scene, method).problem
         except SolveError:
             continue
         found |= {own: method_of(problem, own) for own in problem.methods}
@@ -52,7 +52,7 @@ def own_methods(name):
 def test_every_method_says_whether_it_is_random_and_what_it_counts(name):
     methods = own_methods(name)
     room = ROOMS[type(gearopt.load(PROBLEMS / f"{name}.toml"))]
-    assert methods and methods.keys() <= set(room.METHODS)
+    assert methods and methods.keys() <= set(room.methods)
     for method, run in methods.items():
         module = sys.modules[run.__module__]
         assert isinstance(module.RANDOM, bool), method

@@ -25,12 +25,12 @@ from gearopt.scenes.explaining.default import explain
 from gearopt.scenes.explaining.influences import NEAR
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, number, quantity, whole
-from gearopt.scenes.reading.load import kind_of, read, scene_module
+from gearopt.scenes.reading.load import kind_named, kind_of, read
 from gearopt.scenes.reading.mistakes import table_of
 from gearopt.units import Quantity
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
-TRAIN = scene_module("compound").EXAMPLE
+TRAIN = kind_named("compound").example.text
 ROW = """
 gearopt = 1
 kind = "packing"
@@ -223,7 +223,7 @@ def bars(own, method=""):
     return Model(Problem("bars", (n, d), parameters, evaluate, methods={"exact": exact}))
 
 
-KIND = SimpleNamespace(model=bars, solve=lambda own, ask: solve_problem(bars(own).problem))
+KIND = SimpleNamespace(posed=bars, solve=lambda own, ask: solve_problem(bars(own).problem))
 FILE = {
     "bar": {
         **{"pull": "10 N m", "stress": "100 MPa", "safety": Decimal("1.5")},
@@ -345,7 +345,7 @@ def test_tolerances_that_no_budget_holds():
     text = (PROBLEMS / "servo_gimbal_tolerances.toml").read_text()
     text = text.replace("[tolerances]", "[tolerances]\nleast_factor = 0.9")
     text = text.replace('"worst_case"', '"worst_case"\nlimit = "0.08 deg"', 1)
-    own, content = scene_of(text, scene_module("servo").Scene)
+    own, content = scene_of(text, kind_named("servo").scene)
     found = gearopt.explain(own)
     assert {"worst_case", "least of pitch of stage 2"} < set(found.conflict)
     used = 0.08 * found.result.proof["least_utilisation"]
@@ -382,7 +382,7 @@ def test_every_key_of_a_problem_is_a_place_of_its_file(path):
         pytest.skip("gears that are given and rated pose no problem")
     if kind == "strain_wave":
         pytest.skip("no number of it is moved: test_strain_wave_keys looks at every key")
-    problem = scene_module(kind).model(own, METHODS.get(kind, "")).problem
+    problem = kind_named(kind).posed(own, METHODS.get(kind, "")).problem
     problem = problem.relaxed or problem
     keys = {k for q in problem.parameters for k in each_word(q.key, q.size)}
     keys = {k for k in keys | {h.key for h in handles(problem)} if k}

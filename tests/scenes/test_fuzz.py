@@ -19,10 +19,12 @@ from scrambles import SCRAMBLES
 
 from gearopt.cli import reporting
 from gearopt.errors import SceneError
-from gearopt.scenes.drive import EXAMPLE
+from gearopt.scenes.drive import KIND
 from gearopt.scenes.reading import files
 from gearopt.scenes.reading.load import load, read
 from gearopt.scenes.reading.schema import json_schema
+
+EXAMPLE = KIND.example.text
 
 KINDS = MUTATIONS | SCRAMBLES
 SLOW = ("deep_dotted_key", "deep_keys_of_ones_own")  # a second each inside tomllib

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -16,7 +17,7 @@ from gearopt.scenes import compound
 from gearopt.scenes.reading.load import load, read
 from gearopt.scenes.reading.schema import json_schema
 
-TRAIN = compound.EXAMPLE.encode()
+TRAIN = compound.KIND.example.text.encode()
 
 
 @pytest.fixture(autouse=True)
@@ -124,7 +125,8 @@ def test_an_input_that_is_wrong_itself_says_where(folder):
 def test_an_input_whose_solving_finds_no_design_is_told(folder, monkeypatch):
     path = checking(folder, "trains/train.toml")
     none = gearopt.Result("compound", "limit", "exact", {"name": "error"}, message="out of time")
-    monkeypatch.setattr(compound, "solve", lambda scene, ask: none)
+    kind = replace(compound.KIND, solve=lambda scene, ask: none)
+    monkeypatch.setattr(compound, "KIND", kind)
     words = r"it has none \(limit: out of time\)\. See what `gearopt solve trains/train.toml` says"
     with pytest.raises(SceneError, match=words):
         gearopt.solve(path)

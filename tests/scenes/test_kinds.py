@@ -9,14 +9,14 @@ import gearopt.scenes
 from gearopt.errors import SceneError, SolveError
 from gearopt.scenes.reading.changes import as_written
 from gearopt.scenes.reading.fields import Reads
-from gearopt.scenes.reading.load import kinds, read, scene_module
+from gearopt.scenes.reading.load import kind_named, kinds, read
 from gearopt.scenes.reading.mistakes import tables
 
 
 @pytest.mark.parametrize("kind", kinds())
 @pytest.mark.parametrize("line", ['kind = ""', ""])
 def test_the_kind_is_guessed_from_the_tables(kind, line):
-    text = re.sub(r"(?m)^kind = .*$", line, scene_module(kind).EXAMPLE)
+    text = re.sub(r"(?m)^kind = .*$", line, kind_named(kind).example.text)
     with pytest.raises(SceneError) as wrong:
         read(text.encode())
     assert wrong.value.fix.value == f'"{kind}"'
@@ -26,7 +26,7 @@ def test_a_kind_that_cannot_be_imported_is_named_and_leaves_the_others_alone(tmp
     (tmp_path / "broken.py").write_text("from gearopt.units import nothing\n")
     monkeypatch.setattr(gearopt.scenes, "__path__", [*gearopt.scenes.__path__, str(tmp_path)])
     with pytest.raises(SceneError) as wrong:
-        read(re.sub(r"(?m)^kind = .*$", "", scene_module("compound").EXAMPLE).encode())
+        read(re.sub(r"(?m)^kind = .*$", "", kind_named("compound").example.text).encode())
     assert wrong.value.fix.value == '"compound"'
     with pytest.raises(SolveError, match="kind 'broken' cannot be imported: .*nothing"):
         read(b'gearopt = 1\nkind = "broken"\n')
@@ -36,15 +36,8 @@ def test_a_kind_that_cannot_be_imported_is_named_and_leaves_the_others_alone(tmp
 def test_every_reader_takes_its_example_and_what_it_returned():
     """Values that were read are read again where a scene is made from another one."""
     for kind in kinds():
-        for _, table in tables(scene_module(kind).Scene):
+        for _, table in tables(kind_named(kind).scene):
             for name, info in table.model_fields.items():
                 for reads in (m for m in info.metadata if isinstance(m, Reads) and not m.opens):
                     found = reads.reader(as_written(reads.example), reads.example)
                     assert reads.reader(found, reads.example) == found, (table, name)
-
-
-def test_what_a_kind_offers_by_name_is_a_function():
-    """A file of its folder of the same name would be taken for it."""
-    for module in map(scene_module, kinds()):
-        for name in ("advice", "assumptions", "explain", "idle", "objectives", "rate", "several"):
-            assert callable(getattr(module, name, print)), (module.__name__, name)

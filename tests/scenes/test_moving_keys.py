@@ -19,7 +19,7 @@ import pytest
 import gearopt
 from gearopt import Budget
 from gearopt.errors import GearoptError, SolveError
-from gearopt.scenes.reading.load import examples, kinds, scene_module
+from gearopt.scenes.reading.load import examples, kind_named, kinds
 from gearopt.scenes.reading.mistakes import example_of, table_of, tables
 from gearopt.scenes.reading.schema import json_schema
 
@@ -40,7 +40,7 @@ CLOSE = 1e-9  # relative: less is the rounding of an answer
 def keys(kind):
     """Return every key of a kind as `table.key` with its example and its words."""
     schema = json_schema(kind)
-    for title, table in (("", scene_module(kind).Scene), *tables(scene_module(kind).Scene)):
+    for title, table in (("", kind_named(kind).scene), *tables(kind_named(kind).scene)):
         for name, info in table.model_fields.items():
             if not table_of(info.annotation):
                 own = schema["$defs"][table.__name__] if title else schema

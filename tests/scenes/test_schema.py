@@ -6,10 +6,12 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from gearopt.scenes.drive import EXAMPLE
-from gearopt.scenes.reading.load import examples, kinds, scene_module
+from gearopt.scenes.drive import KIND
+from gearopt.scenes.reading.load import examples, kind_named, kinds
 from gearopt.scenes.reading.mistakes import table_of
 from gearopt.scenes.reading.schema import json_schema
+
+EXAMPLE = KIND.example.text
 
 PROBLEMS = sorted((Path(__file__).parents[2] / "problems").glob("*.toml"))
 VALIDATORS = {kind: jsonschema.Draft202012Validator(json_schema(kind)) for kind in kinds()}
@@ -32,11 +34,11 @@ MORE = {"drive": [examples()["rating"]], "pair": [examples()["sized-pair"]]}
 
 @pytest.mark.parametrize("kind", kinds())
 def test_the_example_fits_and_shows_every_table(kind):
-    example, content = scene_module(kind).EXAMPLE, {}
+    example, content = kind_named(kind).example.text, {}
     for text in (example, *MORE.get(kind, ())):
         VALIDATORS[kind].validate(tomllib.loads(text))
         content |= tomllib.loads(text)
-    fields = scene_module(kind).Scene.model_fields
+    fields = kind_named(kind).scene.model_fields
     tables = {name for name, info in fields.items() if table_of(info.annotation)}
     apart = {
         "layout",

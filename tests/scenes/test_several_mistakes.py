@@ -12,7 +12,7 @@ from scene_files import BASES, keys, parse, put, rename
 from gearopt.errors import SceneError
 from gearopt.scenes.reading.absent import absent, option
 from gearopt.scenes.reading.called import CALLED
-from gearopt.scenes.reading.load import kinds, read, scene_module
+from gearopt.scenes.reading.load import kind_named, kinds, read
 from gearopt.scenes.reading.mistakes import tables
 from gearopt.scenes.reading.not_yet import NEAREST
 from gearopt.scenes.reading.toml import dotted
@@ -171,7 +171,7 @@ def test_the_letters_of_the_field_are_told_their_keys():
     first, second = mistakes(text).errors
     assert first.remedy == "Write helix_angle, in [gears]" and first.fix is None
     assert second.remedy == "Write stages, at the top of the file"
-    scene = scene_module("drive").Scene
+    scene = kind_named("drive").scene
     known = {*scene.model_fields, *(k for _, t in tables(scene) for k in t.model_fields)}
     for there, names in CALLED["drive"].items():
         assert there.split(",")[0].split(" ")[0] in known and not known & set(names.split())
@@ -180,7 +180,7 @@ def test_the_letters_of_the_field_are_told_their_keys():
 @pytest.mark.parametrize(("kind", "names"), [(k, n) for k, t in NEAREST.items() for n in t])
 def test_every_key_of_what_stands_nearest_is_known(kind, names):
     """What a remedy calls a key, with an underscore or a table before it, is one of the kind's."""
-    scene = scene_module(kind).Scene
+    scene = kind_named(kind).scene
     held = {title.strip("[]"): table for title, table in tables(scene)}
     known = {*scene.model_fields, *(k for t in held.values() for k in t.model_fields)}
     known |= {"gear_volume", "sum_of_centre_distances", "mesh_loss"}  # values
@@ -307,7 +307,7 @@ def test_gears_that_no_kind_has_are_named_with_the_kinds(kind, gears):
 
 def test_no_key_of_a_file_is_called_absent():
     for kind in kinds():
-        scene = scene_module(kind).Scene
+        scene = kind_named(kind).scene
         known = {*scene.model_fields, *(k for _, t in tables(scene) for k in t.model_fields)}
         assert not [key for key in known if absent(key) or option(key)]
 

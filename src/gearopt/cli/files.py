@@ -16,7 +16,6 @@ from gearopt.cli.app import FIRST, MORE, TOOLS, Json, app, console, print_whole,
 from gearopt.cli.names import bench_words, example_words, kind_words, problem_files
 from gearopt.errors import GearoptError, SceneError
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.result import Result
 
 Kind = Annotated[
     str, typer.Argument(help="A kind of problem file: {kinds}.", autocompletion=kind_words)
@@ -141,13 +140,13 @@ def _version(name: str) -> str:
 def _works(method: str) -> str:
     """Solve the example file by a method; the check is the certificate's."""
     from gearopt.scenes.reading.ask import Ask
-    from gearopt.scenes.reading.load import read, scene_module
+    from gearopt.scenes.reading.load import kind_named, read
 
-    module = scene_module("drive")
+    drive = kind_named("drive")
     clock = Clock()
     try:
-        _, scene = read(module.EXAMPLE.encode())
-        result: Result = module.solve(scene, Ask(method))
+        _, scene = read(drive.example.text.encode())
+        result = drive.solve(scene, Ask(method))
     except Exception as broken:  # a doctor reports what is broken, whatever it is
         return f"no: {type(broken).__name__}: {broken}"
     word = "yes" if result.status == "optimal" else f"no: {result.status} {result.message}"

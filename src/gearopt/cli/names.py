@@ -16,17 +16,18 @@ SYSTEMS = ("metric", "inch")
 
 def kinds() -> dict[str, str]:
     """Return the kinds of problem file, each with what it is for."""
-    from gearopt.scenes.reading.load import kinds, scene_module
+    from gearopt.scenes.reading.load import kind_named, kinds
 
-    return {kind: _said(scene_module(kind).__doc__, 'kind = "[a-z]+": ') for kind in kinds()}
+    return {name: kind_named(name).example.about for name in kinds()}
 
 
 def examples() -> dict[str, str]:
     """Return the problem files to start from, each with what it is for."""
-    from gearopt.scenes.reading.load import scene_module
+    from gearopt.scenes.reading.load import kind_named
 
-    more = (getattr(scene_module(kind), "MORE_EXAMPLES", {}) for kind in kinds())
-    return kinds() | {name: words for held in more for name, (words, _) in held.items()}
+    known = kinds()
+    listed = [kind_named(kind).examples for kind in known]
+    return known | {name: each.about for of_kind in listed for name, each in of_kind.items()}
 
 
 def benches() -> dict[str, str]:
@@ -41,9 +42,9 @@ ANY = "any problem that suits"
 
 def methods() -> dict[str, tuple[str, ...]]:
     """Return the methods of `--method`: of each kind its own, and those for any problem."""
-    from gearopt.scenes.reading.load import kinds, scene_module
+    from gearopt.scenes.reading.load import kind_named, kinds
 
-    own = {kind: getattr(scene_module(kind), "METHODS", ()) for kind in kinds()}
+    own = {name: kind_named(name).methods for name in kinds()}
     return own | {ANY: back_ends()}
 
 

@@ -13,7 +13,9 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Terms, Var
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.strain_wave.example import FROM_DUTY
+from gearopt.scenes.strain_wave import KIND as WAVES
+
+FROM_DUTY = WAVES.examples["strain-wave-from-duty"].text
 
 RANGES = dict.fromkeys(FREE, (0.0, 2.0)) | {"module": (0.5, 0.5)}
 

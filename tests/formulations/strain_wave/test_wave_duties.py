@@ -11,7 +11,9 @@ from gearopt.formulations.strain_wave.exchange import exchange
 from gearopt.optimise.clock import Clock
 from gearopt.physics.strain_wave.clearance import least_gaps
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.strain_wave.example import FROM_DUTY
+from gearopt.scenes.strain_wave import KIND as WAVES
+
+FROM_DUTY = WAVES.examples["strain-wave-from-duty"].text
 
 PAGE = Path(__file__).parents[3] / "docs" / "strain_wave.md"
 SHAPES = ("cosine", "ellipse", "discs")

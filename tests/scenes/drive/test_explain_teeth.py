@@ -78,7 +78,7 @@ def kind(**given):
     def posed(own, method=""):
         return model(own, method, **given)
 
-    return SimpleNamespace(model=posed, solve=lambda own, ask: solve(posed(own).problem))
+    return SimpleNamespace(posed=posed, solve=lambda own, ask: solve(posed(own).problem))
 
 
 FILE = {

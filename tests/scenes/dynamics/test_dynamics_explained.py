@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 import gearopt
-from gearopt.scenes.dynamics import EXAMPLE
+from gearopt.scenes.dynamics import KIND
 from gearopt.scenes.dynamics.steps import resolvable
+
+EXAMPLE = KIND.example.text
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
 BARE = EXAMPLE[: EXAMPLE.index("[simulate]")]

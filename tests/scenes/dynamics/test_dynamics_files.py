@@ -17,10 +17,12 @@ from gearopt.formulations.dynamics.teeth_wave import nearest_load, of_contact
 from gearopt.optimise.kernels import COMPILING
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor
 from gearopt.physics.motion.stiffness_wave import fourier, trapezoid
-from gearopt.scenes.dynamics import EXAMPLE
+from gearopt.scenes.dynamics import KIND
 from gearopt.scenes.dynamics.own_teeth import of_teeth
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import load, read
+
+EXAMPLE = KIND.example.text
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
 

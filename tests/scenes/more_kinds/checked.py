@@ -8,10 +8,11 @@ from pydantic import Field
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.solve import evaluate
 from gearopt.optimise.terms import Terms, Var
+from gearopt.scenes.kind import Example, Kind
 from gearopt.scenes.reading.fields import Table, number, words
 from gearopt.scenes.reading.inputs import Input, result_of
 
-EXAMPLE = """\
+TEXT = """\
 gearopt = 1
 kind = "checked"
 
@@ -49,3 +50,6 @@ def solve(scene, ask):
     problem = Problem("check", (Var("ratio", "", 0.0, 1e6, 1.0),), (), text)
     result = evaluate(problem, {"ratio": train.design["ratio"]})
     return replace(result, objective=result.objective | {"unit": ""})
+
+
+KIND = Kind(scene=Scene, examples={"checked": Example("a check", TEXT)}, solve=solve)

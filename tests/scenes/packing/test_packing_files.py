@@ -18,8 +18,10 @@ from gearopt.errors import SceneError, SolveError
 from gearopt.formulations import packing
 from gearopt.formulations.packing.container_bound import Bound
 from gearopt.report.answer import proof
-from gearopt.scenes.packing import EXAMPLE
+from gearopt.scenes.packing import KIND
 from gearopt.scenes.reading.load import read
+
+EXAMPLE = KIND.example.text
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
 ROW = (PROBLEMS / "six_cylinders_row.toml").read_text(encoding="utf-8")

@@ -12,10 +12,12 @@ import gearopt
 from gearopt.errors import SceneError, SolveError
 from gearopt.physics.tooth.ladder import LEVELS
 from gearopt.report.kinds.pair.words import OVERSTATED
-from gearopt.scenes.pair import EXAMPLE, MORE_EXAMPLES
+from gearopt.scenes.pair import KIND
+
+EXAMPLE = KIND.example.text
 
 GIVEN = tomllib.loads(EXAMPLE)
-SIZED = tomllib.loads(MORE_EXAMPLES["sized-pair"][1])
+SIZED = tomllib.loads(KIND.examples["sized-pair"].text)
 
 
 def with_(tables, edits):

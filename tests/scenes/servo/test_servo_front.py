@@ -12,7 +12,7 @@ import gearopt
 from gearopt import SolveError
 from gearopt.formulations.servo.tolerance.grades import Choice, Graded, problem
 from gearopt.optimise.pareto.pareto import found
-from gearopt.scenes.servo import notes as assumptions
+from gearopt.scenes.servo.notes import assumptions
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
 

@@ -12,7 +12,9 @@ import gearopt
 from gearopt.errors import SceneError
 from gearopt.optimise.result import Budget
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.servo import EXAMPLE
+from gearopt.scenes.servo import KIND
+
+EXAMPLE = KIND.example.text
 
 OF_DRIVES = (  # mutations that look for tables of a drive
     *("speeds_swapped", "two_that_exclude_each_other", "no_module_left", "too_many_stages"),

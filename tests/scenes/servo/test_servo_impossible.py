@@ -17,10 +17,12 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.answer import proof, summary
 from gearopt.report.measures import METRIC
-from gearopt.scenes.servo import EXAMPLE
+from gearopt.scenes.servo import KIND
 from gearopt.scenes.servo.alone import reached
 from gearopt.scenes.servo.notes import notes
 from gearopt.scenes.servo.remedies import remedies
+
+EXAMPLE = KIND.example.text
 
 
 @pytest.mark.slow

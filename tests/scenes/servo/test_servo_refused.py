@@ -13,7 +13,9 @@ from servo_files import (
 
 from gearopt.errors import SceneError
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.servo import EXAMPLE
+from gearopt.scenes.servo import KIND
+
+EXAMPLE = KIND.example.text
 
 
 @pytest.mark.parametrize(

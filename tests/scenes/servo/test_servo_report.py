@@ -13,7 +13,7 @@ from gearopt.optimise.result import Budget
 from gearopt.optimise.typed import typed, untyped
 from gearopt.report.answer import proof
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.servo import model
+from gearopt.scenes.servo import posed
 
 ROOT = Path(__file__).parents[3]
 PROBLEMS = ROOT / "problems"
@@ -58,7 +58,7 @@ def test_what_an_enumeration_does_not_look_at_is_said():
 
 
 def test_enumeration_may_be_compared():
-    assert {"exact", "enumeration"} <= model(scene("gimbal_stiff"), "exact").problem.methods.keys()
+    assert {"exact", "enumeration"} <= posed(scene("gimbal_stiff"), "exact").problem.methods.keys()
     found = gearopt.compare(
         scene("gimbal_stiff"),
         methods=("exact", "enumeration"),

@@ -33,9 +33,11 @@ from gearopt.report.explained import remedy_words
 from gearopt.report.kinds.servo.motion import best_words
 from gearopt.scenes import servo
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.servo import EXAMPLE
+from gearopt.scenes.servo import KIND
 from gearopt.scenes.servo.notes import UNLISTED, assumptions, given_overlap
 from gearopt.scenes.servo.train import of_point
+
+EXAMPLE = KIND.example.text
 
 
 @pytest.mark.parametrize(

@@ -16,10 +16,14 @@ from gearopt.report.kinds.strain_wave.tables import loads
 from gearopt.report.measures import METRIC
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.strain_wave import EXAMPLE, compared, explain, model, objectives, several
-from gearopt.scenes.strain_wave.example import FROM_DUTY
+from gearopt.scenes.strain_wave import KIND, compared, explain, objectives, posed, several
+from gearopt.scenes.strain_wave import KIND as WAVES
 from gearopt.scenes.strain_wave.notes import assumptions, notes, range_notes
 from gearopt.scenes.strain_wave.remedies import costs
+
+FROM_DUTY = WAVES.examples["strain-wave-from-duty"].text
+
+EXAMPLE = KIND.example.text
 
 
 def scene(text):
@@ -248,18 +252,18 @@ def test_ranges_of_a_duty_alone_are_those_of_its_size():
 def test_problems_of_a_duty_alone():
     own = scene(FROM_DUTY)
     assert compared(own) == ("exchange", "annealing", "nsga2")
-    assert set(model(own, "").problem.methods) == {"exchange"}
-    assert len(model(own, "nsga2").problem.columns) == 6
+    assert set(posed(own, "").problem.methods) == {"exchange"}
+    assert len(posed(own, "nsga2").problem.columns) == 6
     assert list(objectives(own)) == ["pressure", "volume_per_torque", "load_share"]
-    posed = several(own, ("pressure", "load_share"), "nsga2")
-    assert posed.problem.rows.objectives == ("pressure", "load_share")
-    posed = several(own, ("volume_per_torque", "pressure"), None)
-    assert posed.limiting.names == ("pressure",)
-    posed = several(own, ("pressure", "volume_per_torque"), None)
-    assert posed.limiting.names == ("volume_per_torque",)
+    traded = several(own, ("pressure", "load_share"), "nsga2")
+    assert traded.problem.rows.objectives == ("pressure", "load_share")
+    traded = several(own, ("volume_per_torque", "pressure"), None)
+    assert traded.limiting.names == ("pressure",)
+    traded = several(own, ("pressure", "volume_per_torque"), None)
+    assert traded.limiting.names == ("volume_per_torque",)
     with pytest.raises(SolveError, match="load_share counts teeth"):
         several(own, ("pressure", "load_share"), None)
-    for call in (compared, objectives, lambda s: model(s, "")):
+    for call in (compared, objectives, lambda s: posed(s, "")):
         with pytest.raises(SolveError, match="the gearing is given"):
             call(scene(EXAMPLE))
 

@@ -4,8 +4,10 @@ import pytest
 
 from gearopt.errors import SceneError
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.strain_wave import model
-from gearopt.scenes.strain_wave.example import FROM_DUTY
+from gearopt.scenes.strain_wave import KIND as WAVES
+from gearopt.scenes.strain_wave import posed
+
+FROM_DUTY = WAVES.examples["strain-wave-from-duty"].text
 
 GIVEN = """\
 gearopt = 1
@@ -60,8 +62,8 @@ def changed(text, key, value):
 @pytest.mark.parametrize(("key", "value"), RANGES.items())
 def test_every_range_is_that_of_a_variable(key, value):
     name = key.rpartition(".")[2]
-    own = model(read(changed(FROM_DUTY, key, value).encode())[1], "").problem
-    usual = model(read(FROM_DUTY.encode())[1], "").problem
+    own = posed(read(changed(FROM_DUTY, key, value).encode())[1], "").problem
+    usual = posed(read(FROM_DUTY.encode())[1], "").problem
     found, before = (
         {v.name: (v.lower, v.upper, v.key) for v, _ in p.columns} for p in (own, usual)
     )

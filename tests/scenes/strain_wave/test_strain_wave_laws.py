@@ -12,7 +12,9 @@ from gearopt.report.kinds.strain_wave import cutter, moving, numbers, shift
 from gearopt.report.kinds.strain_wave.motion import drawn, running
 from gearopt.report.measures import METRIC
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.strain_wave.example import EXAMPLE
+from gearopt.scenes.strain_wave import KIND
+
+EXAMPLE = KIND.example.text
 
 LAWS = (
     "strain_wave_double_arc",

@@ -18,20 +18,11 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
+from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.reading.ask import Ask, unseeded
 from gearopt.scenes.reading.fields import Table, choice, speed_ratio, whole, words
 from gearopt.scenes.reading.lists import span
 
-__all__ = [
-    "EXAMPLE",
-    "Scene",
-    "compared",
-    "idle",
-    "model",
-    "objectives",
-    "several",
-    "solve",
-]
 MIN_TEETH, MAX_TEETH = 5, 400  # teeth of a gear that a file may ask for
 METHODS = ("exact",)  # its own
 ASSUMED = "Numbers of teeth alone: modules, centre distances and loads are not considered."
@@ -39,16 +30,6 @@ NEAREST = {  # by objective: how the nearest ratio is said, and what that is
     compound.ERROR: ("nearest", "relative error of the ratio, |achieved/asked - 1|"),
     compound.SQUARED: ("nearest in 1/ratio", "squared error of 1/ratio, (1/asked - 1/achieved)^2"),
 }
-EXAMPLE = """\
-gearopt = 1
-kind = "compound"
-title = "A compound train of 6.931 to 1"
-
-[train]
-ratio = 6.931                  # input over output speed
-teeth = [12, 60]               # of any of the four gears
-minimise = "ratio_error"       # or squared_error, of 1/ratio, as Sandgren posed it
-"""
 
 
 class Train(Table):
@@ -91,7 +72,7 @@ class CompoundDesign:
 def solve(scene: Scene, ask: Ask) -> Result:
     """Return the teeth whose ratio is nearest; `report` and message name the ratio achieved."""
     result, outcome = run(
-        model(scene, "").problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap
+        posed(scene, "").problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap
     )
     result = replace(result, objective=result.objective | {"unit": ""})
     if result.value is None or outcome.x is None:
@@ -198,10 +179,25 @@ def compared(scene: Scene) -> tuple[str, ...]:
     return ("exact", "annealing", "nsga2")
 
 
-def model(scene: Scene, method: str) -> Model:
+def posed(scene: Scene, method: str) -> Model:
     """Return the problem of every method."""
     return Model(compound.problem(_train(scene)), "Four numbers of teeth")
 
 
 def _train(scene: Scene) -> compound.Compound:
     return compound.Compound(scene.train.ratio, scene.train.teeth, scene.train.minimise)
+
+
+ABOUT = {  # files in examples, that of the kind first
+    "compound": "two gear pairs in series whose ratio comes nearest to a given one",
+}
+KIND = Kind(
+    scene=Scene,
+    examples=examples_in(__file__, ABOUT),
+    solve=solve,
+    posed=posed,
+    compared=compared,
+    methods=METHODS,
+    trades=Trades(objectives, several),
+    idle=idle,
+)

@@ -22,7 +22,6 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP, run
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.counts import best_count
-from gearopt.scenes.drive.examples import EXAMPLE, MORE_EXAMPLES
 from gearopt.scenes.drive.notes import assumptions, notes
 from gearopt.scenes.drive.rating.cut_short import bounded
 from gearopt.scenes.drive.rating.limits import check_safe, rated_afterwards
@@ -32,23 +31,10 @@ from gearopt.scenes.drive.tables.blanks import BlankKeys, body_flaws
 from gearopt.scenes.drive.tables.rating import MATERIAL, GivenTable
 from gearopt.scenes.drive.trades import advice, objectives, several, to_choose
 from gearopt.scenes.explaining.default import of_report
+from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.ask import Ask, unseeded
 
-__all__ = [
-    "EXAMPLE",
-    "MORE_EXAMPLES",
-    "Scene",
-    "advice",
-    "compared",
-    "explain",
-    "idle",
-    "model",
-    "objectives",
-    "rate",
-    "several",
-    "solve",
-]
 WEAKER = " Its contact ratio is less than the one given, its root is weaker."
 METHODS = ("exact", "process-one", "process-two", "sa", "sa-polish", "sa-paper", "smooth")
 ANY = 1e9  # gap of a design that need not be the best
@@ -324,7 +310,7 @@ def compared(scene: Scene) -> tuple[str, ...]:
     return ("exact", "sa", "sa-polish", "multistart", "nsga2")
 
 
-def model(scene: Scene, method: str) -> Model:
+def posed(scene: Scene, method: str) -> Model:
     """Return the problem that a method solves for this drive; SolveError where it has none.
 
     With a [layout] that is the layout of the gears that are best without it.
@@ -351,7 +337,7 @@ def _of_best_count(scene: Scene, method: str) -> Model:
     best = solve(scene, Ask())
     if best.value is None:
         raise SolveError("there is no drive to compare: gearopt explain shows why")
-    found = model(_chosen(scene, best), method)
+    found = posed(_chosen(scene, best), method)
     return replace(found, words=f"{found.words}, {len(best.design['stages'])} stages (the best)")
 
 
@@ -393,3 +379,23 @@ def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     if remarks := [*notes(scene, exact), *bodies, *tooth_warnings(gears[0], WEAKER)]:
         report["notes"] = remarks
     return replace(result, name="drive", design=designs[0], report=report)
+
+
+ABOUT = {  # files in examples, that of the kind first
+    "drive": "a multi-stage drive of cylindrical gears of minimum volume, mass or length",
+    "rating": "gears that are given, rated by AGMA or ISO 6336",
+    "sizing": "a drive of least volume that is safe by its rating",
+}
+KIND = Kind(
+    scene=Scene,
+    examples=examples_in(__file__, ABOUT),
+    solve=solve,
+    posed=posed,
+    compared=compared,
+    methods=METHODS,
+    explain=explain,
+    assumptions=assumptions,
+    trades=Trades(objectives, several, advice),
+    rate=rate,
+    idle=idle,
+)

@@ -16,7 +16,6 @@ from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
 from gearopt.physics.motion.moving_pair import MovingPair
-from gearopt.scenes.dynamics.example import EXAMPLE
 from gearopt.scenes.dynamics.notes import warnings
 from gearopt.scenes.dynamics.own_teeth import of_teeth
 from gearopt.scenes.dynamics.scene import Scene, wave_of
@@ -29,9 +28,9 @@ from gearopt.scenes.dynamics.steps import (
     whole_problem,
 )
 from gearopt.scenes.explaining.default import explained, of_report
+from gearopt.scenes.kind import Kind, examples_in
 from gearopt.scenes.reading.ask import Ask, without_method
 
-__all__ = ["EXAMPLE", "Scene", "compared", "explain", "idle", "model", "solve"]
 METHODS = ("screened",)  # its own
 HARMONICS = 20  # of a motion at the pair's own speed
 ONCE = (
@@ -209,7 +208,7 @@ def compared(scene: Scene) -> tuple[str, ...]:
     return ("screened", "ipopt", "multistart")
 
 
-def model(scene: Scene, method: str) -> Model:
+def posed(scene: Scene, method: str) -> Model:
     """Return the problem on the speeds of the file; SolveError without [optimise]."""
     words = "Bearings, contact ratio, ramp, width and rim, at the speeds of the file alone"
     return Model(whole_problem(_to_optimise(scene).task), words)
@@ -219,3 +218,19 @@ def _to_optimise(scene: Scene) -> Scene:
     if scene.optimise is None:
         raise SolveError(f"{NOTHING}: gearopt solve FILE computes its motion")
     return scene
+
+
+ABOUT = {  # files in examples, that of the kind first
+    "dynamics": "a spur pair on moving axes: response, stability, speeds, least vibration",
+}
+KIND = Kind(
+    scene=Scene,
+    examples=examples_in(__file__, ABOUT),
+    solve=solve,
+    posed=posed,
+    compared=compared,
+    methods=METHODS,
+    explain=explain,
+    assumptions=assumptions,
+    idle=idle,
+)

@@ -39,6 +39,7 @@ from gearopt.scenes.explaining.numbers import (
     taken_back,
     written,
 )
+from gearopt.scenes.kind import Kind, S
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.toml import toml_text
 
@@ -53,20 +54,25 @@ UNDECIDED = "where a cell is empty, solving again gave no certain answer"
 UNPROVEN = "numbers are not solved again, because the answer is not proven optimal"
 
 
-def explain(kind: Any, scene: Any, ask: Ask, result: Result | None = None) -> Explanation:
+def explanation(kind: Kind[S], scene: S, ask: Ask, result: Result | None = None) -> Explanation:
+    """Return the explanation of a kind itself, else the one by solving changed files."""
+    if kind.explain is None:
+        return explain(kind, scene, ask, result)
+    return kind.explain(scene, ask, result)
+
+
+def explain(kind: Kind[S], scene: S, ask: Ask, result: Result | None = None) -> Explanation:
     """Return what every number of a file does to its answer, or which would make it possible.
 
-    kind: the module, with `solve` and `model`. result: the answer, where it is known.
+    result: the answer, where it is known.
     """
     clock = Clock(ask.budget, of_others(ask.watch))
 
-    def answer(other: Any) -> Result:
-        found: Result = kind.solve(other, replace(ask, budget=clock.left, watch=clock.watch))
-        return found
+    def answer(other: S) -> Result:
+        return kind.solve(other, replace(ask, budget=clock.left, watch=clock.watch))
 
-    def posed(other: Any) -> Problem | Conic:
-        problem: Problem | Conic = kind.model(other, "").problem
-        return problem
+    def posed(other: S) -> Problem | Conic:
+        return kind.posed(other, "").problem
 
     return explained(scene, result or kind.solve(scene, ask.half), clock, answer, posed)
 

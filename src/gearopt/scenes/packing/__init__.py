@@ -37,39 +37,13 @@ from gearopt.optimise.solve import run, solve_within
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.explaining.default import at_point, eases, of_design
 from gearopt.scenes.explaining.numbers import rounded
+from gearopt.scenes.kind import Kind, examples_in
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, choice, quantity, refuse, whole, words
 from gearopt.scenes.reading.lists import pair
 from gearopt.scenes.reading.toml import dotted
 from gearopt.units import Quantity
 
-__all__ = ["EXAMPLE", "Scene", "compared", "explain", "model", "solve"]
-EXAMPLE = """\
-gearopt = 1
-kind = "packing"
-title = "Six cylinders"
-
-[[cylinder]]
-diameter = "20 mm"
-height = "10 mm"
-count = 3
-
-[[cylinder]]
-diameter = "10 mm"
-height = "10 mm"
-count = 3
-
-[container]
-shape = "rectangle"            # or square, circle; width = "20 mm" fixes one side of a rectangle
-gap = "0 mm"                   # minimum clearance between cylinders, sideways
-wall = "0 mm"                  # and to the container
-
-[layers]
-most = 2                       # or: exactly = 2
-
-[objective]
-minimise = "volume"            # or area, of the container's plan
-"""
 METHODS = ("hop", "sa")  # its own
 MAX_CYLINDERS = 50  # their 1,225 pairs take two seconds to trace, once
 LENGTH = quantity("length", "20 mm")
@@ -386,7 +360,7 @@ def compared(scene: Scene) -> tuple[str, ...]:
     return ("hop", "sa", "multistart", "annealing", "nsga2")
 
 
-def model(scene: Scene, method: str) -> Model:
+def posed(scene: Scene, method: str) -> Model:
     """Return the problem that a method solves, without a bound that proves nothing."""
     plan = scene.plan()
     words = "Places and layers" if plan.lifted else "Places"
@@ -397,3 +371,18 @@ def _problem(plan: Plan, method: str | None, loose: bool = True) -> Problem:
     if method in SMOOTH:
         return packing_text.smooth(plan)
     return packing.problem(plan, loose)
+
+
+ABOUT = {  # files in examples, that of the kind first
+    "packing": "cylinders with parallel axes in the smallest container, in one or more layers",
+}
+KIND = Kind(
+    scene=Scene,
+    examples=examples_in(__file__, ABOUT),
+    solve=solve,
+    posed=posed,
+    compared=compared,
+    methods=METHODS,
+    explain=explain,
+    assumptions=assumptions,
+)

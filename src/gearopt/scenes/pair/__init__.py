@@ -1,7 +1,6 @@
 """kind = "pair": a spur gear pair, sized or given, and how its teeth share the load."""
 
-import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from gearopt.errors import SolveError
@@ -18,16 +17,15 @@ from gearopt.scenes import drive
 from gearopt.scenes.drive.rating import rated
 from gearopt.scenes.drive.tables.blanks import body_flaws
 from gearopt.scenes.explaining.default import explain as explain_scene
+from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.pair import relief as relief_part
 from gearopt.scenes.pair.contact import contact_of, mesh_of
-from gearopt.scenes.pair.example import EXAMPLE, MORE_EXAMPLES
 from gearopt.scenes.pair.notes import contact_assumptions
 from gearopt.scenes.pair.relief import relieved
 from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.scene import Scene
 from gearopt.scenes.reading.ask import Ask, unseeded, without_method
 
-__all__ = ["EXAMPLE", "MORE_EXAMPLES", "Scene"]
 METHODS = ("exact", "mpec")  # its own
 NOTHING = "the gears are given, so that nothing is chosen"
 
@@ -129,7 +127,7 @@ def _evaluated(scene: Scene, ask: Ask) -> Result:
 def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
     """Return what every number of the file does to the relief, else to the size of the pair."""
     if scene.relief is not None:
-        return explain_scene(sys.modules[__name__], scene, ask, result)
+        return explain_scene(KIND, scene, ask, result)
     return drive.explain(_to_size(scene).drive, ask, result)
 
 
@@ -162,25 +160,25 @@ def compared(scene: Scene) -> tuple[str, ...]:
     return drive.compared(_to_size(scene).drive)
 
 
-def model(scene: Scene, method: str) -> Model:
+def posed(scene: Scene, method: str) -> Model:
     """Return the problem of the relief, else that which sizes the pair; SolveError of neither."""
     if scene.relief is not None:
         return relief_part.model(scene, _mesh_of_gears(scene))
-    return drive.model(_to_size(scene).drive, method)
+    return drive.posed(_to_size(scene).drive, method)
 
 
-def objectives(scene: Scene) -> dict[str, str]:
+def objectives(scene: Scene) -> Mapping[str, str]:
     """Return what a front of reliefs, else of sizes, may minimise: name and unit."""
     if scene.relief is not None:
         return relief_part.objectives(scene)
-    return drive.objectives(_to_size(scene).drive)
+    return drive.KIND.trades.objectives(_to_size(scene).drive)
 
 
 def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
     """Return the problem of a front of reliefs, else of sizes."""
     if scene.relief is not None:
         return relief_part.several(scene, _mesh_of_gears(scene), names)
-    return drive.several(_to_size(scene).drive, names, method)
+    return drive.KIND.trades.several(_to_size(scene).drive, names, method)
 
 
 def _mesh_of_gears(scene: Scene) -> PairMesh:
@@ -198,3 +196,20 @@ def _to_size(scene: Scene) -> Scene:
     if scene.given:
         raise SolveError(f"{NOTHING}: gearopt solve FILE computes their contact")
     return scene
+
+
+ABOUT = {  # files in examples, that of the kind first
+    "pair": "a spur gear pair, sized or given, and how its teeth share the load",
+    "sized-pair": "a spur pair from duty and steel alone, and how its teeth share the load",
+}
+KIND = Kind(
+    scene=Scene,
+    examples=examples_in(__file__, ABOUT),
+    solve=solve,
+    posed=posed,
+    compared=compared,
+    methods=METHODS,
+    explain=explain,
+    trades=Trades(objectives, several),
+    idle=idle,
+)

@@ -1,7 +1,6 @@
 """What a caller asks of a scene beside the file: method, budget, how many answers."""
 
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.optimise.result import Budget, Watch
@@ -49,15 +48,3 @@ def without_method(ask: Ask, nothing: str) -> None:
     """Raise SolveError where a method is named although nothing is chosen; nothing: why."""
     if ask.method is not None:
         raise SolveError(f"--method {ask.method} changes nothing here: {nothing}; leave it out")
-
-
-def idle(module: Any, scene: Any, method: str | None) -> dict[str, str]:
-    """Return the options that change nothing for a scene and a method, each with the reason.
-
-    module: of the kind, which may have an `idle(scene, method)` of its own: by default no next best
-    answers are listed.
-    """
-    if hasattr(module, "idle"):
-        found: dict[str, str] = module.idle(scene, method)
-        return found
-    return {"top": "no next best answers are listed"}

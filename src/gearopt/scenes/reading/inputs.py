@@ -13,8 +13,8 @@ from gearopt.optimise.result import Result
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Opened, Reads, refuse
 from gearopt.scenes.reading.files import LARGEST_FILE, LARGEST_KEPT, first_bytes
+from gearopt.scenes.reading.load import kind_named
 from gearopt.scenes.reading.load import read as read_scene
-from gearopt.scenes.reading.load import scene_module
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Input:
         if isinstance(self.what, Result):
             return self.what
         own = replace(ask, method=None, top=1)
-        found: Result = scene_module(self.kind).solve(self.what, own)
+        found = kind_named(self.kind).solve(self.what, own)
         if found.design:
             return found
         rule = f"its design is an input here, and it has none ({found.status}: {found.message})"

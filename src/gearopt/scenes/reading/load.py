@@ -17,6 +17,7 @@ from pydantic import BaseModel, ValidationError
 
 import gearopt.scenes
 from gearopt.errors import Fix, SceneError, SolveError, together
+from gearopt.scenes.kind import Kind
 from gearopt.scenes.reading.absent import KINDS_ARE, absent_kind
 from gearopt.scenes.reading.called import kind_called
 from gearopt.scenes.reading.changes import as_written, changed
@@ -27,7 +28,7 @@ from gearopt.scenes.reading.near import near
 from gearopt.scenes.reading.toml import cut, dotted, short
 
 FORMAT = 1
-SHARED = {"reading", "explaining", "parts"}  # of `gearopt.scenes`, what is no kind
+SHARED = {"reading", "explaining", "kind", "parts"}  # of `gearopt.scenes`, what is no kind
 HEAD = ("gearopt", "kind")  # keys of every file
 FORMATS = {  # beginnings of files of other formats
     r"\s*<(\?xml[\s\S]*?>\s*(<!--[\s\S]*?-->\s*)*<)?model\b": "a REXS model (XML)",
@@ -60,23 +61,20 @@ def kinds() -> tuple[str, ...]:
     return tuple(sorted({m.name for m in iter_modules(gearopt.scenes.__path__)} - SHARED))
 
 
-def scene_module(kind: str) -> Any:
-    """Return the module of a kind; SolveError names one that cannot be imported."""
+def kind_named(name: str) -> Kind[Any]:
+    """Return a kind of problem file; SolveError names one that cannot be imported."""
     try:
-        return import_module(f"{gearopt.scenes.__name__}.{kind}")
-    except (ImportError, SyntaxError, NameError) as reason:
-        raise SolveError(f"kind {kind!r} cannot be imported: {reason}") from reason
+        found: Kind[Any] = import_module(f"{gearopt.scenes.__name__}.{name}").KIND
+    except (ImportError, SyntaxError, NameError, AttributeError, TypeError) as reason:
+        raise SolveError(f"kind {name!r} cannot be imported: {reason}") from reason
+    return found
 
 
 def examples() -> dict[str, str]:
     """Return problem files to start from: one of each kind, and others that kinds have by name."""
-    modules = {kind: scene_module(kind) for kind in kinds()}
-    more = {
-        name: text
-        for module in modules.values()
-        for name, (_, text) in getattr(module, "MORE_EXAMPLES", {}).items()
-    }
-    return {kind: module.EXAMPLE for kind, module in modules.items()} | more
+    listed = [kind_named(name).examples for name in kinds()]
+    own = [dict([next(iter(of_kind.items()))]) for of_kind in listed]
+    return {name: each.text for of_kind in (*own, *listed) for name, each in of_kind.items()}
 
 
 def kind_of(scene: BaseModel) -> str:
@@ -92,7 +90,7 @@ def _likely(content: dict[str, Any], called: str | None) -> str:
 
     def known(kind: str) -> tuple[int, bool]:
         try:
-            tables = scene_module(kind).Scene.model_fields.keys()
+            tables = kind_named(kind).scene.model_fields.keys()
         except SolveError:
             return -1, False
         return len(content.keys() & tables), kind == called
@@ -195,7 +193,7 @@ def _scene(content: dict[str, Any], file: str, opened: tuple[Path, ...]) -> tupl
     kind, errors = _head(content, file)
     content = {k: v for k, v in content.items() if not k.startswith("x-")}  # the user's tables
     if kind:
-        model: type[BaseModel] = scene_module(kind).Scene
+        model: type[BaseModel] = kind_named(kind).scene
         try:
             scene = model.model_validate(content, context=Opened(opened))
         except ValidationError as wrong:
@@ -223,7 +221,7 @@ def _head(content: dict[str, Any], file: str) -> tuple[str, list[SceneError]]:
     likely = meant or _likely(content, kind_called(name))
     known = f"is not a known kind (known: {', '.join(kinds())})"
     rule = "is missing" if kind is None else known
-    sure = meant or not content.keys().isdisjoint(scene_module(likely).Scene.model_fields)
+    sure = meant or not content.keys().isdisjoint(kind_named(likely).scene.model_fields)
     guessed = not sure and kind_called(name) is None
     errors.append(wrong_value(file, "kind", kind, rule, likely, sample=guessed))
     return likely if sure else "", errors
@@ -293,9 +291,9 @@ def _several(text: str, message: str) -> str:
     if len(re.findall(rf"(?m)^\s*\[+{re.escape(name)}\]", text)) < 2:
         return ""
     double = any(
-        get_origin(scene_module(kind).Scene.model_fields[name].annotation) is tuple
+        get_origin(kind_named(kind).scene.model_fields[name].annotation) is tuple
         for kind in kinds()
-        if name in scene_module(kind).Scene.model_fields
+        if name in kind_named(kind).scene.model_fields
     )
     return f"Each of several tables [[{name}]] has double brackets" if double else ""
 

@@ -273,8 +273,8 @@ def example_of(model: type[BaseModel], place: tuple[Any, ...]) -> Any:
         return reads.example
     table = table_of(info.annotation)
     assert table is not None, names
-    kind = import_module(".".join(model.__module__.split(".")[:3]))  # gearopt.scenes.KIND
-    texts = [kind.EXAMPLE, *(text for _, text in getattr(kind, "MORE_EXAMPLES", {}).values())]
+    kind = import_module(".".join(model.__module__.split(".")[:3])).KIND  # of gearopt.scenes.NAME
+    texts = [example.text for example in kind.examples.values()]
     at = tuple(0 if isinstance(part, int) else part for part in place)
     each = (_lookup(tomllib.loads(text, parse_float=Decimal), at) for text in texts)
     shown, found = next((one for one in each if one[1]), (None, False))

@@ -5,7 +5,7 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
 
-from gearopt.scenes.reading.load import FORMAT, kinds, scene_module
+from gearopt.scenes.reading.load import FORMAT, kind_named, kinds
 from gearopt.scenes.reading.mistakes import example_of, table_of, tables
 from gearopt.scenes.reading.toml import toml_text
 
@@ -18,7 +18,7 @@ class _Schema(GenerateJsonSchema):
 
 def json_schema(kind: str) -> dict[str, Any]:
     """Return the JSON schema (2020-12) of a whole file of a kind."""
-    found: dict[str, Any] = scene_module(kind).Scene.model_json_schema(schema_generator=_Schema)
+    found: dict[str, Any] = kind_named(kind).scene.model_json_schema(schema_generator=_Schema)
     head = {
         "gearopt": {"const": FORMAT, "description": "Format version of the file"},
         "kind": {"const": kind, "description": "Kind of problem"},
@@ -36,7 +36,7 @@ def reference(kind: str) -> str:
 
     Tables that it has from another kind are named; their keys stand on the page of that kind.
     """
-    model: type[BaseModel] = scene_module(kind).Scene
+    model: type[BaseModel] = kind_named(kind).scene
     parts = [f"### top of the file\n\n{_doc(model)}\n\n{_rows(model)}"]
     lent: dict[str, list[str]] = {}
     for title, table in tables(model):

@@ -27,10 +27,11 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import disc_mass
 from gearopt.scenes.explaining.default import explained, of_report
+from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.reading.ask import Ask, unseeded
 from gearopt.scenes.servo.notes import assumptions, notes
 from gearopt.scenes.servo.remedies import remedies
-from gearopt.scenes.servo.scene import EXAMPLE, Scene
+from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tolerances import by_every_rule, named, old, tolerance_part
 from gearopt.scenes.servo.tolerances import problem as tolerance_problem
 from gearopt.scenes.servo.trades import objectives, several
@@ -47,8 +48,6 @@ from gearopt.scenes.servo.train import (
     ratio_part,
     train_part,
 )
-
-__all__ = ["EXAMPLE", "Scene", "objectives", "several"]
 
 METHODS = ("exact", "enumeration")  # its own
 COUNTS = {"combinations": "trains_looked_at", "feasible_trains": "feasible_trains"}
@@ -197,7 +196,7 @@ def compared(scene: Scene) -> tuple[str, ...]:
     return ("exact", "ipopt", "gp")
 
 
-def model(scene: Scene, method: str) -> Model:
+def posed(scene: Scene, method: str) -> Model:
     """Return the problem of the answer; a train's without its box, which is no row of it."""
     return Model(*_posed(scene, boxed=False))
 
@@ -212,3 +211,20 @@ def _posed(scene: Scene, boxed: bool) -> tuple[Problem, str, str]:
     gears = given_gears(scene)
     assert gears is not None
     return tolerance_problem(scene, gears), "Tolerances of given gears", ""
+
+
+ABOUT = {  # files in examples, that of the kind first
+    "servo": "a motor, a two-stage gear train and a load that must be moved and placed",
+}
+KIND = Kind(
+    scene=Scene,
+    examples=examples_in(__file__, ABOUT),
+    solve=solve,
+    posed=posed,
+    compared=compared,
+    methods=METHODS,
+    explain=explain,
+    assumptions=assumptions,
+    trades=Trades(objectives, several),
+    idle=idle,
+)

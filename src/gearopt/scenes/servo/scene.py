@@ -13,7 +13,6 @@ from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.formulations.servo.tolerance.stack import RUN_OUT
 from gearopt.physics.stiffness import stiffness_of_frequency
 from gearopt.scenes.reading.fields import Table, refuse, words
-from gearopt.scenes.servo.example import EXAMPLE
 from gearopt.scenes.servo.tables.mesh import (
     TWO_SIDED,
     Accuracy,
@@ -40,7 +39,7 @@ from gearopt.scenes.servo.tables.trains import (
     half_sweep,
 )
 
-__all__ = ["EXAMPLE", "Scene"]  # messages show tables of the example
+__all__ = ["Scene"]  # messages show tables of the example
 
 
 class Scene(Table):

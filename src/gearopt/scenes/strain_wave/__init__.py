@@ -38,13 +38,12 @@ from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.physics.strain_wave.conjugate import Flank
 from gearopt.scenes.explaining.default import of_report
+from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.reading.ask import Ask, unseeded, without_method
-from gearopt.scenes.strain_wave.example import EXAMPLE, MORE_EXAMPLES
 from gearopt.scenes.strain_wave.notes import assumptions, notes, range_notes
 from gearopt.scenes.strain_wave.remedies import influences, ways_out
 from gearopt.scenes.strain_wave.scene import Scene
 
-__all__ = ["EXAMPLE", "MORE_EXAMPLES", "Scene"]
 METHODS = ("exchange",)  # its own
 SAMPLERS = ("annealing", "nsga2")
 NOTHING = "the gearing is given, so that nothing is chosen"
@@ -230,7 +229,7 @@ def compared(scene: Scene) -> tuple[str, ...]:
     return (*METHODS, *SAMPLERS)
 
 
-def model(scene: Scene, method: str) -> Model:
+def posed(scene: Scene, method: str) -> Model:
     """Return the problem of a method, whose answers are judged at all poses."""
     _to_choose(scene)
     demand, start = scene.demand(), scene.start()
@@ -272,3 +271,21 @@ def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
 def _to_choose(scene: Scene) -> None:
     if not scene.limited:
         raise SolveError(f"{NOTHING}: gearopt solve FILE describes it")
+
+
+ABOUT = {  # files in examples, that of the kind first
+    "strain_wave": "a strain wave gearing (harmonic drive), given or chosen",
+    "strain-wave-from-duty": "a strain wave gearing from its duty alone",
+}
+KIND = Kind(
+    scene=Scene,
+    examples=examples_in(__file__, ABOUT),
+    solve=solve,
+    posed=posed,
+    compared=compared,
+    methods=METHODS,
+    explain=explain,
+    assumptions=assumptions,
+    trades=Trades(objectives, several),
+    idle=idle,
+)

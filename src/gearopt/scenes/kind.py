@@ -1,0 +1,114 @@
+"""What a kind of problem file is: its tables, its examples, and how it is solved and explained.
+
+The package of a kind ends with `KIND = Kind(...)`; all that kinds share asks it by these names. A
+field that is missing or misspelt fails when the kind is imported.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+from pydantic import BaseModel
+
+from gearopt.errors import SolveError
+from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.pareto.several import Several
+from gearopt.optimise.result import Result
+from gearopt.scenes.reading.ask import Ask
+
+S = TypeVar("S", bound=BaseModel)  # the scene of a kind
+
+
+@dataclass(frozen=True)
+class Example:
+    """A problem file to start from. about: a few words for lists of examples; text: TOML."""
+
+    about: str
+    text: str
+
+
+def examples_in(package: str, about: Mapping[str, str]) -> dict[str, Example]:
+    """Return the files of the folder `examples` beside a module, by name without their ending."""
+    folder = Path(package).parent / "examples"
+    return {
+        name: Example(words, (folder / f"{name}.toml").read_text(encoding="utf-8"))
+        for name, words in about.items()
+    }
+
+
+def _nothing_posed(scene: BaseModel, method: str) -> Model:
+    raise SolveError("this kind of file poses no problem that methods could be compared on")
+
+
+def _nothing_compared(scene: BaseModel) -> tuple[str, ...]:
+    return ()
+
+
+def _no_next_best(scene: BaseModel, method: str | None) -> dict[str, str]:
+    return {"top": "no next best answers are listed"}
+
+
+def _no_assumptions(scene: BaseModel) -> list[str]:
+    return []
+
+
+def _no_objectives(scene: BaseModel) -> dict[str, str]:
+    return {}
+
+
+def _no_front(scene: BaseModel, names: Sequence[str], method: str | None) -> Several:
+    raise SolveError("this kind of file has no objectives to weigh against each other")
+
+
+def _no_advice(scene: BaseModel, unknown: Sequence[str]) -> str:
+    return ""
+
+
+@dataclass(frozen=True)
+class Trades(Generic[S]):
+    """The fronts of a kind.
+
+    objectives: name and unit of all that a front of a file may minimise. several: the problem of
+    these objectives for a method, None for the one that proves most. advice: what to write for
+    names that are no objectives of this file; "" where nothing would make them so.
+    """
+
+    objectives: Callable[[S], Mapping[str, str]] = _no_objectives
+    several: Callable[[S, Sequence[str], str | None], Several] = _no_front
+    advice: Callable[[S, Sequence[str]], str] = _no_advice
+
+
+NO_TRADES: Trades[Any] = Trades()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kind(Generic[S]):
+    """A kind of problem file.
+
+    scene: the tables of a file. examples: by name, the first that of the kind itself. solve: the
+    answer to a file. posed: the problem that a method solves, for comparisons. compared: the
+    methods of a comparison that names none. methods: those that the kind has beside the back ends.
+    explain: sensitivities or remedies, from the answer where it is known; None: by solving changed
+    files. assumptions: sentences on what every answer to the file takes for granted. trades: its
+    fronts. rate: the rating of given gears. idle: the options of `solve` that change nothing, each
+    with the reason.
+    """
+
+    scene: type[S]
+    examples: Mapping[str, Example]
+    solve: Callable[[S, Ask], Result]
+    posed: Callable[[S, str], Model] = _nothing_posed
+    compared: Callable[[S], tuple[str, ...]] = _nothing_compared
+    methods: tuple[str, ...] = ()
+    explain: Callable[[S, Ask, Result | None], Explanation] | None = None
+    assumptions: Callable[[S], list[str]] = _no_assumptions
+    trades: Trades[S] = NO_TRADES
+    rate: Callable[[S, Ask], Result] | None = None
+    idle: Callable[[S, str | None], dict[str, str]] = _no_next_best
+
+    @property
+    def example(self) -> Example:
+        """Return the example of the kind itself."""
+        return next(iter(self.examples.values()))
