@@ -36,7 +36,7 @@ from gearopt.scenes.reading.inputs import inputs_of
 from gearopt.scenes.reading.load import FORMAT, bare, kind_named, kind_of
 from gearopt.scenes.reading.load import load as load_file
 
-ENOUGH = 1.0  # gap at which a search for any design may end
+ANY_DESIGN_GAP = 1.0  # gap at which a search for any design may end
 
 File = str | Path | Mapping[str, Any] | BaseModel  # its path, its tables, or what `load` returns
 Changes = Mapping[str, Any] | None  # {key of a file: value}
@@ -178,7 +178,7 @@ def _shortened(
             scene = _opened(what, {**(changes or {}), **edits})[0]
         except SceneError:
             return False
-        budget = replace(clock.left, seconds=seconds, gap=ENOUGH)
+        budget = replace(clock.left, seconds=seconds, gap=ANY_DESIGN_GAP)
         answer = kind.solve(scene, replace(ask, budget=budget, watch=clock.watch, top=1))
         return answer.value is not None and answer.feasible
 

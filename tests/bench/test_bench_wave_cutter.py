@@ -31,4 +31,4 @@ def test_cones_and_linear_programs_find_the_same_arcs(monkeypatch):
         (arc["radius_mm"], arc["error_um"]), rel=1e-3
     )
     assert arc["error_um"] < bounded["error_um"] < line["error_um"]
-    assert bounded["radius_mm"] == wave_cutter.LEAST["rack"]
+    assert bounded["radius_mm"] == wave_cutter.LEAST_RADII["rack"]

@@ -274,7 +274,7 @@ def test_the_better_multipliers_give_bound_and_residuals():
 def test_multipliers_of_a_method_are_taken_as_at_least_zero(monkeypatch):
     """Its own alone: the right ones prove the optimum, those below zero count as none."""
     _, outcome = run(hill())
-    monkeypatch.setattr("gearopt.optimise.dual.MOST", 0)
+    monkeypatch.setattr("gearopt.optimise.dual.MAX_ENTRIES", 0)
     assert certify(hill(), outcome, 1e-9).status == "optimal"
     none, below = (
         certify(hill(), replace(outcome, lam_g=np.array([lam])), 1e-9) for lam in (0.0, -5.0)

@@ -70,7 +70,9 @@ def discs():
 
 @pytest.mark.slow
 def test_samplers_are_held_against_epsilon_constraints(monkeypatch):
-    monkeypatch.setattr(fronts, "FINE", {2: 60})  # points of the reference, which take long
+    monkeypatch.setattr(
+        fronts, "REFERENCE_POINTS", {2: 60}
+    )  # points of the reference, which take long
     found = gearopt.compare(discs(), objectives="a,b", evaluations=3000, seconds=0.5, seeds=3)
     assert list(rows(found)) == ["epsilon", "nsga2", "annealing", "hybrid"]
     epsilon, nsga = (rows(found)[m].equal_evaluations for m in ("epsilon", "nsga2"))
@@ -97,7 +99,7 @@ def test_a_conic_problem_is_compared_by_epsilon_constraints(monkeypatch):
     def evaluate(x, p):
         return Terms({"cost": cp.sum(cp.inv_pos(x.t)), "error": cp.sum(x.t)})
 
-    monkeypatch.setattr(fronts, "FINE", {2: 9})
+    monkeypatch.setattr(fronts, "REFERENCE_POINTS", {2: 9})
     problem = Conic("tolerances", (Var("t", "", 0.1, 1.0, 0.5, 2),), (), evaluate)
     found = gearopt.compare(problem, objectives="cost,error", evaluations=9999, seconds=3.0)
     (group,) = found.groups

@@ -48,7 +48,7 @@ def wide(name, size):
 @pytest.mark.parametrize("name", few(["budget", "norm", "nested", "product", "shared", "equal"], 3))
 def test_split_and_unsplit_programs_have_one_optimum(name, monkeypatch):
     unsplit = solve(wide(name, 12))
-    monkeypatch.setattr(nonlinear, "WIDE", 2)
+    monkeypatch.setattr(nonlinear, "DENSE_VARIABLES", 2)
     monkeypatch.setattr(nonlinear, "GROUP", 3)
     problem = wide(name, 12)
     shape = form(problem)

@@ -11,7 +11,7 @@ from gearopt.optimise.dual import multipliers
 from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Outcome
-from gearopt.optimise.stationarity import NEAR
+from gearopt.optimise.stationarity import ACTIVE_WITHIN
 from gearopt.optimise.terms import Terms, Var
 
 
@@ -67,7 +67,7 @@ def test_no_multiplier_is_negative():
 def either(request, monkeypatch):
     """Solve dense systems, or all as large sparse ones."""
     if request.param == "sparse":
-        monkeypatch.setattr("gearopt.optimise.dual.SMALL", -1)
+        monkeypatch.setattr("gearopt.optimise.dual.DENSE_ENTRIES", -1)
         monkeypatch.setattr("gearopt.optimise.dual.SPARSE", 1.0)
 
 
@@ -94,9 +94,15 @@ def given(gradient, g=(), of_g=(), of_h=(), y=None, low=None, high=None):
 @pytest.mark.usefixtures("either")
 def test_rows_count_from_a_millionth_below_their_limit():
     one = {"gradient": [-2.0], "of_g": [[1.0]]}
-    for g, lam in ((0.0, 2.0), (1e-9, 2.0), (-NEAR, 2.0), (-1.001 * NEAR, 0.0), (-1.0, 0.0)):
+    for g, lam in (
+        (0.0, 2.0),
+        (1e-9, 2.0),
+        (-ACTIVE_WITHIN, 2.0),
+        (-1.001 * ACTIVE_WITHIN, 0.0),
+        (-1.0, 0.0),
+    ):
         assert given(g=[g], **one)[0] == pytest.approx([lam])
-    assert NEAR == 1e-6
+    assert ACTIVE_WITHIN == 1e-6
 
 
 @pytest.mark.usefixtures("either")
@@ -107,11 +113,11 @@ def test_variables_on_their_bounds_do_not_count():
     assert both == pytest.approx((2.0 + 16.0) / 5.0)
     for ends, lam in (
         ({"low": [-np.inf, 0.0]}, 2.0),
-        ({"low": [-np.inf, -NEAR]}, 2.0),
-        ({"low": [-np.inf, -1.001 * NEAR]}, both),
+        ({"low": [-np.inf, -ACTIVE_WITHIN]}, 2.0),
+        ({"low": [-np.inf, -1.001 * ACTIVE_WITHIN]}, both),
         ({"high": [np.inf, 0.0]}, 2.0),
-        ({"high": [np.inf, NEAR]}, 2.0),
-        ({"high": [np.inf, 1.001 * NEAR]}, both),
+        ({"high": [np.inf, ACTIVE_WITHIN]}, 2.0),
+        ({"high": [np.inf, 1.001 * ACTIVE_WITHIN]}, both),
         ({"low": [0.0, -np.inf]}, 4.0),
         ({"low": [0.0, -np.inf], "high": [np.inf, 0.0]}, 0.0),
     ):
@@ -154,7 +160,7 @@ def test_large_systems_of_few_entries_are_solved_as_sparse_ones(monkeypatch):
     monkeypatch.setattr(linalg, "splu", lambda matrix: seen.append(1) or solve(matrix))
     rows = {"g": [0.0, -1.0, 0.0], "of_g": [[1.0, 0, 0], [0, 0, 0], [0, 1, 0]], "of_h": [[0, 0, 1]]}
     for small, share, sparse in ((9, 1.0, 0), (8, 0.3333, 0), (8, 0.33334, 1)):
-        monkeypatch.setattr("gearopt.optimise.dual.SMALL", small)
+        monkeypatch.setattr("gearopt.optimise.dual.DENSE_ENTRIES", small)
         monkeypatch.setattr("gearopt.optimise.dual.SPARSE", share)
         seen.clear()
         lam_g, lam_h = given([-1.0, -2.0, 3.0], **rows)
@@ -233,8 +239,8 @@ def test_slopes_that_are_no_numbers_have_no_multipliers():
 
 
 def test_systems_that_are_too_large_are_left_alone(monkeypatch):
-    monkeypatch.setattr("gearopt.optimise.dual.MOST", 6)
+    monkeypatch.setattr("gearopt.optimise.dual.MAX_ENTRIES", 6)
     rows = {"g": [0.0], "of_g": [[1.0, 0.0]], "of_h": [[0.0, 1.0], [0.0, 1.0]]}
     assert given([-1.0, 2.0], **rows) is not None
-    monkeypatch.setattr("gearopt.optimise.dual.MOST", 5)
+    monkeypatch.setattr("gearopt.optimise.dual.MAX_ENTRIES", 5)
     assert given([-1.0, 2.0], **rows) is None

@@ -88,7 +88,7 @@ def test_terms_are_those_of_the_natural_variables():
 
 
 def test_epigraphs_stay_as_they_are(monkeypatch):
-    monkeypatch.setattr("gearopt.optimise.nonlinear.WIDE", 1)
+    monkeypatch.setattr("gearopt.optimise.nonlinear.DENSE_VARIABLES", 1)
     monkeypatch.setattr("gearopt.optimise.nonlinear.GROUP", 2)
     logs = Var("c", "", 0.1, 9.0, 2.0, 4, log=True)
 

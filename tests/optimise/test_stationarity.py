@@ -396,13 +396,13 @@ def test_a_curvature_that_is_no_number_is_no_minimum():
 
 
 def test_too_many_variables_for_a_look_at_the_curvature_is_said(monkeypatch):
-    monkeypatch.setattr("gearopt.optimise.stationarity.MOST", 1)
+    monkeypatch.setattr("gearopt.optimise.stationarity.MAX_FREE", 1)
     problem, result, outcome = solved("rosenbrock")
     verdict = certify(problem, outcome, 1e-6)
     assert verdict.status == "feasible"
     assert "curvature was not examined: 2 variables are off their bounds" in verdict.message
-    monkeypatch.setattr("gearopt.optimise.stationarity.MOST", 2)
+    monkeypatch.setattr("gearopt.optimise.stationarity.MAX_FREE", 2)
     assert certify(problem, outcome, 1e-6).status == "stationary"
-    monkeypatch.setattr("gearopt.optimise.stationarity.MOST", 1)
+    monkeypatch.setattr("gearopt.optimise.stationarity.MAX_FREE", 1)
     convex, _, outcome = solved("cube")
     assert certify(convex, outcome, 1e-6).message == ""

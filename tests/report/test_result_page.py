@@ -22,7 +22,7 @@ from gearopt.report.drawing.bodies import keep_outs, layout_of, nearest
 from gearopt.report.drawing.row import SHEET
 from gearopt.report.drawing.sheet import SIZE
 from gearopt.report.drawing.solid import Toothed, block, gear_mesh, rod, upright
-from gearopt.report.kinds.drive.layout_solid import MOST
+from gearopt.report.kinds.drive.layout_solid import MAX_TRIANGLES
 from gearopt.report.pages import frame
 from gearopt.report.pages.result import page
 
@@ -200,7 +200,7 @@ def test_solid_gears_have_their_teeth_between_root_and_tip(layout):
         high = ring > gear["reference_diameter_mm"] / 2
         assert np.sum(high & ~np.roll(high, 1)) == gear["teeth"]
         assert trace["color"] == f"--series-{gear['stage']}"
-    assert 1000 < total <= MOST
+    assert 1000 < total <= MAX_TRIANGLES
 
 
 def test_solid_gears_are_twisted_by_their_helix(layout):

@@ -22,7 +22,7 @@ from gearopt.optimise.result import Outcome
 from gearopt.optimise.solve import solve as solve_problem
 from gearopt.scenes.explaining import default
 from gearopt.scenes.explaining.default import explain
-from gearopt.scenes.explaining.influences import NEAR
+from gearopt.scenes.explaining.influences import STEP
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, number, quantity, whole
 from gearopt.scenes.reading.load import kind_named, kind_of, read
@@ -272,7 +272,7 @@ def test_a_mixed_kind_says_where_other_whole_numbers_are_needed():
     found = explain(KIND, Bars.model_validate({"bar": near}), Ask())
     low, high = re.search(r"bar.safety from ([\d.]+) to ([\d.]+)", found.message).groups()
     assert float(high) == pytest.approx(5 * 5.29151**2 / 100, rel=1e-7)
-    assert float(low) == pytest.approx(1.4 * (1.0 - NEAR))
+    assert float(low) == pytest.approx(1.4 * (1.0 - STEP))
     (one,) = (i for i in found.influences if i.key == "bar.safety")
     assert one.sensitivity == pytest.approx(1.0, rel=1e-3)
 

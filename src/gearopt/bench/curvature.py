@@ -20,7 +20,7 @@ STATIONS = 101  # at which curvatures are compared
 DATA = {"exact": 0.0, "1 nm": 1e-6, "0.1 um": 1e-4}  # largest error of a point [mm]
 POINTS = (11, 21, 51, 201)
 SEEDS = 25  # of errors of points
-STEPS = 4  # of Newton from a pose to that of a radius
+NEWTON_STEPS = 4  # of Newton from a pose to that of a radius
 
 
 def run(repeat: int) -> list[dict[str, Any]]:
@@ -58,7 +58,7 @@ def of_small_displacements(made: Flank) -> Any:
     """Return the curvature where first-order ring theory has contact at the same radii."""
     gearing, wanted = made.gearing, made.contacts.tangent
     arc = made.contacts.motion.arc
-    for _ in range(STEPS):
+    for _ in range(NEWTON_STEPS):
         found = contact(gearing, small_motion(gearing, arc))
         arc = arc - (found.tangent - wanted) / found.tangent_rate
     return contact(gearing, small_motion(gearing, arc)).curvatures[1]

@@ -14,7 +14,7 @@ from typing import Any
 from gearopt.bench.drive import CASES, train_of
 from gearopt.formulations.drive import teeth
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.comparing.fronts import FINE
+from gearopt.optimise.comparing.fronts import REFERENCE_POINTS
 from gearopt.optimise.pareto.found import Found
 from gearopt.optimise.pareto.judged import status
 from gearopt.optimise.pareto.measures import hypervolume, reference
@@ -24,8 +24,8 @@ from gearopt.optimise.result import Budget
 from gearopt.optimise.terms import Array, Terms, Var
 
 VOLUME, LENGTH, LOSS = "gear_volume", "sum_of_centre_distances", "mesh_loss"
-LEAST = 5_687_087.85  # mm3, minimum gear volume of the elevator at its exact ratio
-MOST = {VOLUME: 1.5 * LEAST}
+LEAST_VOLUME = 5_687_087.85  # mm3, minimum gear volume of the elevator at its exact ratio
+MOST = {VOLUME: 1.5 * LEAST_VOLUME}
 FRONTS: tuple[tuple[tuple[str, ...], dict[str, float]], ...] = (
     ((VOLUME, LENGTH), {}),
     ((VOLUME, LOSS), MOST),
@@ -38,13 +38,13 @@ WHOLE = (  # case, objectives, largest gear volume [mm3]
     ("three_stage", (VOLUME, LENGTH), None),
     ("three_stage", (VOLUME, LOSS), 1.5 * 12_677_057.9),
 )
-ENOUGH = 0.99  # of its own last hypervolume
+SHARE = 0.99  # of its own last hypervolume
 
 
 def run(repeat: int) -> list[dict[str, Any]]:
     """Return rows: case, method, points, shares of the hypervolume (median, worst), ms.
 
-    NSGA-II is run for `repeat` seeds; ms_to_99_percent: until it has ENOUGH of what it ends with.
+    NSGA-II is run for `repeat` seeds; ms_to_99_percent: until it has SHARE of what it ends with.
     """
     rows: list[dict[str, Any]] = []
     for names, most in FRONTS:
@@ -87,7 +87,7 @@ def elevator() -> Problem:
 
 def _real(names: tuple[str, ...], most: dict[str, float], seeds: int) -> Iterator[dict[str, Any]]:
     problem, case = elevator(), "elevator, real-valued: " + ", ".join(names)
-    fine = found(problem, names, most, "epsilon", FINE[len(names)]).values
+    fine = found(problem, names, most, "epsilon", REFERENCE_POINTS[len(names)]).values
     made, ms = _timed(lambda: found(elevator(), names, most, "epsilon"))
     yield _row(case, "epsilon", [made], [ms], fine)
     for count in EVALUATIONS:
@@ -149,9 +149,9 @@ def _row(
 
 
 def _grown(made: Found, corner: Array) -> float | None:
-    """Return the time [ms] until ENOUGH of its last hypervolume; None where it has none."""
+    """Return the time [ms] until SHARE of its last hypervolume; None where it has none."""
     volumes = [hypervolume(step.values, corner) for step in made.steps]
     if not volumes or not volumes[-1]:
         return None
     reached = zip(made.steps, volumes, strict=True)
-    return next(1000.0 * step.seconds for step, v in reached if v >= ENOUGH * volumes[-1])
+    return next(1000.0 * step.seconds for step, v in reached if v >= SHARE * volumes[-1])

@@ -22,7 +22,7 @@ from gearopt.physics.mesh_cycle import cycle
 from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.physics.tooth.ladder import LEVELS
 
-STEPS = 48
+PATH_STEPS = 48
 BORES = (30.0, 50.0)  # mm
 TORQUE = 200e3  # N mm, on the pinion
 COUPLING = 4.4491e-3 / 5675.6148  # mm/N, of plane finite elements
@@ -71,7 +71,7 @@ def mesh(parts: tuple[float, ...], model: str, exact: bool) -> Mesh:
     elastic = ElasticPair(pair, BORES)
     level = LEVELS["profile + Sainsot"]
     return Mesh.of(
-        cycle(elastic.path, STEPS, exact),
+        cycle(elastic.path, PATH_STEPS, exact),
         lambda s: level.compliance(elastic, s, load),
         COUPLING if model == "c12" else 0.0,
         tuple(part * load for part in parts),

@@ -26,9 +26,9 @@ PITCH, CUTTER = 40.0, 10.0  # mm: pitch radii of the blank and of a cutter of 40
 CUTTERS = {"rack": math.inf, "40 teeth": CUTTER}
 ROLLS = (-0.18, 0.03)  # rad round the cutter: the blank touches within these
 SHORT = (-0.1, 0.03)  # ends too early
-STEPS = (21, 81, 321)
+PITCHES = (21, 81, 321)
 EVERY = 8  # of 401 points, for edges that replace the exact one
-LEAST = {"rack": 500.0, "40 teeth": 3.0}  # mm: radii that a tool may have at least
+LEAST_RADII = {"rack": 500.0, "40 teeth": 3.0}  # mm: radii that a tool may have at least
 
 
 def run(repeat: int) -> list[dict[str, Any]]:
@@ -55,9 +55,9 @@ def _rolled(blank: Profile, repeat: int) -> list[dict[str, Any]]:
 
     edge = -envelope(blank, PITCH, CUTTER).profile.points[50:350:10]
     rows = []
-    cases = [("superposed rolls", ROLLS, steps, False) for steps in STEPS]
-    cases.append(("superposed rolls, ended early", SHORT, STEPS[-1], False))
-    cases.append(("superposed rolls, as printed", ROLLS, STEPS[-1], True))
+    cases = [("superposed rolls", ROLLS, steps, False) for steps in PITCHES]
+    cases.append(("superposed rolls, ended early", SHORT, PITCHES[-1], False))
+    cases.append(("superposed rolls, as printed", ROLLS, PITCHES[-1], True))
     for name, ends, steps, printed in cases:
         rolls = np.linspace(*ends, steps)
         given = blank, (PITCH, CUTTER), rolls, edge.length, printed
@@ -78,7 +78,7 @@ def _replaced(blank: Profile, repeat: int) -> list[dict[str, Any]]:
         rows.append(
             _row(name, "arc, linear programs", arc.rounds, arc.radius, arc.deviation, times)
         )
-        least = LEAST[name]
+        least = LEAST_RADII[name]
         bounded = f"arc, cones, at least {least:g} mm"
         for words, bound in (("arc, cones", 0.0), (bounded, least)):
             cone, times = timed(partial(arc_of_cones, edge, arc, bound), repeat)

@@ -8,8 +8,8 @@ import typer
 from rich.console import Console
 
 from gearopt.cli.app import (
-    FIRST,
-    MORE,
+    MORE_OF_FILES,
+    TO_BEGIN,
     Csv,
     File,
     Html,
@@ -64,7 +64,7 @@ Gap = Annotated[
 Seed = Annotated[int, typer.Option(help="Seed of random methods.")]
 
 
-@app.command(rich_help_panel=FIRST)
+@app.command(rich_help_panel=TO_BEGIN)
 def solve(
     file: File,
     method: Method = None,
@@ -131,7 +131,7 @@ def _refuse(given: Mapping[str, tuple[int | None, int]], idle: Mapping[str, str]
             raise GearoptError(f"--{name} {value} changes nothing here: {why}; leave it out")
 
 
-@app.command(rich_help_panel=FIRST)
+@app.command(rich_help_panel=TO_BEGIN)
 def rate(
     file: File,
     html: Html = None,
@@ -154,7 +154,7 @@ def rate(
     raise typer.Exit(exit_code(result))
 
 
-@app.command(rich_help_panel=FIRST)
+@app.command(rich_help_panel=TO_BEGIN)
 def explain(
     file: File,
     seconds: Seconds = 60.0,
@@ -182,7 +182,7 @@ def explain(
     raise typer.Exit(exit_code(found.result))
 
 
-@app.command(rich_help_panel=MORE)
+@app.command(rich_help_panel=MORE_OF_FILES)
 def compare(
     file: File,
     objectives: Annotated[

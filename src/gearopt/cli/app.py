@@ -33,7 +33,7 @@ HELP = "\n\n".join(
         "[bold]gearopt rate pair.toml[/]                    its stresses, safety and life",
     )
 )
-FIRST, MORE, TOOLS = "To begin with", "Further commands", "For editors and machines"
+TO_BEGIN, MORE_OF_FILES, TOOLS = "To begin with", "Further commands", "For editors and machines"
 
 app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode="rich")
 

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 import typer
 
-from gearopt.cli.app import FIRST, MORE, TOOLS, Json, app, console, print_whole, told
+from gearopt.cli.app import MORE_OF_FILES, TO_BEGIN, TOOLS, Json, app, console, print_whole, told
 from gearopt.cli.names import bench_words, example_words, kind_words, problem_files
 from gearopt.errors import GearoptError, SceneError
 from gearopt.optimise.clock import Clock
@@ -22,7 +22,7 @@ Kind = Annotated[
 ]
 
 
-@app.command(rich_help_panel=MORE)
+@app.command(rich_help_panel=MORE_OF_FILES)
 def check(
     files: Annotated[
         list[Path],
@@ -76,7 +76,7 @@ def schema(
         print_whole(json.dumps(json_schema(_known(kind)), indent=2))
 
 
-@app.command(rich_help_panel=FIRST)
+@app.command(rich_help_panel=TO_BEGIN)
 def new(
     name: Annotated[
         str,

@@ -37,7 +37,7 @@ def benches() -> dict[str, str]:
     return {name: _said(import_module(f"gearopt.bench.{name}").__doc__) for name in names()}
 
 
-ANY = "any problem that suits"
+FOR_ANY_PROBLEM = "any problem that suits"
 
 
 def methods() -> dict[str, tuple[str, ...]]:
@@ -45,7 +45,7 @@ def methods() -> dict[str, tuple[str, ...]]:
     from gearopt.scenes.reading.load import kind_named, kinds
 
     own = {name: kind_named(name).methods for name in kinds()}
-    return own | {ANY: back_ends()}
+    return own | {FOR_ANY_PROBLEM: back_ends()}
 
 
 def back_ends() -> tuple[str, ...]:

@@ -10,7 +10,17 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from gearopt.cli.app import MORE, Csv, Html, Units, app, console, exit_code, front_code, print_whole
+from gearopt.cli.app import (
+    MORE_OF_FILES,
+    Csv,
+    Html,
+    Units,
+    app,
+    console,
+    exit_code,
+    front_code,
+    print_whole,
+)
 from gearopt.cli.names import result_files
 from gearopt.cli.writing import Written, check_csv, check_html, write
 from gearopt.errors import GearoptError
@@ -21,7 +31,7 @@ from gearopt.report.command import again
 from gearopt.report.measures import METRIC, SYSTEMS, Measures
 from gearopt.scenes.reading.files import LARGEST_KEPT, first_bytes
 
-LONGEST = 200  # characters shown of what is wrong with a file
+REASON_LENGTH = 200  # characters shown of what is wrong with a file
 Kept = Result | Comparison | Front
 HOW = "write one with `gearopt solve FILE --json > result.json`"
 
@@ -35,7 +45,7 @@ class Files:
     measures: Measures
 
 
-@app.command(rich_help_panel=MORE)
+@app.command(rich_help_panel=MORE_OF_FILES)
 def report(
     file: Annotated[
         Path,
@@ -60,7 +70,7 @@ def report(
     except GearoptError:
         raise
     except Exception as odd:  # whatever an edited file holds: its reader gets one message
-        what = " ".join(f"{type(odd).__name__}: {odd}".split())[:LONGEST]
+        what = " ".join(f"{type(odd).__name__}: {odd}".split())[:REASON_LENGTH]
         raise GearoptError(f"{file}: is not a result of gearopt ({what}); {HOW}") from odd
     print(text.get(), end="")
     for line in lines:

@@ -4,14 +4,14 @@ from typing import Annotated
 
 import typer
 
-from gearopt.cli.app import FIRST, Csv, File, Html, Json, Most, Units, app, front_code, numbers
+from gearopt.cli.app import TO_BEGIN, Csv, File, Html, Json, Most, Units, app, front_code, numbers
 from gearopt.cli.reporting import answer, checked, traded
 from gearopt.cli.watching import watching
 from gearopt.optimise.result import Budget
 from gearopt.report.command import SECONDS
 
 
-@app.command(rich_help_panel=FIRST)
+@app.command(rich_help_panel=TO_BEGIN)
 def pareto(
     file: File,
     objectives: Annotated[

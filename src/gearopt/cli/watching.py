@@ -21,7 +21,7 @@ from gearopt.report.screen import Screen
 
 PATIENCE = 0.5  # seconds of a run without a line about it
 PAUSE = 0.2  # seconds between one line and the next
-LONGEST = 1e5  # seconds: a limit above it is none
+LONGEST_SECONDS = 1e5  # seconds: a limit above it is none
 GRACE, KEEPING = 0.5, 5.0  # seconds from Ctrl-C to the end: with nothing to keep, and at most
 SHOW_CURSOR = b"\r\x1b[K\x1b[?25h"  # and clear the line of the progress that hid it
 
@@ -176,7 +176,7 @@ class _Line:
     def __rich__(self) -> str:
         """Return the words with the seconds spent, asked again for every frame."""
         now = self.clock.seconds
-        of = f" of {self.limit:.0f}" if now <= self.limit < LONGEST else ""
+        of = f" of {self.limit:.0f}" if now <= self.limit < LONGEST_SECONDS else ""
         return f"{now:.0f}{of} s  {self.words}"
 
 

@@ -23,7 +23,14 @@ from gearopt.optimise.quadratic import natural
 from gearopt.optimise.result import FEASIBLE, Outcome, Result
 from gearopt.optimise.scale import gap as gap_of
 from gearopt.optimise.scale import is_known, measured, runaway, violation, way
-from gearopt.optimise.stationarity import NEAR, STATIONARY, Point, evaluated, no_minimum, residuals
+from gearopt.optimise.stationarity import (
+    ACTIVE_WITHIN,
+    STATIONARY,
+    Point,
+    evaluated,
+    no_minimum,
+    residuals,
+)
 from gearopt.optimise.terms import Array
 
 LOOSE = 1e-2  # a gap above which no point of a convex problem is said to be a minimum
@@ -213,7 +220,7 @@ def _shadow_prices(point: Point) -> dict[str, float]:
     """
     shape, rows = point.shape, point.problem.rows
     unit = shape.objective(point.f) if shape.log_objective else 1.0
-    binding = np.where(point.g >= -NEAR, point.lam_g, 0.0)
+    binding = np.where(point.g >= -ACTIVE_WITHIN, point.lam_g, 0.0)
     return prices(rows, -unit * binding, -unit * point.lam_h)
 
 

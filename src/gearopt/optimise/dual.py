@@ -18,11 +18,12 @@ from gearopt.optimise.form import Form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.quadratic import box, curvature, hessian_of, least
 from gearopt.optimise.result import Outcome
-from gearopt.optimise.stationarity import NEAR, Point, evaluated
+from gearopt.optimise.stationarity import ACTIVE_WITHIN, Point, evaluated
 from gearopt.optimise.terms import Array
 
-MOST = 2_000_000  # entries of the dense system; larger problems keep their method's multipliers
-SMALL = 100_000  # entries of the dense system, which takes milliseconds
+# entries of the dense system; larger problems keep their method's multipliers
+MAX_ENTRIES = 2_000_000
+DENSE_ENTRIES = 100_000  # entries of the dense system, which takes milliseconds
 SPARSE = 0.05  # share of entries up to which a larger system is solved as a sparse one
 DAMPING, STEPS = 1e-11, 4  # of a sparse system; each step divides the damping's error by more
 
@@ -35,12 +36,12 @@ def multipliers(
     None where the system is too large, or a slope is no number.
     """
     no_g, no_h = (np.zeros(shape.derivatives.numel_out(k)) for k in (1, 2))
-    if (len(no_g) + len(no_h)) * len(y) > MOST:
+    if (len(no_g) + len(no_h)) * len(y) > MAX_ENTRIES:
         return None
     _, g, _, gradient, _ = (np.array(v).ravel() for v in shape.derivatives(y, p, no_g, no_h))
-    active = np.flatnonzero(g >= -NEAR)
+    active = np.flatnonzero(g >= -ACTIVE_WITHIN)
     rows = _rows(shape, y, p, active)
-    free = (y > low + NEAR) & (y < high - NEAR)
+    free = (y > low + ACTIVE_WITHIN) & (y < high - ACTIVE_WITHIN)
     columns = rows.T[free]
     slopes = columns if isinstance(columns, np.ndarray) else columns.data
     if not (np.isfinite(slopes).all() and np.isfinite(gradient[free]).all()):
@@ -87,7 +88,7 @@ def _rows(shape: Form, y: Array, p: Array, active: Any) -> Any:
     """Return gradients of the active inequalities and of all equalities, one per row."""
     of_g, of_h = shape.jacobians(y, p)
     size = (len(active) + of_h.shape[0]) * len(y)
-    if size <= SMALL or of_g.nnz() + of_h.nnz() > SPARSE * size:
+    if size <= DENSE_ENTRIES or of_g.nnz() + of_h.nnz() > SPARSE * size:
         of_g, of_h = (np.array(j).reshape(-1, len(y)) for j in (of_g, of_h))
         return np.vstack([of_g[active], of_h])
     import scipy.sparse as sp

@@ -25,7 +25,7 @@ UNREADY = "stopped while kernels were compiled"
 PATIENCE = (
     3.0  # s that a process runs kernels uncompiled; compiling those of layouts takes twice that
 )
-ROOM = 70_000  # words of a frame: Python then takes 1 MB for it and all frames that it calls
+FRAME_WORDS = 70_000  # words of a frame: Python then takes 1 MB for it and all frames that it calls
 CHECKSUM = 32  # bytes at the end of a file of machine code: SHA-256 of those before
 _SOURCES = Path(__file__).parents[1]
 
@@ -222,7 +222,7 @@ def _call(work: Callable[[], Any]) -> Any:
 # Python keeps frames in blocks of 16 KB, and asks the system for the next one whenever a call goes
 # across the end of one: in a loop that costs more than the call. A compiler's deep recursion always
 # has such loops. A frame that asks for much gets a block in which the others have room too.
-_roomy = FunctionType(_call.__code__.replace(co_stacksize=ROOM), globals())
+_roomy = FunctionType(_call.__code__.replace(co_stacksize=FRAME_WORDS), globals())
 
 
 @cache

@@ -1,7 +1,7 @@
 """Ipopt's side of casadi: a form in units of its own scale, wide logarithms split up, its monitor.
 
 The logarithm of a sum over n variables has a dense Hessian: n^2 numbers at every iteration, and
-casadi takes n^3 steps to write them down. Here a sum of more than WIDE variables becomes
+casadi takes n^3 steps to write them down. Here a sum of more than DENSE_VARIABLES variables becomes
 
     log(sum_k t_k) = log(sum_j exp(u_j)),   log(sum of GROUP terms t_k) <= u_j
 
@@ -23,7 +23,8 @@ from gearopt.optimise.scale import objective_scale, sizes
 from gearopt.optimise.tape import MONOMIAL, POSYNOMIAL, Kinds
 from gearopt.optimise.terms import Array
 
-WIDE = 50  # variables; up to there casadi takes milliseconds for the dense Hessian of a row
+# variables; up to there casadi takes milliseconds for the dense Hessian of a row
+DENSE_VARIABLES = 50
 GROUP = 16  # terms of one epigraph
 DEEP = 30  # sums in products in sums; what is nested deeper stays as it is
 
@@ -58,7 +59,7 @@ def split(shape: Form, kinds: Kinds) -> Split:
     y, p, f, g, h = shape.expressions
     read = ca.Function("read", [y, p], [f, g, h])
     widths = [_widths(read.jac_sparsity(k, 0)) for k in range(3)]
-    if not any((found > WIDE).any() for found in widths):
+    if not any((found > DENSE_VARIABLES).any() for found in widths):
         no = type(y)(0, 1)
         return Split(y, p, f, g, h, no, ca.Function("start", [y, p], [no]))
     y, p = ca.SX.sym("y", y.numel()), ca.SX.sym("p", p.numel())
@@ -70,7 +71,9 @@ def split(shape: Form, kinds: Kinds) -> Split:
         [k <= MONOMIAL for k in kinds.equalities],
     )
     objective, inequalities, equalities = (
-        levels.rows_of(part, [log and n > WIDE for log, n in zip(which, wide, strict=True)])
+        levels.rows_of(
+            part, [log and n > DENSE_VARIABLES for log, n in zip(which, wide, strict=True)]
+        )
         for part, which, wide in zip(parts, logs, widths, strict=True)
     )
     return Split(
@@ -137,7 +140,7 @@ class _Levels:
 
         total = _Pair(ca.SX(0), ca.SX(0))
         for factor, power in _factors(expression):
-            if factor.is_op(ca.OP_ADD) and depth < DEEP and self._width(factor) > WIDE:
+            if factor.is_op(ca.OP_ADD) and depth < DEEP and self._width(factor) > DENSE_VARIABLES:
                 one = self._log_of_sum(factor, depth)
             elif factor.is_op(ca.OP_EXP):
                 one = _Pair(factor.dep(0), factor.dep(0))
@@ -155,7 +158,7 @@ class _Levels:
                 terms.append(term)
                 continue
             width = self._width(term)
-            if width > WIDE:
+            if width > DENSE_VARIABLES:
                 terms.append(self._above(self._log(term, depth + 1)))
             elif width == 0:
                 constant = constant + term  # it may be zero, and has no logarithm of its own
@@ -285,7 +288,7 @@ def program(z: Any, p: Any, f: Any, g: Any, size: int) -> tuple[Any, Any]:
         "show_eval_warnings": False,
         "calc_lam_p": False,  # nobody asks for them, and casadi warns where they are no numbers
     }
-    if size > WIDE:
+    if size > DENSE_VARIABLES:
         options |= dense_hessian(z, p, f, g)
     return ca.nlpsol("ipopt", "ipopt", {"x": z, "p": p, "f": f, "g": g}, options), monitor
 
@@ -296,7 +299,7 @@ def dense_hessian(z: Any, p: Any, f: Any, g: Any) -> dict[str, Any]:
 
     given = [z, p, type(z).sym("lam_f"), type(z).sym("lam_g", g.numel())]
     slope = ca.gradient(given[2] * f + ca.dot(given[3], g), z)
-    if ca.Function("slope", given, [slope]).jac_sparsity(0, 0).nnz() <= WIDE * z.numel():
+    if ca.Function("slope", given, [slope]).jac_sparsity(0, 0).nnz() <= DENSE_VARIABLES * z.numel():
         return {}
     names = ["x", "p", "lam_f", "lam_g"], ["triu_hess_gamma_x_x"]
     return {"hess_lag": ca.Function("hessian", given, [ca.triu(ca.jacobian(slope, z))], *names)}

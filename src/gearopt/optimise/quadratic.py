@@ -62,7 +62,7 @@ def _apply(operation: int, terms: list[Term]) -> Term:
 
 ROUNDING = 1e-14  # 50 units in the last place, of a matrix scaled to unit diagonal, times its size
 
-MOST = 3000  # variables; the Hessian is dense
+MAX_VARIABLES = 3000  # variables; the Hessian is dense
 
 
 @dataclass(frozen=True)
@@ -123,8 +123,8 @@ def dense(matrix: Any) -> Array:
 def misfit(problem: Problem) -> str:
     """Name the term that a quadratic program cannot have, in words; "" if there is none."""
     found, rows = degrees(problem), problem.rows
-    if len(problem.columns) > MOST:
-        return f"it has {len(problem.columns)} variables, more than {MOST}"
+    if len(problem.columns) > MAX_VARIABLES:
+        return f"it has {len(problem.columns)} variables, more than {MAX_VARIABLES}"
     if found.objective > QUADRATIC:
         return f"the objective {rows.objectives[0]} is not quadratic"
     names = [r.name for r in rows.inequalities] + list(rows.equalities)

@@ -14,7 +14,8 @@ from gearopt.optimise.problem import Batch, Problem
 from gearopt.optimise.result import FEASIBLE
 from gearopt.optimise.terms import Array
 
-PART = 1e-3  # of its box is the minimum scale of a variable, so that one at zero has a scale too
+# of its box is the minimum scale of a variable, so that one at zero has a scale too
+LEAST_SCALE = 1e-3
 COARSE, FINE = 1e-2, 1e-10  # steps that see curvature, and gradients alone
 NOTHING = 1e-28  # the square of a rounding
 ENTRIES = 1_000_000  # of the points that are evaluated at once
@@ -23,13 +24,13 @@ ENTRIES = 1_000_000  # of the points that are evaluated at once
 def sizes(problem: Problem | Conic, x: Array) -> Array:
     """Return the own scale of every variable at a point (n,): what it must move by to matter.
 
-    Itself for a log variable; else the largest of |x|, |guess| and PART of its box, at most the
-    width of its box. 1 where all of these are zero or infinite.
+    Itself for a log variable; else the largest of |x|, |guess| and LEAST_SCALE of its box, at most
+    the width of its box. 1 where all of these are zero or infinite.
     """
     lower, upper, guess = problem.bounds()
     logarithmic = np.array([v.log for v, _ in problem.columns])
     width = np.where(upper > lower, upper - lower, np.inf)
-    part = np.where(np.isfinite(width), PART * width, 0.0)
+    part = np.where(np.isfinite(width), LEAST_SCALE * width, 0.0)
     size = np.minimum(width, np.maximum(np.maximum(np.abs(x), np.abs(guess)), part))
     size = np.where(logarithmic, np.abs(x), size)
     return np.where(size > 0.0, size, 1.0)

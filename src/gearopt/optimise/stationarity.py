@@ -24,7 +24,7 @@ from gearopt.optimise.quadratic import dense
 from gearopt.optimise.scale import sizes
 from gearopt.optimise.terms import Array
 
-NEAR = 1e-6  # a row this close to its limit, a variable this close to its bound, is active
+ACTIVE_WITHIN = 1e-6  # a row this close to its limit, a variable this close to its bound, is active
 STATIONARY = 1e-6  # of what acts on a variable; of the objective itself where the form is convex
 WEAK = 1e-8  # of the variable that is acted on most: less is rounding of the multipliers
 ALONE = 1e-14  # the same without multipliers
@@ -125,10 +125,10 @@ def hessian(point: Point) -> Any:
 FLAT = 1e-6  # of what acts on a direction: curvature below it is none
 RANK = 1e-9  # of the largest singular value: a row that depends on others
 ALONG = 1e-6  # of a direction's length: less does not leave a limit
-STEPS = (1e-3, 1e-2, 1e-1)  # of the variables' scale, by which flat directions are followed
+FLAT_STEPS = (1e-3, 1e-2, 1e-1)  # of the variables' scale, by which flat directions are followed
 BOX = 0.1  # of its box is another scale of a variable: one near zero is small for no reason
 NOISE = 1e-12  # of all terms that are added up, in these steps
-MOST = 1000  # variables off their bounds; the reduced Hessian is dense
+MAX_FREE = 1000  # variables off their bounds; the reduced Hessian is dense
 ROUNDS = 20  # of making the entries of a matrix equal
 NO_NUMBER = "its curvature is not a number"
 FALLS = "not a minimum: gradients vanish there, but the objective falls along {}"
@@ -171,14 +171,14 @@ def no_minimum(point: Point) -> str:
     """Return why a stationary point may be no local minimum, in words; "" where it is one."""
     if point.shape.convex:
         return ""
-    name = kink(point.problem, point.shape.to_x(point.y), point.g >= -NEAR)
+    name = kink(point.problem, point.shape.to_x(point.y), point.g >= -ACTIVE_WITHIN)
     return _kinked(point, name) if name else _curved(point)
 
 
 def _curved(point: Point) -> str:
     """Return why the curvature makes a stationary point no minimum; "" where it does not."""
     free = _free(point)
-    if free.sum() > MOST:
+    if free.sum() > MAX_FREE:
         return f"its curvature was not examined: {free.sum()} variables are off their bounds"
     cone = _cone(point, free)
     if not np.isfinite(cone.curved).all():
@@ -219,7 +219,7 @@ def _free(point: Point) -> Any:
 
 def _ends(point: Point) -> tuple[Any, Any]:
     """Return which variables sit on their lower, and which on their upper bound."""
-    near = NEAR * own_scales(point)
+    near = ACTIVE_WITHIN * own_scales(point)
     return point.y - point.low <= near, point.high - point.y <= near
 
 
@@ -230,7 +230,7 @@ def _cone(point: Point, free: Any) -> _Cone:
     of_g, of_h = (dense(j) for j in point.shape.jacobians(point.y, p))
     priced = point.lam_g[:, None] * np.abs(of_g) * own > STATIONARY * acting(point)
     firm = priced.any(axis=1)
-    loose = point.g >= -NEAR
+    loose = point.g >= -ACTIVE_WITHIN
     low, high = (end[free] for end in _ends(point))
     bounds = np.eye(int(free.sum()))
     curved = dense(hessian(point))[np.ix_(free, free)] * np.outer(own[free], own[free])
@@ -280,7 +280,7 @@ def _sinks(point: Point, cone: _Cone, d: Array) -> bool:
 
 
 def _falls(point: Point, cone: _Cone, step: Array, across: Array) -> bool:
-    """Return whether the Lagrangian falls by more than gradient and curvature give, at STEPS.
+    """Return whether the Lagrangian falls by more than gradient and curvature give, at FLAT_STEPS.
 
     It need not be seen at the shortest step; but nowhere may it rise.
     """
@@ -288,7 +288,7 @@ def _falls(point: Point, cone: _Cone, step: Array, across: Array) -> bool:
     pull, pulls = curved @ step, np.abs(curved) @ np.abs(step)
     here, size, _ = _lagrangian(point, cone, point.y)
     fell = []
-    for t in STEPS:
+    for t in FLAT_STEPS:
         moved = _curve(point, cone, t * step, across)
         there, more, _ = _lagrangian(point, cone, point.y + moved)
         bent = t * pull @ (moved - 0.5 * t * step)

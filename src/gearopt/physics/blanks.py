@@ -13,7 +13,7 @@ from gearopt.physics.choosing import choose
 from gearopt.physics.gears import Gear
 
 HUB = 1.6  # usual diameter of a hub over its bore
-SAME = 1e-9  # of the diameter: what is this close to the hub counts as touching it
+HUB_TOLERANCE = 1e-9  # of the diameter: what is this close to the hub counts as touching it
 THICK = 10.0  # backup ratio of a solid gear; from 1.2 on no standard has a rim factor
 
 
@@ -80,14 +80,14 @@ class Blank:
         if not self.has_rim:
             return no
         d, inside = gear.reference_diameter, self.inside(gear)
-        return choose(inside > self.hub + SAME * d, choose(inside < d, yes, no), no)
+        return choose(inside > self.hub + HUB_TOLERANCE * d, choose(inside < d, yes, no), no)
 
     def where_bore(self, gear: Gear, yes: Any, no: Any) -> Any:
         """Return one value where a gear is bored, else another."""
         if not self.bore:
             return no
         d, root = gear.reference_diameter, gear.root_diameter
-        hub = self.hub + SAME * d
+        hub = self.hub + HUB_TOLERANCE * d
         return choose(hub < root, choose(hub < d, yes, no), no)
 
     def volume(self, gear: Gear) -> Any:

@@ -27,9 +27,13 @@ MODULES = {"ISO 54 I": SERIES_I, "ISO 54 I+II": tuple(sorted(SERIES_I + SERIES_I
 
 # Diametral pitches [1/in] that American textbooks list as in general use (Shigley and others);
 # unverified: no second listing of the whole series was found, and standards list others, too.
-COARSE = _series("2 2.25 2.5 3 4 6 8 10 12 16")
-FINE = _series("20 24 32 40 48 64 80 96 120 150 200")
-DIAMETRAL_PITCHES = {"DP coarse": COARSE, "DP fine": FINE, "DP coarse+fine": COARSE + FINE}
+COARSE_PITCHES = _series("2 2.25 2.5 3 4 6 8 10 12 16")
+FINE_PITCHES = _series("20 24 32 40 48 64 80 96 120 150 200")
+DIAMETRAL_PITCHES = {
+    "DP coarse": COARSE_PITCHES,
+    "DP fine": FINE_PITCHES,
+    "DP coarse+fine": COARSE_PITCHES + FINE_PITCHES,
+}
 
 
 MEMBERS = ("pinion", "wheel")  # of a pair, in this order

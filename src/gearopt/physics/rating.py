@@ -11,7 +11,7 @@ import numpy as np
 
 from gearopt.physics.gears import MEMBERS
 
-STEPS = 200  # of a root, at most
+ROOT_STEPS = 200  # of a root, at most
 ROUNDING = 2e-16  # of its logarithm
 
 
@@ -212,7 +212,7 @@ def _root(levels: Sequence[Level], low: Any, high: Any) -> Any:
     a, b, share = np.log(high), np.log(low), np.full(len(high), 0.5)
     fa, fb = (np.log(damage(levels, np.exp(x))) for x in (a, b))
     done = fa <= 0.0
-    for _ in range(STEPS):
+    for _ in range(ROOT_STEPS):
         if (keep := ~done).sum() < len(done):
             place, levels = place[keep], [x.take(keep) for x in levels]
             a, b, fa, fb, share = (v[keep] for v in (a, b, fa, fb, share))

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from gearopt.optimise.comparing.comparison import (
-    CLOSE,
-    TIGHT,
+    CATALOGUE_GAP,
+    PROOF_GAP,
     Comparison,
     Group,
     Row,
@@ -32,7 +32,7 @@ DISTANCE = (
     "%",
     "Mean distance of the reference front to the points, in the ranges of the objectives",
 )
-assert (CLOSE, TIGHT) == (1e-3, 1e-6)  # as the headings say
+assert (CATALOGUE_GAP, PROOF_GAP) == (1e-3, 1e-6)  # as the headings say
 
 
 def columns(found: Comparison) -> tuple[tuple[str, str, str], ...]:
@@ -118,7 +118,7 @@ def _closed(group: Group) -> bool:
     """Return whether the reference is the proven optimum."""
     if not group.proven or group.best is None or group.reference is None:
         return False
-    return excess(group.best, group.reference, group.scale) <= TIGHT
+    return excess(group.best, group.reference, group.scale) <= PROOF_GAP
 
 
 def _impossible(row: Row) -> bool:
@@ -149,14 +149,14 @@ def verdict(group: Group, row: Row) -> str:
         reaches, apart = "has the whole front", "% of the hypervolume is missing"
     if not row.random:
         once = "where the time ended its one run" if ended else "in the one run it needs"
-        if s.median_gap is not None and s.median_gap <= TIGHT:
+        if s.median_gap is not None and s.median_gap <= PROOF_GAP:
             return f"{reaches} in {s.seconds:.2g} s, {once}"
         return f"{percent(s.median_gap)} {apart}, {once}"
     missed = f", {s.without} without a feasible point{why}" if s.without else ""
     close = f"{round(s.close * s.seeds)} of {s.seeds} seeds within 0.1 %{missed}"
     if s.median_gap is None:
         return f"no feasible point in the median seed; {close}"
-    if s.median_gap <= TIGHT:
+    if s.median_gap <= PROOF_GAP:
         return f"{reaches} in the median seed, {s.seconds:.2g} s; {close}"
     return f"median {percent(s.median_gap)} {apart}, {close}"
 

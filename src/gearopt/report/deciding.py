@@ -16,7 +16,7 @@ from gearopt.report.words import (
 )
 
 PROVEN = ("optimal", "stationary")  # where a limit that is reached decides
-NEAR = 0.95  # of a limit; one used so far is named
+NAMED_FROM = 0.95  # of a limit; one used so far is named
 NAMED = 3  # limits that a sentence names, where more are reached it counts them
 ENDS = ("ratio_low", "ratio_high")  # limits of one range
 GIVEN = ("common_divisor",)  # rules that every design of the file is at the end of
@@ -159,7 +159,7 @@ def _nearest(limits: Mapping[str, float], alone: bool, staged: bool) -> list[str
     limit = limit_words(name, staged)
     if alone:
         return [f"no limit is active; the closest is {limit}, at {_whole(used)} %"]
-    return [f"{limit} is at {_whole(used)} % of its limit"] if used >= NEAR else []
+    return [f"{limit} is at {_whole(used)} % of its limit"] if used >= NAMED_FROM else []
 
 
 def _tolerance(result: Result) -> list[str]:

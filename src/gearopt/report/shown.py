@@ -40,8 +40,8 @@ from gearopt.report.words import (
 from gearopt.scenes.reading.toml import cut
 
 WIDTH = 90  # characters of a line of numbers
-LONGEST = 900  # of a line of words
-MOST = 5  # numbers of a design, numbers of a file, or remedies that are listed
+LINE_LENGTH = 900  # of a line of words
+MAX_LISTED = 5  # numbers of a design, numbers of a file, or remedies that are listed
 Block = str | Text | Table
 
 
@@ -63,7 +63,7 @@ def lines(result: Result) -> str:
 
 def _joined(rows: Sequence[str]) -> str:
     """Return the lines of an answer, as a terminal may print them."""
-    return "\n  ".join(harmless(cut(row, LONGEST)) for row in rows)
+    return "\n  ".join(harmless(cut(row, LINE_LENGTH)) for row in rows)
 
 
 def _head(result: Result) -> str:
@@ -106,8 +106,8 @@ def _own(design: Mapping[str, Any]) -> list[str]:
 
 
 def _list(values: Sequence[Any]) -> str:
-    more = ["..."] if len(values) > MOST else []
-    return f"[{', '.join([*map(number, values[:MOST]), *more])}]"
+    more = ["..."] if len(values) > MAX_LISTED else []
+    return f"[{', '.join([*map(number, values[:MAX_LISTED]), *more])}]"
 
 
 def _values(part: Mapping[str, Any], goal: Any) -> list[str]:
@@ -127,12 +127,12 @@ def explained_lines(found: Explanation) -> str:
     rows = [lines(found.result)]
     if found.conflict:
         rows.append(f"in conflict: {_names(found, found.conflict)}")
-    for remedy in found.remedies[:MOST]:
+    for remedy in found.remedies[:MAX_LISTED]:
         rows.append(f"possible with {' and '.join(edit(asdict(c)) for c in remedy.changes)}")
     rows += _reached(found)
     slopes = {i.key: i.sensitivity for i in found.influences if i.sensitivity is not None}
     if slopes:
-        largest = sorted(slopes, key=lambda key: -abs(slopes[key]))[:MOST]
+        largest = sorted(slopes, key=lambda key: -abs(slopes[key]))[:MAX_LISTED]
         words = ", ".join(f"{key} {slopes[key]:+.4g}" for key in largest)
         rows.append(f"sensitivities: {words}")
     return _joined(rows)

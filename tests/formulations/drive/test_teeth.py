@@ -110,7 +110,7 @@ def test_wide_ranges_are_searched_like_narrow_ones(number, monkeypatch):
     train = some_drive(number, 2)
     expected = [run(teeth.problem(train, n))[1] for n in (1, 10)]
     module = import_module("gearopt.formulations.drive.teeth.wide")
-    monkeypatch.setattr(module, "FEW", 150)
+    monkeypatch.setattr(module, "PAIRS_AT_ONCE", 150)
     assert narrowed(train) != train
     for n, whole in zip((1, 10), expected, strict=True):
         found = run(teeth.problem(train, n))[1]

@@ -12,7 +12,7 @@ from small_drives import FACES, OBJECTIVES, drive
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import teeth
 from gearopt.formulations.drive.teeth import (
-    MOST,
+    UNLIMITED,
     _in_order,
     _why,
     best_pairs,
@@ -31,7 +31,7 @@ F = Fraction
 WIDTH = {  # of the variables of a face width: name, ends of both stages
     "tied": None,
     "fixed alone": ("face_width", (24.0, 24.0), (24.0, 24.0)),
-    "stepped": ("width_steps", (1.0, 1.0), (MOST, MOST)),
+    "stepped": ("width_steps", (1.0, 1.0), (UNLIMITED, UNLIMITED)),
 }
 
 
@@ -111,7 +111,7 @@ def test_stages_of_unlike_widths_share_the_variables():
         stages=tuple(replace(s, face_width=f) for s, f in zip(own, faces, strict=True)),
     )
     found = bounds_of(train)
-    assert found["width_steps"] == ([1.0] * 3, [MOST, 1.0, 1.0])
+    assert found["width_steps"] == ([1.0] * 3, [UNLIMITED, 1.0, 1.0])
     assert found["face_width"] == ([1.0, 1.0, 24.0], [1.0, 1.0, 24.0])
     x = point_of(train, ((16, 40), (17, 48), (18, 52)))
     low, high, _ = problem(train).bounds()

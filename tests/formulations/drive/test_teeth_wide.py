@@ -41,7 +41,7 @@ def whole():
 
 @pytest.fixture
 def few(monkeypatch):
-    monkeypatch.setattr(wide, "FEW", FEW)
+    monkeypatch.setattr(wide, "PAIRS_AT_ONCE", FEW)
 
 
 @pytest.mark.parametrize(
@@ -61,10 +61,10 @@ def test_so_few_pinions_that_their_pairs_are_few(stages, limits, monkeypatch):
     ]
     pairs = np.cumsum(each)
     for limit in (pairs[0] - 1, pairs[0], pairs[4] - 1, pairs[4], pairs[5], pairs[-1] - 1):
-        monkeypatch.setattr(wide, "FEW", limit)
+        monkeypatch.setattr(wide, "PAIRS_AT_ONCE", limit)
         last = max(15, 14 + int((pairs <= limit).sum()))
         assert {s.pinion_teeth for s in wide.narrowed(train).stages} == {(15, last)}
-    monkeypatch.setattr(wide, "FEW", pairs[-1])
+    monkeypatch.setattr(wide, "PAIRS_AT_ONCE", pairs[-1])
     assert wide.narrowed(train) == train
 
 

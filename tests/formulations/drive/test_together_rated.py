@@ -14,7 +14,7 @@ from gearopt.formulations.drive import layout, teeth, together
 from gearopt.formulations.drive.layout.gearbox import Clearances, Gearbox, Shaft
 from gearopt.formulations.drive.layout.slabs import arrangements, clashes
 from gearopt.formulations.drive.together import rated_widths
-from gearopt.formulations.drive.together.rated_widths import STEPS, narrower
+from gearopt.formulations.drive.together.rated_widths import CELL_WIDTHS, narrower
 from gearopt.formulations.drive.together.search import Search
 from gearopt.formulations.drive.together.tables import numbers
 from gearopt.formulations.strength.rated import Option
@@ -143,7 +143,7 @@ def test_widths_of_cells_are_below_those_of_every_torque(standard, monkeypatch):
     make = some_frame(3, train)
     search, (drive, _) = Search(train, make, Clock(), 0), numbers(train, make)
     rng = np.random.default_rng(8)
-    for step in STEPS[:2]:
+    for step in CELL_WIDTHS[:2]:
         drive = narrower(search.tables, drive, step, lambda: True)
         for stage, table in enumerate(search.tables):
             assert_least_at_cells(table, drive, stage)

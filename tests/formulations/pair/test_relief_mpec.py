@@ -5,7 +5,7 @@ import pytest
 from relief_pairs import COUPLING, mesh
 
 from gearopt.formulations.pair.relief.parametric import Ranges, at_point, problem
-from gearopt.formulations.pair.relief.relief_mpec import MICRO, STEPS, _point, complementarity
+from gearopt.formulations.pair.relief.relief_mpec import HOMOTOPY, MICRO, _point, complementarity
 from gearopt.optimise.solve import Budget, solve
 
 
@@ -39,4 +39,4 @@ def test_local_optima(loads, exponent, most):
     posed = problem(made, Ranges.of(made, exponent))
     exact, found = solve(posed, "exact"), solve(posed, "mpec", Budget(evaluations=1200))
     assert exact.bound <= found.value < 1e-3 * most
-    assert found.status in ("feasible", "limit") and STEPS[-1][0] < 1e-4
+    assert found.status in ("feasible", "limit") and HOMOTOPY[-1][0] < 1e-4

@@ -137,7 +137,7 @@ def test_a_search_stops_when_told_and_pauses_change_nothing(monkeypatch):
     points = split.feasible(train)
     chosen = Choice(train, "mass", *asked(train, points, rng))
     whole = choice_search.best_kept(train, "mass", chosen.kept, 1e-3, Clock(Budget()))
-    monkeypatch.setattr(choice_search, "STEPS", (1, 1))
+    monkeypatch.setattr(choice_search, "KERNEL_STEPS", (1, 1))
     seen = []
     clock = Clock(Budget(), lambda event: seen.append(event) or True)
     assert np.array_equal(choice_search.best_kept(train, "mass", chosen.kept, 1e-3, clock), whole)

@@ -130,7 +130,7 @@ def test_largest_values_of_interest_cut_the_front():
 
 @pytest.mark.parametrize("goal", ["mass", MOTION])
 def test_the_front_is_that_of_all_trains(goal, monkeypatch):
-    monkeypatch.setattr(train_front, "PART", 70)
+    monkeypatch.setattr(train_front, "MAX_WAITING", 70)
     for seed in range(6):
         rng = np.random.default_rng(seed)
         train = replace(posed(rng), modules=(F(3, 10),))

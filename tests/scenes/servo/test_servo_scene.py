@@ -277,8 +277,8 @@ def test_neighbours_are_not_beaten_in_all_three(solved):
 def test_a_look_for_neighbours_in_parts_finds_the_same_and_stops_in_time(monkeypatch):
     scene, seen = gearopt.load(PROBLEMS / "servo_gimbal_light.toml"), []
     points, worth = front(scene.choice(boxed=False), WEIGHED, Clock(Budget()))
-    monkeypatch.setattr(train_front, "PART", 1000)
-    monkeypatch.setattr(train_front, "STEPS", 10_000)
+    monkeypatch.setattr(train_front, "MAX_WAITING", 1000)
+    monkeypatch.setattr(train_front, "KERNEL_STEPS", 10_000)
     followed = Clock(Budget(), lambda event: seen.append(event) or True)
     again = front(scene.choice(boxed=False), WEIGHED, followed)
     assert np.array_equal(again[0], points) and np.array_equal(again[1], worth)

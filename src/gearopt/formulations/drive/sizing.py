@@ -18,7 +18,8 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
 from gearopt.physics.gears import GearPair, reference_diameter
 
-BEYOND = 1e6  # factor between any length of a drive and the ends of the search: they never bind
+# factor between any length of a drive and the ends of the search: they never bind
+SEARCH_SPAN = 1e6
 BAND = Fraction(1, 10**10)  # half width of the band of a ratio that is given: far below 1e-8
 TEETH = (1.0, 1e6)
 RATIO = (1.0, 1e7)
@@ -216,7 +217,7 @@ def _lengths(train: Train) -> tuple[float, float]:
         face = stage.face_width
         given = (*stage.modules, face.fixed, face.least, stage.wheel_diameter)
         sizes += [float(length) for length in given if length]
-    return min(sizes) / BEYOND, max(sizes) * BEYOND
+    return min(sizes) / SEARCH_SPAN, max(sizes) * SEARCH_SPAN
 
 
 def _column(bounds: tuple[float, float], guess: float, fixed: bool) -> tuple[float, float, float]:

@@ -26,7 +26,7 @@ from gearopt.optimise.terms import Array
 from gearopt.physics.motion.moving_pair import MovingPair
 
 Grid = tuple[float, float, int]  # ends and how many, equally far apart
-FINE = 0.025  # of itself by which speed rises or falls at once
+STEP = 0.025  # of itself by which speed rises or falls at once
 
 
 def over_speeds(
@@ -35,7 +35,7 @@ def over_speeds(
     """Return motions over speeds of the pinion, followed up and down where teeth may part.
 
     grid: least and largest speed [rpm], and how many; where teeth may part, those between are
-    passed in steps of at most FINE. Where the clock stops, the first speeds alone, or the rising
+    passed in steps of at most STEP. Where the clock stops, the first speeds alone, or the rising
     ones.
     """
     clock, speeds_rpm = clock or Clock(), np.linspace(*grid)
@@ -70,10 +70,10 @@ def over_speeds(
 
 
 def passed(frequencies: Array) -> Array:
-    """Return rising frequencies with others between them: steps of at most FINE of themselves."""
+    """Return rising frequencies with others between them: steps of at most STEP of themselves."""
     found = [frequencies[:1]]
     for low, high in pairwise(frequencies):
-        count = math.ceil(math.log(high / low) / FINE)
+        count = math.ceil(math.log(high / low) / STEP)
         found.append(np.append(np.geomspace(low, high, count + 1)[1:-1], high))
     return np.concatenate(found)
 

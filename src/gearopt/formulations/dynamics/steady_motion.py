@@ -26,9 +26,9 @@ from gearopt.physics.motion.moving_pair import MovingPair
 ORDERS = 12  # of the mesh frequency, shown over speed
 BEYOND, WIDER, MOST_HARMONICS = 3.0, 4, 512  # harmonics of a motion in contact
 GUESSED = 40  # of one that parts, at most: its state is made exact afterwards
-STEPS = 12.0  # of RK8 in a period of the fastest mode: 1e-6 of a motion
+STEPS_PER_PERIOD = 12.0  # of RK8 in a period of the fastest mode: 1e-6 of a motion
 LOOKS, FINEST = 64, 16.0  # samples of a period of the mesh at least, and of the fastest mode
-NEAR = 0.3  # of its RMS by which a motion may differ from the one at the speed before
+RMS_JUMP = 0.3  # of its RMS by which a motion may differ from the one at the speed before
 SHOTS, CLOSED = 6, 1e-9  # Newton's steps to a state that repeats; what is left, of its size
 MOVED = 1e-6  # of its scale by which a state is moved for a derivative
 CHUNK = 32  # periods between two looks at whether a simulation repeats itself
@@ -37,7 +37,7 @@ SETTLED, REPEATED = 1e-6, 1e-3  # change of states that ends a simulation; that 
 PATIENCE = 15.0  # time constants of the least damped mode that a simulation may take
 GROWN = 8.0  # logarithm of the factor by which an unstable one may grow in it
 LONGER, NEARLY = 4, 0.02  # times as many where states change by less than this: it settles slowly
-LEAST, MOST_STEPS = 128, 100_000  # periods at least, and steps at most
+MIN_PERIODS, MOST_STEPS = 128, 100_000  # periods at least, and steps at most
 KEPT = 64  # periods of a motion that does not repeat from which its numbers are taken
 ENDLESS = 1e4  # times as large as it began, and as the backlash: a motion that grows for ever
 KICK = 0.1  # of its state by which a motion in contact is moved where it is unstable
@@ -168,7 +168,7 @@ def near(
         return None
     size = max(found.delta.size, last.delta.size)
     off = float(np.std(np.resize(found.delta, size) - np.resize(last.delta, size)))
-    return found if off <= NEAR * max(found.rms, last.rms) else None
+    return found if off <= RMS_JUMP * max(found.rms, last.rms) else None
 
 
 def _repeating(
@@ -200,7 +200,7 @@ def _passed(pair: MovingPair, level: str, state: Array, periods: int, clock: Clo
 
 
 def _marched(pair: MovingPair, level: str, times: Array, state: Array, clock: Clock) -> Marched:
-    longest = fastest(pair, level) / STEPS
+    longest = fastest(pair, level) / STEPS_PER_PERIOD
     return march(pair, level, timeline(pair, times), "rk8", longest, state, clock)
 
 
@@ -263,8 +263,8 @@ def _patience(pair: MovingPair, level: str, growth: float) -> int:
         wanted = PATIENCE * pair.mesh_frequency / slowest
     if growth > 1.0 + UNSTABLE:
         wanted = max(wanted, GROWN / math.log(growth))
-    a_period = max(1.0, STEPS / (fastest(pair, level) * pair.mesh_frequency))
-    return max(LEAST, int(min(wanted, MOST_STEPS / a_period)))
+    a_period = max(1.0, STEPS_PER_PERIOD / (fastest(pair, level) * pair.mesh_frequency))
+    return max(MIN_PERIODS, int(min(wanted, MOST_STEPS / a_period)))
 
 
 def _change(passed: Array, periods: int) -> float:

@@ -43,7 +43,7 @@ SWAPS = 0.5  # share of changes in which two cylinders change places
 RANKS = 3  # two that do are at most so far from one another in the order of sizes
 HOPEFUL = 1.05  # times the round's best: what annealing leaves above is not polished, at high cost
 BETTER = 1e-10  # relative; a smaller improvement is rounding and counts as none
-SAME = 1e-7  # relative; rounds that end so near are alike
+ROUND_TIE = 1e-7  # relative; rounds that end so near are alike
 FEASIBLE = 1e-9  # largest violation of all rows together
 PROVEN = 1e-8  # relative gap to the bound that ends the search; the bound is 1e-9 loose itself
 
@@ -80,7 +80,7 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
             value = _round(plan, problem, rng, spent)
             if not clock.stopped:
                 ends.append(value)
-            alike = sum(v <= clock.best + SAME * abs(clock.best) for v in ends)
+            alike = sum(v <= clock.best + ROUND_TIE * abs(clock.best) for v in ends)
             if alike >= ALIKE or (endless and len(ends) >= ROUNDS):
                 break
         finished = not clock.stopped or (bool(ends) and not clock.refused)

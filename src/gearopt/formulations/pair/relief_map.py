@@ -17,8 +17,8 @@ from gearopt.optimise.terms import Array
 from gearopt.physics.geometry.contact import diameters_at
 from gearopt.physics.mesh_cycle import cycle
 
-LEAST = 1e-6  # mm: less than that is no relief
-STEPS = 100  # loads at which relief is held against none
+LEAST_RELIEF = 1e-6  # mm: less than that is no relief
+LOADS_COMPARED = 100  # loads at which relief is held against none
 FINER = 10  # times as many positions, on which a relief is judged again
 DRAWN, MOST = 2000, 0.95  # reliefs as they are made, and the part of them told beside the median
 
@@ -133,7 +133,7 @@ class Removed:
         s, middle = profile.points, profile.middle
         beyond = np.arange(len(s)) >= middle
         points = np.stack([s, np.where(beyond, removed, 0.0), np.where(beyond, 0.0, removed)])
-        rising = np.flatnonzero(removed > LEAST)
+        rising = np.flatnonzero(removed > LEAST_RELIEF)
         later, sooner = rising[rising > middle], rising[rising < middle]
         lengths = (
             float(s[-1] - s[later[0] - 1]) if len(later) else 0.0,
@@ -236,7 +236,7 @@ def break_even(made: PairMesh, removed: Removed, loads: Sequence[float]) -> floa
     least = min(loads)
     low, high = 0.01 * least, least
     for _ in range(2):  # the second time between the two loads that the first one found
-        tried = np.linspace(low, high, STEPS)
+        tried = np.linspace(low, high, LOADS_COMPARED)
         mesh = made.of_loads([float(load) for load in tried])
         plain = mesh.criteria(mesh.separations(NO_RELIEF, NO_RELIEF)).peak_to_peak
         lost = mesh.criteria(removed.separations(mesh)).peak_to_peak - plain

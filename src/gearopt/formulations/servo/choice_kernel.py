@@ -31,8 +31,8 @@ promise_of_duty = duty_kernel.promise
 PARTS = 16  # of a quarter, as bits
 EVERY = np.int64((1 << PARTS) - 1)
 WIDTH = 0.5 * math.pi / PARTS
-ROOM = 40  # steps of one look at a box
-PROMISE = 2 * duty_kernel.STEPS  # steps of a promise of a duty
+LOOK_STEPS = 40  # steps of one look at a box
+PROMISE = 2 * duty_kernel.SECTION_STEPS  # steps of a promise of a duty
 UNKNOWN = -1  # of the parts that are open
 INTERVALS = np.int64(10_000)  # that may decide whether one train fits
 UNDECIDED = -1
@@ -154,7 +154,7 @@ def fitting(kept, work, m1, z1, z2, m2, z3, z4):
             work.cells[count, 0], work.cells[count, 1] = k * WIDTH, (k + 1) * WIDTH
             count += 1
     answer, looked = decided(box, work.cells, count, work.angles, INTERVALS)
-    return answer, ROOM * looked
+    return answer, LOOK_STEPS * looked
 
 
 @inner
@@ -187,7 +187,7 @@ def enter(s, goal, kept, work, limit):
         if work.parts[n] == UNKNOWN:
             d3, added = least_d3(s), 2.0 * smallest(s.module)
             work.parts[n] = open_parts(s, kept.box, m1, z1, z2, EVERY, d3, added, s.tip)
-            steps += ROOM * PARTS
+            steps += LOOK_STEPS * PARTS
         if work.parts[n] == 0:
             work.known[n] = math.inf
             return False, steps
@@ -208,7 +208,7 @@ def module_parts(s, kept, work, i, z1, z2, j):
     first_sizes(kept, m1, z1, z2)
     own = work.parts[work.at[0]]
     found = open_parts(s, kept.box, m1, z1, z2, own, d3, 2.0 * m2, largest)
-    return found, ROOM * PARTS
+    return found, LOOK_STEPS * PARTS
 
 
 @inner

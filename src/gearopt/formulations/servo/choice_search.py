@@ -20,10 +20,10 @@ from gearopt.optimise.terms import Array
 
 KERNEL = "gearopt.formulations.servo.choice_kernel"
 TEETH = "gearopt.formulations.servo.split.teeth_kernel"
-FIRST = 1e-3  # by which the trains of the first round are worse than the best one, at most
+FIRST_MARGIN = 1e-3  # by which the trains of the first round are worse than the best one, at most
 WIDER = 8.0  # from one round to the next
-FAR = 10.0  # times the best one: the last round has no end
-STEPS = 2_000, 2_000_000  # of the kernel between two checks of the clock: at first, maximum
+LAST_ROUND = 10.0  # times the best one: the last round has no end
+KERNEL_STEPS = 2_000, 2_000_000  # of the kernel between two checks of the clock: at first, maximum
 
 
 class Kept(NamedTuple):
@@ -81,18 +81,18 @@ def best_kept(
         ends=np.array([-math.inf, math.inf, math.inf]),
     )
     look(given, aim, kept, work, 0)  # compiled before the clock starts
-    above, step = -math.inf, FIRST
+    above, step = -math.inf, FIRST_MARGIN
     while True:
-        most = best * (1.0 + step) if kept.boxed and step < FAR else math.inf
+        most = best * (1.0 + step) if kept.boxed and step < LAST_ROUND else math.inf
         work.at[:], work.ends[:] = (0, -1, -1, 0), (above, most, math.inf)
-        steps = STEPS[0]
+        steps = KERNEL_STEPS[0]
         while work.at[0] < stages:
             looked, undecided = look(given, aim, kept, work, steps)
             if undecided:
                 raise SolveError("whether a train fits its box is not decided by intervals")
             if some and math.isfinite(work.ends[2]):
                 break
-            clock.evaluations, steps = clock.evaluations + looked, min(2 * steps, STEPS[1])
+            clock.evaluations, steps = clock.evaluations + looked, min(2 * steps, KERNEL_STEPS[1])
             if not clock.tell() and work.at[0] < stages:
                 there = math.isfinite(work.ends[2])
                 raise TimeoutError(point(given, work.found) if there else None)

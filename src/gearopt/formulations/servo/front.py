@@ -26,13 +26,16 @@ RANDOM = False
 COUNTS = "choice of teeth and modules"
 KERNEL = "gearopt.formulations.servo.front_kernel"
 SAMPLE = 250  # trains of a front that others are held against
-STEPS = 1_000_000  # of the kernel between two checks of the clock
-PART, FEW = 20_000, 50  # trains that wait for the next front, at most; before the first one
+KERNEL_STEPS = 1_000_000  # of the kernel between two checks of the clock
+# trains that wait for the next front, at most; before the first one
+MAX_WAITING, FIRST_FRONT = 20_000, 50
 SENTENCE = (
     "Proof: all choices of teeth and modules examined, in {count:,} first stages; no other train "
     "that meets all limits is Pareto-optimal."
 )
-BEYOND = "no train that meets all limits has objectives within the largest values of interest"
+NO_TRAIN_IN_RANGE = (
+    "no train that meets all limits has objectives within the largest values of interest"
+)
 
 
 def front_problem(choice: Choice, goals: Sequence[str]) -> Problem:
@@ -82,7 +85,9 @@ def _outcome(choice: Choice, points: Array, clock: Clock) -> Outcome:
     stages = kernel(teeth.KERNEL).first_stages(split.posed(choice.train, choice.goal)[0])[0]
     proof = {"method": "exhausted", "sentence": SENTENCE.format(count=int(stages))}
     if x is None:
-        return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=BEYOND)
+        return Outcome(
+            None, infeasible=True, proof=proof, evaluations=looked, message=NO_TRAIN_IN_RANGE
+        )
     return Outcome(x, others=others, proof=proof, evaluations=looked)
 
 
@@ -98,7 +103,7 @@ def front(
     posed, (given, _) = split.problem(choice.train, *ranked), split.posed(choice.train, ranked[0])
     aims, spring = np.array([list(GOALS).index(g) for g in ranked]), choice.kept.spring
     longest = int(given.wheel_2.max()) + 1
-    rows = np.empty((max(PART, 2 * longest), 6), np.int64)
+    rows = np.empty((max(MAX_WAITING, 2 * longest), 6), np.int64)
     at, end = np.array([0, -1, -1]), kernel(teeth.KERNEL).first_stages(given)[0]
     best, worth, duty = np.empty((0, 6)), np.empty((0, len(goals))), np.zeros(1)
     if known is not None:
@@ -107,8 +112,8 @@ def front(
     while at[0] < end and clock.tell():
         if not count:
             sample = _sample(worth)
-        count += look(given, aims, spring, sample, at, duty, rows[count:], STEPS)
-        if at[0] < end and count < min(FEW + len(best), len(rows) - longest):
+        count += look(given, aims, spring, sample, at, duty, rows[count:], KERNEL_STEPS)
+        if at[0] < end and count < min(FIRST_FRONT + len(best), len(rows) - longest):
             continue
         found, count = split.points(given, rows[:count]), 0
         best, worth = _sifted(choice, posed, best, worth, found, clock)

@@ -21,7 +21,7 @@ centre = duty_kernel.centre
 PIECES = 16  # of the diameters of gear 4 that are bounded alone
 LESS = 1.0 - 1e-13  # of an objective: more than its rounding
 MARGIN = duty_kernel.MARGIN
-PROMISE = 2 * duty_kernel.STEPS  # steps of a promise of a duty
+PROMISE = 2 * duty_kernel.SECTION_STEPS  # steps of a promise of a duty
 
 
 @inner

@@ -14,7 +14,8 @@ from gearopt.optimise.explaining.repair import conflict
 from gearopt.optimise.solve import solve_within
 
 WIDER = tuple(Fraction(1, 10**k) for k in range(6, 0, -1))  # ratio tolerances that are tried
-CLOSE = 1e-7  # relative: between the largest part that leaves a train and the smallest without
+# relative: between the largest part that leaves a train and the smallest without
+PART_TOLERANCE = 1e-7
 FAINT = 1e-9  # N mm, a torque that loads no tooth
 THIN = 1e-6  # part of a diameter below which it is no remedy
 
@@ -92,7 +93,7 @@ def largest_part(train_of: Callable[[float], ServoTrain], clock: Clock) -> float
     low, high = THIN, 1.0
     if status(train_of(low), clock) != "optimal":
         return None
-    while high - low > CLOSE * high:
+    while high - low > PART_TOLERANCE * high:
         middle = 0.5 * (low + high)
         leaves = status(train_of(middle), clock) == "optimal"
         low, high = (middle, high) if leaves else (low, middle)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from gearopt.formulations.strain_wave.demand import OUTSIDE_BASE, ROOM, Demand
+from gearopt.formulations.strain_wave.demand import OUTSIDE_BASE, TIP_GAP, Demand
 from gearopt.optimise.result import FEASIBLE
 
 RISE = (
@@ -43,7 +43,7 @@ def least_used(demand: Demand) -> dict[tuple[str, ...], float]:
     inside = min(largest, demand.outer_radius - demand.shell)
     return {
         ("outer_radius",): (root + demand.shell) / demand.outer_radius,
-        ("minor_axis",): (ROOM + 2.0 * low["addendum"]) / (2.0 * high["deflection"]),
+        ("minor_axis",): (TIP_GAP + 2.0 * low["addendum"]) / (2.0 * high["deflection"]),
         ("base_circle",): OUTSIDE_BASE * base / (teeth + high["profile_shift"] - low["addendum"]),
         ("rim_fatigue",): _fatigue(demand, low, high, largest),
         ("rim_fatigue", "outer_radius"): _fatigue(demand, low, high, inside),

@@ -24,7 +24,7 @@ PRESSURE, VOLUME = "pressure", "volume_per_torque"  # objectives
 LAND = 0.25  # modules: least land of tips, least space at roots
 LEAST_CURVATURE = 2e-4  # 1/mm: contacts flatter than R = 5 m are not called contacts of a line
 OUTSIDE_BASE = 1.002  # tip radius over base radius of the circular spline, at least
-ROOM = 0.1  # modules between the tips on the minor axis
+TIP_GAP = 0.1  # modules between the tips on the minor axis
 CURVATURE_UNIT = 2e-3  # 1/mm, of the limit on curvature
 SPEED_UNIT = 10.0  # mm/rad, of the limit on the flank's speed
 LEAST_GAP = 1e-5  # mm: 0.01 um, kept where teeth pass each other, so that rounding cuts nothing
@@ -143,7 +143,7 @@ def common_limits(
         "ratcheting": demand.ratchet_factor * demand.duty.torque / slips,
         "outer_radius": demand.radius_needed(gearing) / demand.outer_radius,
         **thin,
-        "minor_axis": (ROOM + 2.0 * gearing.addendum) / (2.0 * gearing.deflection),
+        "minor_axis": (TIP_GAP + 2.0 * gearing.addendum) / (2.0 * gearing.deflection),
     }
     return {name: used for name, used in found.items() if name not in demand.unasked}
 

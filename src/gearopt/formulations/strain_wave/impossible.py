@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from gearopt.formulations.strain_wave.demand import FREE, LAND, ROOM, Demand
+from gearopt.formulations.strain_wave.demand import FREE, LAND, TIP_GAP, Demand
 from gearopt.formulations.strain_wave.design import problem, tip_leaves
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
@@ -18,7 +18,7 @@ STRENGTH = ("pairs", "rim_fatigue", "ratcheting")  # a size may fall short of th
 EXCESSES = (-0.99, 1e6)  # of utilisations over 1: ends of the search
 FARTHEST = 1e6  # factor up to which a number is moved
 SECANTS = 12
-NEAR = 2e-5  # of the logarithm of a utilisation that counts as 1
+LOG_TOLERANCE = 2e-5  # of the logarithm of a utilisation that counts as 1
 
 
 @dataclass(frozen=True)
@@ -87,8 +87,8 @@ def told(demand: Demand, found: Nearest) -> list[str]:
             f"{u * demand.outer_radius:.4g} mm, {demand.outer_radius:.4g} mm at most"
         ),
         "minor_axis": lambda u: (
-            f"{(ROOM + 2.0 * gearing.addendum) / u - 2.0 * gearing.addendum:.3g} modules between "
-            f"tips of {ROOM:g}"
+            f"{(TIP_GAP + 2.0 * gearing.addendum) / u - 2.0 * gearing.addendum:.3g} modules "
+            f"between tips of {TIP_GAP:g}"
         ),
         "base_circle": lambda u: f"{100.0 * (u - 1.0):.3g} % too small a tip circle",
         "interference": lambda u: f"teeth cut by {100.0 * (u - 1.0):.3g} µm",
@@ -122,8 +122,8 @@ def least_factor(
         now = used(x) if x < math.log(FARTHEST) else None
         if now is None:
             return None
-        if -NEAR < now <= 0.0:
+        if -LOG_TOLERANCE < now <= 0.0:
             return math.exp(x)
         slope = min((now - before) / (x - last), -0.1)
-        last, before, x = x, now, max(x - (now + 0.5 * NEAR) / slope, 0.1 * x)
+        last, before, x = x, now, max(x - (now + 0.5 * LOG_TOLERANCE) / slope, 0.1 * x)
     return math.exp(x) if before <= 0.0 else None

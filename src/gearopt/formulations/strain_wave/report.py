@@ -44,9 +44,9 @@ ROWS = 21  # of the flank's table
 DIGITS = 12  # of numbers in modules: a solver leaves 1e-13 of a 0
 OTHER_DEFLECTIONS = (-0.05, -0.02, 0.02, 0.05)  # modules beside the design's
 SHIFTS = (0.0, 0.3, 0.6, 0.9, 1.2, 1.5, 1.8, 2.1)  # profile shifts of the curve
-FINE = 80  # clearances that are listed on either side of the arc of contact
+CLEARANCES_LISTED = 80  # clearances that are listed on either side of the arc of contact
 GUARDS = ("curvature", "cusp")  # keep the flank regular
-NEAR = 0.5  # part of the teeth whose loads are listed
+LOADS_LISTED = 0.5  # part of the teeth whose loads are listed
 TURNS = 8  # positions of the wave generator over one pitch
 
 
@@ -187,7 +187,7 @@ def described(
     return WaveDesign(
         **_sizes(demand, made),
         **_columns(made),
-        **load_columns([_carried(duty, made, k / TURNS) for k in range(TURNS)], NEAR),
+        **load_columns([_carried(duty, made, k / TURNS) for k in range(TURNS)], LOADS_LISTED),
         **shares(own),
         equal_pressure_MPa=equal_pressure(duty, made),
         whole_pairs_pressure_MPa=equal_pressure(duty, made, whole=True),
@@ -281,7 +281,7 @@ def _columns(made: Flank) -> dict[str, Any]:
     at = made.contacts
     k = np.rint(np.linspace(0, len(at.tangent) - 1, ROWS)).astype(int)
     middle = float(tooth_arcs(made, 0))
-    arcs = middle + np.linspace(-REACH, REACH, 2 * FINE + 1)
+    arcs = middle + np.linspace(-REACH, REACH, 2 * CLEARANCES_LISTED + 1)
     involute = made.gearing.half_angle - (at.tangent - np.arctan(at.tangent))
     return {
         "arc_deg": floats(np.degrees(at.motion.arc[k])),

@@ -35,7 +35,7 @@ from gearopt.physics.strain_wave.tooth_motion import motion
 SHARE = "load_share"
 OBJECTIVES = {PRESSURE: "MPa", VOLUME: "mm3/(N m)", SHARE: ""}
 GAP_UNIT = 0.05  # mm, of the limit on interference
-NEAR = 5e-3  # mm: teeth within it count for the load share
+SHARING_CLEARANCE = 5e-3  # mm: teeth within it count for the load share
 WORST = 10.0  # utilisation of a design without a conjugate flank
 
 
@@ -52,17 +52,17 @@ class Look:
     rounding: float
 
 
-COARSE = Look(0.75, 85.0, 3, 2e-5)
+COARSE_LOOK = Look(0.75, 85.0, 3, 2e-5)
 WHOLE = Look(STEP_DEG, 89.9, COUNT, -CUTTING)
 
 
 def problem(
-    demand: Demand, start: Any, names: Sequence[str] = (PRESSURE,), look: Look = COARSE
+    demand: Demand, start: Any, names: Sequence[str] = (PRESSURE,), look: Look = COARSE_LOOK
 ) -> Problem:
     """Pose objectives over the six free numbers, without derivatives; start (6,): the guess.
 
     names: pressure by equal sharing, volume per torque, and the share 1/N of the load of a tooth if
-    the N teeth within NEAR carried alike.
+    the N teeth within SHARING_CLEARANCE carried alike.
     """
 
     def evaluate(x: Any, p: Any) -> Terms:
@@ -158,12 +158,12 @@ def _limited(value: Any, known: Array) -> Any:
 
 
 def _share(wide: StrainWave, curve: NeutralCurve, made: Flank, known: Array) -> Array:
-    """Return 1/N of the N teeth within NEAR, by teeth at quarters of a pitch."""
+    """Return 1/N of the N teeth within SHARING_CLEARANCE, by teeth at quarters of a pitch."""
     arc = made.contacts.motion.arc
     pitch = 2.0 * math.pi / float(wide.teeth)
     arcs = 0.5 * (arc[:, :1] + arc[:, -1:]) + np.linspace(-12.0, 12.0, 97) * pitch
     gaps = clearances(made, angle_of_arc(curve, arcs), COUNT)
-    count = 0.25 * (gaps <= NEAR).sum(axis=1)
+    count = 0.25 * (gaps <= SHARING_CLEARANCE).sum(axis=1)
     return np.where(known & (count > 0.0), 1.0 / np.maximum(count, 0.25), 1.0)
 
 

@@ -25,7 +25,7 @@ from gearopt.physics.strain_wave.rim import Cup, rim_compliance
 RANDOM = False
 COUNTS = "set of loaded teeth"
 REACH = 0.25 * np.pi  # rad of the wave on either side of the arc of contact: teeth that may carry
-WIDE = 2.0  # of a share's box, as in `sharing`
+SHARE_SPAN = 2.0  # of a share's box, as in `sharing`
 SLACK = 1e-12  # of the largest separation or deflection: a tooth that is open by less touches
 
 
@@ -193,4 +193,4 @@ def conic(compliance: Any, gaps: Any, arms: Any, moment: float) -> Conic:
 
 
 def _variables(count: int) -> tuple[Var, ...]:
-    return (Var("f", "", -WIDE, WIDE, 1.0 / count, count),)
+    return (Var("f", "", -SHARE_SPAN, SHARE_SPAN, 1.0 / count, count),)

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gearopt.formulations.strength.cells import LEAST, MOST, Cells
+from gearopt.formulations.strength.cells import LOWER, UPPER, Cells
 from gearopt.formulations.strength.teeth_alone import agma_teeth
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma import factors
@@ -24,33 +24,33 @@ def needed(standard: "Agma", cells: Cells, safety: tuple[float, float]) -> tuple
     teeth = cells.teeth_alone(agma_teeth(standard.practice.load, _regimes(cells)))
     given, practice = standard.given, standard.practice
     working, load = teeth["working"], standard.loads[0]
-    pace = 0.5 * load.speed * cells.speed[LEAST] * cells.diameter[LEAST] * working[LEAST]
-    width = np.minimum(cells.width[LEAST], factors.WIDEST)
+    pace = 0.5 * load.speed * cells.speed[LOWER] * cells.diameter[LOWER] * working[LOWER]
+    width = np.minimum(cells.width[LOWER], factors.WIDEST)
     slim = np.minimum(
-        cells.slim[LEAST] / working[MOST],
-        factors.WIDEST / (cells.diameter[MOST] * working[MOST]),
+        cells.slim[LOWER] / working[UPPER],
+        factors.WIDEST / (cells.diameter[UPPER] * working[UPPER]),
     )
     bare: dict[str, Any] = {"I": 1.0, "J": (1.0, 1.0)}
     bare["K_v"] = given["K_v"] if "K_v" in given else factors.dynamic_factor(pace, practice.quality)
     bare["K_m"] = given["K_m"] if "K_m" in given else distribution(practice, width, width / slim)
-    transverse = cells.diameter[LEAST] / cells.teeth[MOST]
+    transverse = cells.diameter[LOWER] / cells.teeth[UPPER]
     sizes = [
-        factors.size_factor(cells.width[LEAST], transverse, factors.lewis_form(z))
-        for z in (cells.teeth[LEAST], cells.teeth[LEAST] * cells.ratio[LEAST])
+        factors.size_factor(cells.width[LOWER], transverse, factors.lewis_form(z))
+        for z in (cells.teeth[LOWER], cells.teeth[LOWER] * cells.ratio[LOWER])
     ]
     bare["K_B"] = _rims(standard, cells)
     bare["K_s"] = tuple(sizes) if practice.size else (1.0, 1.0)
-    module, d = cells.module[LEAST], cells.diameter[LEAST]
-    pair = cells.toothing.of_diameter(module, cells.teeth[LEAST], d, cells.ratio[MOST], 1.0)
-    case = standard.case(pair, 1.0, cells.speed[LEAST], bare)
+    module, d = cells.module[LOWER], cells.diameter[LOWER]
+    pair = cells.toothing.of_diameter(module, cells.teeth[LOWER], d, cells.ratio[UPPER], 1.0)
+    case = standard.case(pair, 1.0, cells.speed[LOWER], bare)
     made = safeties(case, 1.0, (1.0, 1.0))
     own = pair.working_diameters[0]
     first, *both = _geometry(cells, teeth)
-    first = 1.0 + 1.0 / cells.ratio[LEAST] if "I" in given else first  # `made` has what is given
+    first = 1.0 + 1.0 / cells.ratio[LOWER] if "I" in given else first  # `made` has what is given
     both = [1.0, 1.0] if "J" in given else both
-    pressed = [(own * safety[1] / (s * working[MOST])) ** 2 / first for s in made[2:]]
+    pressed = [(own * safety[1] / (s * working[UPPER])) ** 2 / first for s in made[2:]]
     bent = [
-        own * (d / cells.teeth[LEAST]) / s * cells.teeth[LEAST] * safety[0] / (j * working[MOST])
+        own * (d / cells.teeth[LOWER]) / s * cells.teeth[LOWER] * safety[0] / (j * working[UPPER])
         for s, j in zip(made[:2], both, strict=True)
     ]
     return np.maximum(*pressed), np.maximum(*bent)
@@ -85,13 +85,13 @@ def _geometry(cells: Cells, teeth: dict[str, Array]) -> list[Any]:
     for k in range(3):
         most = np.zeros(len(low))
         if "spur0" in teeth:
-            most = teeth[f"spur{k}"][MOST]
+            most = teeth[f"spur{k}"][UPPER]
         if "low0" in teeth:
             ends = [1.0 - np.minimum(o, 1.0) * s for o in (low, high) for s in teeth["slope"]]
             factor = np.maximum(np.maximum.reduce(ends), 0.0) ** (0.5 if k else 1.0)
-            most = np.where(low <= 1.0, teeth[f"low{k}"][MOST] * factor, most)
+            most = np.where(low <= 1.0, teeth[f"low{k}"][UPPER] * factor, most)
         if "conventional0" in teeth:
-            own = teeth[f"conventional{k}"][MOST] * _lines(cells, teeth["contact"])
+            own = teeth[f"conventional{k}"][UPPER] * _lines(cells, teeth["contact"])
             most = np.where(high > 1.0, np.maximum(most, own), most)
         found.append(np.where(np.isnan(most), np.inf, most))
     return found
@@ -110,4 +110,4 @@ def _lines(cells: Cells, ratio: Array) -> Any:
         fractions.append((np.where(within, low % 1.0, 0.0), np.where(within, high % 1.0, 1.0)))
     (r_low, r_high), (a_low, a_high) = fractions
     lost = np.minimum(a_low * r_low, (1.0 - a_high) * (1.0 - r_high))
-    return (ratio[MOST] - lost / np.maximum(cells.overlap[MOST], 1.0)) / helix
+    return (ratio[UPPER] - lost / np.maximum(cells.overlap[UPPER], 1.0)) / helix

@@ -11,7 +11,7 @@ from gearopt.formulations.drive.toothing import Toothing
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
-LEAST, MOST = 0, 1
+LOWER, UPPER = 0, 1
 NUDGE = 1e-11  # relative
 
 
@@ -56,7 +56,7 @@ class Cells:
         """Return pairs of all ends of modules and diameters: what is monotone in both is within."""
         found = []
         for module in self.module:
-            for end in (LEAST, MOST):
+            for end in (LOWER, UPPER):
                 d, ratio = self.diameter[end], self.ratio[end]
                 made = self.toothing.of_diameter(module, self.teeth[end], d, ratio, 1.0)
                 wheel = replace(made.wheel, reference_diameter=self.wheel[end])

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gearopt.formulations.strength.cells import LEAST, MOST, Cells
+from gearopt.formulations.strength.cells import LOWER, UPPER, Cells
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336 import bending_factors as bending
@@ -47,7 +47,7 @@ class IsoCells:
         """Cases at the least and the greatest sizes and speeds."""
         made = [
             self.standard.case(self.cells.corner(k), self.cells.torque[k], self.cells.speed[k])
-            for k in (LEAST, MOST)
+            for k in (LOWER, UPPER)
         ]
         return made[0], made[1]
 
@@ -82,7 +82,7 @@ class IsoCells:
     @cached_property
     def deflection(self) -> tuple[Any, Any]:
         """S [mm], which does not fall with W0."""
-        return self.line[0] / self.single(MOST, LEAST), self.line[1] / self.single(LEAST, MOST)
+        return self.line[0] / self.single(UPPER, LOWER), self.line[1] / self.single(LOWER, UPPER)
 
     def mesh(self, end: int) -> Any:
         """Return c_gamma_alpha/c', at least or at most."""
@@ -128,7 +128,7 @@ class IsoCells:
         standard, cells, found = self.standard, self.cells, []
         densities = standard.materials[0].density, standard.materials[1].density
         inner = self._inner_parts()
-        for end in (LEAST, MOST):
+        for end in (LOWER, UPPER):
             z, d = cells.teeth[end], cells.diameter[end]
             module = d * cells.toothing.cosine / z
             pair = cells.toothing.of_diameter(module, z, d, cells.ratio[end], 1.0)
@@ -138,7 +138,7 @@ class IsoCells:
             stiff = self.mesh(1 - end) * self.single(1 - end, 1 - end)
             speed = standard.loads[0].speed * cells.speed[end]
             pace = speed * z * np.sqrt(np.maximum(mass, 0.0) / stiff)
-            found.append(np.where(np.isfinite(pace), pace, 0.0 if end == LEAST else np.inf))
+            found.append(np.where(np.isfinite(pace), pace, 0.0 if end == LOWER else np.inf))
         return found[0], found[1]
 
     def _practice(self, pair: GearPair) -> Practice:
@@ -159,16 +159,16 @@ class IsoCells:
         """The least K_v."""
         if "K_v" in self.given:
             return self.given["K_v"]
-        c1, c2, c3, c4, c5, c6, _ = loads.coefficients(self.total[MOST])
-        c7 = loads.coefficients(self.total[LEAST])[6]
-        pitch, form, _ = self.deviations[LEAST]
-        s, slow = self.deflection, self.resonance[LEAST]
+        c1, c2, c3, c4, c5, c6, _ = loads.coefficients(self.total[UPPER])
+        c7 = loads.coefficients(self.total[LOWER])[6]
+        pitch, form, _ = self.deviations[LOWER]
+        s, slow = self.deflection, self.resonance[LOWER]
         ratios = [1.0 - self.found["C_a"] / x for x in s]
         relief = np.where(ratios[0] * ratios[1] < 0.0, 0.0, np.minimum(*np.abs(ratios)))
         shared = (c1 * pitch + c2 * form) / s[1]
         low = 1.0 + slow * (shared + c3 * relief)
         main = 1.0 + shared + np.minimum(c4 * relief, c4 * np.maximum(*np.abs(ratios)))
-        return self._of_ranges(LEAST, low, main, (c5 * pitch + c6 * form) / s[1] + c7)
+        return self._of_ranges(LOWER, low, main, (c5 * pitch + c6 * form) / s[1] + c7)
 
     def _of_ranges(self, end: int, low: Any, main: Any, high: Any) -> Any:
         """Return the least or greatest of the laws of the ranges in which N may lie."""
@@ -189,33 +189,33 @@ class IsoCells:
         s = self.deflection
         if "K_v" in self.given:
             return s[1] * self.given["K_v"]
-        c1, c2, c3, c4, c5, c6, _ = loads.coefficients(self.total[LEAST])
-        c7 = loads.coefficients(self.total[MOST])[6]
-        pitch, form, _ = self.deviations[MOST]
+        c1, c2, c3, c4, c5, c6, _ = loads.coefficients(self.total[LOWER])
+        c7 = loads.coefficients(self.total[UPPER])[6]
+        pitch, form, _ = self.deviations[UPPER]
         relief = np.maximum(*(np.abs(x - self.found["C_a"]) for x in s))
         shared = c1 * pitch + c2 * form
-        low = s[1] + self.resonance[MOST] * (shared + c3 * relief)
+        low = s[1] + self.resonance[UPPER] * (shared + c3 * relief)
         main = s[1] + shared + np.maximum(c4, 0.0) * relief
-        return self._of_ranges(MOST, low, main, c5 * pitch + c6 * form + c7 * s[1])
+        return self._of_ranges(UPPER, low, main, c5 * pitch + c6 * form + c7 * s[1])
 
     @cached_property
     def spread(self) -> Any:
         """The least K_Hbeta."""
         if "K_Hbeta" in self.given:
             return self.given["K_Hbeta"]
-        practice, slow = self.standard.practice, self.cases[LEAST]
-        alignment, slope = self._alignment(LEAST)
+        practice, slow = self.standard.practice, self.cases[LOWER]
+        alignment, slope = self._alignment(LOWER)
         first, second = loads.HELIX_MODIFICATIONS[practice.helix_modification]
-        bent = loads.shaft_misalignment(1.0, self.cells.slim[LEAST], practice.offset)
+        bent = loads.shaft_misalignment(1.0, self.cells.slim[LOWER], practice.offset)
         parts = (
             (1.33 * first * bent, second * alignment),
             (loads.LEAST_PER_LOAD, 0.0),
             (0.0, 0.5 * slope),
         )
-        stiff = self.tilting(LEAST) * self.single(LEAST, LEAST)
+        stiff = self.tilting(LOWER) * self.single(LOWER, LOWER)
         x = np.zeros(len(slow.speed))
-        sure = self.tilting(LEAST) / self.loaded
-        possible = self.tilting(MOST) / (self.deflection[LEAST] * self.dynamic)
+        sure = self.tilting(LOWER) / self.loaded
+        possible = self.tilting(UPPER) / (self.deflection[LOWER] * self.dynamic)
         for share, worn in self._worn():
             for per_load, fixed in parts:
                 rest = share * fixed - worn
@@ -233,7 +233,7 @@ class IsoCells:
 
         Of each gear y_beta = min(k F_betax, most).
         """
-        speed, found = self.cases[LEAST].speed, [(1.0, 0.0)]
+        speed, found = self.cases[LOWER].speed, [(1.0, 0.0)]
         for k, material in enumerate(self.standard.materials):
             limit = self.found["sigma_Hlim"][k]
             share, most = (
@@ -252,10 +252,10 @@ class IsoCells:
         """The greatest V2 [mm]."""
         if "K_Hbeta" in self.given:
             return self.loaded * self.given["K_Hbeta"]
-        practice, fast = self.standard.practice, self.cases[MOST]
-        alignment, slope = self._alignment(MOST)
-        line = self.loaded * self.single(MOST, MOST)
-        shaft = loads.shaft_misalignment(line, self.cells.slim[MOST], practice.offset)
+        practice, fast = self.standard.practice, self.cases[UPPER]
+        alignment, slope = self._alignment(UPPER)
+        line = self.loaded * self.single(UPPER, UPPER)
+        shaft = loads.shaft_misalignment(line, self.cells.slim[UPPER], practice.offset)
         before = loads.initial_misalignment(
             shaft, alignment, line, slope, practice.helix_modification
         )
@@ -264,37 +264,37 @@ class IsoCells:
             for k, m in enumerate(self.standard.materials)
         ]
         after = before - 0.5 * (worn[0] + worn[1])
-        return self.loaded * loads.face_load_factor(after, self.tilting(MOST), self.loaded)
+        return self.loaded * loads.face_load_factor(after, self.tilting(UPPER), self.loaded)
 
     def transverse(self, name: str, most: Any) -> Any:
         """Return the least K_Halpha or K_Falpha; most: the least of its greatest value."""
         if name in self.given:
             return self.given[name]
-        deviation = self.deviations[LEAST][2]
+        deviation = self.deviations[LOWER][2]
         found = loads.transverse_load_factor(
-            self.mesh(LEAST), deviation, self.spread_loaded, self.total[LEAST]
+            self.mesh(LOWER), deviation, self.spread_loaded, self.total[LOWER]
         )
         return loads.limited(found, most)
 
     @property
     def _ratio_factor(self) -> Any:
         """The least Z_eps, which falls with both contact ratios."""
-        own = contact.contact_ratio_factor(self.teeth["contact"][MOST], self.cells.overlap[MOST])
+        own = contact.contact_ratio_factor(self.teeth["contact"][UPPER], self.cells.overlap[UPPER])
         return self.given.get("Z_eps", own)
 
     def pressed(self, safety: float) -> Any:
         """Return the least d1^2 b/(T (1 + 1/u)) [1/MPa] of contact."""
-        given, ratio = self.given, self.teeth["contact"][LEAST]
+        given, ratio = self.given, self.teeth["contact"][LOWER]
         if "Z_eps" in given:
-            most = (1.0 + self.cells.overlap[LEAST] / self.teeth["contact"][MOST]) / given[
+            most = (1.0 + self.cells.overlap[LOWER] / self.teeth["contact"][UPPER]) / given[
                 "Z_eps"
             ] ** 2
         else:
-            low = contact.contact_ratio_factor(ratio, self.cells.overlap[LEAST])
-            most = self.total[LEAST] / (ratio * low**2)
+            low = contact.contact_ratio_factor(ratio, self.cells.overlap[LOWER])
+            most = self.total[LOWER] / (ratio * low**2)
         factor = self.dynamic * self.spread * self.transverse("K_Halpha", most)
         helix = self.cells.toothing.helix_angle
-        z = given.get("Z_H", self.teeth["zone"][LEAST]) * self.found["Z_E"]
+        z = given.get("Z_H", self.teeth["zone"][LOWER]) * self.found["Z_E"]
         z = z * given.get("Z_beta", contact.helix_factor(helix)) * self._ratio_factor
         used = [
             (self._single(k) * z * safety / self.standard.strongest(self, k, True)) ** 2
@@ -314,7 +314,7 @@ class IsoCells:
         helical, practice = 1.0, self.standard.practice
         if practice.edition == "2019":
             helical = contact.PROFILE_MODIFICATIONS[practice.profile_modification] ** 0.5
-        spur = np.maximum(self.teeth[f"single{member}"][LEAST], 1.0)
+        spur = np.maximum(self.teeth[f"single{member}"][LOWER], 1.0)
         made = [contact.single_contact_factor(spur, o, helical) for o in self.cells.overlap]
         return np.minimum(*made)
 
@@ -322,14 +322,14 @@ class IsoCells:
         """Return the least d1^2 b/T [1/MPa] of bending."""
         given, cells = self.given, self.cells
         edition = self.standard.practice.edition
-        ratio = self.teeth["virtual" if edition == "2019" else "contact"][LEAST]
-        most = self.total[LEAST] / (self.teeth["contact"][LEAST] * (0.25 + 0.75 / ratio))
+        ratio = self.teeth["virtual" if edition == "2019" else "contact"][LOWER]
+        most = self.total[LOWER] / (self.teeth["contact"][LOWER] * (0.25 + 0.75 / ratio))
         factor = self.dynamic * self._root_spread() * self.transverse("K_Falpha", most)
-        module = cells.teeth[LEAST] / cells.toothing.cosine
+        module = cells.teeth[LOWER] / cells.toothing.cosine
         used = []
         for k in GEARS:
-            form = given["Y_F"][k] if "Y_F" in given else self.teeth[f"form{k}"][LEAST]
-            notch = self.teeth[f"concentration{k}"][LEAST]
+            form = given["Y_F"][k] if "Y_F" in given else self.teeth[f"form{k}"][LOWER]
+            notch = self.teeth[f"concentration{k}"][LOWER]
             form = form * (given["Y_S"][k] if "Y_S" in given else notch)
             used.append(form * self._rim(k) / self.standard.strongest(self, k, False))
         return self._unit * factor * module * self._root_factor() * np.maximum(*used) * safety
@@ -342,7 +342,7 @@ class IsoCells:
             return self.spread
         racks = self.cells.toothing.racks
         deep = max(rack.addendum + rack.dedendum for rack in racks)
-        over = self.cells.slim[LEAST] * self.cells.teeth[LEAST] / self.cells.toothing.cosine
+        over = self.cells.slim[LOWER] * self.cells.teeth[LOWER] / self.cells.toothing.cosine
         return self.spread ** loads.root_exponent(over, deep)
 
     def _root_factor(self) -> Any:
@@ -354,8 +354,8 @@ class IsoCells:
             made = [load_sharing(v, o) for v in virtual for o in self.cells.overlap]
             factor = np.minimum.reduce(made)
         helix = self.cells.toothing.helix_angle
-        own = bending.helix_factor(helix, self.cells.overlap[MOST], practice.edition)
-        deep = bending.deep_tooth_factor(self.teeth["virtual"][MOST], max(practice.grades))
+        own = bending.helix_factor(helix, self.cells.overlap[UPPER], practice.edition)
+        deep = bending.deep_tooth_factor(self.teeth["virtual"][UPPER], max(practice.grades))
         return factor * given.get("Y_beta", own) * given.get("Y_DT", deep)
 
     def _rim(self, member: int) -> Any:

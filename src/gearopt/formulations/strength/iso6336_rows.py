@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 
 Columns = dict[str, Any]
 Two = tuple[Any, Any]
-LEAST, MOST = 0, 1
+LOWER, UPPER = 0, 1
 PICK = np.minimum, np.maximum
-TINY = 1e-300
+SMALLEST = 1e-300
 BEFORE = 1.0 - 4e-13  # of a border: up to it the law before it holds, roundings included
 AT_ENDS = "force", "pace", "speed", "pitch", "form", "deviation"  # of the torques
 MODES = ("bending", 0), ("bending", 1), ("contact", 0), ("contact", 1)
@@ -59,7 +59,7 @@ class IsoRows:
         parts = [box.parts() for box in boxes]
         found = np.maximum.reduce(parts[0]) if len(parts) == 1 else self._spectrum(parts)
         at = self.levels[0]
-        rated = (boxes[0].overlap[MOST] >= at["overlap"]) & (at["contact"] >= 1.0)
+        rated = (boxes[0].overlap[UPPER] >= at["overlap"]) & (at["contact"] >= 1.0)
         return np.where(rated & ~np.isnan(found), found, np.inf)
 
     def _spectrum(self, parts: list[list[Any]]) -> Any:
@@ -129,11 +129,11 @@ class Box:
 
     def parts(self) -> list[Any]:
         """Return the least of what is used, or of stress where there are more loads; see MODES."""
-        at, before = self.columns, self.dynamic(LEAST)
-        after = self.spread(LEAST, before)
+        at, before = self.columns, self.dynamic(LOWER)
+        after = self.spread(LOWER, before)
         transverse = self._transverse(after)
         bent = self.bent(before, after, transverse) * self.root_factor()
-        pressed = self.pressed(after, transverse[0]) * self.ratio_factor(MOST) ** 2
+        pressed = self.pressed(after, transverse[0]) * self.ratio_factor(UPPER) ** 2
         found = [bent * at[f"bending_used{k}"] for k in (0, 1)]
         return found + [pressed * self.single(k) ** 2 * at[f"contact_used{k}"] for k in (0, 1)]
 
@@ -188,18 +188,18 @@ class Box:
         low, main, high = self._ranges(end)
         line, at, none = self.line, self.columns, (np.inf, -np.inf)[end]
         same = line[0] is line[1] and at["pace0"] is at["pace1"]
-        slowest = self.resonance(LEAST, self.singles[MOST])
-        fastest = slowest if same else self.resonance(MOST, self.singles[LEAST])
+        slowest = self.resonance(LOWER, self.singles[UPPER])
+        fastest = slowest if same else self.resonance(UPPER, self.singles[LOWER])
         limits = _both(loads.lower_limit(line[0]), same, lambda: loads.lower_limit(line[1]))
         ends = (slowest,) if same else (slowest, fastest)
         rises = [np.clip((n - loads.MAIN) / (loads.SUPER - loads.MAIN), 0.0, 1.0) for n in ends]
         passed = [main + (high - main) * rise for rise in rises]
         above = passed[0] if same else PICK[end](*passed)
         if same:
-            return np.where(slowest <= limits[MOST], low, above)
+            return np.where(slowest <= limits[UPPER], low, above)
         return PICK[end](
-            np.where(slowest <= limits[MOST], low, none),
-            np.where(fastest > limits[LEAST], above, none),
+            np.where(slowest <= limits[UPPER], low, none),
+            np.where(fastest > limits[LOWER], above, none),
         )
 
     def _ranges(self, end: int) -> tuple[Any, Any, Any]:
@@ -249,12 +249,12 @@ class Box:
         """Return the least W2 K_Halpha from that of W2; transverse: K_alpha without limits."""
         if "K_Halpha" in self.given:
             return spread * self.given["K_Halpha"]
-        most = self.total[LEAST] / (self.columns["contact"] * self.ratio_factor(LEAST) ** 2)
+        most = self.total[LOWER] / (self.columns["contact"] * self.ratio_factor(LOWER) ** 2)
         return spread * loads.limited(transverse, most)
 
     def _transverse(self, spread: Any) -> Two:
         """Return K_alpha without limits of the least line load, and of an endless one."""
-        mesh, total = self.mesh(self.singles[LEAST]), self.total[LEAST]
+        mesh, total = self.mesh(self.singles[LOWER]), self.total[LOWER]
         made = [
             loads.transverse_load_factor(mesh, deviation, spread, total)
             for deviation in (self.columns["deviation0"], 0.0)
@@ -274,7 +274,7 @@ class Box:
         above = self._least_at(power, spread, found / endless - 1.0)
         factor = above**power * (endless + (found - endless) / above)
         ratio = at["virtual"] if self.standard.practice.edition == "2019" else at["contact"]
-        most = self.total[LEAST] / (at["contact"] * (0.25 + 0.75 / ratio))
+        most = self.total[LOWER] / (at["contact"] * (0.25 + 0.75 / ratio))
         return dynamic * face * loads.limited(factor, most)
 
     def _root_power(self) -> Any:
@@ -283,18 +283,20 @@ class Box:
             return 0.0 if "K_Hbeta" not in self.given else 1.0
         if self.standard.practice.helix_modification in loads.LIGHT_ENDS:
             return 1.0
-        return loads.root_exponent(self.widths[LEAST], self.columns["depth"])
+        return loads.root_exponent(self.widths[LOWER], self.columns["depth"])
 
     def _least_at(self, power: Any, spread: Any, excess: Any) -> Any:
         """Return W2 over its least value where W2^N_F (1 + excess/W2) is least, at least 1."""
-        wanted = np.broadcast_to(excess * (1.0 - power), np.shape(spread)) / np.maximum(power, TINY)
+        wanted = np.broadcast_to(excess * (1.0 - power), np.shape(spread)) / np.maximum(
+            power, SMALLEST
+        )
         at, (low, high) = self.columns, self.widths
         free = (low != high) | (at["force0"] != at["force1"])
         some = np.flatnonzero(free & (wanted > 1.0))
         found = np.ones(len(low))
         if len(some):
             part = Box(self.standard, taken(at, some), (low[some], high[some]))
-            most = part.spread(MOST, part.dynamic(MOST)) / spread[some]
+            most = part.spread(UPPER, part.dynamic(UPPER)) / spread[some]
             found[some] = np.clip(wanted[some], 1.0, np.maximum(most, 1.0))
         return found
 
@@ -322,7 +324,7 @@ class Box:
             factor = self._least(lambda o: load_sharing(self.columns["virtual"], o))
         if "Y_beta" in given:
             return factor * given["Y_beta"]
-        return factor * bending.helix_factor(self.columns["helix"], self.overlap[MOST], edition)
+        return factor * bending.helix_factor(self.columns["helix"], self.overlap[UPPER], edition)
 
     def _least(self, law: Callable[[Any], Any]) -> Any:
         """Return the least value of a law that is monotone in eps_beta."""

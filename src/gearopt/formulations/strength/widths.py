@@ -12,12 +12,12 @@ from gearopt.formulations.strength import ALLOWANCE
 from gearopt.formulations.strength.rated import REFUSED, Rows
 from gearopt.optimise.terms import Array
 
-BEYOND = 1.0 + 1e-12  # a border is passed by this factor
+PAST_BORDER = 1.0 + 1e-12  # a border is passed by this factor
 ROUNDING = 1e-13  # of a bound
-STEPS = 2000  # of a row; a bound of 1 is reached in some tens
+MAX_STEPS = 2000  # of a row; a bound of 1 is reached in some tens
 ROUGH = 1e-4  # of what is used above 1 where a lower bound on the width is close enough
 SHY = 0.97  # of a step that would lead to a bound of 1
-LONGEST = 4.0  # power of what is used, of a step
+LARGEST_POWER = 4.0  # power of what is used, of a step
 SHORT = 1e-14  # relative length of a step that ends a row
 
 
@@ -30,7 +30,7 @@ def used(rows: Sequence[Rows], low: Array, high: Array) -> Array:
 
 
 def first_width(
-    rows: Sequence[Rows], low: Array, high: Array, close: float = ALLOWANCE, steps: int = STEPS
+    rows: Sequence[Rows], low: Array, high: Array, close: float = ALLOWANCE, steps: int = MAX_STEPS
 ) -> Array:
     """Return the first face width [mm] (n,) from low to high that carries; inf: none.
 
@@ -52,8 +52,8 @@ def first_width(
             active, rows = active[goes], [one.take(goes) for one in rows]
             here, top, power, now = here[goes], top[goes], power[goes], now[goes]
         here, power = _on(rows, here, top, now, power)
-    if len(active) and steps == STEPS:
-        raise ArithmeticError(f"no narrowest face width was found in {STEPS} steps")
+    if len(active) and steps == MAX_STEPS:
+        raise ArithmeticError(f"no narrowest face width was found in {MAX_STEPS} steps")
     found[active] = here  # what is left is bounded from below
     return found
 
@@ -67,7 +67,7 @@ def _on(
     """
     border = np.min([one.border(here) for one in rows], axis=0)
     end = np.minimum(top, border)
-    now = np.clip(now, BEYOND, REFUSED)
+    now = np.clip(now, PAST_BORDER, REFUSED)
     there = np.minimum(here * now**power, end)
     bound = used(rows, here, there)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -75,5 +75,5 @@ def _on(
     at_border = here >= border
     goes = (bound >= 1.0 - ROUNDING) | at_border | (there <= here * (1.0 + SHORT))
     falls = np.where(~goes & (now == REFUSED), 2.0 * falls, falls)  # where a refusal ends
-    here = np.where(goes, np.where(at_border, border * BEYOND, there), here)
-    return here, np.where(np.isfinite(falls), SHY / np.maximum(falls, SHY / LONGEST), 1.0)
+    here = np.where(goes, np.where(at_border, border * PAST_BORDER, there), here)
+    return here, np.where(np.isfinite(falls), SHY / np.maximum(falls, SHY / LARGEST_POWER), 1.0)

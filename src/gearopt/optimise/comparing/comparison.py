@@ -20,7 +20,8 @@ from gearopt.optimise.scale import unit
 from gearopt.optimise.typed import typed
 
 FORMAT = 1
-CLOSE, TIGHT = 1e-3, 1e-6  # gaps that count as success: a catalogue's accuracy, a proof's
+# gaps that count as success: a catalogue's accuracy, a proof's
+CATALOGUE_GAP, PROOF_GAP = 1e-3, 1e-6
 BELOW = 1e-6  # a value below a proven bound by more contradicts it; rows may be off by 1e-8
 POINTS = 160  # of a curve, beyond which it is thinned to steps even in the logarithm
 
@@ -56,8 +57,8 @@ class Summary:
     """Statistics of the runs of a row; a run without a feasible point is worse than any other.
 
     median_gap, worst_gap: None where that run has no feasible point. close, tight: share of seeds
-    whose gap is at most CLOSE, TIGHT. without: number of seeds without a feasible point. violation:
-    the worst. evaluations, seconds, objective, distance: medians.
+    whose gap is at most CATALOGUE_GAP, PROOF_GAP. without: number of seeds without a feasible
+    point. violation: the worst. evaluations, seconds, objective, distance: medians.
     """
 
     seeds: int
@@ -258,8 +259,8 @@ def _summary(runs: Sequence[Run]) -> Summary:
         objective=quantile(values, 0.5),
         median_gap=quantile(gaps, 0.5),
         worst_gap=quantile(gaps, 1.0),
-        close=sum(g <= CLOSE for g in gaps) / len(runs),
-        tight=sum(g <= TIGHT for g in gaps) / len(runs),
+        close=sum(g <= CATALOGUE_GAP for g in gaps) / len(runs),
+        tight=sum(g <= PROOF_GAP for g in gaps) / len(runs),
         violation=max(violations, default=None),
         evaluations=quantile([r.evaluations for r in runs], 0.5) or 0,
         seconds=quantile([r.seconds for r in runs], 0.5) or 0.0,

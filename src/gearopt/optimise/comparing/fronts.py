@@ -44,7 +44,7 @@ from gearopt.optimise.scale import violation
 from gearopt.optimise.terms import Array
 
 MISSING = "missing_hypervolume"
-FINE = {2: 600, 3: 400}  # points of a reference that is not of all designs
+REFERENCE_POINTS = {2: 600, 3: 400}  # points of a reference that is not of all designs
 
 
 @dataclass(frozen=True)
@@ -190,7 +190,7 @@ def _standard(
 
     follow = in_part(continues, model.unit, problem.name)
     whole = goal.limiting is not None and goal.limiting.whole
-    points = None if whole else FINE[len(goal.names)]
+    points = None if whole else REFERENCE_POINTS[len(goal.names)]
     return chosen, goal.front(problem, chosen, points, Budget(BOUND_SECONDS), watch=follow)
 
 

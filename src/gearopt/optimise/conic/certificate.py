@@ -24,11 +24,11 @@ from gearopt.optimise.conic.cone_bound import (
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.result import FEASIBLE, Outcome
 from gearopt.optimise.scale import runaway, violation
-from gearopt.optimise.stationarity import NEAR
+from gearopt.optimise.stationarity import ACTIVE_WITHIN
 from gearopt.optimise.terms import Array
 
 EXCLUDED = "the bounds of the variables exclude every point"
-MOST = 2000  # proofs tried to name the fewest rows of a conflict
+MAX_PROOFS = 2000  # proofs tried to name the fewest rows of a conflict
 CONVEX_CONIC = "Proof: a convex conic problem; the bound is a dual one, computed from its data"
 ARITHMETIC = "double, with a rounding allowance"
 
@@ -67,7 +67,7 @@ def certify(problem: Conic, outcome: Outcome, gap: float) -> Verdict:
     verdict = bounded(problem, outcome.x, before, bound, gap, worst)
     unit = verdict.certificate.get("scale") or abs(value) or 1.0
     residuals = {"stationarity": charge / unit, "complementarity": slack / unit}
-    prices = _shadow_prices(problem, outcome.leaves, batch.G[0] >= 1.0 - NEAR)
+    prices = _shadow_prices(problem, outcome.leaves, batch.G[0] >= 1.0 - ACTIVE_WITHIN)
     found = dict(verdict.certificate) | residuals
     return replace(verdict, certificate=found, multipliers=prices)
 
@@ -124,7 +124,7 @@ def _infeasible(problem: Conic, outcome: Outcome) -> Verdict:
         return Verdict("failed", message="no feasible point found; impossibility is not proven")
     names = [r.name for r in problem.rows.inequalities] + list(problem.rows.equalities)
     numbers = {number for leaf in outcome.leaves for number in _weights(data, leaf)}
-    if len(names) * len(outcome.leaves) <= MOST:
+    if len(names) * len(outcome.leaves) <= MAX_PROOFS:
         numbers = set(range(len(names)))
         weights = _weights(data, outcome.leaves[0])
         for number in sorted(numbers, key=lambda k: weights.get(k, 0.0)):

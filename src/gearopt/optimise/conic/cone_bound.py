@@ -21,7 +21,7 @@ PASSES = 12  # a chain of epigraphs longer than that is rare; looser bounds stay
 EPSILON = 2.3e-16
 CONTRADICTION = 1e-9  # relative crossing of two bounds that proves emptiness
 MARGIN = 1e-5  # relative; a contradiction of bound and point shows up to here
-ENOUGH = 0.01  # a pass that narrows no column by this share is the last
+LEAST_NARROWING = 0.01  # a pass that narrows no column by this share is the last
 
 
 def cutoff(value: float) -> float:
@@ -89,7 +89,7 @@ def narrowed(
         width = high - low
         finer = np.isfinite(new_low) & ~np.isfinite(low)
         finer |= np.isfinite(new_high) & ~np.isfinite(high)
-        finer |= np.isfinite(width) & (new_high - new_low < (1.0 - ENOUGH) * width)
+        finer |= np.isfinite(width) & (new_high - new_low < (1.0 - LEAST_NARROWING) * width)
         low, high = new_low, new_high
         if not finer.any():
             break

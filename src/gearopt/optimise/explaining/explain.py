@@ -20,8 +20,8 @@ from gearopt.optimise.explaining.handles import (
     handles,
 )
 from gearopt.optimise.explaining.repair import (
-    BEYOND,
-    TAKEN_BACK,
+    FACTORS_TRIED,
+    SLACK_TRIED,
     Repair,
     any_resolves,
     elastic,
@@ -40,7 +40,8 @@ STEP = 1e-3  # relative, of the re-solves that check a sensitivity
 ZERO = 1e-9  # of the objective at the guess
 EASE = 0.01  # relative, of the step whose effect is reported
 DIGITS = 6  # of a number that is proposed; rounded to the easy side
-ROOM = 2e-7  # a proposal asks for this much more than the factor found, to be feasible in doubles
+# a proposal asks for this much more than the factor found, to be feasible in doubles
+FEASIBILITY_MARGIN = 2e-7
 
 
 def explain(
@@ -196,14 +197,14 @@ def _alone(problem: Problem, handle: Handle, method: str, clock: Clock) -> Remed
         return None if clock.over else words.get(tried(factor, back))
 
     down = whole and handle.direction < 0  # to 1 at the most
-    wider = tuple(f for f in BEYOND if not down or f <= handle.value)
+    wider = tuple(f for f in FACTORS_TRIED if not down or f <= handle.value)
     least = least_value(1.0, wider, works)
     if least is None or least == 1.0:
         return None
     factor = handle.eased(_asked(handle, least))
     number = f"{handle.relaxed(factor):.{DIGITS + 2}g}"
     change = Change(handle.label, f"{handle.value:.10g}", number, factor)
-    verified = {"with": tried(least), "with_less": tried(least, TAKEN_BACK)}
+    verified = {"with": tried(least), "with_less": tried(least, SLACK_TRIED)}
     return Remedy(
         "less" if handle.given else "alone", handle.name, (change,), factor, None, verified
     )
@@ -230,7 +231,7 @@ def _remedy(problem: Problem, repair: Repair, clock: Clock) -> Remedy:
         ).status
 
     back = np.eye(len(asked)) if repair.kind == "least" else np.ones((1, len(asked)))
-    words = {status(np.maximum(asked * (1.0 - TAKEN_BACK * row), 1.0)) for row in back}
+    words = {status(np.maximum(asked * (1.0 - SLACK_TRIED * row), 1.0)) for row in back}
     return Remedy(
         repair.kind,
         ", ".join(dict.fromkeys(h.family for h in handles_)),
@@ -246,9 +247,9 @@ def _remedy(problem: Problem, repair: Repair, clock: Clock) -> Remedy:
 
 def _asked(handle: Handle, factor: float) -> float:
     """Return the factor of a number of DIGITS digits, on the easy side of what is needed."""
-    needed = handle.relaxed(factor * (1.0 + ROOM))
+    needed = handle.relaxed(factor * (1.0 + FEASIBILITY_MARGIN))
     rounding = ROUND_CEILING if handle.direction > 0 else ROUND_FLOOR
     number = float(Context(prec=DIGITS, rounding=rounding).plus(Decimal(needed)))
     if handle.value <= 0:
-        return factor * (1.0 + ROOM)
+        return factor * (1.0 + FEASIBILITY_MARGIN)
     return float((number / handle.value) ** handle.direction)

@@ -22,14 +22,16 @@ from gearopt.optimise.solve import solve_within
 from gearopt.optimise.terms import Array, Repeat, Terms, Var, each, inequalities, namespace
 
 CERTAIN = ("optimal", "stationary")
-SAME = 1e-7  # relative: two repairs as small as each other; a factor below 1 + SAME is none
-TAKEN_BACK = 1e-3  # a remedy this much smaller must be impossible
+# relative: two repairs as small as each other; a factor below 1 + PRODUCT_TIE is none
+PRODUCT_TIE = 1e-7
+SLACK_TRIED = 1e-3  # a remedy this much smaller must be impossible
 FARTHEST = 4.0  # factor to which whole numbers and modules are tried
 WIDEST = (1.02, 1.1, 1.3, 2.0, FARTHEST)  # factors tried in turn, before the smallest is sought
-CLOSE = 1.0 + 0.5 * TAKEN_BACK  # ratio of an impossible to a possible factor that ends a search
-LEAST = 1.0 + 1e-7  # a search between two factors this close ends in any case
+# ratio of an impossible to a possible factor that ends a search
+FACTOR_TOLERANCE = 1.0 + 0.5 * SLACK_TRIED
+SMALLEST_BRACKET = 1.0 + 1e-7  # a search between two factors this close ends in any case
 DOUBTS = 3  # factors that may stay undecided before a search ends at the smallest that is known
-BEYOND = (*WIDEST, 16.0, 256.0, 1e6)  # the same of real numbers
+FACTORS_TRIED = (*WIDEST, 16.0, 256.0, 1e6)  # the same of real numbers
 
 Works = Callable[..., bool | None]
 
@@ -64,7 +66,9 @@ def least(problem: Problem, movable: Sequence[Handle], clock: Clock) -> Repair |
     if found is None:
         return None
     factors, value, bound = found
-    moves = tuple((h, float(f)) for h, f in zip(movable, factors, strict=True) if f > 1.0 + SAME)
+    moves = tuple(
+        (h, float(f)) for h, f in zip(movable, factors, strict=True) if f > 1.0 + PRODUCT_TIE
+    )
     return Repair("least", value, bound, moves)
 
 
@@ -82,7 +86,7 @@ def least_factors(
         return None
     factors = np.atleast_1d(found.design["relaxation"])
     reach = np.array([min(h.reach for h in group) for group in groups])
-    allowed = np.where(factors > 1.0 + SAME, reach, 1.0)
+    allowed = np.where(factors > 1.0 + PRODUCT_TIE, reach, 1.0)
     for k in np.argsort(factors, kind="stable"):
         if allowed[k] == 1.0 or clock.over:
             continue
@@ -92,7 +96,7 @@ def least_factors(
         if (
             other.status in CERTAIN
             and other.value is not None
-            and other.value <= found.value * (1.0 + SAME)
+            and other.value <= found.value * (1.0 + PRODUCT_TIE)
         ):
             allowed, factors = fewer, np.atleast_1d(other.design["relaxation"])
     firsts = [group[0] for group in groups]
@@ -113,7 +117,7 @@ def _whole(
         found = solve_within(clock, form.within("relaxation", tuple(low), tuple(high)), "ipopt")
         return None if found.value is None else np.atleast_1d(found.design["relaxation"])
 
-    whole = [k for k, h in enumerate(movable) if h.whole and factors[k] > 1.0 + SAME]
+    whole = [k for k, h in enumerate(movable) if h.whole and factors[k] > 1.0 + PRODUCT_TIE]
     for k in whole:
         low[k] = high[k] = movable[k].eased(float(factors[k]))
         after = follow()
@@ -265,7 +269,9 @@ def least_between(low: float, high: float, works: Works) -> float:
     """
     doubts = 0
     while doubts < DOUBTS:
-        if high <= low * CLOSE and not (high > low * LEAST and works(high, TAKEN_BACK)):
+        if high <= low * FACTOR_TOLERANCE and not (
+            high > low * SMALLEST_BRACKET and works(high, SLACK_TRIED)
+        ):
             break
         middle = math.sqrt(low * high)
         found = works(middle)

@@ -29,7 +29,7 @@ from gearopt.optimise.pareto.gaps import (
     met,
     spread,
 )
-from gearopt.optimise.pareto.posed import MOST, Built, Limit, kept, posed, scale, valued
+from gearopt.optimise.pareto.posed import LIMIT_PREFIX, Built, Limit, kept, posed, scale, valued
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Result, Watch
 from gearopt.optimise.solve import run as solve_raw
@@ -43,7 +43,7 @@ SAMPLED = 2000  # evaluations of evolution, where a step is not proven
 SHARE = 0.3  # of a budget at most, for it
 TWICE = 2  # steps at most for each point that is sought
 CORNER = 0.1  # part of a chord next to its ends where none of the first limits is put
-FIRST = 5  # points at least before others are spread by them
+FIRST_POINTS = 5  # points at least before others are spread by them
 
 SETTINGS = {
     "of three objectives": "slices at even limits of the third",
@@ -226,7 +226,9 @@ def _between(run: Run, ends: list[Point], points: int, caps: Caps) -> None:
     """
     line = Line(run, caps, list(ends), np.array([run.widths[name] or 1.0 for name in run.names]))
     few = (
-        points if run.limiting is not None or run.discrete else min(points, max(FIRST, points // 4))
+        points
+        if run.limiting is not None or run.discrete
+        else min(points, max(FIRST_POINTS, points // 4))
     )
     line.fill(few)
     for most in spread(line.open, points - len(line.points)):
@@ -356,7 +358,7 @@ def _attempt(run: Run, name: str, most: Caps, near: Array | None) -> tuple[Resul
         return result, None
     values = _values(run, result, outcome.x)
     slopes = None
-    rows = [f"{MOST}_{n}" for n in run.names[1:]]
+    rows = [f"{LIMIT_PREFIX}_{n}" for n in run.names[1:]]
     priced = name == run.names[0] and not run.discrete
     if priced and all(row in result.multipliers for row in rows):
         scales = [scale(at, n) for n in run.names[1:]]

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from gearopt.optimise.terms import Array
 
 TIE = 1e-9  # relative; objectives that differ by less are equal
-BEYOND = 1.05  # of the way from the ideal point to the nadir point: the reference point
+REFERENCE_AT = 1.05  # of the way from the ideal point to the nadir point: the reference point
 
 
 def unbeaten(values: Array, tie: float = TIE, equal: bool = False) -> NDArray[np.int64]:
@@ -54,7 +54,7 @@ def reference(front: Array) -> Array:
     low, high = ideal(front), nadir(front)
     width = high - low
     size = np.where(low == 0.0, 1.0, np.abs(low))
-    return np.asarray(np.where(width > 0.0, low + BEYOND * width, low + size))
+    return np.asarray(np.where(width > 0.0, low + REFERENCE_AT * width, low + size))
 
 
 def hypervolume(values: Array, corner: Array) -> float:

@@ -13,7 +13,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.tape import same_kinds
 from gearopt.optimise.terms import Array, Param, Terms
 
-MOST = "most"  # most_cost: the largest cost that is allowed
+LIMIT_PREFIX = "most"  # most_cost: the largest cost that is allowed
 SCALE = "scale"  # scale_cost: what its excess is measured by
 VALUE = "value"  # value_cost: the cost of a point, whatever is minimised
 
@@ -51,7 +51,7 @@ def posed(
     def evaluate(x: Any, p: Any) -> Terms:
         found = own(x, p)
         rows = {
-            f"{MOST}_{name}": _row(found.minimise[name], p, name, whole, fixed.get(name))
+            f"{LIMIT_PREFIX}_{name}": _row(found.minimise[name], p, name, whole, fixed.get(name))
             for name, whole in quotient.items()
         }
         kept = {name: found.minimise[name] for name in minimise}
@@ -63,7 +63,7 @@ def posed(
             report={**found.report, **shown},
         )
 
-    parameters = [Param(f"{MOST}_{name}", "", 1.0) for name in limits]
+    parameters = [Param(f"{LIMIT_PREFIX}_{name}", "", 1.0) for name in limits]
     parameters += [
         Param(f"{SCALE}_{name}", "", limit.scale)
         for name, limit in limits.items()
@@ -112,9 +112,9 @@ def moved(problem: Problem | Conic, limits: Mapping[str, Limit]) -> Problem | Co
     """
     known, values = _numbers(problem), {}
     for name, limit in limits.items():
-        values[f"{MOST}_{name}"] = limit.most
+        values[f"{LIMIT_PREFIX}_{name}"] = limit.most
         if isinstance(problem, Conic):
-            values[f"{MOST}_{name}"] = limit.most / known[f"{SCALE}_{name}"]
+            values[f"{LIMIT_PREFIX}_{name}"] = limit.most / known[f"{SCALE}_{name}"]
         elif f"{SCALE}_{name}" in known:
             values[f"{SCALE}_{name}"] = limit.scale
     found: Problem | Conic = problem.at(**values)
@@ -124,7 +124,7 @@ def moved(problem: Problem | Conic, limits: Mapping[str, Limit]) -> Problem | Co
 def scale(problem: Problem | Conic, name: str) -> float:
     """Return what an excess of the limit of an objective is measured by."""
     known = _numbers(problem)
-    return known.get(f"{SCALE}_{name}", known[f"{MOST}_{name}"])
+    return known.get(f"{SCALE}_{name}", known[f"{LIMIT_PREFIX}_{name}"])
 
 
 def _numbers(problem: Problem | Conic) -> dict[str, float]:
@@ -134,7 +134,7 @@ def _numbers(problem: Problem | Conic) -> dict[str, float]:
 def caps(problem: Problem) -> dict[str, float]:
     """Return the largest values of objectives that `posed` was given, by name."""
     known = _numbers(problem)
-    limited = {name: known.get(f"{MOST}_{name}") for name in problem.rows.objectives}
+    limited = {name: known.get(f"{LIMIT_PREFIX}_{name}") for name in problem.rows.objectives}
     return {name: most for name, most in limited.items() if most is not None}
 
 
@@ -145,7 +145,7 @@ def valued(result: Result, names: Sequence[str]) -> Array:
 
 def _row(value: Any, p: Any, name: str, quotient: bool, fixed: float | None) -> Any:
     """Return the utilisation of a limit; fixed: its scale in cvxpy text, a constant there."""
-    most = getattr(p, f"{MOST}_{name}")
+    most = getattr(p, f"{LIMIT_PREFIX}_{name}")
     if fixed is not None:
         return 1.0 + value * (1.0 / fixed) - most
     return value / most if quotient else 1.0 + (value - most) / getattr(p, f"{SCALE}_{name}")

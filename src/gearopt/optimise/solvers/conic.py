@@ -40,7 +40,7 @@ from gearopt.optimise.terms import Array
 
 ROUNDS = 16
 CLOSED = 1e-10  # a relative gap that no further round is spent on
-ENOUGH = 1e-8  # with this one the second idle round is the last
+IDLE_TOLERANCE = 1e-8  # with this one the second idle round is the last
 PATIENCE = 4  # rounds without a better gap, once there is one
 TIGHT = 1e-11  # a row violated by more is repaired; the certificate bears 1e-8
 MARGIN = 1e-6  # of the strictly feasible point that a repair moves towards
@@ -87,7 +87,7 @@ def solved(problem: Conic, data: Canonical, clock: Clock) -> Found:
         if not clock.tell():
             break
         idle = idle + 1 if best.gap >= 0.5 * before else 0
-        if idle > (1 if best.gap <= ENOUGH else PATIENCE) or not np.isfinite(z).all():
+        if idle > (1 if best.gap <= IDLE_TOLERANCE else PATIENCE) or not np.isfinite(z).all():
             break
         scale = after(data, scale, z)
     if best.x is not None and best.excess > TIGHT and not best.leaf.ray:

@@ -153,14 +153,15 @@ def _collected(coefficients: Array, exponents: Array) -> Posynomial | None:
     return Posynomial(total[keep], unique[keep])
 
 
-FEW = 300  # values of an integer that are worth a binary each
+MAX_BINARIES = 300  # values of an integer that are worth a binary each
 FEASIBILITY = 1e-9
 GAP = 1e-7  # relative
-SMALL = 1e3 * FEASIBILITY  # scaled objectives below it are within SCIP's tolerance of anything
+# scaled objectives below it are within SCIP's tolerance of anything
+SMALLEST_OBJECTIVE = 1e3 * FEASIBILITY
 
 RANDOM = True  # the seed shifts SCIP's own
 COUNTS = "branch-and-bound node"
-SETTINGS = {"limits/gap": GAP, "numerics/feastol": FEASIBILITY, "binaries up to": FEW}
+SETTINGS = {"limits/gap": GAP, "numerics/feastol": FEASIBILITY, "binaries up to": MAX_BINARIES}
 
 
 def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
@@ -178,7 +179,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     finished = status in ("optimal", "gaplimit") and not clock.refused
     if not scip.getNSols():
         return Outcome(None, finished, evaluations=nodes, message=f"SCIP: {status}")
-    if scip.getPrimalbound() < SMALL:
+    if scip.getPrimalbound() < SMALLEST_OBJECTIVE:
         raise SolveError(
             f"scip on {problem.name}: the objective is {scip.getPrimalbound():.1e} of its value at "
             "the guess, within SCIP's tolerance; scale it or give a better guess"
@@ -268,7 +269,7 @@ def _logarithm(scip: Any, problem: Problem, index: int) -> Any:
         return log
     if variable.integer:
         low, high = whole_ends(problem, index)
-        if not high - low < FEW:
+        if not high - low < MAX_BINARIES:
             most = high if math.isfinite(high) else None
             scip.addCons(exp(log) == scip.addVar(vtype="I", lb=low, ub=most))
             return log

@@ -19,7 +19,7 @@ BENDING_LONG = {"general": (1.3558, 0.0178), "critical": (1.6831, 0.0323)}
 PITTING, PITTING_NITRIDED = (2.466, 0.056), (1.249, 0.0138)
 PITTING_LONG = {"general": (1.4488, 0.023), "critical": (2.466, 0.056)}
 SHORTEST_BENDING, SHORTEST_PITTING = 1e3, 1e4  # cycles; the curves are flat below
-LONGEST = 1e10  # cycles up to which the curves are drawn
+LONGEST_LIFE = 1e10  # cycles up to which the curves are drawn
 KINDS = ("through-hardened", "carburised", "nitrided")
 SERVICES = ("general", "critical")
 
@@ -46,7 +46,7 @@ class Curve:
         """Return the number of cycles at which the factor is reached; the inverse of `factor`.
 
         0 where even the shortest life has a smaller factor: the tooth breaks or pits at once.
-        Beyond LONGEST it is an extrapolation.
+        Beyond LONGEST_LIFE it is an extrapolation.
         """
         with np.errstate(over="ignore", divide="ignore"):
             short, long = (

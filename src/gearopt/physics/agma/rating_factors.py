@@ -228,7 +228,7 @@ def _cycle_factor(case: Case, contact: bool) -> Factor:
     first, second = (
         float(curve.factor(cycles)) for curve, cycles in zip(curves, case.cycles, strict=True)
     )
-    remark = "" if max(case.cycles) <= life.LONGEST else f"beyond {life.LONGEST:g} cycles"
+    remark = "" if max(case.cycles) <= life.LONGEST_LIFE else f"beyond {life.LONGEST_LIFE:g} cycles"
     if not contact and any(unknown_hardness(steel) for steel in case.steels):
         remark = remark or f"no hardness: curve of {min(life.BENDING):g} HB"
     symbol = "Z_N" if contact else "Y_N"

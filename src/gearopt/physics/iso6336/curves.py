@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
-LONGEST = 1e10  # cycles; the curves are flat beyond
+LONGEST_LIFE = 1e10  # cycles; the curves are flat beyond
 # Source: ISO 6336-2:2006, table 2, and 6336-3:2006, table 1; gfsReboucas/Drivetrain has those of
 # pitting, hanslhansl/din3990 (DIN 3990-11) has knees and static values of both
-LOWEST = 0.85  # at LONGEST; 1 for the best material, manufacture and lubrication, and experience
+# at LONGEST_LIFE; 1 for the best material, manufacture and lubrication, and experience
+LOWEST = 0.85
 PITTING = {
     **dict.fromkeys(("St", "V", "GTS", "GGG", "Eh", "IF"), ((1e5, 1.6), (5e7, 1.0))),
     **dict.fromkeys(("GG", "GGG ferritic", "NT", "NV"), ((1e5, 1.3), (2e6, 1.0))),
@@ -77,7 +78,7 @@ class Curve:
 
 def life_factor(knots: Sequence[tuple[float, float]], lowest: float = LOWEST) -> Curve:
     """Return the curve of Z_NT or Y_NT: knots, then straight to `lowest` at 1e10 cycles."""
-    cycles = (*(n for n, _ in knots), LONGEST)
+    cycles = (*(n for n, _ in knots), LONGEST_LIFE)
     return Curve(cycles, (*(value for _, value in knots), lowest))
 
 

@@ -8,7 +8,7 @@ from gearopt.physics.iso6336.accuracy import beyond
 from gearopt.physics.iso6336.case import Case
 from gearopt.physics.iso6336.chain import shared
 from gearopt.physics.iso6336.contact_factors import HARD_LIMIT
-from gearopt.physics.iso6336.curves import LONGEST
+from gearopt.physics.iso6336.curves import LONGEST_LIFE
 from gearopt.physics.iso6336.load_factors import MAIN, lower_limit
 from gearopt.physics.iso6336.materials import Material, strength
 from gearopt.physics.iso6336.running_in import CAST, SLOW, TEMPERED
@@ -222,7 +222,7 @@ def _strength(stress: str) -> Callable[[Case, Found], Doubt]:
 
 
 def _life(case: Case, found: Found) -> Doubt:
-    return True, f"beyond {LONGEST:g} cycles" if max(case.cycles) > LONGEST else ""
+    return True, f"beyond {LONGEST_LIFE:g} cycles" if max(case.cycles) > LONGEST_LIFE else ""
 
 
 def _slip(case: Case, found: Found) -> Doubt:

@@ -16,7 +16,7 @@ from gearopt.physics.iso6336.refusals import refusal
 from gearopt.physics.iso6336.stiffness import single_stiffness
 from gearopt.physics.iso6336.tooth_form import tooth_forms
 
-WIDE = 2.0  # overlap ratio of the widths at which pairs are looked at
+WIDEST_OVERLAP = 2.0  # overlap ratio of the widths at which pairs are looked at
 
 Two = tuple[Any, Any]
 
@@ -65,7 +65,7 @@ def tooth_table(pair: GearPair, shift: str = "nominal") -> ToothTable:
     shape = np.shape(pair.pinion.teeth * pair.normal_module)
     sine = float(np.abs(np.sin(pair.pinion.helix_angle)))
     axial = np.pi * pair.normal_module / sine if sine else np.full(shape, np.inf)
-    wide = pair.of_width(WIDE * axial if sine else pair.normal_module)
+    wide = pair.of_width(WIDEST_OVERLAP * axial if sine else pair.normal_module)
     ratio = contact_path(wide).transverse_ratio
     ratio = np.where(np.asarray(refusal(wide, shift)) == 0, ratio, np.nan)
     made = contact.single_contact_ratios(wide, ratio)

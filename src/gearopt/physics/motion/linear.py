@@ -14,7 +14,8 @@ from gearopt.physics.motion.accelerations import stiffness_along
 from gearopt.physics.motion.moving_pair import MovingPair
 
 Array = NDArray[np.float64]
-STEPS, CLOSE = 60, 1e-14  # Newton's steps to a static state, and the change that ends them
+# Newton's steps to a static state, and the change that ends them
+NEWTON_STEPS, NEWTON_TOLERANCE = 60, 1e-14
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,7 @@ def static(pair: MovingPair) -> Static:
     held = np.array([*pair.pinion.stiffness, *pair.wheel.stiffness])
     slope = np.array(pair.contact(0.0, 0.0).gradient)
     axes = np.concatenate([-slope, slope]) * load / held
-    for _ in range(STEPS):
+    for _ in range(NEWTON_STEPS):
         contact = pair.contact(*(axes[2:] - axes[:2]))
         gradient = np.array(contact.gradient)
         rest = held * axes + load * np.concatenate([gradient, -gradient])
@@ -63,7 +64,7 @@ def static(pair: MovingPair) -> Static:
         block = load * np.array([[suu, suv], [suv, svv]])
         step = np.linalg.solve(np.diag(held) + np.block([[-block, block], [block, -block]]), rest)
         axes = axes - step
-        if np.max(np.abs(step)) <= CLOSE * np.max(np.abs(axes)):
+        if np.max(np.abs(step)) <= NEWTON_TOLERANCE * np.max(np.abs(axes)):
             break
     return Static(axes, -load / pair.wave.mean, load)
 

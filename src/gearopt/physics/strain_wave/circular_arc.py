@@ -17,8 +17,9 @@ from gearopt.physics.strain_wave.tooth_motion import motion
 from gearopt.physics.strain_wave.vectors import Vector, polar
 
 POINTS = 801  # of a flank: chords are within 1 nm of it
-FIRST = math.radians(6.0)  # polar angle at which half the locus begins: R is 0.1 mm there, 0 at 0
-LAST = math.radians(89.0)  # and before which it ends
+# polar angle at which half the locus begins: R is 0.1 mm there, 0 at 0
+FIRST_ANGLE = math.radians(6.0)
+LAST_ANGLE = math.radians(89.0)  # and before which it ends
 STEP = 1e-4  # rad, of differences along the locus: errors below 1e-7 of its curvature
 STEEPEST = math.radians(85.0)  # slope of an arc at its end, against the axis of the tooth
 
@@ -55,7 +56,7 @@ def half_locus_tooth(gearing: StrainWave, curve: NeutralCurve, thickness: float)
     here the circular spline follows from the flexspline (`swept_mesh`).
     """
     root, middle, tip = tooth_heights(gearing)
-    angle = np.linspace(FIRST, LAST, 20 * POINTS)
+    angle = np.linspace(FIRST_ANGLE, LAST_ANGLE, 20 * POINTS)
     fall = -0.5 * exact_locus(gearing, curve, angle)[0].y
     fall -= fall[0]
     if fall[-1] < tip - middle:
@@ -65,7 +66,7 @@ def half_locus_tooth(gearing: StrainWave, curve: NeutralCurve, thickness: float)
     below = heights < middle
     at = np.interp(np.maximum(heights - middle, 0.0), fall, angle)
     path, before, after = (exact_locus(gearing, curve, at + s)[0] for s in (0.0, -STEP, STEP))
-    start = exact_locus(gearing, curve, np.array([FIRST]))[0]
+    start = exact_locus(gearing, curve, np.array([FIRST_ANGLE]))[0]
     first = (before - after) * (0.25 / STEP)
     second = (path * 2.0 - before - after) * (0.5 / STEP**2)
     along = Vector(first.y, first.x)

@@ -19,7 +19,7 @@ from gearopt.physics.tooth.mesh import TEETH, Fineness, GearMesh, gear_mesh
 
 PER_HALF_WIDTH = 3.0  # elements: halving all of them changes a stiffness by less than 1e-3
 FINEST = 0.01  # modules: no element is smaller, however light the load
-WIDE = 0.04  # modules: half a contact under a load that teeth of steel may carry
+HALF_CONTACT = 0.04  # modules: half a contact under a load that teeth of steel may carry
 MESHED = TEETH // 2 + 1  # pairs of teeth in contact
 AT_ONCE = 64  # loads, each of which takes a column of all dofs
 PRESSED = 64  # points at which the pressure of a contact acts
@@ -250,13 +250,13 @@ def coupling(elastic: ElasticPair) -> float:
 
     Both as far from the middle of the path, the mean of both directions, which are equal by
     reciprocity. Along the path it varies by 0.5 %, and with the width of the contact not at all;
-    that is `WIDE` here. 0 where no two pairs touch.
+    that is `HALF_CONTACT` here. 0 where no two pairs touch.
     """
     path = elastic.path
     if path.transverse_ratio <= 1.0:
         return 0.0
     unit = half_width(elastic, 0.0, 1.0)
-    force = (WIDE * float(elastic.pair.normal_module) / unit) ** 2
+    force = (HALF_CONTACT * float(elastic.pair.normal_module) / unit) ** 2
     first = 0.5 * (path.start + path.lowest_single)
     found = _matrix(elastic, np.array([first, first + path.base_pitch]), force)
     return float(0.5 * (found[0, 1] + found[1, 0]))

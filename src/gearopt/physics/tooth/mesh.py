@@ -16,7 +16,7 @@ from gearopt.physics.geometry.fillet import profile
 
 DENSE = 1500  # points on fillet and on flank, between which a profile is interpolated: to 1e-6 m_n
 TEETH = 5  # that are meshed: the loaded one and two neighbours on either side
-COARSE = 0.3  # modules: elements of unloaded teeth, and of the ring below its outer line
+COARSE_ELEMENT = 0.3  # modules: elements of unloaded teeth, and of the ring below its outer line
 ROOT = 0.05  # modules: chords of fillets, which add material: 0.3 makes teeth 0.2 % too stiff
 GROWTH = 1.35  # of a row of elements to the next, away from the loaded flank
 BLEND = 0.5  # modules along a tooth over which columns turn from equal to graded ones
@@ -78,7 +78,7 @@ def gear_mesh(gear: Gear, bore: float, fineness: Fineness) -> GearMesh:
     module, halvings = float(gear.normal_module), fineness.halvings
     pitch = 2.0 * np.pi / float(gear.teeth)
     near = min(TEETH // 2, (int(gear.teeth) - 1) // 2)
-    down = _halved(_down(below.radii[0], 0.5 * bore, COARSE * module), halvings)
+    down = _halved(_down(below.radii[0], 0.5 * bore, COARSE_ELEMENT * module), halvings)
     root = below.at(_halved(_even(below.lengths[-1], ROOT * module), halvings))
     blocks, flanks = [], {}
     for place in range(-near, near + 1):
@@ -132,11 +132,11 @@ def _tooth_steps(
     last number: the arc length [mm] from which the shares hold; below they approach equal ones.
     """
     if fineness is None:
-        return np.linspace(0.0, 1.0, 5), _even(side.lengths[-1], COARSE * module), module
+        return np.linspace(0.0, 1.0, 5), _even(side.lengths[-1], COARSE_ELEMENT * module), module
     at = side.lengths
     low, high = np.interp([fineness.lowest, fineness.highest], side.radii, at)
     away = np.maximum(np.maximum(low - at, at - high), 0.0)
-    size = np.minimum(fineness.size + SPREAD * away, COARSE * module)
+    size = np.minimum(fineness.size + SPREAD * away, COARSE_ELEMENT * module)
     size = np.minimum(size, ROOT * module + SPREAD * np.maximum(at - fillet, 0.0))
     width = 2.0 * np.interp(0.5 * (low + high), at, side.angles * side.radii)
     blend = min(low, BLEND * module)

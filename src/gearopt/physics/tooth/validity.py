@@ -8,7 +8,8 @@ from gearopt.physics.tooth.foundation import SAINSOT_BORE_RATIOS, SAINSOT_HALF_A
 from gearopt.physics.tooth.ladder import LEVELS, RINGED, USUAL
 from gearopt.physics.tooth.trapezoid import is_waisted
 
-WIDE = 6.0  # modules of face width from which plane strain is nearer to the truth (an assumption)
+# modules of face width from which plane strain is nearer to the truth (an assumption)
+PLANE_STRAIN_FROM = 6.0
 EXACT = "finite elements"
 MEASURED = 1.4, 5.0  # bore ratios of the pairs on which `LEVELS` records errors
 WIDEST_ROOT = 0.17  # half angle of a root [rad] up to which they do
@@ -18,7 +19,7 @@ ANY_BORE = ("half plane and ring", "elements")  # bodies that larger ones suit a
 
 def usual_plane(pair: GearPair) -> str:
     """Return "strain" for a face width of at least 6 normal modules, else "stress"."""
-    return "strain" if pair.face_width >= WIDE * pair.normal_module else "stress"
+    return "strain" if pair.face_width >= PLANE_STRAIN_FROM * pair.normal_module else "stress"
 
 
 def usual_level(elastic: ElasticPair) -> str:

@@ -13,7 +13,7 @@ from gearopt.report.words import has_stages, limit_words, share
 
 BAR, ROW = 13.0, 24.0  # px: of a bar, and from one to the next
 ABOVE, BELOW, RIGHT = 30.0, 12.0, 66.0  # px around the bars; their values stand on the right
-MOST = 16  # bars
+MAX_BARS = 16  # bars
 
 
 def section(result: Result, measures: Measures) -> Section | None:
@@ -33,7 +33,7 @@ def conflict(result: Result, known: Sequence[str]) -> Drawing | None:
     """
     found: Mapping[str, float] = result.report.get("nearest") or {}
     names = [n for n in result.proof.get("conflict") or known if n in found]
-    rows = sorted((name for name in names if found[name] > 0.0), key=_order)[:MOST]
+    rows = sorted((name for name in names if found[name] > 0.0), key=_order)[:MAX_BARS]
     if not rows or max(found[name] for name in rows) <= 1.0:
         return None
     words = [limit_words(name, has_stages(result)) for name in rows]

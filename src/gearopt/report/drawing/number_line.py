@@ -11,7 +11,7 @@ EDGE = 34.0  # px left and right of the line
 ROW, BAR = 58.0, 11.0  # px: from a row to the next, and of a bar
 BARE = 40.0  # px from a row without texts below it to the next
 ABOVE, BELOW = 34.0, 36.0  # px: for the texts of guides, and for the axis
-ROOM = 1.02  # of the largest value to the smallest, where they are alike
+LEAST_SPREAD = 1.02  # of the largest value to the smallest, where they are alike
 MARKS, FEW = (1.0, 2.0, 5.0), 6  # ticks of a decade; about so many of them
 NARROW = 4.0  # of the largest to the smallest value: below it ticks are evenly apart
 
@@ -59,8 +59,8 @@ def number_line(
     """Draw spans below each other on one axis; sign: before the number of every tick."""
     values = [v for r in rows for v in (r.start, r.end)] + [g.value for g in guides]
     low, high = min(values), max(values)
-    if high < low * ROOM:
-        low, high = low / ROOM, high * ROOM
+    if high < low * LEAST_SPREAD:
+        low, high = low / LEAST_SPREAD, high * LEAST_SPREAD
     pitch = ROW if any(any(row.texts) for row in rows) else BARE
     scale, tall = Scale(low, high), ABOVE + pitch * len(rows) + BELOW
     sheet = Sheet(Window(0.0, WIDE, 0.0, tall, (0.0, 0.0, 0.0, 0.0)), 1.0)

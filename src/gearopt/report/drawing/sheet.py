@@ -16,7 +16,7 @@ LETTER = 0.56  # mean width of a letter over the size, sans serif
 CELL = 5.0  # of the grid that counts ink, px
 ARROW = (9.0, 2.6)  # length and half width of an arrow head, px
 HATCH = 9.0  # between the lines of a hatch, px
-MOST = 1_000_000  # points or lines of one mark: more than any drawing has room for
+MAX_POINTS = 1_000_000  # points or lines of one mark: more than any drawing has room for
 COLOURS = 8  # --series-1 ... in frame.css, distinct for the colour-blind
 Point = tuple[float, float]
 
@@ -347,7 +347,7 @@ def _colour(name: str) -> str:
 
 def _count(wanted: float, minimum: int) -> int:
     """Return a number of points or lines; ValueError where a drawing has no room for so many."""
-    if not wanted <= MOST:
+    if not wanted <= MAX_POINTS:
         raise ValueError(f"a drawing of {wanted:.0e} points: a size is far from the others")
     return max(minimum, int(wanted))
 

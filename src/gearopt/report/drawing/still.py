@@ -18,7 +18,7 @@ SIDE, BELOW, ABOVE = 24.0, 30.0, 28.0  # px around it, for texts
 NARROW, ROW = 300.0, 16.0  # px: smallest width, for names above; from one row of them to the next
 OUT = 6.0  # px from an edge to its size
 RIM = 0.9  # of the farthest edge's distance from the middle: as far out sizes may be written
-FINE = 2.4  # px from tooth to tooth, below which teeth are not drawn
+TOOTH_SPACING = 2.4  # px from tooth to tooth, below which teeth are not drawn
 TOUCH = 1e-6  # mm by which bodies that touch may overlap
 
 
@@ -297,7 +297,7 @@ def _rod(sheet: Sheet, rod: Rod, seen: View) -> None:
     """Draw side and near face: half ellipses whose long axes are across the axis, or teeth."""
     near, far = (rod.end, rod.start) if seen.eye[0] > 0.0 else (rod.start, rod.end)
     r = sheet.scale * rod.radius
-    if rod.outline and 2.0 * math.pi * r / max(1, len(rod.outline) / 4) > FINE:
+    if rod.outline and 2.0 * math.pi * r / max(1, len(rod.outline) / 4) > TOOTH_SPACING:
         side, face = _toothed(sheet, rod, (near, far), seen)
     else:
         side, face = _round(sheet, rod, (near, far), seen)

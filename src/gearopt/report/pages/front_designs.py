@@ -12,7 +12,7 @@ from gearopt.report.words import MODULE, heading, is_module, limit_words, parted
 
 MAIN = (MODULE, "pinion_teeth", "face_width_mm", "wheel_teeth")  # of a stage, the first ones first
 AXES, FEW = 9, 6  # of parallel coordinates beside the objectives, about; of names of any length
-SAME = 1e-9  # relative; numbers that differ by less are alike
+NUMBER_TIE = 1e-9  # relative; numbers that differ by less are alike
 DIFFERENT = "Other numbers that differ between designs (front.csv has all)"
 Numbers = dict[str, Cell]  # of a design, by what they are called
 
@@ -98,7 +98,7 @@ def _varies(values: Sequence[Any]) -> bool:
     known = [v for v in values if v is not None]
     if not all(map(_is_number, known)) or not known:
         return False
-    return bool(max(known) - min(known) > SAME * max(map(abs, known)))
+    return bool(max(known) - min(known) > NUMBER_TIE * max(map(abs, known)))
 
 
 def designs(

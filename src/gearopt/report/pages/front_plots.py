@@ -7,7 +7,7 @@ from typing import Any
 from gearopt.optimise.pareto.front import Front
 from gearopt.report.pages.front_designs import Numbers
 from gearopt.report.pages.front_stills import in_space, lines, scatter
-from gearopt.report.pages.front_values import FAR, ROOM, Drawn, Span
+from gearopt.report.pages.front_values import AXIS_MARGIN, FARTHEST_SHOWN, Drawn, Span
 from gearopt.report.section import LOOK, Figure, axis, layout
 
 GREY = "--axis"
@@ -47,11 +47,11 @@ def _pair(found: Drawn, i: int, k: int) -> Figure:
 def _wide(found: Drawn, k: int) -> Span:
     """Return the ends of an axis, with the limits that have no design if they are near."""
     low, high = found.span(k)
-    reach = FAR * (high - low)
+    reach = FARTHEST_SHOWN * (high - low)
     known = [c[k] for c in found.corners]
     lowest = [v for v in known if v is not None and low - reach < v < low]
     farther = [p[k] for p in found.beaten if p[k] > high]
-    room = ROOM * (high - low)
+    room = AXIS_MARGIN * (high - low)
     return min([low, *(v - room for v in lowest)]), max([high, *(v + room for v in farther)])
 
 

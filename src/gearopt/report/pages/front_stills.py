@@ -11,7 +11,7 @@ WIDE, HIGH = 620.0, 340.0  # px of a plot inside its axes
 LEFT, BELOW, EDGE = 74.0, 46.0, 16.0  # px around it
 CUBE = 330.0  # px of the view in space
 DOT = 2.6  # px, radius of a design
-CLOSE = 60.0  # px from one tick to the next, at least
+TICK_SPACING = 60.0  # px from one tick to the next, at least
 
 
 def scatter(

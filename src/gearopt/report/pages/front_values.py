@@ -7,9 +7,9 @@ from gearopt.optimise.pareto.front import Front
 from gearopt.report.front import head, rules
 from gearopt.report.measures import Measures
 
-ROOM = 0.06  # of the range of a front, free around it
-FAR = 0.35  # of the range: beaten designs that are farther off are left out
-MOST = 1500  # beaten designs that are drawn, those nearest to the front
+AXIS_MARGIN = 0.06  # of the range of a front, free around it
+FARTHEST_SHOWN = 0.35  # of the range: beaten designs that are farther off are left out
+MAX_BEATEN = 1500  # beaten designs that are drawn, those nearest to the front
 Span = tuple[float, float]
 
 
@@ -34,7 +34,7 @@ class Drawn:
     def span(self, k: int) -> Span:
         """Return the ends of an objective's axis."""
         low, high = min(self.column(k)), max(self.column(k))
-        room = ROOM * (high - low) or 0.02 * abs(high) or 1.0
+        room = AXIS_MARGIN * (high - low) or 0.02 * abs(high) or 1.0
         return low - room, high + room
 
 
@@ -71,5 +71,5 @@ def near(front: Front) -> list[tuple[float, ...]]:
         shares = [(v - low) / wide for v, (low, wide) in zip(values, ends, strict=True)]
         return float(max(shares))
 
-    inside = [values for values in front.beaten if far(values) <= 1.0 + FAR]
-    return sorted(inside, key=far)[:MOST]
+    inside = [values for values in front.beaten if far(values) <= 1.0 + FARTHEST_SHOWN]
+    return sorted(inside, key=far)[:MAX_BEATEN]

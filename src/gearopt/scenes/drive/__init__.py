@@ -37,7 +37,7 @@ from gearopt.scenes.reading.ask import Ask, unseeded
 
 WEAKER = " Its contact ratio is less than the one given, its root is weaker."
 METHODS = ("exact", "process-one", "process-two", "sa", "sa-polish", "sa-paper", "smooth")
-ANY = 1e9  # gap of a design that need not be the best
+ANY_DESIGN_GAP = 1e9  # gap of a design that need not be the best
 SMOOTH = "smooth"  # of real-valued sizes that ratings limit
 CONTINUOUS = ("ipopt", "gp", "multistart", SMOOTH)  # methods that take no whole teeth
 
@@ -143,7 +143,7 @@ def _ways_out(scene: Scene, clock: Clock) -> Remedies:
 
 def _status(scene: Scene, clock: Clock) -> str:
     """Return whether a drive that ratings limit is possible, in what is left of the time."""
-    ask = Ask(budget=replace(clock.left, gap=ANY), watch=clock.watch)
+    ask = Ask(budget=replace(clock.left, gap=ANY_DESIGN_GAP), watch=clock.watch)
     found = best_count(scene, ask, _real, _answer) if scene.several else _answer(scene, ask)
     return found.status if found.value is None else "feasible"
 

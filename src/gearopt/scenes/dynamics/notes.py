@@ -13,7 +13,7 @@ from gearopt.scenes.dynamics.tables import MOST_OUTPUTS
 DEPTH = 2.0  # modules: working depth of the teeth; axes that are further apart have none in mesh
 APART = 0.1  # modules by which axes part or teeth give way without changing the stiffness much
 CLEARANCE = 0.25  # modules between tips and roots (ISO 53)
-FINE = 10.0  # times in a period of the fastest motion at which it is told, at least
+OUTPUTS_PER_PERIOD = 10.0  # times in a period of the fastest motion at which it is told, at least
 
 
 def warnings(design: DynamicsDesign, module: float) -> list[str]:
@@ -108,10 +108,10 @@ def _too_few(times_ms: Sequence[float], design: DynamicsDesign) -> list[str]:
     """Return what is missed between the times at which a motion is told, where they are few."""
     fastest = max(design.mesh_frequency_Hz, design.equilibrium.frequencies_Hz[-1])
     duration = 1e-3 * (times_ms[-1] - times_ms[0])
-    needed = math.ceil(FINE * fastest * duration) + 1
+    needed = math.ceil(OUTPUTS_PER_PERIOD * fastest * duration) + 1
     if len(times_ms) >= needed:
         return []
-    most = MOST_OUTPUTS / (FINE * fastest)
+    most = MOST_OUTPUTS / (OUTPUTS_PER_PERIOD * fastest)
     change = f"outputs = {needed}" if needed <= MOST_OUTPUTS else f"at most {1e3 * most:.3g} ms"
     return [
         f"The motion is given at {len(times_ms):,} times, {len(times_ms) / fastest / duration:.2g} "

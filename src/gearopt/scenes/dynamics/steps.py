@@ -7,7 +7,7 @@ from pydantic import ValidationError
 
 from gearopt.formulations.dynamics.design import Chosen
 from gearopt.formulations.dynamics.orbit.chosen import chosen
-from gearopt.formulations.dynamics.orbit.climbing import NEAR, begun, posed
+from gearopt.formulations.dynamics.orbit.climbing import JUDGE_MARGIN, begun, posed
 from gearopt.formulations.dynamics.orbit.impossible import impossible, limited
 from gearopt.formulations.dynamics.orbit.least_vibration import Exchanged, exchange, least, methods
 from gearopt.formulations.dynamics.orbit.task import MICRO, VARIABLES, Task
@@ -98,7 +98,7 @@ def _certified(task: Task, made: Exchanged | None, clock: Clock, ask: Ask) -> Re
 def _judged(result: Result, best: Chosen, task: Task) -> Result:
     """Return the result with its objective in mm: simulated, where motions were collocated.
 
-    What is simulated NEAR the objective of the problem leaves the status as it is.
+    What is simulated JUDGE_MARGIN the objective of the problem leaves the status as it is.
     """
     assert result.value is not None
     value, limits = result.value / MICRO, {k: v for k, v in result.limits.items() if "[" not in k}
@@ -109,7 +109,7 @@ def _judged(result: Result, best: Chosen, task: Task) -> Result:
     if task.backlash is not None:
         at = dict(zip(best.dense_rpm, best.dense_mm, strict=True))
         simulated = max(at[speed] for speed in best.speed_rpm)
-        if simulated > (1.0 + NEAR) * value and result.status == "stationary":
+        if simulated > (1.0 + JUDGE_MARGIN) * value and result.status == "stationary":
             text = (
                 f"simulated, the objective is {MICRO * simulated:.4g} µm, not that of its problem"
             )
@@ -122,7 +122,7 @@ def _judged(result: Result, best: Chosen, task: Task) -> Result:
 def told(best: Chosen, result: Result, periods: int) -> list[str]:
     """Return what must be known of the best design before its numbers."""
     found, objective = [], result.value or 0.0
-    if best.dense_maximum_mm > (1.0 + NEAR) * objective:
+    if best.dense_maximum_mm > (1.0 + JUDGE_MARGIN) * objective:
         more = 100.0 * (best.dense_maximum_mm / objective - 1.0)
         found.append(
             f"Between the {len(best.speed_rpm)} speeds the deformation reaches "

@@ -17,9 +17,9 @@ from gearopt.optimise.explaining.explanation import (
 )
 from gearopt.optimise.explaining.handles import Handle, handles
 from gearopt.optimise.explaining.repair import (
-    BEYOND,
     CERTAIN,
-    TAKEN_BACK,
+    FACTORS_TRIED,
+    SLACK_TRIED,
     any_resolves,
     conflict,
     least_value,
@@ -48,8 +48,8 @@ BASIS = (
     "Effect of relaxing a limit or a step: solved again"
 )
 HELD = f", with these whole numbers and choices,{BASIS}"
-UNSURE = 0.02  # between sensitivities by multipliers and by solving again that differ
-PART = 1e-3  # of the change up to which whole numbers and choices stay: the step of a re-solve
+SLOPE_TOLERANCE = 0.02  # between sensitivities by multipliers and by solving again that differ
+STEP = 1e-3  # of the change up to which whole numbers and choices stay: the step of a re-solve
 UNDECIDED = "where a cell is empty, solving again gave no certain answer"
 UNPROVEN = "numbers are not solved again, because the answer is not proven optimal"
 
@@ -202,7 +202,7 @@ def alone(
     def works(factor: float, back: float = 0.0) -> bool | None:
         return words.get(tried(factor, back))
 
-    wider = [f for f in BEYOND if at(f) is not None]
+    wider = [f for f in FACTORS_TRIED if at(f) is not None]
     if not wider:
         return None
     least = least_value(1.0, tuple(wider), works)
@@ -211,7 +211,7 @@ def alone(
     value = eased(number.value, least, way)
     was, write = (toml_text(written(v, number.path)) for v in (number.value, value))
     change = Change(number.key, was, write, apart(number.value, value))
-    verified = {"with": tried(least), "with_less": tried(least, TAKEN_BACK)}
+    verified = {"with": tried(least), "with_less": tried(least, SLACK_TRIED)}
     verified = {k: "feasible" if w in THERE else w for k, w in verified.items()}
     kind, what = "less" if handle.given else "alone", number.key
     return Remedy(kind, what, (change,), change.factor, None, verified)
@@ -254,7 +254,7 @@ def of_design(
             low, high = now * (1.0 - down), now * (1.0 + up)
             unit = getattr(number.value, "unit", "")
             ranges.append(f"{number.key} from {low:.10g} to {high:.10g} {unit}".rstrip())
-            small = PART * min((c for c in (down, up) if c > 0.0), default=0.0)
+            small = STEP * min((c for c in (down, up) if c > 0.0), default=0.0)
             return small * (down > 0.0), small * (up > 0.0)
         return down, up
 
@@ -274,7 +274,11 @@ def _sure(found: Influence) -> Influence:
     """Return without a sensitivity by multipliers that is neither side's: it is not unique."""
     sides = [s for s in found.resolved if s is not None]
     own = found.sensitivity
-    if own is None or not sides or any(abs(own - s) <= UNSURE * max(1.0, abs(s)) for s in sides):
+    if (
+        own is None
+        or not sides
+        or any(abs(own - s) <= SLOPE_TOLERANCE * max(1.0, abs(s)) for s in sides)
+    ):
         return found
     return replace(found, sensitivity=None)
 

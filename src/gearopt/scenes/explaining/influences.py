@@ -14,14 +14,14 @@ from gearopt.optimise.explaining.sensitivity import Sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Array
-from gearopt.scenes.explaining.numbers import FIRST, Number, Path, eased, moved, times
+from gearopt.scenes.explaining.numbers import STEP_FROM_ZERO, Number, Path, eased, moved, times
 from gearopt.units import Quantity
 
 POSED = 1e-5  # of ln number, to either side, at most: where a problem is posed again
-NEAR = 1e-4  # relative, of the re-solves: small enough for most choices to stay as they are
+STEP = 1e-4  # relative, of the re-solves: small enough for most choices to stay as they are
 NEAREST = 1e-10  # relative change of a number below which it is not asked whether they do
 HALVINGS = 12  # of the logarithm of the change up to which they do
-SAME = 1e-9  # relative: objectives that are equal
+OBJECTIVE_TIE = 1e-9  # relative: objectives that are equal
 SOLVED = 1e-7  # relative: the same of what was solved to GAP
 FARTHEST = 64  # whole steps up to which the first that makes a difference is sought
 
@@ -42,7 +42,7 @@ class Basis:
     posed: Callable[[Any], Problem] | None = None
     point: Array | None = None
     known: Sensitivities | None = None
-    step: float = NEAR
+    step: float = STEP
     memo: dict[tuple[Path, float], float | None] = field(default_factory=dict)
 
     def chained(self, scene: Any, number: Number, step: float) -> float | None:
@@ -106,7 +106,7 @@ class Basis:
         problem = self.posed(scene)
         lower, upper, _ = problem.bounds()
         if (lower == upper).all():
-            return float(problem.batch(self.point[None]).F[0, 0]), SAME
+            return float(problem.batch(self.point[None]).F[0, 0]), OBJECTIVE_TIE
         found = solve(problem.starting(self.point), "ipopt")
         return (found.value if found.status in CERTAIN else None), SOLVED
 
@@ -167,7 +167,7 @@ def stepped(
     if not getattr(now, "number", now):
         if not isinstance(now, Quantity):
             return "", None
-        new = replace(now, number=now.number + FIRST)
+        new = replace(now, number=now.number + STEP_FROM_ZERO)
         return _brings(scene, number, f"to {new}", new, value, solved)
     if direction == 0:
         return "", None
@@ -206,14 +206,14 @@ def _whole(
     if not known:
         return "", None
     way = min(known, key=lambda w: known[w])
-    if known[way] < -SAME or direction == 0:
+    if known[way] < -OBJECTIVE_TIE or direction == 0:
         return f"{way:+d}", known[way]
     low, high, best = 1, 2, known[way]
     while high <= FARTHEST:
         found = brings(way * high)
         if found is None:
             return f"{way:+d}", known[way]
-        if found < -SAME:
+        if found < -OBJECTIVE_TIE:
             best = found
             break
         low, high = high, 2 * high
@@ -222,7 +222,7 @@ def _whole(
     while high - low > 1:  # a wider range never does worse
         middle = (low + high) // 2
         found = brings(way * middle)
-        if found is not None and found < -SAME:
+        if found is not None and found < -OBJECTIVE_TIE:
             high, best = middle, found
         else:
             low = middle

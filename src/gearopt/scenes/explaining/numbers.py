@@ -10,14 +10,14 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import PydanticCustomError
 
-from gearopt.optimise.explaining.explain import DIGITS, ROOM
+from gearopt.optimise.explaining.explain import DIGITS, FEASIBILITY_MARGIN
 from gearopt.scenes.reading.fields import Reads
 from gearopt.scenes.reading.toml import dotted, exact, toml_text
 from gearopt.units import Quantity
 
 SHORT = 4  # digits of a number that is kept as it is
 MET = 5e-9  # relative, by which it may miss: half of what a row may exceed its limit
-FIRST = Fraction(1, 10)  # step from zero, in the unit of a number
+STEP_FROM_ZERO = Fraction(1, 10)  # step from zero, in the unit of a number
 SLIGHT = 1e-4  # mm; by at most this a length in a remedy is rounded
 Path = tuple[str | int, ...]
 
@@ -194,8 +194,8 @@ def eased(value: Any, factor: float, direction: int) -> Any:
     """Return a number moved by a factor >= 1 up (+1) or down (-1), rounded to its easy side.
 
     Integers stay integers (one that is meant but for rounding is taken); others keep DIGITS digits
-    and get ROOM, to be feasible in doubles. Zero is shifted by (factor - 1) FIRST in its own unit,
-    a whole one by ones.
+    and get FEASIBILITY_MARGIN, to be feasible in doubles. Zero is shifted by (factor - 1)
+    STEP_FROM_ZERO in its own unit, a whole one by ones.
     """
     if not getattr(value, "number", value):
         return _shifted(value, factor, direction)
@@ -205,7 +205,7 @@ def eased(value: Any, factor: float, direction: int) -> Any:
     moved = Fraction(factor) ** direction
     if isinstance(value, int):
         number, near = float(value * moved), round(value * moved)
-        if abs(number - near) <= ROOM * number:
+        if abs(number - near) <= FEASIBILITY_MARGIN * number:
             return near
         return math.ceil(number) if direction > 0 else math.floor(number)
     return _rounded(value * moved, direction)
@@ -222,7 +222,7 @@ def rounded(size: float, like: Quantity, direction: float) -> str:
 def _shifted(zero: Any, factor: float, direction: int) -> Any:
     if isinstance(zero, int):
         return direction * math.ceil(factor - 1.0)
-    number = direction * _rounded((Fraction(factor) - 1) * FIRST, 1)
+    number = direction * _rounded((Fraction(factor) - 1) * STEP_FROM_ZERO, 1)
     return replace(zero, number=number) if isinstance(zero, Quantity) else number
 
 
@@ -236,7 +236,7 @@ def _rounded(value: Fraction, direction: int) -> Fraction:
     short = decimal(value, SHORT, ROUND_HALF_EVEN)
     if abs(short - value) <= MET * value:
         return short
-    roomy = value * Fraction(1.0 + ROOM) ** direction
+    roomy = value * Fraction(1.0 + FEASIBILITY_MARGIN) ** direction
     return decimal(roomy, DIGITS, ROUND_CEILING if direction > 0 else ROUND_FLOOR)
 
 

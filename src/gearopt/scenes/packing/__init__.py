@@ -51,7 +51,7 @@ CLEARANCE = quantity("length", "0 mm", zero=True)
 PLACE = pair(quantity("length", "10 mm", zero=True, signed=True))
 NONE = units.parse("0 mm", "length")
 SMOOTH = ("ipopt", "multistart")  # methods that need derivatives
-MOMENT = 0.1  # seconds for a bound after a run that has spent all of its time
+BOUND_SECONDS = 0.1  # seconds for a bound after a run that has spent all of its time
 UNTRIED = (
     "sensitivities are those of this arrangement; whole numbers are not tried, because the packing "
     "is not proven to be the best"
@@ -316,11 +316,11 @@ def solve(scene: Scene, ask: Ask) -> Result:
 
 
 def _bounded(plan: Plan, result: Result, ask: Ask) -> Result:
-    """Return a result with the computed bound of its plan, in the time left, or MOMENT."""
+    """Return a result with the computed bound of its plan, in the time left, or BOUND_SECONDS."""
     left = ask.budget.less(result.seconds).seconds
     clock = Clock(Budget(), ask.watch)
     clock.evaluations, clock.best = result.evaluations, result.value or math.inf
-    floor = bound(plan, lateness(clock, None if left is None else max(left, MOMENT)))
+    floor = bound(plan, lateness(clock, None if left is None else max(left, BOUND_SECONDS)))
     relaxation = replace(result, objective={"value": None}, bound=floor.value)
     relaxation = replace(relaxation, status="feasible", proof=packing.proof(floor))
     return reconcile(result, relaxation, ask.gap)

@@ -28,7 +28,7 @@ from gearopt.scenes.reading.ask import Ask
 
 SHOWN = {"mm": "mm (shown in um)"}  # units of criteria as they are read
 DEFAULT = "annealing"  # of what has no proven search
-FEW = 2.0  # contact ratio below which free shapes are searched
+FREE_SHAPES_BELOW = 2.0  # contact ratio below which free shapes are searched
 AT_END = 1e-6  # of a range: a value as near to its end is at it
 WORST = 1e-3  # relative gap of a worst case within tolerances
 ROBUST = "the worst case is annealed: without tolerance the least value is proven, with it none is"
@@ -140,7 +140,7 @@ def _free(asked: ReliefTable, mesh: Mesh, ask: Ask) -> tuple[Result, Removed | N
 
 def _free_problem(asked: ReliefTable, mesh: Mesh) -> Problem:
     """Return the problem of any convex shape; SolveError where it has none."""
-    if float(mesh.cycle.path.transverse_ratio) >= FEW:
+    if float(mesh.cycle.path.transverse_ratio) >= FREE_SHAPES_BELOW:
         raise SolveError(
             'a free shape is searched for contact ratios below 2: write shape = "linear", or '
             "another one, in [relief]"

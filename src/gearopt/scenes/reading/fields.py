@@ -24,7 +24,7 @@ from gearopt.units import Quantity
 LARGEST = Fraction(10) ** 30  # of any number in a file: beyond it lies a slip, not a gear
 SMALLEST = 1 / LARGEST
 FAR_OFF = math.log(100.0)  # from the example: there another unit is likelier
-BEYOND = "is out of any sensible range (1e-30 to 1e30)"
+OUT_OF_RANGE = "is out of any sensible range (1e-30 to 1e30)"
 # A comma before three digits may separate thousands, so it is not taken for a decimal one.
 _NUMBER = r"(\+?[0-9]*(?:\.|,(?![0-9]{3}(?![0-9])))?[0-9]+(?:[eE][+-]?[0-9]{1,3})?)"
 _THOUSANDS = re.compile(r"\s*([0-9]{1,3})([,.])([0-9]{3})\s*(|[A-Za-z][\w ^/*]*)\s*", re.ASCII)
@@ -133,7 +133,7 @@ def quantity(
         if not signed and (found.number < 0 or (found.number == 0 and not zero)):
             return "is below zero" if zero else "is not greater than zero"
         if found.number and not SMALLEST < abs(found.number) < LARGEST:
-            return BEYOND
+            return OUT_OF_RANGE
         above = bound is not None and found.value > bound.value * (1 + 1e-12)
         return f"is above {limit}" if above else ""
 
@@ -221,7 +221,7 @@ def number(
         else:
             found = LARGEST if _is_far(value) else Fraction(value)
         if found and not SMALLEST < abs(found) < LARGEST:
-            raise refuse(BEYOND)
+            raise refuse(OUT_OF_RANGE)
         if not inside(found):
             raise refuse(f"is not {above} {float(maximum):.7g}", slip(value, found))
         return found

@@ -28,13 +28,14 @@ from gearopt.scenes.servo.scene import Scene
 from gearopt.units import Quantity
 
 DIGITS = 6  # of a number that is tried
-FAR = 1000.0  # factor up to which a limit is moved
-WIDE = 2.0  # the same of numbers that widen the search
-CLOSE = 1e-4  # relative: between a factor that will do and one that will not
+FARTHEST_FACTOR = 1000.0  # factor up to which a limit is moved
+WIDEST_FACTOR = 2.0  # the same of numbers that widen the search
+FACTOR_TOLERANCE = 1e-4  # relative: between a factor that will do and one that will not
 ROUND = 1e-2  # relative, by which a proposal may be easier than it must, to be short
-BACK = 1e-3  # a remedy that much smaller must be impossible
+SLACK_TRIED = 1e-3  # a remedy that much smaller must be impossible
 ABOVE = 1e-9  # relative, by which a stiffer train is asked for than the stiffest known
-SMALL = tuple(Fraction(k, 20) for k in (4, 5, 6, 8, 10, 12, 14, 16, 18))  # mm, as makers list them
+# mm, as makers list them
+SHAFT_DIAMETERS = tuple(Fraction(k, 20) for k in (4, 5, 6, 8, 10, 12, 14, 16, 18))
 LIMITS: tuple[tuple[Path, int], ...] = (  # of a file, and the way that is easier
     (("stiffness", "frequency"), -1),
     (("stiffness", "windup"), 1),
@@ -88,7 +89,7 @@ def alone(scene: Scene, clock: Clock, known: frozenset[str]) -> tuple[Remedy, ..
             value = _given(scene, path)
             if value is None or dotted(path) in known:
                 continue
-            far = FAR if (path, way) in LIMITS else WIDE
+            far = FARTHEST_FACTOR if (path, way) in LIMITS else WIDEST_FACTOR
             try:
                 one = _moved_alone(scene, path, value, way, far, clock)
             except SolveError:  # a box that is not decided: this number is not proposed
@@ -143,12 +144,12 @@ def _moved_alone(
     if not works(far):
         return None
     low, high = 1.0, far
-    while high > low * (1.0 + CLOSE):
+    while high > low * (1.0 + FACTOR_TOLERANCE):
         middle = math.sqrt(low * high)
         low, high = (low, middle) if works(middle) else (middle, high)
     least = times(value, high**way)
     new = _whole(least, way) if whole else short(least, way)
-    less = new - way if whole else cut(times(least, (1.0 - BACK) ** way), way)
+    less = new - way if whole else cut(times(least, (1.0 - SLACK_TRIED) ** way), way)
     kind = "less" if path in ASKED else "alone"
     return _verified(scene, path, (value, new, less), (kind, low), clock)
 
@@ -218,7 +219,7 @@ def _box(scene: Scene, clock: Clock) -> Remedy | None:
     status = solve_within(clock, train_problem(larger.choice())).status
     if status != "optimal":
         return None
-    less = some_train(_scaled(scene, least[1] * (1.0 - BACK)), clock)
+    less = some_train(_scaled(scene, least[1] * (1.0 - SLACK_TRIED)), clock)
     verified = {"with": status, "rounded": f"by up to {100 * ROUND:g} %"}
     verified["with_less"] = "infeasible" if less is None else "feasible"
     factor = max(change.factor for change in changes)
@@ -236,10 +237,10 @@ def smallest_scale(scene: Scene, clock: Clock) -> tuple[float, float] | None:
 
     None where no box helps.
     """
-    low, high = 1.0, FAR
+    low, high = 1.0, FARTHEST_FACTOR
     if some_train(_scaled(scene, high), clock) is None:
         return None
-    while high > low * (1.0 + CLOSE):
+    while high > low * (1.0 + FACTOR_TOLERANCE):
         middle = math.sqrt(low * high)
         fits = some_train(_scaled(scene, middle), clock) is not None
         low, high = (low, middle) if fits else (middle, high)
@@ -272,7 +273,11 @@ def _module(scene: Scene, clock: Clock) -> Remedy | None:
     def far(m: Fraction) -> float:
         return min(float(max(m, o) / min(m, o)) for o in sizes)
 
-    others = [m for m in (*SMALL, *SERIES_I, *SERIES_II) if m not in sizes and far(m) <= WIDE]
+    others = [
+        m
+        for m in (*SHAFT_DIAMETERS, *SERIES_I, *SERIES_II)
+        if m not in sizes and far(m) <= WIDEST_FACTOR
+    ]
     for module in sorted(others, key=far):
         larger = put(scene, ("train", "modules"), (*own, own[0].of(module)))
         if some_train(larger, clock) is None:
@@ -343,4 +348,8 @@ def _stiffest(scene: Scene, clock: Clock) -> float | None:
         else:
             above = asked
         middle = math.sqrt(best * above) if best else 0.0
-        asked = middle if middle > (best or 0.0) * (1.0 + CLOSE) else (best or 0.0) * (1.0 + ABOVE)
+        asked = (
+            middle
+            if middle > (best or 0.0) * (1.0 + FACTOR_TOLERANCE)
+            else (best or 0.0) * (1.0 + ABOVE)
+        )

@@ -14,7 +14,7 @@ from gearopt.optimise.explaining.explanation import Change, Remedies, Remedy
 from gearopt.optimise.solve import solve_within
 from gearopt.scenes.explaining.numbers import moved, times
 from gearopt.scenes.reading.toml import dotted
-from gearopt.scenes.servo.alone import BACK, short
+from gearopt.scenes.servo.alone import SLACK_TRIED, short
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import THICKNESS, TWO_SIDED
 from gearopt.units import Quantity
@@ -47,7 +47,7 @@ def _way(scene: Scene, key: str, missing: dict[int, float], clock: Clock) -> Rem
         if was is None or clock.over:
             return None
         by = -lacking if key == "minimum_backlash" or key in THICKNESS else lacking / slope
-        new, less = _moved(was, key, by), _moved(was, key, by * (1.0 - BACK), exact=True)
+        new, less = _moved(was, key, by), _moved(was, key, by * (1.0 - SLACK_TRIED), exact=True)
         if new is None or (changed := moved(changed, path, new)) is None:
             return None
         back = None if less is None or back is None else moved(back, path, less)

@@ -24,10 +24,10 @@ from gearopt.scenes.servo.train import errors, of_point
 from gearopt.units import Quantity
 
 DIGITS = 5  # of a number that is proposed; rounded to the easy side
-ROOM = 1e-9  # by which a proposal is easier, to be feasible in doubles
-BACK = 1e-3  # a remedy that much smaller must be impossible
+FEASIBILITY_MARGIN = 1e-9  # by which a proposal is easier, to be feasible in doubles
+SLACK_TRIED = 1e-3  # a remedy that much smaller must be impossible
 LOOSE = "90 deg"  # an error that no train misses
-LATE = "time ran out before the cause was identified"
+CAUSE_UNKNOWN = "time ran out before the cause was identified"
 PATIENCE = 20.0, 5.0  # seconds, for numbers that help alone; where a duty chooses
 NAMED = 3  # sources of error that the message names
 ASIDE = "the cause is not the accuracy alone: even without a maximum error"
@@ -97,7 +97,7 @@ def _cause(scene: Scene, clock: Clock, message: str) -> Remedies:
         if still.status == "optimal":
             return _of_duty(scene, clock)
         if still.status != "infeasible":
-            return Remedies(message=LATE)
+            return Remedies(message=CAUSE_UNKNOWN)
         message = still.message
     rooms = blocked(scene, clock)
     if asked is None and rooms is not None:
@@ -147,7 +147,7 @@ def _other(scene: Scene, message: str, clock: Clock) -> Remedies:
     if (other := impossible.with_wider_ratio(train, clock)) is not None:
         own, ends = (_span(scene, one) for one in (train, other))
         return Remedies(message=f"no whole teeth make the ratio {own}; {ends} some do")
-    return Remedies(message=LATE if clock.over else WHOLE)
+    return Remedies(message=CAUSE_UNKNOWN if clock.over else WHOLE)
 
 
 def _reached(scene: Scene, clock: Clock) -> str:
@@ -219,8 +219,8 @@ def _wider(scene: Scene, best: Quantity, bound: float, clock: Clock) -> Remedy:
     asked = scene.accuracy.error
     assert asked is not None
     scale = asked.value / float(asked.number)
-    write = f"{_rounded(best.value / scale * (1.0 + ROOM), True)} {asked.unit}"
-    less = units.parse(f"{best.value / scale * (1.0 - BACK)!r} {asked.unit}", "angle")
+    write = f"{_rounded(best.value / scale * (1.0 + FEASIBILITY_MARGIN), True)} {asked.unit}"
+    less = units.parse(f"{best.value / scale * (1.0 - SLACK_TRIED)!r} {asked.unit}", "angle")
     new = units.parse(write, "angle")
     factor = new.value / asked.value
     return Remedy(
@@ -240,7 +240,7 @@ def _finer(scene: Scene, best: Quantity, bound: float, clock: Clock) -> Remedy:
     """Return all deviations smaller by one factor: every train's error is in proportion to it."""
     asked = scene.accuracy.error
     assert asked is not None
-    part = asked.value / best.value * (1.0 - ROOM)
+    part = asked.value / best.value * (1.0 - FEASIBILITY_MARGIN)
     changes = [
         Change(f"mesh[{k}].{name}", _text(was), _text(_times(was, part)), 1.0 / part)
         for k, mesh in enumerate(scene.mesh, 1)
@@ -249,7 +249,7 @@ def _finer(scene: Scene, best: Quantity, bound: float, clock: Clock) -> Remedy:
     ]
     verified = {
         "with": _status(_scaled(scene, part), clock),
-        "with_less": _status(_scaled(scene, part * (1.0 + BACK), exact=True), clock),
+        "with_less": _status(_scaled(scene, part * (1.0 + SLACK_TRIED), exact=True), clock),
     }
     return Remedy("even", "all deviations", tuple(changes), 1.0 / part, bound, verified)
 
@@ -334,7 +334,7 @@ def _smaller(scene: Scene, places: tuple[Place, ...], clock: Clock) -> Remedy | 
         return None
     new = thinner(part)
     changes = _changes(scene, new)
-    less = thinner(min(part * (1.0 + BACK), 1.0))
+    less = thinner(min(part * (1.0 + SLACK_TRIED), 1.0))
     verified = {"with": _status(new, clock), "with_less": _status(less, clock)}
     kind = "least" if len(places) == 1 else "even"
     what = ".".join(places[0]) if len(places) == 1 else "all diameters"

@@ -7,7 +7,7 @@ from gearopt.formulations.strain_wave.demand import (
     FREE,
     LAND,
     OUTSIDE_BASE,
-    ROOM,
+    TIP_GAP,
     UNITS,
     Demand,
 )
@@ -39,8 +39,8 @@ def assumptions(scene: Scene) -> list[str]:
         )
     limits = (
         f"Limits of every gearing: lands and root spaces of {LAND:g} modules, tip circle "
-        f"{100.0 * (OUTSIDE_BASE - 1.0):.2g} % outside the base circle, {ROOM:g} modules between "
-        "the tips on the minor axis."
+        f"{100.0 * (OUTSIDE_BASE - 1.0):.2g} % outside the base circle, {TIP_GAP:g} modules "
+        "between the tips on the minor axis."
     )
     assumed = [*_sizes(scene), *_materials(scene, scene.demand()), *_sharing(scene)]
     ranges = list(_ranges(scene)) if scene.limited else []

@@ -24,7 +24,7 @@ from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
 GRADIENT = ("ipopt", "multistart")  # methods that take the smooth text
-CLOSE = 1e-9  # what a polished layout may violate
+POLISH_TOLERANCE = 1e-9  # what a polished layout may violate
 
 
 def problem(
@@ -87,7 +87,7 @@ def _polish(
     start = np.concatenate([x[:links], [box[n] for n in ("left", "bottom", "width", "height")]])
     if shape.longest:
         start = np.append(start, value)
-    value = value if lack <= CLOSE else math.inf
+    value = value if lack <= POLISH_TOLERANCE else math.inf
     ended = ipopt.run(text, budget, 0, watch, start=start)
     kept = annealing.Polished(x, value, ended.evaluations, ended.finished)
     if ended.x is None:
@@ -95,5 +95,5 @@ def _polish(
     turned = np.remainder(ended.x[:links] + np.pi, 2 * np.pi) - np.pi
     moved = np.concatenate([turned, x[links:]])
     found, excess = (float(v[0]) for v in violation(plain, moved[None]))
-    better = excess <= CLOSE and found < value
+    better = excess <= POLISH_TOLERANCE and found < value
     return kept._replace(x=moved, value=found) if better else kept

@@ -11,7 +11,8 @@ from gearopt.formulations.drive.layout.chain_kernel import ROUNDING, ZERO, measu
 from gearopt.optimise.jit_kernel import entry, inner
 
 HOT, COLD = 0.03, 3e-5  # temperatures, relative to the objective at the start
-WIDE, NARROW = 1.0, 1e-3  # steps of an angle [rad], shrinking with the root of the temperature
+# steps of an angle [rad], shrinking with the root of the temperature
+WIDEST_STEP, NARROWEST_STEP = 1.0, 1e-3
 FREE = 8.0  # times as hot where positions are free: meshes must come apart first
 PENALTY = 2.0  # energy of a violation as long as the root of the start's face area
 MESH = 6.0  # the same, of a centre distance, where positions are free
@@ -80,7 +81,7 @@ def anneal(chain, seed, start, stop, total, theta, state, found):
         state[1] = 1.0 + PENALTY * short / state[3]
     for step in range(start, stop):
         temperature = HOT * (COLD / HOT) ** (step / total)
-        size = max(WIDE * math.sqrt(temperature / HOT), NARROW)
+        size = max(WIDEST_STEP * math.sqrt(temperature / HOT), NARROWEST_STEP)
         k, m = np.random.randint(links), int(state[0])
         old, other = theta[k], m
         if many > 1 and np.random.random() < OTHER:

@@ -34,7 +34,7 @@ SETTINGS = {  # by method
     "sa-polish": {**ANGLES, "polished by": "ipopt, from the best point", **KEPT},
     "sa-paper": POSITIONS,
 }
-STEPS = 128_701  # where the budget names no evaluations: what the paper reports
+PAPER_EVALUATIONS = 128_701  # where the budget names no evaluations: what the paper reports
 SLICE = 20_000  # steps between two checks of clock and watcher: some milliseconds
 
 LOOKS = 100  # parts of a run at least, after each of which its best is reported
@@ -106,7 +106,7 @@ def method(chain: Chain, free: bool, polish: Polish | None = None) -> Any:
             own.evaluations, own.best = steps, best
             return own.tell()
 
-        steps = STEPS if maximum is None else max(1, maximum)
+        steps = PAPER_EVALUATIONS if maximum is None else max(1, maximum)
         found, made = anneal(chain, seed, steps, goes, free, LOOKS)
         x = point(chain, found)
         message = "" if x is not None else "no feasible layout was visited"

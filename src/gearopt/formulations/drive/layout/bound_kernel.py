@@ -14,7 +14,7 @@ from gearopt.formulations.drive.layout.chain_kernel import MARGIN, NONE, ZERO, c
 from gearopt.optimise.jit_kernel import inner
 
 PIVOTS = 40  # of a linear program of some ten columns; more would be a cycle
-SMALL = 1e-12  # of a pivot, where the columns are of the order of the sides
+PIVOT_TOLERANCE = 1e-12  # of a pivot, where the columns are of the order of the sides
 
 
 @inner
@@ -167,7 +167,7 @@ def entering(table, rows, columns, out):
     """Return the column that keeps all costs above zero in exchange for a row, -1 if none does."""
     into, least = -1, math.inf
     for c in range(columns):
-        if table[out, c] > SMALL and table[rows, c] < least * table[out, c]:
+        if table[out, c] > PIVOT_TOLERANCE and table[rows, c] < least * table[out, c]:
             into, least = c, table[rows, c] / table[out, c]
     return into
 

@@ -29,9 +29,9 @@ INSIDE = 1e-2  # a gap is proven smaller by this part of it, so that rounding le
 STARTS, STEPS = 8, 20_000  # annealing runs for the first layout, and their steps
 SETTINGS = {"first layout": f"{STARTS} annealing runs of {STEPS}, the best polished"}
 NODES = 5_000  # of a slice, below 0.1 s, after which a near miss is polished
-FEW = 100  # of a slice of uncompiled Python, some hundredths of a second
+UNCOMPILED_STEPS = 100  # of a slice of uncompiled Python, some hundredths of a second
 DEEP = 4_000  # open cells: a depth-first search leaves one per halving, some 60 halvings per angle
-NEAR = 1.0  # mm; a layout that lacks no more may be mended by polishing
+MENDED_WITHIN = 1.0  # mm; a layout that lacks no more may be mended by polishing
 
 Polish = Callable[[Array], tuple[Array, float]]
 
@@ -175,7 +175,7 @@ def _prove(
     for m in range(chain.factor.size):
         (cells, bounds), count, near, spent = first_cell(theta.size, turns), 1, math.inf, 0
         while count:
-            start, size = clock.best, FEW if warm().waits(branch) else NODES
+            start, size = clock.best, UNCOMPILED_STEPS if warm().waits(branch) else NODES
             limit = search.left(min(size, NODES - spent))
             state = (count, start, near, floor, rel, limit, theta)
             found = warm().call(clock, branch, chain, m, cells, bounds, *state)
@@ -188,7 +188,7 @@ def _prove(
             if best < start:
                 _take(search, x, best)
             if best < start or not count or spent >= NODES:
-                if best < start or near < NEAR:
+                if best < start or near < MENDED_WITHIN:
                     _take(search, *polish(x))
                 near, spent = math.inf, 0
             if not clock.tell() and (count or m + 1 < chain.factor.size):

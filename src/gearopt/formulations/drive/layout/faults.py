@@ -25,7 +25,8 @@ from gearopt.optimise.result import Budget, Watch
 
 TOUCH = 1e-6  # mm; by which a place may be out of reach
 INPUT = Place(0, (0.0, 0.0), (0.0, 0.0))  # the origin
-STEPS, STARTS = 5_000, 4  # short runs of annealing: most layouts that exist are found by these
+# short runs of annealing: most layouts that exist are found by these
+ANNEALING_STEPS, STARTS = 5_000, 4
 
 
 def faults(box: Gearbox) -> list[str]:
@@ -217,7 +218,7 @@ def possible(box: Gearbox, seconds: float, watch: Watch | None = None) -> bool |
     def goes(steps: int, best: float) -> bool:
         return math.isinf(best)
 
-    if any(np.isfinite(anneal(shape, k, STEPS, goes)[0][0]) for k in range(STARTS)):
+    if any(np.isfinite(anneal(shape, k, ANNEALING_STEPS, goes)[0][0]) for k in range(STARTS)):
         return True
     kernels: Any = kernel("gearopt.formulations.drive.layout.branch_kernel")
     theta = np.zeros(shape.link.size)

@@ -22,7 +22,7 @@ from gearopt.physics.gears import GearPair
 Choice = tuple[tuple[str, ...], ...]  # of every stage and standard
 
 ITERATIONS = 300  # of Ipopt, of which smooth problems take some tens
-MOST = 1e6  # teeth and ratios beyond which no bound holds: the ends of the search
+SEARCH_SPAN = 1e6  # teeth and ratios beyond which no bound holds: the ends of the search
 
 
 def bounding(train: Train, choice: Choice, most: float = math.inf) -> Problem | None:
@@ -69,7 +69,7 @@ def box(train: Train, k: int, most: float) -> Box:
     """Return what holds for a stage of every design of at most an objective."""
     stage, highest = train.stages[k], float(train.highest_ratio)
     numbers = SimpleNamespace(**train.numbers())
-    teeth = max(1.0, numbers.pinion_low[k]), min(MOST, numbers.pinion_high[k])
+    teeth = max(1.0, numbers.pinion_low[k]), min(SEARCH_SPAN, numbers.pinion_high[k])
     alone = len(train.stages) == 1
     low = max(float(train.lowest_ratio) if alone else 1.0, numbers.ratio_low[k])
     ratio = low, max(low, min(highest, numbers.ratio_high[k]))

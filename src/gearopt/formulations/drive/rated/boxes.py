@@ -13,7 +13,7 @@ import numpy as np
 
 from gearopt.formulations.drive.shares import least_share
 from gearopt.formulations.drive.train import Stage, Train
-from gearopt.formulations.strength.cells import LEAST, Cells
+from gearopt.formulations.strength.cells import LOWER, Cells
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
@@ -206,13 +206,13 @@ def _needed(train: Train, stage: Stage, cells: Cells) -> tuple[Array, Array]:
 
     An index of a proportional law over 1 + 1/u falls neither with z1 nor with u (`Law`).
     """
-    zero, u = np.zeros(cells.teeth.shape[1]), cells.ratio[LEAST]
+    zero, u = np.zeros(cells.teeth.shape[1]), cells.ratio[LOWER]
     made = [(zero, zero)]
     with np.errstate(all="ignore"):
         if train.law.limits and train.law.proportional:
-            z = cells.teeth[LEAST]
+            z = cells.teeth[LOWER]
             pair = cells.toothing.of_diameter(cells.toothing.cosine / z, z, 1.0, u, 1.0)
-            load = train.law.load(pair, 1.0, cells.speed[LEAST], stage.allowable)
+            load = train.law.load(pair, 1.0, cells.speed[LOWER], stage.allowable)
             made.append((load / (1.0 + 1.0 / u), zero))
         given = stage.toothing.working_distance is not None  # then teeth alone say little
         for one in stage.options[0].standards if stage.options and not given else ():
@@ -228,7 +228,7 @@ def _needed_by_weak(stage: Any, cells: Cells, safety: Any, usual: Array) -> Arra
     given = cells.toothing.working_distance is not None
     if given or not standards or np.array_equal(*cells.torque):
         return usual
-    weak = replace(cells, torque=np.stack([cells.torque[LEAST]] * 2))
+    weak = replace(cells, torque=np.stack([cells.torque[LOWER]] * 2))
     with np.errstate(all="ignore"):
         made = [np.nan_to_num(one.needed(weak, safety)[0], nan=0.0) for one in standards]
     return np.asarray(np.maximum.reduce([usual, *made]))
@@ -250,7 +250,7 @@ def _least_sizes(
     shafts: Shafts, k: int, sizes: Array, before: Array, after: Array
 ) -> tuple[Array, Array]:
     """Return the share of the least sizes of boxes, and what the potentials add to it at least."""
-    size = np.exp(sizes[:, LEAST])
+    size = np.exp(sizes[:, LOWER])
     own = shafts.train.stages[k].toothing
     pair = own.of_diameter(size[M], size[Z], size[D], size[U], size[B])
     first, second = shafts.potential[k : k + 2]

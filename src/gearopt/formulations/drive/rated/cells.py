@@ -32,11 +32,11 @@ from gearopt.physics.gears import GearPair
 
 START = 8  # cells of a shaft at first
 STEP = 0.15  # width of a box in logarithms, below which borders of laws divide it first
-MANY = 300_000  # boxes, beyond which the search ends
+MAX_BOXES = 300_000  # boxes, beyond which the search ends
 SHARE = 0.5  # of the gap: boxes that are so far above the least are not divided yet
 PATHS = 4  # of the least sums, a stage, in which designs are looked for
 GOVERNS = 0.8  # of the most that a standard uses: others that use less are left out
-FEW = 2  # of them, after none was found
+IDLE_POLISHES = 2  # of them, after none was found
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ def search(
     """Return the bound that is reached and the best design.
 
     known: the best design so far, of value `most`; none: empty and infinite. close: relative gap
-    that ends the search, as MANY boxes do.
+    that ends the search, as MAX_BOXES boxes do.
     """
     shafts = shafts_about(_governed(train, known), START, known)
     best, before, tried = Searched(-math.inf, None, most), most, PATHS
@@ -67,14 +67,14 @@ def search(
         totals = _totals(shafts, rows)
         here = min(total.min(initial=math.inf) for total in totals)
         made = _improved(train, shafts, rows, totals, best, tried)
-        best, tried = made, PATHS if made.value < best.value else FEW
+        best, tried = made, PATHS if made.value < best.value else IDLE_POLISHES
         far = best.value * (1.0 - close)
         best = replace(best, bound=max(best.bound, min(here, far)))
         keep = [total < far for total in totals]
         rows = [(b.take(k), v[k]) for (b, v), k in zip(rows, keep, strict=True)]
         totals = [t[k] for t, k in zip(totals, keep, strict=True)]
         clock.best, clock.bound = best.value, best.bound
-        if here >= far or sum(map(len, totals)) > MANY or not clock.tell():
+        if here >= far or sum(map(len, totals)) > MAX_BOXES or not clock.tell():
             least = float(best.bound) if best.bound > 0.0 else -math.inf
             return replace(best, bound=least, value=float(best.value))
         aim = here + SHARE * (far - here) if far < math.inf else 2.0 * abs(here)

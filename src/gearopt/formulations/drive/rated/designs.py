@@ -30,7 +30,7 @@ from gearopt.physics.gears import GearPair
 
 TRIED = 48  # diameters
 ABOVE = 0.02  # at least, of a box, within which a diameter is looked for
-SAME = 1e-10  # of ratios
+RATIO_TIE = 1e-10  # of ratios
 FIRST_STEP, LAST_STEP = 0.18, 1e-5  # of logarithms, by which a design is moved
 SHORTER = 0.4  # of a step that gained little
 LITTLE = 1e-4  # of the value
@@ -55,7 +55,7 @@ def in_boxes(
         value += float(share(train, k, pair))
         at += math.log(pair.ratio)
     low, high = float(train.lowest_ratio), float(train.highest_ratio)
-    good = math.log(low) - SAME <= at <= math.log(high) + SAME
+    good = math.log(low) - RATIO_TIE <= at <= math.log(high) + RATIO_TIE
     return (tuple(pairs), value) if good else None
 
 
@@ -164,5 +164,7 @@ def _allowed(train: Train, k: int, pair: GearPair) -> Array:
     low, high = train.stages[k].face_width.over_module
     found &= (over >= float(low or 0) - ROUND) & (over <= float(high or math.inf) * (1.0 + ROUND))
     z = pair.wheel_teeth
-    found &= (z >= numbers["wheel_low"][k] - SAME) & (z <= numbers["wheel_high"][k] + SAME)
+    found &= (z >= numbers["wheel_low"][k] - RATIO_TIE) & (
+        z <= numbers["wheel_high"][k] + RATIO_TIE
+    )
     return found

@@ -38,9 +38,9 @@ from gearopt.physics.gears import GearPair
 
 ROUNDS = 4  # of correcting the smooth form by the exact one
 EQUAL = 1e-7  # relative; of safety factors that are those of the exact rating
-SAME = 1e-9  # of corrections that no longer change
-CLOSE = 5e-7  # relative gap that ends the search
-ENOUGH = 0.999  # of a gap that is asked for: roundings included
+CORRECTION_TOLERANCE = 1e-9  # of corrections that no longer change
+GAP_TOLERANCE = 5e-7  # relative gap that ends the search
+GAP_SHARE = 0.999  # of a gap that is asked for: roundings included
 SEARCH = 5.0  # seconds of the search for a bound where no gap is asked for; 3-fold from 3 stages
 POLISHING = 0.2  # of these seconds, at most, for the best design before it
 REFINED = 4  # best designs whose choices are refined
@@ -199,7 +199,7 @@ def _searched(train: Train, best: _Design | None, clock: Clock, seconds: float |
     """Return what the search over cells finds beside the best design so far."""
     known = () if best is None else sizing.pairs(train, best.x)
     most = math.inf if best is None else best.value
-    close = max(ENOUGH * clock.budget.gap, CLOSE)
+    close = max(GAP_SHARE * clock.budget.gap, GAP_TOLERANCE)
     inner = Clock(replace(clock.left, seconds=seconds), clock.inner())
     if known and _stepped(train):
         spent = None if seconds is None else POLISHING * seconds
@@ -328,7 +328,7 @@ def _design(
             same = bool(np.all(np.abs(trims * ratio - 1.0) <= EQUAL)) and np.array_equal(safe, at)
             if best is None or value < best.value:
                 best = _Design(value, safe, choice, same, found.status)
-        if not np.isfinite(ratio).all() or np.abs(ratio - 1.0).max() <= SAME:
+        if not np.isfinite(ratio).all() or np.abs(ratio - 1.0).max() <= CORRECTION_TOLERANCE:
             break
         trims = trims * ratio
     return best

@@ -17,7 +17,8 @@ SAFE = 1.0 + FEASIBLE  # utilisation up to which the exact rating accepts a desi
 GROWTH = tuple(10.0 ** (0.5 * k) for k in range(-14, -3))  # of lengths, in a repair
 LESS, SMALLEST, HALVINGS = 1e-5, 0.7, 24  # of lengths that an exact rating finds too large
 FINER = (1.0, 1.4, 2.0)  # times the least teeth, of starts without a bounding program
-FEW = 20  # teeth above the least of a pinion without a limit, of a search among whole teeth
+# teeth above the least of a pinion without a limit, of a search among whole teeth
+TEETH_SEARCHED = 20
 SECONDS = 5.0  # at most, for that search
 
 
@@ -57,7 +58,9 @@ def whole(train: Train, clock: Clock) -> list[Array]:
         else:
             series = tuple(sorted({least, most, *(m for m in SERIES_I if least < m < most)}))
         low, high = stage.pinion_teeth
-        stages.append(replace(stage, modules=series, pinion_teeth=(low, high or low + FEW)))
+        stages.append(
+            replace(stage, modules=series, pinion_teeth=(low, high or low + TEETH_SEARCHED))
+        )
     near = replace(train, stages=tuple(stages))
     answer = solve(teeth.problem(near), budget=Budget(clock.within(SECONDS)))
     found = point_of_result(teeth.problem(near), answer)

@@ -43,7 +43,7 @@ RATED = (
     "whole teeth that ratings limit are for exact, annealing and nsga2 only: a rating finds roots "
     "by iteration and has ranges, and is not a posynomial"
 )
-MOST = 1e18  # teeth, steps or mm: no limit
+UNLIMITED = 1e18  # teeth, steps or mm: no limit
 
 RANDOM = False
 COUNTS = "tooth pair sized, in whole expansions of a node"
@@ -154,7 +154,7 @@ def _variables(train: Train) -> tuple[Var, ...]:
         given = float(face.fixed or 1)
         free = not face.tied and face.step is None and face.fixed is None
         ranges["face_width"].append(_widths(stage) if free else (given, given))
-        ranges["width_steps"].append((1.0, MOST if face.step else 1.0))
+        ranges["width_steps"].append((1.0, UNLIMITED if face.step else 1.0))
         ranges["option"].append((1.0, float(max(1, len(stage.options)))))
     if all(s.face_width.tied or s.face_width.step for s in stages):
         del ranges["face_width"]
@@ -190,7 +190,7 @@ def _widths(stage: Stage) -> tuple[float, float]:
 
 
 def _ends(span: tuple[int, int | None]) -> tuple[float, float]:
-    return float(span[0]), MOST if span[1] is None else float(span[1])
+    return float(span[0]), UNLIMITED if span[1] is None else float(span[1])
 
 
 def _outcome(

@@ -33,8 +33,8 @@ from gearopt.physics.gears import GearPair
 
 BEAM = 256  # nodes followed down at once
 LEAVES = 512  # nodes completed at once
-FINE = 0.0025  # width of the cells of log ratio
-COARSE = 0.01  # of rated drives, whose bounds take long
+CELL_WIDTH = 0.0025  # width of the cells of log ratio
+RATED_CELL_WIDTH = 0.01  # of rated drives, whose bounds take long
 WEIGHTS = {  # of weighted sums whose bounds are of use, by the number of objectives
     2: ((0.2, 0.8), (0.5, 0.5), (0.8, 0.2)),
     3: ((1.0, 1.0, 1.0), (1.0, 1.0, 0.1), (1.0, 0.1, 1.0), (0.1, 1.0, 1.0)),
@@ -170,7 +170,7 @@ def _bounds(run: Search) -> None:
     width = np.ptp(run.values, axis=0)
     width = np.where(width > 0.0, width, np.abs(run.values[0]))
     run.weights = np.array([np.array(w) / width for w in WEIGHTS[len(width)]])
-    delta = COARSE if run.train.rated else FINE
+    delta = RATED_CELL_WIDTH if run.train.rated else CELL_WIDTH
     alone = [run.train.minimising(name) for name in run.train.objectives]
     for train in (*alone, *(run.train.weighing(w) for w in run.weights)):
         own = [table.of(train) for table in run.tables]

@@ -22,11 +22,14 @@ from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Terms
 
 UTILISATION = "utilisation"
-LEAST = (
+LAST_IS_LEAST = (
     "Proof: exhausted searches at smaller and smaller utilisations; the last one found no design."
 )
-BEYOND = "the best train of this utilisation is beyond the largest value of its objective"
-CLOSE = 4e-7  # relative: between a utilisation that a train has and one that none has
+OBJECTIVE_TOO_LARGE = (
+    "the best train of this utilisation is beyond the largest value of its objective"
+)
+# relative: between a utilisation that a train has and one that none has
+UTILISATION_TOLERANCE = 4e-7
 
 
 def problem(train: Train, names: tuple[str, ...]) -> Problem:
@@ -99,16 +102,18 @@ def _best(
     found: Outcome = one.methods["exact"](one, budget, 0, watch)
     if found.x is None or own.batch(found.x[None]).F[0, 0] <= largest * (1.0 + TIE):
         return found
-    return replace(found, x=None, bound=None, infeasible=found.finished, message=BEYOND)
+    return replace(
+        found, x=None, bound=None, infeasible=found.finished, message=OBJECTIVE_TOO_LARGE
+    )
 
 
 def _least(train: Train, own: Problem, high: float, largest: float, clock: Clock) -> Outcome:
-    """Return a train of the least utilisation; one that is smaller by CLOSE is proven to be none.
+    """Return a train of the least utilisation, proven within UTILISATION_TOLERANCE.
 
     high: utilisation at most; largest: of the train's objective.
     """
     low, best, tried = 0.0, None, high
-    while best is None or high > low * (1.0 + CLOSE):
+    while best is None or high > low * (1.0 + UTILISATION_TOLERANCE):
         found = _best(train, own, tried, largest, clock.left, clock.inner(values=False))
         clock.evaluations += found.evaluations
         if found.x is not None:
@@ -121,5 +126,5 @@ def _least(train: Train, own: Problem, high: float, largest: float, clock: Clock
         if not clock.tell() or not found.finished:
             return Outcome(best, False, bound=low or None, evaluations=clock.evaluations)
         tried = math.sqrt(low * high) if low else 0.5 * high
-    proof = {"method": "exhausted", "sentence": LEAST}
+    proof = {"method": "exhausted", "sentence": LAST_IS_LEAST}
     return Outcome(best, bound=low, proof=proof, evaluations=clock.evaluations)

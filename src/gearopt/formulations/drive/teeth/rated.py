@@ -19,16 +19,16 @@ from gearopt.formulations.drive.teeth.stage import EDGE, Cells, Table
 from gearopt.formulations.drive.train import Train
 from gearopt.formulations.strength import ALLOWANCE
 from gearopt.formulations.strength.rated import IndexRows, Rows, Standard
-from gearopt.formulations.strength.widths import STEPS, first_width, used
+from gearopt.formulations.strength.widths import MAX_STEPS, first_width, used
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
-FEW = 4  # steps towards a width, for a first lower bound
-NEAR = 1.01  # times the least of these: what is bounded again
+FIRST_STEPS = 4  # steps towards a width, for a first lower bound
+BOUNDED_AGAIN = 1.01  # times the least of these: what is bounded again
 TOGETHER = 2000  # pairs bounded again at once, at least
 ROUGH = 0.01  # of what is used above 1, where a bound is only to compare
 BATCH = 20_000  # pairs bounded at once
-CLOSE = 0.02  # of what is used above 1, for that, over the width of a cell
+CELL_TOLERANCE = 0.02  # of what is used above 1, for that, over the width of a cell
 TEETH = 10**8  # more than a wheel has: pairs are told apart by z1 TEETH + z2
 FINEST = 0.005  # width of a cell where none is given
 
@@ -138,7 +138,7 @@ class RatedTable(Table):
 
     def rough_cost(self, torque: Array, pair: Index) -> Array:
         """Return a rough lower bound of `cost`."""
-        return self._found((torque, torque), pair, close=ROUGH, steps=2 * FEW).cost
+        return self._found((torque, torque), pair, close=ROUGH, steps=2 * FIRST_STEPS).cost
 
     def least_cost(
         self,
@@ -153,8 +153,8 @@ class RatedTable(Table):
         Only the least of every group (n,) of pairs is close, as cells of delta need it. most: costs
         above which any is as good as inf.
         """
-        cost = self._found(torque, pair, most, steps=FEW).cost
-        return self._closer(torque, pair, group, cost, CLOSE * delta, most)
+        cost = self._found(torque, pair, most, steps=FIRST_STEPS).cost
+        return self._closer(torque, pair, group, cost, CELL_TOLERANCE * delta, most)
 
     def useful_ratio(self, least: float, most: float) -> float:
         """Return the largest ratio whose share of a train is at most so much; at least `least`.
@@ -164,10 +164,10 @@ class RatedTable(Table):
         pair = np.flatnonzero(self.ratio > least)
         low = np.full(len(pair), self.train.torque)
         ends = low, low * float(self.train.highest_ratio)
-        cost = self._found(ends, pair, most, steps=FEW).cost
+        cost = self._found(ends, pair, most, steps=FIRST_STEPS).cost
         near = np.flatnonzero(cost <= most)
         ends = ends[0][near], ends[1][near]
-        cost = self._found(ends, pair[near], most, close=CLOSE * FINEST).cost
+        cost = self._found(ends, pair[near], most, close=CELL_TOLERANCE * FINEST).cost
         return float(self.ratio[pair[near]][cost <= most].max(initial=least))
 
     def _closer(
@@ -185,10 +185,12 @@ class RatedTable(Table):
             least = np.full(group.max(initial=-1) + 1, np.inf)
             np.minimum.at(least, group, cost)
             above = np.divide(cost, least[group], np.full_like(cost, np.inf), where=rough)
-            if above.min() > NEAR:
+            if above.min() > BOUNDED_AGAIN:
                 break
             few = min(TOGETHER, len(above)) - 1
-            near = np.flatnonzero(rough & (above <= max(NEAR, np.partition(above, few)[few])))
+            near = np.flatnonzero(
+                rough & (above <= max(BOUNDED_AGAIN, np.partition(above, few)[few]))
+            )
             ends = torque[0][near], torque[1][near]
             cost[near] = np.maximum(
                 cost[near], self._found(ends, pair[near], most, close=close).cost
@@ -217,10 +219,12 @@ class RatedTable(Table):
             low = rows[row] * delta
             ends = [self.train.torque * np.exp(e) for e in (low - EDGE, low + delta + EDGE)]
             place = row * cells.ratio + column[pair]
-            made = self._found((ends[0], ends[1]), pair, most, first[pair], steps=FEW)
+            made = self._found((ends[0], ends[1]), pair, most, first[pair], steps=FIRST_STEPS)
             if self.monotone and most == np.inf:
                 first[pair[row == 0]] = made.first[row == 0]
-            cost = self._closer((ends[0], ends[1]), pair, place, made.cost, CLOSE * delta, most)
+            cost = self._closer(
+                (ends[0], ends[1]), pair, place, made.cost, CELL_TOLERANCE * delta, most
+            )
             np.minimum.at(found, (rows[row], column[pair]), cost)
         return found
 
@@ -269,7 +273,7 @@ class RatedTable(Table):
         most: Array | float = np.inf,
         first: Index | int = 0,
         close: float = ALLOWANCE,
-        steps: int = STEPS,
+        steps: int = MAX_STEPS,
     ) -> Found:
         """Return the best choices at torques between two ends.
 
@@ -340,7 +344,7 @@ class RatedTable(Table):
         option: int,
         ends: tuple[Array, Array],
         close: float = ALLOWANCE,
-        steps: int = STEPS,
+        steps: int = MAX_STEPS,
     ) -> Array:
         """Return the narrowest face widths [mm] of pairs with modules (indices); inf: none."""
         one = self.made(self.modules[module], pair)

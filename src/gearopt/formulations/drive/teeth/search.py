@@ -38,7 +38,8 @@ BEAM = 4  # nodes followed down at once; measured best for two to four stages
 LEAVES = 256  # nodes completed at once
 FIRST_LOOK = 20_000  # pairs examined for a first train
 PATIENCE = 2_000_000  # pairs examined before a finer grid pays
-COARSE, FINE = 32.0, 0.006  # first cells of rated drives, times usual ones; the last coarse ones
+# first cells of rated drives, times usual ones; the last coarse ones
+FIRST_CELLS, LAST_COARSE_CELL = 32.0, 0.006
 PROMISING = 32  # children of a node that a first dive looks at
 DIVE = 1000  # pairs examined on each of these grids, for a train
 CELLS = 10_000_000  # largest grid of a stage, 80 MB
@@ -122,7 +123,7 @@ def _glance(train: Train, cut: Fraction, progress: Progress, shelf: list[RatedTa
 def _first_dive(train: Train, tables: list[Table], few: list[Table], progress: Progress) -> None:
     """Look for a train of all pairs of the last stage and few of the others."""
     if all(len(t.ratio) for t in tables):
-        delta = COARSE * _width(tables)
+        delta = FIRST_CELLS * _width(tables)
         rest = bound(train, few, delta, progress.tick, None, progress.threshold)
         _dive(train, [*few[:-1], tables[-1]], rest, progress)
 
@@ -156,7 +157,7 @@ def _rounds(
 ) -> Iterator[float]:
     """Search on ever finer grids; yield the bound of what is left, inf: none; end impatiently."""
     coarse, useful = train.rated, None  # whose bounds take long: few cells at first
-    delta = _width(tables) * (COARSE if coarse else 1.0)
+    delta = _width(tables) * (FIRST_CELLS if coarse else 1.0)
     first: Array | None = None
     while True:
         finer = math.log(train.highest_ratio) * tables[-1].log_ratio[-1] / (delta / 2) ** 2
@@ -167,7 +168,7 @@ def _rounds(
         if train.rated:
             begins = first is None
             if first is None:
-                first = first_costs(train, tables[0], FINE, progress.threshold)
+                first = first_costs(train, tables[0], LAST_COARSE_CELL, progress.threshold)
             progress.raise_lower(_least(tables, rest, first))
             if begins:
                 _dive(train, tables, rest, progress, first)
@@ -179,7 +180,7 @@ def _rounds(
             assert first is not None
             useful = useful_cells(tables, rest, first, progress.threshold)
         delta /= 2
-        coarse = coarse and delta > FINE
+        coarse = coarse and delta > LAST_COARSE_CELL
 
 
 def _width(tables: list[Table]) -> float:

@@ -13,11 +13,11 @@ from gearopt.formulations.drive.train import Train
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import reference_diameter
 
-FEW = 200_000  # tooth pairs of a stage that are searched at once
+PAIRS_AT_ONCE = 200_000  # tooth pairs of a stage that are searched at once
 
 
 def narrowed(train: Train) -> Train:
-    """Return the drive with so few of its smallest pinions that no stage has more than FEW pairs.
+    """Return the drive with its smallest pinions, no stage of more than PAIRS_AT_ONCE pairs.
 
     A pinion alone may have more. The drive itself where its ranges are not wide.
     """
@@ -26,7 +26,7 @@ def narrowed(train: Train) -> Train:
         low, _ = stage.pinion_teeth
         found = spans(train, k, first_cut(train))
         pairs = np.cumsum([stop - start + 1 for _, start, stop in found])
-        few = int(np.searchsorted(pairs, FEW, side="right"))
+        few = int(np.searchsorted(pairs, PAIRS_AT_ONCE, side="right"))
         stages.append(replace(stage, pinion_teeth=(low, low + max(few - 1, 0))))
     return replace(train, stages=tuple(stages))
 

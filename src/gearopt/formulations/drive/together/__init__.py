@@ -46,13 +46,13 @@ from gearopt.physics.gears import GearPair
 
 Start = tuple[Made, Arrangement, Array]
 GAP = 1e-3  # proven where the budget requests none
-FIRST = 40  # best sizings that are laid out before the search
-FEW = 1  # the same of ratings, whose list takes long
+FIRST_SIZINGS = 40  # best sizings that are laid out before the search
+FIRST_RATED_SIZINGS = 1  # the same of ratings, whose list takes long
 SLACK = 1e-6  # relative: margins are this much below the requested gap, for rounding
 
 RANDOM = False
 COUNTS = "tooth pair or cell of angles bounded"
-SETTINGS = {"margins": MARGINS, "sizings laid out first": FIRST}
+SETTINGS = {"margins": MARGINS, "sizings laid out first": FIRST_SIZINGS}
 
 
 def problem(train: Train, make: Make, start: Start | None = None) -> Problem:
@@ -119,7 +119,7 @@ def _searched(search: Search, start: Start | None) -> Outcome:
 
 def _first(search: Search) -> bool:
     """Lay out the best sizings; False if there is no train at all."""
-    count = FEW if search.train.rated else FIRST
+    count = FIRST_RATED_SIZINGS if search.train.rated else FIRST_SIZINGS
     progress = sizing(search.train, count, Budget(), search.clock.inner(values=False))
     for _, one in progress.found[:count]:
         if search.clock.stopped:

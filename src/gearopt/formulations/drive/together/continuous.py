@@ -29,8 +29,9 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var, each
 from gearopt.physics.gears import GearPair
 
-FAR = 2.0  # times the sum of the start's sides: within this they are searched
-NEAR = 0.6  # rad from the start's angles; else the interior point is pushed into worse basins
+PLACES_SPAN = 2.0  # times the sum of the start's sides: within this they are searched
+# rad from the start's angles; else the interior point is pushed into worse basins
+ANGLES_SPAN = 0.6
 
 Facing = list[tuple[int, int, Body, Body]]
 
@@ -110,8 +111,8 @@ def _variables(
     )
     links = [p.centre_distance for p in box.pairs]
     widths = tuple(max(box.pairs[s].face_width for s in slab) for slab in slabs)
-    far = FAR * (sides["width"] + sides["height"] + sum(widths))
-    near = (tuple(t - NEAR for t in angles), tuple(t + NEAR for t in angles))
+    far = PLACES_SPAN * (sides["width"] + sides["height"] + sum(widths))
+    near = (tuple(t - ANGLES_SPAN for t in angles), tuple(t + ANGLES_SPAN for t in angles))
     made = [Var("angle", "rad", *near, angles, len(links), search=True)]
     made += [Var(n, "mm", -far, 0.0, sides[n], search=True) for n in ("left", "bottom")]
     made += [

@@ -18,10 +18,11 @@ from gearopt.formulations.drive.together.tables import DELTA, ENTRIES, KERNELS, 
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.terms import Array
 
-STEPS = tuple(DELTA * factor for factor in (32.0, 8.0, 2.0, 0.5))  # widths of cells, one by one
+# widths of cells, one by one
+CELL_WIDTHS = tuple(DELTA * factor for factor in (32.0, 8.0, 2.0, 0.5))
 ROWS = 6_000_000  # pairs, modules and cells that are bounded, at most
 SLICE = 50_000  # of them, between two checks of the clock
-CLOSE = 0.02  # of what is used above 1, over the width of a cell
+CELL_TOLERANCE = 0.02  # of what is used above 1, over the width of a cell
 
 Tables = list[RatedTable]
 
@@ -58,7 +59,9 @@ def narrower(
             ends = np.maximum(reached[r], low[p]), np.minimum(reached[r] + step, high[p])
             torques = [drive.torque * np.exp(e) for e in (ends[0] - shy, np.maximum(*ends) + shy)]
             place = own[p - drive.start[k]]
-            found[r, q] = table.least_width((torques[0], torques[1]), place, q, CLOSE * step)
+            found[r, q] = table.least_width(
+                (torques[0], torques[1]), place, q, CELL_TOLERANCE * step
+            )
             if not goes_on():
                 return None
     _hold_stronger(found, row, cells)

@@ -21,7 +21,7 @@ from gearopt.formulations.drive.layout.slabs import TOUCH, Arrangement, arrangem
 from gearopt.formulations.drive.teeth.rated import RatedTable
 from gearopt.formulations.drive.teeth.search import within
 from gearopt.formulations.drive.teeth.tables import stage_tables, table
-from gearopt.formulations.drive.together.rated_widths import STEPS, narrower, shortened
+from gearopt.formulations.drive.together.rated_widths import CELL_WIDTHS, narrower, shortened
 from gearopt.formulations.drive.together.tables import (
     KERNELS,
     Drive,
@@ -44,7 +44,7 @@ CELLS = 100_000  # cells of angles in a slice of a sift
 CHILDREN = 4096  # nodes that an expansion makes at once
 PARENTS = 256  # nodes expanded together
 STALE = 0.9  # tables are recomputed for a best value this much better
-CLOSE = 1e-3  # relative gap to which a train is laid out, or the margin where it is smaller
+LAYOUT_GAP = 1e-3  # relative gap to which a train is laid out, or the margin where it is smaller
 LOOKS = (400, 20_000)  # cells spent on a node's layout, on a whole train's
 
 Nodes = NDArray[np.int64]  # (n, N, 2): pair and module of each stage
@@ -153,7 +153,7 @@ def lay(search: Search, made: Made, margin: float) -> bool:
         if not _below(search, box, order, margin):
             continue
         one = replace(box, slabs=order.slabs)
-        budget, watch = Budget(gap=min(margin, CLOSE)), search.clock.inner(values=False)
+        budget, watch = Budget(gap=min(margin, LAYOUT_GAP)), search.clock.inner(values=False)
         outcome = layout.problem(one).methods["exact"](None, budget, search.seed, watch)
         proven = proven and outcome.finished
         if outcome.x is not None:
@@ -202,7 +202,7 @@ def prepare(search: Search, drive: Drive, box: Gearbox, margin: float) -> Work |
     """Return the tables for all cuts down to a margin; None if stopped. box: one of any sizes."""
     cut = search.value * (1.0 - margin)
     fewer = useful(drive, cut)
-    for step in STEPS if search.train.rated else ():
+    for step in CELL_WIDTHS if search.train.rated else ():
         closer = narrower(search.tables, shortened(fewer, cut), step, search.clock.tell)
         if closer is None:
             return None

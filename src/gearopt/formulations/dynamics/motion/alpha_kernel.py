@@ -17,8 +17,8 @@ from gearopt.formulations.dynamics.motion.motion_kernel import (
 )
 from gearopt.optimise.jit_kernel import entry, inlined
 
-CLOSE = 1e-8  # residual of the accelerations before the last correction, relative
-MOST = 12  # of its steps: far more than the linear pieces need
+RESIDUAL_TOLERANCE = 1e-8  # residual of the accelerations before the last correction, relative
+MAX_CORRECTIONS = 12  # of its steps: far more than the linear pieces need
 
 
 @inlined
@@ -140,7 +140,7 @@ def corrected(m, alphas, k, shake, h, y, old, found, new, middle, given, wrong, 
     eliminate(matrix, wrong)
     for a in range(n):
         found[a] -= wrong[a]
-    return most <= CLOSE * size or not math.isfinite(most)
+    return most <= RESIDUAL_TOLERANCE * size or not math.isfinite(most)
 
 
 @entry
@@ -165,7 +165,7 @@ def advance(pair, w, alphas, starts, lengths, k0, k1, counts, y, out):
             k += k0[i] + slope * within
             for a in range(n):
                 found[a] = old[a]
-            for _ in range(MOST):
+            for _ in range(MAX_CORRECTIONS):
                 turns += 1
                 if corrected(
                     m, alphas, k, shake, h, y, old, found, new, middle, given, wrong, rate, matrix

@@ -18,7 +18,7 @@ from gearopt.physics.motion.moving_pair import MovingPair
 
 Complex = NDArray[np.complex128]
 NEWTON = 12  # steps; near a motion four to six of them end it
-CLOSE = 1e-12  # change relative to the largest coefficient that ends Newton's method
+NEWTON_TOLERANCE = 1e-12  # change relative to the largest coefficient that ends Newton's method
 SAMPLES = 64  # of a period, a harmonic: where the flank changes series converge slowly
 LOOKS = 2048  # samples of a period for the extremes
 
@@ -182,7 +182,7 @@ def orbit(
     for _ in range(NEWTON):
         change = system.newton(delta)
         delta = delta + change
-        if np.max(np.abs(change)) <= CLOSE * np.max(np.abs(delta)):
+        if np.max(np.abs(change)) <= NEWTON_TOLERANCE * np.max(np.abs(delta)):
             return Orbit(frequency, delta[harmonics:])
     return Orbit(frequency, delta[harmonics:], found=False)
 

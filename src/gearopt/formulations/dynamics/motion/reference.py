@@ -16,7 +16,7 @@ from gearopt.physics.motion.accelerations import LEVELS
 from gearopt.physics.motion.moving_pair import MovingPair
 
 SCIPY = ("DOP853", "Radau", "LSODA")
-STEPS = 10**7  # of CVODES, at most
+MAX_STEPS = 10**7  # of CVODES, at most
 
 
 def scales(pair: MovingPair, level: str) -> Array:
@@ -119,7 +119,7 @@ def cvodes(pair: MovingPair, level: str, times: Array, rtol: float) -> Any:
         {"x": y, "t": t, "ode": ca.vertcat(*rhs)},
         float(times[0]),
         [float(at) for at in times[1:]],
-        {"reltol": rtol, "abstol": rtol, "max_num_steps": STEPS},
+        {"reltol": rtol, "abstol": rtol, "max_num_steps": MAX_STEPS},
     )
 
     def run(state: Array) -> Marched:

@@ -14,7 +14,7 @@ from gearopt.physics.motion.accelerations import LEVELS
 from gearopt.physics.motion.linear import linear, modes
 from gearopt.physics.motion.moving_pair import MovingPair
 
-COARSE = 4.0  # steps in a period of the fastest mode, of the longest steps tried
+LONGEST_STEPS_PER_PERIOD = 4.0  # steps in a period of the fastest mode, of the longest steps tried
 EXACT = 1e-11  # error of exact pieces, of the largest |delta|: rounding over a long run
 ROUNDING = 3e-13  # error below which halving a step shows rounding, not the method
 MOVED = 5e-14  # of its scale by which a start is moved: half of what impacts are located to
@@ -23,7 +23,7 @@ ROUGH = 0.1  # change from which on a method follows a motion
 NOISE = 3.0  # times what that changes: changes up to there are of roundings, not of the method
 SAFETY = 4.0  # times the error that changes by halving tell of the finer run
 SHORTEST = 11  # outputs of a motion that was cut short, at least
-MOST = 400_000_000  # rates evaluated, at most: some minute
+MAX_RATE_EVALUATIONS = 400_000_000  # rates evaluated, at most: some minute
 CANDIDATES = ("rk8", "rk4", "symplectic", "newmark")
 LOCATING = ("rk8", "rk4")  # those that locate where teeth part and meet
 
@@ -92,7 +92,11 @@ def simulate(
     spent, ended = sum(t.spent for t in tried), list[_Try]()
     while tried:
         best = min(tried, key=lambda t: (t.error > error, t.ahead(error)))
-        if best.error <= error or spent + 2 * best.motion.rates > MOST or not clock.tell():
+        if (
+            best.error <= error
+            or spent + 2 * best.motion.rates > MAX_RATE_EVALUATIONS
+            or not clock.tell()
+        ):
             break
         finer = _halved(best, intervals, state, clock)
         if clock.stopped or finer is None:
@@ -172,7 +176,9 @@ def fastest(pair: MovingPair, level: str) -> float:
 def _first(
     pair: MovingPair, level: str, times: Timeline, method: str, state: Array, clock: Clock
 ) -> _Try:
-    longest = fastest(pair, level) / (COARSE if method == "rk8" else 4.0 * COARSE)
+    longest = fastest(pair, level) / (
+        LONGEST_STEPS_PER_PERIOD if method == "rk8" else 4.0 * LONGEST_STEPS_PER_PERIOD
+    )
     motion = march(pair, level, times, method, longest, state, clock)
     return _Try(method, longest, motion, math.inf, math.inf, motion.rates)
 

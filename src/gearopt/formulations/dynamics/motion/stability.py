@@ -16,7 +16,7 @@ from gearopt.physics.motion.linear import Linear, modes
 from gearopt.physics.motion.stiffness_wave import Wave
 
 KERNEL = "gearopt.formulations.dynamics.motion.floquet_kernel"
-STEPS = 30.0  # of RK8 in a period of the fastest mode: 1e-12 of an entry
+STEPS_PER_PERIOD = 30.0  # of RK8 in a period of the fastest mode: 1e-12 of an entry
 UNSTABLE = 1e-6  # by which the largest multiplier of an unstable pair exceeds 1
 SLICE = 2000  # steps between two looks at a clock: some hundredth of a second
 CONDITION = 1e7  # of eigenvectors, above which a matrix exponential takes their place
@@ -39,7 +39,7 @@ def monodromy(system: Linear, wave: Wave, frequency: float, clock: Clock | None 
         return found
     found, part = np.eye(2 * system.mass.size), np.empty((2 * system.mass.size,) * 2)
     given = 1.0 / system.mass, system.stiffness, system.damping, system.direction
-    longest = 2.0 * math.pi / top / STEPS
+    longest = 2.0 * math.pi / top / STEPS_PER_PERIOD
     for begin, pieces in _slices(wave, 1.0 / frequency / longest):
         if begin and clock is not None and not clock.tell():
             return np.full(found.shape, math.nan)

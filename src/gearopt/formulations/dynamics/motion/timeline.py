@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.moving_pair import MovingPair
 
-SAME = 1e-9  # of a period: two times that are meant to be one
+TIME_TIE = 1e-9  # of a period: two times that are meant to be one
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Timeline:
 
     def counts(self, longest: float) -> NDArray[np.int64]:
         """Return how many equal steps of at most `longest` [s] each interval takes."""
-        return np.maximum(1, np.ceil(self.lengths / longest - SAME)).astype(np.int64)
+        return np.maximum(1, np.ceil(self.lengths / longest - TIME_TIE)).astype(np.int64)
 
     @cached_property
     def end(self) -> float:
@@ -71,9 +71,9 @@ def timeline(pair: MovingPair, times: Array, aligned: bool = True) -> Timeline:
         kinks = kinks[(kinks > times[0]) & (kinks < times[-1])]
         near = np.searchsorted(times, kinks)
         gap = np.minimum(kinks - times[near - 1], times[np.minimum(near, len(times) - 1)] - kinks)
-        marks = np.sort(np.concatenate([times, kinks[gap * frequency > SAME]]))
+        marks = np.sort(np.concatenate([times, kinks[gap * frequency > TIME_TIE]]))
     starts, lengths = marks[:-1], np.diff(marks)
-    inside = (starts + SAME / max(frequency, 1e-300)) * frequency
-    ends = (marks[1:] - SAME / max(frequency, 1e-300)) * frequency
+    inside = (starts + TIME_TIE / max(frequency, 1e-300)) * frequency
+    ends = (marks[1:] - TIME_TIE / max(frequency, 1e-300)) * frequency
     asked = np.searchsorted(marks, times) - 1
     return Timeline(starts, lengths, wave.straight(inside), wave.straight(ends, True), asked)

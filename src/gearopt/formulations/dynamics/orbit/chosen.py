@@ -8,7 +8,7 @@ import numpy as np
 from gearopt.formulations.dynamics import parts
 from gearopt.formulations.dynamics.design import Chosen
 from gearopt.formulations.dynamics.motions_over_speed import followed
-from gearopt.formulations.dynamics.orbit.climbing import FINE, growth
+from gearopt.formulations.dynamics.orbit.climbing import JUDGE_HARMONICS, growth
 from gearopt.formulations.dynamics.orbit.least_vibration import dense
 from gearopt.formulations.dynamics.orbit.settled import size, worst_motions
 from gearopt.formulations.dynamics.orbit.task import MICRO, Task, measured, series
@@ -18,7 +18,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.moving_pair import MovingPair
 
-COARSE = 91  # speeds of the pair before, between which its curve is straight
+SPEEDS_BEFORE = 91  # speeds of the pair before, between which its curve is straight
 
 
 def chosen(
@@ -33,8 +33,8 @@ def chosen(
     kb, ratio, ramp, width, rim = (float(v) for v in point)
     made = orbit_parts(task, kb, ratio, width, rim)
     found, highest, repeats = _motions(task, point, speeds)
-    coarse = np.linspace(speeds[0], speeds[-1], COARSE)
-    told = np.full(COARSE, np.nan) if before is None else _before(task, before, coarse)
+    coarse = np.linspace(speeds[0], speeds[-1], SPEEDS_BEFORE)
+    told = np.full(SPEEDS_BEFORE, np.nan) if before is None else _before(task, before, coarse)
     return Chosen(
         bearing_stiffness_N_per_mm=kb,
         contact_ratio=ratio,
@@ -63,7 +63,7 @@ def _motions(task: Task, point: Array, speeds: Array) -> tuple[Array, Array, int
     0: a motion that does not repeat soon.
     """
     if task.backlash is None:
-        measure, highest = measured(task, series(task, point[None], speeds, FINE))
+        measure, highest = measured(task, series(task, point[None], speeds, JUDGE_HARMONICS))
         return measure[0], highest[0], 1
     motions = worst_motions(task, point, speeds, Clock())
     after = [motion.repeats for motion in motions]
@@ -78,7 +78,7 @@ def _before(task: Task, pair: MovingPair, speeds: Array) -> Array:
     Where teeth may part, of the larger of the motions that rising and falling speeds lead to.
     """
     frequencies = task.teeth * speeds / 60.0
-    contacts = in_contact(pair, "line", frequencies, FINE, Clock())
+    contacts = in_contact(pair, "line", frequencies, JUDGE_HARMONICS, Clock())
     ways = [followed(pair, "line", contacts, Clock())]
     if task.backlash is not None:
         ways.append(followed(pair, "line", contacts[::-1], Clock())[::-1])

@@ -24,8 +24,8 @@ from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.linear import linear
 
-NEAR = 0.01  # of an objective, by which what is judged more closely may exceed it
-FINE = 40  # harmonics of the judge of a mesh in contact
+JUDGE_MARGIN = 0.01  # of an objective, by which what is judged more closely may exceed it
+JUDGE_HARMONICS = 40  # harmonics of the judge of a mesh in contact
 AGAIN = 3  # runs from the motions that a design really has
 GROWTHS = 91  # speeds at which the multipliers of a design are looked at
 STEP = 1e-4  # of a range: differences of the largest multiplier
@@ -93,7 +93,7 @@ def measure(task: Task, point: Array, speeds_rpm: Array, clock: Clock) -> Array:
     Infinite where the clock stops.
     """
     if task.backlash is None:
-        return worst(task, point, speeds_rpm, FINE)
+        return worst(task, point, speeds_rpm, JUDGE_HARMONICS)
     motions = worst_motions(task, point, speeds_rpm, clock)
     return np.array([size(task, m) for m in motions] or [np.inf] * len(speeds_rpm))
 
@@ -247,7 +247,7 @@ def _parting(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbe
         judged = max((size(task, motion) for motion in motions), default=np.inf)
         if best is None or judged < best.judged:
             best = Climbed(problem, made[1], made[0], judged)
-        if judged <= (1.0 + NEAR) * made[0] or clock.over:
+        if judged <= (1.0 + JUDGE_MARGIN) * made[0] or clock.over:
             break
     return best
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.dynamics.orbit.climbing import (
-    NEAR,
+    JUDGE_MARGIN,
     Climbed,
     climb,
     growth,
@@ -33,7 +33,7 @@ COUNTS = "design measured or Ipopt iteration"
 STARTS, PARTING = 4, 2  # of Ipopt: of a mesh in contact, and of one whose teeth may part
 TRIED = 12  # screened designs that are simulated, of which PARTING are starts
 DENSE, SIMULATED = 361, 121  # speeds of the judge of an exchange: in contact, and simulated
-SAME = 1e-3  # by which the dense maximum may exceed that of another design met on the way
+MAXIMUM_MARGIN = 1e-3  # by which the dense maximum may exceed that of another design met on the way
 ROUNDS = 12  # of an exchange at most
 SPREAD = 46  # equal steps of speed that are added once an exchange has ended, to look once more
 AROUND = 0.05  # of the ranges: first moves of the screened designs as speeds are added
@@ -91,7 +91,7 @@ class Exchanged:
     """The task with the speeds (and harmonics) that it took, its best design, and the rounds.
 
     rounds: of each its number of speeds, harmonics, objective and dense maximum [um]. met: the last
-    dense maximum is within NEAR of the objective.
+    dense maximum is within JUDGE_MARGIN of the objective.
     """
 
     task: Task
@@ -110,8 +110,8 @@ def least(task: Task, clock: Clock, seed: int) -> Exchanged | None:
 def exchange(task: Task, clock: Clock, seed: int) -> Exchanged | None:
     """Solve, look at all speeds between the first and the last, add the worst, and solve again.
 
-    Until the dense maximum is the objective within NEAR, and no design that was met on the way has
-    a lower one or no speed is left to add. None where no design was found.
+    Until the dense maximum is the objective within JUDGE_MARGIN, and no design that was met on the
+    way has a lower one or no speed is left to add. None where no design was found.
     """
     grid = dense(task)
     rng, pool = np.random.default_rng(seed), screened(task, clock, seed)
@@ -128,8 +128,8 @@ def exchange(task: Task, clock: Clock, seed: int) -> Exchanged | None:
         lowest, nearest = min(known, key=lambda one: one[0])
         best, highest = ends[0], float(judged[0].max())
         rounds.append(_round(task, best, highest))
-        near = highest <= (1.0 + NEAR) * best.objective
-        met = near and highest <= (1.0 + SAME) * lowest
+        near = highest <= (1.0 + JUDGE_MARGIN) * best.objective
+        met = near and highest <= (1.0 + MAXIMUM_MARGIN) * lowest
         peaks = _peaks(grid, judged[0], best.objective)
         wider = _wider(_finer(task, best.point, peaks), again if met else peaks[0])
         met |= near and wider == task  # there is no speed left to add
@@ -163,7 +163,7 @@ def _peaks(grid: Array, judged: Array, objective: float) -> tuple[Array, Array]:
     """Return speeds and measures of the peaks above an objective, and of the highest of all."""
     padded = np.concatenate([[-np.inf], judged, [-np.inf]])
     peak = (judged >= padded[:-2]) & (judged >= padded[2:])
-    peak &= judged > (1.0 + 0.5 * NEAR) * objective
+    peak &= judged > (1.0 + 0.5 * JUDGE_MARGIN) * objective
     peak[judged.argmax()] = True
     return grid[peak], judged[peak]
 
@@ -174,7 +174,7 @@ def _finer(task: Task, point: Array, peaks: tuple[Array, Array]) -> Task:
     if task.backlash is not None or not speeds.size or task.harmonics >= MOST:
         return task
     coarse = worst(task, point, speeds, task.harmonics)
-    if np.all(np.abs(coarse - fine) <= 0.5 * NEAR * fine):
+    if np.all(np.abs(coarse - fine) <= 0.5 * JUDGE_MARGIN * fine):
         return task
     return replace(task, harmonics=min(MOST, task.harmonics + MORE))
 

@@ -27,9 +27,9 @@ from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.physics.motion.stiffness_wave import PAIR_SHARE
 
 POINTS = 3  # of Gauss in an element: order 6 where the motion is smooth
-LEAST = 2  # elements of a piece
+MIN_ELEMENTS = 2  # elements of a piece
 WIDTHS = (0.1, 0.03, 0.01)  # over which contact begins, of F/k, one problem after the other
-MOST = 1e5  # um, of velocities and accelerations in the problem's time: the end of a search
+LARGEST_RATE = 1e5  # um, of velocities and accelerations in the problem's time: the end of a search
 
 
 def middle(task: Task) -> Array:
@@ -59,7 +59,7 @@ def elements(task: Task) -> list[int]:
     """Return the elements of each piece, by its length in the middle of the ranges."""
     _, ratio, ramp, _, _ = middle(task)
     shares = np.clip(lengths(ratio, ramp), 0.0, None)
-    return [max(LEAST, round(task.elements * s / shares.sum())) for s in shares]
+    return [max(MIN_ELEMENTS, round(task.elements * s / shares.sum())) for s in shares]
 
 
 def pieces(task: Task, ratio: Any, ramp: Any, single: Any) -> list[Piece]:
@@ -126,8 +126,8 @@ def _of_a_speed(task: Task) -> tuple[Var, ...]:
     own = [
         Var("mean", "um", *wide, -15.0, search=True),
         Var("places", "um", *wide, 0.0, count, search=True),
-        Var("speeds", "um", -MOST, MOST, 0.0, count, search=True),
-        Var("bends", "um", -MOST, MOST, 0.0, count * POINTS, search=True),
+        Var("speeds", "um", -LARGEST_RATE, LARGEST_RATE, 0.0, count, search=True),
+        Var("bends", "um", -LARGEST_RATE, LARGEST_RATE, 0.0, count * POINTS, search=True),
     ]
     if task.measure == "peak_to_peak":
         own += [Var("lowest", "um", *wide, -20.0, search=True)]

@@ -16,7 +16,7 @@ from gearopt.optimise.terms import Array
 from gearopt.physics.motion.moving_pair import MovingPair
 
 HARMONICS = 20  # of motions in contact, and of the first guess of those that part
-STEPS = 12.0  # in a period of the fastest mode: 1e-6 of a motion
+STEPS_PER_PERIOD = 12.0  # in a period of the fastest mode: 1e-6 of a motion
 
 
 def worst_motions(task: Task, point: Array, speeds_rpm: Array, clock: Clock) -> list[Motion]:
@@ -47,4 +47,4 @@ def size(task: Task, motion: Motion) -> float:
 def marched(pair: MovingPair, periods: Array, state: Array) -> Array:
     """Return states (outputs, 6) of a pair on the line of action after so many mesh periods."""
     times = timeline(pair, np.asarray(periods) / pair.mesh_frequency)
-    return march(pair, "line", times, "rk8", fastest(pair, "line") / STEPS, state).states
+    return march(pair, "line", times, "rk8", fastest(pair, "line") / STEPS_PER_PERIOD, state).states

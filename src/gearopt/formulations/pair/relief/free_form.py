@@ -17,7 +17,8 @@ from gearopt.formulations.pair.relief.meshing import Mesh
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var
 
-SAME = 1e-11  # mm: positions that are one point; between them a shape changes by less than 1e-10 um
+# mm: positions that are one point; between them a shape changes by less than 1e-10 um
+POSITION_TIE = 1e-11
 UNIT = 1e-3  # mm: of rows of shape and contact
 
 
@@ -56,13 +57,15 @@ class Profile:
         """Positions s (m,) [mm]."""
         met = self.mesh.cycle.along(self.mesh.cycle.positions)
         met = np.sort(np.append(met, self._centre))
-        return np.asarray(met[np.diff(met, prepend=-np.inf) > SAME])
+        return np.asarray(met[np.diff(met, prepend=-np.inf) > POSITION_TIE])
 
     @cached_property
     def place(self) -> Any:
         """Numbers of points (p, n), -1 of pairs that are not in contact."""
         there = self.mesh.cycle.present
-        found = np.searchsorted(self.points, np.where(there, self.mesh.cycle.positions, 0.0) - SAME)
+        found = np.searchsorted(
+            self.points, np.where(there, self.mesh.cycle.positions, 0.0) - POSITION_TIE
+        )
         return np.where(there, found, -1)
 
     @cached_property
@@ -93,8 +96,8 @@ class Profile:
     def upper(self) -> Array:
         """Greatest amounts (m,) [mm]."""
         path, most = self.mesh.cycle.path, self.shape.most
-        single = (self.points >= path.lowest_single - SAME) & (
-            self.points <= path.highest_single + SAME
+        single = (self.points >= path.lowest_single - POSITION_TIE) & (
+            self.points <= path.highest_single + POSITION_TIE
         )
         return np.where(single & self.shape.short, 0.0, most)
 

@@ -17,7 +17,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var
 
 PROVEN = "peak_to_peak", "harmonics"  # objectives, at single loads too, that a search proves
-MOST = 30e-3  # mm: amount beyond which no relief of such gears goes
+LARGEST_AMOUNT = 30e-3  # mm: amount beyond which no relief of such gears goes
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Ranges:
     exponents: tuple[float, float] = (1.0, 1.0)
 
     @classmethod
-    def of(cls, mesh: Mesh, exponent: float = 1.0, most: float = MOST) -> "Ranges":
+    def of(cls, mesh: Mesh, exponent: float = 1.0, most: float = LARGEST_AMOUNT) -> "Ranges":
         """Return amounts up to `most` and lengths from 0.1 p_b to the middle of the path."""
         path = mesh.cycle.path
         lengths = 0.1 * float(path.base_pitch), 0.5 * float(path.length)

@@ -25,7 +25,7 @@ from gearopt.optimise.jit_kernel import entry, inner
 CUTS = 24  # planes of a box at most
 PIVOTS = 80
 CORNERS = 16  # of the product of two trapeziums
-NEAR = 1e-3  # of the value: cutting planes end where they are as near to the relaxation
+CUT_TOLERANCE = 1e-3  # of the value: cutting planes end where they are as near to the relaxation
 
 
 @inner
@@ -229,7 +229,7 @@ def bound(stiffness, tips, exponents, loads, waves, weights, low, high, aim, poi
         more, height = cuts_at(
             *given, point, secants, offsets, slopes, room, places, best, values, count
         )
-        if height <= best + NEAR * height:
+        if height <= best + CUT_TOLERANCE * height:
             break
         count = more
         best = max(best, game(values, count, table, basis, shares, mixture))

@@ -18,19 +18,20 @@ from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array, Param, Repeat, Terms, Var, each
 
 MICRO = 1e3  # um a mm
-STEPS = (  # of the homotopy: greatest share * gap [um], rounding of a relief's beginning [length]
+# of the homotopy: greatest share * gap [um], rounding of a relief's beginning [length]
+HOMOTOPY = (
     (1e-1, 1e-3),
     (1e-2, 1e-3),
     (1e-3, 1e-3),
     (1e-5, 1e-4),
 )
-LONGEST = 300  # iterations of one step
+MAX_ITERATIONS = 300  # iterations of one step
 STARTS = 4  # where the budget names no end
 CORNER = 1e-6  # of a range: starts keep as far from its ends
 
 RANDOM = True
 COUNTS = "Ipopt iteration of any start"
-SETTINGS = {"starts": STARTS, "steps": STEPS, "iterations of a step": LONGEST}
+SETTINGS = {"starts": STARTS, "steps": HOMOTOPY, "iterations of a step": MAX_ITERATIONS}
 
 
 def complementarity(mesh: Mesh, low: Array, high: Array, exponents: tuple[float, float]) -> Problem:
@@ -53,7 +54,7 @@ def complementarity(mesh: Mesh, low: Array, high: Array, exponents: tuple[float,
     columns += [Var("peak", "um", 0.0, most, 0.1 * most)]
     pairs = mesh.cycle.present.sum(axis=1)
     repeats = tuple(_repeat(mesh, pairs == n, int(n), most, exponents) for n in np.unique(pairs))
-    parameters = Param("tau", "um", STEPS[0][0]), Param("smoothing", "", STEPS[0][1])
+    parameters = Param("tau", "um", HOMOTOPY[0][0]), Param("smoothing", "", HOMOTOPY[0][1])
     return Problem(
         "relief by complementarity",
         tuple(columns),
@@ -159,9 +160,9 @@ def _point(mesh: Mesh, posed: Problem, start: Array, exponents: tuple[float, flo
 
 def _followed(posed: Problem, x: Array, clock: Clock) -> Array:
     """Return where Ipopt ends as tau and smoothing fall."""
-    for tau, smoothing in STEPS:
+    for tau, smoothing in HOMOTOPY:
         left = clock.left.evaluations
-        most = LONGEST if left is None else min(LONGEST, left)
+        most = MAX_ITERATIONS if left is None else min(MAX_ITERATIONS, left)
         budget = Budget(clock.left.seconds, most)
         here = posed.at(tau=tau, smoothing=smoothing)
         found = ipopt.run(here, budget, 0, clock.inner(values=False), start=x)

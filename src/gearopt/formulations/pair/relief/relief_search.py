@@ -26,7 +26,7 @@ ROUNDING = 1e-9  # um: taken off every bound
 NOTHING = 1e-8  # um: of values, a difference that no gear has
 GAP = 1e-6  # relative; where no gap is asked for
 WITHIN = 0.99  # of a gap: roundings included
-FAR = 1e6  # mm: of a pair that is not in contact from the tips
+NO_CONTACT = 1e6  # mm: of a pair that is not in contact from the tips
 TINY = 1e-300  # um
 TOLD = 256  # boxes between two words to the watcher
 RANDOM = False
@@ -82,7 +82,7 @@ def numbers(mesh: Mesh, low: Array, high: Array, exponents: tuple[float, float])
         raise ValueError("the search takes exponents of relief of at least 1")
     there = mesh.cycle.present
     stiffness = np.where(there, 1.0 / (MICRO * (mesh.compliances - mesh.coupling)), 0.0)
-    tips = np.array([np.where(there, x, FAR) for x in mesh.from_tips])
+    tips = np.array([np.where(there, x, NO_CONTACT) for x in mesh.from_tips])
     ends = []
     for end in (low, high):
         roots = (MICRO * np.asarray(end[:2])) ** (1.0 / powers)

@@ -13,7 +13,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Param, Terms, Var
 
 KERNEL = "gearopt.formulations.pair.sharing.sharing_kernel"
-WIDE = 2.0  # of a share's box: beyond 0 and 1, so that no bound takes part of a multiplier
+SHARE_SPAN = 2.0  # of a share's box: beyond 0 and 1, so that no bound takes part of a multiplier
 
 
 def problem(compliances: Any, separations: Any, load: float, coupling: float = 0.0) -> Problem:
@@ -72,7 +72,7 @@ def conic(compliances: Any, separations: Any, load: float, coupling: float = 0.0
 
 
 def _variables(count: int) -> tuple[Var, ...]:
-    return (Var("f", "", -WIDE, WIDE, 1.0 / count, count),)
+    return (Var("f", "", -SHARE_SPAN, SHARE_SPAN, 1.0 / count, count),)
 
 
 def _parameters(

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.servo.ratio.drive import BEYOND, FAINT, Drive, present, quotient
+from gearopt.formulations.servo.ratio.drive import FAINT, SEARCH_SPAN, Drive, present, quotient
 from gearopt.formulations.servo.ratio.secant_bound import convex_bound
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import CLOSED_FORM, Budget, Outcome, Watch
@@ -75,7 +75,7 @@ def acceleration_variable(drive: Drive, largest_ratio: float) -> Var:
     if drive.load_inertia:
         most = min(most, drive.torque * largest_ratio / drive.load_inertia)
     if drive.inertia:
-        most = min(most, drive.torque * BEYOND / (drive.inertia * drive.ratio[0]))
+        most = min(most, drive.torque * SEARCH_SPAN / (drive.inertia * drive.ratio[0]))
     low = FAINT * most if 0.0 < most < math.inf else FAINT
     high = most if most > 0.0 else 1.0
     guess = 0.1 * high if high < math.inf else 1.0

@@ -7,7 +7,7 @@ from typing import Any
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Var
 
-BEYOND = 1e6  # factor between natural scales and the ends of the search: they never bind
+SEARCH_SPAN = 1e6  # factor between natural scales and the ends of the search: they never bind
 FAINT = 1e-30  # of the largest acceleration: what is slower counts as not moving
 
 _UNITS = {"inertia": "t mm2", "torque": "N mm", "friction": "N mm"} | dict.fromkeys(
@@ -110,10 +110,10 @@ class Drive:
         scales: ratios at which something of the duty changes, infinite and zero ones not counted.
         """
         known = [float(s) for s in (*scales, *self.ratio) if 0.0 < s < math.inf]
-        high = math.inf if free else BEYOND * max(known)
+        high = math.inf if free else SEARCH_SPAN * max(known)
         middle = math.exp(sum(map(math.log, known)) / len(known))
         guess = max(self.ratio[0], min(self.ratio[1], middle))
-        return Var("ratio", "", min(known) / BEYOND, high, guess, log=True, search=True)
+        return Var("ratio", "", min(known) / SEARCH_SPAN, high, guess, log=True, search=True)
 
     def torque_needed(self, p: Any, ratio: Any, acceleration: Any) -> Any:
         """Return the text of the motor's torque while it accelerates the load, no falling line."""

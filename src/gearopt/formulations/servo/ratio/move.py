@@ -22,8 +22,8 @@ from gearopt.formulations.servo.ratio.acceleration import (
     unopposed,
 )
 from gearopt.formulations.servo.ratio.drive import (
-    BEYOND,
     FAINT,
+    SEARCH_SPAN,
     Drive,
     friction_torque,
     inertia_at_motor,
@@ -74,7 +74,7 @@ def move(drive: Drive, angle: float) -> Problem:
     scales = (*ratio_scales(drive), _cubic(drive, angle))
     ratio = drive.ratio_variable(scales, free)
     ramp = acceleration_variable(drive, float(np.max(ratio.upper)))
-    factor = Var("friction_factor", "", 1.0, BEYOND, 2.0, log=True, search=True)
+    factor = Var("friction_factor", "", 1.0, SEARCH_SPAN, 2.0, log=True, search=True)
     variables = (ratio, ramp, _peak(ramp, angle), *((factor,) if rubs else ()))
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
@@ -113,7 +113,7 @@ def _ramps(drive: Drive, p: Any, ratio: Any, factor: Any) -> tuple[Any, Any]:
 
 def _peak(ramp: Var, angle: float) -> Var:
     most = float(np.max(ramp.upper))
-    high = BEYOND * math.sqrt(most * angle)
+    high = SEARCH_SPAN * math.sqrt(most * angle)
     guess = math.sqrt(float(np.max(ramp.guess)) * angle)
     return Var("peak_speed", "rad/s", FAINT * guess, high, guess, log=True, search=True)
 

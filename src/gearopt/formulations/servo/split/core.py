@@ -22,7 +22,7 @@ from gearopt.optimise.terms import Param, Terms, Var, each
 
 RANDOM = False
 COUNTS = "split evaluated"
-BEYOND = 1e3  # factor between a total ratio and the upper end of the search for a stage's
+SEARCH_SPAN = 1e3  # factor between a total ratio and the upper end of the search for a stage's
 NEWTON = 100  # steps at most: from above the root of a convex function they fall to it
 
 
@@ -57,7 +57,7 @@ def core(ratio: float, stages: int, goal: str = "inertia") -> Problem:
 
     closed = goal == "mass" or stages <= 2
     even = ratio ** (1.0 / stages)
-    variable = Var("ratio", "", 1.0, BEYOND * ratio, even, stages, log=True)
+    variable = Var("ratio", "", 1.0, SEARCH_SPAN * ratio, even, stages, log=True)
     total = Param("total", "", ratio, role="given")
     methods = {"exact": exact} if closed else {}
     return Problem("split core", (variable,), (total,), evaluate, methods=methods)

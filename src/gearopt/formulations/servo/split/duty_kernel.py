@@ -21,7 +21,7 @@ from gearopt.formulations.servo.split.teeth_kernel import (
 from gearopt.optimise.jit_kernel import entry, inner
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
-STEPS = 70  # of a golden section: a range of 1e6 shrinks to 3e-14 of its logarithm
+SECTION_STEPS = 70  # of a golden section: a range of 1e6 shrinks to 3e-14 of its logarithm
 MARGIN = 1.0 - 1e-9  # far more than rounding and the last interval leave
 
 
@@ -51,7 +51,7 @@ def held(duty, low, high, fixed, grown, best):
         if moved(duty, ratio, fixed + grown * ratio**2) < best:
             return -math.inf
     least = math.inf
-    for _ in range(STEPS):
+    for _ in range(SECTION_STEPS):
         p, q = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
         n1, n2 = math.exp(p), math.exp(q)
         here = moved(duty, n1, fixed + grown * n1**2)
@@ -103,7 +103,7 @@ def best_of_row(s, goal, m1, z1, z2, m2, z3, low, high, middle):
 
 @entry
 def useful(s, goal, first, most, best, found):
-    """Like `useful` of the teeth, for what a duty makes least; a promise is STEPS steps.
+    """Like `useful` of the teeth, for what a duty makes least; a promise is SECTION_STEPS steps.
 
     Error and stress fall with the teeth of wheel 4 and gears keep clear above some number of them,
     so that those allowed are the largest ones; those that carry the motion are an interval.
@@ -116,7 +116,7 @@ def useful(s, goal, first, most, best, found):
         if not first_wheel(s, i, z1) <= z2 <= s.wheel_1[i]:
             continue
         m1 = s.module[i]
-        looked, steps = looked + 1, steps + STEPS
+        looked, steps = looked + 1, steps + SECTION_STEPS
         if promise(s, m1, z1, z2, best) >= best:
             continue
         for j in range(s.module.size):

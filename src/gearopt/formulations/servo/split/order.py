@@ -18,8 +18,8 @@ from gearopt.optimise.terms import Array
 
 KERNEL = "gearopt.formulations.servo.split.order_kernel"
 TEETH = "gearopt.formulations.servo.split.teeth_kernel"
-STEPS = 1_000_000  # of the kernel between two checks
-ROOM = 4096  # trains that it may note between two checks, at first
+KERNEL_STEPS = 1_000_000  # of the kernel between two checks
+FIRST_NOTES = 4096  # trains that it may note between two checks, at first
 
 
 def unchecked() -> None:
@@ -51,10 +51,10 @@ def _listed(
 ) -> Array | None:
     """Return trains between two values; None where they are more than a limit above 0."""
     parts, total, first = [], 0, 0
-    rows, count = np.empty((ROOM, 6), np.int64), kernel(TEETH).first_stages(given)[0]
+    rows, count = np.empty((FIRST_NOTES, 6), np.int64), kernel(TEETH).first_stages(given)[0]
     while first < count:
         check()
-        good, last = kernel(KERNEL).between(given, aim, first, STEPS, above, maximum, rows)
+        good, last = kernel(KERNEL).between(given, aim, first, KERNEL_STEPS, above, maximum, rows)
         if good > len(rows):
             rows = np.empty((2 * good, 6), np.int64)
             continue

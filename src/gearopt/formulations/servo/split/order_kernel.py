@@ -14,7 +14,7 @@ from gearopt.formulations.servo.split.teeth_kernel import (
 )
 from gearopt.optimise.jit_kernel import entry
 
-STEPS = duty_kernel.STEPS
+SECTION_STEPS = duty_kernel.SECTION_STEPS
 promise_of_duty = duty_kernel.promise
 
 
@@ -34,7 +34,7 @@ def between(s, goal, first, most_steps, above, most, rows):
             continue
         m1 = s.module[i]
         if goal > 2:
-            least, steps = promise_of_duty(s, m1, z1, z2, most), steps + STEPS
+            least, steps = promise_of_duty(s, m1, z1, z2, most), steps + SECTION_STEPS
         else:
             least = promise(s, goal, m1, z1, z2)
         if least > most * ALLOWANCE:

@@ -19,7 +19,7 @@ from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.gears import GearPair, disc_inertia
 
 TIPS = ("train.wheel_tip_diameters[1]", "train.wheel_tip_diameters[2]")  # in a problem file
-BEYOND = 1e3  # factor between the lengths of a train and the ends of the search
+SEARCH_SPAN = 1e3  # factor between the lengths of a train and the ends of the search
 
 
 def relaxation(train: ServoTrain, goal: str = "inertia") -> Problem:
@@ -140,10 +140,19 @@ def _size(train: ServoTrain) -> tuple[float, float]:
 def _variables(train: ServoTrain) -> tuple[Var, ...]:
     ends, guess = _modules(train), float(train.bore)
     size = (*_size(train), guess)
-    least, most = min(size) / BEYOND, max(size) * BEYOND
+    least, most = min(size) / SEARCH_SPAN, max(size) * SEARCH_SPAN
     even = float(train.ratio) ** 0.5
     return (
         Var("pinion_diameter", "mm", least, most, guess, 2, log=True, search=True),
-        Var("ratio", "", 1.0 / BEYOND, even**2 * BEYOND, even, 2, log=True, search=True),
-        Var("module", "mm", ends[0] / BEYOND, ends[1] * BEYOND, ends[0], 2, log=True, search=True),
+        Var("ratio", "", 1.0 / SEARCH_SPAN, even**2 * SEARCH_SPAN, even, 2, log=True, search=True),
+        Var(
+            "module",
+            "mm",
+            ends[0] / SEARCH_SPAN,
+            ends[1] * SEARCH_SPAN,
+            ends[0],
+            2,
+            log=True,
+            search=True,
+        ),
     )

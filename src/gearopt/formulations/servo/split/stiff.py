@@ -24,7 +24,7 @@ from gearopt.physics.stiffness import (
     shaft_compliance,
 )
 
-BEYOND = 1e3  # factor between the lengths of a train and the ends of the search
+SEARCH_SPAN = 1e3  # factor between the lengths of a train and the ends of the search
 
 
 @dataclass(frozen=True)
@@ -136,12 +136,12 @@ def _compliance(train: StiffTrain, x: Any, wheels: Iterable[Gear]) -> Any:
 def _variables(train: StiffTrain) -> tuple[Var, ...]:
     pinion = 1.1 * train.module * max(train.pinion_teeth)
     sizes = (pinion, train.module, train.face_width, train.shaft_diameter, *train.wheel_tips)
-    least, most = min(sizes) / BEYOND, max(sizes) * BEYOND
+    least, most = min(sizes) / SEARCH_SPAN, max(sizes) * SEARCH_SPAN
     even = math.sqrt(train.ratio[0])
     width, shaft = 2.0 * train.face_width, 2.0 * train.shaft_diameter
     return (
         Var("pinion_diameter", "mm", least, most, pinion, 2, log=True, search=True),
-        Var("ratio", "", 1.0 / BEYOND, even**2 * BEYOND, even, 2, log=True, search=True),
+        Var("ratio", "", 1.0 / SEARCH_SPAN, even**2 * SEARCH_SPAN, even, 2, log=True, search=True),
         Var("face_width", "mm", least, most, width, 2, log=True, search=True),
         Var("shaft_diameter", "mm", least, most, shaft, log=True, search=True),
     )

@@ -27,7 +27,7 @@ from gearopt.optimise.terms import Array, Terms, Var
 
 RANDOM = False
 COUNTS = "choice of teeth and modules"
-STEPS = 2_000, 1_000_000  # of the kernel between two checks of the budget: at first, maximum
+KERNEL_STEPS = 2_000, 1_000_000  # of the kernel between two checks of the budget: at first, maximum
 ROUNDING = 1e-12  # of an objective, between the kernel's text and the problem's
 FLAT = 1e-11  # of a duty's: along a row of wheel teeth rounding may hide a better train
 NO_TEETH = "no teeth and modules meet all limits"
@@ -100,7 +100,7 @@ def method(train: ServoTrain, goal: str, whole: bool) -> Any:
         found, count = np.zeros(6, np.int64), kernel(KERNEL).first_stages(given)[0]
         look(given, aim, 0, 0, math.inf, found)  # compiled before the clock starts
         clock, best, feasible = Clock(budget, watch), math.inf, 0
-        first, (steps, most) = 0, STEPS
+        first, (steps, most) = 0, KERNEL_STEPS
         while first < count:
             best, more, good, first = look(given, aim, first, steps, best, found)
             feasible, steps = feasible + good, min(2 * steps, most)

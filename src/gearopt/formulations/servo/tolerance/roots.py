@@ -21,7 +21,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.dual import ROUNDING
 from gearopt.optimise.terms import Array
 
-STEPS = 5  # of Newton: the error is below 0.7, then e^2/8: 6e-2, 5e-4, 3e-8, 1e-16, done
+NEWTON_STEPS = 5  # of Newton: the error is below 0.7, then e^2/8: 6e-2, 5e-4, 3e-8, 1e-16, done
 REACH = 300.0  # of the logarithm of a multiplier or a radius, scaled
 INSIDE = 1.0 - 1e-15  # a direction normalised in doubles is made no longer than 1
 
@@ -136,7 +136,8 @@ def cheapest(stack: Stack, linear: Array, square: Array) -> Array:
     y = np.minimum(-log_a / (k + 1.0), -log_b / (k + 2.0))  # each alone would go beyond the root
     held = np.isfinite(y)
     y = np.where(held, y, 0.0)
-    for _ in range(STEPS):  # on the logarithm of w t^-(k + 1) = A + B t, convex and rising in y
+    # on the logarithm of w t^-(k + 1) = A + B t, convex and rising in y
+    for _ in range(NEWTON_STEPS):
         first, second = log_a + (k + 1.0) * y, log_b + (k + 2.0) * y
         total = np.logaddexp(first, second)
         y = y - np.where(held, total / (k + 1.0 + np.exp(second - total)), 0.0)

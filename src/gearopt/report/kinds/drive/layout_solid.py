@@ -39,7 +39,8 @@ from gearopt.report.drawing.still import Block, Body, Rod, Texts, sizes_of, stil
 from gearopt.report.measures import Measures
 from gearopt.report.section import Figure, Section
 
-MOST = 50_000  # triangles of all gears together, for a page that turns smoothly without a GPU
+# triangles of all gears together, for a page that turns smoothly without a GPU
+MAX_TRIANGLES = 50_000
 DETAIL = ((3, 0.12), (3, 0.3), (2, 0.6), (2, 10.0))  # points on a flank, twist a section [rad]
 FLUSH = 0.003  # of the box: a shaft is drawn so much longer, to be seen where it ends in a face
 CAPTION = (
@@ -145,7 +146,7 @@ def _gears(
     solids = [(gear, _toothed(found, gear, places)) for gear in found.gears]
     for flank, step in DETAIL:
         meshes = [gear_mesh(solid, flank, step) for _, solid in solids]
-        if sum(len(faces) for _, faces in meshes) <= MOST:
+        if sum(len(faces) for _, faces in meshes) <= MAX_TRIANGLES:
             break
     seen: set[int] = set()
     traces = []

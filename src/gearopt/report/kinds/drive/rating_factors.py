@@ -6,7 +6,7 @@ from typing import Any
 
 from gearopt.formulations.drive.rating import DriveRating, RatingFactor
 from gearopt.optimise.result import Result
-from gearopt.report.kinds.drive.rating_symbols import FINE, SHORT, greek
+from gearopt.report.kinds.drive.rating_symbols import SHORT, SHOWN_UNITS, greek
 from gearopt.report.kinds.drive.rating_tables import names
 from gearopt.report.kinds.drive.rating_words import rating_of, unverified
 from gearopt.report.measures import Measures
@@ -92,7 +92,7 @@ def _factor_row(found: DriveRating, own: Sequence[RatingFactor], measures: Measu
 
 def _unit(factor: RatingFactor) -> str:
     """Return the unit that a factor is shown in, as `Measures` calls it."""
-    return FINE.get(factor.symbol, factor.unit)
+    return SHOWN_UNITS.get(factor.symbol, factor.unit)
 
 
 def _by_stage(found: DriveRating, own: Sequence[RatingFactor], key: str) -> str:

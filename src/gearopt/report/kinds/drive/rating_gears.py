@@ -10,7 +10,7 @@ from gearopt.report.kinds.drive.rating_symbols import SHORT, greek, of_standards
 from gearopt.report.kinds.drive.rating_tables import figure, label, name, names, rows_of, single
 from gearopt.report.kinds.drive.rating_words import (
     AT_ONCE,
-    LONGEST,
+    LONGEST_LIFE,
     efficiency,
     life,
     nearest,
@@ -89,7 +89,7 @@ def _said(found: DriveRating) -> list[str]:
         words.append("Safety factors are those of all load levels together, by Miner's rule.")
     lives = [(g.bending_life_cycles, g.contact_life_cycles) for _, g in _columns(found)]
     if any(None in both for both in lives):
-        words.append(f"Beyond: more than {LONGEST}, where the life curves end.")
+        words.append(f"Beyond: more than {LONGEST_LIFE}, where the life curves end.")
     return words
 
 

@@ -28,7 +28,7 @@ WRITTEN = {  # symbols that differ from their letters
 GREEK = {"alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "eps": "ε", "sigma": "σ"}
 _SYMBOL = re.compile(r"\b[A-Za-z]{1,5}_\w+")  # a letter or its name, and an index
 _NAME = re.compile("|".join(GREEK))
-FINE = {  # units of factors that are shown in others: deviations of flanks, stiffnesses
+SHOWN_UNITS = {  # units of factors that are shown in others: deviations of flanks, stiffnesses
     **dict.fromkeys(("f_pb", "f_falpha", "f_ma", "C_a"), "um_or_uin"),
     **dict.fromkeys(("c_prime", "c_gamma_alpha", "c_gamma_beta"), "N_per_mm_um"),
 }

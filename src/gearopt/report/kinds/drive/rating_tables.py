@@ -13,7 +13,7 @@ from gearopt.report.measures import Measures
 from gearopt.report.section import Cell, Section, Table, cell
 from gearopt.report.words import MODULE, heading, module_words, number, parted
 
-LEAST = {"governs": "governs", "power_capacity_kW": "power capacity"}
+GOVERNING_KEYS = {"governs": "governs", "power_capacity_kW": "power capacity"}
 MESHES = {
     "tangential_force_N": "tangential force F_t",
     "radial_force_N": "radial force F_r",
@@ -173,7 +173,7 @@ def forces(result: Result, measures: Measures) -> Section | None:
 
 def _least_rows(found: DriveRating, measures: Measures) -> Iterator[list[Any]]:
     """Yield what governs every mesh and what it may transmit, by every standard."""
-    for key, words in LEAST.items():
+    for key, words in GOVERNING_KEYS.items():
         for one in found.each:
             of = "" if found.beside is None else f" by {one.by}"
             yield from (row for _, row in rows_of(one.meshes, {key: words + of}, measures))

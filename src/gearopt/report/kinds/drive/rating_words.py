@@ -18,7 +18,7 @@ ROUNDING = 1e-8  # relative; a safety factor so near to a shorter number is that
 FRICTION = (  # `mesh_loss.FRICTION_ERROR`
     f"the error is that of the friction, which may be {100 * FRICTION_ERROR:.0f} % off (unverified)"
 )
-LONGEST = f"{life_curves.LONGEST:g} cycles".replace("e+", "e")
+LONGEST_LIFE = f"{life_curves.LONGEST_LIFE:g} cycles".replace("e+", "e")
 AT_ONCE = "fails at once"
 MODES = {"bending": "S_F", "contact": "S_H"}
 
@@ -255,7 +255,7 @@ def _tile(found: DriveRating, name: str, values: Sequence[str], asked: str) -> T
 def life(hours: float | None) -> str:
     """Return a life for reading; None: beyond the end of the curves, 0: before they begin."""
     if not hours:
-        return f"beyond {LONGEST}" if hours is None else AT_ONCE
+        return f"beyond {LONGEST_LIFE}" if hours is None else AT_ONCE
     return f"{safety(hours)} h"
 
 

@@ -16,9 +16,9 @@ from gearopt.report.section import Figure, axis, layout
 ORBIT = "motion of the axes"  # the animation that the response follows
 MOMENTS = 240  # of the animation
 SECONDS = 12.0  # in which it passes at normal speed
-LAST = 0.5  # of the response that it shows: the later half
+LATER_PART = 0.5  # of the response that it shows: the later half
 SIZE = 300.0  # px of a view of an orbit
-ROOM = 1.15  # of the largest displacement that a view shows
+AXIS_MARGIN = 1.15  # of the largest displacement that a view shows
 DOT, CORNERS = 5.0, 20  # px and corners of the point that moves
 HEIGHT = 320  # px of a plot
 QUIET, LOUD = "--card", "--series-1"  # ends of a map's colours
@@ -75,7 +75,7 @@ def orbit(found: Response, measures: Measures) -> Animation:
     """Show the axes of both gears moving about their places at rest, much enlarged."""
     x1, y1, x2, y2 = (np.asarray(c) for c in found.axes_mm)
     time = np.asarray(found.time_ms)
-    first = int((1.0 - LAST) * (len(time) - 1))
+    first = int((1.0 - LATER_PART) * (len(time) - 1))
     shown = np.unique(np.linspace(first, len(time) - 1, MOMENTS).astype(int))
     later = slice(first, len(time))
     views = []
@@ -101,7 +101,7 @@ def _view(
     """Draw the track of an axis, and the point that moves on it."""
     ends = np.array([min(track_x.min(), 0.0), max(track_x.max(), 0.0)])
     tops = np.array([min(track_y.min(), 0.0), max(track_y.max(), 0.0)])
-    half = 0.5 * ROOM * max(np.ptp(ends), np.ptp(tops), 1e-9)
+    half = 0.5 * AXIS_MARGIN * max(np.ptp(ends), np.ptp(tops), 1e-9)
     cx, cy = ends.mean(), tops.mean()
     free = (16.0, 16.0, 30.0, 16.0)
     window = Window(cx - half, cx + half, cy - half, cy + half, free)

@@ -22,7 +22,7 @@ from gearopt.report.drawing.player import Animation, Body, Reading, Scale, View
 from gearopt.report.drawing.sheet import series
 from gearopt.report.measures import Measures
 
-SOON = 0.15  # of the time in which most pairs touch: the moment of the still
+STILL_AT = 0.15  # of the time in which most pairs touch: the moment of the still
 SECONDS = 6.0  # of one base pitch at normal speed
 FREE = (8.0, 8.0, 8.0, 8.0)  # px around a view
 DOT = 4.0  # px: radius of a point of contact
@@ -124,7 +124,7 @@ def _place(carried: Carried, measures: Measures) -> Reading:
 def _still(carried: Carried) -> int:
     """Return a moment soon after a pair came into contact, when shares differ most."""
     most = carried.travels[np.isfinite(carried.positions).all(axis=1)]
-    soon = most.min() + SOON * np.ptp(most)
+    soon = most.min() + STILL_AT * np.ptp(most)
     return int(np.argmin(np.abs(carried.travels - soon)))
 
 

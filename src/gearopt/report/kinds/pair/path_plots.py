@@ -14,8 +14,8 @@ from gearopt.report.measures import Measures
 from gearopt.report.section import Figure, axis, layout
 
 HEIGHT = 340  # px
-ROOM = 0.03  # of the path that is seen beyond its ends
-CLOSE = 0.03  # of the path: letters of points that are closer stand as one
+AXIS_MARGIN = 0.03  # of the path that is seen beyond its ends
+LETTER_SPACING = 0.03  # of the path: letters of points that are closer stand as one
 LETTERS = {"SAP": "A", "LPSTC": "B", "HPSTC": "D", "EAP": "E"}  # as drawings name them
 DASHES = ("dash", "dot")  # of lines across
 
@@ -59,7 +59,7 @@ def over_path(
         traces.append(
             {"type": "scatter", "mode": "lines", "name": name, "hoverinfo": "skip"} | ends
         )
-    room = ROOM * (high - low)
+    room = AXIS_MARGIN * (high - low)
     shapes, notes = zones(path, measures)
     plot = layout(
         axis(f"position s on the line of action [{unit}]", range=[low - room, high + room]),
@@ -127,7 +127,7 @@ def zones(
         line = {"color": "--axis", "width": 1, "dash": "dot"}
         ends_at = {"x0": unit * s, "x1": unit * s, "y0": 0.0, "y1": 1.0}
         shapes.append({"type": "line", "yref": "paper", "layer": "below", "line": line} | ends_at)
-        if s - last < CLOSE * float(path.length):
+        if s - last < LETTER_SPACING * float(path.length):
             notes[-1]["text"] += f" {name}"
             continue
         last = s

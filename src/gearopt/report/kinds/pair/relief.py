@@ -11,7 +11,8 @@ from gearopt.report.measures import METRIC, Measures
 from gearopt.report.section import Cell, Table, Tile, cell, percent
 from gearopt.report.words import amount, share
 
-NEAR = 1.001  # peak-to-peak on more positions over that on the computed ones: no difference
+# peak-to-peak on more positions over that on the computed ones: no difference
+SAME_PEAK_TO_PEAK = 1.001
 CRITERIA = {  # of a relief: what their names mean
     "peak_to_peak": "peak-to-peak transmission error",
     "harmonics": "first three harmonics of the transmission error",
@@ -88,7 +89,7 @@ def answers(found: PairRelief) -> list[str]:
 def _finer(found: PairRelief) -> list[str]:
     """Say how far the transmission error strays between the positions that were computed."""
     known, finer = max(found.rows[-1].peak_to_peak_mm), max(found.finer_mm, default=0.0)
-    if finer <= NEAR * known:
+    if finer <= SAME_PEAK_TO_PEAK * known:
         return []
     return [
         "Peak-to-peak values and what is proven of them are of the computed positions of the "

@@ -15,8 +15,8 @@ from gearopt.report.kinds.pair.words import of_duty
 from gearopt.report.measures import Measures
 from gearopt.report.section import Cell, Figure, Section, Table, axis, layout
 
-STEPS = 10  # of the table from where a relief starts to the tip
-FINE = 60  # of its plot
+TABLE_STEPS = 10  # of the table from where a relief starts to the tip
+PLOT_STEPS = 60  # of its plot
 TICKS = 6  # diameters above a plot
 PANELS = 4  # loads whose harmonics stand side by side, at most
 GAP = 0.04  # between them, of the width
@@ -82,7 +82,7 @@ def steps(flank: Flank, measures: Measures) -> Table:
         f"removed [{measures.unit('um')}]",
     )
     rows, fine = [], 2 + 2 * measures.digits  # decimals of a micrometre, or of a mil
-    for roll in flank.at(STEPS):
+    for roll in flank.at(TABLE_STEPS):
         off = measures.of(float(flank.removed(roll)), "um")
         rows.append(
             [
@@ -104,7 +104,7 @@ def profile(flank: Flank, measures: Measures) -> Figure:
     """Plot what is removed from a flank against its roll angle, with diameters above."""
     start, tip = flank.told.start_roll_angle_deg, flank.told.tip_roll_angle_deg
     member, low = flank.member, start - 0.35 * (tip - start)
-    rolls = np.concatenate(([low], flank.at(FINE)))
+    rolls = np.concatenate(([low], flank.at(PLOT_STEPS)))
     off = measures.of(1.0, "um") * flank.removed(rolls)
     trace = {
         "type": "scatter",

@@ -16,7 +16,7 @@ from gearopt.report.measures import Measures, error_of
 from gearopt.report.section import Section, Tile
 from gearopt.report.words import REACHED, amount, goal, number
 
-SAME = 1e-6  # relative: objectives that are equal
+OBJECTIVE_TIE = 1e-6  # relative: objectives that are equal
 FULL_TORQUE = "motor_torque"  # used up wherever an acceleration is largest
 
 
@@ -43,7 +43,7 @@ def _costs(result: Result) -> bool:
         return False
     best = [t for t in report_of(result).trains or () if t.best_of == asked.word]
     own, there = goal(result)[2], getattr(best[0], asked.key) if best else None
-    return bool(own and there and abs(there - own) > SAME * abs(own))
+    return bool(own and there and abs(there - own) > OBJECTIVE_TIE * abs(own))
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:

@@ -31,7 +31,7 @@ from gearopt.report.words import number, share
 
 ROW = 23.0  # px of a source
 REST = 120.0  # px of legend and axis
-ROOM = 1.04  # of the longest bar
+AXIS_MARGIN = 1.04  # of the longest bar
 ENDS = 1e-6  # relative: a tolerance as near to an end of its range stands at it
 SHORT = 0.999  # of a cell: a full bar would mark a limit that is reached
 RULES = {
@@ -64,7 +64,7 @@ def errors(result: Result, measures: Measures) -> Section | None:
         }
     )
     shapes = [] if limit is None else [limit_line("limit", limit, "y", 2.0)]
-    across = axis("error at the output [°]", range=[0.0, ROOM * max(total, limit or 0.0)])
+    across = axis("error at the output [°]", range=[0.0, AXIS_MARGIN * max(total, limit or 0.0)])
     up = axis("", type="category", categoryorder="array", categoryarray=order, ticks="")
     up["showgrid"] = False
     high = round(REST + ROW * len(order))

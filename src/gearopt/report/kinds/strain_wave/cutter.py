@@ -15,10 +15,10 @@ Frame = tuple[float, float, float, float]
 PX_PER_MM = 96.0 / 25.4  # of a screen and of paper as browsers print it
 FREE = (46.0, 16.0, 34.0, 16.0)  # px around the edge
 LINES = 60  # of the grid across and upwards at most: coarser ones are taken beyond
-ROOM = 0.06  # of the width of two teeth, that is free beside them
+SIDE_MARGIN = 0.06  # of the width of two teeth, that is free beside them
 EVERY = (1, 2, 4, 10, 20, 40, 100, 200)  # lines of the grid from one with a number to the next
 APART = 60.0  # px between numbers at least
-STEPS = tuple(s * 10.0**k for k in range(12) for s in (1.0, 2.0, 5.0))  # times the grid
+GRID_MULTIPLES = tuple(s * 10.0**k for k in range(12) for s in (1.0, 2.0, 5.0))  # times the grid
 
 
 def drawing(
@@ -37,7 +37,7 @@ def drawing(
         path = " L ".join(f"{u:.3f} {v:.3f}" for u, v in (sheet.at(*p) for p in tooth.tolist()))
         sheet.shape(f"M {path} Z", "tip", series(1), "tooth of the cutter")
     if found.straight_deg:
-        _straight(sheet, found, ROOM * (ends[1] - ends[0]))
+        _straight(sheet, found, SIDE_MARGIN * (ends[1] - ends[0]))
     for v, u in edge[::5].tolist():
         sheet.circle(u, v, 2.0 / sheet.scale, "design")
     name = f"pinion-type cutter of {found.teeth} teeth" if found.teeth else "rack"
@@ -71,9 +71,9 @@ def _frame(teeth: list[Any], grid: float) -> tuple[Frame, float]:
     The step is the grid [mm], or a multiple of it where there would be more than LINES.
     """
     x, y = np.vstack(teeth).T
-    room = ROOM * float(np.ptp(x))
+    room = SIDE_MARGIN * float(np.ptp(x))
     span = max(np.ptp(x), np.ptp(y)) + 2 * room
-    step = next((s * grid for s in STEPS if span < LINES * s * grid), span)
+    step = next((s * grid for s in GRID_MULTIPLES if span < LINES * s * grid), span)
     low = [float(np.floor((v.min() - room) / step) * step) for v in (x, y)]
     high = [float(np.ceil((v.max() + room) / step) * step) for v in (x, y)]
     return (low[0], high[0], low[1], high[1]), step

@@ -20,7 +20,7 @@ from gearopt.report.measures import Measures
 SECONDS = 12.0  # of half a turn at normal speed
 MOMENTS = 145  # of it: every 1.25 degrees
 WIDE, CLOSE = 420.0, 640.0  # px of the whole and of the close-up
-NEAR = 3  # teeth on either side of the close-up's middle
+CLOSE_UP_TEETH = 3  # teeth on either side of the close-up's middle
 HIGH = 5.2  # modules that the close-up is high
 FREE = (8.0, 8.0, 8.0, 8.0)  # px around a view
 COLOURS = (1, 4, 6)  # of flexspline, circular spline and wave generator, in the series
@@ -198,12 +198,14 @@ def _whole(made: Drawn, found: WaveDesign, turns: Any, measures: Measures) -> Vi
 def _close(made: Drawn, found: WaveDesign, turns: Any, measures: Measures) -> View:
     gearing, m = made.gearing, found.module_mm
     top = float(gearing.root_radius) + 0.4 * m
-    half = (NEAR - 0.3) * math.pi * m
+    half = (CLOSE_UP_TEETH - 0.3) * math.pi * m
     window = Window(-half, half, top - HIGH * m, top, FREE)
     sheet = Sheet(window, CLOSE / (2.0 * half))
     points = 11 if found.law == INVOLUTE else 21
-    _spline(sheet, made, range(-NEAR - 2, NEAR + 3), points, 0.0)
-    teeth = _bodies(made, _shown(found, measures), turns, range(-NEAR - 2, NEAR + 3), points)
+    _spline(sheet, made, range(-CLOSE_UP_TEETH - 2, CLOSE_UP_TEETH + 3), points, 0.0)
+    teeth = _bodies(
+        made, _shown(found, measures), turns, range(-CLOSE_UP_TEETH - 2, CLOSE_UP_TEETH + 3), points
+    )
     words = (
         f"The teeth at the top: {measures.length(2.0 * half)} {measures.lengths} from side to side."
     )

@@ -43,10 +43,11 @@ SMALLER = {
     "axial_clearance": 10.0,
 }
 REACHES = 2.0  # a place or a keep-out moves so many times the length of all links at most
-FINE = 1e-4  # relative accuracy of a factor that is found
-NEAR = 1e-3  # mm; accuracy of a place that is found
+FACTOR_TOLERANCE = 1e-4  # relative accuracy of a factor that is found
+PLACE_TOLERANCE = 1e-3  # mm; accuracy of a place that is found
 GRID = 1e-2  # mm; what is proposed is a multiple of it, within the tolerance of a place
-BACK = 1e-3  # part of a number by which a proposal is taken back to see that it is the smallest
+# part of a number by which a proposal is taken back to see that it is the smallest
+SLACK_TRIED = 1e-3
 LEFT = 0.01  # part of a keep-out that is left of it
 
 
@@ -142,9 +143,9 @@ def _factor(path: Path, value: Quantity, farthest: float, sign: int, named: str)
         path,
         lambda size: times(value, farthest ** (sign * size)),
         lambda size: (eased(value, farthest**size, sign),),
-        lambda new: times(new, 1.0 - sign * BACK),
+        lambda new: times(new, 1.0 - sign * SLACK_TRIED),
         lambda size: farthest**size - 1.0,
-        math.ceil(math.log2(math.log(farthest) / FINE)),
+        math.ceil(math.log2(math.log(farthest) / FACTOR_TOLERANCE)),
         f"{named} up to {farthest:g} times" if sign > 0 else f"{named} down to 1/{farthest:g}",
     )
 
@@ -194,11 +195,11 @@ def _shift(
     """Return the edit of one end by a distance; home: the direction back to where it was."""
 
     def back(new: Any) -> Any:
-        part = max(BACK * abs(new[end].value), 2.0 * GRID)
+        part = max(SLACK_TRIED * abs(new[end].value), 2.0 * GRID)
         nearer = _shifted(new[end], home * part)
         return (nearer, nearer) if new[0] == new[1] else _with(ends, end, nearer)
 
-    steps = math.ceil(math.log2(max(farthest / NEAR, 2.0)))
+    steps = math.ceil(math.log2(max(farthest / PLACE_TOLERANCE, 2.0)))
     what, part = "an end of a place", ""
     if path[0] == "keep_out":
         part = f" (and {100.0 * (1.0 - LEFT):g} % of its width)"

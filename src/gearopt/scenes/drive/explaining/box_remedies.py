@@ -28,12 +28,12 @@ from gearopt.units import Quantity
 SECONDS = 2.0  # at most, for one question whether a layout is possible
 HALF = 0.5  # the same while a size is halved: what fits is found in less, mostly
 BRIEF = 0.2  # and beyond a size that stayed undecided
-COARSE = 8  # halvings of the common size of two moves, by which pairs are compared
+ROUGH_HALVINGS = 8  # halvings of the common size of two moves, by which pairs are compared
 PAIRS = 6  # that are worked out
 HALVINGS = 20  # of the size within which the file's own rules hold
 SENSITIVITY_GAP = 0.01  # gap of the proof behind a sensitivity: the polished layout is far closer
-SAME = 1e-7  # relative, of boxes that are equal
-FIRST = "smallest changes are those for the gears sized first: others may need less"
+SIZE_TIE = 1e-7  # relative, of boxes that are equal
+GEARS_FIRST = "smallest changes are those for the gears sized first: others may need less"
 TABLES = ("layout", "place", "keep_out")
 
 Pair = tuple[Edit, Edit]
@@ -133,7 +133,7 @@ def remedies(scene: Scene, pairs: tuple[GearPair, ...], ask: Ask) -> tuple[Remed
     changed = found[0][2] if found else None
     known = tuple(remedy for _, remedy, _ in found)
     more, unknown = other_gears(scene, pairs, known, clock)
-    first = FIRST if known and others_may_fit(scene, pairs) else ""
+    first = GEARS_FIRST if known and others_may_fit(scene, pairs) else ""
     words = "; ".join(filter(None, (message, first, unknown)))
     return _of_gears(scene, known, more, words), changed
 
@@ -235,7 +235,7 @@ def _pairs(scene: Scene, single: tuple[Edit, ...], asked: Questions) -> list[Fou
         def both(size: float, pair: Pair = pair) -> Scene:
             return _put(scene, pair, [m.searched(size) for m in pair])
 
-        steps = COARSE if any(m.steps for m in pair) else 0
+        steps = ROUGH_HALVINGS if any(m.steps for m in pair) else 0
         key = " and ".join(m.key() for m in pair)
         for size in asked.smallest(both, steps, key)[:1]:
             rough.append((sum(m.change(size) for m in pair), size, pair))
@@ -317,7 +317,7 @@ def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:
     late = "; time ran out before all numbers were tried" if clock.over else ""
     return Explanation(
         result,
-        binding=tuple(n for n, v in result.limits.items() if v > 1.0 - SAME),
+        binding=tuple(n for n, v in result.limits.items() if v > 1.0 - SIZE_TIE),
         influences=found,
         message=f"sensitivities are those of the box around these gears{late}",
         seconds=result.seconds + clock.seconds,

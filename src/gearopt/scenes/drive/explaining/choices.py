@@ -9,7 +9,7 @@ from typing import Any
 
 from gearopt.optimise.explaining.explain import DIGITS
 from gearopt.optimise.explaining.explanation import Change, Remedy
-from gearopt.optimise.explaining.repair import TAKEN_BACK, least_value
+from gearopt.optimise.explaining.repair import SLACK_TRIED, least_value
 from gearopt.scenes.drive.explaining.movable import edited_from
 from gearopt.scenes.drive.explaining.together import is_real
 from gearopt.scenes.drive.explaining.tried import Case
@@ -25,11 +25,13 @@ WIDEST = (
     Fraction(999, 1000),
 )  # distances to which ratios are sought, up and down
 NEARER = Fraction(1, 10**9)  # part of its distance by which one that is nearer is asked for
-SHARP = Fraction(1, 10**5)  # part of its distance to which that of real-valued teeth is known
-CLOSE = Fraction(1, 10)  # part of its distance from where all that is nearer is asked for at once
-BACK = Fraction(TAKEN_BACK)
+# part of its distance to which that of real-valued teeth is known
+RATIO_TOLERANCE = Fraction(1, 10**5)
+# part of its distance from where all that is nearer is asked for at once
+NEARER_ASKED = Fraction(1, 10)
+SLACK_FRACTION = Fraction(SLACK_TRIED)
 QUESTIONS = 40  # at most, for nearer ratios
-LONGEST = 15  # digits of what is written
+LONGEST_DIGITS = 15  # digits of what is written
 TOLERANCES = (Fraction(1, 10**5), Fraction(1, 2))  # tried where the file allows none
 
 
@@ -66,18 +68,18 @@ def nearest_ratio(case: Case, away: Fraction | None) -> Remedy | None:
 def _nearest(case: Case, best: Reached) -> tuple[Reached, str]:
     """Return what is reached next to the ratio asked for; and whether nothing is nearer.
 
-    Whole teeth are known to be next in exact numbers, real-valued ones but for TAKEN_BACK of the
+    Whole teeth are known to be next in exact numbers, real-valued ones but for SLACK_TRIED of the
     distance, as limits are met in doubles.
     """
     whole, low = case.scene.teeth is not None, case.scene.duty.ratio_tolerance
-    sharp = NEARER if whole else SHARP
+    sharp = NEARER if whole else RATIO_TOLERANCE
     proven = low  # below it nothing is reached, between it and `low` that is not known
     excluded = whole  # by the last answer: perhaps all that is nearer is
     for _ in range(QUESTIONS):
         if best.away - low <= sharp * best.away:
             break
-        away = Fraction(math.sqrt(max(low, best.away * BACK) * best.away))
-        if excluded and best.away - low <= CLOSE * best.away:
+        away = Fraction(math.sqrt(max(low, best.away * SLACK_FRACTION) * best.away))
+        if excluded and best.away - low <= NEARER_ASKED * best.away:
             away = best.away * (1 - NEARER)
         found = _met(case, away)
         excluded = whole and isinstance(found, str)
@@ -87,7 +89,7 @@ def _nearest(case: Case, best: Reached) -> tuple[Reached, str]:
             low, proven = away, away if found == "infeasible" else proven
         if case.clock.over:
             break
-    known = best.away - proven <= (NEARER if whole else BACK) * best.away
+    known = best.away - proven <= (NEARER if whole else SLACK_FRACTION) * best.away
     return best, "infeasible" if known else "undecided"
 
 
@@ -121,7 +123,7 @@ def _written(scene: Scene, ratio: Fraction) -> Iterator[Scene]:
     number = ratio if speed is None else speed.number * asked / ratio
     way = 1 if (number > asked if speed is None else number > speed.number) else -1
     if scene.teeth is not None:
-        numbers = [_short(number, digits) for digits in range(DIGITS, LONGEST + 1)]
+        numbers = [_short(number, digits) for digits in range(DIGITS, LONGEST_DIGITS + 1)]
     else:
         numbers = [_short(number, SHORT), eased(number, 1.0, way)]
     for k, value in enumerate(numbers):
@@ -134,7 +136,7 @@ def _written(scene: Scene, ratio: Fraction) -> Iterator[Scene]:
         if scene.teeth is not None and missed <= scene.duty.ratio_tolerance * written:
             yield found
             return
-        if scene.teeth is None and (k or missed <= Fraction(TAKEN_BACK) * abs(ratio - asked)):
+        if scene.teeth is None and (k or missed <= Fraction(SLACK_TRIED) * abs(ratio - asked)):
             yield found
 
 
@@ -158,7 +160,7 @@ def eased_tolerance(case: Case) -> Remedy | None:
     value = eased(Fraction(least), 1.0, 1)
     texts = [toml_text(written(v, path)) for v in (Fraction(0), value)]
     change = Change(dotted(path), texts[0], texts[1], math.inf)
-    words = [case.status(put(case.scene, path, value * Fraction(1 - b))) for b in (0, TAKEN_BACK)]
+    words = [case.status(put(case.scene, path, value * Fraction(1 - b))) for b in (0, SLACK_TRIED)]
     if words[0] != "feasible":
         return None
     verified = {"with": words[0], "with_less": words[1]}

@@ -38,7 +38,7 @@ GRADES = ("quality", "accuracy")
 OF_BLANKS = dict.fromkeys((*RIM, *WEB, HUBS), -1)  # keys of blanks: where gears get lighter
 TENTHS = ("life", "input_revolutions", *OF_BLANKS)  # of which a hundredth says little
 TENTH = 0.1  # relative
-SAME = 1e-6  # gap of an answer that may be compared with another
+OPTIMALITY_GAP = 1e-6  # gap of an answer that may be compared with another
 
 
 def explained(
@@ -48,7 +48,7 @@ def explained(
 
     Sensitivities are those of real-valued sizes; steps are solved for the drive as it is.
     """
-    whole = result.status in CERTAIN and (result.gap or 0.0) <= SAME
+    whole = result.status in CERTAIN and (result.gap or 0.0) <= OPTIMALITY_GAP
 
     def solved(other: Scene) -> float | None:
         if not whole:  # a difference to what is not the best means nothing

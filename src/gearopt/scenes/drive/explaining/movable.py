@@ -48,7 +48,7 @@ FIELDS: dict[str, tuple[str, int | None]] = {
 }
 DUTY = {"ratio_low": "ratio_tolerance", "ratio_high": "ratio_tolerance", "torque": "power"}
 WIDTH = "face_width_over_diameter"
-CLOSE = 1.0005  # ratio of a refused to an allowed factor that ends a search
+FACTOR_TOLERANCE = 1.0005  # ratio of a refused to an allowed factor that ends a search
 
 
 @dataclass(frozen=True)
@@ -255,7 +255,7 @@ def reachable(scene: Scene, number: Movable) -> Movable:
     low, high = 1.0, max((h.reach for h in number.handles), default=1.0)
     if applied(scene, [(number, high)]) is not None:
         return number
-    while high > low * CLOSE:
+    while high > low * FACTOR_TOLERANCE:
         middle = math.sqrt(low * high)
         refused = applied(scene, [(number, middle)]) is None
         low, high = (low, middle) if refused else (middle, high)

@@ -8,7 +8,7 @@ from typing import Any
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import THERE
 from gearopt.optimise.explaining.explanation import Change, Remedies, Remedy
-from gearopt.optimise.explaining.repair import BEYOND, CLOSE, TAKEN_BACK
+from gearopt.optimise.explaining.repair import FACTOR_TOLERANCE, FACTORS_TRIED, SLACK_TRIED
 from gearopt.optimise.result import Budget
 from gearopt.scenes.drive.explaining.influences import GRADES, eases
 from gearopt.scenes.drive.explaining.movable import WIDTH, next_module
@@ -29,12 +29,15 @@ from gearopt.scenes.explaining.numbers import (
 from gearopt.scenes.reading.toml import toml_text
 
 DUTY = ("duty", "power")
-SOON, SECONDS = 3.0, 6.0  # at most, for the conflict beside an answer, and beside remedies
-FIRST, QUESTION = 7.0, 2.0  # s, at most, for the numbers that help, and for one question
-MOST = (3.0, 2.0, 1.4, 1.2, 1.1)  # factors of a remedy of use; the first that the file may have
+# at most, for the conflict beside an answer, and beside remedies
+CONFLICT_SECONDS, CONFLICT_SECONDS_BESIDE_REMEDIES = 3.0, 6.0
+# s, at most, for the numbers that help, and for one question
+ROUGH_SECONDS, QUESTION_SECONDS = 7.0, 2.0
+# factors of a remedy of use; the first that the file may have
+FACTORS_OFFERED = (3.0, 2.0, 1.4, 1.2, 1.1)
 ROUGH = 1.02  # ratio of a refused to an allowed factor up to which every number is known first
-PART = 0.4  # at most, of the time that is left, for each of these
-SHARP, LAST = 2.0, 4.0  # s, at most, to make them sharper, and for choices
+SHARE_OF_TIME = 0.4  # at most, of the time that is left, for each of these
+SHARPEN_SECONDS, CHOICE_SECONDS = 2.0, 4.0  # s, at most, to make them sharper, and for choices
 STEPPED = (*GRADES, "accuracy_grade", "grade")  # moved by ones
 
 Works = Callable[[Scene], bool | None]
@@ -64,7 +67,7 @@ class _Found:
 
 def conflict_soon(scene: Scene, clock: Clock) -> dict[str, Any]:
     """Return `ways_out` of an impossible drive, its conflict alone; empty: not found soon."""
-    known = conflict(Case(scene, Clock(Budget(clock.within(SOON)), clock.watch)))
+    known = conflict(Case(scene, Clock(Budget(clock.within(CONFLICT_SECONDS)), clock.watch)))
     if not known.proven:
         return {}
     found = Remedies(known.names, any_resolves=known.any_resolves)
@@ -79,11 +82,11 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
 
     def within(seconds: float) -> Clock:
         left = clock.left.seconds
-        own = seconds if left is None else min(seconds, PART * left)
+        own = seconds if left is None else min(seconds, SHARE_OF_TIME * left)
         return Clock(Budget(own), clock.watch)
 
-    known = conflict(Case(scene, within(SECONDS)))
-    case = Case(scene, clock, seconds=QUESTION)
+    known = conflict(Case(scene, within(CONFLICT_SECONDS_BESIDE_REMEDIES)))
+    case = Case(scene, clock, seconds=QUESTION_SECONDS)
 
     def works(other: Scene) -> bool | None:
         if other.teeth is None:
@@ -91,17 +94,17 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
             return True if word in THERE else (False if word == "infeasible" else None)
         return possible(case, [other.held(count).train() for count in other.counts])
 
-    first = within(FIRST)
+    first = within(ROUGH_SECONDS)
     found = _known(scene, known, first, works)
     if not found:
         first = clock
-        found = _known(scene, Conflict(), clock, works, BEYOND[::-1])
+        found = _known(scene, Conflict(), clock, works, FACTORS_TRIED[::-1])
     untried = first.over
-    sharp = within(SHARP)
+    sharp = within(SHARPEN_SECONDS)
     own = [_remedy(scene, one, sharp, works) for one in found]
     own.sort(key=lambda r: (r.kind == "less", r.factor))
     own = _with_least(own, not (untried or clock.over or case.open))
-    last = within(LAST)
+    last = within(CHOICE_SECONDS)
     chosen = tuple(choices(scene, known, lambda other: None if last.over else works(other)))
     untried = untried or last.over
     late = "time ran out before all remedies were tried" if clock.over else ""
@@ -131,7 +134,7 @@ def _known(
     known: Conflict,
     clock: Clock,
     works: Works,
-    most: Sequence[float] = MOST,
+    most: Sequence[float] = FACTORS_OFFERED,
 ) -> list[_Found]:
     """Return the numbers that help alone, each known roughly."""
     found = []
@@ -156,7 +159,7 @@ def _numbers(scene: Scene, known: Conflict) -> Iterator[tuple[Number, int]]:
             yield number, way
 
 
-_PROVEN = (  # whose moves up to MOST are within what the conflict was proven without
+_PROVEN = (  # whose moves up to FACTORS_OFFERED are within what the conflict was proven without
     *("minimum_bending_safety", "minimum_contact_safety", "life", "module_high", "module_low"),
     *("wheel_diameter", "stage_ratio_high", "stage_ratio_low", "least_face_width"),
     *("face_width_over_module_high", "face_width_over_module_low", "face_width_low"),
@@ -213,7 +216,7 @@ def _steps(scene: Scene, number: Number, way: int) -> tuple[Any, ...] | None:
     """Return the next values of a number that takes steps, near ones first; None: it takes none."""
     if scene.teeth is not None and "module" in number.path:
         found, value = list[Any](), next_module(scene, number.value, way)
-        while value is not None and apart(number.value, value) <= MOST[0]:
+        while value is not None and apart(number.value, value) <= FACTORS_OFFERED[0]:
             found.append(value)
             value = next_module(scene, value, way)
         return tuple(found)
@@ -237,7 +240,7 @@ def _narrow(scene: Scene, one: _Found, clock: Clock, works: Works, close: float)
 
 def _remedy(scene: Scene, one: _Found, clock: Clock, works: Works) -> Remedy:
     """Return a number that helps as a remedy, as little as is known to suffice."""
-    _narrow(scene, one, clock, works, CLOSE)
+    _narrow(scene, one, clock, works, FACTOR_TOLERANCE)
     number = one.number
     value = one.value(one.high)
     was, write = (toml_text(written(v, number.path)) for v in (number.value, value))
@@ -255,5 +258,5 @@ def _less(scene: Scene, one: _Found, clock: Clock, works: Works) -> str:
         return "infeasible"  # every step before was tried
     if clock.over:
         return "undecided"
-    back = moved(scene, number.path, taken_back(value, number.value, TAKEN_BACK))
+    back = moved(scene, number.path, taken_back(value, number.value, SLACK_TRIED))
     return "infeasible" if back is not None and works(back) is False else "undecided"

@@ -11,8 +11,8 @@ from gearopt.optimise.explaining.explanation import Remedies, Remedy
 from gearopt.optimise.explaining.handles import Handle
 from gearopt.optimise.explaining.repair import (
     FARTHEST,
-    SAME,
-    TAKEN_BACK,
+    PRODUCT_TIE,
+    SLACK_TRIED,
     any_resolves,
     conflict,
     even,
@@ -190,7 +190,7 @@ def _changes(
             proposals.append(Proposal("least", trimmed(case, proposal.moves), floor))
     rows = [r for _, r in (*singles, *_tried(case, proposals))]
     best = min((_product(r) for r in rows if r.kind != "less"), default=FARTHEST)
-    joint = smallest_together(case, movable, best * (1.0 - SAME))
+    joint = smallest_together(case, movable, best * (1.0 - PRODUCT_TIE))
     if joint is not None and (
         r := _remedy(case, Proposal("least", joint[0], floor, joint[1] or None))
     ):
@@ -238,7 +238,7 @@ def _distinct(found: Sequence[Remedy]) -> list[Remedy]:
     best: dict[tuple[str, ...], Remedy] = {}
     for remedy in found:
         keys = tuple(sorted(c.key for c in remedy.changes))
-        if keys not in best or _product(remedy) < _product(best[keys]) * (1.0 - SAME):
+        if keys not in best or _product(remedy) < _product(best[keys]) * (1.0 - PRODUCT_TIE):
             best[keys] = remedy
     return list(best.values())
 
@@ -252,7 +252,7 @@ def _remedy(case: Case, proposal: Proposal) -> Remedy | None:
         word = "infeasible" if proposal.sure else "undecided"
     else:
         each = (None,) if proposal.kind == "even" else range(len(edited.changes))
-        words = {case.status(less(case.scene, edited, TAKEN_BACK, k)) for k in each}
+        words = {case.status(less(case.scene, edited, SLACK_TRIED, k)) for k in each}
         word = words.pop() if len(words) == 1 else "mixed"
     factors = [c.factor for c in edited.changes]
     return Remedy(

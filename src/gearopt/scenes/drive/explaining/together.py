@@ -19,7 +19,7 @@ from gearopt.formulations.drive.teeth import best_pairs
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.handles import Handle, handles
-from gearopt.optimise.explaining.repair import FARTHEST, SAME, least_factors
+from gearopt.optimise.explaining.repair import FARTHEST, PRODUCT_TIE, least_factors
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.solve import solve_within
 from gearopt.scenes.drive.explaining.movable import (
@@ -38,8 +38,8 @@ from gearopt.scenes.drive.scene import Scene
 
 EDGE = 1.001  # a reach is known this closely; it ends between two values
 QUESTIONS = 60  # at most, whether the drives of a box are possible
-NEAR = 1.0 - 1e-6  # a value this close to what is needed is that one
-MOST = 3  # whole numbers of which both neighbours are tried
+MET_FROM = 1.0 - 1e-6  # a value this close to what is needed is that one
+MAX_ROUNDED_NUMBERS = 3  # whole numbers of which both neighbours are tried
 Box = tuple[tuple[int, int], ...]
 
 
@@ -237,10 +237,10 @@ def _rounded(scene: Scene, moves: Moves) -> list[Moves]:
     ways = []
     for number, factor in moves:
         known = [1.0, *steps(scene, number)]
-        beyond = next((k for k, f in enumerate(known) if f >= factor * NEAR), len(known) - 1)
-        exact = known[beyond] <= factor / NEAR
+        beyond = next((k for k, f in enumerate(known) if f >= factor * MET_FROM), len(known) - 1)
+        exact = known[beyond] <= factor / MET_FROM
         ways.append([(number, f) for f in known[beyond - (not exact) : beyond + 1][::-1]])
-    if len(ways) > MOST:  # too many to try all: all beyond
+    if len(ways) > MAX_ROUNDED_NUMBERS:  # too many to try all: all beyond
         ways = [way[:1] for way in ways]
     return [tuple(m for m in way if m[1] > 1.0) for way in itertools.product(*ways)]
 
@@ -285,7 +285,9 @@ def _smallest_moves(
     if found is None:
         return None
     factors, _, bound = found
-    moves = tuple((m, float(f)) for m, f in zip(groups, factors, strict=True) if f > 1.0 + SAME)
+    moves = tuple(
+        (m, float(f)) for m, f in zip(groups, factors, strict=True) if f > 1.0 + PRODUCT_TIE
+    )
     return moves, bound if comparable(case.scene, groups) else None
 
 

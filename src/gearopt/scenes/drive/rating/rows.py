@@ -11,7 +11,7 @@ from gearopt.formulations.drive.rating import (
     RatingFactor,
     ShaftRating,
 )
-from gearopt.physics.agma.life import LONGEST
+from gearopt.physics.agma.life import LONGEST_LIFE
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.contact import contact_path, usable_path
 from gearopt.physics.geometry.tooth import (
@@ -30,7 +30,7 @@ from gearopt.scenes.drive.rating.mesh import Mesh
 from gearopt.scenes.drive.scene import Scene
 
 SHORTER = 1e-6  # relative, by which a path is shorter than another
-SAME = 1e-10  # margin of load at which a capacity is found
+LOAD_MARGIN = 1e-10  # margin of load at which a capacity is found
 MOST_STEPS, FLATTEST, LARGEST = (
     100,
     0.05,
@@ -77,7 +77,7 @@ def _lives(mesh: Mesh, k: int) -> tuple[float, float]:
 
 def _within(life: float) -> float | None:
     """Return a life in cycles; None beyond the end of the curves."""
-    return life if life <= LONGEST else None
+    return life if life <= LONGEST_LIFE else None
 
 
 def life_hours(mesh: Mesh, k: int) -> float:
@@ -154,7 +154,7 @@ def _capacity(mesh: Mesh, wanted: tuple[float, float]) -> float:
     at = of_low
     for _ in range(MOST_STEPS):
         margin = math.log(_margins(mesh.grown(math.exp(at)), wanted)[0])
-        if abs(margin) < SAME:
+        if abs(margin) < LOAD_MARGIN:
             return math.exp(at)
         slope = (margin - of_low) / (at - low) if at != low else -1.0
         low, of_low = at, margin

@@ -42,7 +42,7 @@ PITCH = {
     "wheel_pitch": "pitch of wheel",
 }
 WORDS = RADIAL | THICKNESS | PITCH
-MOST = Fraction(1000)  # of a cost and of a factor
+LARGEST_FACTOR = Fraction(1000)  # of a cost and of a factor
 GEARS = ("module", "pinion_teeth", "wheel_teeth")
 
 TWO_SIDED = ("centre_distance", *THICKNESS)  # keys that may be two allowances
@@ -255,7 +255,7 @@ class Tolerances(Table):
         description="Cost (old/new)^exponent of a tolerance",
         json_schema_extra={"default": 1},
     )
-    pitch_cost: Annotated[Fraction, number(2, 0, MOST)] = Field(
+    pitch_cost: Annotated[Fraction, number(2, 0, LARGEST_FACTOR)] = Field(
         default_factory=lambda: Fraction(1),
         description="Cost of a pitch deviation at its old value; every other deviation costs 1",
         json_schema_extra={"default": 1},
@@ -263,7 +263,7 @@ class Tolerances(Table):
     least_factor: Annotated[Fraction | None, number(0.25, 0, 1)] = Field(
         None, description="Minimum of every tolerance, as a factor of its old value"
     )
-    largest_factor: Annotated[Fraction | None, number(4, 1, MOST)] = Field(
+    largest_factor: Annotated[Fraction | None, number(4, 1, LARGEST_FACTOR)] = Field(
         None, description="Maximum of every tolerance, as a factor of its old value"
     )
     grades: Annotated[int | None, whole(4, 1, 8)] = Field(
@@ -292,7 +292,7 @@ class CostTable(Table):
     stage: Annotated[int | None, whole(1, 1, 2)] = Field(
         None, description="Its stage, from the motor on; without it that of both"
     )
-    cost: Annotated[Fraction | None, number(2, 0, MOST)] = Field(
+    cost: Annotated[Fraction | None, number(2, 0, LARGEST_FACTOR)] = Field(
         None, description="Its cost at the old value, instead of 1 or pitch_cost"
     )
     exponent: Annotated[Fraction | None, number(0.5, 0, 4)] = Field(
