@@ -90,7 +90,9 @@ def following(
         threading.Thread(target=leave, daemon=True).start()
 
     def leave() -> None:
-        if ended.wait(KEEPING if last is not None and kept(last) else GRACE):
+        if ended.wait(GRACE):
+            return
+        if last is not None and kept(last) and ended.wait(KEEPING - GRACE):
             return
         said = "" if last is None else f" ({words(last)})"
         os.write(2, b"" if status is None else SHOW_CURSOR)

@@ -16,7 +16,7 @@ from gearopt.optimise.result import Budget
 
 PROGRAM = """
 import sys
-from gearopt.formulations import layout, together
+from gearopt.formulations.drive import layout, together
 from gearopt.formulations.packing import sa
 
 told = []

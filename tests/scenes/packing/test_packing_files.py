@@ -166,7 +166,7 @@ def test_an_impossible_request_is_one_message_and_exit_2(tmp_path):
     for command in ("solve", "check", "compare"):
         done = gear(command, path)
         assert done.returncode == 2 and done.stdout == ""
-        assert done.stderr.count("\n") == 1 and "2 mm are missing" in done.stderr
+        assert done.stderr.count("\n") == 1 and "is 2 mm too small" in done.stderr
 
 
 @pytest.mark.slow
