@@ -15,6 +15,7 @@ import hashlib
 import io
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from numba import config, njit
@@ -48,7 +49,18 @@ class _Files(IndexDataCacheFile):  # type: ignore[misc, unused-ignore]
 
 
 class _Folder(Locator):  # type: ignore[misc, valid-type, unused-ignore]
-    """The folder that `kernels.kernel` names, read even where none may write; numba's interface."""
+    """The folder that `kernels.kernel` names, read even where none may write; numba's interface.
+
+    Its name changes with every kernel, so that neither the place nor the age of a source counts:
+    all environments of a user share the machine code of one version.
+    """
+
+    def __init__(self, function: Any, file: str) -> None:
+        super().__init__(function, file)
+        self._cache_path = str(Path(config.CACHE_DIR, function.__module__))
+
+    def get_source_stamp(self) -> str:
+        return ""
 
     @classmethod
     def from_function(cls, function: Any, file: str) -> "_Folder | None":
