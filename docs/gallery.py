@@ -179,8 +179,8 @@ UNITS = {  # as keys of a result have them
     "error": "deg",
     "inverse_acceleration": "",
     "move_time": "s",
-    "peak_to_peak": "mm (shown in um)",
-    "rms": "mm (shown in um)",
+    "peak_to_peak": "um_or_uin",
+    "rms": "um_or_uin",
     "rms_torque": "Nm",
     "cost": "",
 }

@@ -18,7 +18,7 @@ from gearopt.report.measures import INCH, METRIC, SYSTEMS
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.section import Table, cell, percent, shown
 from gearopt.report.terminal import grid, show
-from gearopt.report.words import heading, parted
+from gearopt.report.words import heading, objective, parted
 
 UNITS = {
     "m_per_s": "m/s",
@@ -27,7 +27,6 @@ UNITS = {
     "mm3": "mm^3",
     "um": "mm",
     "um_or_uin": "mm",
-    "mm (shown in um)": "mm",
     "N_per_mm": "newton / millimeter",
     "N_per_mm_um": "MPa",
     "kg_m2": "kg*m^2",
@@ -197,6 +196,22 @@ def test_drawn_lengths_in_inches():
     shown_ = page(cases.three_stage(), "x", INCH)
     for words in (">16.220<", ">34.381<", ">a1 = 8.340<", ">b1 1.06<"):
         assert words in shown_, words
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "text"),
+    [
+        ("peak_to_peak", "mm", "1.2346 µm"),
+        ("worst_peak_to_peak", "mm", "1.2346 µm"),
+        ("harmonics_at_60", "mm", "1.2346 µm"),
+        ("length", "mm", "0.00123 mm"),
+        ("rms", "", "0.0012346"),
+    ],
+)
+def test_small_objectives_are_kept_in_mm_and_read_in_micrometres(name, unit, text):
+    told = {"name": name, "value": 1.23456e-3, "unit": unit}
+    result = gearopt.Result("pair", "feasible", "exact", told)
+    assert METRIC.amount(result.value, objective(result)[1]) == text
 
 
 def test_cells():

@@ -16,7 +16,7 @@ from rich.text import Text
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Event, Result, Watch
 from gearopt.optimise.scale import gap
-from gearopt.report.measures import METRIC, Measures
+from gearopt.report.measures import METRIC, Measures, read_in
 from gearopt.report.screen import Screen
 
 PATIENCE = 0.5  # seconds of a run without a line about it
@@ -192,7 +192,7 @@ def reached(event: Event, measures: Measures = METRIC) -> list[str]:
     """Return the best value, the bound and the gap of an event in words."""
     from gearopt.report.words import amount
 
-    unit, best, bound = event.unit, event.best, event.bound
+    unit, best, bound = read_in(event.objective, event.unit), event.best, event.bound
     words = [] if best is None else [f"best {amount(best, unit, measures)}"]
     if bound is None:
         return words

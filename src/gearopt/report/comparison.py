@@ -14,6 +14,7 @@ from gearopt.optimise.comparing.comparison import (
     excess,
 )
 from gearopt.optimise.scale import is_known
+from gearopt.report.measures import read_in
 from gearopt.report.words import amount
 
 NOTHING = 1e-12  # a gap below it is rounding
@@ -86,7 +87,7 @@ def reference(group: Group) -> str:
     if group.reference is None:
         return "No method found a feasible point, and nothing is proven: there are no gaps."
     zero = not is_known(group.reference, group.scale)
-    value = amount(0.0 if zero else group.reference, group.unit)
+    value = amount(0.0 if zero else group.reference, unit_of(group))
     if not group.proven:
         return (
             f"Nothing is proven here: gaps are to the best {name} known, {value}, which may "
@@ -100,17 +101,22 @@ def reference(group: Group) -> str:
     if _closed(group):
         return f"{words}, and a feasible point attains it: the optimum is known)."
     if zero:
-        above = amount(group.best - group.reference, group.unit)
+        above = amount(group.best - group.reference, unit_of(group))
         return f"{words}). The best known is {above} above it; the optimum lies between."
     apart = 100.0 * excess(group.best, group.reference, group.scale)
     return f"{words}). The best known is {apart:.2g} % above it; the optimum lies between."
+
+
+def unit_of(group: Group) -> str:
+    """Return the suffix under which the objective of a model is shown."""
+    return read_in(group.objective, group.unit)
 
 
 def _own(group: Group) -> str:
     """Say what the gaps to a reference of zero are measured by."""
     if not group.scale:
         return "1, because the bound is zero"
-    scale = amount(group.scale, group.unit)
+    scale = amount(group.scale, unit_of(group))
     return f"the objective's own scale, {scale}, because the bound is zero"
 
 

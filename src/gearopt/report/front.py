@@ -7,7 +7,7 @@ from typing import Any
 from gearopt.optimise.pareto.front import Front, Objective
 from gearopt.optimise.pareto.pick import neighbours
 from gearopt.report.command import SECONDS
-from gearopt.report.measures import METRIC, Measures
+from gearopt.report.measures import METRIC, Measures, read_in
 from gearopt.report.section import Cell, Table, cell
 from gearopt.report.words import MODULE, number
 
@@ -76,7 +76,7 @@ def decided(front: Front, measures: Measures = METRIC) -> list[str]:
 
 
 def _span(front: Front, k: int, measures: Measures) -> str:
-    values, unit = [p.values[k] for p in front.points], front.objectives[k].unit
+    values, unit = [p.values[k] for p in front.points], unit_of(front.objectives[k])
     low, high = (measures.amount(v, unit) for v in (min(values), max(values)))
     return low if low == high else f"{low} to {high}"
 
@@ -96,7 +96,7 @@ def picked(front: Front, measures: Measures = METRIC) -> list[str]:
 def _values(front: Front, place: int, measures: Measures) -> str:
     point = front.points[place]
     pairs = zip(front.objectives, point.values, strict=True)
-    text = ", ".join(f"{words(o.name)} {measures.amount(v, o.unit)}" for o, v in pairs)
+    text = ", ".join(f"{words(o.name)} {measures.amount(v, unit_of(o))}" for o, v in pairs)
     return text[0].upper() + text[1:]
 
 
@@ -137,7 +137,7 @@ def table(front: Front, measures: Measures = METRIC, most: int | None = None) ->
         (
             k + 1,
             *(
-                cell(v, one.unit, measures)
+                cell(v, unit_of(one), measures)
                 for v, one in zip(front.points[k].values, front.objectives, strict=True)
             ),
             ", ".join(taken.get(k, ())),
@@ -166,9 +166,14 @@ def chosen(front: Front, most: int | None) -> list[int]:
     return sorted(spread | {pick.place for pick in front.picks})
 
 
+def unit_of(one: Objective) -> str:
+    """Return the suffix under which the values of an objective are shown."""
+    return read_in(one.name, one.unit)
+
+
 def head(one: Objective, measures: Measures) -> str:
     """Return what an objective is called above its values, with the unit."""
-    sign = measures.unit(one.unit)
+    sign = measures.unit(unit_of(one))
     return f"{words(one.name)} [{sign}]" if sign else words(one.name)
 
 

@@ -25,6 +25,11 @@ HUNDREDTHS = 2  # decimals of a length in mm
 NOTHING = 5e-7  # mm; a smaller length is rounding
 SMALL, LARGE = 1e-5, 1e15  # numbers below and from there are written with a power of ten
 EXACT = 1e-12  # relative; a number so near to a shorter one is that one
+IN_MICROMETRES = (
+    "peak_to_peak",
+    "harmonics",
+    "rms",
+)  # objectives in mm that are read in micrometres
 NO_GAP = 1e-8  # a gap below it is rounding of the bound
 _ROUNDING = {-1: ROUND_FLOOR, 0: ROUND_HALF_EVEN, 1: ROUND_CEILING}
 
@@ -62,6 +67,15 @@ def gap_percent(gap: float) -> str:
         return f"below {100.0 * NO_GAP:.6f} %"
     text = rounded(100.0 * gap, 2, way=1)
     return f"{text.rstrip('0').rstrip('.') if '.' in text else text} %"
+
+
+def read_in(objective: str, unit: str) -> str:
+    """Return the suffix under which an objective is shown: lengths of micrometres as such.
+
+    objective: its name, also of a worst case, or at one load as in "peak_to_peak_at_60".
+    """
+    small = unit == "mm" and objective.removeprefix("worst_").partition("_at_")[0] in IN_MICROMETRES
+    return "um_or_uin" if small else unit
 
 
 @dataclass(frozen=True)
@@ -172,7 +186,6 @@ METRIC = Measures(
         "kg": ("kg", 1.0),
         "um": ("µm", 1e3),  # of mm
         "um_or_uin": ("µm", 1e3),  # of mm
-        "mm (shown in um)": ("µm", 1e3),  # of mm: an objective's, whose value is in mm
         "N_per_mm_um": ("N/(mm µm)", 1e-3),  # of MPa
         "N_per_mm": ("N/mm", 1.0),
         "kg_m2": ("g cm²", 1e7),
@@ -205,7 +218,6 @@ INCH = Measures(
         "kg": ("lb", 1.0 / _POUND),
         "um": ("mil", 1000.0 / _INCH),  # of mm
         "um_or_uin": ("µin", 1e6 / _INCH),  # of mm
-        "mm (shown in um)": ("µin", 1e6 / _INCH),  # of mm
         "N_per_mm_um": ("lbf/(in µin)", 1e-6 / _PSI),  # of MPa
         "N_per_mm": ("lbf/in", _INCH / _POUND_FORCE),
         "kg_m2": ("oz in²", 16e6 / (_POUND * _INCH**2)),

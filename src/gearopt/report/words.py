@@ -7,7 +7,7 @@ from typing import Any
 
 from gearopt.formulations.strength import laws
 from gearopt.optimise.result import Result
-from gearopt.report.measures import DIGITS, METRIC, Measures, rounded
+from gearopt.report.measures import DIGITS, METRIC, Measures, read_in, rounded
 
 REACHED = 1e-6  # nearer to a limit than that, it is reached
 MODULE = "normal_module_mm"
@@ -199,7 +199,7 @@ def title(result: Result) -> str:
 def objective(result: Result) -> tuple[str, str]:
     """Return the name of the objective in words, and its unit as a key has it."""
     name, unit = (str(result.objective.get(key, "")) for key in ("name", "unit"))
-    return name.replace("_", " "), unit
+    return name.replace("_", " "), read_in(name, unit)
 
 
 def goal(result: Result) -> tuple[str, str, float | None, float | None, str]:

@@ -24,6 +24,7 @@ def test_the_relief_is_proven_and_beats_what_was_published(solved):
     """1.2373 um by a local method from three starts, on 48 positions; loads 0.6 and 1."""
     result = solved("relief_two_loads")
     assert result.status == "optimal" and result.objective["name"] == "peak_to_peak"
+    assert result.objective["unit"] == "mm"
     assert 1e3 * result.value < 1.2373 and result.value - result.bound <= 1e-6 * result.value
     assert "proven optimal (at 99 positions of the gears)" in repr(result).splitlines()[0]
     relief, contact = result.design["relief"], result.design["contact"]

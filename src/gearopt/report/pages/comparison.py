@@ -63,10 +63,9 @@ def tables(found: Comparison) -> dict[str, str]:
 
 def _of(group: Group, run: Run) -> tuple[float | None, float | None, str]:
     """Return objective and bound of a run in the unit that is shown, and that unit."""
-    value, bound = (
-        None if v is None else METRIC.of(v, group.unit) for v in (run.objective, run.bound)
-    )
-    return value, bound, METRIC.unit(group.unit)
+    unit = words.unit_of(group)
+    value, bound = (None if v is None else METRIC.of(v, unit) for v in (run.objective, run.bound))
+    return value, bound, METRIC.unit(unit)
 
 
 def colours(methods: list[str]) -> dict[str, str]:

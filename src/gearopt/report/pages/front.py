@@ -12,7 +12,7 @@ from gearopt.report import front as told
 from gearopt.report.answer import assumptions
 from gearopt.report.drawing import layout_views, train_views
 from gearopt.report.drawing.sheet import Drawing
-from gearopt.report.front import rules, stages_of, words
+from gearopt.report.front import rules, stages_of, unit_of, words
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages import front_designs, front_plots
 from gearopt.report.pages.frame import render
@@ -92,13 +92,13 @@ def _summary(front: Front, measures: Measures) -> Section:
     tiles = [Tile("designs", f"{count:,}", told.verdict(front)[0])] if count else []
     for k, one in enumerate(front.objectives if count else ()):
         values = [p.values[k] for p in front.points]
-        low, high = (measures.amount(v, one.unit) for v in (min(values), max(values)))
+        low, high = (measures.amount(v, unit_of(one)) for v in (min(values), max(values)))
         tiles.append(Tile(words(one.name), low, f"to {high}" if high != low else ""))
     lines = told.decided(front, measures)
     if front.status == "infeasible" and front.file:
         lines.append(f"Which limits are in conflict: gearopt explain {front.file}.")
     limited = [
-        f"{words(o.name)} at most {measures.amount(o.most, o.unit)}"
+        f"{words(o.name)} at most {measures.amount(o.most, unit_of(o))}"
         for o in front.objectives
         if o.most is not None
     ]

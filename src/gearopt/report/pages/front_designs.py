@@ -5,7 +5,7 @@ from typing import Any
 
 from gearopt.optimise.pareto.front import Front, FrontPoint, Impossible
 from gearopt.report.design_tables import STAGE_ROWS, stage_label
-from gearopt.report.front import head, rules, stages_of, table
+from gearopt.report.front import head, rules, stages_of, table, unit_of
 from gearopt.report.measures import Measures
 from gearopt.report.section import Cell, Table, cell
 from gearopt.report.words import MODULE, heading, is_module, limit_words, parted
@@ -81,7 +81,7 @@ def main(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]
         return staged[:AXES]
     columns = zip(*(p.values for p in front.points), strict=True)
     known = [
-        [measures.of(v, one.unit) for v in column]
+        [measures.of(v, unit_of(one)) for v in column]
         for column, one in zip(columns, front.objectives, strict=True)
     ]
     names = _different(each, _names(front, each, measures))
@@ -135,7 +135,7 @@ def beaten(front: Front, measures: Measures) -> Table | None:
 
 def _values(front: Front, values: Sequence[float], measures: Measures) -> list[Cell]:
     pairs = zip(values, front.objectives, strict=True)
-    return [cell(v, one.unit, measures) for v, one in pairs]
+    return [cell(v, unit_of(one), measures) for v, one in pairs]
 
 
 def impossible(front: Front, measures: Measures) -> Table | None:
@@ -151,7 +151,7 @@ def impossible(front: Front, measures: Measures) -> Table | None:
 
 
 def _most(front: Front, one: Impossible, measures: Measures) -> list[Cell]:
-    found = ((one.limits.get(o.name), o.unit) for o in front.objectives)
+    found = ((one.limits.get(o.name), unit_of(o)) for o in front.objectives)
     return [Cell(None, "any") if v is None else cell(v, unit, measures) for v, unit in found]
 
 

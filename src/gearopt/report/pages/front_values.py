@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from gearopt.optimise.pareto.front import Front
-from gearopt.report.front import head, rules
+from gearopt.report.front import head, rules, unit_of
 from gearopt.report.measures import Measures
 
 AXIS_MARGIN = 0.06  # of the range of a front, free around it
@@ -40,14 +40,14 @@ class Drawn:
 
 def drawn(front: Front, measures: Measures) -> Drawn:
     """Return what is drawn of a front that has points."""
-    units = [one.unit for one in front.objectives]
+    units = [unit_of(one) for one in front.objectives]
 
     def shown(values: Sequence[float]) -> tuple[float, ...]:
         return tuple(measures.of(v, unit) for v, unit in zip(values, units, strict=True))
 
     corners = [
         tuple(
-            None if (v := one.limits.get(o.name)) is None else measures.of(v, o.unit)
+            None if (v := one.limits.get(o.name)) is None else measures.of(v, unit_of(o))
             for o in front.objectives
         )
         for one in front.impossible

@@ -11,7 +11,7 @@ from gearopt.formulations.dynamics.orbit.climbing import JUDGE_MARGIN, begun, po
 from gearopt.formulations.dynamics.orbit.impossible import impossible, limited
 from gearopt.formulations.dynamics.orbit.least_vibration import Exchanged, exchange, least, methods
 from gearopt.formulations.dynamics.orbit.task import MICRO, VARIABLES, Task
-from gearopt.optimise.clock import Clock, of_others
+from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.explaining.explain import THERE
 from gearopt.optimise.explaining.explanation import Remedies, Remedy
 from gearopt.optimise.problem import Problem
@@ -60,9 +60,9 @@ def optimised(
     before: the pair of the file, to compare with. No design: the result says why.
     """
     assert scene.optimise is not None
-    task, made = scene.task, None
+    task, made, in_mm = scene.task, None, in_part(clock.watch, "mm", factor=1.0 / MICRO)
     if impossible(task) is not None:
-        result, _ = run(whole_problem(task), "screened", clock.left, ask.seed, clock.watch)
+        result, _ = run(whole_problem(task), "screened", clock.left, ask.seed, in_mm)
     elif ask.method is None:
         inner = Clock(ask.budget, of_others(ask.watch), clock.start)
         made = (exchange if scene.optimise.exchange else least)(task, inner, ask.seed)
@@ -70,7 +70,7 @@ def optimised(
         result = _certified(task, made, inner, ask)
         clock.stopped = inner.stopped
     else:
-        result, _ = run(whole_problem(task), ask.method, clock.left, ask.seed, clock.watch, ask.gap)
+        result, _ = run(whole_problem(task), ask.method, clock.left, ask.seed, in_mm, ask.gap)
     result = replace(result, name="dynamics", seconds=clock.seconds)
     if result.status == "infeasible":
         ways = {"ways_out": asdict(_ways_out(scene, task, clock))}
@@ -115,8 +115,9 @@ def _judged(result: Result, best: Chosen, task: Task) -> Result:
             )
             result = replace(result, status="feasible", message=text)
         value = simulated
-    told = result.objective | {"value": value, "unit": "mm (shown in um)"}
-    return replace(result, objective=told, limits=limits)
+    told = result.objective | {"value": value, "unit": "mm"}
+    prices = {name: price / MICRO for name, price in result.multipliers.items()}
+    return replace(result, objective=told, limits=limits, multipliers=prices)
 
 
 def told(best: Chosen, result: Result, periods: int) -> list[str]:

@@ -26,7 +26,6 @@ from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.scene import Scene
 from gearopt.scenes.reading.ask import Ask
 
-SHOWN = {"mm": "mm (shown in um)"}  # units of criteria as they are read
 DEFAULT = "annealing"  # of what has no proven search
 FREE_SHAPES_BELOW = 2.0  # contact ratio below which free shapes are searched
 AT_END = 1e-6  # of a range: a value as near to its end is at it
@@ -91,8 +90,9 @@ def _parametric(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, Removed
         result = _united(evaluate(problem, point), asked.minimise)
         return result, Removed.of(mesh, parametric.at_point(point, ranges))
     _check_method(problem, ask.method)
+    watch = in_part(ask.watch, _unit(asked.minimise))
     method = ask.method or ("exact" if "exact" in problem.methods else DEFAULT)
-    result, outcome = run(problem, method, ask.budget, ask.seed, ask.watch, ask.gap)
+    result, outcome = run(problem, method, ask.budget, ask.seed, watch, ask.gap)
     result = _united(result, asked.minimise)
     if result.value is None or outcome.x is None:
         return result, None
@@ -128,9 +128,9 @@ def _check_method(problem: Problem, method: str | None) -> None:
 
 def _free(asked: ReliefTable, mesh: Mesh, ask: Ask) -> tuple[Result, Removed | None]:
     """Return the best relief of any convex shape."""
-    problem = _free_problem(asked, mesh)
+    problem, watch = _free_problem(asked, mesh), in_part(ask.watch, _unit(asked.minimise))
     _check_method(problem, ask.method)
-    result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
+    result, outcome = run(problem, ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = _united(result, asked.minimise)
     if result.value is None or outcome.x is None:
         return result, None
@@ -263,5 +263,5 @@ def several(scene: Scene, made: PairMesh, names: Sequence[str]) -> Several:
 
 
 def _unit(name: str) -> str:
-    """Return the unit of a criterion as results are shown: of micrometres."""
-    return SHOWN.get(parametric.OBJECTIVES[name][0], "")
+    """Return the unit of a criterion."""
+    return parametric.OBJECTIVES[name][0]
