@@ -7,7 +7,6 @@ train.
 """
 
 import heapq
-import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -30,6 +29,7 @@ from gearopt.formulations.drive.teeth.reach import first_cut, largest_ratio, rea
 from gearopt.formulations.drive.teeth.stage import EDGE, Table
 from gearopt.formulations.drive.teeth.tables import stage_tables, thinned
 from gearopt.formulations.drive.train import Train
+from gearopt.optimise.best_first import best_first
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.terms import Array
@@ -221,26 +221,26 @@ def _closed(
     train: Train, tables: list[Table], rest: Bound, progress: Progress, patience: float
 ) -> float:
     """Run one search; return the bound of what is left for a finer grid, inf where nothing is."""
-    order = itertools.count()
-    heap: list[tuple[float, int, Chunk]] = []
 
-    def wait(chunk: Chunk) -> None:
-        if len(chunk.bound):
-            heapq.heappush(heap, (float(chunk.bound[0]), next(order), chunk))
-
-    wait(_root())
-    while heap and heap[0][0] <= progress.threshold:
-        progress.raise_lower(heap[0][0])
+    def goes_on(lower: float, _: Chunk) -> bool:
+        if lower > progress.threshold:
+            return False
+        progress.raise_lower(lower)
         progress.tick()
-        if progress.clock.evaluations > patience:
-            return heap[0][0]
-        chunk: Chunk | None = heapq.heappop(heap)[2]
-        while chunk is not None:
+        return progress.clock.evaluations <= patience
+
+    def branch(_: float, taken: Chunk) -> Iterator[tuple[float, Chunk]]:
+        chunk: Chunk | None = taken
+        while chunk is not None:  # the best nodes are followed at once, the others wait
             progress.nodes += 1
             width = LEAVES if chunk.level == len(tables) - 1 else BEAM
-            wait(chunk.part(slice(width, None)))
+            later = chunk.part(slice(width, None))
+            if len(later.bound):
+                yield float(later.bound[0]), later
             chunk = _expand(train, tables, rest, chunk.part(slice(0, width)), progress)
-    return math.inf
+
+    left = best_first([(-math.inf, _root())], goes_on, branch)
+    return left.least if left.least <= progress.threshold else math.inf
 
 
 def _expand(
