@@ -11,13 +11,12 @@ only bounds move. Every closed node is a leaf with multipliers: the list of leav
 is judged again by the certificate.
 """
 
-import heapq
-import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from gearopt.optimise.best_first import best_first
 from gearopt.optimise.certificate import FARKAS
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.conic.canonical import Canonical, canonical, shifted
@@ -220,27 +219,31 @@ def branch(problem: Conic, data: Canonical, root: Found, clock: Clock) -> Outcom
     search = _Search(problem, data, scaled(data, root.scale), clock)
     if clock.budget.evaluations is None:
         clock.budget = replace(clock.budget, evaluations=NODES)
-    order = itertools.count()
     first, least = _closed(search, root.leaf.lower, root.leaf.upper)
     if root.leaf.y is not None and root.least > least:
         first, least = root.leaf, root.least
-    heap = [(least, next(order), first)]
-    finished = True
-    while heap:
-        least, _, leaf = heapq.heappop(heap)
-        done = gap(search.value, least, search.scale) <= max(clock.budget.gap, SLACK)
-        halves = [] if done else _halves(data, leaf)
-        if not halves:
+
+    def halves(bound: float, leaf: Leaf) -> list[tuple[Array, Array]]:
+        done = gap(search.value, bound, search.scale) <= max(clock.budget.gap, SLACK)
+        return [] if done else _halves(data, leaf)
+
+    def goes_on(bound: float, leaf: Leaf) -> bool:
+        if not halves(bound, leaf):
+            return True  # it is closed, which takes no time
+        clock.bound = bound
+        return clock.tell()
+
+    def children(bound: float, leaf: Leaf) -> Iterator[tuple[float, Leaf]]:
+        parts = halves(bound, leaf)
+        if not parts:
             search.leaves.append(leaf)
-            continue
-        clock.bound = least
-        if not clock.tell():
-            search.leaves += [leaf, *(item[2] for item in heap)]
-            finished = False
-            break
-        for lower, upper in halves:
-            child, bound = _closed(search, lower, upper)
-            heapq.heappush(heap, (max(bound, least), next(order), _inherited(child, leaf)))
+        for lower, upper in parts:
+            child, least = _closed(search, lower, upper)
+            yield max(least, bound), _inherited(child, leaf)
+
+    left = best_first([(least, first)], goes_on, children)
+    search.leaves += [leaf for _, _, leaf in left.waiting]
+    finished = not left.waiting
     return Outcome(
         search.x,
         finished,
