@@ -6,14 +6,14 @@ program has the law's three planes above each approach, and below it the secant 
 which is the law itself once no kink is inside. Bounds are computed from the program's multipliers.
 """
 
-import heapq
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearopt.optimise.best_first import best_first
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
@@ -254,19 +254,23 @@ class _Search:
         wide = np.full(len(program.double), most)
         root = complete if program.profile.shape.complete else self.node(-wide, wide)
         assert complete is not None and root is not None
-        nodes, floor, turn = [(root.bound, 0, root)], np.inf, 0
-        while nodes and nodes[0][0] < self.best * (1.0 - gap):
-            least, _, node = heapq.heappop(nodes)
+        floor = np.inf  # of nodes that no cut divides
+
+        def goes_on(least: float, _: Node) -> bool:
+            if least >= self.best * (1.0 - gap):
+                return False
             self.clock.best, self.clock.bound = self.best / MICRO, min(least, floor) / MICRO
-            if not self.clock.tell():
-                return min(least, floor, self.best), False
+            return self.clock.tell()
+
+        def branch(least: float, node: Node) -> Iterator[tuple[float, Node]]:
+            nonlocal floor
             halves = self.divided(node)
             if halves is None:
                 floor = min(floor, least)
-            for half in halves or ():
-                turn += 1
-                heapq.heappush(nodes, (half.bound, turn, half))
-        return min([floor, self.best, *(bound for bound, _, _ in nodes[:1])]), True
+            yield from ((half.bound, half) for half in halves or ())
+
+        left = best_first([(root.bound, root)], goes_on, branch)
+        return min(left.least, floor, self.best), not self.clock.stopped
 
 
 def search(profile: "Profile") -> Callable[..., Outcome]:
