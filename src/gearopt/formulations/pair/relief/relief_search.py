@@ -6,14 +6,14 @@ Measures may have a largest value: their weights are then such that a box is dro
 point in it is no better or exceeds one of them.
 """
 
-import heapq
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.pair.relief.meshing import Mesh
+from gearopt.optimise.best_first import best_first
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import UNREADY, compiled, kernel
 from gearopt.optimise.problem import Problem
@@ -29,6 +29,7 @@ WITHIN = 0.99  # of a gap: roundings included
 NO_CONTACT = 1e6  # mm: of a pair that is not in contact from the tips
 TINY = 1e-300  # um
 TOLD = 256  # boxes between two words to the watcher
+Box = tuple[Array, Array]  # its lower and upper ends
 RANDOM = False
 COUNTS = "box bounded"
 SETTINGS = {"gap": GAP}
@@ -154,29 +155,34 @@ def _first(made: Numbers, goal: Goal) -> tuple[Array, float]:
 
 def _allowed(made: Numbers, goal: Goal, clock: Clock) -> tuple[Array, float] | Outcome:
     """Return a point that keeps to the limits and its value, or that there is none."""
-    weights, proof, turn = 1.0 / goal.most, True, 0
-    boxes: list[Any] = [(0.0, 0, made.low, made.high)]
-    while boxes:
-        _, _, low, high = heapq.heappop(boxes)
-        if not clock.tell():
-            return Outcome(None, False, evaluations=clock.evaluations)
-        least, point, measures = made.bound(weights, low, high, 1.0)
+    weights, proof = 1.0 / goal.most, True
+    allowed: tuple[Array, float] | None = None
+
+    def branch(_: float, box: Box) -> Iterator[tuple[float, Box]]:
+        nonlocal allowed, proof
+        least, point, measures = made.bound(weights, *box, 1.0)
         clock.evaluations += 1
         if goal.used(measures) <= 1.0:
-            return point, goal.value(measures)
-        parts = halves(made, low, high) if least < 1.0 else ()
+            allowed = point, goal.value(measures)
+            return
+        parts = halves(made, *box) if least < 1.0 else ()
         proof &= least >= 1.0 or bool(parts)
-        for ends in parts:
-            turn += 1
-            heapq.heappush(boxes, (least, turn, *ends))
-    sentence = {"method": "boxes", "boxes": clock.evaluations, "sentence": EMPTY}
+        yield from ((least, half) for half in parts)
+
+    whole = 0.0, (made.low, made.high)
+    best_first([whole], lambda *_: allowed is None and clock.tell(), branch)
     spent = clock.evaluations
+    if allowed is not None:
+        return allowed
+    if clock.stopped:
+        return Outcome(None, False, evaluations=spent)
+    sentence = {"method": "boxes", "boxes": spent, "sentence": EMPTY}
     if not proof:
         return Outcome(None, evaluations=spent, message="boxes too small to be halved are left")
     return Outcome(None, infeasible=True, proof=sentence, evaluations=spent, message=EMPTY)
 
 
-def halves(made: Numbers, low: Array, high: Array) -> tuple[tuple[Array, Array], ...]:
+def halves(made: Numbers, low: Array, high: Array) -> tuple[Box, ...]:
     """Return the halves of a box along the side that matters most; none of a point.
 
     Sides are measured by their ranges, those of lengths times the part of the amount they shape.
@@ -201,31 +207,35 @@ def _searched(
     point, best: known before. Bounds of boxes under limits are no bounds of what is minimised, so
     all boxes are visited.
     """
-    gap, turn = WITHIN * max(clock.budget.gap, GAP), 0
+    gap = WITHIN * max(clock.budget.gap, GAP)
     floor = np.inf  # of boxes not to be halved
 
     def aim() -> float:
         return best - max(gap * best, NOTHING)
 
-    least = made.bound(goal.weights(aim()), made.low, made.high, aim())[0]
-    boxes: list[Any] = [(least, 0, made.low, made.high)]
-    while boxes and (goal.limited or boxes[0][0] < aim()):
-        least, _, low, high = heapq.heappop(boxes)
+    def goes_on(least: float, _: Box) -> bool:
+        if not goal.limited and least >= aim():
+            return False
         clock.best = best / MICRO
         clock.bound = -np.inf if goal.limited else min(least, floor, best) / MICRO
-        if clock.evaluations % TOLD < 2 and not clock.tell():
-            return point, min(least, floor, best), False
-        parts = halves(made, low, high)
-        if not parts and (low < high).any():
+        return clock.evaluations % TOLD >= 2 or clock.tell()
+
+    def branch(least: float, box: Box) -> Iterator[tuple[float, Box]]:
+        nonlocal point, best, floor
+        parts = halves(made, *box)
+        if not parts and (box[0] < box[1]).any():
             floor = 0.0 if goal.limited else min(floor, least)
-        for ends in parts:
+        for half in parts:
             sought = aim()  # of the weights, with which alone a bound says anything under limits
-            found, x, measures = made.bound(goal.weights(sought), *ends, sought)
+            lower, x, measures = made.bound(goal.weights(sought), *half, sought)
             clock.evaluations += 1
             if (value := goal.value(measures)) < best:
                 best, point = value, x
-            if found < sought or not goal.limited:
-                turn += 1
-                heapq.heappush(boxes, (max(found, least * (not goal.limited)), turn, *ends))
-    rest = aim() if goal.limited else min([np.inf, *(box[0] for box in boxes[:1])])
-    return point, min(floor, best, rest), True
+            if lower < sought or not goal.limited:
+                yield max(lower, least * (not goal.limited)), half
+
+    root = made.bound(goal.weights(aim()), made.low, made.high, aim())[0]
+    left = best_first([(root, (made.low, made.high))], goes_on, branch)
+    if clock.stopped:
+        return point, min(left.least, floor, best), False
+    return point, min(floor, best, aim() if goal.limited else left.least), True
