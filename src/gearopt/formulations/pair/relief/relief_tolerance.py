@@ -1,7 +1,6 @@
 """Relief as it is made: the worst case over tolerances, drawn samples, and the best nominal one."""
 
-import heapq
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +8,15 @@ import numpy as np
 
 from gearopt.formulations.pair.relief.meshing import Mesh, Relief
 from gearopt.formulations.pair.relief.parametric import Ranges, reliefs, variables
-from gearopt.formulations.pair.relief.relief_search import MICRO, ROUNDING, Numbers, halves, numbers
+from gearopt.formulations.pair.relief.relief_search import (
+    MICRO,
+    ROUNDING,
+    Box,
+    Numbers,
+    halves,
+    numbers,
+)
+from gearopt.optimise.best_first import best_first
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import compiled, kernel
 from gearopt.optimise.problem import Problem
@@ -77,17 +84,23 @@ def worst(
         return None
     clock = Clock(budget or Budget(gap=GAP), watch)
     bound, point, value = _ceiling(made, made.low, made.high)
-    boxes: list[Any] = [(-bound, 0, made.low, made.high)]
-    gap, turn = max(clock.budget.gap, ROUNDING), 0
-    while boxes and -boxes[0][0] > value * (1.0 + gap) and clock.tell():
-        most, _, low, high = heapq.heappop(boxes)
-        for half in halves(made, low, high):
-            found, at, there = _ceiling(made, *half)
-            clock.evaluations, turn = clock.evaluations + 1, turn + 1
+    gap = max(clock.budget.gap, ROUNDING)
+
+    def branch(least: float, box: Box) -> Iterator[tuple[float, Box]]:
+        nonlocal point, value
+        for half in halves(made, *box):
+            bound, at, there = _ceiling(made, *half)
+            clock.evaluations += 1
             if there > value:
                 value, point = there, at
-            heapq.heappush(boxes, (max(-found, most), turn, *half))
-    bound = max([value, *(-box[0] for box in boxes[:1])])
+            yield max(-bound, least), half
+
+    left = best_first(
+        [(-bound, (made.low, made.high))],
+        lambda least, _: -least > value * (1.0 + gap) and clock.tell(),
+        branch,
+    )
+    bound = max(value, -left.least)
     return Worst(value / MICRO, bound / MICRO, made.variables(point), clock.evaluations)
 
 
