@@ -10,7 +10,7 @@ from pathlib import Path
 
 import gearopt
 from gearopt.formulations.drive import processes as process
-from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive import sizing, sizing_text, teeth
 from gearopt.formulations.drive.design import describe
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.typed import untyped
@@ -135,7 +135,7 @@ def best_split(stages):
     own = replace(train(stages), tolerance=0)
     result, outcome = run(sizing.problem(own), "ipopt")
     assert result.status == "optimal"
-    return tuple(p.ratio for p in sizing.pairs(own, outcome.x)), result.value
+    return tuple(p.ratio for p in sizing_text.pairs(own, outcome.x)), result.value
 
 
 def niemann(stages):

@@ -19,9 +19,8 @@ from rated_drives import (
     some_rated_drive,
 )
 
-from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive import sizing, sizing_text, teeth
 from gearopt.formulations.drive.rated import cells as rated_cells
-from gearopt.formulations.drive.rated import sizing as rated_sizing
 from gearopt.formulations.drive.rated.boxes import ROWS, bounded, first_boxes, shafts_about
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth
@@ -227,7 +226,7 @@ def test_random_small_drives_are_not_better_than_their_bound(standard, block):
             seen += 1
         if found.pairs is not None:
             assert found.bound <= found.value
-            made = rated_sizing._of_pairs(train, sizing.problem(train), found)
+            made = sizing._of_pairs(train, sizing.problem(train), found)
             assert made is not None
     assert seen > 1
 
@@ -242,8 +241,8 @@ def test_three_stages_close_at_a_measured_pace():
 
 def test_a_gap_that_is_asked_for_is_reached():
     train = rated_drive(4, [FREE], options=by("agma"))
-    method = rated_sizing.searched(train)
-    posed = replace(sizing.exact_text(train), methods={"smooth": method})
+    method = sizing.searched(train)
+    posed = replace(sizing_text.exact_text(train), methods={"smooth": method})
     found = solve(posed, budget=Budget(20.0, gap=0.05), gap=0.05)
     assert found.status == "optimal" and 0.0 < found.gap <= 0.05
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from campaigns import few
 
-from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive import sizing, sizing_text
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
@@ -147,7 +147,7 @@ def test_one_watt_to_20_megawatts_from_20_random_starts(power_kW, speed_rpm):
     limits = {"modules": (F("0.05"), F(200)), "pinion_teeth": (20, 60)}
     train = drive(power_kW, speed_rpm, 110, [0.6, 0.6, 0.75], F(1, 100), **limits)
     _, outcome = run(sizing.problem(train))
-    largest = max(p.wheel.reference_diameter for p in sizing.pairs(train, outcome.x))
+    largest = max(p.wheel.reference_diameter for p in sizing_text.pairs(train, outcome.x))
     cap = F(0.95 * largest)
     capped = replace(train, stages=tuple(replace(s, wheel_diameter=cap) for s in train.stages))
     problem = sizing.problem(capped)

@@ -10,7 +10,7 @@ from small_drives import drive
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import processes as process
-from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive import sizing, sizing_text, teeth
 from gearopt.formulations.drive.design import describe
 from gearopt.formulations.drive.layout.gearbox import Gearbox, Shaft
 from gearopt.formulations.drive.processes import ProcessTwo
@@ -54,7 +54,7 @@ def test_every_stage_has_its_own_helix_in_every_formulation():
         assert pair.face_width == pytest.approx(0.6 * d, rel=1e-15)
     lower, relaxed = run(sizing.problem(train))
     assert lower.status == "optimal" and lower.bound <= result.value
-    text = terms(train, SimpleNamespace(**train.numbers()), sizing.pairs(train, relaxed.x))
+    text = terms(train, SimpleNamespace(**train.numbers()), sizing_text.pairs(train, relaxed.x))
     assert text.minimise["gear_volume"] == pytest.approx(lower.value, rel=1e-9)
 
 

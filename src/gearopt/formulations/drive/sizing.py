@@ -1,226 +1,469 @@
-"""Continuous sizing of a multi-stage drive: teeth and modules as real numbers.
+"""Continuous sizing of a drive; of a rated one a smooth form, its bound, and the exact rating.
 
-Minimise the drive's objective under the limits of its strength law (Chong and Lee, eqs. 10-12) with
-ratios, modules, teeth and face widths free within their limits. Where the law is a posynomial, as
-every other row is, the log form is convex: Ipopt finds the global optimum and the dual bound proves
-it. With the total ratio free within its tolerance this is a relaxation of `teeth`, so its bound
-holds there too.
+Where ratings limit the stages, Ipopt minimises the ratings' smooth form in every combination of
+what it needs fixed beforehand (regimes of AGMA 908, ranges of K_v of ISO 6336), from the optimum of
+a geometric program whose limits are below the true ones (AGMA), or from what a search finds (ISO
+6336 without steps in its tolerances). That search bounds the drive from below, in real-valued and
+in whole teeth, and looks for designs of its own (`rated.cells`). What is returned was rated by the
+exact form; a design that it does not accept is made as much larger as it takes (`repaired`).
 """
 
-from dataclasses import replace
-from fractions import Fraction
-from types import SimpleNamespace
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
-from gearopt.formulations.drive.train import Train, terms
-from gearopt.formulations.strength.k_factor import K_FACTOR
+import numpy as np
+
+from gearopt.errors import SolveError
+from gearopt.formulations.drive import sizing_text, teeth
+from gearopt.formulations.drive.rated.bound import Choice, bounding, box, solved
+from gearopt.formulations.drive.rated.cells import Searched, search
+from gearopt.formulations.drive.rated.designs import polished
+from gearopt.formulations.drive.train import Stage, Train, terms
+from gearopt.formulations.strength.rated import MODES, Standard
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch
+from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
-from gearopt.physics.gears import GearPair, reference_diameter
+from gearopt.physics.gears import SERIES_I, GearPair
 
-# factor between any length of a drive and the ends of the search: they never bind
-SEARCH_SPAN = 1e6
-BAND = Fraction(1, 10**10)  # half width of the band of a ratio that is given: far below 1e-8
-TEETH = (1.0, 1e6)
-RATIO = (1.0, 1e7)
-TYPICAL = 1.0  # MPa, K-factor of rated gears from which a search starts
-VARIABLES = {"module": "mm", "pinion_teeth": "", "ratio": "", "face_width": "mm"}
-
-_PARAMETER_UNITS = {
-    "torque": "N mm",
-    "density": "t/mm3",
-    "speed": "rad/s",
-    "wheel_diameter": "mm",
-    "module_low": "mm",
-    "module_high": "mm",
-    "least_width": "mm",
-}
+ROUNDS = 4  # of correcting the smooth form by the exact one
+EQUAL = 1e-7  # relative; of safety factors that are those of the exact rating
+CORRECTION_TOLERANCE = 1e-9  # of corrections that no longer change
+GAP_TOLERANCE = 5e-7  # relative gap that ends the search
+GAP_SHARE = 0.999  # of a gap that is asked for: roundings included
+SEARCH = 5.0  # seconds of the search for a bound where no gap is asked for; 3-fold from 3 stages
+POLISHING = 0.2  # of these seconds, at most, for the best design before it
+REFINED = 4  # best designs whose choices are refined
 
 
 def problem(train: Train) -> Problem:
-    """Return the continuous problem of a drive.
+    """Continuous problem of a drive (`exact_text`).
 
-    Variables, one component per stage: module [mm], pinion_teeth, ratio and, where it is not tied
-    to d1, face_width [mm]. Of a rated drive the text is for numbers only, and of gears with webs
-    the objective is not a posynomial: their own method finds a design (`rated_sizing`).
+    A rating has branches, and with webs the objective is no posynomial: the method `smooth` finds
+    designs of such drives.
     """
-    if train.rated or train.hollow:
-        from gearopt.formulations.drive.rated.sizing import smooth
-
-        return replace(exact_text(train), methods={"smooth": smooth(train)})
-    return exact_text(train)
+    text = sizing_text.exact_text(train)
+    special = train.rated or train.hollow
+    return replace(text, methods={"smooth": smooth(train)}) if special else text
 
 
-def exact_text(train: Train) -> Problem:
-    """Return the continuous problem of a drive without methods of its own."""
+def smooth(train: Train) -> Callable[..., Outcome]:
+    """Return the method of `problem` for a rated drive.
+
+    It returns the best design that the exact rating accepts, with a bound.
+    """
+
+    def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Ipopt on the smooth form from the bounding program; the seed changes nothing."""
+        return _outcome(train, problem, Clock(budget, watch))
+
+    return run
+
+
+def choices(train: Train) -> Iterator[Choice]:
+    """Return every combination of what the smooth form needs fixed beforehand."""
+    stages = [
+        product(*(s.choices(bool(stage.toothing.helix_angle)) for s in _standards(stage)))
+        for stage in train.stages
+    ]
+    return product(*stages)
+
+
+def _standards(stage: Stage) -> tuple[Standard, ...]:
+    """Return the standards that rate a stage."""
+    return stage.options[0].standards if stage.options else ()
+
+
+def smooth_problem(train: Train, choice: Choice) -> Problem:
+    """Return the smooth problem in one combination.
+
+    Variables are those of `problem` and the unknowns of the standards, one component a
+    stage. The parameter trim has factors of the smooth safeties, by default 1, by stage, standard
+    (two) and mode.
+    """
+    unknowns, size = _unknowns(train), 8 * len(train.stages)
 
     def evaluate(x: Any, p: Any) -> Terms:
-        return terms(train, p, text_pairs(train, x, p))
+        extra: dict[str, dict[str, Any]] = {"defines": {}, "equal": {}}
 
-    return Problem("sizing", variables(train), parameters(train), evaluate)
+        def rated(k: int, pair: GearPair, torque: Any, speed: Any, safety: Any) -> dict[str, Any]:
+            rows: dict[str, Any] = {}
+            for j, standard in enumerate(_standards(train.stages[k])):
+                suffix = standard.suffix
+                own = {n: each(getattr(x, n + suffix))[k] for n in standard.unknowns}
+                made = standard.smooth(pair, torque, speed, choice[k][j], own)
+                for i, (mode, actual) in enumerate(zip(MODES, made.safeties, strict=True)):
+                    rows[mode + suffix] = safety[i // 2] / (actual * p.trim[8 * k + 4 * j + i])
+                rows |= {n + suffix: v for n, v in made.limits.items()}
+                for part in extra:
+                    found = getattr(made, part).items()
+                    extra[part] |= {f"{n}{suffix}[{k + 1}]": v for n, v in found}
+            return rows
+
+        found = terms(train, p, sizing_text.text_pairs(train, x, p), rated=rated)
+        equal = {**found.equal, **extra["equal"]}
+        return Terms(found.minimise, found.limits, extra["defines"], equal)
+
+    columns = (*sizing_text.variables(train), *unknowns)
+    trim = Param("trim", "", (1.0,) * size, size)
+    return Problem("sizing", columns, (*sizing_text.parameters(train), trim), evaluate)
 
 
-def parameters(train: Train) -> tuple[Param, ...]:
-    """Return the numbers of a drive as parameters of its continuous problem."""
-    count = len(train.stages)
-    numbers = train.numbers()
-    units = _PARAMETER_UNITS | {limit.name: limit.unit for limit in train.law.limits}
-    return tuple(
-        Param(
-            name,
-            units.get(name, ""),
-            value,
-            count if isinstance(value, tuple) else 1,
-            train.keys.get(name, ""),
-            role=_role(train, name, "data"),
-        )
-        for name, value in numbers.items()
+def _unknowns(train: Train) -> tuple[Var, ...]:
+    size, found = len(train.stages), {}
+    for stage in train.stages:
+        for standard in _standards(stage):
+            for name, (low, high, log) in standard.unknowns.items():
+                at = max(low, 1.0) if log else 0.5 * (low + high)
+                own = name + standard.suffix
+                lower, upper, guess = ((end,) * size for end in (low, high, at))
+                found[own] = Var(own, "", lower, upper, guess, size, log=log, search=True)
+    return tuple(found.values())
+
+
+@dataclass(frozen=True)
+class _Design:
+    """A design in real-valued teeth that the exact rating accepts.
+
+    x: point of `problem`; same: whether the smooth form is exact there; status: of Ipopt's
+    point, as certified.
+    """
+
+    value: float
+    x: Array
+    choice: Choice
+    same: bool
+    status: str
+
+
+def searched(train: Train) -> Callable[..., Outcome]:
+    """Return a method of `problem` for a rated drive: the search for its bound alone."""
+
+    def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+        """Branch and bound; the seed changes nothing."""
+        clock = Clock(budget, watch)
+        found = _searched(train, None, clock, budget.seconds)
+        best = _of_pairs(train, problem, found)
+        return _claim(best, found.bound, clock)
+
+    return run
+
+
+def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
+    """Return the best design of all combinations with the bound of all."""
+    if train.several_options:
+        raise SolveError("lists of materials are for whole teeth: give a table [teeth]")
+    bounded = _all_bounded(train)
+    designs, bound = _by_programs(train, exact, clock) if bounded else ([], -math.inf)
+    if not bounded or not designs or train.hollow:
+        made = [_Design(_value(exact, x), x, (), False, "feasible") for x in whole(train, clock)]
+        designs += [design for design in made if safe(exact, design.x)]
+    best = min(designs, key=lambda design: design.value, default=None)
+    long = SEARCH * (3.0 if len(train.stages) > 2 else 1.0)
+    seconds = None if clock.budget.gap > 0.0 else clock.within(long)
+    if bound < math.inf and not clock.stopped:
+        found = _searched(train, best, clock, seconds)
+        own = _of_pairs(train, exact, found)
+        bound, designs = max(bound, found.bound), [*designs, *([own] if own else [])]
+    more = train.hollow or not bounded and not (designs and _stepped(train))
+    if more and bound < math.inf:
+        designs += _by_ipopt(train, exact, [*(d.x for d in designs), *starts(exact)], clock)
+    return _claim(min(designs, key=lambda d: d.value, default=None), bound, clock)
+
+
+def _by_programs(train: Train, exact: Problem, clock: Clock) -> tuple[list[_Design], float]:
+    """Return designs from the optima of the bounding programs, and the least of their bounds."""
+    begun = {choice: _start(train, choice, clock) for choice in choices(train)}
+    designs = []
+    for choice, (start, _) in begun.items():
+        made = None if start is None else _design(train, exact, choice, start, clock)
+        designs += [] if made is None else [made]
+        if designs:
+            clock.best = min(d.value for d in designs)
+    designs.sort(key=lambda design: design.value)
+    designs += [_refined(train, exact, design, clock) for design in designs[:REFINED]]
+    return designs, min(least for _, least in begun.values())
+
+
+def _by_ipopt(train: Train, exact: Problem, begin: list[Array], clock: Clock) -> list[_Design]:
+    """Return designs from given starts."""
+    designs = []
+    for choice in choices(train):
+        made = smooth_problem(train, choice)
+        found = [_design(train, exact, choice, one, clock, made) for one in begin]
+        designs += [design for design in found if design is not None]
+    designs.sort(key=lambda design: design.value)
+    return designs + [_refined(train, exact, design, clock) for design in designs[:1]]
+
+
+def _searched(train: Train, best: _Design | None, clock: Clock, seconds: float | None) -> Searched:
+    """Return what the search over cells finds beside the best design so far."""
+    known = () if best is None else sizing_text.pairs(train, best.x)
+    most = math.inf if best is None else best.value
+    close = max(GAP_SHARE * clock.budget.gap, GAP_TOLERANCE)
+    inner = Clock(replace(clock.left, seconds=seconds), clock.inner())
+    if known and _stepped(train):
+        spent = None if seconds is None else POLISHING * seconds
+        known, most = polished(train, (tuple(known), most), Clock(Budget(spent), clock.inner()))
+    found = search(train, known, most, inner, close)
+    if found.pairs is None and known and best is not None and most < best.value:
+        found = Searched(found.bound, tuple(known), most)
+    if found.pairs is not None and found.bound < found.value * (1.0 - close):
+        found = Searched(found.bound, *polished(train, (found.pairs, found.value), clock))
+    clock.best, clock.bound = min(clock.best, found.value), max(clock.bound, found.bound)
+    clock.tell()
+    return found
+
+
+def _of_pairs(train: Train, exact: Problem, found: Searched) -> _Design | None:
+    """Return the design of a search; None where it has none that the exact text accepts."""
+    if found.pairs is None:
+        return None
+    x = point_of(train, found.pairs)
+    x = np.clip(x, *exact.bounds()[:2])
+    return _Design(_value(exact, x), x, (), False, "feasible") if safe(exact, x) else None
+
+
+def _stepped(train: Train) -> bool:
+    """Return whether a rating jumps with sizes, which no smooth form follows."""
+    return any(one.steps for stage in train.stages for one in _standards(stage))
+
+
+def _value(exact: Problem, x: Array) -> float:
+    return float(exact.batch(x[None]).F[0, 0])
+
+
+def _refined(train: Train, exact: Problem, best: _Design, clock: Clock) -> _Design:
+    """Return the best design in choices that are closer to the exact rating, stage by stage."""
+    for k, pair in enumerate(sizing_text.pairs(train, best.x)):
+        for j, standard in enumerate(_standards(train.stages[k])):
+            row = best.choice[k]
+            for closer in () if clock.stopped else standard.refined(pair, row[j]):
+                changed = (*row[:j], closer, *row[j + 1 :])
+                own = (*best.choice[:k], changed, *best.choice[k + 1 :])
+                made = _design(train, exact, own, best.x, clock)
+                if made is not None and made.value < best.value:
+                    best = made
+    return best
+
+
+def _claim(best: _Design | None, bound: float, clock: Clock) -> Outcome:
+    proof = {
+        "method": "branch and bound",
+        "arithmetic": "double, with a rounding allowance",
+        "sentence": "Proof: branch and bound over cells of teeth, ratios and sizes, in each of "
+        "which a geometric program with limits and objective at most those of the drive bounds it.",
+    }
+    done = not clock.stopped
+    if best is None:
+        if bound == math.inf and done:
+            return Outcome(None, infeasible=True, proof=proof, evaluations=clock.evaluations)
+        words = "no start led to a design that the ratings accept"
+        return Outcome(None, done, evaluations=clock.evaluations, message=words)
+    known = min(bound, best.value) if bound > -math.inf else None
+    by_search = not best.choice
+    words = "the smooth form of the ratings was corrected by the exact one"
+    words = "" if best.same or by_search else words
+    return Outcome(
+        best.x,
+        done,
+        bound=known,
+        proof=proof if known is not None else None,
+        stationary=best.same and best.status in ("optimal", "stationary"),
+        evaluations=clock.evaluations,
+        message=words,
     )
 
 
-def movable(train: Train) -> Problem:
-    """Return the limits of `problem` with every given number as one that may be moved.
+def _all_bounded(train: Train) -> bool:
+    """Return whether every standard has a bounding law, from whose optimum a search may start."""
+    boxes = [(stage, box(train, k, math.inf)) for k, stage in enumerate(train.stages)]
+    return all(
+        standard.floor(own, standard.choices(bool(stage.toothing.helix_angle))[0]) is not None
+        for stage, own in boxes
+        for standard in _standards(stage)
+    )
 
-    Wheel teeth that are given are variables, one component per stage that gives them; the
-    proportion b/d1 of tied widths is a given parameter. The objective means nothing.
+
+def _start(train: Train, choice: Choice, clock: Clock) -> tuple[Array | None, float]:
+    """Return the optimum of the bounding program, or None, and its bound; inf: impossible."""
+    made = None if clock.stopped else bounding(train, choice)
+    if made is None:
+        return None, -math.inf
+    found = solved(clock, made)
+    if found.status == "infeasible":
+        return None, math.inf
+    return point_of_result(made, found), -math.inf if found.bound is None else found.bound
+
+
+def _design(
+    train: Train,
+    exact: Problem,
+    choice: Choice,
+    start: Array,
+    clock: Clock,
+    made: Problem | None = None,
+) -> _Design | None:
+    """Return the best design in a combination, as the exact rating accepts it.
+
+    made: the smooth problem of the combination, where it is known.
     """
-    own = problem(train)
-    wheels = given_wheels(train)
-    numbers = tuple(replace(q, role=_role(train, q.name, "given")) for q in own.parameters)
-
-    def evaluate(x: Any, p: Any) -> Terms:
-        found = own.evaluate(x, p)
-        teeth = zip(wheels, each(x.wheel_teeth) if wheels else (), strict=True)
-        rows = {
-            f"wheel_teeth[{k + 1}]": each(x.pinion_teeth)[k] * each(x.ratio)[k] / z
-            for k, z in teeth
-        }
-        return Terms({"module": each(x.module)[0]}, found.limits, equal={**found.equal, **rows})
-
-    columns = _with_wheels(train) if wheels else own.variables
-    return Problem("sizing", columns, numbers, evaluate)
-
-
-def relaxed(train: Train) -> Problem:
-    """Return `movable` of a drive that is at least as easy and convex in logarithms.
-
-    A law that is no posynomial gives way to its lower bound, a ratio without tolerance to a band.
-    """
-    law = train.law.relaxed or train.law
-    return movable(replace(train, law=law, tolerance=train.tolerance or BAND))
-
-
-def given_wheels(train: Train) -> tuple[int, ...]:
-    """Return the stages (from 0) whose wheel teeth are given."""
-    return tuple(k for k, stage in enumerate(train.stages) if stage.wheel_fixed)
+    if clock.stopped:
+        return None
+    made = made or smooth_problem(train, choice)
+    trims, size, at = np.ones((len(train.stages), 2, 4)), len(start), start
+    best: _Design | None = None
+    for _ in range(ROUNDS):
+        if clock.stopped:
+            break
+        made = made.at(trim=tuple(trims.ravel().tolist()))
+        found = solved(clock, made.starting(np.concatenate([at, guess(train, at, choice)])))
+        at_end = point_of_result(made, found)
+        if at_end is None:
+            break
+        at = np.clip(at_end[:size], *exact.bounds()[:2])
+        ratio = _errors(train, at, choice, made, at_end, trims)
+        safe = repaired(exact, at)
+        if safe is not None:
+            value = float(exact.batch(safe[None]).F[0, 0])
+            same = bool(np.all(np.abs(trims * ratio - 1.0) <= EQUAL)) and np.array_equal(safe, at)
+            if best is None or value < best.value:
+                best = _Design(value, safe, choice, same, found.status)
+        if not np.isfinite(ratio).all() or np.abs(ratio - 1.0).max() <= CORRECTION_TOLERANCE:
+            break
+        trims = trims * ratio
+    return best
 
 
-def _with_wheels(train: Train) -> tuple[Var, ...]:
-    """Return the variables with ratios free and given wheel teeth as a block of their own."""
-    count = len(train.stages)
-    teeth = tuple(float(train.stages[k].wheel_teeth[0]) for k in given_wheels(train))
-    low, high = ((end,) * count for end in RATIO)
-
-    def free(v: Var) -> Var:
-        guess = tuple(max(u, RATIO[0]) for u in each(v.guess))
-        return replace(v, lower=low, upper=high, guess=guess)
-
-    found = (free(v) if v.name == "ratio" else v for v in variables(train))
-    return (*found, Var("wheel_teeth", "", teeth, teeth, teeth, len(teeth), log=True, search=True))
-
-
-def _role(train: Train, name: str, tied: str) -> str | tuple[str, ...]:
-    """Return the role of a parameter: the ratio is a duty; `tied`: that of a width tied to d1."""
-    if name in ("width_low", "width_high"):
-        return tuple(tied if s.face_width.tied else "limit" for s in train.stages)
-    if name in ("lowest_ratio", "highest_ratio", "torque"):
-        return "given"
-    return "limit" if name in train.by_stage else "data"
-
-
-def pairs(train: Train, point: Array) -> tuple[GearPair, ...]:
-    """Return the gear pairs of a point of `problem`."""
-    x = namespace(variables(train), [float(v) for v in point])
-    return text_pairs(train, x, SimpleNamespace(**train.numbers()))
-
-
-def text_pairs(train: Train, x: Any, numbers: Any) -> tuple[GearPair, ...]:
-    """Return the gear pairs of the variables x of the text.
-
-    numbers: `train.numbers()` as attributes, floats or parameters.
-    """
-    found = []
-    for k, stage in enumerate(train.stages):
-        m, z, u = each(x.module)[k], each(x.pinion_teeth)[k], each(x.ratio)[k]
-        cosine = each(numbers.helix_cosine)[k]
-        d = reference_diameter(m / cosine, z)
-        if stage.face_width.tied:
-            width = each(numbers.width_high)[k] * reference_diameter(m / cosine, z)
-        else:
-            width = each(x.face_width)[k]
-        found.append(stage.toothing.of_diameter(m, z, d, u, width))
-    return tuple(found)
-
-
-def variables(train: Train) -> tuple[Var, ...]:
-    """Return the variables of the continuous problem of a drive."""
-    columns: dict[str, list[tuple[float, float, float]]] = {name: [] for name in VARIABLES}
-    lengths = _lengths(train)
-    numbers = SimpleNamespace(**train.numbers())
+def _loads(train: Train, pairs: tuple[GearPair, ...]) -> Iterator[tuple[GearPair, float, float]]:
     torque = train.torque
-    for k, stage in enumerate(train.stages):
-        given = stage.pinion_fixed and stage.wheel_fixed
-        z = max(1.0, numbers.pinion_low[k])
-        u = float(train.ratio) ** (1.0 / len(train.stages))
-        if given:
-            u = numbers.wheel_low[k] / z
-        proportion = min(numbers.width_high[k], 1.0)
-        cosine = numbers.helix_cosine[k]
-        unit = stage.toothing.of_diameter(cosine / z, z, 1.0, u, proportion)
-        law = train.law if stage.allowable else K_FACTOR
-        allowable = (stage.allowable or (TYPICAL,))[0]
-        load = law.indices(unit, torque, train.speed_at(torque))[0] / allowable
-        d = load ** (1.0 / 3.0)
-        m_fixed = len(stage.modules) == 1
-        m = numbers.module_low[k] if m_fixed else d * cosine / z
-        b_fixed = stage.face_width.fixed
-        columns["module"].append(_column(lengths, m, m_fixed))
-        columns["pinion_teeth"].append(_column(TEETH, z, stage.pinion_fixed))
-        columns["ratio"].append(_column(RATIO, u, given))
-        width = proportion * d if b_fixed is None else float(b_fixed)
-        columns["face_width"].append(
-            _column(lengths, width, b_fixed is not None or stage.face_width.tied)
-        )
-        torque *= u
-    if all(s.face_width.tied for s in train.stages):
-        del columns["face_width"]
-    found = []
-    for name, rows in columns.items():
-        low, high, guess = zip(*rows, strict=True)
-        found.append(Var(name, VARIABLES[name], low, high, guess, len(rows), log=True, search=True))
-    return tuple(found)
+    for pair in pairs:
+        yield pair, torque, float(train.speed_at(torque))
+        torque *= float(pair.ratio)
 
 
-def _lengths(train: Train) -> tuple[float, float]:
-    """Return the ends [mm] of searched modules and widths, far beyond what the file requires.
+def guess(train: Train, at: Array, choice: Choice) -> Array:
+    """Return the unknowns of the standards at a point, in the order of the variables."""
+    columns: dict[str, list[float]] = {v.name: list(each(v.guess)) for v in _unknowns(train)}
+    for k, pair in enumerate(sizing_text.pairs(train, at)):
+        for j, standard in enumerate(_standards(train.stages[k])):
+            for name, value in standard.guess(pair, choice[k][j]).items():
+                columns[name + standard.suffix][k] = value
+    return np.array([v for column in columns.values() for v in column])
 
-    Finite, for the dual bound. A stage's size follows (T/s)^(1/3) at its torque, for a limit s.
-    """
-    torques = (train.torque, train.torque * float(train.highest_ratio))
-    sizes = [
-        (torque / limit) ** (1.0 / 3.0)
-        for stage in train.stages
-        for torque in torques
-        for limit in stage.allowable or (TYPICAL,)
+
+def _errors(
+    train: Train, at: Array, choice: Choice, made: Problem, point: Array, trims: Array
+) -> Array:
+    """Return the exact safeties over the trimmed smooth ones (stages, standards, 4)."""
+    ratio = np.ones_like(trims)
+    x = namespace(made.variables, [float(v) for v in point])
+    for k, (pair, torque, speed) in enumerate(_loads(train, sizing_text.pairs(train, at))):
+        for j, standard in enumerate(_standards(train.stages[k])):
+            own = {n: each(getattr(x, n + standard.suffix))[k] for n in standard.unknowns}
+            smooth = standard.smooth(pair, torque, speed, choice[k][j], own).safeties
+            exact = standard.safeties(pair, torque, speed)
+            ratio[k, j] = np.array(exact, float) / (np.array(smooth, float) * trims[k, j])
+    return ratio
+
+
+SAFE = 1.0 + FEASIBLE  # utilisation up to which the exact rating accepts a design
+GROWTH = tuple(10.0 ** (0.5 * k) for k in range(-14, -3))  # of lengths, in a repair
+LESS, SMALLEST, HALVINGS = 1e-5, 0.7, 24  # of lengths that an exact rating finds too large
+FINER = (1.0, 1.4, 2.0)  # times the least teeth, of starts without a bounding program
+# teeth above the least of a pinion without a limit, of a search among whole teeth
+TEETH_SEARCHED = 20
+SECONDS = 5.0  # at most, for that search
+
+
+def point_of(train: Train, pairs: tuple[GearPair, ...]) -> Array:
+    """Return the point of `problem` of a design."""
+    rows = [
+        {
+            "module": pair.normal_module,
+            "pinion_teeth": pair.pinion_teeth,
+            "ratio": pair.ratio,
+            "face_width": pair.face_width,
+        }
+        for pair in pairs
     ]
+    return np.array([float(r[v.name]) for v in sizing_text.variables(train) for r in rows])
+
+
+def starts(exact: Problem) -> list[Array]:
+    """Return starts of more and more, smaller teeth."""
+    lower, upper, guess = exact.bounds()
+    names = [v.name for v, _ in exact.columns]
+    found = []
+    for factor in FINER:
+        change = {"module": 1.0 / factor, "pinion_teeth": factor}
+        moved = [g * change.get(n, 1.0) for g, n in zip(guess, names, strict=True)]
+        found.append(np.clip(moved, lower, upper))
+    return found
+
+
+def whole(train: Train, clock: Clock) -> list[Array]:
+    """Return the best train of whole teeth and standard modules as a point, if one is found."""
+    stages = []
     for stage in train.stages:
-        face = stage.face_width
-        given = (*stage.modules, face.fixed, face.least, stage.wheel_diameter)
-        sizes += [float(length) for length in given if length]
-    return min(sizes) / SEARCH_SPAN, max(sizes) * SEARCH_SPAN
+        least, most = min(stage.modules, default=None), max(stage.modules, default=None)
+        if least is None or most is None:
+            series = SERIES_I
+        else:
+            series = tuple(sorted({least, most, *(m for m in SERIES_I if least < m < most)}))
+        low, high = stage.pinion_teeth
+        stages.append(
+            replace(stage, modules=series, pinion_teeth=(low, high or low + TEETH_SEARCHED))
+        )
+    near = replace(train, stages=tuple(stages))
+    answer = solve(teeth.problem(near), budget=Budget(clock.within(SECONDS)))
+    found = point_of_result(teeth.problem(near), answer)
+    if found is None:
+        return []
+    return [point_of(train, teeth.pairs(near, found))]
 
 
-def _column(bounds: tuple[float, float], guess: float, fixed: bool) -> tuple[float, float, float]:
-    if fixed:
-        return guess, guess, guess
-    return bounds[0], bounds[1], min(max(guess, bounds[0]), bounds[1])
+def point_of_result(made: Problem, found: Result) -> Array | None:
+    """Return the point of a result; None where it has none."""
+    if not found.design:
+        return None
+    values = [np.atleast_1d(v) for v in found.design.values()]
+    return np.concatenate(values).astype(float)
+
+
+def safe(exact: Problem, x: Array) -> bool:
+    """Return whether the exact text accepts a point."""
+    made = exact.batch(x[None])
+    return bool(max(made.G.max(initial=0.0), 1.0 + np.abs(made.H - 1.0).max(initial=0.0)) <= SAFE)
+
+
+def repaired(exact: Problem, at: Array) -> Array | None:
+    """Return a design as it is, or as much larger as the exact rating needs; None: by too much.
+
+    Stages that could be smaller by LESS are made so.
+    """
+    lengths = np.array([v.unit == "mm" for v, _ in exact.columns])
+    stage = [int(n.rsplit("[", 1)[1][:-1]) if v.size > 1 else 1 for v, n in exact.columns]
+    lower, upper, _ = exact.bounds()
+
+    def scaled(x: Array, factor: float, chosen: Array) -> Array:
+        return np.clip(np.where(chosen, x * factor, x), lower, upper)
+
+    here = next((s for g in (0.0, *GROWTH) if safe(exact, s := scaled(at, 1 + g, lengths))), None)
+    if here is None:
+        return None
+    for k in range(1, max(stage) + 1):
+        own = lengths & (np.array(stage) == k)
+        if not safe(exact, scaled(here, 1.0 - LESS, own)):
+            continue
+        low, high = SMALLEST, 1.0 - LESS
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            good = safe(exact, scaled(here, middle, own))
+            low, high = (low, middle) if good else (middle, high)
+        here = scaled(here, high, own)
+    return here

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive import sizing, sizing_text, teeth
 from gearopt.formulations.drive.shares import MASSES
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.certificate import reconcile
@@ -359,7 +359,7 @@ def _continuous(scene: Scene, method: str | None) -> bool:
 def _sized(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     """Solve one formulation of the drive and put its answer in a drawing's words."""
     exact = problem.name == "teeth"
-    formulation = teeth if exact else sizing
+    formulation = teeth if exact else sizing_text
     watch = in_part(ask.watch, train.unit)
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": train.unit})

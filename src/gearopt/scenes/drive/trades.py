@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive import sizing, sizing_text, teeth
 from gearopt.formulations.drive.shares import OBJECTIVES
 from gearopt.formulations.drive.teeth import load_front
 from gearopt.formulations.drive.train import Train
@@ -119,7 +119,7 @@ def _train(scene: Scene) -> Train:
 
 
 def _real(scene: Scene, train: Train, x: Array) -> Mapping[str, Any]:
-    found: Mapping[str, Any] = untyped(scene.design(sizing.pairs(train, x)))
+    found: Mapping[str, Any] = untyped(scene.design(sizing_text.pairs(train, x)))
     return found
 
 

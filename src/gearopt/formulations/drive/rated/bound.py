@@ -8,7 +8,7 @@ import math
 from types import SimpleNamespace
 from typing import Any
 
-from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive import sizing_text
 from gearopt.formulations.drive.shares import BY_WIDTH, LENGTHS, least_share
 from gearopt.formulations.drive.train import Train, terms
 from gearopt.formulations.strength.rated import Box
@@ -51,10 +51,12 @@ def bounding(train: Train, choice: Choice, most: float = math.inf) -> Problem | 
                 rows |= {n + standard.suffix: v for n, v in floor.limits(pair).items()}
             return rows
 
-        gears = sizing.text_pairs(train, x, p)
+        gears = sizing_text.text_pairs(train, x, p)
         return terms(train, p, gears, rated=rated, shares=_least)
 
-    return Problem("bounding", sizing.variables(train), sizing.parameters(train), evaluate)
+    return Problem(
+        "bounding", sizing_text.variables(train), sizing_text.parameters(train), evaluate
+    )
 
 
 def _least(train: Train, k: int, pair: GearPair, density: Any, option: int, objective: str) -> Any:

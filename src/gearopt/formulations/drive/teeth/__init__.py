@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive import sizing_text
 from gearopt.formulations.drive.shares import share
 from gearopt.formulations.drive.teeth.front import fronts
 from gearopt.formulations.drive.teeth.progress import MARGIN, TIE, Progress, Teeth
@@ -95,7 +95,7 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
         evaluate,
         methods={"exact": exact},
         vectorised=True,
-        relaxed=None if train.rated or train.others else sizing.relaxed(train),
+        relaxed=None if train.rated or train.others else sizing_text.relaxed(train),
     )
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive import sizing_text
 from gearopt.formulations.drive.layout.chain import chain
 from gearopt.formulations.drive.layout.gearbox import ANYWHERE, Gearbox
 from gearopt.formulations.drive.layout.layout_text import given_places, outside, placed_by, sides
@@ -39,7 +39,7 @@ Facing = list[tuple[int, int, Body, Body]]
 def continuous(
     train: Train, make: Make, slabs: Slabs, start: tuple[tuple[GearPair, ...], tuple[float, ...]]
 ) -> Problem:
-    """Variables: those of `sizing`, angle [rad], left, bottom, width, height and the slabs' widths.
+    """Variables: those of `sizing_text`, angle [rad], left, bottom, width, height and the slabs' widths.
 
     start: gear pairs and link angles. SolveError for keep-outs with a range along the shafts.
     """
@@ -49,13 +49,13 @@ def continuous(
     order = arrange(box, slabs)
     shape = chain(box, (order,))
     facing = _facing(order)
-    sized = sizing.problem(train)
+    sized = sizing_text.exact_text(train)
     round_it = sides(shape, *placed_by([p.centre_distance for p in box.pairs], start[1]))
     variables = _variables(sized, box, slabs, start[1], round_it)
 
     def evaluate(x: Any, p: Any) -> Terms:
         found = sized.evaluate(x, p)
-        there = make(sizing.text_pairs(train, x, p))
+        there = make(sizing_text.text_pairs(train, x, p))
         y, z = placed_by([pair.centre_distance for pair in there.pairs], each(x.angle))
         rows = _walls(there, order.bodies, (y, z), x)
         rows |= {

@@ -6,7 +6,7 @@ from functools import partial
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations.drive import sizing, teeth, together
+from gearopt.formulations.drive import sizing, sizing_text, teeth, together
 from gearopt.formulations.drive.design import drive_design
 from gearopt.formulations.drive.layout.slabs import Slabs, arrange
 from gearopt.formulations.drive.together.continuous import angles_of, continuous
@@ -147,7 +147,7 @@ def _real(
     train = scene.train()
     own = sizing.problem(train)
     point = outcome.x[: sum(v.size for v in own.variables)]
-    pairs = sizing.pairs(train, point)
+    pairs = sizing_text.pairs(train, point)
     gears = replace(
         sized, design=untyped(scene.design(pairs)), limits=limits(own, point), report={}
     )

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive import sizing, sizing_text
 from gearopt.formulations.drive.teeth import best_pairs
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.clock import Clock
@@ -191,7 +191,7 @@ def is_real(scene: Scene, clock: Clock) -> bool:
 def posed(scene: Scene) -> tuple[Problem, list[Handle], list[Movable]]:
     """Return the problem with real-valued sizes, what may be relaxed, and the file's numbers."""
     train = scene.train()
-    base = sizing.movable(train)
+    base = sizing_text.movable(train)
     known = [_named(h, train, scene.teeth is None) for h in handles(base)]
     movable = [reachable(scene, number) for number in movables(scene, known)]
     return base, known, [m for m in movable if m.reach > 1.0]
@@ -204,7 +204,7 @@ def _named(handle: Handle, train: Train, whole: bool) -> Handle:
     """
     name = handle.name
     if handle.family == "wheel_teeth":
-        name = f"wheel_teeth[{sizing.given_wheels(train)[stage_of(handle)] + 1}]"
+        name = f"wheel_teeth[{sizing_text.given_wheels(train)[stage_of(handle)] + 1}]"
     if handle.family == "width_high" and handle.given:
         name = f"{WIDTH}[{stage_of(handle) + 1}]"
     return replace(handle, name=name, whole=whole and not handle.given and "teeth" in handle.family)

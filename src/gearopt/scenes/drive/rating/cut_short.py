@@ -3,8 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 
-from gearopt.formulations.drive import sizing
-from gearopt.formulations.drive.rated import sizing as rated_sizing
+from gearopt.formulations.drive import sizing, sizing_text
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.problem import Problem
@@ -30,7 +29,7 @@ def bounded(
     found = sized(replace(ask, budget=ask.budget.less(kept)), whole)
     if found.status != "limit":
         return found
-    alone = replace(sizing.exact_text(train), methods={"smooth": rated_sizing.searched(train)})
+    alone = replace(sizing_text.exact_text(train), methods={"smooth": sizing.searched(train)})
     ideal = sized(Ask(None, Budget(kept), watch=ask.watch), alone)
     if found.value is None and ideal.status != "infeasible":
         found = replace(found, bound=ideal.bound)

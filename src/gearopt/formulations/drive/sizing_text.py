@@ -1,0 +1,217 @@
+"""Text of the continuous sizing of a drive: teeth and modules as real numbers.
+
+Minimise the drive's objective under the limits of its strength law (Chong and Lee, eqs. 10-12) with
+ratios, modules, teeth and face widths free within their limits. Where the law is a posynomial, as
+every other row is, the log form is convex: Ipopt finds the global optimum and the dual bound proves
+it. With the total ratio free within its tolerance this is a relaxation of `teeth`, so its bound
+holds there too.
+"""
+
+from dataclasses import replace
+from fractions import Fraction
+from types import SimpleNamespace
+from typing import Any
+
+from gearopt.formulations.drive.train import Train, terms
+from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
+from gearopt.physics.gears import GearPair, reference_diameter
+
+# factor between any length of a drive and the ends of the search: they never bind
+SEARCH_SPAN = 1e6
+BAND = Fraction(1, 10**10)  # half width of the band of a ratio that is given: far below 1e-8
+TEETH = (1.0, 1e6)
+RATIO = (1.0, 1e7)
+TYPICAL = 1.0  # MPa, K-factor of rated gears from which a search starts
+VARIABLES = {"module": "mm", "pinion_teeth": "", "ratio": "", "face_width": "mm"}
+
+_PARAMETER_UNITS = {
+    "torque": "N mm",
+    "density": "t/mm3",
+    "speed": "rad/s",
+    "wheel_diameter": "mm",
+    "module_low": "mm",
+    "module_high": "mm",
+    "least_width": "mm",
+}
+
+
+def exact_text(train: Train) -> Problem:
+    """Continuous problem of a drive without methods of its own.
+
+    Variables, one component per stage: module [mm], pinion_teeth, ratio and, where it is not tied
+    to d1, face_width [mm]. Of a rated drive the text is for numbers only, and of gears with webs
+    the objective is not a posynomial.
+    """
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        return terms(train, p, text_pairs(train, x, p))
+
+    return Problem("sizing", variables(train), parameters(train), evaluate)
+
+
+def parameters(train: Train) -> tuple[Param, ...]:
+    """Return the numbers of a drive as parameters of its continuous problem."""
+    count = len(train.stages)
+    numbers = train.numbers()
+    units = _PARAMETER_UNITS | {limit.name: limit.unit for limit in train.law.limits}
+    return tuple(
+        Param(
+            name,
+            units.get(name, ""),
+            value,
+            count if isinstance(value, tuple) else 1,
+            train.keys.get(name, ""),
+            role=_role(train, name, "data"),
+        )
+        for name, value in numbers.items()
+    )
+
+
+def movable(train: Train) -> Problem:
+    """Return the limits of `exact_text` with every given number as one that may be moved.
+
+    Wheel teeth that are given are variables, one component per stage that gives them; the
+    proportion b/d1 of tied widths is a given parameter. The objective means nothing.
+    """
+    own = exact_text(train)
+    wheels = given_wheels(train)
+    numbers = tuple(replace(q, role=_role(train, q.name, "given")) for q in own.parameters)
+
+    def evaluate(x: Any, p: Any) -> Terms:
+        found = own.evaluate(x, p)
+        teeth = zip(wheels, each(x.wheel_teeth) if wheels else (), strict=True)
+        rows = {
+            f"wheel_teeth[{k + 1}]": each(x.pinion_teeth)[k] * each(x.ratio)[k] / z
+            for k, z in teeth
+        }
+        return Terms({"module": each(x.module)[0]}, found.limits, equal={**found.equal, **rows})
+
+    columns = _with_wheels(train) if wheels else own.variables
+    return Problem("sizing", columns, numbers, evaluate)
+
+
+def relaxed(train: Train) -> Problem:
+    """Return `movable` of a drive that is at least as easy and convex in logarithms.
+
+    A law that is no posynomial gives way to its lower bound, a ratio without tolerance to a band.
+    """
+    law = train.law.relaxed or train.law
+    return movable(replace(train, law=law, tolerance=train.tolerance or BAND))
+
+
+def given_wheels(train: Train) -> tuple[int, ...]:
+    """Return the stages (from 0) whose wheel teeth are given."""
+    return tuple(k for k, stage in enumerate(train.stages) if stage.wheel_fixed)
+
+
+def _with_wheels(train: Train) -> tuple[Var, ...]:
+    """Return the variables with ratios free and given wheel teeth as a block of their own."""
+    count = len(train.stages)
+    teeth = tuple(float(train.stages[k].wheel_teeth[0]) for k in given_wheels(train))
+    low, high = ((end,) * count for end in RATIO)
+
+    def free(v: Var) -> Var:
+        guess = tuple(max(u, RATIO[0]) for u in each(v.guess))
+        return replace(v, lower=low, upper=high, guess=guess)
+
+    found = (free(v) if v.name == "ratio" else v for v in variables(train))
+    return (*found, Var("wheel_teeth", "", teeth, teeth, teeth, len(teeth), log=True, search=True))
+
+
+def _role(train: Train, name: str, tied: str) -> str | tuple[str, ...]:
+    """Return the role of a parameter: the ratio is a duty; `tied`: that of a width tied to d1."""
+    if name in ("width_low", "width_high"):
+        return tuple(tied if s.face_width.tied else "limit" for s in train.stages)
+    if name in ("lowest_ratio", "highest_ratio", "torque"):
+        return "given"
+    return "limit" if name in train.by_stage else "data"
+
+
+def pairs(train: Train, point: Array) -> tuple[GearPair, ...]:
+    """Return the gear pairs of a point of `exact_text`."""
+    x = namespace(variables(train), [float(v) for v in point])
+    return text_pairs(train, x, SimpleNamespace(**train.numbers()))
+
+
+def text_pairs(train: Train, x: Any, numbers: Any) -> tuple[GearPair, ...]:
+    """Return the gear pairs of the variables x of the text.
+
+    numbers: `train.numbers()` as attributes, floats or parameters.
+    """
+    found = []
+    for k, stage in enumerate(train.stages):
+        m, z, u = each(x.module)[k], each(x.pinion_teeth)[k], each(x.ratio)[k]
+        cosine = each(numbers.helix_cosine)[k]
+        d = reference_diameter(m / cosine, z)
+        if stage.face_width.tied:
+            width = each(numbers.width_high)[k] * reference_diameter(m / cosine, z)
+        else:
+            width = each(x.face_width)[k]
+        found.append(stage.toothing.of_diameter(m, z, d, u, width))
+    return tuple(found)
+
+
+def variables(train: Train) -> tuple[Var, ...]:
+    """Return the variables of the continuous problem of a drive."""
+    columns: dict[str, list[tuple[float, float, float]]] = {name: [] for name in VARIABLES}
+    lengths = _lengths(train)
+    numbers = SimpleNamespace(**train.numbers())
+    torque = train.torque
+    for k, stage in enumerate(train.stages):
+        given = stage.pinion_fixed and stage.wheel_fixed
+        z = max(1.0, numbers.pinion_low[k])
+        u = float(train.ratio) ** (1.0 / len(train.stages))
+        if given:
+            u = numbers.wheel_low[k] / z
+        proportion = min(numbers.width_high[k], 1.0)
+        cosine = numbers.helix_cosine[k]
+        unit = stage.toothing.of_diameter(cosine / z, z, 1.0, u, proportion)
+        law = train.law if stage.allowable else K_FACTOR
+        allowable = (stage.allowable or (TYPICAL,))[0]
+        load = law.indices(unit, torque, train.speed_at(torque))[0] / allowable
+        d = load ** (1.0 / 3.0)
+        m_fixed = len(stage.modules) == 1
+        m = numbers.module_low[k] if m_fixed else d * cosine / z
+        b_fixed = stage.face_width.fixed
+        columns["module"].append(_column(lengths, m, m_fixed))
+        columns["pinion_teeth"].append(_column(TEETH, z, stage.pinion_fixed))
+        columns["ratio"].append(_column(RATIO, u, given))
+        width = proportion * d if b_fixed is None else float(b_fixed)
+        columns["face_width"].append(
+            _column(lengths, width, b_fixed is not None or stage.face_width.tied)
+        )
+        torque *= u
+    if all(s.face_width.tied for s in train.stages):
+        del columns["face_width"]
+    found = []
+    for name, rows in columns.items():
+        low, high, guess = zip(*rows, strict=True)
+        found.append(Var(name, VARIABLES[name], low, high, guess, len(rows), log=True, search=True))
+    return tuple(found)
+
+
+def _lengths(train: Train) -> tuple[float, float]:
+    """Return the ends [mm] of searched modules and widths, far beyond what the file requires.
+
+    Finite, for the dual bound. A stage's size follows (T/s)^(1/3) at its torque, for a limit s.
+    """
+    torques = (train.torque, train.torque * float(train.highest_ratio))
+    sizes = [
+        (torque / limit) ** (1.0 / 3.0)
+        for stage in train.stages
+        for torque in torques
+        for limit in stage.allowable or (TYPICAL,)
+    ]
+    for stage in train.stages:
+        face = stage.face_width
+        given = (*stage.modules, face.fixed, face.least, stage.wheel_diameter)
+        sizes += [float(length) for length in given if length]
+    return min(sizes) / SEARCH_SPAN, max(sizes) * SEARCH_SPAN
+
+
+def _column(bounds: tuple[float, float], guess: float, fixed: bool) -> tuple[float, float, float]:
+    if fixed:
+        return guess, guess, guess
+    return bounds[0], bounds[1], min(max(guess, bounds[0]), bounds[1])
