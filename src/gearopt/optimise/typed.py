@@ -1,7 +1,7 @@
 """Dataclasses from plain JSON data and back, each value held to the type its field declares."""
 
 from collections.abc import Mapping
-from dataclasses import MISSING, fields, is_dataclass
+from dataclasses import MISSING, dataclass, fields, is_dataclass
 from functools import cache
 from types import NoneType, UnionType
 from typing import Any, get_args, get_origin, get_type_hints
@@ -13,6 +13,21 @@ NUMBERS: dict[Any, tuple[type, ...]] = {
     str: (str,),
     bool: (bool,),
 }
+
+
+@dataclass(frozen=True)
+class Shown:
+    """How tables show a field of a design: `Annotated[float, Shown("module", "sizes")]`.
+
+    label: what it is called. table: the one that lists it, where its class has several. unit: as
+    `report.measures` names it; None: that at the end of the field's name. form: a format of the
+    number, as ".3f"; "": the digits that are read.
+    """
+
+    label: str
+    table: str = ""
+    unit: str | None = None
+    form: str = ""
 
 
 def typed(kind: Any, data: Any, where: str = "") -> Any:

@@ -8,16 +8,18 @@ import io
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from functools import cache
+from typing import Any, get_type_hints
 from urllib.parse import quote
 
 from rich.text import Text
 
+from gearopt.optimise.typed import Shown
 from gearopt.report.drawing.player import Animation
 from gearopt.report.drawing.row import Row
 from gearopt.report.drawing.sheet import Drawing
 from gearopt.report.measures import Measures
-from gearopt.report.words import number, share
+from gearopt.report.words import number, parted, share
 
 # What spreadsheets take for formulas (wide signs in East Asian ones), unless it is a number.
 FORMULA = re.compile(r"\s*[=+\-@\uff1d\uff0b\uff0d\uff20]|[\t\r\n]")
@@ -255,6 +257,89 @@ def cell(value: Any, suffix: str, measures: Measures) -> Cell:
     if not suffix:
         return shown(value)
     return Cell(measures.of(value, suffix), measures.number(value, suffix))
+
+
+@dataclass(frozen=True)
+class Listed:
+    """A field of a design as a table lists it: its key, label, unit and format (see `Shown`)."""
+
+    key: str
+    label: str
+    unit: str
+    form: str
+
+    def head(self, measures: Measures) -> str:
+        """Return the label with the unit."""
+        return f"{self.label} [{measures.unit(self.unit)}]" if self.unit else self.label
+
+    def cell(self, value: Any, measures: Measures) -> Cell:
+        """Return a value of the field as it is read; a length has decimals by its unit."""
+        if not self.form or value is None:
+            return cell(value, self.unit, measures)
+        if self.unit == "mm":
+            return Cell(measures.of(value, "mm"), measures.length(value, int(self.form[1:-1])))
+        size = measures.of(value, self.unit)
+        return Cell(size, format(size, self.form))
+
+
+@cache
+def listed(kind: type, table: str = "") -> tuple[Listed, ...]:
+    """Return the fields of a dataclass that a table lists, in their order."""
+    return tuple(
+        Listed(key, one.label, parted(key)[1] if one.unit is None else one.unit, one.form)
+        for key, hint in get_type_hints(kind, include_extras=True).items()
+        for one in getattr(hint, "__metadata__", ())
+        if isinstance(one, Shown) and one.table == table
+    )
+
+
+def names_and_values(
+    design: Any,
+    table: str,
+    measures: Measures,
+    values: Mapping[str, Any] | None = None,
+    labels: Mapping[str, str] | None = None,
+) -> list[list[Any]]:
+    """Return a row for every field that a table lists and that is known.
+
+    values, labels: what is shown instead of some fields' own, by key.
+    """
+    rows: list[list[Any]] = []
+    for it in listed(design.__class__, table):
+        value = (values or {}).get(it.key, getattr(design, it.key))
+        if value is not None:
+            label = (labels or {}).get(it.key) or it.head(measures)
+            rows.append([label, it.cell(value, measures)])
+    return rows
+
+
+def columns(design: Any, name: str, measures: Measures, **look: Any) -> Table:
+    """Return a table of fields that hold columns, whose table has this name."""
+    held = listed(design.__class__, name)
+    cells = [[it.cell(v, measures) for v in getattr(design, it.key)] for it in held]
+    heads = [it.head(measures) for it in held]
+    return Table(name, heads, list(zip(*cells, strict=True)), **look)
+
+
+def records(
+    rows: Sequence[Any], measures: Measures, table: str = ""
+) -> tuple[list[str], list[Any]]:
+    """Return heads, and a row for every record, of the fields that a table lists."""
+    held = listed(rows[0].__class__, table) if rows else ()
+    heads = [it.head(measures) for it in held]
+    return heads, [[it.cell(getattr(row, it.key), measures) for it in held] for row in rows]
+
+
+def side_by_side(items: Sequence[Any], measures: Measures, table: str = "") -> list[list[Any]]:
+    """Return a row for every field that a table lists and some item has, a column for each item."""
+    held = [
+        (it, [getattr(item, it.key) for item in items]) for it in listed(items[0].__class__, table)
+    ]
+    return [
+        [it.head(measures), *(it.cell(value, measures) for value in values)]
+        for it, values in held
+        if any(value is not None for value in values)
+    ]
 
 
 def percent(used: float | None) -> Cell:

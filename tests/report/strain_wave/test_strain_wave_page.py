@@ -158,7 +158,7 @@ def test_sections_say_what_was_found(result, found):
     assert [line["name"] for line in curve] == ["equal loads", "whole pairs", "shared loads"]
     assert all(np.all(np.diff(line["y"]) < 0.0) for line in curve)
     sizes = dict((row[0], row[1]) for row in numbers(result, METRIC).tables[0].rows)
-    assert sizes["teeth of the flexspline"] == 160
+    assert sizes["teeth of the flexspline"].value == 160
     built = {
         "flexspline, undeformed: tip diameter [mm]": 79.25 + 2.0 * 1.12856,
         "root diameter of the flexspline [mm]": 80.05,

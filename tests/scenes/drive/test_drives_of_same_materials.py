@@ -44,7 +44,10 @@ def test_the_best_is_that_of_every_pair_of_materials():
         (a, b): [{"pinion": {"materials": [a]}, "wheel": {"materials": [b]}}] * 2
         for a, b in itertools.product(names, names)
     }
-    alone = {pair: gearopt.solve(drive(*stages, same_materials=False)).value for pair, stages in pairs.items()}
+    alone = {
+        pair: gearopt.solve(drive(*stages, same_materials=False)).value
+        for pair, stages in pairs.items()
+    }
     best = min((p for p in alone if alone[p] is not None), key=alone.get)
     found = gearopt.solve(drive())
     assert found.status == "optimal"

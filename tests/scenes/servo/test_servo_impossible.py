@@ -46,7 +46,9 @@ def test_tolerances_beyond_the_error_of_the_file_are_named():
     edits = ((("budget", 0), {"rule": "mean_plus_sd"}),)
     result = solved(EXAMPLE, *edits, drop=[("space",), ("lightest",)])
     assert result.design["drawn"]["worst_case_deg"] > 0.12
-    assert any("tolerances at their limits the error is 0.16109" in note for note in result.report["notes"])
+    assert any(
+        "tolerances at their limits the error is 0.16109" in note for note in result.report["notes"]
+    )
 
 
 @pytest.mark.slow

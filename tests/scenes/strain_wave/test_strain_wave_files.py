@@ -179,7 +179,7 @@ def test_fatigue_limits_of_steel_are_not_assumed_of_another_material(text, key):
 def test_the_windup_says_of_which_parts_it_is(solved, rim, told):
     found = typed(WaveDesign, solved("strain_wave_base").design)
     found = replace(found, elastic_rim=rim == "elastic")
-    rows = {row[0]: row[1] for row in loads(found, METRIC).rows}
+    rows = {label: cell.value for label, cell in loads(found, METRIC).rows}
     assert next(v for k, v in rows.items() if "windup" in k and told in k) == found.windup_mrad
     assert any("windup" in note and told in note for note in notes(found))
 

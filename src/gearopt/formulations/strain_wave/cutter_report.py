@@ -2,16 +2,18 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from gearopt.formulations.strain_wave.cutter_fit import arc_edge, arc_of_cones, straight_edge
+from gearopt.optimise.typed import Shown
 from gearopt.physics.strain_wave.cutter import Profile, envelope, generated, least_teeth
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.vectors import Vector
 
 Columns = tuple[float, ...]
+EDGE = "points of the cutting edge"
 POINTS = 51  # of the cutter's edge that are told
 USUAL = math.radians(20.0)  # pressure angle of usual tools
 
@@ -48,8 +50,8 @@ class CutterDesign:
     regular: bool
     least_speed: float
     least_teeth: int | None
-    x_mm: Columns = ()
-    y_mm: Columns = ()
+    x_mm: Annotated[Columns, Shown("x", EDGE)] = ()
+    y_mm: Annotated[Columns, Shown("y", EDGE)] = ()
     round_trip_mm: float = 0.0
     straight_deg: float = 0.0
     straight_deviation_mm: float = 0.0

@@ -6,7 +6,7 @@ Fields are keys of a result, with their units; lists of one table are columns of
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from gearopt.formulations.strain_wave.shift import (
     last_shift_of_one_pair,
     shift_curve,
 )
+from gearopt.optimise.typed import Shown
 from gearopt.physics.strain_wave.clearance import interference, teeth_within, tooth_arcs
 from gearopt.physics.strain_wave.clearance import tooth_clearances as clearances_of
 from gearopt.physics.strain_wave.conjugate import Flank, contact, least_deflection
@@ -47,6 +48,9 @@ SHIFTS = (0.0, 0.3, 0.6, 0.9, 1.2, 1.5, 1.8, 2.1)  # profile shifts of the curve
 CLEARANCES_LISTED = 80  # clearances that are listed on either side of the arc of contact
 GUARDS = ("curvature", "cusp")  # keep the flank regular
 LOADS_LISTED = 0.5  # part of the teeth whose loads are listed
+CONTACT, FLANK = "conjugate contact", "points of the flexspline's flank"
+SPACE = "points of the circular spline's flank"
+CLEARANCE, LOAD = "clearance over the wave", "load over the wave"
 TURNS = 8  # positions of the wave generator over one pitch
 
 
@@ -54,42 +58,42 @@ TURNS = 8  # positions of the wave generator over one pitch
 class ToothLoad:
     """A tooth: its number from the middle of the arc of contact, and what it carries."""
 
-    tooth: int
-    wave_angle_deg: float
-    clearance_mm: float
-    force_N: float
-    contact_pressure_MPa: float
+    tooth: Annotated[int, Shown("tooth")]
+    wave_angle_deg: Annotated[float, Shown("on the wave", form=".3f")]
+    clearance_mm: Annotated[float, Shown("clearance", unit="um")]
+    force_N: Annotated[float, Shown("load")]
+    contact_pressure_MPa: Annotated[float, Shown("pressure")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class ShiftRow:
     """A profile shift: pairs, least radius, pressures by equal, whole and shared loads."""
 
-    profile_shift: float
-    pairs: float
-    radius_mm: float
-    equal_MPa: float
-    whole_MPa: float
-    shared_MPa: float
-    least_clearance_mm: float
+    profile_shift: Annotated[float, Shown("profile shift", form="g")]
+    pairs: Annotated[float, Shown("pairs")]
+    radius_mm: Annotated[float, Shown("least R")]
+    equal_MPa: Annotated[float, Shown("equal loads")]
+    whole_MPa: Annotated[float, Shown("whole pairs")]
+    shared_MPa: Annotated[float, Shown("shared loads")]
+    least_clearance_mm: Annotated[float, Shown("least clearance", unit="um")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Deflected:
     """The same teeth on a wave generator of another deflection."""
 
-    deflection: float
-    least_clearance_mm: float
+    deflection: Annotated[float, Shown("deflection, modules", form="g")]
+    least_clearance_mm: Annotated[float, Shown("least clearance", unit="um")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class RoundRow:
     """A round of the search: cuts so far, pressure, least clearance over the wave."""
 
-    cuts: int
-    pressure_MPa: float
-    least_clearance_mm: float
-    iterations: int
+    cuts: Annotated[int, Shown("passages held clear")]
+    pressure_MPa: Annotated[float, Shown("pressure")]
+    least_clearance_mm: Annotated[float, Shown("least clearance", unit="um")]
+    iterations: Annotated[int, Shown("iterations")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,67 +112,71 @@ class WaveDesign:
     effective_teeth: how many would carry the largest load alike.
     """
 
-    law: str = INVOLUTE
-    thickness_mm: float | None = None
+    law: Annotated[str, Shown("law of the teeth", "teeth")] = INVOLUTE
+    ratio: Annotated[float, Shown("ratio, circular spline at rest", "teeth")]
+    flexspline_teeth: Annotated[int, Shown("teeth of the flexspline", "teeth")]
+    circular_spline_teeth: Annotated[int, Shown("teeth of the circular spline", "teeth")]
+    module_mm: Annotated[float, Shown("module", "teeth", "mm", ".4f")]
+    pressure_angle_deg: Annotated[float, Shown("pressure angle", "teeth")]
+    profile_shift: Annotated[float, Shown("profile shift, modules", "teeth")]
+    addendum: Annotated[float, Shown("addendum, modules", "teeth")]
+    deflection: Annotated[float, Shown("deflection, modules", "teeth")]
+    rim_mm: Annotated[float, Shown("rim", "teeth", form=".4f")]
+    thickness_mm: Annotated[
+        float | None, Shown("thickness at half the height", "teeth", form=".4f")
+    ] = None
     arc_radii_mm: Columns = ()
     tangent_mm: float | None = None
-    ratio: float
-    flexspline_teeth: int
-    circular_spline_teeth: int
-    module_mm: float
-    pressure_angle_deg: float
-    profile_shift: float
-    addendum: float
     clearance: float
-    deflection: float
-    rim_mm: float
     elastic_rim: bool = False
-    wave_generator: str
+    wave_generator: Annotated[str, Shown("wave generator", "gearing")]
+    face_width_mm: Annotated[float, Shown("face width", "gearing", form=".4f")]
+    outer_diameter_mm: Annotated[float, Shown("outer diameter", "gearing", form=".4f")]
+    tip_diameter_mm: Annotated[float, Shown("circular spline: tip diameter", "gearing", form=".4f")]
+    active_diameter_mm: Annotated[float, Shown("last active diameter", "gearing", form=".4f")]
+    root_diameter_mm: Annotated[float, Shown("root diameter", "gearing", form=".4f")]
+    base_diameter_mm: Annotated[float | None, Shown("base diameter", "gearing", form=".4f")] = None
     wrap_angle_deg: float
-    face_width_mm: float
     torque_Nm: float
-    outer_diameter_mm: float
-    base_diameter_mm: float | None = None
-    tip_diameter_mm: float
-    active_diameter_mm: float
-    root_diameter_mm: float
     neutral_diameter_mm: float
     wave_major_mm: float
     wave_minor_mm: float
-    pairs_in_contact: float
-    effective_teeth: float
-    carrying_teeth: int
-    windup_mrad: float
-    equal_pressure_MPa: float
-    whole_pairs_pressure_MPa: float
-    shared_pressure_MPa: float
-    rim_bending_MPa: float
-    rim_shear_MPa: float
-    ratcheting_torque_Nm: float
+    pairs_in_contact: Annotated[float, Shown("conjugate pairs per lobe and flank", "loads")]
+    carrying_teeth: Annotated[int, Shown("teeth that carry, per lobe", "loads")]
+    effective_teeth: Annotated[float, Shown("equivalent number, equally loaded", "loads")]
+    windup_mrad: Annotated[float, Shown("windup", "loads")]
+    shared_pressure_MPa: Annotated[float, Shown("pressure, shared loads", "loads")]
+    equal_pressure_MPa: Annotated[float, Shown("pressure, equal loads", "loads")]
+    whole_pairs_pressure_MPa: Annotated[float, Shown("pressure, whole pairs", "loads")]
+    rim_bending_MPa: Annotated[float, Shown("bending of the rim", "loads")]
+    rim_shear_MPa: Annotated[float, Shown("shear of the rim", "loads")]
+    ratcheting_torque_Nm: Annotated[float, Shown("torque at which teeth ratchet", "loads")]
+    least_deflection: Annotated[
+        float | None, Shown("least deflection with contact, modules", "loads")
+    ] = None
     least_clearance_mm: float
     least_clearance_at_deg: float
-    least_deflection: float | None = None
     shift_of_one_pair: float | None = None
     largest_addendum: float | None = None
     within_um: Columns
     teeth_within: Columns
-    arc_deg: Columns
-    radius_mm: Columns
-    height_mm: Columns
-    half_thickness_mm: Columns
-    flexspline_curvature_mm: Columns
-    circular_curvature_mm: Columns
-    relative_curvature_mm: Columns
+    arc_deg: Annotated[Columns, Shown("on the wave", CONTACT, form=".4f")]
+    radius_mm: Annotated[Columns, Shown("radius", CONTACT)]
+    height_mm: Annotated[Columns, Shown("height", CONTACT)]
+    half_thickness_mm: Annotated[Columns, Shown("half thickness", CONTACT)]
+    flexspline_curvature_mm: Annotated[Columns, Shown("R_f", CONTACT)]
+    circular_curvature_mm: Annotated[Columns, Shown("R_c", CONTACT)]
+    relative_curvature_mm: Annotated[Columns, Shown("R", CONTACT)]
     touching_deg: tuple[tuple[float, float], ...]
-    tooth_height_mm: Columns
-    tooth_half_mm: Columns
-    space_across_mm: Columns
-    space_out_mm: Columns
-    wave_angle_deg: Columns
-    wave_clearance_mm: Columns
-    load_angle_deg: Columns
-    load_N: Columns
-    load_pressure_MPa: Columns
+    tooth_height_mm: Annotated[Columns, Shown("height over the neutral curve", FLANK)]
+    tooth_half_mm: Annotated[Columns, Shown("half thickness", FLANK)]
+    space_across_mm: Annotated[Columns, Shown("across, from the middle of the space", SPACE)]
+    space_out_mm: Annotated[Columns, Shown("out, from the axis", SPACE)]
+    wave_angle_deg: Annotated[Columns, Shown("on the wave", CLEARANCE, form=".4f")]
+    wave_clearance_mm: Annotated[Columns, Shown("clearance", CLEARANCE, "um")]
+    load_angle_deg: Annotated[Columns, Shown("on the wave", LOAD, form=".4f")]
+    load_N: Annotated[Columns, Shown("load", LOAD)]
+    load_pressure_MPa: Annotated[Columns, Shown("pressure", LOAD)]
     teeth: tuple[ToothLoad, ...]
     shifts: tuple[ShiftRow, ...] = ()
     deflections: tuple[Deflected, ...]

@@ -122,7 +122,7 @@ def moving(result: Result, measures: Measures) -> Section | None:
         figures=[_clearances(found, measures), *([_loads(found, measures)] if loaded else [])],
         tables=[
             *(tables.within(found, measures), tables.teeth(found, measures)),
-            *(tables.wave(found, measures), tables.load(found, measures)),
+            *tables.over_wave(found, measures),
         ],
         terminal=(tables.teeth(found, measures),),
     )
@@ -272,12 +272,11 @@ def numbers(result: Result, measures: Measures) -> Section | None:
     if (found := design_of(result)) is None:
         return None
     shown = tables.sizes(found, measures), tables.loads(found, measures)
-    columns = (tables.flank, tables.tooth_points, tables.space_points)
     return Section(
         "Sizes and flanks",
         tables=[
             *(*shown, tables.deflections(found, measures)),
-            *(table(found, measures) for table in columns),
+            *tables.points(found, measures),
         ],
         terminal=shown,
     )
