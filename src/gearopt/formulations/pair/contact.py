@@ -6,13 +6,14 @@ Fields are keys of a result, with their units; lists of one table are columns of
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from gearopt.formulations.pair.relief.meshing import NO_RELIEF, Mesh
 from gearopt.formulations.pair.relief.rules import tip_amounts
 from gearopt.optimise.terms import Array
+from gearopt.optimise.typed import Shown
 from gearopt.physics.agma.factors import elastic_coefficient
 from gearopt.physics.geometry.contact import ContactPath, diameters_at
 from gearopt.physics.mesh_cycle import break_points, cycle
@@ -33,13 +34,13 @@ class ContactPoint:
     approach along the line of action.
     """
 
-    point: str
-    position_mm: float
-    pinion_diameter_mm: float
-    wheel_diameter_mm: float
-    pinion_roll_angle_deg: float
+    point: Annotated[str, Shown("point")]
+    position_mm: Annotated[float, Shown("s")]
+    pinion_diameter_mm: Annotated[float, Shown("pinion diameter")]
+    wheel_diameter_mm: Annotated[float, Shown("wheel diameter")]
+    pinion_roll_angle_deg: Annotated[float, Shown("pinion roll angle", form=".3f")]
     wheel_roll_angle_deg: float
-    pair_stiffness_MPa: float
+    pair_stiffness_MPa: Annotated[float, Shown("stiffness of a pair", unit="N_per_mm_um")]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from gearopt.formulations.pair.relief.relief_tolerance import Tolerance, drawn, 
 from gearopt.formulations.pair.relief.rules import short_relief, tip_amounts
 from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.terms import Array
+from gearopt.optimise.typed import Shown
 from gearopt.physics.geometry.contact import diameters_at
 from gearopt.physics.mesh_cycle import cycle
 
@@ -32,12 +33,12 @@ class FlankRelief:
     grinder needs.
     """
 
-    amount_mm: float
-    length_mm: float
-    start_diameter_mm: float
-    start_roll_angle_deg: float
-    tip_diameter_mm: float
-    tip_roll_angle_deg: float
+    amount_mm: Annotated[float, Shown("amount at the tip", unit="um")]
+    start_diameter_mm: Annotated[float, Shown("starts at diameter", form=".3f")]
+    start_roll_angle_deg: Annotated[float, Shown("starts at roll angle", form=".3f")]
+    tip_diameter_mm: Annotated[float, Shown("tip diameter", form=".3f")]
+    tip_roll_angle_deg: Annotated[float, Shown("roll angle at the tip", form=".3f")]
+    length_mm: Annotated[float, Shown("length on the path")]
     exponent: float | None = None
 
 

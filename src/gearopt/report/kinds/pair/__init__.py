@@ -16,7 +16,7 @@ from gearopt.report.kinds.pair import relief as pair_relief
 from gearopt.report.kinds.pair import relief_plots
 from gearopt.report.kinds.pair.relief import relief_of
 from gearopt.report.kinds.pair.sections import in_space, moving, pair_of, teeth
-from gearopt.report.kinds.pair.tables import TABLES
+from gearopt.report.kinds.pair.tables import TABLES, travel
 from gearopt.report.kinds.pair.words import answers, of_duty
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.section import Section, Table, Tile
@@ -119,7 +119,7 @@ def relief(result: Result, measures: Measures) -> Section | None:
         pair_relief.after(made, found, measures),
         pair_relief.rules(found, measures),
         pair_relief.profile(made, found, measures),
-        pair_relief.travel(made, found, measures),
+        travel(made, measures, found.at, "transmission error with relief"),
     ]
     words = list(map(measures.words, pair_relief.answers(found)))
     shown = [table for table in tables if not table.folded]

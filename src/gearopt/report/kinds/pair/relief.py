@@ -6,9 +6,9 @@ from gearopt.formulations.pair.contact import PairContact
 from gearopt.formulations.pair.relief_map import FlankRelief, MadeRelief, PairRelief
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
-from gearopt.report.kinds.pair.tables import columns
+from gearopt.report.kinds.pair.tables import Columns, columns
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.section import Cell, Table, Tile, cell, percent
+from gearopt.report.section import Cell, Table, Tile, cell, percent, side_by_side
 from gearopt.report.words import amount, share
 
 # peak-to-peak on more positions over that on the computed ones: no difference
@@ -128,40 +128,14 @@ def _flank(name: str, flank: FlankRelief) -> str:
 
 
 def grinding(found: PairRelief, measures: Measures) -> Table:
-    """Return amounts, diameters and roll angles of both gears."""
-    length, micro = measures.unit("mm"), measures.unit("um")
+    """Amounts, diameters and roll angles of both gears."""
     both = found.pinion, found.wheel
-    rows = [
-        [f"amount at the tip [{micro}]", *(cell(f.amount_mm, "um", measures) for f in both)],
-        [
-            f"starts at diameter [{length}]",
-            *(_diameter(f.start_diameter_mm, measures) for f in both),
-        ],
-        [
-            "starts at roll angle [°]",
-            *(Cell(f.start_roll_angle_deg, f"{f.start_roll_angle_deg:.3f}") for f in both),
-        ],
-        [
-            f"tip diameter [{length}]",
-            *(_diameter(f.tip_diameter_mm, measures) for f in both),
-        ],
-        [
-            "roll angle at the tip [°]",
-            *(Cell(f.tip_roll_angle_deg, f"{f.tip_roll_angle_deg:.3f}") for f in both),
-        ],
-        [f"length on the path [{length}]", *(cell(f.length_mm, "mm", measures) for f in both)],
-        ["exponent", *(_power(f.exponent) for f in both)],
-    ]
+    rows = [*side_by_side(both, measures), ["exponent", *(_power(f.exponent) for f in both)]]
     return Table("relief", ["", "pinion", "wheel"], rows, "What to grind.", across=True)
 
 
 def _power(exponent: float | None) -> Cell:
     return Cell(exponent, "free" if exponent is None else f"{exponent:g}")
-
-
-def _diameter(value: float, measures: Measures) -> Cell:
-    """Return a diameter as it is measured: to a micrometre."""
-    return Cell(measures.of(value, "mm"), measures.length(value, 3))
 
 
 def rules(found: PairRelief, measures: Measures) -> Table:
@@ -205,27 +179,16 @@ def after(contact: PairContact, found: PairRelief, measures: Measures) -> Table:
 
 
 def profile(contact: PairContact, found: PairRelief, measures: Measures) -> Table:
-    """Return the modified profiles by position, diameter and roll angle."""
-    length, micro = measures.unit("mm"), measures.unit("um")
-    listed = [
-        (f"s [{length}]", contact.position_mm, "mm"),
-        (f"pinion diameter [{length}]", contact.pinion_diameter_mm, "mm"),
-        ("pinion roll angle [°]", contact.pinion_roll_angle_deg, "deg"),
-        (f"off the pinion [{micro}]", found.pinion_removed_mm, "um"),
-        (f"wheel diameter [{length}]", contact.wheel_diameter_mm, "mm"),
-        ("wheel roll angle [°]", contact.wheel_roll_angle_deg, "deg"),
-        (f"off the wheel [{micro}]", found.wheel_removed_mm, "um"),
+    """Modified profiles by position, diameter and roll angle."""
+    listed: Columns = [
+        ("s", contact.position_mm, "mm"),
+        ("pinion diameter", contact.pinion_diameter_mm, "mm"),
+        ("pinion roll angle", contact.pinion_roll_angle_deg, "deg"),
+        ("off the pinion", found.pinion_removed_mm, "um"),
+        ("wheel diameter", contact.wheel_diameter_mm, "mm"),
+        ("wheel roll angle", contact.wheel_roll_angle_deg, "deg"),
+        ("off the wheel", found.wheel_removed_mm, "um"),
     ]
-    for one in found.at:
-        listed.append((f"share of the load at {100.0 * one.load:g} %", one.share, ""))
+    for load in found.at:
+        listed.append((f"share of the load at {100.0 * load.load:g} %", load.share, ""))
     return columns("modified profile", listed, measures)
-
-
-def travel(contact: PairContact, found: PairRelief, measures: Measures) -> Table:
-    """Return the transmission error with relief over one base pitch."""
-    micro = measures.unit("um")
-    listed = [(f"travel [{measures.unit('mm')}]", contact.travel_mm, "mm")]
-    for one in found.at:
-        head = f"transmission error at {100.0 * one.load:g} % [{micro}]"
-        listed.append((head, one.transmission_error_mm, "um"))
-    return columns("transmission error with relief", listed, measures)

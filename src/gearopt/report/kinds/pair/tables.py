@@ -1,42 +1,29 @@
 """Tables of a spur pair's contact: points of the path, loads, and the curves as CSV files."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
 from gearopt.formulations.pair.contact import ContactLoad, PairContact
 from gearopt.report.measures import Measures
-from gearopt.report.section import Cell, Table, cell
+from gearopt.report.section import Cell, Table, cell, records
 from gearopt.report.words import share
 
 STIFFNESS = "N_per_mm_um"  # of MPa
+Columns = list[tuple[str, Sequence[float], str]]
 MakeTable = Callable[[PairContact, Measures], Table]
 
 
 def points(found: PairContact, measures: Measures) -> Table:
-    """Return where pairs of teeth come and go, and how stiff one pair is there."""
-    length, stiff = measures.unit("mm"), measures.unit(STIFFNESS)
-    heads = (
-        *("point", f"s [{length}]", f"pinion diameter [{length}]", f"wheel diameter [{length}]"),
-        *("pinion roll angle [°]", f"stiffness of a pair [{stiff}]"),
-    )
-    rows = [
-        [
-            row.point,
-            cell(row.position_mm, "mm", measures),
-            cell(row.pinion_diameter_mm, "mm", measures),
-            cell(row.wheel_diameter_mm, "mm", measures),
-            Cell(row.pinion_roll_angle_deg, f"{row.pinion_roll_angle_deg:.3f}"),
-            cell(row.pair_stiffness_MPa, STIFFNESS, measures),
-        ]
-        for row in found.points
-    ]
+    """Points where pairs of teeth come and go, and how stiff one pair is there."""
+    heads, rows = records(found.points, measures)
     caption = (
         "Points of the path of contact; s on the line of action from the pitch point, positive "
         "towards the pinion's tip."
     )
     if found.contact_ratio < 2.0:
         caption += " Between LPSTC and HPSTC one pair of teeth carries the load."
+    length, stiff = measures.unit("mm"), measures.unit(STIFFNESS)
     brief = f"d_1 [{length}]", f"d_2 [{length}]", "pinion roll [°]", f"pair [{stiff}]"
     short = dict(zip(heads[2:], brief, strict=True))
     return Table("points of contact", heads, rows, caption, short=short, wrap=0)
@@ -89,40 +76,40 @@ def _loaded(one: ContactLoad, value: float) -> float | None:
 
 
 def path(found: PairContact, measures: Measures) -> Table:
-    """Return the path of contact, position by position, with the share at every load."""
-    length, stiff = measures.unit("mm"), measures.unit(STIFFNESS)
-    stress = measures.unit("MPa")
-    listed = [
-        (f"s [{length}]", found.position_mm, "mm"),
-        (f"pinion diameter [{length}]", found.pinion_diameter_mm, "mm"),
-        (f"wheel diameter [{length}]", found.wheel_diameter_mm, "mm"),
-        ("pinion roll angle [°]", found.pinion_roll_angle_deg, "deg"),
-        (f"stiffness of a pair [{stiff}]", found.pair_stiffness_MPa, STIFFNESS),
+    """Positions on the path of contact, with the share and the contact stress at every load."""
+    listed: Columns = [
+        ("s", found.position_mm, "mm"),
+        ("pinion diameter", found.pinion_diameter_mm, "mm"),
+        ("wheel diameter", found.wheel_diameter_mm, "mm"),
+        ("pinion roll angle", found.pinion_roll_angle_deg, "deg"),
+        ("stiffness of a pair", found.pair_stiffness_MPa, STIFFNESS),
     ]
-    for one in found.loads:
-        at = f"at {100.0 * one.load:g} %"
-        listed.append((f"share of the load {at}", one.share, ""))
-        listed.append((f"contact stress {at} [{stress}]", one.contact_stress_MPa, "MPa"))
+    for load in found.loads:
+        at = f"at {100.0 * load.load:g} %"
+        listed.append((f"share of the load {at}", load.share, ""))
+        listed.append((f"contact stress {at}", load.contact_stress_MPa, "MPa"))
     return columns("path of contact", listed, measures)
 
 
-def travel(found: PairContact, measures: Measures) -> Table:
-    """Return the transmission error over one base pitch at every load."""
-    length, micro = measures.unit("mm"), measures.unit("um")
-    listed = [(f"travel [{length}]", found.travel_mm, "mm")]
-    for one in found.loads:
-        head = f"transmission error at {100.0 * one.load:g} % [{micro}]"
-        listed.append((head, one.transmission_error_mm, "um"))
-    return columns("transmission error", listed, measures)
-
-
-def columns(
-    name: str, listed: list[tuple[str, tuple[float, ...], str]], measures: Measures
+def travel(
+    found: PairContact,
+    measures: Measures,
+    loads: Sequence[ContactLoad] = (),
+    name: str = "transmission error",
 ) -> Table:
-    """Return a table of columns (head, values, unit), of which the page holds the CSV alone."""
+    """Transmission error over one base pitch at every load; loads: those with relief."""
+    listed: Columns = [("travel", found.travel_mm, "mm")]
+    for load in loads or found.loads:
+        head = f"transmission error at {100.0 * load.load:g} %"
+        listed.append((head, load.transmission_error_mm, "um"))
+    return columns(name, listed, measures)
+
+
+def columns(name: str, listed: Columns, measures: Measures) -> Table:
+    """Columns (label, values, unit) as a table of which the page holds the CSV alone."""
     cells = [[cell(v, unit, measures) for v in values] for _, values, unit in listed]
-    rows = list(zip(*cells, strict=True))
-    return Table(name, [head for head, *_ in listed], rows, folded=True)
+    heads = [f"{label} [{measures.unit(unit)}]" if unit else label for label, _, unit in listed]
+    return Table(name, heads, list(zip(*cells, strict=True)), folded=True)
 
 
 TABLES: tuple[MakeTable, ...] = (points, loads, path, travel)
