@@ -9,54 +9,20 @@ from gearopt.formulations.drive.design import StageDesign
 from gearopt.formulations.strength import laws
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures, error_of
-from gearopt.report.section import Cell, Section, Table, Tile, cell, percent
+from gearopt.report.section import Cell, Section, Table, Tile, cell, listed, percent
 from gearopt.report.words import EXACT, MODULE, heading, is_module, number, objective, parted
 
+VOLUME = "gear_volume_mm3"
+SIZES = {it.key: (it.label, it.unit) for it in listed(StageDesign)}
+AFTER_LIMITS = [*SIZES][[*SIZES].index(VOLUME) :]
 STAGE_ROWS = {  # what a key is called, and its unit
     MODULE: ("", ""),  # see `Measures.module`
-    "pinion_teeth": ("teeth z1", ""),
-    "wheel_teeth": ("teeth z2", ""),
-    "ratio": ("ratio u", ""),
-    "face_width_mm": ("face width b", "mm"),
-    "pinion_diameter_mm": ("diameter d1", "mm"),
-    "wheel_diameter_mm": ("diameter d2", "mm"),
-    "pinion_tip_diameter_mm": ("tip diameter d_a1", "mm"),
-    "wheel_tip_diameter_mm": ("tip diameter d_a2", "mm"),
-    "pinion_root_diameter_mm": ("root diameter d_f1", "mm"),
-    "wheel_root_diameter_mm": ("root diameter d_f2", "mm"),
-    "centre_distance_mm": ("centre distance a", "mm"),
-    "helix_angle_deg": ("helix angle β", "deg"),
-    "pressure_angle_deg": ("normal pressure angle α_n", "deg"),
-    "working_pressure_angle_deg": ("working pressure angle α_wt", "deg"),
-    "pinion_profile_shift": ("profile shift x1", ""),
-    "wheel_profile_shift": ("profile shift x2", ""),
-    "pinion_tip_alteration": ("tip alteration k1", ""),
-    "wheel_tip_alteration": ("tip alteration k2", ""),
-    "pinion_thickness_allowance_mm": ("thickness allowance A_sn1", "mm"),
-    "wheel_thickness_allowance_mm": ("thickness allowance A_sn2", "mm"),
-    "transverse_contact_ratio": ("transverse contact ratio ε_α", ""),
-    "overlap_ratio": ("overlap ratio ε_β", ""),
-    "pinion_torque_Nm": ("torque T1", "Nm"),
-    "pitch_line_velocity_m_per_s": ("pitch-line velocity v", "m_per_s"),
+    **{key: named for key, named in SIZES.items() if key not in AFTER_LIMITS},
     **{limit.design_key: (limit.label, limit.unit) for law in laws() for limit in law.limits},
-    "gear_volume_mm3": ("volume", "mm3"),
-    "pinion_mass_kg": ("pinion mass", "kg"),
-    "wheel_mass_kg": ("wheel mass", "kg"),
-    "mass_kg": ("mass of the pair", "kg"),
-    "pinion_material": ("pinion material", ""),
-    "wheel_material": ("wheel material", ""),
-    "pinion_rim_thickness_mm": ("pinion rim thickness s_R1", "mm"),
-    "wheel_rim_thickness_mm": ("wheel rim thickness s_R2", "mm"),
-    "pinion_web_thickness_mm": ("pinion web thickness b_s1", "mm"),
-    "wheel_web_thickness_mm": ("wheel web thickness b_s2", "mm"),
-    "pinion_hub_diameter_mm": ("pinion hub diameter", "mm"),
-    "wheel_hub_diameter_mm": ("wheel hub diameter", "mm"),
-    "pinion_bore_mm": ("pinion bore", "mm"),
-    "wheel_bore_mm": ("wheel bore", "mm"),
+    **{key: SIZES[key] for key in AFTER_LIMITS},
 }
 OF_TEETH = {f.name: f.default for f in fields(StageDesign) if f.default is not MISSING}
 OF_FILE = ("helix_angle_deg", "pressure_angle_deg")  # said by the file where stages are alike
-VOLUME = "gear_volume_mm3"
 SHARE = "share of the volume, %"
 PAGE_ONLY = {
     *("pinion_tip_diameter_mm", "wheel_tip_diameter_mm"),

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from fractions import Fraction
-from typing import Any
+from typing import Annotated, Any
 
 from gearopt.formulations.drive.layout.layout_design import LayoutDesign
 from gearopt.formulations.drive.rating import DriveRating
@@ -13,7 +13,7 @@ from gearopt.formulations.pair.contact import PairContact
 from gearopt.formulations.pair.relief_map import PairRelief
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
-from gearopt.optimise.typed import INLINE, typed
+from gearopt.optimise.typed import INLINE, Shown, typed
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import ISO_53_A, MEMBERS, Gear, GearPair, Rack
 from gearopt.physics.loads import pitch_line_velocity
@@ -33,39 +33,51 @@ class StageDesign:
     """A gear pair with its loads; fields are the keys of a result, with their units.
 
     Fields with a default say how its teeth are cut, of which materials, of several, its gears are,
-    and what their blanks have; a result leaves out those that hold it.
+    and what their blanks have, None of what a gear does not have; a result leaves out those that
+    hold it. Fields stand in the order of the table of stages. working_pressure_angle: transverse;
+    None: on the reference circles.
     """
 
     normal_module_mm: float
-    pinion_teeth: float
-    wheel_teeth: float
-    ratio: float
-    face_width_mm: float
-    pinion_diameter_mm: float
-    wheel_diameter_mm: float
-    pinion_tip_diameter_mm: float
-    wheel_tip_diameter_mm: float
-    pinion_root_diameter_mm: float
-    wheel_root_diameter_mm: float
-    centre_distance_mm: float
-    transverse_contact_ratio: float
-    overlap_ratio: float
-    pinion_torque_Nm: float
-    pitch_line_velocity_m_per_s: float
+    pinion_teeth: Annotated[float, Shown("teeth z1")]
+    wheel_teeth: Annotated[float, Shown("teeth z2")]
+    ratio: Annotated[float, Shown("ratio u")]
+    face_width_mm: Annotated[float, Shown("face width b")]
+    pinion_diameter_mm: Annotated[float, Shown("diameter d1")]
+    wheel_diameter_mm: Annotated[float, Shown("diameter d2")]
+    pinion_tip_diameter_mm: Annotated[float, Shown("tip diameter d_a1")]
+    wheel_tip_diameter_mm: Annotated[float, Shown("tip diameter d_a2")]
+    pinion_root_diameter_mm: Annotated[float, Shown("root diameter d_f1")]
+    wheel_root_diameter_mm: Annotated[float, Shown("root diameter d_f2")]
+    centre_distance_mm: Annotated[float, Shown("centre distance a")]
+    helix_angle_deg: Annotated[float, Shown("helix angle β")] = 0.0
+    pressure_angle_deg: Annotated[float, Shown("normal pressure angle α_n")] = 20.0
+    working_pressure_angle_deg: Annotated[float | None, Shown("working pressure angle α_wt")] = None
+    pinion_profile_shift: Annotated[float, Shown("profile shift x1")] = 0.0
+    wheel_profile_shift: Annotated[float, Shown("profile shift x2")] = 0.0
+    pinion_tip_alteration: Annotated[float, Shown("tip alteration k1")] = 0.0
+    wheel_tip_alteration: Annotated[float, Shown("tip alteration k2")] = 0.0
+    pinion_thickness_allowance_mm: Annotated[float, Shown("thickness allowance A_sn1")] = 0.0
+    wheel_thickness_allowance_mm: Annotated[float, Shown("thickness allowance A_sn2")] = 0.0
+    transverse_contact_ratio: Annotated[float, Shown("transverse contact ratio ε_α")]
+    overlap_ratio: Annotated[float, Shown("overlap ratio ε_β")]
+    pinion_torque_Nm: Annotated[float, Shown("torque T1")]
+    pitch_line_velocity_m_per_s: Annotated[float, Shown("pitch-line velocity v")]
     indices: Mapping[str, float] = field(metadata=INLINE)  # of the strength law: name_unit
-    gear_volume_mm3: float
-    pinion_mass_kg: float
-    wheel_mass_kg: float
-    mass_kg: float
-    helix_angle_deg: float = 0.0
-    pressure_angle_deg: float = 20.0
-    working_pressure_angle_deg: float | None = None  # transverse; None: on the reference circles
-    pinion_profile_shift: float = 0.0
-    wheel_profile_shift: float = 0.0
-    pinion_tip_alteration: float = 0.0
-    wheel_tip_alteration: float = 0.0
-    pinion_thickness_allowance_mm: float = 0.0
-    wheel_thickness_allowance_mm: float = 0.0
+    gear_volume_mm3: Annotated[float, Shown("volume")]
+    pinion_mass_kg: Annotated[float, Shown("pinion mass")]
+    wheel_mass_kg: Annotated[float, Shown("wheel mass")]
+    mass_kg: Annotated[float, Shown("mass of the pair")]
+    pinion_material: Annotated[str, Shown("pinion material")] = ""
+    wheel_material: Annotated[str, Shown("wheel material")] = ""
+    pinion_rim_thickness_mm: Annotated[float | None, Shown("pinion rim thickness s_R1")] = None
+    wheel_rim_thickness_mm: Annotated[float | None, Shown("wheel rim thickness s_R2")] = None
+    pinion_web_thickness_mm: Annotated[float | None, Shown("pinion web thickness b_s1")] = None
+    wheel_web_thickness_mm: Annotated[float | None, Shown("wheel web thickness b_s2")] = None
+    pinion_hub_diameter_mm: Annotated[float | None, Shown("pinion hub diameter")] = None
+    wheel_hub_diameter_mm: Annotated[float | None, Shown("wheel hub diameter")] = None
+    pinion_bore_mm: Annotated[float | None, Shown("pinion bore")] = None
+    wheel_bore_mm: Annotated[float | None, Shown("wheel bore")] = None
     pinion_addendum: float = ISO_53_A.addendum
     wheel_addendum: float = ISO_53_A.addendum
     pinion_tool_addendum: float = ISO_53_A.dedendum
@@ -74,16 +86,6 @@ class StageDesign:
     wheel_tool_tip_radius: float = ISO_53_A.tip_radius
     pinion_tool_protuberance: float = ISO_53_A.protuberance
     wheel_tool_protuberance: float = ISO_53_A.protuberance
-    pinion_material: str = ""
-    wheel_material: str = ""
-    pinion_rim_thickness_mm: float | None = None  # None of what a gear does not have
-    wheel_rim_thickness_mm: float | None = None
-    pinion_web_thickness_mm: float | None = None
-    wheel_web_thickness_mm: float | None = None
-    pinion_hub_diameter_mm: float | None = None
-    wheel_hub_diameter_mm: float | None = None
-    pinion_bore_mm: float | None = None
-    wheel_bore_mm: float | None = None
 
     @property
     def pair(self) -> GearPair:

@@ -4,8 +4,10 @@ Fields are keys of a result, with their units; a list is a table. Stages and sha
 """
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from gearopt.optimise.result import FEASIBLE
+from gearopt.optimise.typed import Shown
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,19 +22,19 @@ class GearRating:
 
     stage: int
     member: str
-    material: str
-    bending_stress_MPa: float
-    permissible_bending_stress_MPa: float
-    bending_safety: float
-    contact_stress_MPa: float
-    permissible_contact_stress_MPa: float
-    contact_safety: float
-    cycles: float
-    bending_life_cycles: float | None
-    contact_life_cycles: float | None
-    life_h: float | None
-    bending_damage: float | None = None
-    contact_damage: float | None = None
+    material: Annotated[str, Shown("material")]
+    bending_stress_MPa: Annotated[float, Shown("bending stress")]
+    permissible_bending_stress_MPa: Annotated[float, Shown("permissible")]
+    bending_safety: Annotated[float, Shown("S_F")]
+    contact_stress_MPa: Annotated[float, Shown("contact stress")]
+    permissible_contact_stress_MPa: Annotated[float, Shown("permissible")]
+    contact_safety: Annotated[float, Shown("S_H")]
+    cycles: Annotated[float, Shown("load cycles")]
+    bending_damage: Annotated[float | None, Shown("Miner's sum, bending")] = None
+    contact_damage: Annotated[float | None, Shown("Miner's sum, contact")] = None
+    bending_life_cycles: Annotated[float | None, Shown("life, bending")]
+    contact_life_cycles: Annotated[float | None, Shown("life, contact")]
+    life_h: Annotated[float | None, Shown("life")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,24 +68,26 @@ class MeshRating:
     """
 
     stage: int
-    governs: str
-    power_capacity_kW: float
-    tangential_force_N: float
-    radial_force_N: float
-    axial_force_N: float
-    pitch_line_velocity_m_per_s: float
-    working_pressure_angle_deg: float
-    working_helix_angle_deg: float
-    transverse_contact_ratio: float
-    overlap_ratio: float
-    total_contact_ratio: float
-    usable_contact_ratio: float | None
-    circumferential_backlash_mm: float
-    normal_backlash_mm: float
-    tooth_loss_factor: float
-    friction_coefficient: float | None = None
-    mesh_efficiency_percent: float | None = None
-    mesh_efficiency_error_percent: float | None = None
+    governs: Annotated[str, Shown("governs", "governing")]
+    power_capacity_kW: Annotated[float, Shown("power capacity", "governing")]
+    tangential_force_N: Annotated[float, Shown("tangential force F_t")]
+    radial_force_N: Annotated[float, Shown("radial force F_r")]
+    axial_force_N: Annotated[float, Shown("axial force F_a")]
+    pitch_line_velocity_m_per_s: Annotated[float, Shown("pitch-line velocity v")]
+    working_pressure_angle_deg: Annotated[float, Shown("working pressure angle α_wt")]
+    working_helix_angle_deg: Annotated[float, Shown("working helix angle β_w")]
+    transverse_contact_ratio: Annotated[float, Shown("transverse contact ratio ε_α")]
+    overlap_ratio: Annotated[float, Shown("overlap ratio ε_β")]
+    total_contact_ratio: Annotated[float, Shown("total contact ratio ε_γ")]
+    usable_contact_ratio: Annotated[
+        float | None, Shown("transverse contact ratio that undercut leaves")
+    ]
+    circumferential_backlash_mm: Annotated[float, Shown("circumferential backlash j_wt")]
+    normal_backlash_mm: Annotated[float, Shown("normal backlash j_bn")]
+    tooth_loss_factor: Annotated[float, Shown("tooth loss factor H_V")]
+    friction_coefficient: Annotated[float | None, Shown("coefficient of friction μ")] = None
+    mesh_efficiency_percent: Annotated[float | None, Shown("efficiency of the mesh")] = None
+    mesh_efficiency_error_percent: Annotated[float | None, Shown("its error, up or down")] = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,10 +99,10 @@ class ShaftRating:
     """
 
     shaft: int
-    torque_Nm: float
-    speed_rpm: float
-    rotation: str
-    axial_force_N: float
+    torque_Nm: Annotated[float, Shown("torque")]
+    speed_rpm: Annotated[float, Shown("speed")]
+    rotation: Annotated[str, Shown("turns")]
+    axial_force_N: Annotated[float, Shown("axial force")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,24 +116,24 @@ class ToothGeometry:
 
     stage: int
     member: str
-    hand: str
-    teeth: float
-    profile_shift: float
-    generating_shift: float
-    reference_diameter_mm: float
-    working_pitch_diameter_mm: float
-    base_diameter_mm: float
-    tip_diameter_mm: float
-    root_diameter_mm: float
-    form_diameter_mm: float
-    active_root_diameter_mm: float | None
-    tip_thickness_mm: float
-    tip_clearance_mm: float
-    largest_specific_sliding: float | None
-    span_teeth: int | None = None
-    span_mm: float | None = None
-    ball_diameter_mm: float | None = None
-    over_balls_mm: float | None = None
+    hand: Annotated[str, Shown("hand of the helix")]
+    teeth: Annotated[float, Shown("teeth z")]
+    profile_shift: Annotated[float, Shown("profile shift x")]
+    generating_shift: Annotated[float, Shown("generating shift x_E")]
+    reference_diameter_mm: Annotated[float, Shown("reference diameter d")]
+    working_pitch_diameter_mm: Annotated[float, Shown("working pitch diameter d_w")]
+    base_diameter_mm: Annotated[float, Shown("base diameter d_b")]
+    tip_diameter_mm: Annotated[float, Shown("tip diameter d_a")]
+    root_diameter_mm: Annotated[float, Shown("root diameter d_f")]
+    form_diameter_mm: Annotated[float, Shown("root form diameter d_Ff")]
+    active_root_diameter_mm: Annotated[float | None, Shown("active root diameter d_Nf")]
+    tip_thickness_mm: Annotated[float, Shown("tip thickness s_a")]
+    tip_clearance_mm: Annotated[float, Shown("tip clearance c")]
+    largest_specific_sliding: Annotated[float | None, Shown("largest specific sliding ζ")]
+    span_teeth: Annotated[int | None, Shown("teeth spanned k")] = None
+    span_mm: Annotated[float | None, Shown("span W_k")] = None
+    ball_diameter_mm: Annotated[float | None, Shown("ball diameter D_M")] = None
+    over_balls_mm: Annotated[float | None, Shown("diameter over balls M_dK")] = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,15 +142,15 @@ class LoadLevel:
 
     stage: int
     member: str
-    level: int
-    power_kW: float
-    input_speed_rpm: float
-    share_percent: float
-    cycles: float
-    bending_stress_MPa: float
-    contact_stress_MPa: float
-    bending_damage: float | None
-    contact_damage: float | None
+    level: Annotated[int, Shown("level")]
+    power_kW: Annotated[float, Shown("power")]
+    input_speed_rpm: Annotated[float, Shown("input speed")]
+    share_percent: Annotated[float, Shown("share of life")]
+    cycles: Annotated[float, Shown("cycles")]
+    bending_stress_MPa: Annotated[float, Shown("bending stress")]
+    contact_stress_MPa: Annotated[float, Shown("contact stress")]
+    bending_damage: Annotated[float | None, Shown("damage, bending")]
+    contact_damage: Annotated[float | None, Shown("damage, contact")]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,13 +1,13 @@
 """What every gear of a rating bears and lasts, by every standard; its load spectrum."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 from gearopt.formulations.drive.rating import DriveRating, GearRating, LoadLevel
 from gearopt.optimise.result import Result
 from gearopt.report.kinds.drive.rating_symbols import SHORT, greek, of_standards, stress_words
-from gearopt.report.kinds.drive.rating_tables import figure, label, name, names, rows_of, single
+from gearopt.report.kinds.drive.rating_tables import figure, name, names, single
 from gearopt.report.kinds.drive.rating_words import (
     AT_ONCE,
     LONGEST_LIFE,
@@ -21,38 +21,10 @@ from gearopt.report.kinds.drive.rating_words import (
     unverified,
 )
 from gearopt.report.measures import Measures, rounded
-from gearopt.report.section import Cell, Section, Table, cell, percent
+from gearopt.report.section import Cell, Listed, Section, Table, cell, listed, percent
 from gearopt.report.words import RATING, parted
 
-GEARS = {  # keys of a gear's rating: what they are called
-    "material": "material",
-    "bending_stress_MPa": "bending stress",
-    "permissible_bending_stress_MPa": "permissible",
-    "bending_safety": "S_F",
-    "contact_stress_MPa": "contact stress",
-    "permissible_contact_stress_MPa": "permissible",
-    "contact_safety": "S_H",
-    "cycles": "load cycles",
-    "bending_damage": "Miner's sum, bending",
-    "contact_damage": "Miner's sum, contact",
-    "bending_life_cycles": "life, bending",
-    "contact_life_cycles": "life, contact",
-    "life_h": "life",
-}
-STRESSES = [key for key in GEARS if key.endswith("_MPa")]
-LIVES = [key for key in GEARS if "life" in key]
-LEVELS = {
-    "level": "level",
-    "power_kW": "power",
-    "input_speed_rpm": "input speed",
-    "share_percent": "share of life",
-    "cycles": "cycles",
-    "bending_stress_MPa": "bending stress",
-    "contact_stress_MPa": "contact stress",
-    "bending_damage": "damage, bending",
-    "contact_damage": "damage, contact",
-}
-ONCE = ("level", "power_kW", "input_speed_rpm", "share_percent")  # of a level, for all gears
+ONCE = 4  # fields of a load level that hold for all gears
 DAMAGE_DIGITS = 3
 LOAD_FACTORS = (
     "By ISO 6336, K_v and the face and transverse load factors depend on the load: the power "
@@ -64,9 +36,9 @@ def gears(result: Result, measures: Measures) -> Section | None:
     """Return stresses, safety factors and lives of every gear; None without a rating."""
     if (found := rating_of(result)) is None:
         return None
-    words = _words(found, GEARS)
-    rows = [[Cell(row[0], greek(row[0])), *row[1:]] for row in _gear_rows(found, words, measures)]
-    hidden = [label(key, words, measures) for key in STRESSES] if found.levels else []
+    rows = [[Cell(row[0], greek(row[0])), *row[1:]] for row in _gear_rows(found, measures)]
+    stresses = [it.head(measures) for it in _fields(found) if it.unit == "MPa"]
+    hidden = stresses if found.levels else []
     heads = [_head(found, one, gear) for one, gear in _columns(found)]
     table = Table("gears", ["", *heads], rows, csv_only=hidden, across=True)
     half = single(found) and found.beside is None
@@ -109,34 +81,31 @@ def _head(found: DriveRating, one: DriveRating, gear: GearRating) -> str:
     return own if found.beside is None else f"{own}, {SHORT[one.by]}"
 
 
-def _words(found: DriveRating, words: Mapping[str, str]) -> dict[str, str]:
-    """Return what keys are called, stresses with their symbols."""
-    return {key: stress_words(found, key, text) for key, text in words.items()}
+def _fields(found: DriveRating) -> list[Listed]:
+    """Fields of a gear's rating, stresses with their symbols."""
+    return [replace(it, label=stress_words(found, it.key, it.label)) for it in listed(GearRating)]
 
 
-def _gear_rows(
-    found: DriveRating, words: Mapping[str, str], measures: Measures
-) -> Iterator[list[Any]]:
+def _gear_rows(found: DriveRating, measures: Measures) -> Iterator[list[Any]]:
     """Yield the rows of gears, and below every safety factor how much of it is used."""
     asked = {
         "bending_safety": found.minimum_bending_safety,
         "contact_safety": found.minimum_contact_safety,
     }
-    items = [gear for _, gear in _columns(found)]
-    known = dict(rows_of(items, words, measures))
-    steels = (gear.material for gear in items)
-    known["material"] = ["material", *(Cell(s, s.replace(", ", "\n")) for s in steels)]
-    for key in GEARS:
-        if key in LIVES:
-            lives = (_life(getattr(gear, key), key, measures) for gear in items)
-            yield [label(key, words, measures), *lives]
-        elif found.levels and key.endswith("_damage"):
-            yield [GEARS[key], *(_damage(getattr(gear, key)) for gear in items)]
-        elif key in known:
-            yield known[key]
-        if key in asked:
-            used = (_used(asked[key], getattr(gear, key)) for gear in items)
-            yield [f"utilisation, {GEARS[key]} {asked[key]:g} asked for [%]", *used]
+    for it in _fields(found):
+        values = [getattr(gear, it.key) for _, gear in _columns(found)]
+        head = it.head(measures)
+        if it.key == "material":
+            yield [head, *(Cell(s, s.replace(", ", "\n")) for s in values)]
+        elif "life" in it.key:
+            yield [head, *(_life(value, it.key, measures) for value in values)]
+        elif not it.key.endswith("_damage"):
+            yield [head, *(figure(value, it.key, measures) for value in values)]
+        elif found.levels:
+            yield [head, *map(_damage, values)]
+        if it.key in asked:
+            used = (_used(asked[it.key], value) for value in values)
+            yield [f"utilisation, {it.label} {asked[it.key]:g} asked for [%]", *used]
 
 
 def _used(asked: float, own: float) -> Cell:
@@ -157,7 +126,7 @@ def _damage(value: float | None) -> Cell:
 
 def _told(result: Result, found: DriveRating, measures: Measures) -> list[str | Table]:
     """Return what the terminal shows of all gears; of an optimum first how it is rated."""
-    keys = [key for key in GEARS if key.endswith(("_MPa", "_safety"))]
+    keys = [it.key for it in listed(GearRating) if it.key.endswith(("_MPa", "_safety"))]
     sign, named = measures.unit("MPa"), found.beside is not None
     strong = f"permissible\n{sign}"
     short = (f"bending\n{sign}", strong, "S_F", f"contact\n{sign}", strong, "S_H")
@@ -187,16 +156,14 @@ def levels(result: Result, measures: Measures) -> Section | None:
     found = rating_of(result)
     if found is None or not found.levels:
         return None
-    words, named = _level_words(found), found.beside is not None
-    of_gear = [key for key in LEVELS if key not in ONCE]
-    heads = [label(key, words, measures) for key in (*ONCE, *of_gear)]
-    heads[len(ONCE) : len(ONCE)] = ["gear", *["by"] * named]
+    named = found.beside is not None
+    heads = [it.head(measures) for it in _level_fields(found)]
+    heads[ONCE:ONCE] = ["gear", *["by"] * named]
     each = [[(one, level) for level in one.levels] for one in found.each]
     pairs = [pair for both in zip(*each, strict=True) for pair in both]
     rows = []
     for one, level in sorted(pairs, key=lambda pair: pair[1].level):
-        row = _level_row(found, level, of_gear, measures, one is found)
-        at = len(ONCE) + 1
+        row, at = _level_row(found, level, measures, one is found), ONCE + 1
         rows.append([*row[:at], *[SHORT[one.by]] * named, *row[at:]])
     said = [
         "The damage of a level is its load cycles over those that the gear would bear at this "
@@ -211,26 +178,21 @@ def levels(result: Result, measures: Measures) -> Section | None:
     return Section("Load spectrum", words=said, tables=(Table("levels", heads, rows),))
 
 
-def _level_words(found: DriveRating) -> dict[str, str]:
-    """Return what keys of a level are called; stresses by their symbols of AGMA alone."""
-    both = {"bending_stress_MPa": "s_t", "contact_stress_MPa": "s_c"}
-    return LEVELS | (both if {one.by for one in found.each} == {"AGMA"} else {})
+def _level_fields(found: DriveRating) -> list[Listed]:
+    """Fields of a load level; stresses by their symbols of AGMA, where it rates alone."""
+    alone = {one.by for one in found.each} == {"AGMA"}
+    symbols = {"bending_stress_MPa": "s_t", "contact_stress_MPa": "s_c"} if alone else {}
+    return [replace(it, label=symbols.get(it.key, it.label)) for it in listed(LoadLevel)]
 
 
-def _level_row(
-    found: DriveRating,
-    level: LoadLevel,
-    of_gear: Sequence[str],
-    measures: Measures,
-    first: bool,
-) -> list[Any]:
-    """Return a level of a gear; the page shows its load once, at the first gear and standard."""
-    load = [cell(getattr(level, key), parted(key)[1], measures) for key in ONCE]
+def _level_row(found: DriveRating, level: LoadLevel, measures: Measures, first: bool) -> list[Any]:
+    """A level of a gear; the page shows its load once, at the first gear and standard."""
+    cells = [
+        _damage(value) if it.key.endswith("damage") else it.cell(value, measures)
+        for it in _level_fields(found)
+        for value in [getattr(level, it.key)]
+    ]
+    load = cells[:ONCE]
     if not first or name(found, level) != names(found)[0]:
-        load = [replace(one, text="") for one in load]
-    values = ((key, getattr(level, key)) for key in of_gear)
-    cells = (
-        _damage(value) if key.endswith("damage") else cell(value, parted(key)[1], measures)
-        for key, value in values
-    )
-    return [*load, name(found, level), *cells]
+        load = [replace(cell, text="") for cell in load]
+    return [*load, name(found, level), *cells[ONCE:]]

@@ -1,6 +1,6 @@
 """A rating as sections of tables: forces and contact, teeth; names and rows of its tables."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import isclose
 from typing import Any
@@ -10,54 +10,9 @@ from gearopt.optimise.result import Result
 from gearopt.report.design_tables import stage_label, tables
 from gearopt.report.kinds.drive.rating_words import FRICTION, ROUNDING, rating_of, safety
 from gearopt.report.measures import Measures
-from gearopt.report.section import Cell, Section, Table, cell
+from gearopt.report.section import Cell, Section, Table, cell, listed, side_by_side
 from gearopt.report.words import MODULE, heading, module_words, number, parted
 
-GOVERNING_KEYS = {"governs": "governs", "power_capacity_kW": "power capacity"}
-MESHES = {
-    "tangential_force_N": "tangential force F_t",
-    "radial_force_N": "radial force F_r",
-    "axial_force_N": "axial force F_a",
-    "pitch_line_velocity_m_per_s": "pitch-line velocity v",
-    "working_pressure_angle_deg": "working pressure angle α_wt",
-    "working_helix_angle_deg": "working helix angle β_w",
-    "transverse_contact_ratio": "transverse contact ratio ε_α",
-    "overlap_ratio": "overlap ratio ε_β",
-    "total_contact_ratio": "total contact ratio ε_γ",
-    "usable_contact_ratio": "transverse contact ratio that undercut leaves",
-    "circumferential_backlash_mm": "circumferential backlash j_wt",
-    "normal_backlash_mm": "normal backlash j_bn",
-    "tooth_loss_factor": "tooth loss factor H_V",
-    "friction_coefficient": "coefficient of friction μ",
-    "mesh_efficiency_percent": "efficiency of the mesh",
-    "mesh_efficiency_error_percent": "its error, up or down",
-}
-SHAFTS = {
-    "torque_Nm": "torque",
-    "speed_rpm": "speed",
-    "rotation": "turns",
-    "axial_force_N": "axial force",
-}
-TEETH = {  # ISO 21771
-    "hand": "hand of the helix",
-    "teeth": "teeth z",
-    "profile_shift": "profile shift x",
-    "generating_shift": "generating shift x_E",
-    "reference_diameter_mm": "reference diameter d",
-    "working_pitch_diameter_mm": "working pitch diameter d_w",
-    "base_diameter_mm": "base diameter d_b",
-    "tip_diameter_mm": "tip diameter d_a",
-    "root_diameter_mm": "root diameter d_f",
-    "form_diameter_mm": "root form diameter d_Ff",
-    "active_root_diameter_mm": "active root diameter d_Nf",
-    "tip_thickness_mm": "tip thickness s_a",
-    "tip_clearance_mm": "tip clearance c",
-    "largest_specific_sliding": "largest specific sliding ζ",
-    "span_teeth": "teeth spanned k",
-    "span_mm": "span W_k",
-    "ball_diameter_mm": "ball diameter D_M",
-    "over_balls_mm": "diameter over balls M_dK",
-}
 IN_DESIGN = {  # keys of stages and totals that tables of a rating show
     *("pinion_diameter_mm", "wheel_diameter_mm", "pinion_tip_diameter_mm"),
     *("wheel_tip_diameter_mm", "pinion_root_diameter_mm", "wheel_root_diameter_mm"),
@@ -103,22 +58,6 @@ def name(found: DriveRating, gear: Any) -> str:
     return gear.member if len(found.meshes) == 1 else f"{gear.member} {gear.stage}"
 
 
-def label(key: str, words: Mapping[str, str], measures: Measures) -> str:
-    """Return what a key is called, with its unit."""
-    unit = parted(key, measures)[1]
-    return f"{words[key]} [{measures.unit(unit)}]" if unit else words[key]
-
-
-def rows_of(
-    items: Sequence[Any], words: Mapping[str, str], measures: Measures
-) -> Iterator[tuple[str, list[Any]]]:
-    """Yield key and row of everything that is known of some item."""
-    for key in words:
-        values = [getattr(item, key) for item in items]
-        if any(value is not None for value in values):
-            yield key, [label(key, words, measures), *(figure(v, key, measures) for v in values)]
-
-
 def figure(value: Any, key: str, measures: Measures) -> Any:
     """Return a value as its sentence has it, of what is never rounded up."""
     unit = parted(key, measures)[1]
@@ -128,29 +67,17 @@ def figure(value: Any, key: str, measures: Measures) -> Any:
     return Cell(measures.of(value, unit), text)
 
 
-def _across(
-    name: str,
-    heads: Sequence[str],
-    items: Sequence[Any],
-    words: Mapping[str, str],
-    measures: Measures,
-) -> Table:
-    """Return a table of items side by side."""
-    rows = [row for _, row in rows_of(items, words, measures)]
-    return Table(name, ["", *heads], rows, across=True)
-
-
 def forces(result: Result, measures: Measures) -> Section | None:
     """Return contact and forces of every mesh, and what shafts carry; None without a rating."""
     if (found := rating_of(result)) is None:
         return None
-    heads = [f"stage {mesh.stage}" for mesh in found.meshes]
-    meshes = _across("meshes", heads, found.meshes, MESHES, measures)
-    meshes = replace(meshes, rows=[*_least_rows(found, measures), *meshes.rows])
-    heads = [f"shaft {shaft.shaft}" for shaft in found.shafts]
-    shafts = _across("shafts", heads, found.shafts, SHAFTS, measures)
-    axial = [label("axial_force_N", SHAFTS, measures), *_end_words(found, measures)]
-    shafts = replace(shafts, rows=[*shafts.rows[:-1], axial])
+    heads = ["", *(f"stage {mesh.stage}" for mesh in found.meshes)]
+    rows = [*_least_rows(found, measures), *side_by_side(found.meshes, measures)]
+    meshes = Table("meshes", heads, rows, across=True)
+    heads = ["", *(f"shaft {shaft.shaft}" for shaft in found.shafts)]
+    *rows, (axial, *_) = side_by_side(found.shafts, measures)
+    rows.append([axial, *_end_words(found, measures)])
+    shafts = Table("shafts", heads, rows, across=True)
     level = ", at the load level of largest force" if found.levels else ""
     words = [
         f"Forces of a mesh act at the working pitch circles{level}. Shafts transmit torques "
@@ -173,10 +100,11 @@ def forces(result: Result, measures: Measures) -> Section | None:
 
 def _least_rows(found: DriveRating, measures: Measures) -> Iterator[list[Any]]:
     """Yield what governs every mesh and what it may transmit, by every standard."""
-    for key, words in GOVERNING_KEYS.items():
+    for it in listed(MeshRating, "governing"):
         for one in found.each:
             of = "" if found.beside is None else f" by {one.by}"
-            yield from (row for _, row in rows_of(one.meshes, {key: words + of}, measures))
+            values = (figure(getattr(mesh, it.key), it.key, measures) for mesh in one.meshes)
+            yield [replace(it, label=it.label + of).head(measures), *values]
 
 
 def _mesh_words(found: DriveRating, stage: Mapping[str, Any], k: int, measures: Measures) -> str:
@@ -208,7 +136,8 @@ def teeth(result: Result, measures: Measures) -> Section | None:
     """Return the geometry of the teeth of every gear; None without a rating."""
     if (found := rating_of(result)) is None:
         return None
-    table = _across("teeth", names(found), found.teeth, TEETH, measures)
+    rows = side_by_side(found.teeth, measures)
+    table = Table("teeth", ["", *names(found)], rows, across=True)
     words = [
         "Terms of ISO 21771; shifts in normal modules. The generating shift is that of the tool, "
         "with the allowance of the tooth thickness; contact with the mate ends at the active root "
