@@ -52,7 +52,7 @@ def ratio_part():
     def achieved(n):
         lost = 100.0 * (1.0 - law(n) / most)
         inertias = LOAD / n**2 / ROTOR
-        return Achieved(n, law(n), lost, inertias)
+        return Achieved(total_ratio=n, value=law(n), loss_percent=lost, inertia_ratio=inertias)
 
     return solve(ratio.acceleration(drive)), {
         "duty": "acceleration",

@@ -295,8 +295,8 @@ def listed(kind: type, table: str = "") -> tuple[Listed, ...]:
 
 def names_and_values(
     design: Any,
-    table: str,
     measures: Measures,
+    table: str = "",
     values: Mapping[str, Any] | None = None,
     labels: Mapping[str, str] | None = None,
 ) -> list[list[Any]]:
@@ -313,7 +313,7 @@ def names_and_values(
     return rows
 
 
-def columns(design: Any, name: str, measures: Measures, **look: Any) -> Table:
+def columns(design: Any, measures: Measures, name: str, **look: Any) -> Table:
     """Return a table of fields that hold columns, whose table has this name."""
     held = listed(design.__class__, name)
     cells = [[it.cell(v, measures) for v in getattr(design, it.key)] for it in held]

@@ -1,6 +1,9 @@
 """The design that a result of a moving pair holds; fields are its keys, with their units."""
 
 from dataclasses import dataclass
+from typing import Annotated
+
+from gearopt.optimise.typed import Shown
 
 Columns = tuple[float, ...]
 Rows = tuple[Columns, ...]
@@ -11,14 +14,14 @@ Gaps = tuple[float | None, ...]
 class Equilibrium:
     """The pair at rest under its load, and its modes there at the mean stiffness."""
 
-    normal_load_N: float
-    mean_stiffness_N_per_mm: float
-    mesh_mass_kg: float
-    deformation_mm: float
-    centre_distance_mm: float
-    centre_distance_growth_mm: float
-    pressure_angle_deg: float
-    bearing_force_N: float
+    normal_load_N: Annotated[float, Shown("normal load")]
+    mean_stiffness_N_per_mm: Annotated[float, Shown("mean mesh stiffness")]
+    mesh_mass_kg: Annotated[float, Shown("mesh mass")]
+    deformation_mm: Annotated[float, Shown("deformation", unit="um")]
+    centre_distance_mm: Annotated[float, Shown("centre distance")]
+    centre_distance_growth_mm: Annotated[float, Shown("its growth")]
+    pressure_angle_deg: Annotated[float, Shown("pressure angle")]
+    bearing_force_N: Annotated[float, Shown("force of a bearing")]
     frequencies_Hz: Columns
     mesh_shares: Columns
 
@@ -119,22 +122,22 @@ class Chosen:
     all motions repeat; 0: one does not soon.
     """
 
-    bearing_stiffness_N_per_mm: float
-    contact_ratio: float
-    ramp: float
-    face_width_mm: float
-    rim: float
-    mass_kg: float
-    displacement_mm: float
+    bearing_stiffness_N_per_mm: Annotated[float, Shown("bearing stiffness")]
+    contact_ratio: Annotated[float, Shown("contact ratio")]
+    ramp: Annotated[float, Shown("ramp of the stiffness, of the period")]
+    face_width_mm: Annotated[float, Shown("face width")]
+    rim: Annotated[float, Shown("rim factor")]
+    mass_kg: Annotated[float, Shown("mass of both gears")]
+    displacement_mm: Annotated[float, Shown("displacement of an axis", unit="um")]
+    dense_maximum_mm: Annotated[float, Shown("largest over all speeds", unit="um")]
+    highest_mm: Annotated[float, Shown("largest deformation", unit="um")]
+    largest_multiplier: Annotated[float, Shown("largest multiplier of all speeds")]
     harmonics: int
     speed_rpm: Columns
     rounds: tuple[tuple[float, float, float, float], ...]
     dense_rpm: Columns
     dense_mm: Columns
     before_mm: Gaps
-    dense_maximum_mm: float
-    largest_multiplier: float
-    highest_mm: float
     parting_speeds: int
     longest_repeat: int
 

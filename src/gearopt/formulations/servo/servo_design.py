@@ -6,9 +6,9 @@ A field that has a default is left out of the JSON where it holds that.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from typing import Annotated, Any
 
-from gearopt.optimise.typed import typed, untyped
+from gearopt.optimise.typed import Shown, typed, untyped
 
 KG_M2 = 1e-3  # of a t mm2
 
@@ -133,7 +133,7 @@ class StageCount:
     ratios_of_least_inertia: tuple[float, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Achieved:
     """What an axis achieves at a ratio, loss_percent: worse than the best; without gears or with.
 
@@ -142,18 +142,18 @@ class Achieved:
 
     total_ratio: float
     value: float
-    loss_percent: float
-    inertia_ratio: float
-    gear_inertia_kg_m2: float | None = None
-    motor_speed_rpm: float | None = None
-    motor_speed_used_percent: float | None = None
-    motor_torque_used_percent: float | None = None
-    peak_load_torque_Nm: float | None = None
-    peak_motor_torque_Nm: float | None = None
-    torque_to_load_percent: float | None = None
-    torque_to_rotor_percent: float | None = None
-    torque_to_gears_percent: float | None = None
-    torque_to_friction_percent: float | None = None
+    loss_percent: Annotated[float, Shown("worse than the best")]
+    gear_inertia_kg_m2: Annotated[float | None, Shown("inertia of the train")] = None
+    inertia_ratio: Annotated[float, Shown("inertia ratio, load to motor")]
+    motor_speed_rpm: Annotated[float | None, Shown("maximum motor speed")] = None
+    motor_speed_used_percent: Annotated[float | None, Shown("motor speed used")] = None
+    motor_torque_used_percent: Annotated[float | None, Shown("motor torque used")] = None
+    peak_load_torque_Nm: Annotated[float | None, Shown("peak torque at the load")] = None
+    peak_motor_torque_Nm: Annotated[float | None, Shown("peak motor torque")] = None
+    torque_to_load_percent: Annotated[float | None, Shown("torque to the load")] = None
+    torque_to_rotor_percent: Annotated[float | None, Shown("torque to the motor's rotor")] = None
+    torque_to_gears_percent: Annotated[float | None, Shown("torque to the train")] = None
+    torque_to_friction_percent: Annotated[float | None, Shown("torque to friction")] = None
 
 
 @dataclass(frozen=True)

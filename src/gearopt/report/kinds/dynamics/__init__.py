@@ -16,7 +16,7 @@ from gearopt.report.kinds import Kind
 from gearopt.report.kinds.dynamics import plots
 from gearopt.report.kinds.generic import FIRST
 from gearopt.report.measures import Measures, rounded
-from gearopt.report.section import Section, Table, Tile, cell, percent
+from gearopt.report.section import Section, Table, Tile, cell, names_and_values, percent
 from gearopt.report.words import amount, number
 
 TWO = 0.02  # of an RMS by which rising and falling speeds differ where there are two motions
@@ -214,23 +214,8 @@ def chosen(result: Result, measures: Measures) -> Section | None:
     found = design_of(result)
     if found is None or (best := found.chosen) is None:
         return None
-    length, micro = measures.unit("mm"), measures.unit("um")
-    rows = [
-        [
-            f"bearing stiffness [{measures.unit('N_per_mm')}]",
-            cell(best.bearing_stiffness_N_per_mm, "N_per_mm", measures),
-        ],
-        ["contact ratio", best.contact_ratio],
-        ["ramp of the stiffness, of the period", best.ramp],
-        [f"face width [{length}]", cell(best.face_width_mm, "mm", measures)],
-        ["rim factor", best.rim],
-        [f"mass of both gears [{measures.unit('kg')}]", cell(best.mass_kg, "kg", measures)],
-        [f"displacement of an axis [{micro}]", cell(best.displacement_mm, "um", measures)],
-        [f"largest over all speeds [{micro}]", cell(best.dense_maximum_mm, "um", measures)],
-        [f"largest deformation [{micro}]", cell(best.highest_mm, "um", measures)],
-        ["largest multiplier of all speeds", best.largest_multiplier],
-    ]
-    design = Table("design", ("", ""), rows)
+    micro = measures.unit("um")
+    design = Table("design", ("", ""), names_and_values(best, measures))
     heads = ("speeds", "harmonics", f"objective [{micro}]", f"over all speeds [{micro}]")
     rounds = [
         [int(n), int(h), *(cell(1e-3 * v, "um", measures) for v in values)]
@@ -248,20 +233,7 @@ def rest(result: Result, measures: Measures) -> Section | None:
     if (found := design_of(result)) is None:
         return None
     at = found.equilibrium
-    length, micro = measures.unit("mm"), measures.unit("um")
-    rows = [
-        [f"normal load [{measures.unit('N')}]", cell(at.normal_load_N, "N", measures)],
-        [
-            f"mean mesh stiffness [{measures.unit('N_per_mm')}]",
-            cell(at.mean_stiffness_N_per_mm, "N_per_mm", measures),
-        ],
-        [f"mesh mass [{measures.unit('kg')}]", cell(at.mesh_mass_kg, "kg", measures)],
-        [f"deformation [{micro}]", cell(at.deformation_mm, "um", measures)],
-        [f"centre distance [{length}]", cell(at.centre_distance_mm, "mm", measures)],
-        [f"its growth [{length}]", cell(at.centre_distance_growth_mm, "mm", measures)],
-        ["pressure angle [°]", at.pressure_angle_deg],
-        [f"force of a bearing [{measures.unit('N')}]", cell(at.bearing_force_N, "N", measures)],
-    ]
+    rows = names_and_values(at, measures)
     state = Table("under load", ("", ""), rows, "At the mean stiffness, under the mean load.")
     modes = [
         [k, f, percent(share)]

@@ -7,7 +7,7 @@ from gearopt.formulations.servo.servo_design import MOTIONS, Achieved, RatioDesi
 from gearopt.optimise.result import Result
 from gearopt.report.kinds.servo.words import design_of, report_of
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.section import Cell, Figure, Section, Table, axis, cell, layout
+from gearopt.report.section import Figure, Section, Table, axis, cell, layout, side_by_side
 from gearopt.report.words import amount, number
 
 LARGEST = "acceleration"  # the duty whose value is made largest
@@ -17,20 +17,6 @@ WHO = {  # field of a `RatioDesign`: the head of its column, in two lines on the
     "chosen": "chosen\ntrain",
     "given_train": "given\ntrain",
     "given": "given ratio,\nno gears",
-}
-ROWS = {  # field of `Achieved`: its name, and its unit
-    "loss_percent": ("worse than the best", "percent"),
-    "gear_inertia_kg_m2": ("inertia of the train", "kg_m2"),
-    "inertia_ratio": ("inertia ratio, load to motor", ""),
-    "motor_speed_rpm": ("maximum motor speed", "rpm"),
-    "motor_speed_used_percent": ("motor speed used", "percent"),
-    "motor_torque_used_percent": ("motor torque used", "percent"),
-    "peak_load_torque_Nm": ("peak torque at the load", "Nm"),
-    "peak_motor_torque_Nm": ("peak motor torque", "Nm"),
-    "torque_to_load_percent": ("torque to the load", "percent"),
-    "torque_to_rotor_percent": ("torque to the motor's rotor", "percent"),
-    "torque_to_gears_percent": ("torque to the train", "percent"),
-    "torque_to_friction_percent": ("torque to friction", "percent"),
 }
 NOTE = (
     "Inertias are referred to the motor shaft; their ratio is that of the load to rotor plus train."
@@ -101,24 +87,15 @@ def _value(one: Achieved, found: RatioDesign, measures: Measures) -> str:
 def _achieved(found: RatioDesign, measures: Measures) -> Table:
     """Return what the axis achieves, a column for every train and ratio."""
     columns = {who: one for who in WHO if (one := getattr(found, who)) is not None}
-
-    def row(name: str, key: str, unit: str) -> list[Any]:
-        values = [getattr(one, key) for one in columns.values()]
-        label = f"{name} [{measures.unit(unit)}]" if unit else name
-        return [label, *(_cell(v, unit, measures) for v in values)]
-
-    rows = [row("total ratio", "total_ratio", ""), row(found.name, "value", found.unit)]
-    for key, (name, unit) in ROWS.items():
-        if any(getattr(one, key) is not None for one in columns.values()):
-            rows.append(row(name, key, unit))
+    trains = [*columns.values()]
+    value = f"{found.name} [{measures.unit(found.unit)}]" if found.unit else found.name
+    rows = [
+        ["total ratio", *(cell(one.total_ratio, "", measures) for one in trains)],
+        [value, *(cell(one.value, found.unit, measures) for one in trains)],
+        *side_by_side(trains, measures),
+    ]
     short = {"": "\nmotor and load"} | {WHO[who].replace("\n", " "): WHO[who] for who in columns}
     return Table("motor and load", list(short), rows, short=short, across=True)
-
-
-def _cell(value: float | None, unit: str, measures: Measures) -> Cell | None:
-    if value is None:
-        return None
-    return cell(value, unit, measures)
 
 
 def _curve(found: RatioDesign, measures: Measures) -> Table:

@@ -38,9 +38,9 @@ def sizes(design: WaveDesign, measures: Measures) -> Table:
         "minor diameter": design.wave_minor_mm,
     }
     rows = [
-        *names_and_values(design, "teeth", measures, law),
+        *names_and_values(design, measures, "teeth", law),
         *_lengths(arcs, measures),
-        *names_and_values(design, "gearing", measures, {"wave_generator": shape}),
+        *names_and_values(design, measures, "gearing", {"wave_generator": shape}),
         *_lengths(flexspline, measures),
     ]
     return Table("sizes", ["", ""], rows)
@@ -59,7 +59,7 @@ def loads(design: WaveDesign, measures: Measures) -> Table:
     """Names and values of what the gearing carries and how hard it is loaded."""
     winds = "teeth, rim and cup" if design.elastic_rim else "the teeth alone, rim rigid"
     labels = {"windup_mrad": f"windup of {winds} [mrad]"}
-    rows = names_and_values(design, "loads", measures, labels=labels)
+    rows = names_and_values(design, measures, "loads", labels=labels)
     return Table("loads and stresses", ["", ""], rows)
 
 
@@ -98,16 +98,16 @@ def deflections(design: WaveDesign, measures: Measures) -> Table:
 def points(design: WaveDesign, measures: Measures) -> list[Table]:
     """Points of the conjugate contact, and of both flanks, to make them by."""
     return [
-        columns(design, report.CONTACT, measures, caption=CONTACT),
-        columns(design, report.FLANK, measures, folded=True),
-        columns(design, report.SPACE, measures, folded=True),
+        columns(design, measures, report.CONTACT, caption=CONTACT),
+        columns(design, measures, report.FLANK, folded=True),
+        columns(design, measures, report.SPACE, folded=True),
     ]
 
 
 def over_wave(design: WaveDesign, measures: Measures) -> list[Table]:
     """Clearance, load and pressure of a tooth by its angle on the wave."""
     return [
-        columns(design, name, measures, folded=True) for name in (report.CLEARANCE, report.LOAD)
+        columns(design, measures, name, folded=True) for name in (report.CLEARANCE, report.LOAD)
     ]
 
 
@@ -140,4 +140,4 @@ def edges(tool: CutterDesign, measures: Measures) -> Table:
 
 def edge_points(tool: CutterDesign, measures: Measures) -> Table:
     """Points of the cutting edge."""
-    return columns(tool, EDGE, measures, folded=True)
+    return columns(tool, measures, EDGE, folded=True)
