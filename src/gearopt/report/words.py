@@ -181,8 +181,20 @@ def of_gears_first(result: Result) -> bool:
 def verdict(result: Result) -> tuple[str, str]:
     """Return what is achieved and how certain that is, and its colour."""
     words, colour = certainty(result)
-    achieved = result.report.get("achieved")
-    return (f"{achieved}; {words}" if achieved else words), "yellow" if leading(result) else colour
+    if achieved := result.report.get("achieved"):
+        words = f"{achieved}; {words}"
+    if fault := unusable(result):
+        words = f"{fault}; {words}"
+    return words, "yellow" if leading(result) or fault else colour
+
+
+def unusable(result: Result) -> str:
+    """Return why an optimum cannot be used although it meets the limits of its search."""
+    rating = result.design.get("rating") or {}
+    if result.report.get("misfits"):
+        return "teeth interfere"
+    safe = all(one["safe"] for one in (rating, rating.get("beside")) if one)
+    return "" if safe or not result.objective else "not safe by its rating"
 
 
 def leading(result: Result) -> list[str]:

@@ -127,3 +127,15 @@ def test_a_diametral_pitch_is_a_module():
     changes = {"stage[1].module": None, "stage[1].diametral_pitch": 12}
     module = gearopt.solve(FILE, changes).design["stages"][0]["normal_module_mm"]
     assert module == pytest.approx(25.4 / 12, rel=1e-15)
+
+
+def test_an_optimum_whose_tips_cut_into_fillets_is_not_called_proven_optimal_alone():
+    """With tips of 1.2 modules on pinions of 12 to 14 teeth they do; as rated gears they say so."""
+    long = {"addendum": 1.2, "tool_addendum": 1.2, "face_width_over_diameter": 1}
+    few = {"k_factor": "1.5 MPa", "unit_load": "20 MPa", "pinion_teeth": [12, 14]}
+    result = gearopt.solve(FILE | {"stages": 1, "stage": [], "gears": long, "limits": few})
+    cut, page = result.report["misfits"], result.to_html()
+    assert result.status == "optimal" and "into the fillets of the pinion" in cut[0]
+    assert "teeth interfere; proven optimal" in repr(result)
+    assert set(cut).isdisjoint(result.report["notes"])
+    assert all(sentence.partition("'")[2] in page for sentence in cut)

@@ -45,7 +45,7 @@ def figures(result: Result) -> str:
 def warns(result: Result) -> list[str]:
     """Return that an optimum is not safe, which gears do not fit, and flaws."""
     if (found := rating_of(result)) is None:
-        return []
+        return list(result.report.get("misfits", ()))
     unsafe = [] if found.safe_by_all or not result.objective else [sentence_of(found)]
     return [*unsafe, *map(greek, (*found.misfits, *found.flaws))]
 

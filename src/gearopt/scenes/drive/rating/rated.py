@@ -117,23 +117,27 @@ def off_ratio(scene: Scene, made: DriveDesign) -> list[str]:
 
 
 def with_rating(scene: Scene, result: Result) -> Result:
-    """Return the answer with the rating of its gears, or with the reason why there is none."""
-    if scene.rating is None or result.value is None:
+    """Return the answer with the rating of its gears, or with the reason why there is none.
+
+    Its report tells misfits apart from the notes, in which other flaws stand.
+    """
+    if result.value is None:
         return result
-    held = scene.held(len(result.design["stages"]))
+    held, stages = scene.held(len(result.design["stages"])), drive_design(result.design).stages
+    pairs = chosen_pairs(held, stages)
+    geometric, notes = tuple(tooth_flaws(pairs)), result.report.get("notes", [])
+    if misfits := [flaw.sentence for flaw in geometric if flaw.misfit]:
+        notes = [note for note in notes if note not in misfits]
+        result = replace(result, report=result.report | {"misfits": misfits, "notes": notes})
+    if scene.rating is None:
+        return result
     try:
-        stages = drive_design(result.design).stages
         materials = [(s.pinion_material, s.wheel_material) for s in stages]
-        pairs = chosen_pairs(held, stages)
-        found = fitted(rating(held, pairs, materials), tooth_flaws(pairs))
+        found = fitted(rating(held, pairs, materials), geometric)
     except SolveError as reason:
-        notes = [*result.report.get("notes", []), f"There is no rating: {reason}."]
-        return replace(result, report=result.report | {"notes": notes})
-    design = result.design | {"rating": untyped(found)}
-    if not found.misfits:  # other flaws stand in the notes of the drive
-        return replace(result, design=design)
-    notes = [note for note in result.report.get("notes", []) if note not in found.misfits]
-    return replace(result, design=design, report=result.report | {"notes": notes})
+        report = result.report | {"notes": [*notes, f"There is no rating: {reason}."]}
+        return replace(result, report=report)
+    return replace(result, design=result.design | {"rating": untyped(found)})
 
 
 def chosen_pairs(scene: Scene, stages: Sequence[StageDesign]) -> tuple[GearPair, ...]:
