@@ -102,7 +102,7 @@ def test_gears_beside_the_output_shaft_are_compared_exactly(shaft):
 def test_wheels_smaller_than_a_tooth_are_impossible(tips):
     """There was an error of a log variable instead: tip diameters less two modules below zero."""
     result = solve(stiff(replace(STIFF, wheel_tips=tips)))
-    assert result.status == "infeasible" and "wheel_tip" in str(result.proof["conflict"])
+    assert result.status == "infeasible" and "wheel_tip_diameter" in str(result.proof["conflict"])
 
 
 @pytest.mark.parametrize("bore", [F(10**9), F(1, 10**9)])

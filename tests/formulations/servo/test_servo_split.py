@@ -350,7 +350,7 @@ def test_impossible_errors_are_proven_and_named():
     assert solve(problem(tight)).status == "infeasible"
     named = solve(relaxation(tight))
     assert named.status == "infeasible"
-    assert {"error", "wheel_tip[2]"} <= set(named.proof["conflict"])
+    assert {"error", "wheel_tip_diameter[2]"} <= set(named.proof["conflict"])
 
 
 @pytest.mark.parametrize(

@@ -398,7 +398,7 @@ def test_the_terminal_tells_all_below_100_columns(result):
     show(result, console)
     shown = console.export_text()
     for phrase in (
-        "The limit on bore determines the inertia; error is at 99.7 % of its limit.",
+        "The limit on minimum second pinion diameter determines the inertia;",
         "inertia [g cm²]",
         "tolerance [µm]",
         "0.11975  7.185  100.0",

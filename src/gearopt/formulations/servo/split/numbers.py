@@ -20,7 +20,7 @@ class Numbers(NamedTuple):
 
     least, most (P + 1,): z2 z4 is between least[z1 z3] and most[z1 z3]. wheel: maximum number of
     teeth of a wheel. wheel_1, wheel_2, bored (K,), for each module: maximum numbers of teeth of
-    wheel 1 and 2 by their tips, minimum of gear 3 by the bore and around its shaft. clear_1,
+    wheel 1 and 2 by their tips, gear 3 at least by its diameter and around its shaft. clear_1,
     clear_2, stage_1 (K,): minimum numbers of teeth of gear 2, of gear 4, of gears 1 and 2 together;
     unit (K,), output: what keeps gear 2 clear of the output shaft (`bodies.MinimumTeeth`). low,
     high: total ratio. bore; tip: largest reference diameter of gear 4 [mm]. load: minimum d m [mm2]

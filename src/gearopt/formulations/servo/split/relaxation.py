@@ -19,6 +19,7 @@ from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.gears import GearPair, disc_inertia
 
 TIPS = ("train.wheel_tip_diameters[1]", "train.wheel_tip_diameters[2]")  # in a problem file
+SECOND = "train.second_pinion_diameter"
 SEARCH_SPAN = 1e3  # factor between the lengths of a train and the ends of the search
 
 
@@ -42,8 +43,8 @@ def relaxation(train: ServoTrain, goal: str = "inertia") -> Problem:
         *(error if math.isfinite(train.error) else ()),
         *((stress,) if _torque(train) > 0.0 else ()),
         *ratio_parameters(low, high),
-        Param("bore", "mm", float(train.bore), key="train.second_pinion_diameter", role="limit"),
-        Param("wheel_tip", "mm", tips, 2, TIPS, "limit"),
+        Param("second_pinion_diameter", "mm", float(train.bore), key=SECOND, role="limit"),
+        Param("wheel_tip_diameter", "mm", tips, 2, TIPS, "limit"),
     )
     variables = _variables(train)
     if moved is not None:
@@ -100,9 +101,9 @@ def _limits(train: ServoTrain, both: Pairs, x: Any, p: Any) -> dict[str, Any]:
     sizes = list(zip(x.pinion_diameter, x.module, strict=True))
     found = {
         "stage_ratio_low": tuple(1.0 / n for n in x.ratio),
-        "bore": p.bore / x.pinion_diameter[1],
-        "wheel_tip": tuple(
-            pair.wheel.tip_diameter / t for pair, t in zip(both, p.wheel_tip, strict=True)
+        "second_pinion_diameter_low": p.second_pinion_diameter / x.pinion_diameter[1],
+        "wheel_tip_diameter": tuple(
+            pair.wheel.tip_diameter / t for pair, t in zip(both, p.wheel_tip_diameter, strict=True)
         ),
         "pinion_teeth_low": tuple(low * m / d for d, m in sizes),
         "pinion_teeth_high": tuple(d / (high * m) for d, m in sizes),

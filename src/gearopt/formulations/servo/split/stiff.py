@@ -79,7 +79,7 @@ def stiff(train: StiffTrain) -> Problem:
         *((Param("error", "rad", train.error, role="limit"),) if bounded else ()),
         Param("bending", "MPa", train.bending, role="limit"),
         *ratio_parameters(*train.ratio),
-        Param("wheel_tip", "mm", train.wheel_tips, 2, role="limit"),
+        Param("wheel_tip_diameter", "mm", train.wheel_tips, 2, role="limit"),
     )
     return Problem("split stiff", _variables(train), parameters, evaluate)
 
@@ -109,10 +109,10 @@ def _terms(train: StiffTrain, x: Any, p: Any) -> Terms:
         "pinion_teeth_low": tuple(
             z * m / d for z, d in zip(train.pinion_teeth, (d1, d3), strict=True)
         ),
-        "bore": train.bore[0] / d3,
-        "bore_wall": (x.shaft_diameter + train.bore[1]) / d3,
-        "wheel_tip": tuple(
-            wheel.tip_diameter / t for wheel, t in zip(wheels, p.wheel_tip, strict=True)
+        "second_pinion_diameter_low": train.bore[0] / d3,
+        "shaft_wall": (x.shaft_diameter + train.bore[1]) / d3,
+        "wheel_tip_diameter": tuple(
+            wheel.tip_diameter / t for wheel, t in zip(wheels, p.wheel_tip_diameter, strict=True)
         ),
         "face_width_low": tuple(train.face_width / wheel.face_width for wheel in wheels),
         "shaft_diameter_low": train.shaft_diameter / x.shaft_diameter,

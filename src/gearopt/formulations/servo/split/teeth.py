@@ -60,8 +60,10 @@ def problem(train: ServoTrain, *goals: str) -> Problem:
                 bending_stress(torque * pair.ratio, pair) / train.bending
                 for torque, pair in zip(pinion_torques(train, both), both, strict=True)
             ),
-            "bore": float(train.bore) / second.pinion.reference_diameter,
-            "wheel_tip": tuple(t / float(w) for t, w in zip(tips, train.wheel_tips, strict=True)),
+            "second_pinion_diameter_low": float(train.bore) / second.pinion.reference_diameter,
+            "wheel_tip_diameter": tuple(
+                t / float(w) for t, w in zip(tips, train.wheel_tips, strict=True)
+            ),
         }
         if train.duty is not None and (goal := train.duty.goal) in goals:
             limits |= train.duty.limits(ratios[0] * ratios[1], found[goal])
