@@ -258,6 +258,14 @@ def test_a_simulation_that_waits_for_a_number_is_ended_on_symbols(method, monkey
     assert time.perf_counter() - began < 20.0  # without an end it goes on for ever
 
 
+def test_time_that_other_work_takes_is_not_the_text_s():
+    with deadline.within(0.02):
+        time.sleep(0.04)
+    with pytest.raises(TimeoutError, match=r"has not ended after 0.02 s"), deadline.within(0.02):
+        for _ in range(100):
+            time.sleep(0.01)
+
+
 def test_threads_take_turns():
     inside, most = [], []
 

@@ -7,13 +7,14 @@ are no numbers. It is ended by an exception in its own thread.
 import ctypes
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
 SLOWEST = 1000.0  # times the text on floats: tapes of large texts took up to 100 times
 LONGEST = 5.0  # s, of a text that is fast on floats
-SHORTEST = 0.5  # s, of what is left of a budget: most tapes take some hundredths
+SHORTEST = 1.0  # s, of what is left of a budget: most tapes take some hundredths
+WAITED = 4.0  # times as long, of a text that waits or gets no processor
 AGAIN = 0.2  # s; a bare `except` in casadi may have stopped the exception
 _END: ContextVar[float | None] = ContextVar("end of the budget", default=None)
 
@@ -44,13 +45,21 @@ def allowed(on_floats: float) -> float:
 
 @contextmanager
 def within(seconds: float) -> Iterator[None]:
-    """Raise TimeoutError from what has not ended after so many seconds, with its line."""
+    """Raise TimeoutError from what has not ended after so many seconds, with its line.
+
+    Of its thread's processor time, where other work on the machine makes that the smaller, but for
+    WAITED times as long at most.
+    """
     thread, ended, lock = threading.get_ident(), threading.Event(), threading.Lock()
-    late = threading.Event()
+    late, used = threading.Event(), _processor_clock(thread)
+    began, latest = used(), time.perf_counter() + WAITED * seconds
 
     def wait() -> None:
         pause = seconds
         while not ended.wait(pause):
+            pause = min(began + seconds - used(), latest - time.perf_counter())
+            if pause > 0.0:
+                continue
             with lock:
                 if not ended.is_set():
                     late.set()
@@ -71,6 +80,15 @@ def within(seconds: float) -> Iterator[None]:
             raise
         words = f"it has not ended after {seconds:.2g} s"
         raise TimeoutError(words).with_traceback(stopped.__traceback__) from None
+
+
+def _processor_clock(thread: int) -> Callable[[], float]:
+    """Return the clock of a thread's processor time [s]; that of the wall where there is none."""
+    clock = getattr(time, "pthread_getcpuclockid", None)
+    if clock is None:
+        return time.perf_counter
+    number = clock(thread)
+    return lambda: time.clock_gettime(number)
 
 
 def _raise(thread: int, what: "ctypes.py_object[type[_Late]] | None") -> None:
