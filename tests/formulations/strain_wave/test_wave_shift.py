@@ -11,7 +11,7 @@ from gearopt.formulations.strain_wave.shift import (
     last_shift_of_one_pair,
     shift_curve,
 )
-from gearopt.physics.strain_wave.clearance import interference
+from gearopt.physics.strain_wave.clearance import interference, interferes
 from gearopt.physics.strain_wave.conjugate import flank
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.rim import Cup
@@ -99,3 +99,4 @@ def test_long_teeth_interfere_at_20_degrees():
     for addendum, free in ((0.55, True), (0.8, False), (1.0, False)):
         made = flank(replace(BASE, addendum=addendum))
         assert made.complete and interference(made, 0.25).free == free
+        assert interferes(made, 0.25, 11) is not free

@@ -14,6 +14,7 @@ from gearopt.formulations.strain_wave.report import Deflected, WaveDesign, used
 from gearopt.optimise.typed import typed
 from gearopt.report.kinds.strain_wave.tables import loads
 from gearopt.report.measures import METRIC
+from gearopt.scenes import strain_wave
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.strain_wave import KIND, compared, explain, objectives, posed, several
@@ -345,3 +346,15 @@ def test_other_ratios_and_sizes_from_a_duty_alone(ratio, diameter):
     assert found.design["flexspline_teeth"] == 2 * ratio
     assert found.design["least_clearance_mm"] >= 0.0
     assert found.design["outer_diameter_mm"] <= float(diameter.split()[0]) * (1 + 1e-8)
+
+
+def test_what_time_is_short_for_is_named(monkeypatch):
+    monkeypatch.setattr(strain_wave, "TELLING_SECONDS", 0.0)
+    found = gearopt.solve("problems/strain_wave_base.toml", budget=gearopt.Budget(seconds=0.0))
+    assert found.status == "evaluated" and found.feasible
+    assert found.report["notes"][-1] == (
+        "Left out for lack of time: other deflections, the largest addendum, the curve over "
+        "profile shifts and straight and circular edges of the cutter."
+    )
+    page = found.to_html()
+    assert "Pressure against profile shift" not in page and "other deflections</" not in page

@@ -1,12 +1,13 @@
 """What a strain wave gearing carries, and what it is made of."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.strain_wave.sharing import Loads, Teeth, shared, teeth_of
+from gearopt.formulations.strain_wave.sharing import Loads, Teeth, shared, teeth_turned
 from gearopt.physics.strain_wave.conjugate import Flank
 from gearopt.physics.strain_wave.rim import Cup
 from gearopt.physics.strain_wave.strength import contact_modulus, equal_share, hertz_pressure
@@ -58,12 +59,20 @@ def equal_pressure(duty: Duty, flank: Flank, whole: bool = False) -> float:
     return float(duty.pressure(load, flank.contacts.gap_curvature.max()))
 
 
-def loads_at(duty: Duty, flank: Flank, shift: float = 0.0) -> tuple[Teeth, Loads]:
-    """Return the teeth that may carry and their loads; shift of the wave in pitches."""
+def loads_at(duty: Duty, flank: Flank) -> tuple[Teeth, Loads]:
+    """Return the teeth that may carry and their loads."""
+    return loads_turned(duty, flank, (0.0,))[0]
+
+
+def loads_turned(duty: Duty, flank: Flank, shifts: Sequence[float]) -> list[tuple[Teeth, Loads]]:
+    """Return the same for turns of the wave generator, in pitches from -1/2 to 1/2."""
     rim = (duty.cup, duty.face_width) if duty.elastic else None
-    teeth = teeth_of(flank, duty.pair_stiffness, rim, shift)
-    arms = np.full(len(teeth.gaps), teeth.arm)
-    return teeth, shared(teeth.compliance, teeth.gaps, arms, duty.moment)
+    every = teeth_turned(flank, duty.pair_stiffness, rim, shifts)
+    arms = [np.full(len(teeth.gaps), teeth.arm) for teeth in every]
+    return [
+        (teeth, shared(teeth.compliance, teeth.gaps, arm, duty.moment))
+        for teeth, arm in zip(every, arms, strict=True)
+    ]
 
 
 def pressures(duty: Duty, flank: Flank, teeth: Teeth, loads: Loads) -> Any:
@@ -77,5 +86,4 @@ def pressures(duty: Duty, flank: Flank, teeth: Teeth, loads: Loads) -> Any:
 
 def shared_pressure(duty: Duty, flank: Flank) -> float:
     """Return the largest pressure [MPa] of the shared loads over the positions in SHIFTS."""
-    found = [pressures(duty, flank, *loads_at(duty, flank, s)).max() for s in SHIFTS]
-    return float(max(found))
+    return float(max(pressures(duty, flank, *at).max() for at in loads_turned(duty, flank, SHIFTS)))

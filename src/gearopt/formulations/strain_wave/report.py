@@ -4,9 +4,9 @@ Fields are keys of a result, with their units; lists of one table are columns of
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Annotated, Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from gearopt.formulations.strain_wave.design import COUNT
 from gearopt.formulations.strain_wave.duty import (
     Duty,
     equal_pressure,
-    loads_at,
+    loads_turned,
     pressures,
     shared_pressure,
 )
@@ -24,11 +24,11 @@ from gearopt.formulations.strain_wave.exchange import CUTTING, STEP_DEG, stretch
 from gearopt.formulations.strain_wave.range_ends import RangeEnd
 from gearopt.formulations.strain_wave.sharing import REACH, Loads
 from gearopt.formulations.strain_wave.shift import (
-    ShiftPoint,
     largest_addendum,
     last_shift_of_one_pair,
     shift_curve,
 )
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.typed import Shown
 from gearopt.physics.strain_wave.clearance import interference, teeth_within, tooth_arcs
 from gearopt.physics.strain_wave.clearance import tooth_clearances as clearances_of
@@ -38,6 +38,7 @@ from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, radii
 from gearopt.physics.strain_wave.tooth_motion import motion
 
+T = TypeVar("T")
 Columns = tuple[float, ...]
 INVOLUTE = "involute"  # law of the circular spline's teeth, to which the flexspline's are conjugate
 WITHIN = (1.0, 2.0, 5.0, 10.0, 20.0)  # um
@@ -109,7 +110,8 @@ class WaveDesign:
     tip, height and half thickness; space: that of the circular spline from its tip, across from the
     middle of the space and out from the axis. wave: clearances of a tooth by its angle; load: what
     it carries there. teeth: of one lobe with the wave generator at its middle position;
-    effective_teeth: how many would carry the largest load alike.
+    effective_teeth: how many would carry the largest load alike. left_out: what is missing for lack
+    of time, in words.
     """
 
     law: Annotated[str, Shown("law of the teeth", "teeth")] = INVOLUTE
@@ -183,20 +185,47 @@ class WaveDesign:
     cutter: CutterDesign | None = None
     rounds: tuple[RoundRow, ...] = ()
     range_ends: tuple[RangeEnd, ...] = ()
+    left_out: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Extras:
+    """What a description may do without; left_out grows by the names of what time was short for."""
+
+    clock: Clock
+    left_out: list[str] = field(default_factory=list)
+
+    def of(self, name: str, compute: Callable[[], T], without: T) -> T:
+        """Return what is computed, or `without` it where the time is over."""
+        if not self.clock.over:
+            return compute()
+        self.left_out.append(name)
+        return without
 
 
 def described(
-    demand: Demand, made: Flank, cutter: Cutter | None, rounds: Sequence[RoundRow] = ()
+    demand: Demand,
+    made: Flank,
+    cutter: Cutter | None,
+    clock: Clock,
+    rounds: Sequence[RoundRow] = (),
 ) -> WaveDesign:
-    """Return all that is told of a gearing and its flank; cutter: the tool that is asked for."""
+    """Return all that is told of a gearing and its flank; cutter: the tool that is asked for.
+
+    Once the clock is over, what no other number needs is left out.
+    """
     gearing, duty = made.gearing, demand.duty
-    own = _carried(duty, made)
-    found = interference(made, STEP_DEG)
+    turned = _carried(duty, made)
+    found, extras = interference(made, STEP_DEG), Extras(clock)
+    deflections = other_deflections(extras, lambda by: _deflected(made, by))
+    addendum = extras.of("the largest addendum", lambda: largest_addendum(gearing), None)
+    none: tuple[ShiftRow, ...] = ()
+    shifts = extras.of("the curve over profile shifts", lambda: _shifts(gearing, duty), none)
     return WaveDesign(
         **_sizes(demand, made),
         **_columns(made),
-        **load_columns([_carried(duty, made, k / TURNS) for k in range(TURNS)], LOADS_LISTED),
-        **shares(own),
+        **load_columns(turned, LOADS_LISTED),
+        **shares(turned[0]),
         equal_pressure_MPa=equal_pressure(duty, made),
         whole_pairs_pressure_MPa=equal_pressure(duty, made, whole=True),
         shared_pressure_MPa=shared_pressure(duty, made),
@@ -204,14 +233,28 @@ def described(
         least_clearance_at_deg=math.degrees(found.angle),
         least_deflection=least_deflection(gearing),
         shift_of_one_pair=last_shift_of_one_pair(gearing),
-        largest_addendum=largest_addendum(gearing),
+        largest_addendum=addendum,
         within_um=WITHIN,
         teeth_within=floats(teeth_within(made, 1e-3 * np.array(WITHIN))),
-        shifts=tuple(_shift(p) for p in shift_curve(gearing, duty, SHIFTS)),
-        deflections=tuple(_deflected(made, by) for by in OTHER_DEFLECTIONS),
-        cutter=cutter_of(gearing, blank_profile(made), cutter) if cutter else None,
+        shifts=shifts,
+        deflections=deflections,
+        cutter=_cutter(made, cutter, extras) if cutter else None,
         rounds=tuple(rounds),
+        left_out=tuple(extras.left_out),
     )
+
+
+def other_deflections(extras: Extras, at: Callable[[float], Deflected]) -> tuple[Deflected, ...]:
+    """Return the gearing on wave generators of OTHER_DEFLECTIONS, while there is time."""
+    none: tuple[Deflected, ...] = ()
+    return extras.of("other deflections", lambda: tuple(map(at, OTHER_DEFLECTIONS)), none)
+
+
+def _cutter(made: Flank, asked: Cutter, extras: Extras) -> CutterDesign:
+    """Return the cutter, while there is time with a line and an arc that replace its edge."""
+    name = "straight and circular edges of the cutter"
+    asked = extras.of(name, lambda: asked, replace(asked, replaced=False))
+    return cutter_of(made.gearing, blank_profile(made), asked)
 
 
 def sketched(demand: Demand, made: Flank) -> dict[str, Any]:
@@ -328,10 +371,12 @@ class Carried:
     stresses: Any
 
 
-def _carried(duty: Duty, made: Flank, shift: float = 0.0) -> Carried:
-    teeth, loads = loads_at(duty, made, shift)
-    stress = pressures(duty, made, teeth, loads)
-    return Carried(teeth.numbers, teeth.arcs, teeth.gaps, loads, stress)
+def _carried(duty: Duty, made: Flank) -> list[Carried]:
+    """Return what the teeth carry at TURNS positions of the wave generator over a pitch."""
+    return [
+        Carried(t.numbers, t.arcs, t.gaps, loads, pressures(duty, made, t, loads))
+        for t, loads in loads_turned(duty, made, [k / TURNS for k in range(TURNS)])
+    ]
 
 
 def load_columns(turned: Sequence[Carried], share: float = 1.0) -> dict[str, Any]:
@@ -373,15 +418,18 @@ def shares(at: Carried) -> dict[str, Any]:
     }
 
 
-def _shift(point: ShiftPoint) -> ShiftRow:
-    return ShiftRow(
-        profile_shift=point.shift,
-        pairs=point.pairs,
-        radius_mm=point.radius,
-        equal_MPa=point.equal,
-        whole_MPa=point.whole,
-        shared_MPa=point.shared,
-        least_clearance_mm=gap_of(point.least_gap),
+def _shifts(gearing: StrainWave, duty: Duty) -> tuple[ShiftRow, ...]:
+    return tuple(
+        ShiftRow(
+            profile_shift=point.shift,
+            pairs=point.pairs,
+            radius_mm=point.radius,
+            equal_MPa=point.equal,
+            whole_MPa=point.whole,
+            shared_MPa=point.shared,
+            least_clearance_mm=gap_of(point.least_gap),
+        )
+        for point in shift_curve(gearing, duty, SHIFTS)
     )
 
 

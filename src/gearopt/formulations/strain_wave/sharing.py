@@ -6,6 +6,7 @@ With a rigid rim and equal arms it is `physics.load_sharing.share`; without clea
 paper's equal sharing P = M/(L N).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -63,23 +64,32 @@ class Loads:
         return float(self.forces.sum() / self.forces.max())
 
 
-def teeth_of(
-    flank: Flank, pair_stiffness: float, rim: tuple[Cup, float] | None = None, shift: float = 0.0
-) -> Teeth:
+def teeth_of(flank: Flank, pair_stiffness: float, rim: tuple[Cup, float] | None = None) -> Teeth:
     """Return the teeth that may carry, of a pair stiffness K [N/mm]; rim: cup and width b [mm].
 
-    rim None: rigid. shift: turn of the wave generator in pitches, -1/2 to 1/2.
+    rim None: rigid.
     """
+    return teeth_turned(flank, pair_stiffness, rim, (0.0,))[0]
+
+
+def teeth_turned(
+    flank: Flank, pair_stiffness: float, rim: tuple[Cup, float] | None, shifts: Sequence[float]
+) -> list[Teeth]:
+    """Return the same for turns of the wave generator, in pitches from -1/2 to 1/2."""
     most = round(REACH * float(flank.gearing.teeth) / (2.0 * np.pi))
     number = np.arange(-most, most + 1)
-    arcs = tooth_arcs(flank, number, shift)
-    number, arcs = number[np.abs(arcs) < 0.5 * np.pi], arcs[np.abs(arcs) < 0.5 * np.pi]
-    gaps = tooth_clearances(flank, arcs)
-    near = np.isfinite(gaps)
-    number, arcs = number[near], arcs[near]
-    compliance = compliance_of(flank.gearing, number, pair_stiffness, rim)
-    gaps = np.maximum(gaps[near], 0.0)  # what touches is within rounding of 0
-    return Teeth(number, arcs, gaps, compliance, float(flank.gearing.base_radius))
+    arcs = np.array([tooth_arcs(flank, number, shift) for shift in shifts])
+    inside = np.abs(arcs) < 0.5 * np.pi
+    gaps = np.full(arcs.shape, np.inf)
+    gaps[inside] = tooth_clearances(flank, arcs[inside])
+    arm = float(flank.gearing.base_radius)
+    teeth = []
+    for arc, gap in zip(arcs, gaps, strict=True):
+        near = np.isfinite(gap)
+        compliance = compliance_of(flank.gearing, number[near], pair_stiffness, rim)
+        touching = np.maximum(gap[near], 0.0)  # what touches is within rounding of 0
+        teeth.append(Teeth(number[near], arc[near], touching, compliance, arm))
+    return teeth
 
 
 def compliance_of(

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearopt.formulations.strain_wave.duty import Duty, equal_pressure, shared_pressure
-from gearopt.physics.strain_wave.clearance import interference
+from gearopt.physics.strain_wave.clearance import interference, interferes
 from gearopt.physics.strain_wave.conjugate import Flank, flank
 from gearopt.physics.strain_wave.gearing import StrainWave
 
@@ -71,7 +71,7 @@ def largest_addendum(gearing: StrainWave, low: float = 0.3, high: float = 1.0) -
 
     def free(addendum: float) -> bool:
         made: Flank = flank(replace(gearing, addendum=addendum), 41)
-        return bool(np.all(made.complete)) and interference(made, STEP_DEG, 11).free
+        return bool(np.all(made.complete)) and not interferes(made, STEP_DEG, 11)
 
     return _last(free, low, high)
 

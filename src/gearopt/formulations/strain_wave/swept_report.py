@@ -12,21 +12,23 @@ from gearopt.formulations.strain_wave.demand import Demand, common_limits
 from gearopt.formulations.strain_wave.duty import SHIFTS, Duty
 from gearopt.formulations.strain_wave.exchange import STEP_DEG
 from gearopt.formulations.strain_wave.report import (
-    OTHER_DEFLECTIONS,
     ROWS,
     TURNS,
     WITHIN,
     Carried,
     Deflected,
+    Extras,
     WaveDesign,
     clearance_columns,
     floats,
     gap_of,
     load_columns,
+    other_deflections,
     shares,
     sizes_of,
 )
 from gearopt.formulations.strain_wave.sharing import compliance_of, shared
+from gearopt.optimise.clock import Clock
 from gearopt.physics.strain_wave.circular_arc import DoubleArc, half_locus_tooth, tooth_heights
 from gearopt.physics.strain_wave.cutter import Profile
 from gearopt.physics.strain_wave.gearing import StrainWave
@@ -149,13 +151,13 @@ def _nearest(found: Touching, arcs: Any) -> tuple[Any, Any]:
 
 
 def described_by_law(
-    demand: Demand, made: SweptGearing, law: Law, cutter: Cutter | None
+    demand: Demand, made: SweptGearing, law: Law, cutter: Cutter | None, clock: Clock
 ) -> WaveDesign:
-    """Return all that is told of a gearing by its law; cutter: the tool that is asked for."""
+    """Return all that is told of a gearing by its law, as `report.described`."""
     mesh, duty = made.mesh, demand.duty
     gearing = mesh.gearing
     turned = [carried(duty, made, k / TURNS) for k in range(TURNS)]
-    least, at = _least(mesh)
+    (least, at), extras = _least(mesh), Extras(clock)
     arcs = np.linspace(-0.499 * math.pi, 0.499 * math.pi, ARCS)
     clear = tooth_gaps(mesh, arcs)
     each = (arcs[1] - arcs[0]) * float(gearing.teeth) / (2.0 * math.pi)
@@ -181,8 +183,9 @@ def described_by_law(
         least_clearance_at_deg=at,
         within_um=WITHIN,
         teeth_within=tuple(within),
-        deflections=tuple(_deflected(mesh, by) for by in OTHER_DEFLECTIONS),
+        deflections=other_deflections(extras, lambda by: _deflected(mesh, by)),
         cutter=cutter_of(gearing, _blank(mesh), cutter) if cutter else None,
+        left_out=tuple(extras.left_out),
     )
 
 

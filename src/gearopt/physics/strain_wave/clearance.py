@@ -1,7 +1,7 @@
 """Clearance between tooth and space over the whole wave, exact for the involute."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,13 +10,13 @@ import numpy as np
 from gearopt.physics.strain_wave.conjugate import Flank, tangents
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.neutral_curve import angle_of_arc
-from gearopt.physics.strain_wave.tooth_motion import Motion, motion
+from gearopt.physics.strain_wave.tooth_motion import Pose, pose_of
 from gearopt.physics.strain_wave.vectors import Vector, polar
 
 CURVE_NODES = 7  # points of a flank through which a polynomial replaces it to 1e-6 um
 SECANTS = 6  # each leaves a thousandth of an error, as poses are near each other
 PARABOLAS = 3  # the same: clearances are off by less than 1e-9 mm
-Look = Callable[[Any, Any], tuple[Any, Any]]
+Look = Callable[[Any, Pose], tuple[Any, Any]]
 
 
 @np.errstate(invalid="ignore")
@@ -72,7 +72,7 @@ def clearances(flank: Flank, angles: Any, points: int = 51) -> Any:
     """
     gearing, flex = flank.gearing, flank.contacts.point
     count = flex.x.shape[-1]
-    at = motion(gearing, flank.curve, angles)
+    at = pose_of(gearing, flank.curve, angles)
     nearest: Any = math.inf
     for k in np.unique(np.rint(np.linspace(0, count - 1, points)).astype(int)):
         one = Vector(flex.x[..., k : k + 1], flex.y[..., k : k + 1])
@@ -81,7 +81,7 @@ def clearances(flank: Flank, angles: Any, points: int = 51) -> Any:
     return np.minimum(nearest, corner_clearance(flank, at))
 
 
-def corner_clearance(flank: Flank, at: Motion) -> Any:
+def corner_clearance(flank: Flank, at: Pose) -> Any:
     """Return the distance [mm] of the circular spline's corner to the flank, along its normal.
 
     To first order in the distance; infinite beside the flank's ends.
@@ -90,7 +90,7 @@ def corner_clearance(flank: Flank, at: Motion) -> Any:
     return np.where(depth >= 0.0, gap, math.inf)
 
 
-def corner_gap(flank: Flank, at: Motion) -> tuple[Any, Any]:
+def corner_gap(flank: Flank, at: Pose) -> tuple[Any, Any]:
     """Return the corner's distance to the flank [mm], and how far it is within the flank's ends."""
     nodes = curve_points(flank.contacts.point)
     seen = at.of_tooth(corner(flank.gearing))
@@ -146,82 +146,115 @@ def least_gaps(flank: Flank, step_deg: float = 0.05, points: int = 51) -> list[L
     last = len(flex.x) - 1
     taken = np.unique(np.rint(np.linspace(0, last, points)).astype(int))
 
-    def of_point(k: Any, angle: Any) -> tuple[Any, Any]:
-        at = motion(gearing, flank.curve, angle)
+    def pose(angle: Any) -> Pose:
+        return pose_of(gearing, flank.curve, angle)
+
+    def of_point(k: Any, at: Pose) -> tuple[Any, Any]:
         gap, radius = involute_gap(gearing, at.placed(flex[k]))
         return gap, radius - gearing.tip_radius
 
-    def of_corner(k: Any, angle: Any) -> tuple[Any, Any]:
-        return corner_gap(flank, motion(gearing, flank.curve, angle))
+    def of_corner(k: Any, at: Pose) -> tuple[Any, Any]:
+        return corner_gap(flank, at)
 
     angles = poses(step_deg)
-    found = [
-        Least(gap, angle, float(k / last), passing)
-        for k, gap, angle, passing in _minima(of_point, taken, angles)
-    ]
-    corners = _minima(of_corner, np.array([-1]), angles)
+    at = pose(angles)
+    of_points = _minima(of_point, pose, taken, angles, at)
+    corners = _minima(of_corner, pose, np.array([-1]), angles, at)
+    found = [Least(gap, angle, float(k / last), passing) for k, gap, angle, passing in of_points]
     found += [Least(gap, angle, None, passing) for _, gap, angle, passing in corners]
     return sorted(found, key=lambda least: least.gap)
 
 
-def _minima(look: Look, items: Any, angles: Any) -> list[tuple[int, float, float, bool]]:
+def interferes(flank: Flank, step_deg: float, points: int) -> bool:
+    """Return whether teeth cut each other; arguments as of `least_gaps`.
+
+    Where they do at a pose that is looked at, no least clearance is sought.
+    """
+    gearing, flex = flank.gearing, flank.contacts.point
+    taken = np.unique(np.rint(np.linspace(0, len(flex.x) - 1, points)).astype(int))
+    at = pose_of(gearing, flank.curve, poses(step_deg))
+    with np.errstate(invalid="ignore"):
+        gap, radius = involute_gap(gearing, at.placed(flex[taken[:, None]]))
+        gaps, depth = corner_gap(flank, at)
+    gap = np.where(radius >= gearing.tip_radius, gap, np.inf).min()
+    nearest = min(float(gap), float(np.where(depth >= 0.0, gaps, np.inf).min()))
+    return (
+        not Least(nearest, 0.0, None, False).free or not interference(flank, step_deg, points).free
+    )
+
+
+def _minima(
+    look: Look, pose: Callable[[Any], Pose], items: Any, angles: Any, at: Pose
+) -> list[tuple[int, float, float, bool]]:
     """Return of every item its least gaps: item, gap, angle, whether at an end of what counts.
 
-    look(items, angles) -> gap, and how far it counts: where that is at least 0.
+    look(items, poses) -> gap, and how far it counts: where that is at least 0. at: the poses of
+    the angles.
     """
-    gaps, depth = (np.atleast_2d(v) for v in look(items[:, None], angles))
+    gaps, depth = (np.atleast_2d(v) for v in look(items[:, None], at))
     inside = depth >= 0.0
-    gaps = np.where(inside, gaps, np.inf)
-    beside = np.pad(gaps, ((0, 0), (1, 1)), constant_values=np.inf)
-    row, at = np.nonzero(inside & (gaps <= beside[:, :-2]) & (gaps <= beside[:, 2:]))
-    item, middle = items[row], angles[at]
-    ends, passing = [], []
-    for k in (np.maximum(at - 1, 0), np.minimum(at + 1, len(angles) - 1)):
-        out = ~inside[row, k]
-        ends.append(np.where(out, _end(look, item, middle, angles[k]), angles[k]))
-        passing.append(out)
-    low, high = ends
-    middle = _lowest(look, item, (low, middle, high))
-    found = np.stack([look(item, a)[0] for a in (middle, low, high)])
-    best = found.argmin(axis=0)
-    gap, angle = (np.choose(best, list(v)) for v in (found, (middle, low, high)))
-    leaving = np.choose(best, [np.zeros(len(row), bool), *passing])
+    counted = np.where(inside, gaps, np.inf)
+    beside = np.pad(counted, ((0, 0), (1, 1)), constant_values=np.inf)
+    row, k = np.nonzero(inside & (counted <= beside[:, :-2]) & (counted <= beside[:, 2:]))
+    item, both = items[row], np.tile(row, 2)
+    next_to = np.concatenate([np.maximum(k - 1, 0), np.minimum(k + 1, len(angles) - 1)])
+    passing = ~inside[both, next_to]
+    ends, at_ends = angles[next_to], gaps[both, next_to]
+    out = np.flatnonzero(passing)
+    if len(out):
+        of = both[out]
+        between = angles[np.tile(k, 2)[out]], ends[out]
+        depths = depth[of, np.tile(k, 2)[out]], depth[of, next_to[out]]
+        ends[out] = _end(look, pose, items[of], between, depths)
+        at_ends[out] = look(items[of], pose(ends[out]))[0]
+    sides = [np.split(v, 2) for v in (ends, at_ends)]
+    three = [(angles[k], counted[row, k]), *zip(*sides, strict=True)]
+    middle = _lowest(look, pose, item, three)
+    found = [middle, *three[1:]]
+    best = np.stack([gap for _, gap in found]).argmin(axis=0)
+    angle, gap = (np.choose(best, [one[n] for one in found]) for n in (0, 1))
+    leaving = np.choose(best, [np.zeros(len(row), bool), *np.split(passing, 2)])
     rows = zip(item, gap, angle, leaving, strict=True)
     return [(int(k), float(g), float(a), bool(p)) for k, g, a, p in rows]
 
 
-def _end(look: Look, items: Any, inside: Any, beside: Any) -> Any:
+def _end(
+    look: Look, pose: Callable[[Any], Pose], items: Any, ends: tuple[Any, Any], depths: Any
+) -> Any:
     """Return the poses at which gaps cease to count, between two, by false position."""
-    low, high = inside, beside
-    one, two = look(items, low)[1], look(items, high)[1]
+    (low, high), (one, two) = ends, depths
     middle = low
     for _ in range(SECANTS):
         share = np.where(one - two > 0.0, one / (one - two), 0.5)
         middle = low + share * (high - low)
-        depth = look(items, middle)[1]
+        depth = look(items, pose(middle))[1]
         counts = depth >= 0.0
         low, one = np.where(counts, middle, low), np.where(counts, depth, one)
         high, two = np.where(counts, high, middle), np.where(counts, two, depth)
     return middle
 
 
-def _lowest(look: Look, items: Any, poses: tuple[Any, Any, Any]) -> Any:
-    """Return the poses of the least gap within three, the middle one of the least, by parabolas."""
-    low, middle, high = poses
-    a, b, c = (look(items, p)[0] for p in poses)
+def _lowest(
+    look: Look, pose: Callable[[Any], Pose], items: Any, three: Sequence[tuple[Any, Any]]
+) -> tuple[Any, Any]:
+    """Return the poses of the least gap about a pose of three, and that gap, by parabolas.
+
+    three: middle, which has the least gap, low and high, with their gaps.
+    """
+    (middle, b), (low, a), (high, c) = three
     for _ in range(PARABOLAS):
         left, right = middle - low, high - middle
         up, down = (b - a) * right, (b - c) * left
         step = 0.5 * (down * left - up * right) / np.where(up + down < 0.0, up + down, -np.inf)
         new = np.clip(middle - step, low, high)
-        gap = look(items, new)[0]
+        gap = look(items, pose(new))[0]
         better = gap < b
         end, there = np.where(better, middle, new), np.where(better, b, gap)
         above = better == (new < middle)
         low, a = np.where(above, low, end), np.where(above, a, there)
         high, c = np.where(above, end, high), np.where(above, there, c)
         middle, b = np.where(better, new, middle), np.where(better, gap, b)
-    return middle
+    return middle, b
 
 
 def tooth_arcs(flank: Flank, teeth: Any, shift: float = 0.0) -> Any:

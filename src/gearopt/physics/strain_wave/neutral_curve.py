@@ -16,6 +16,7 @@ from gearopt.physics.strain_wave.vectors import Vector, polar
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(14)  # perimeters to 1e-14 for w_0/R_m up to 0.05
 CHORDS = 8  # steps of one slope: each divides the error by 100 or more
+AT_ONCE = 2000  # places of which all nodes are computed at once: more do not fit into fast memory
 INVERSIONS = 7  # Newton steps from an arc to its polar angle
 
 
@@ -144,11 +145,22 @@ def arc_angle(curve: NeutralCurve, angle: Any) -> Any:
 
 def _arc(curve: NeutralCurve, low: Any, high: Any, free: bool = False) -> Any:
     """Return the integral of `arc_angle` on one side of a disc's end; free: beyond it."""
-    half, total = 0.5 * (high - low), 0.0
-    for node, weight in zip(NODES, WEIGHTS, strict=True):
-        rho, slope = _radius(curve, low + half * (1.0 + float(node)), free)
-        total = total + float(weight) * np.sqrt(rho * rho + slope * slope)
+    half = 0.5 * (high - low)
+    numbers = half, curve.first, curve.second
+    if all(isinstance(v, int | float | np.ndarray) and np.size(v) <= AT_ONCE for v in numbers):
+        nodes = NODES.reshape(-1, *([1] * max(map(np.ndim, numbers))))
+        each = iter(_speed(curve, low + half * (1.0 + nodes), free))
+    else:
+        each = (_speed(curve, low + half * (1.0 + float(node)), free) for node in NODES)
+    total: Any = 0.0
+    for weight, speed in zip(WEIGHTS, each, strict=True):
+        total = total + float(weight) * speed
     return half * total / curve.radius
+
+
+def _speed(curve: NeutralCurve, angle: Any, free: bool) -> Any:
+    rho, slope = _radius(curve, angle, free)
+    return np.sqrt(rho * rho + slope * slope)
 
 
 def _radius(curve: NeutralCurve, angle: Any, free: bool) -> tuple[Any, Any]:

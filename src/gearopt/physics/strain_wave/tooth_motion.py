@@ -14,21 +14,14 @@ from gearopt.physics.strain_wave.vectors import Vector, polar
 
 
 @dataclass(frozen=True)
-class Motion:
-    """A pose of a tooth and its instant centre; rates are derivatives by the polar angle p.
+class Pose:
+    """A pose of a tooth: place P [mm] of its foot on the neutral curve, turn Phi [rad] of its axis.
 
-    angle p, arc phi [rad]: where the tooth is on the wave, deformed and undeformed; place P [mm]
-    of its foot on the neutral curve; turn Phi [rad] of its axis. centre C [mm]: the instant centre.
     A point (height, half thickness) of the tooth stands at P + the point turned by Phi.
     """
 
-    angle: Any
-    arc: Any
     place: Vector
     turn: Any
-    turn_rate: Any
-    centre: Vector
-    centre_rate: Vector
 
     def placed(self, point: Vector) -> Vector:
         """Return where a point of the tooth stands in the space of the circular spline."""
@@ -37,6 +30,50 @@ class Motion:
     def of_tooth(self, point: Vector) -> Vector:
         """Return a point of the space in the tooth's frame."""
         return (point - self.place).turned(-self.turn)
+
+    def __getitem__(self, index: Any) -> "Pose":
+        return Pose(self.place[index], self.turn[index])
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A pose of a tooth and its instant centre; rates are derivatives by the polar angle p.
+
+    angle p, arc phi [rad]: where the tooth is on the wave, deformed and undeformed. centre C [mm]:
+    the instant centre.
+    """
+
+    angle: Any
+    arc: Any
+    pose: Pose
+    turn_rate: Any
+    centre: Vector
+    centre_rate: Vector
+
+    @property
+    def place(self) -> Vector:
+        """Place P [mm] of the tooth's foot."""
+        return self.pose.place
+
+    @property
+    def turn(self) -> Any:
+        """Turn Phi [rad] of the tooth's axis."""
+        return self.pose.turn
+
+    def placed(self, point: Vector) -> Vector:
+        """Return where a point of the tooth stands in the space of the circular spline."""
+        return self.pose.placed(point)
+
+    def of_tooth(self, point: Vector) -> Vector:
+        """Return a point of the space in the tooth's frame."""
+        return self.pose.of_tooth(point)
+
+
+def pose_of(gearing: StrainWave, curve: NeutralCurve, angle: Any) -> Pose:
+    """Return the pose of a tooth at the polar angle p [rad] as `motion`, without what moves it."""
+    rho, slope, _, _ = radii(curve, angle)
+    back = -gearing.teeth_ratio * arc_angle(curve, angle)
+    return Pose(polar(rho, angle + back), angle - np.arctan2(slope, rho) + back)
 
 
 def motion(gearing: StrainWave, curve: NeutralCurve, angle: Any) -> Motion:
@@ -65,8 +102,7 @@ def motion(gearing: StrainWave, curve: NeutralCurve, angle: Any) -> Motion:
     return Motion(
         angle,
         arc,
-        polar(rho, angle + back),
-        normal + back,
+        Pose(polar(rho, angle + back), normal + back),
         relative * arc_rate,
         centre,
         moved - centre.left * (k * arc_rate),
@@ -95,8 +131,7 @@ def small_motion(gearing: StrainWave, arc: Any) -> Motion:
     return Motion(
         arc,
         arc,
-        place,
-        back + 1.5 * sine / radius,
+        Pose(place, back + 1.5 * sine / radius),
         turn_rate,
         place + speed.left * (1.0 / turn_rate),
         speed + (growth - speed * (turn_growth / turn_rate)).left * (1.0 / turn_rate),

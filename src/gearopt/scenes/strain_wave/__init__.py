@@ -32,7 +32,7 @@ from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
 from gearopt.optimise.pareto.several import Several
-from gearopt.optimise.result import FEASIBLE, Result, versions
+from gearopt.optimise.result import FEASIBLE, Budget, Result, versions
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
@@ -49,6 +49,7 @@ SAMPLERS = ("annealing", "nsga2")
 NOTHING = "the gearing is given, so that nothing is chosen"
 UNPROVEN = "sensitivities need a design that is certified as locally optimal, and this one is not"
 NEAREST = "The nearest design of this size that was found reaches: {}."
+TELLING_SECONDS = 0.5  # that a description may take beyond a budget that is spent
 NO_FLANK = (
     "No gearing was found whose flanks are conjugate from root to tip. "
     "Increase the deflection or the pressure angle."
@@ -79,7 +80,7 @@ def solve(scene: Scene, ask: Ask) -> Result:
     if result.status == "stationary":  # what Ipopt says of itself is certified
         result = replace(result, message="")
     slopes = slopes_of(found.problem, numbers) if result.status == "stationary" else {}
-    shown = _with(scene, result, found.design, numbers, slopes, _rounds(found))
+    shown = _with(scene, result, found.design, numbers, clock, slopes, _rounds(found))
     if found.clear:
         return shown
     message = f"Stopped before the interference was removed. {shown.message}".strip()
@@ -117,6 +118,7 @@ def _rounds(found: Exchanged) -> list[RoundRow]:
 
 def _sampled(scene: Scene, ask: Ask) -> Result:
     """Choose by annealing or NSGA-II, which look at some poses; the answer is judged at all."""
+    clock = Clock(ask.budget, ask.watch)
     problem = sampled.problem(scene.demand(), scene.start())
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
     if outcome.x is None:
@@ -125,14 +127,14 @@ def _sampled(scene: Scene, ask: Ask) -> Result:
     if result.value is None:
         return replace(result, message=HIDDEN.format(-1e3 * least)) if least < CUTTING else result
     made = design_of(scene.demand(), outcome.x[: len(FREE)])
-    return _with(scene, replace(result, message=""), made, outcome.x)
+    return _with(scene, replace(result, message=""), made, outcome.x, clock)
 
 
 def _evaluated(scene: Scene, ask: Ask) -> Result:
     """Return what is to be known of a gearing that is given."""
     without_method(ask, NOTHING)
     clock = Clock(ask.budget, ask.watch)
-    design, limits = _given(scene)
+    design, limits = _given(scene, clock)
     excess = max(0.0, max(limits.values()) - 1.0)
     over = [name for name, value in limits.items() if value > 1.0 + FEASIBLE]
     found = Result(
@@ -149,15 +151,21 @@ def _evaluated(scene: Scene, ask: Ask) -> Result:
     return replace(_shown(scene, found, design, limits), seconds=clock.seconds)
 
 
-def _given(scene: Scene) -> tuple[WaveDesign, dict[str, float]]:
+def _given(scene: Scene, clock: Clock) -> tuple[WaveDesign, dict[str, float]]:
     """Return the design of a gearing that is given, and what it uses of every limit."""
     demand = scene.demand()
     if not scene.involute:
         swept = swept_gearing(scene.gearing(), scene.law())
-        design = described_by_law(demand, swept, scene.law(), scene.tool())
+        design = described_by_law(demand, swept, scene.law(), scene.tool(), _spare(clock))
         return design, used_by_law(demand, swept)
     made = design_of(demand, scene.start())
-    return described(demand, made, scene.tool()), used(demand, made)
+    return described(demand, made, scene.tool(), _spare(clock)), used(demand, made)
+
+
+def _spare(clock: Clock) -> Clock:
+    """Return the time for what a description may do without."""
+    left = clock.left.seconds
+    return Clock(Budget(None if left is None else max(left, TELLING_SECONDS)))
 
 
 def _with(
@@ -165,13 +173,15 @@ def _with(
     result: Result,
     made: Flank,
     numbers: Array,
+    clock: Clock,
     slopes: Mapping[str, float] = NO_SLOPES,
     rounds: Sequence[RoundRow] = (),
 ) -> Result:
     """Return a result with the design that was chosen and what it uses of every limit."""
     demand = scene.demand()
     ends = ends_of(demand.ranges, numbers[: len(FREE)], slopes)
-    design = replace(described(demand, made, scene.tool(), rounds), range_ends=ends)
+    design = described(demand, made, scene.tool(), _spare(clock), rounds)
+    design = replace(design, range_ends=ends)
     return _shown(scene, result, design, _cut(result) | used(demand, made))
 
 

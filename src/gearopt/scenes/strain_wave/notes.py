@@ -178,6 +178,8 @@ def notes(made: WaveDesign) -> list[str]:
     else:
         found.append("No interference at any position of the wave generator.")
         found += _without_play(made)
+    if made.left_out:
+        found.append(f"Left out for lack of time: {_series(made.left_out)}.")
     return found
 
 

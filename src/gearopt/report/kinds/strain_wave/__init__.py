@@ -7,7 +7,7 @@ from typing import Any
 
 from gearopt.formulations.strain_wave.cutter_report import CutterDesign
 from gearopt.formulations.strain_wave.exchange import CUTTING
-from gearopt.formulations.strain_wave.report import INVOLUTE, WaveDesign
+from gearopt.formulations.strain_wave.report import WaveDesign
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.answer import asked, assumptions, limits, summary
@@ -243,7 +243,7 @@ def cutter(result: Result, measures: Measures) -> Section | None:
     )
     shown, pitch = result.report["cutter_drawing"], math.pi * found.module_mm
     scale = shown["scale"] or usual_scale(tool, pitch, shown["grid_mm"])
-    edges = [tables.edges(tool, measures)] if found.law == INVOLUTE else []
+    edges = [tables.edges(tool, measures)] if tool.straight_deg else []
     return Section(
         "Cutter of the flexspline",
         words=words,
@@ -272,10 +272,11 @@ def numbers(result: Result, measures: Measures) -> Section | None:
     if (found := design_of(result)) is None:
         return None
     shown = tables.sizes(found, measures), tables.loads(found, measures)
+    others = [tables.deflections(found, measures)] if found.deflections else []
     return Section(
         "Sizes and flanks",
         tables=[
-            *(*shown, tables.deflections(found, measures)),
+            *(*shown, *others),
             *tables.points(found, measures),
         ],
         terminal=shown,
