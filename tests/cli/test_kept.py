@@ -11,6 +11,7 @@ import typer
 
 import gearopt
 from gearopt import Front
+from gearopt.cli import reporting
 from gearopt.cli.app import told
 from gearopt.cli.reporting import report
 from gearopt.errors import GearoptError
@@ -170,7 +171,7 @@ SET = [
     ("layout", ("design", "layout", "gears", 0, "to_mm"), 10**12, "far from"),
     ("layout", ("design", "layout", "gears", 0, "helix_angle_deg"), 89.9999999, "drawn in"),
     ("layout", ("design", "layout", "gears", 0, "teeth"), {"a": 1}, "design.layout.gears[1].teeth"),
-    ("drive", ("asked", "title"), "\ud800", "UnicodeEncodeError"),
+    ("drive", ("asked", "title"), "\ud800", "text with half a character"),
     ("drive", ("objective", "name"), {"a": 1}, "an objective without a name"),
     ("drive", ("objective", "unit"), ["mm3"], "whose unit is not a text"),
     ("drive", ("file",), {"a": 1}, "value of the wrong type in file"),
@@ -183,6 +184,20 @@ SET = [
     ("comparison", ("seeds",), 7, "that is not a list"),
     ("comparison", ("extra",), 7, "unknown keys in it: extra"),
 ]
+
+
+@pytest.mark.parametrize(
+    ("odd", "said"),
+    [
+        (KeyError("ratio"), "lacks the key 'ratio'"),
+        (ZeroDivisionError("float division by zero"), "a number that is zero or too large"),
+        (IndexError("list index out of range"), "a list that is too short"),
+        (TypeError("'int' object is not iterable"), "a value of the wrong type"),
+        (ValueError("has unknown keys in it: a"), "has unknown keys in it: a"),
+    ],
+)
+def test_faults_are_told_in_the_words_of_the_file(odd, said):
+    assert said in reporting._fault(odd) and "rror" not in reporting._fault(odd)
 
 
 @pytest.mark.parametrize(("kind", "place", "value", "said"), SET)

@@ -214,6 +214,21 @@ def test_small_objectives_are_kept_in_mm_and_read_in_micrometres(name, unit, tex
     assert METRIC.amount(result.value, objective(result)[1]) == text
 
 
+@pytest.mark.parametrize(
+    ("arithmetic", "words"),
+    [
+        ("double", "double precision"),
+        ("rational", "rational numbers"),
+        ("teeth rational; loads double", "teeth in rational numbers; loads in double precision"),
+        ("intervals in double, widened", "intervals in double precision, widened"),
+    ],
+)
+def test_the_arithmetic_of_a_proof_is_told_in_words(arithmetic, words):
+    told = {"method": "exhausted", "arithmetic": arithmetic}
+    result = gearopt.Result("x", "optimal", "exact", {"name": "a", "value": 1.0}, proof=told)
+    assert f"Arithmetic: {words}." in answer.proven(result, METRIC).words
+
+
 def test_cells():
     assert shown(True).text == "yes" and shown(None).text == ""
     assert cell(-1e-9, "mm", METRIC).text == "0.00" and cell(3, "", METRIC).text == "3"

@@ -70,14 +70,29 @@ def report(
     except GearoptError:
         raise
     except Exception as odd:  # whatever an edited file holds: its reader gets one message
-        what = " ".join(f"{type(odd).__name__}: {odd}".split())[:REASON_LENGTH]
-        raise GearoptError(f"{file}: is not a result of gearopt ({what}); {HOW}") from odd
+        raise GearoptError(f"{file}: {_fault(odd)}; {HOW}") from odd
     print(text.get(), end="")
     for line in lines:
         print(line)
     if isinstance(kept, Front):
         raise typer.Exit(front_code(kept))
     raise typer.Exit(exit_code(kept) if isinstance(kept, Result) else 0)
+
+
+def _fault(odd: Exception) -> str:
+    """What is wrong with a kept result, by the error that showing it met."""
+    said = " ".join(str(odd).split())[:REASON_LENGTH]
+    if isinstance(odd, UnicodeError):
+        return "holds text with half a character (a lone surrogate)"
+    if isinstance(odd, ValueError):
+        return f"is not a result of gearopt ({said})"
+    if isinstance(odd, KeyError):
+        return f"lacks the key {said} where it is needed"
+    if isinstance(odd, IndexError):
+        return "holds a list that is too short"
+    if isinstance(odd, ArithmeticError | RuntimeWarning):
+        return "holds a number that is zero or too large where it is computed with"
+    return "holds a value of the wrong type, or one that no result has"
 
 
 def _again(kept: Kept, screen: Console, files: Files) -> list[str]:

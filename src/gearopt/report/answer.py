@@ -1,5 +1,6 @@
 """What every kind of result shows: key figures, limits, the file, progress, what is proven."""
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -208,8 +209,14 @@ def proven(result: Result, measures: Measures) -> Section:
     ways = result.report.get("ways_out") or {}
     words += [measures.words(remedy_words(ways)[1])] if ways.get("remedies") else []
     if arithmetic := result.proof.get("arithmetic"):
-        words.append(f"Arithmetic: {arithmetic}.")
+        words.append(f"Arithmetic: {_numbers(arithmetic)}.")
     return Section("What is proven, and how", words=words, tables=tables, half=len(parts) < 3)
+
+
+def _numbers(arithmetic: str) -> str:
+    """The arithmetic of a proof in words; JSON has "double" and "rational" in it."""
+    words = re.sub(r"(in )?\bdouble\b", "in double precision", arithmetic)
+    return re.sub(r"(in )?\brational\b", "in rational numbers", words).removeprefix("in ")
 
 
 def _column(part: Result, measures: Measures) -> list[Any]:
