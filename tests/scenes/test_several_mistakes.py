@@ -7,11 +7,14 @@ from random import Random
 
 import pytest
 from mutations import typo
+from pydantic_core import PydanticCustomError
 from scene_files import BASES, keys, parse, put, rename
 
+from gearopt import units
 from gearopt.errors import SceneError
 from gearopt.scenes.reading.absent import absent, option
 from gearopt.scenes.reading.called import CALLED
+from gearopt.scenes.reading.fields import quantity
 from gearopt.scenes.reading.load import kind_named, kinds, read
 from gearopt.scenes.reading.mistakes import tables
 from gearopt.scenes.reading.not_yet import NEAREST
@@ -270,7 +273,7 @@ def test_terms_of_the_field_are_answered_by_their_meaning(head, line, said):
 @pytest.mark.parametrize(
     ("written", "said"),
     [
-        ('input_speed = "1.450 U/min"', 'Write "1450 rpm" or "1.450 rpm"'),
+        ('input_speed = "1.450 U/min"', 'Write "1450 rpm" or "1.45 rpm"'),
         ('input_speed = "1.450,5 U/min"', 'Write input_speed = "1450.5 rpm"'),
         ('input_speed = "1\'450 rpm"', 'Write input_speed = "1450 rpm"'),
         ("ratio = 0.333", "input and output exchanged. Write ratio = 3.003"),
@@ -330,6 +333,31 @@ def test_a_comma_in_a_bare_number_is_named():
     assert wrong.remedy == "The decimal sign is a point: 0.5" and wrong.fix is None
 
 
+@pytest.mark.parametrize(
+    ("dimension", "example", "text", "readings"),
+    [
+        ("time", "20000 h", "20.000 h", ("20000 h", "20 h")),
+        ("speed", "1450 rpm", "1.450 rpm", ("1450 rpm", "1.45 rpm")),
+        ("power", "7.5 kW", "7.500 W", ("7500 W", "7.5 W")),
+        ("speed", "1450 rpm", "1.457 rpm", None),
+        ("time", "20000 h", "20.5 h", None),
+        ("power", "7.5 kW", "1.450 kW", None),
+        ("length", "20000 mm", "20.000 mm", None),
+        ("time", "20 s", "0.200 ms", None),
+    ],
+)
+def test_a_point_of_thousands_is_asked_back_where_decimals_are_unlikely(
+    dimension, example, text, readings
+):
+    reads = quantity(dimension, example)
+    if readings is None:
+        assert reads.reader(text, example) == units.parse(text, dimension)
+        return
+    with pytest.raises(PydanticCustomError, match="may separate thousands") as wrong:
+        reads.reader(text, example)
+    assert wrong.value.context["write"] == 'Write "{}" or "{}"'.format(*readings)
+
+
 def test_a_comma_of_thousands_is_asked_back():
     (wrong,) = mistakes(BASES["elevator"].replace('"1450 rpm"', '"1,450 rpm"')).errors
-    assert wrong.remedy == 'Write "1450 rpm" or "1.450 rpm"' and wrong.fix is None
+    assert wrong.remedy == 'Write "1450 rpm" or "1.45 rpm"' and wrong.fix is None

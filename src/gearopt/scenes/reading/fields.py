@@ -23,7 +23,8 @@ from gearopt.units import Quantity
 
 LARGEST = Fraction(10) ** 30  # of any number in a file: beyond it lies a slip, not a gear
 SMALLEST = 1 / LARGEST
-FAR_OFF = math.log(100.0)  # from the example: there another unit is likelier
+GROUPED = ("time", "speed", "power")  # dimensions whose numbers are often of thousands
+FAR_OFF = 100.0  # factor from the example: there another unit is likelier
 OUT_OF_RANGE = "is out of any sensible range (1e-30 to 1e30)"
 # A comma before three digits may separate thousands, so it is not taken for a decimal one.
 _NUMBER = r"(\+?[0-9]*(?:\.|,(?![0-9]{3}(?![0-9])))?[0-9]+(?:[eE][+-]?[0-9]{1,3})?)"
@@ -146,7 +147,16 @@ def quantity(
                 apart[unit] = abs(math.log(value / size))
             except (ValueError, ArithmeticError):  # no number, or zero
                 return usual
-        return usual if apart[usual] < FAR_OFF else min(apart, key=lambda unit: apart[unit])
+        near = apart[usual] < math.log(FAR_OFF)
+        return usual if near else min(apart, key=lambda unit: apart[unit])
+
+    def likely_thousands(text: str) -> bool:
+        """Whether a decimal point leaves far less than is usual, as in a life of 20.000 h."""
+        try:
+            found = units.parse(text, dimension).value if dimension in GROUPED else size
+        except ValueError:
+            return False
+        return 0.0 < found <= size / FAR_OFF and 1000.0 * found < FAR_OFF * size
 
     def usable(text: str) -> str | None:
         try:
@@ -162,7 +172,7 @@ def quantity(
             raise refuse(f"is a bare number: {dimension} needs a unit ({names})", right)
         if not isinstance(value, str):
             raise refuse(f"is not a text with a number and a unit of {dimension} ({names})")
-        if two := thousands(value):
+        if two := thousands(value, likely_thousands):
             sign = "comma" if "," in value else "point"
             rule = f"has a {sign}, which may separate thousands or decimals"
             raise refuse(rule, f'Write "{two[0]}" or "{two[1]}"', action="tell")
@@ -367,16 +377,21 @@ def words() -> Reads:
     return Reads(read, "a text", {"type": "string", "maxLength": 1000})
 
 
-def thousands(text: str) -> tuple[str, str] | None:
+def thousands(text: str, likely: Callable[[str], bool]) -> tuple[str, str] | None:
     """Return both readings of "1,450 rpm", whose comma may separate thousands; None without one.
 
-    A point may do so only beside a German unit, as in "1.450 U/min".
+    A point may do so beside a German unit, as in "1.450 U/min", or before a last 0 where that is
+    likely: the second reading, which has none, is not asked back again.
     """
     match = _THOUSANDS.fullmatch(text[:80])
-    if match is None or (match[2] == "." and match[4].strip() not in _GERMAN):
+    if match is None:
         return None
-    unit = f" {_GERMAN.get(match[4].strip(), match[4])}".rstrip()
-    return f"{match[1]}{match[3]}{unit}", f"{match[1]}.{match[3]}{unit}"
+    whole, sign, decimals, word = match.groups()
+    grouped = whole[0] != "0" and decimals[-1] == "0" and likely(text)
+    if sign == "." and word.strip() not in _GERMAN and not grouped:
+        return None
+    unit = f" {_GERMAN.get(word.strip(), word)}".rstrip()
+    return f"{whole}{decimals}{unit}", f"{whole}.{decimals}".rstrip("0").rstrip(".") + unit
 
 
 def meant(text: str, dimension: str, likely: Callable[[str], str]) -> str:
