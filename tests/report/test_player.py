@@ -14,7 +14,8 @@ from gearopt.report.drawing.player import Animation, Body, Reading, Scale, View
 from gearopt.report.drawing.sheet import Sheet, Window
 from gearopt.report.pages import frame
 from gearopt.report.pages.frame import render
-from gearopt.report.section import Figure, Section, axis, layout
+from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.section import Section
 
 ROOM = Path(frame.__file__).parent
 CONTRIBUTING = Path(__file__).parents[2] / "docs" / "contributing.md"

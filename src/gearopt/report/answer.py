@@ -11,7 +11,8 @@ from gearopt.report.deciding import lead
 from gearopt.report.explained import remedy_words
 from gearopt.report.kinds import kind_of
 from gearopt.report.measures import METRIC, Measures, gap_percent
-from gearopt.report.section import Cell, Figure, Section, Table, Tile, axis, layout, percent
+from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.section import Cell, Section, Table, Tile, percent
 from gearopt.report.words import (
     EXACT,
     REACHED,

@@ -14,7 +14,7 @@ from gearopt.physics.gears import Gear, Rack
 from gearopt.physics.geometry.fillet import profile
 from gearopt.report.drawing.packed import packed
 from gearopt.report.measures import Measures
-from gearopt.report.section import LOOK
+from gearopt.report.plots import LOOK
 
 Point = tuple[float, float, float]
 Face = tuple[int, int, int]

@@ -29,7 +29,8 @@ from gearopt.report.drawing.still import Rod, Texts, sizes_of, still, view
 from gearopt.report.kinds import Kind
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
 from gearopt.report.measures import Measures
-from gearopt.report.section import Cell, Figure, Section, Table, shown
+from gearopt.report.plots import Figure
+from gearopt.report.section import Cell, Section, Table, shown
 from gearopt.report.words import heading, number, parted
 from gearopt.units import parse
 

@@ -9,7 +9,8 @@ from gearopt.report import comparison as words
 from gearopt.report.drawing.sheet import COLOURS
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.frame import render
-from gearopt.report.section import Figure, Table, axis, layout
+from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.section import Table
 
 KNOWN = ("exact", "ipopt", "annealing", "nsga2", "scip", "gp", "multistart")
 SMALLEST = 1e-9  # gaps below it are drawn as none

@@ -8,7 +8,7 @@ from gearopt.optimise.pareto.front import Front
 from gearopt.report.pages.front_designs import Numbers
 from gearopt.report.pages.front_stills import in_space, lines, scatter
 from gearopt.report.pages.front_values import AXIS_MARGIN, FARTHEST_SHOWN, Drawn, Span
-from gearopt.report.section import LOOK, Figure, axis, layout
+from gearopt.report.plots import LOOK, Figure, axis, layout
 
 GREY = "--axis"
 DESIGN, CHOSEN = "designs", "chosen"  # what the page's script moves

@@ -37,7 +37,8 @@ from gearopt.report.drawing.solid import (
 )
 from gearopt.report.drawing.still import Block, Body, Rod, Texts, sizes_of, still, view
 from gearopt.report.measures import Measures
-from gearopt.report.section import Figure, Section
+from gearopt.report.plots import Figure
+from gearopt.report.section import Section
 
 # triangles of all gears together, for a page that turns smoothly without a GPU
 MAX_TRIANGLES = 50_000

@@ -11,7 +11,7 @@ from gearopt.formulations.dynamics.motion.stability import UNSTABLE, bands
 from gearopt.report.drawing.player import Animation, Body, Reading, View
 from gearopt.report.drawing.sheet import Sheet, Window, around, series
 from gearopt.report.measures import Measures
-from gearopt.report.section import Figure, axis, layout
+from gearopt.report.plots import Figure, axis, layout
 
 ORBIT = "motion of the axes"  # the animation that the response follows
 MOMENTS = 240  # of the animation

@@ -11,7 +11,7 @@ from gearopt.physics.mesh_cycle import NARROW, break_points
 from gearopt.report.drawing.sheet import series
 from gearopt.report.kinds.pair.mesh_motion import Carried
 from gearopt.report.measures import Measures
-from gearopt.report.section import Figure, axis, layout
+from gearopt.report.plots import Figure, axis, layout
 
 HEIGHT = 340  # px
 AXIS_MARGIN = 0.03  # of the path that is seen beyond its ends

@@ -13,7 +13,8 @@ from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.report.drawing.sheet import series
 from gearopt.report.kinds.pair.words import of_duty
 from gearopt.report.measures import Measures
-from gearopt.report.section import Cell, Figure, Section, Table, axis, layout
+from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.section import Cell, Section, Table
 
 TABLE_STEPS = 10  # of the table from where a relief starts to the tip
 PLOT_STEPS = 60  # of its plot

@@ -18,7 +18,8 @@ from gearopt.report.kinds.pair.mesh_motion import CAPTION, Carried, in_mesh
 from gearopt.report.kinds.pair.path_plots import Line, over_path, zone_words
 from gearopt.report.kinds.pair.words import of_duty
 from gearopt.report.measures import Measures
-from gearopt.report.section import Figure, Section
+from gearopt.report.plots import Figure
+from gearopt.report.section import Section
 
 MESH = "teeth in mesh"  # the animation that plots follow
 STIFFNESS = "N_per_mm_um"  # of MPa

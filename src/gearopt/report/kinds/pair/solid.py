@@ -18,7 +18,7 @@ from gearopt.report.drawing.solid import (
 )
 from gearopt.report.drawing.still import Rod, Texts, sizes_of, still, view
 from gearopt.report.measures import Measures
-from gearopt.report.section import Figure
+from gearopt.report.plots import Figure
 
 POINTS = 20_000  # of both gears together, about half a megabyte of a page
 FLANKS = (12, 10, 8, 6, 4, 3, 2)  # points on a flank

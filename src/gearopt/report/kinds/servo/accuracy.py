@@ -26,7 +26,8 @@ from gearopt.report.kinds.servo.words import (
     limit_line,
 )
 from gearopt.report.measures import Measures
-from gearopt.report.section import Cell, Figure, Section, Table, axis, layout, percent
+from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.section import Cell, Section, Table, percent
 from gearopt.report.words import number, share
 
 ROW = 23.0  # px of a source

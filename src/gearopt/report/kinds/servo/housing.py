@@ -22,7 +22,8 @@ from gearopt.report.drawing.layout_views import centre_distance
 from gearopt.report.drawing.sheet import Drawing, Place, Point, Sheet, Window, around
 from gearopt.report.kinds.servo.words import arc_minutes, degrees, design_of, report_of
 from gearopt.report.measures import Measures
-from gearopt.report.section import Figure, Section, Table, Tile, axis, cell, layout, percent
+from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.section import Section, Table, Tile, cell, percent
 from gearopt.report.words import amount, number
 
 ROW, REST = 44.0, 70.0  # px of a spring, and of the axis

@@ -7,7 +7,8 @@ from gearopt.formulations.servo.servo_design import MOTIONS, Achieved, RatioDesi
 from gearopt.optimise.result import Result
 from gearopt.report.kinds.servo.words import design_of, report_of
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.section import Figure, Section, Table, axis, cell, layout, side_by_side
+from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.section import Section, Table, cell, side_by_side
 from gearopt.report.words import amount, number
 
 LARGEST = "acceleration"  # the duty whose value is made largest

@@ -30,7 +30,8 @@ from gearopt.report.kinds.servo.words import (
     teeth_words,
 )
 from gearopt.report.measures import Measures
-from gearopt.report.section import Figure, Section, Table, axis, cell, layout
+from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.section import Section, Table, cell
 from gearopt.report.words import amount, heading, parted
 
 BARE = (

@@ -19,7 +19,8 @@ from gearopt.report.kinds.strain_wave import tables
 from gearopt.report.kinds.strain_wave.cutter import drawing, usual_scale
 from gearopt.report.kinds.strain_wave.motion import running
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.section import Figure, Section, Tile, axis, layout
+from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.section import Section, Tile
 from gearopt.report.words import amount, number, series_of
 
 RUNS = "strain wave gearing"  # the animation that plots follow
