@@ -11,7 +11,7 @@ from gearopt.report.deciding import lead
 from gearopt.report.explained import remedy_words
 from gearopt.report.kinds import kind_of
 from gearopt.report.measures import METRIC, Measures, gap_percent
-from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.plots import TEXT, Figure, axis, layout, lines
 from gearopt.report.section import Cell, Section, Table, Tile, percent
 from gearopt.report.words import (
     EXACT,
@@ -342,17 +342,11 @@ def _line(
 ) -> dict[str, Any]:
     """Return steps that hold to the end of the run."""
     last = [*steps, steps[-1] | {"seconds": end}]
-    return {
-        "type": "scatter",
-        "mode": "lines+markers",
-        "name": key,
-        "x": [max(EARLIEST, s["seconds"]) for s in last],
-        "y": [s[key] for s in last],
-        "text": [_hover(s, key, unit) for s in last],
-        "hovertemplate": "%{text}<extra></extra>",
-        "line": {"color": colour, "width": 2.2, "shape": "hv"},
-        "marker": {"color": colour, "size": [6] * len(steps) + [0]},
-    }
+    x, y = [max(EARLIEST, s["seconds"]) for s in last], [s[key] for s in last]
+    marker = {"color": colour, "size": [6] * len(steps) + [0]}
+    text = [_hover(s, key, unit) for s in last]
+    trace = lines(x, y, colour, 2.2, shape="hv", hover=TEXT, name=key, text=text)
+    return trace | {"mode": "lines+markers", "marker": marker}
 
 
 def _hover(step: dict[str, Any], key: str, unit: str) -> str:

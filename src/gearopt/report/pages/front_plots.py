@@ -9,6 +9,7 @@ from gearopt.report.pages.front_designs import Numbers
 from gearopt.report.pages.front_stills import in_space, lines, scatter
 from gearopt.report.pages.front_values import AXIS_MARGIN, FARTHEST_SHOWN, Drawn, Span
 from gearopt.report.plots import LOOK, Figure, axis, layout
+from gearopt.report.plots import lines as curve
 
 GREY = "--axis"
 DESIGN, CHOSEN = "designs", "chosen"  # what the page's script moves
@@ -28,7 +29,12 @@ def _pair(found: Drawn, i: int, k: int) -> Figure:
         traces.append(_marks("dominated", x, y, {"color": f"{GREY}/0.7", "size": 5}))
     if (corners := _corners(found, i, k)) and whole:
         x, y = [min(a, across[1]) for a, _ in corners], [min(b, up[1]) for _, b in corners]
-        look = {"color": GREY, "size": 9, "symbol": "x-thin", "line": {"color": GREY, "width": 2}}
+        look = {
+            "color": GREY,
+            "size": 9,
+            "symbol": "x-thin",
+            "line": {"color": GREY, "width": 2},
+        }
         crosses = _marks("limits without a design", x, y, look)
         traces.append(crosses | {"cliponaxis": False})
     traces += _designs(found, (i, k))
@@ -88,15 +94,8 @@ def _caption(found: Drawn, i: int, k: int) -> str:
 def _line(found: Drawn) -> dict[str, Any]:
     """Draw chords of a curve, or the steps of single designs."""
     shape = "linear" if found.curve else "hv"
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "x": found.column(0),
-        "y": found.column(1),
-        "line": {"color": "--series-1/0.45", "width": 1.4, "shape": shape},
-        "hoverinfo": "skip",
-        "showlegend": False,
-    }
+    trace = curve(found.column(0), found.column(1), "--series-1/0.45", 1.4, shape=shape)
+    return trace | {"hoverinfo": "skip", "showlegend": False}
 
 
 def _marks(
@@ -144,7 +143,11 @@ def space(found: Drawn) -> Figure | None:
     """Plot three objectives in space; None where there are two."""
     if len(found.heads) != 3:
         return None
-    plain = {"backgroundcolor": "--card", "gridcolor": "--grid", "showbackground": False}
+    plain = {
+        "backgroundcolor": "--card",
+        "gridcolor": "--grid",
+        "showbackground": False,
+    }
     names = ("xaxis", "yaxis", "zaxis")
     scene: dict[str, Any] = {
         name: plain | {"title": {"text": h}, "color": "--ink", "linecolor": "--axis"}
@@ -235,17 +238,12 @@ def grown(front: Front) -> Figure | None:
     steps = [g for g in front.growth if g.seconds > 0.0]
     if len(front.growth) < 2 or not steps or not front.hypervolume:
         return None
-    trace = {
-        "type": "scatter",
-        "mode": "lines+markers",
-        "name": front.method,
-        "x": [g.seconds for g in steps],
-        "y": [100.0 * g.hypervolume / front.hypervolume for g in steps],
-        "customdata": [g.evaluations for g in steps],
-        "hovertemplate": "%{y:.4g} % after %{x:.3g} s, %{customdata:,} evaluations<extra></extra>",
-        "line": {"color": "--series-1", "width": 2.2, "shape": "hv"},
-        "marker": {"color": "--series-1", "size": 5},
-    }
+    whole = [100.0 * g.hypervolume / front.hypervolume for g in steps]
+    seconds = [g.seconds for g in steps]
+    hover = "%{y:.4g} % after %{x:.3g} s, %{customdata:,} evaluations<extra></extra>"
+    trace = curve(seconds, whole, "--series-1", 2.2, shape="hv", hover=hover, name=front.method)
+    trace |= {"mode": "lines+markers", "marker": {"color": "--series-1", "size": 5}}
+    trace["customdata"] = [g.evaluations for g in steps]
     plot = layout(
         axis("time [s]", type="log"), axis("hypervolume [% of the whole]", rangemode="tozero"), 320
     )

@@ -11,7 +11,7 @@ from gearopt.formulations.dynamics.motion.stability import UNSTABLE, bands
 from gearopt.report.drawing.player import Animation, Body, Reading, View
 from gearopt.report.drawing.sheet import Sheet, Window, around, series
 from gearopt.report.measures import Measures
-from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.plots import Figure, axis, band, heat, layout, lines, upright
 
 ORBIT = "motion of the axes"  # the animation that the response follows
 MOMENTS = 240  # of the animation
@@ -28,17 +28,9 @@ Values = Sequence[Any]
 def line(
     x: Values, y: Values, name: str = "", colour: int = 1, dash: str = "solid"
 ) -> dict[str, Any]:
-    """Return a curve as plotly has it."""
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "name": name,
-        "x": list(x),
-        "y": list(y),
-        "line": {"color": series(colour), "width": 1.8, "dash": dash},
-        "hovertemplate": "%{x:.5g}: %{y:.4g}",
-        "showlegend": bool(name),
-    }
+    """A curve of the series' colour of this number."""
+    hover, named = "%{x:.5g}: %{y:.4g}", bool(name)
+    return lines(x, y, series(colour), 1.8, dash, hover=hover, name=name, showlegend=named)
 
 
 def response(found: Response, measures: Measures) -> Figure:
@@ -64,7 +56,7 @@ def spectrum(found: Response, mesh_frequency: float, measures: Measures) -> Figu
         hovermode="x",
     )
     orders = range(1, int(high / mesh_frequency) + 1) if mesh_frequency else range(0)
-    plot["shapes"] = [_upright(k * mesh_frequency) for k in orders]
+    plot["shapes"] = [upright(k * mesh_frequency) for k in orders]
     caption = "Spectrum of the second half of the motion"
     caption += "; dotted: the mesh frequency and its multiples." if mesh_frequency else "."
     kept = [max(v, 1e-9) for v in micro]
@@ -137,17 +129,11 @@ def stability(found: Stability) -> Figure:
     """Draw the map of unstable depths and mesh frequencies with the pair's own point."""
     growth = np.asarray(found.growth)
     size = [[max(0.0, min(float(v) - 1.0, 1.0)) or None for v in row] for row in growth]
-    heat = {
-        "type": "heatmap",
-        "x": [f / 1e3 for f in found.frequency_Hz],
-        "y": list(found.depth),
-        "z": [[None if v is None else 100.0 * v for v in row] for row in size],
-        "colorscale": [[0.0, "--series-2/0.35"], [1.0, "--series-2"]],
-        "hovertemplate": "%{x:.4g} kHz, depth %{y:.3g}: +%{z:.3g} % a period",
-        "colorbar": {"title": {"text": "growth [%]"}, "thickness": 12, "outlinewidth": 0},
-        "name": "",
-    }
-    traces = [heat]
+    share = [[None if v is None else 100.0 * v for v in row] for row in size]
+    hover = "%{x:.4g} kHz, depth %{y:.3g}: +%{z:.3g} % a period"
+    colours = [[0.0, "--series-2/0.35"], [1.0, "--series-2"]]
+    frequencies = [f / 1e3 for f in found.frequency_Hz]
+    traces = [heat(frequencies, found.depth, share, "growth [%]", hover, colorscale=colours)]
     for tongue in found.tongues:
         x = tongue.frequency_Hz / 1e3
         half = x * tongue.half_width_percent / 100.0 * found.depth[-1] / found.own_depth
@@ -199,7 +185,7 @@ def over_speed(found: Speeds, measures: Measures) -> Figure:
     unstable = [g > 1.0 + UNSTABLE for g in found.growth]
     half = 0.5 * (found.speed_rpm[1] - found.speed_rpm[0])
     ends = bands(found.speed_rpm, unstable)
-    plot["shapes"] = [_band(low - half, high + half) for low, high in ends]
+    plot["shapes"] = [band(low - half, high + half, series(2), opacity=0.12) for low, high in ends]
     if len(traces) > 1:
         plot["margin"] |= {"t": 44}
     caption = "Motions over speed: RMS of the deformation about its mean."
@@ -211,21 +197,11 @@ def over_speed(found: Speeds, measures: Measures) -> Figure:
 def waterfall(found: Speeds, measures: Measures) -> Figure:
     """Draw the orders of the mesh frequency over speed."""
     values = [[_shown(v, measures) for v in row] for row in found.harmonics_mm]
-    heat = {
-        "type": "heatmap",
-        "x": list(found.speed_rpm),
-        "y": list(range(1, len(values) + 1)),
-        "z": [[v and math.log10(max(v, 1e-4)) for v in row] for row in values],
-        "customdata": values,
-        "colorscale": [[0.0, QUIET], [1.0, LOUD]],
-        "hovertemplate": "%{x:.5g} rpm, order %{y}: %{customdata:.3g} " + measures.unit("um"),
-        "colorbar": {
-            "title": {"text": f"lg amplitude [{measures.unit('um')}]"},
-            "thickness": 12,
-            "outlinewidth": 0,
-        },
-        "name": "",
-    }
+    unit, orders = measures.unit("um"), range(1, len(values) + 1)
+    logs = [[v and math.log10(max(v, 1e-4)) for v in row] for row in values]
+    colours = [[0.0, QUIET], [1.0, LOUD]]
+    hover, title = "%{x:.5g} rpm, order %{y}: %{customdata:.3g} " + unit, f"lg amplitude [{unit}]"
+    trace = heat(found.speed_rpm, orders, logs, title, hover, customdata=values, colorscale=colours)
     plot = layout(
         axis("speed of the pinion [rpm]", tickformat=","),
         axis("order of the mesh frequency", dtick=1),
@@ -233,7 +209,7 @@ def waterfall(found: Speeds, measures: Measures) -> Figure:
     )
     caption = "Waterfall: amplitudes of the orders of the mesh frequency over speed"
     caption += ", speed rising." if found.falling_rms_mm not in ((), found.rms_mm) else "."
-    return Figure([heat], plot, caption)
+    return Figure([trace], plot, caption)
 
 
 def before_and_after(found: Chosen, measure: str, measures: Measures) -> Figure:
@@ -276,15 +252,3 @@ def _across(level: float) -> dict[str, Any]:
     look = {"color": "--axis", "width": 1}
     ends = {"x0": 0.0, "x1": 1.0, "y0": level, "y1": level}
     return {"type": "line", "xref": "paper", "line": look} | ends
-
-
-def _band(low: float, high: float) -> dict[str, Any]:
-    look = {"fillcolor": series(2), "opacity": 0.12, "line": {"width": 0}, "layer": "below"}
-    ends = {"x0": low, "x1": high, "y0": 0.0, "y1": 1.0}
-    return {"type": "rect", "yref": "paper"} | look | ends
-
-
-def _upright(place: float) -> dict[str, Any]:
-    look = {"color": "--axis", "width": 1, "dash": "dot"}
-    ends = {"x0": place, "x1": place, "y0": 0.0, "y1": 1.0}
-    return {"type": "line", "yref": "paper", "layer": "below", "line": look} | ends

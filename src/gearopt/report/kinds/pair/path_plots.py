@@ -11,7 +11,8 @@ from gearopt.physics.mesh_cycle import NARROW, break_points
 from gearopt.report.drawing.sheet import series
 from gearopt.report.kinds.pair.mesh_motion import Carried
 from gearopt.report.measures import Measures
-from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.plots import Figure, axis, band, layout, upright
+from gearopt.report.plots import lines as curve
 
 HEIGHT = 340  # px
 AXIS_MARGIN = 0.03  # of the path that is seen beyond its ends
@@ -54,11 +55,8 @@ def over_path(
     traces = [_trace(line, x, carried) for line in lines]
     unit, (low, high) = measures.unit("mm"), (x[0], x[-1])
     for (name, value), dash in zip(level, DASHES, strict=False):
-        look = {"color": "--soft", "width": 1.4, "dash": dash}
-        ends = {"x": [float(low), float(high)], "y": [value, value], "line": look}
-        traces.append(
-            {"type": "scatter", "mode": "lines", "name": name, "hoverinfo": "skip"} | ends
-        )
+        ends = [float(low), float(high)], [value, value]
+        traces.append(curve(*ends, "--soft", 1.4, dash, name=name, hoverinfo="skip"))
     room = AXIS_MARGIN * (high - low)
     shapes, notes = zones(path, measures)
     plot = layout(
@@ -87,16 +85,10 @@ def _trace(line: Line, x: Any, carried: Carried) -> dict[str, Any]:
     if len(values) == len(carried.travels):
         wide = np.broadcast_to(values.T, carried.positions.T.shape).T
         values = carried.along(wide)
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "name": line.name,
-        "x": [round(float(v), 5) for v in x],
-        "y": [float(f"{v:.6g}") for v in values],
-        "line": {"color": series(line.colour), "width": line.width, "dash": line.dash},
-        "hovertemplate": "%{y:.4g}",
-        "showlegend": bool(line.name),
-    }
+    places, heights = [round(float(v), 5) for v in x], [float(f"{v:.6g}") for v in values]
+    colour, named = series(line.colour), bool(line.name)
+    trace = curve(places, heights, colour, line.width, line.dash, hover="%{y:.4g}")
+    return trace | {"name": line.name, "showlegend": named}
 
 
 def zones(
@@ -109,24 +101,13 @@ def zones(
     shapes: list[dict[str, Any]] = []
     for k in range(whole):
         ends = [float(path.end) - (whole - k) * pitch, float(path.start) + (k + 1) * pitch]
-        shapes.append(
-            {
-                "type": "rect",
-                "layer": "below",
-                "yref": "paper",
-                **{"x0": unit * ends[0], "x1": unit * ends[1], "y0": 0.0, "y1": 1.0},
-                "fillcolor": "--grid",
-                "line": {"width": 0},
-            }
-        )
+        shapes.append(band(unit * ends[0], unit * ends[1]))
     points = {LETTERS.get(name, ""): s for name, s in break_points(path).items()}
     points |= {"C": 0.0} if path.start < 0.0 < path.end else {}
     notes: list[dict[str, Any]] = []
     last = -np.inf
     for name, s in sorted(points.items(), key=lambda row: row[1]):
-        line = {"color": "--axis", "width": 1, "dash": "dot"}
-        ends_at = {"x0": unit * s, "x1": unit * s, "y0": 0.0, "y1": 1.0}
-        shapes.append({"type": "line", "yref": "paper", "layer": "below", "line": line} | ends_at)
+        shapes.append(upright(unit * s))
         if s - last < LETTER_SPACING * float(path.length):
             notes[-1]["text"] += f" {name}"
             continue

@@ -13,7 +13,7 @@ from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.report.drawing.sheet import series
 from gearopt.report.kinds.pair.words import of_duty
 from gearopt.report.measures import Measures
-from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.plots import Figure, axis, layout, lines
 from gearopt.report.section import Cell, Section, Table
 
 TABLE_STEPS = 10  # of the table from where a relief starts to the tip
@@ -107,17 +107,10 @@ def profile(flank: Flank, measures: Measures) -> Figure:
     member, low = flank.member, start - 0.35 * (tip - start)
     rolls = np.concatenate(([low], flank.at(PLOT_STEPS)))
     off = measures.of(1.0, "um") * flank.removed(rolls)
-    trace = {
-        "type": "scatter",
-        "mode": "lines",
-        "name": member,
-        "x": [round(float(v), 5) for v in rolls],
-        "y": [round(float(v), 4) for v in off],
-        "line": {"color": series((1, 4)[MEMBERS.index(member)]), "width": 2},
-        "fill": "tozeroy",
-        "hovertemplate": "%{x:.3f}°: %{y:.2f}<extra></extra>",
-        "showlegend": False,
-    }
+    x, y = [round(float(v), 5) for v in rolls], [round(float(v), 4) for v in off]
+    colour = series((1, 4)[MEMBERS.index(member)])
+    trace = lines(x, y, colour, hover="%{x:.3f}°: %{y:.2f}<extra></extra>")
+    trace |= {"name": member, "fill": "tozeroy", "showlegend": False}
     ticks = np.linspace(start, tip, TICKS)
     above = trace | {"xaxis": "x2", "opacity": 0.0, "hoverinfo": "skip", "fill": "none"}
     del above["hovertemplate"]

@@ -26,7 +26,7 @@ from gearopt.report.kinds.servo.words import (
     limit_line,
 )
 from gearopt.report.measures import Measures
-from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.plots import TEXT, Figure, axis, band, bars, layout, lines
 from gearopt.report.section import Cell, Section, Table, percent
 from gearopt.report.words import number, share
 
@@ -52,18 +52,9 @@ def errors(result: Result, measures: Measures) -> Section | None:
     names = _names([e.source for e in found])
     order = [f"total {degrees(total)}", *reversed(names)]  # from below
     traces = _steps(found, names, measures)
-    traces.append(
-        {
-            "type": "bar",
-            "orientation": "h",
-            "name": "total",
-            "y": [order[0]],
-            "x": [total],
-            "hovertemplate": f"total {degrees(total)}, {arc_minutes(total)}<extra></extra>",
-            "marker": {"color": "--series-8"},
-            "showlegend": False,
-        }
-    )
+    hover = f"total {degrees(total)}, {arc_minutes(total)}<extra></extra>"
+    marker = {"color": "--series-8"}
+    traces.append(bars([total], [order[0]], marker, hover, name="total", showlegend=False))
     shapes = [] if limit is None else [limit_line("limit", limit, "y", 2.0)]
     across = axis("error at the output [°]", range=[0.0, AXIS_MARGIN * max(total, limit or 0.0)])
     up = axis("", type="category", categoryorder="array", categoryarray=order, ticks="")
@@ -152,18 +143,16 @@ def _steps(
     for k, e in enumerate(found):
         groups.setdefault((e.kind, e.stage), []).append(k)
     return [
-        {
-            "type": "bar",
-            "orientation": "h",
-            "name": f"{escape(kind)}, stage {stage}",
-            "y": [names[k] for k in rows],
-            "x": [found[k].error_deg for k in rows],
-            "base": [starts[k] for k in rows],
-            "text": [_told(found[k], measures) for k in rows],
-            "textposition": "none",
-            "hovertemplate": "%{text}<extra></extra>",
-            "marker": {"color": series(place)},
-        }
+        bars(
+            [found[k].error_deg for k in rows],
+            [names[k] for k in rows],
+            {"color": series(place)},
+            TEXT,
+            name=f"{escape(kind)}, stage {stage}",
+            base=[starts[k] for k in rows],
+            text=[_told(found[k], measures) for k in rows],
+            textposition="none",
+        )
         for place, ((kind, stage), rows) in enumerate(groups.items(), 1)
     ]
 
@@ -344,18 +333,11 @@ def _bins(histogram: Histogram) -> list[tuple[float, float, int]]:
 
 def _bars(bins: list[tuple[float, float, int]], count: int) -> dict[str, Any]:
     texts = [f"{a:.4f} to {b:.4f}°: {n:,} ({100.0 * n / count:.3g} %)" for a, b, n in bins]
-    return {
-        "type": "bar",
-        "name": "drawn",
-        "x": [0.5 * (a + b) for a, b, _ in bins],
-        "width": [b - a for a, b, _ in bins],
-        "y": [n for _, _, n in bins],
-        "text": texts,
-        "textposition": "none",
-        "hovertemplate": "%{text}<extra></extra>",
-        "marker": {"color": "--series-1/0.55", "line": {"color": "--series-1", "width": 0.6}},
-        "showlegend": False,
-    }
+    middles = [0.5 * (a + b) for a, b, _ in bins]
+    edge = {"color": "--series-1/0.55", "line": {"color": "--series-1", "width": 0.6}}
+    wide, heights = [b - a for a, b, _ in bins], [n for *_, n in bins]
+    trace = bars(middles, heights, edge, TEXT, orientation="v", width=wide, name="drawn")
+    return trace | {"text": texts, "textposition": "none", "showlegend": False}
 
 
 def _lines(found: DrawnErrors, top: float) -> list[dict[str, Any]]:
@@ -365,22 +347,13 @@ def _lines(found: DrawnErrors, top: float) -> list[dict[str, Any]]:
         (f"{100.0 * found.probability:g} % quantile", found.quantile_deg, "--series-5", "solid"),
         ("limit", found.limit_deg, "--warn", "dash"),
     )
+    named = [(f"{name} {degrees(at)}", at, colour, dash) for name, at, colour, dash in marks]
     return [
-        {
-            "type": "scatter",
-            "mode": "lines",
-            "name": f"{name} {degrees(at)}",
-            "x": [at, at],
-            "y": [0.0, top],
-            "hovertemplate": f"{name} {degrees(at)}<extra></extra>",
-            "line": {"color": colour, "width": 2.0, "dash": dash},
-        }
-        for name, at, colour, dash in marks
+        lines([at, at], [0.0, top], colour, 2.0, dash, hover=f"{text}<extra></extra>", name=text)
+        for text, at, colour, dash in named
     ]
 
 
 def _interval(found: DrawnErrors) -> list[dict[str, Any]]:
     """Return the interval of the quantile as a band."""
-    band = {"type": "rect", "yref": "paper", "y0": 0, "y1": 1, "layer": "below"}
-    ends = dict(zip(("x0", "x1"), _ends(found), strict=False))
-    return [band | ends | {"fillcolor": "--series-5/0.2", "line": {"width": 0}}] if ends else []
+    return [band(ends[0], ends[1], "--series-5/0.2")] if (ends := _ends(found)) else []

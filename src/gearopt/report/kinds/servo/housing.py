@@ -22,7 +22,7 @@ from gearopt.report.drawing.layout_views import centre_distance
 from gearopt.report.drawing.sheet import Drawing, Place, Point, Sheet, Window, around
 from gearopt.report.kinds.servo.words import arc_minutes, degrees, design_of, report_of
 from gearopt.report.measures import Measures
-from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.plots import Figure, axis, bars, layout
 from gearopt.report.section import Section, Table, Tile, cell, percent
 from gearopt.report.words import amount, number
 
@@ -60,22 +60,21 @@ def stiffness(result: Result, measures: Measures) -> Section | None:
 def _bars(springs: Sequence[Spring], measures: Measures) -> Figure:
     """Draw the share of every spring."""
     shares = [100.0 * s.compliance_share for s in springs]
-    trace = {
-        "type": "bar",
-        "orientation": "h",
-        "y": [escape(s.name) for s in springs],
-        "x": shares,
-        "text": [f"{share:.1f} %" for share in shares],
-        "textposition": "outside",
-        "cliponaxis": False,
-        "customdata": [
-            f"{escape(s.name)}: {share:.2f} %, alone "
-            f"{amount(s.referred_Nm_per_rad, 'Nm_per_rad', measures)} at the output"
-            for s, share in zip(springs, shares, strict=True)
-        ],
-        "hovertemplate": "%{customdata}<extra></extra>",
-        "marker": {"color": "--series-1"},
-    }
+    told = [
+        f"{escape(s.name)}: {share:.2f} %, alone "
+        f"{amount(s.referred_Nm_per_rad, 'Nm_per_rad', measures)} at the output"
+        for s, share in zip(springs, shares, strict=True)
+    ]
+    trace = bars(
+        shares,
+        [escape(s.name) for s in springs],
+        {"color": "--series-1"},
+        "%{customdata}<extra></extra>",
+        customdata=told,
+        text=[f"{share:.1f} %" for share in shares],
+        textposition="outside",
+        cliponaxis=False,
+    )
     plot = layout(
         axis("share of the compliance [%]", range=[0.0, 1.18 * max(shares)]),
         axis("", ticks=""),

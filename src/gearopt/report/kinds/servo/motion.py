@@ -7,7 +7,7 @@ from gearopt.formulations.servo.servo_design import MOTIONS, Achieved, RatioDesi
 from gearopt.optimise.result import Result
 from gearopt.report.kinds.servo.words import design_of, report_of
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.plots import Figure, axis, layout, lines, points
 from gearopt.report.section import Section, Table, cell, side_by_side
 from gearopt.report.words import amount, number
 
@@ -115,24 +115,17 @@ def _figure(found: RatioDesign, curve: Table, measures: Measures) -> Figure:
     """Draw the curves, the best ratio, and what else is judged."""
     ratios, *values = (list(column) for column in zip(*curve.rows, strict=True))
     unit = measures.unit(found.unit)
-    lines = [(found.name, "solid", "--series-1", False)]
+    curves = [(found.name, "solid", "--series-1", False)]
     if len(values) > 1:
-        lines = [
+        curves = [
             ("no gears", "solid", "--series-1", True),
             (WITH_TRAIN, "dash", "--series-3", True),
         ]
+    hover = f"ratio %{{x:.5g}}: %{{y:.5g}} {unit}<extra></extra>"
     traces = [
-        {
-            "type": "scatter",
-            "mode": "lines",
-            "name": name,
-            "x": ratios,
-            "y": column,
-            "hovertemplate": f"ratio %{{x:.5g}}: %{{y:.5g}} {unit}<extra></extra>",
-            "line": {"color": colour, "width": 2.2, "simplify": False, "dash": dash},
-            "showlegend": named,
-        }
-        for (name, dash, colour, named), column in zip(lines, values, strict=True)
+        lines(ratios, column, "", name=name, hover=hover, showlegend=named)
+        | {"line": {"color": colour, "width": 2.2, "simplify": False, "dash": dash}}
+        for (name, dash, colour, named), column in zip(curves, values, strict=True)
     ]
     at = found.total_ratio, measures.of(found.value, found.unit)
     traces.append(_mark("best", *at, unit, "--series-2", "star", 14))
@@ -154,15 +147,8 @@ def _mark(
 ) -> dict[str, Any]:
     """Mark a ratio with its value, which its name in the legend shows too."""
     label = f"{name} {number(ratio)}: {number(float(value))} {unit}"
-    return {
-        "type": "scatter",
-        "mode": "markers",
-        "name": label,
-        "x": [ratio],
-        "y": [value],
-        "hovertemplate": f"{label}<extra></extra>",
-        "marker": {"color": colour, "size": size, "symbol": symbol},
-    }
+    marker = {"color": colour, "size": size, "symbol": symbol}
+    return points([ratio], [value], label, marker, f"{label}<extra></extra>")
 
 
 def _ticks(ratios: list[float]) -> list[float]:

@@ -30,7 +30,7 @@ from gearopt.report.kinds.servo.words import (
     teeth_words,
 )
 from gearopt.report.measures import Measures
-from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.plots import TEXT, Figure, axis, layout, points
 from gearopt.report.section import Section, Table, cell
 from gearopt.report.words import amount, heading, parted
 
@@ -275,7 +275,9 @@ def _listed(train: TrainDesign, ratio: RatioDesign | None, who: str) -> ListedTr
     """Return the chosen or the given train as the list of trains has it."""
     assert train.inertia_kg_m2 is not None and train.mass_kg is not None
     one = ratio and (ratio.chosen if who == "chosen" else ratio.given_train)
-    judged = {} if ratio is None or one is None else {MOTIONS[ratio.duty].key: one.value}
+    judged: dict[str, Any] = (
+        {} if ratio is None or one is None else {MOTIONS[ratio.duty].key: one.value}
+    )
     own = train.inertia_kg_m2, train.mass_kg, train.error_deg
     return ListedTrain(train.stages, train.ratio, "", *own, **judged)
 
@@ -335,17 +337,9 @@ def _points(
     """Return trains as points; mark: size, symbol and colour; keys: across and up."""
     size, symbol, colour = mark
     x, y = ([measures.of(getattr(t, k), parted(k)[1]) for t in trains] for k in keys)
-    edge = {"width": 2.6} if symbol.endswith("open") else {"width": 0}
-    return {
-        "type": "scatter",
-        "mode": "markers",
-        "name": name,
-        "x": x,
-        "y": y,
-        "text": [_told(t, measures) for t in trains],
-        "hovertemplate": "%{text}<extra></extra>",
-        "marker": {"color": colour, "size": size, "symbol": symbol, "line": edge},
-    }
+    edge = {"width": 2.6 if symbol.endswith("open") else 0}
+    marker = {"color": colour, "size": size, "symbol": symbol, "line": edge}
+    return points(x, y, name, marker, TEXT, text=[_told(t, measures) for t in trains])
 
 
 def _told(train: ListedTrain, measures: Measures) -> str:

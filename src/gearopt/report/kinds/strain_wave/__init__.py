@@ -19,7 +19,7 @@ from gearopt.report.kinds.strain_wave import tables
 from gearopt.report.kinds.strain_wave.cutter import drawing, usual_scale
 from gearopt.report.kinds.strain_wave.motion import running
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.plots import Figure, axis, layout
+from gearopt.report.plots import Figure, axis, band, layout, lines, upright
 from gearopt.report.section import Section, Tile
 from gearopt.report.words import amount, number, series_of
 
@@ -130,15 +130,7 @@ def moving(result: Result, measures: Measures) -> Section | None:
 
 
 def _line(x: Sequence[float], y: Any, name: str, colour: int) -> dict[str, Any]:
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "x": list(x),
-        "y": list(y),
-        "name": name,
-        "line": {"color": series(colour), "width": 2},
-        "hovertemplate": "%{y:.4g}",
-    }
+    return lines(x, y, series(colour), name=name, hover="%{y:.4g}")
 
 
 def _clearances(found: WaveDesign, measures: Measures) -> Figure:
@@ -151,16 +143,7 @@ def _clearances(found: WaveDesign, measures: Measures) -> Figure:
     ]
     x, y = zip(*rows, strict=True)
     plot = layout(axis(ANGLE), axis(f"clearance [{unit}]"), hovermode="x")
-    shade = {
-        "type": "rect",
-        "layer": "below",
-        "yref": "paper",
-        "y0": 0.0,
-        "y1": 1.0,
-        "fillcolor": "--grid",
-        "line": {"width": 0},
-    }
-    plot["shapes"] = [shade | {"x0": a, "x1": b} for a, b in found.touching_deg]
+    plot["shapes"] = [band(*ends) for ends in found.touching_deg]
     caption = "Least clearance of a tooth by its place on the wave; shaded: conjugate flanks touch."
     return Figure([_line(x, y, "clearance", 1)], plot, caption, follows=RUNS)
 
@@ -185,7 +168,7 @@ def shift(result: Result, measures: Measures) -> Section | None:
     if found is None or len(found.shifts) < 2:
         return None
     factor, x = measures.of(1.0, "MPa"), [r.profile_shift for r in found.shifts]
-    lines = [
+    curves = [
         _line(x, [factor * r.equal_MPa for r in found.shifts], "equal loads", 1),
         _line(x, [factor * r.whole_MPa for r in found.shifts], "whole pairs", 2),
         _line(x, [factor * r.shared_MPa for r in found.shifts], "shared loads", 4),
@@ -196,21 +179,12 @@ def shift(result: Result, measures: Measures) -> Section | None:
         hovermode="x",
     )
     plot["margin"] |= {"t": 34}
-    mark = {
-        "type": "line",
-        "yref": "paper",
-        "y0": 0.0,
-        "y1": 1.0,
-        "x0": found.profile_shift,
-        "x1": found.profile_shift,
-        "line": {"color": "--axis", "width": 1, "dash": "dot"},
-    }
-    plot["shapes"] = [mark]
+    plot["shapes"] = [upright(found.profile_shift, layer="above")]
     caption = "Pressure against profile shift, all else unchanged; dotted: this gearing."
     return Section(
         "Pressure against profile shift",
         words=_ends_of_shift(found),
-        figures=[Figure(lines, plot, caption)],
+        figures=[Figure(curves, plot, caption)],
         tables=[tables.shifts(found, measures)],
     )
 
