@@ -16,7 +16,7 @@ from gearopt.optimise.result import Result
 from gearopt.report import answer, kinds
 from gearopt.report.deciding import lead
 from gearopt.report.explained import remedy_words
-from gearopt.report.kinds import generic, kind_named
+from gearopt.report.kinds import generic, pages_of
 from gearopt.report.measures import INCH
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.terminal import show
@@ -52,10 +52,10 @@ DESIGNED = {  # a file of every kind, which other tests solve too
 
 @pytest.mark.parametrize("kind", load.kinds())
 def test_a_kind_has_a_drawing_or_says_that_it_has_none(kind, solved):
-    """A kind whose designs have no drawing declares `drawn=False` in report/kinds/KIND.py."""
+    """A kind whose designs have no drawing declares `drawn=False` in report/kinds/KIND."""
     result = solved(DESIGNED[kind])
     drawn = any(section.drawings for section in sections(result))
-    assert drawn is kind_named(kind).drawn
+    assert drawn is pages_of(kind).drawn
 
 
 @pytest.mark.parametrize("scene", [None, "a_new_kind"])
@@ -63,7 +63,7 @@ def test_other_kinds_are_shown_by_what_their_design_holds(scene):
     """Stages as a table and a drawing, the rest by keys with units; the same on the terminal."""
     design = {"stages": cases.drive(cases.ELEVATOR)["stages"], "shift_mm": 1.5, "hubs": [1, 2]}
     result = replace(cases.elevator(), scene=scene, design=design, parts=())
-    assert kind_named(scene) is generic.KIND
+    assert pages_of(scene) is generic.PAGES
     made = {section.heading: section for section in sections(result)}
     assert len(made["Gears in one line"].drawings) == 2
     assert [t.name for t in made["Design"].tables] == ["stages", "totals"]

@@ -9,7 +9,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.scale import gap
 from gearopt.report.deciding import lead
 from gearopt.report.explained import remedy_words
-from gearopt.report.kinds import kind_of
+from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, Measures, gap_percent
 from gearopt.report.plots import TEXT, Figure, axis, layout, lines
 from gearopt.report.section import Cell, Section, Table, Tile, percent
@@ -58,13 +58,15 @@ EARLIEST = 1e-4  # s; the logarithmic axis begins here at the earliest
 
 def decided(result: Result) -> str:
     """Return the first sentence: what decides the answer, with its figures."""
-    kind = kind_of(result)
-    return sentence(lead(result, kind.decides(result)) + kind.figures(result))
+    kind = pages_of_result(result)
+    return sentence(lead(result, kind.binding_limit(result)) + kind.figures(result))
 
 
 def opening(result: Result) -> str:
     """Return the status and what decides the answer, in one sentence."""
-    return sentence(f"{verdict(result)[0]}: {lead(result, kind_of(result).decides(result))}")
+    return sentence(
+        f"{verdict(result)[0]}: {lead(result, pages_of_result(result).binding_limit(result))}"
+    )
 
 
 def summary(result: Result, measures: Measures) -> Section | None:
@@ -72,9 +74,9 @@ def summary(result: Result, measures: Measures) -> Section | None:
 
     On the terminal, which has no key figures, it ends with what is proven.
     """
-    tiles = [*_tiles(result, measures), *kind_of(result).tiles(result, measures)]
+    tiles = [*_tiles(result, measures), *pages_of_result(result).tiles(result, measures)]
     words = [*leading(result), *_notes(result)]
-    warned = list(map(measures.words, kind_of(result).warns(result)))
+    warned = list(map(measures.words, pages_of_result(result).warns(result)))
     certain = [*bound_words(result, measures), *proof(result, measures), _effort(result)]
     ends = "\n".join([*certain[:-1], *_notes(result), certain[-1]])
     shown, said = tiles or words or warned, list(map(measures.words, words))
@@ -114,9 +116,13 @@ def limits(result: Result, measures: Measures) -> Section | None:
     if not result.limits or (result.value is None and not result.given):
         return None
     stages, rows = limit_rows(result.limits, has_stages(result))
-    heads = ["limit used, %", *(f"stage {k}" for k in range(1, stages + 1)), kind_of(result).whole]
+    heads = [
+        "limit used, %",
+        *(f"stage {k}" for k in range(1, stages + 1)),
+        pages_of_result(result).whole,
+    ]
     cells = [[words, *map(percent, values)] for words, values in rows]
-    elsewhere = [limit_words(name) for name in kind_of(result).elsewhere(result)]
+    elsewhere = [limit_words(name) for name in pages_of_result(result).elsewhere(result)]
     table = Table("limits", heads, cells, csv_only=elsewhere)
     sized = next((part.limits for part in result.parts if part.name == "sizing"), {})
     words: tuple[str, ...] = ("At 100 % a limit is active.",)
@@ -130,7 +136,7 @@ def limits(result: Result, measures: Measures) -> Section | None:
 
 def proof(result: Result, measures: Measures = METRIC) -> list[str]:
     """Say how it is proven, and what other methods give."""
-    return [*_method(result), *kind_of(result).beside(result, measures)]
+    return [*_method(result), *pages_of_result(result).sentences_on_parts(result, measures)]
 
 
 def bound_words(result: Result, measures: Measures) -> list[str]:

@@ -19,7 +19,7 @@ from gearopt.report import comparison as comparison_words
 from gearopt.report import front
 from gearopt.report.answer import WAYS, decided
 from gearopt.report.explained import of_influences
-from gearopt.report.kinds import kind_of
+from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, SYSTEMS, Measures, gap_percent
 from gearopt.report.screen import harmless
 from gearopt.report.section import Table
@@ -48,7 +48,7 @@ Block = str | Text | Table
 def lines(result: Result) -> str:
     """Return status, value, bound and gap, and what is essential of the design, in a few lines."""
     _, unit, value, bound, side = goal(result)
-    rows = [_head(result), decided(result), *kind_of(result).warns(result)]
+    rows = [_head(result), decided(result), *pages_of_result(result).warns(result)]
     if bound is not None and (value is None or (result.gap or 0.0) > EXACT):
         gap = "" if result.gap is None else f", gap {gap_percent(result.gap)}"
         rows.append(f"bound {METRIC.amount(bound, unit, WAYS[side])}{gap}")
@@ -159,9 +159,9 @@ def compared_lines(found: Comparison) -> str:
 def fragment(result: Result) -> str:
     """Return what the terminal shows of a result as HTML for a notebook."""
     result = Result.from_dict(result.to_dict())
-    made = (make(result, METRIC) for make in kind_of(result).terminal)
+    made = (make(result, METRIC) for make in pages_of_result(result).terminal)
     blocks = [block for section in made if section is not None for block in section.terminal]
-    first = [decided(result), *leading(result), *kind_of(result).warns(result)]
+    first = [decided(result), *leading(result), *pages_of_result(result).warns(result)]
     return _html(_head(result), [*first, *blocks])
 
 

@@ -15,7 +15,7 @@ from gearopt.report import comparison as words
 from gearopt.report import front
 from gearopt.report.answer import decided
 from gearopt.report.explained import of_influences
-from gearopt.report.kinds import kind_of
+from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.section import Cell, Table
 from gearopt.report.words import (
@@ -104,10 +104,10 @@ def show(result: Result, console: Console, measures: Measures = METRIC) -> None:
     reached = f"{name} {known}, " if known else ""
     console.print(Text.assemble((title(result), "bold"), f": {reached}", (words, f"bold {colour}")))
     console.print(Text(measures.words(decided(result))))
-    warned = map(measures.words, kind_of(result).warns(result))
+    warned = map(measures.words, pages_of_result(result).warns(result))
     yellow = [Text(line, style="yellow") for line in warned]
     _print([*map(measures.words, leading(result)), *yellow], console)
-    for make in kind_of(result).terminal:
+    for make in pages_of_result(result).terminal:
         if (section := make(result, measures)) is not None:
             _print(section.terminal, console)
 

@@ -9,7 +9,7 @@ import pytest
 from rich.console import Console
 
 from gearopt.physics.gears import Gear, GearPair
-from gearopt.report.kinds.pair import KIND, contact_of
+from gearopt.report.kinds.pair import PAGES, contact_of
 from gearopt.report.kinds.pair.words import answers, graded, of_duty
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.result import tables
@@ -82,7 +82,7 @@ def test_the_page_shows_contact_and_the_rating_of_a_pair_that_was_sized(solved):
     for words in ("largest load on a tooth", "points-of-contact.csv", "Gears in one line"):
         assert words in html
     assert "proven optimal" in html and "power capacity" in html
-    assert KIND.given is not None and KIND.drawn
+    assert PAGES.pages_of_given is not None and PAGES.drawn
 
 
 def test_what_models_do_not_cover_is_warned_of_once(solved):

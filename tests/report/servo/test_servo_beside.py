@@ -172,8 +172,8 @@ def test_a_train_that_fits_is_not_called_too_large():
 
 def test_the_first_sentence_names_a_box_that_costs_something():
     assert (
-        servo.decides(boxed())
+        servo.binding_limit(boxed())
         == "the box determines the move time: without it there is a better train"
     )
-    assert servo.decides(boxed(best_s=0.21)) == ""
-    assert servo.decides(replace(boxed(), status="feasible")) == ""
+    assert servo.binding_limit(boxed(best_s=0.21)) == ""
+    assert servo.binding_limit(replace(boxed(), status="feasible")) == ""

@@ -1,7 +1,7 @@
 """What page and terminal show of each kind of result.
 
-Each module here is a kind, of the name that its scene has, and holds a `Kind` called KIND. Nothing
-is registered: a kind without a module, and a problem of a user's own, are shown as `generic` says.
+Each module here is a kind, of the name that its scene has, and holds `Pages` called PAGES. Nothing
+is registered: a kind without a module, and a problem of a user's own, have those of `generic`.
 """
 
 from collections.abc import Callable, Collection, Sequence
@@ -26,38 +26,39 @@ def _silent(result: Result) -> str:
 
 
 @dataclass(frozen=True)
-class Kind:
+class Pages:
     """Sections in the order of the page, and those that the terminal shows in its own order.
 
-    tiles: key figures beside objective and bound. beside: sentences after the proof about what
-    else was solved. elsewhere: limits that another table shows, in their own unit. decides:
-    what decides a design, "" where its limits say it; figures: what ends that sentence where no
-    key figures stand beside. warns: sentences to be read before the numbers. drawn: whether there
-    is a drawing of its designs. whole: what a limit of no single stage belongs to, the head of that
-    column. given: what is shown of designs that were given, where that is something else.
+    tiles: key figures beside objective and bound. sentences_on_parts: after the proof, about the
+    other problems that were solved. elsewhere: limits that another table shows, in their own unit.
+    binding_limit: in words what decides a design, "" where its limits say it; figures: the end of
+    that sentence where no key figures stand beside. warns: sentences to be read before the numbers.
+    drawn: whether there is a drawing of its designs. whole: what a limit of no single stage
+    belongs to, the head of that column. pages_of_given: those of designs that were given, where
+    they are others.
     """
 
     sections: tuple[MakeSection, ...]
     terminal: tuple[MakeSection, ...]
     tiles: Callable[[Result, Measures], Sequence[Tile]] = _nothing
-    beside: Callable[[Result, Measures], Sequence[str]] = _nothing
+    sentences_on_parts: Callable[[Result, Measures], Sequence[str]] = _nothing
     elsewhere: Callable[[Result], Collection[str]] = _silent
-    decides: Callable[[Result], str] = _silent
+    binding_limit: Callable[[Result], str] = _silent
     figures: Callable[[Result], str] = _silent
     warns: Callable[[Result], Sequence[str]] = _silent
     drawn: bool = True
     whole: str = "design"
-    given: "Kind | None" = None
+    pages_of_given: "Pages | None" = None
 
 
-def kind_of(result: Result) -> Kind:
-    """Return what is shown of a result: what its kind says, else what all kinds have."""
-    found = kind_named(result.scene)
-    return found.given if found.given and result.given else found
+def pages_of_result(result: Result) -> Pages:
+    """Pages of a result: those of its kind, else those that all kinds have."""
+    pages = pages_of(result.scene)
+    return pages.pages_of_given if pages.pages_of_given and result.given else pages
 
 
-def kind_named(name: str | None) -> Kind:
-    """Return what is shown of a kind of this name."""
+def pages_of(name: str | None) -> Pages:
+    """Sections, key figures and warnings of a kind."""
     known = name in {module.name for module in iter_modules(__path__)}
-    found: Kind = import_module(f"{__name__}.{name if known else 'generic'}").KIND
-    return found
+    pages: Pages = import_module(f"{__name__}.{name if known else 'generic'}").PAGES
+    return pages

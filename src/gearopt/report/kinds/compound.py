@@ -29,7 +29,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     return [replace(tile, remark="") if "achieved" in result.report else tile]
 
 
-def decides(result: Result) -> str:
+def binding_limit(result: Result) -> str:
     """Return what stands between the train and its ratio."""
     if not result.design:
         return ""
@@ -101,9 +101,9 @@ def _span(teeth: list[int], low: float, high: float) -> Span:
     return Span("{} to {} teeth".format(*teeth), low, high, (f"{low:.5g}", f"{high:.5g}"))
 
 
-KIND = replace(
-    generic.KIND,
-    sections=(*generic.FIRST, reach, gears, *generic.KIND.sections[len(generic.FIRST) + 1 :]),
+PAGES = replace(
+    generic.PAGES,
+    sections=(*generic.FIRST, reach, gears, *generic.PAGES.sections[len(generic.FIRST) + 1 :]),
     tiles=tiles,
-    decides=decides,
+    binding_limit=binding_limit,
 )

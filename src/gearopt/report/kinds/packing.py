@@ -26,7 +26,7 @@ from gearopt.report.drawing.solid import (
     upright,
 )
 from gearopt.report.drawing.still import Rod, Texts, sizes_of, still, view
-from gearopt.report.kinds import Kind
+from gearopt.report.kinds import Pages
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
 from gearopt.report.measures import Measures
 from gearopt.report.plots import Figure
@@ -122,7 +122,7 @@ def _name(sheet: Sheet, it: CylinderDesign, colour: str) -> None:
     sheet.label(it.name, inside or outside, "name", colour)
 
 
-def decides(result: Result) -> str:
+def binding_limit(result: Result) -> str:
     """Return how full the container is, and how many cylinders stand at its walls."""
     if not result.design:
         return ""
@@ -256,8 +256,8 @@ def _container(design: PackingDesign, sizes: Table, measures: Measures) -> Table
     return Table("container and layers", ("", ""), rows)
 
 
-KIND = Kind(
+PAGES = Pages(
     sections=(*FIRST, plans, solid, places, *ASKED, *LAST),
     terminal=(places, *TOLD),
-    decides=decides,
+    binding_limit=binding_limit,
 )

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from gearopt.optimise.result import Result
 from gearopt.report.answer import opening
-from gearopt.report.kinds import kind_of
+from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages.frame import render
 from gearopt.report.section import Section, Table
@@ -19,7 +19,7 @@ def sections(result: Result, measures: Measures = METRIC) -> list[Section]:
 
 def _each(result: Result, measures: Measures) -> Iterator[Section]:
     result = Result.from_dict(result.to_dict())  # plain numbers, as a file of it has them
-    made = (section(result, measures) for section in kind_of(result).sections)
+    made = (section(result, measures) for section in pages_of_result(result).sections)
     return (section for section in made if section is not None and section.heading)
 
 

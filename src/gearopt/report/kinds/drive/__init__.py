@@ -17,7 +17,7 @@ from gearopt.report.design_tables import (
 )
 from gearopt.report.drawing import layout_views, mesh_view, train_views
 from gearopt.report.drawing.bodies import layout_of
-from gearopt.report.kinds import Kind
+from gearopt.report.kinds import Pages
 from gearopt.report.kinds.drive import (
     impossible_layout,
     layout_solid,
@@ -85,7 +85,7 @@ def clearances(result: Result) -> set[str]:
     return {" to ".join(gap["between"]).replace(" ", "_") for gap in gaps}
 
 
-def decides(result: Result) -> str:
+def binding_limit(result: Result) -> str:
     """Return what decides the box of a layout; nothing without one, where limits say it."""
     if result.value is None or (found := layout_of(result)) is None:
         return ""
@@ -309,7 +309,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     return [*found, *rating_words.tiles(result, measures)]
 
 
-def beside(result: Result, measures: Measures) -> list[str]:
+def sentences_on_parts(result: Result, measures: Measures) -> list[str]:
     """Compare with other optima: real-valued sizes, or gears first and then the layout."""
     found = []
     if result.status == "infeasible" and "least_violation" in result.proof:
@@ -360,15 +360,15 @@ RATINGS = (
     *(rating_gears.gears, rating_tables.forces, rating_factors.factors),
     *(rating_gears.levels, mesh_view.section, rating_tables.teeth),
 )
-GIVEN = Kind(
+PAGES_OF_GIVEN = Pages(
     sections=(summary, *RATINGS[:2], *DRAWINGS, *RATINGS[2:], numbers, asked, assumptions),
     terminal=(rating_gears.gears, rating_factors.factors, rating_tables.forces),
     tiles=rating_words.tiles,
-    decides=rating_words.decides,
+    binding_limit=rating_words.binding_limit,
     figures=rating_words.figures,
     warns=rating_words.warns,
 )
-KIND = Kind(
+PAGES = Pages(
     sections=(
         *FIRST,
         impossible_layout.section,
@@ -392,10 +392,10 @@ KIND = Kind(
         *TOLD,
     ),
     tiles=tiles,
-    beside=beside,
+    sentences_on_parts=sentences_on_parts,
     elsewhere=clearances,
-    decides=decides,
+    binding_limit=binding_limit,
     warns=rating_words.warns,
     whole="drive",
-    given=GIVEN,
+    pages_of_given=PAGES_OF_GIVEN,
 )

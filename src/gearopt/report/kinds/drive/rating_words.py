@@ -30,7 +30,7 @@ def rating_of(result: Result) -> DriveRating | None:
     return found
 
 
-def decides(result: Result) -> str:
+def binding_limit(result: Result) -> str:
     """Return whether given gears are safe, and what governs."""
     found = rating_of(result)
     return _verdict(found) if found else ""

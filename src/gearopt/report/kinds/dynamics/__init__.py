@@ -12,7 +12,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.answer import assumptions, limits, progress, summary
 from gearopt.report.explained import remedies, sensitivities
-from gearopt.report.kinds import Kind
+from gearopt.report.kinds import Pages
 from gearopt.report.kinds.dynamics import plots
 from gearopt.report.kinds.generic import FIRST
 from gearopt.report.measures import Measures, rounded
@@ -57,7 +57,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     return [*made, Tile("highest natural frequency", fastest, "at the mean stiffness")]
 
 
-def decides(result: Result) -> str:
+def binding_limit(result: Result) -> str:
     """Return how far the mesh deforms."""
     if (found := design_of(result)) is None or found.chosen is not None:
         return ""
@@ -245,18 +245,18 @@ def rest(result: Result, measures: Measures) -> Section | None:
 
 
 SECTIONS = (chosen, motion, speeds, stability, rest)
-KIND = Kind(
+PAGES = Pages(
     sections=(*FIRST, *SECTIONS, limits, sensitivities, progress, assumptions),
     terminal=(rest, stability, motion, speeds, chosen, limits, sensitivities, remedies, summary),
     tiles=tiles,
-    decides=decides,
+    binding_limit=binding_limit,
     warns=warns,
     drawn=False,
-    given=Kind(
+    pages_of_given=Pages(
         sections=(summary, *SECTIONS, assumptions),
         terminal=(rest, stability, motion, speeds, summary),
         tiles=tiles,
-        decides=decides,
+        binding_limit=binding_limit,
         warns=warns,
         drawn=False,
     ),

@@ -9,7 +9,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.answer import asked, assumptions, limits, summary
 from gearopt.report.drawing import mesh_view, train_views
-from gearopt.report.kinds import Kind, drive
+from gearopt.report.kinds import Pages, drive
 from gearopt.report.kinds.drive import rating_words
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
 from gearopt.report.kinds.pair import relief as pair_relief
@@ -64,23 +64,23 @@ def _contact_tiles(
     ]
 
 
-def decides(result: Result) -> str:
+def binding_limit(result: Result) -> str:
     """Return how much one tooth carries and how evenly the pair runs."""
     if relief := relief_of(result):
-        return pair_relief.decides(relief)
+        return pair_relief.binding_limit(relief)
     if (found := contact_of(result)) is None or result.value is not None:
         return ""
     load = of_duty(found)
     force = amount(load.largest_tooth_force_N, "N", METRIC)
     error = amount(load.peak_to_peak_mm, "um", METRIC)
     words = f"one tooth carries up to {force}; the transmission error varies by {error}"
-    rated = rating_words.decides(result)
+    rated = rating_words.binding_limit(result)
     return f"{rated}; {words}" if rated else words
 
 
-def beside(result: Result, measures: Measures) -> list[str]:
+def sentences_on_parts(result: Result, measures: Measures) -> list[str]:
     """Return what whole teeth cost; nothing of a relief, whose part is the gears."""
-    return [] if relief_of(result) else drive.beside(result, measures)
+    return [] if relief_of(result) else drive.sentences_on_parts(result, measures)
 
 
 def warns(result: Result) -> Sequence[str]:
@@ -157,14 +157,14 @@ def numbers(result: Result, measures: Measures) -> Section | None:
 CONTACT = (relief, mesh, harmonics, contact)
 DRAWINGS = (teeth, in_space, train_views.section)
 RATINGS = tuple(make for make in drive.RATINGS if make is not mesh_view.section)  # mesh is better
-GIVEN = Kind(
+PAGES_OF_GIVEN = Pages(
     sections=(summary, *CONTACT, *DRAWINGS, *RATINGS, numbers, asked, assumptions),
-    terminal=(numbers, contact, relief, *drive.GIVEN.terminal, summary),
+    terminal=(numbers, contact, relief, *drive.PAGES_OF_GIVEN.terminal, summary),
     tiles=tiles,
-    decides=decides,
+    binding_limit=binding_limit,
     warns=warns,
 )
-KIND = Kind(
+PAGES = Pages(
     sections=(
         *FIRST,
         *CONTACT,
@@ -174,11 +174,11 @@ KIND = Kind(
         *ASKED,
         *LAST,
     ),
-    terminal=(numbers, limits, *drive.GIVEN.terminal, contact, relief, *TOLD),
+    terminal=(numbers, limits, *drive.PAGES_OF_GIVEN.terminal, contact, relief, *TOLD),
     tiles=tiles,
-    decides=decides,
-    beside=beside,
+    binding_limit=binding_limit,
+    sentences_on_parts=sentences_on_parts,
     warns=warns,
     whole="pair",
-    given=GIVEN,
+    pages_of_given=PAGES_OF_GIVEN,
 )

@@ -41,7 +41,7 @@ def tiles(found: PairRelief, measures: Measures) -> list[Tile]:
     ]
 
 
-def decides(found: PairRelief) -> str:
+def binding_limit(found: PairRelief) -> str:
     """Return what the relief is and what it gains."""
     first, second = (amount(f.amount_mm, "um", METRIC) for f in (found.pinion, found.wheel))
     none, best = found.rows[0], found.rows[-1]

@@ -5,7 +5,7 @@ from gearopt.optimise.result import Result
 from gearopt.report import answer, explained
 from gearopt.report.deciding import PROVEN
 from gearopt.report.drawing import impossible_views
-from gearopt.report.kinds import Kind, MakeSection
+from gearopt.report.kinds import MakeSection, Pages
 from gearopt.report.kinds.generic import ASKED, LAST, TOLD
 from gearopt.report.kinds.servo import accuracy as axis_accuracy
 from gearopt.report.kinds.servo import housing as axis_housing
@@ -20,7 +20,7 @@ OBJECTIVE_TIE = 1e-6  # relative: objectives that are equal
 FULL_TORQUE = "motor_torque"  # used up wherever an acceleration is largest
 
 
-def decides(result: Result) -> str:
+def binding_limit(result: Result) -> str:
     """Return what decides beside the limits: a box, or the inertias of motor and load."""
     design = design_of(result)
     if _costs(result):
@@ -102,7 +102,7 @@ def _answered(make: MakeSection) -> MakeSection:
     return made
 
 
-KIND = Kind(
+PAGES = Pages(
     whole="axis",
     sections=(
         answer.summary,
@@ -111,7 +111,7 @@ KIND = Kind(
         axis_motion.section,
         axis_trains.section,
         axis_housing.box,
-        axis_trains.beside,
+        axis_trains.compared_with_given,
         axis_trains.stage_counts,
         axis_trains.by_inertia,
         axis_trains.by_mass,
@@ -126,7 +126,7 @@ KIND = Kind(
         _answered(axis_motion.section),
         _answered(axis_trains.section),
         _answered(axis_trains.best),
-        _answered(axis_trains.beside),
+        _answered(axis_trains.compared_with_given),
         _answered(axis_trains.stage_counts),
         _answered(axis_accuracy.errors),
         _answered(axis_accuracy.tolerances),
@@ -137,5 +137,5 @@ KIND = Kind(
         *TOLD,
     ),
     tiles=tiles,
-    decides=decides,
+    binding_limit=binding_limit,
 )

@@ -77,7 +77,7 @@ def section(result: Result, measures: Measures) -> Section | None:
             f"dash-dotted. Dimensions in {measures.lengths}."
         )
     side_by_side = replace(stage_table(stages, measures, page_only=()), short={"": "train"})
-    compared = [row[0] for row in _beside(design, report_of(result), measures)]
+    compared = [row[0] for row in _given_rows(design, report_of(result), measures)]
     compared += [heading(key, measures) for key in _moved(design)]
     whole = Table("train", ("", ""), totals, csv_only=compared)
     tables = (side_by_side, replace(whole, folded=len(compared) >= len(totals)))
@@ -140,10 +140,10 @@ def _teeth(stages: Sequence[Teeth]) -> list[tuple[Any, ...]]:
     return [tuple(getattr(s, key) for key in STAGE) for s in stages]
 
 
-def beside(result: Result, measures: Measures) -> Section | None:
+def compared_with_given(result: Result, measures: Measures) -> Section | None:
     """Show chosen, given and real-valued bound side by side; None where no gears are given."""
     design, report = design_of(result), report_of(result)
-    given, rows = report.given_train, _beside(design, report, measures)
+    given, rows = report.given_train, _given_rows(design, report, measures)
     if given is None or not rows:
         return None
     teeth = f"Given: {teeth_words(given.stages, measures)}."
@@ -159,7 +159,7 @@ def beside(result: Result, measures: Measures) -> Section | None:
     return Section("The given train", words=words, tables=(table,), half=True, terminal=terminal)
 
 
-def _beside(design: ServoDesign, report: ServoReport, measures: Measures) -> list[list[Any]]:
+def _given_rows(design: ServoDesign, report: ServoReport, measures: Measures) -> list[list[Any]]:
     """Return a row for every figure; none where gears are given without being compared."""
     chosen, given, moved = design.train, report.given_train, _moved(design)
     if chosen is None or given is None or chosen.mass_kg is None:
@@ -207,7 +207,7 @@ def stage_counts(result: Result, measures: Measures) -> Section | None:
     single = [f"ratio {k}" for k in range(1, most + 1)]
     heads = ("stages", "minimum inertia", "at ratios", "minimum mass", *single)
     table = Table("stage counts", heads, rows, csv_only=single, read_only=("at ratios",))
-    half = bool(_beside(design, report, measures))
+    half = bool(_given_rows(design, report, measures))
     words = (BARE,)
     return Section(
         "Number of stages", words=words, tables=(table,), half=half, terminal=(table, BARE)

@@ -13,7 +13,7 @@ from gearopt.optimise.typed import typed
 from gearopt.report.answer import asked, assumptions, limits, summary
 from gearopt.report.deciding import of_limits
 from gearopt.report.drawing.sheet import series
-from gearopt.report.kinds import Kind
+from gearopt.report.kinds import Pages
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
 from gearopt.report.kinds.strain_wave import tables
 from gearopt.report.kinds.strain_wave.cutter import drawing, usual_scale
@@ -69,7 +69,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     ]
 
 
-def decides(result: Result) -> str:
+def binding_limit(result: Result) -> str:
     """Return what was reached: of a given gearing its loads, else its teeth and what decides."""
     if (found := design_of(result)) is None:
         return ""
@@ -271,17 +271,17 @@ def search(result: Result, measures: Measures) -> Section | None:
 
 
 OWN = (moving, cutter, shift, numbers)
-GIVEN = Kind(
+PAGES_OF_GIVEN = Pages(
     sections=(summary, *OWN, limits, asked, assumptions),
     terminal=(numbers, moving, cutter, limits, summary),
     tiles=tiles,
-    decides=decides,
+    binding_limit=binding_limit,
     warns=warns,
     whole="gearing",
 )
-KIND = replace(
-    GIVEN,
+PAGES = replace(
+    PAGES_OF_GIVEN,
     sections=(*FIRST, *OWN, *ASKED, search, *LAST),
     terminal=(numbers, moving, cutter, limits, *TOLD),
-    given=GIVEN,
+    pages_of_given=PAGES_OF_GIVEN,
 )
