@@ -11,7 +11,6 @@ import pytest
 from moving_pairs import oscillator, paper_pair, steady
 
 from gearopt.formulations.dynamics.motion.balance import linear_orbit
-from gearopt.formulations.dynamics.motion.exponential import exact_motion
 from gearopt.formulations.dynamics.motion.integrate import (
     ALPHA,
     ALPHAS,
@@ -20,6 +19,7 @@ from gearopt.formulations.dynamics.motion.integrate import (
     march,
 )
 from gearopt.formulations.dynamics.motion.numbers import numbers
+from gearopt.formulations.dynamics.motion.simulate import exact_motion
 from gearopt.formulations.dynamics.motion.stability import largest
 from gearopt.formulations.dynamics.motion.timeline import timeline
 from gearopt.optimise.kernels import kernel

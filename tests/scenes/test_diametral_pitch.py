@@ -10,7 +10,7 @@ from edits import edited, scene_of
 
 import gearopt
 from gearopt import SceneError
-from gearopt.formulations.drive.teeth.existence import possible
+from gearopt.formulations.drive.teeth.search import possible
 from gearopt.scenes.explaining.numbers import content, numbers
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.reading.module_series import SERIES, series_of, unverified

@@ -11,8 +11,8 @@ from campaigns import few
 
 from gearopt.formulations.drive import sizing, teeth
 from gearopt.formulations.drive.shares import OBJECTIVES
-from gearopt.formulations.drive.teeth.existence import possible
-from gearopt.formulations.drive.teeth.wide import narrowed
+from gearopt.formulations.drive.teeth.reach import narrowed
+from gearopt.formulations.drive.teeth.search import possible
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
@@ -109,7 +109,7 @@ def test_wide_ranges_are_searched_like_narrow_ones(number, monkeypatch):
     """Pinions left out for their cost change nothing: of random drives and their ten best."""
     train = some_drive(number, 2)
     expected = [run(teeth.problem(train, n))[1] for n in (1, 10)]
-    module = import_module("gearopt.formulations.drive.teeth.wide")
+    module = import_module("gearopt.formulations.drive.teeth.reach")
     monkeypatch.setattr(module, "PAIRS_AT_ONCE", 150)
     assert narrowed(train) != train
     for n, whole in zip((1, 10), expected, strict=True):

@@ -15,11 +15,10 @@ from small_drives import FACES, OBJECTIVES, drive
 from gearopt.formulations.drive.teeth import _in_order
 from gearopt.formulations.drive.teeth import later_stages as bounds
 from gearopt.formulations.drive.teeth import stage as staging
-from gearopt.formulations.drive.teeth.existence import any_train, possible
 from gearopt.formulations.drive.teeth.later_stages import bound
 from gearopt.formulations.drive.teeth.progress import TIE
 from gearopt.formulations.drive.teeth.reach import first_cut, reach
-from gearopt.formulations.drive.teeth.search import search, within
+from gearopt.formulations.drive.teeth.search import any_train, possible, search, within
 from gearopt.formulations.drive.teeth.tables import table
 from gearopt.optimise.result import Budget
 

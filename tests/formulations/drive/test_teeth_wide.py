@@ -20,7 +20,7 @@ from gearopt.optimise.solve import method_of
 
 F = Fraction
 FEW = 3000
-wide = import_module("gearopt.formulations.drive.teeth.wide")
+wide = import_module("gearopt.formulations.drive.teeth.reach")
 
 
 def wide_drive():

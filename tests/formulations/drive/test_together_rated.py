@@ -13,9 +13,8 @@ from rated_drives import TREATMENTS, agma, some_iso, some_rated_drive
 from gearopt.formulations.drive import layout, teeth, together
 from gearopt.formulations.drive.layout.gearbox import Clearances, Gearbox, Shaft
 from gearopt.formulations.drive.layout.slabs import arrangements, clashes
-from gearopt.formulations.drive.together import rated_widths
-from gearopt.formulations.drive.together.rated_widths import CELL_WIDTHS, narrower
-from gearopt.formulations.drive.together.search import Search
+from gearopt.formulations.drive.together import search as together_search
+from gearopt.formulations.drive.together.search import CELL_WIDTHS, Search, narrower
 from gearopt.formulations.drive.together.tables import numbers
 from gearopt.formulations.strength.rated import Option
 from gearopt.optimise.clock import Clock
@@ -166,7 +165,7 @@ def test_widths_of_cells_are_below_those_of_every_torque(standard, monkeypatch):
                 bound = drive.bisected[row, module]
                 assert bound <= width * (1.0 + 1e-9)
     assert np.isfinite(drive.bisected).any()
-    monkeypatch.setattr(rated_widths, "ENTRIES", drive.bisected.size - 1)
+    monkeypatch.setattr(together_search, "ENTRIES", drive.bisected.size - 1)
     assert narrower(search.tables, drive, drive.step, lambda: True) is drive  # too many
 
 

@@ -7,8 +7,7 @@ import pytest
 from relief_pairs import COUPLING, mesh
 from scipy.optimize import linprog
 
-from gearopt.formulations.pair.relief.free_form import Profile, Shape, free_problem
-from gearopt.formulations.pair.relief.free_search import Program
+from gearopt.formulations.pair.relief.free_form import Profile, Program, Shape, free_problem
 from gearopt.formulations.pair.relief.parametric import Ranges, problem
 from gearopt.optimise.solve import solve
 from gearopt.physics.load_sharing import share

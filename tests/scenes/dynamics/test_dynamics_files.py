@@ -12,8 +12,7 @@ import pytest
 import gearopt
 from gearopt.cli.app import exit_code
 from gearopt.errors import SceneError, SolveError
-from gearopt.formulations.dynamics.parts import jammed, own_depth, scaled
-from gearopt.formulations.dynamics.teeth_wave import nearest_load, of_contact
+from gearopt.formulations.dynamics.parts import jammed, nearest_load, of_contact, own_depth, scaled
 from gearopt.optimise.kernels import COMPILING
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor
 from gearopt.physics.motion.stiffness_wave import fourier, trapezoid

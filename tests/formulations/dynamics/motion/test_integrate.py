@@ -7,7 +7,6 @@ import pytest
 from moving_pairs import paper_pair
 from scipy import integrate
 
-from gearopt.formulations.dynamics.motion.exponential import exact_motion, piecewise_linear
 from gearopt.formulations.dynamics.motion.integrate import (
     MARCH,
     composition,
@@ -15,7 +14,7 @@ from gearopt.formulations.dynamics.motion.integrate import (
 )
 from gearopt.formulations.dynamics.motion.numbers import deformation, numbers
 from gearopt.formulations.dynamics.motion.reference import cvodes, scipy_motion
-from gearopt.formulations.dynamics.motion.simulate import simulate
+from gearopt.formulations.dynamics.motion.simulate import exact_motion, piecewise_linear, simulate
 from gearopt.formulations.dynamics.motion.timeline import timeline
 from gearopt.optimise.kernels import kernel
 from gearopt.physics.motion.accelerations import LEVELS

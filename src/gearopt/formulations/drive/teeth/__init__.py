@@ -17,9 +17,9 @@ from gearopt.formulations.drive import sizing_text
 from gearopt.formulations.drive.shares import share
 from gearopt.formulations.drive.teeth.front import fronts
 from gearopt.formulations.drive.teeth.progress import MARGIN, TIE, Progress, Teeth
+from gearopt.formulations.drive.teeth.reach import narrowed, trimmed
 from gearopt.formulations.drive.teeth.search import BEAM, search
 from gearopt.formulations.drive.teeth.tables import table
-from gearopt.formulations.drive.teeth.wide import narrowed, trimmed
 from gearopt.formulations.drive.train import Stage, Train, terms
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.pareto.posed import caps

@@ -2,17 +2,20 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gearopt.formulations.drive.shares import LENGTHS, least_share, share
 from gearopt.formulations.drive.teeth.columns import spans
+from gearopt.formulations.drive.teeth.progress import MARGIN
 from gearopt.formulations.drive.teeth.rated import RatedTable
 from gearopt.formulations.drive.teeth.tables import stage_tables
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.terms import Array
-from gearopt.physics.gears import GearPair
+from gearopt.physics.gears import GearPair, reference_diameter
 
 
 def largest_ratio(train: Train) -> Fraction:
@@ -75,3 +78,48 @@ def _least_size(train: Train, k: int, ratios: Array) -> Array:
     z = float(stage.pinion_teeth[0])
     unit = stage.toothing.of_diameter(stage.toothing.cosine / z, z, 1.0, ratios, 1.0)
     return train.law.load(unit, train.torque, train.speed, stage.allowable)
+
+
+PAIRS_AT_ONCE = 200_000  # tooth pairs of a stage that are searched at once
+
+
+def narrowed(train: Train) -> Train:
+    """Return the drive with its smallest pinions, no stage of more than PAIRS_AT_ONCE pairs.
+
+    A pinion alone may have more. The drive itself where its ranges are not wide.
+    """
+    stages = []
+    for k, stage in enumerate(train.stages):
+        low, _ = stage.pinion_teeth
+        found = spans(train, k, first_cut(train))
+        pairs = np.cumsum([stop - start + 1 for _, start, stop in found])
+        few = int(np.searchsorted(pairs, PAIRS_AT_ONCE, side="right"))
+        stages.append(replace(stage, pinion_teeth=(low, low + max(few - 1, 0))))
+    return replace(train, stages=tuple(stages))
+
+
+def trimmed(train: Train, maximum: float) -> Train:
+    """Return the drive without pinions whose stage alone costs more than `maximum`.
+
+    Exact: of a train of at most that objective nothing is left out.
+    """
+    stages = []
+    for k, stage in enumerate(train.stages):
+        low, high = stage.pinion_teeth
+        assert high is not None
+        teeth = np.arange(low, high + 1)
+        useful = np.flatnonzero(_least(train, k, teeth) <= maximum * (1.0 + MARGIN))
+        stages.append(replace(stage, pinion_teeth=(low, low + int(useful.max(initial=0)))))
+    return replace(train, stages=tuple(stages))
+
+
+def _least(train: Train, k: int, teeth: NDArray[np.int64]) -> Array:
+    """Return the minimum share (n,) of a stage (counted from 0) with pinions of so many teeth."""
+    stage = train.stages[k]
+    module, face = float(stage.modules[0]), stage.face_width
+    d = reference_diameter(module, teeth, stage.toothing.helix_angle)
+    width = float(face.low) * d if face.fixed is None else np.full(len(d), float(face.fixed))
+    pair = train.pair(k, module, teeth, teeth * float(stage.ratio[0]), width)
+    options = range(max(1, len(stage.options)))
+    shares = [least_share(train, k, pair, option=o) for o in options]
+    return np.asarray(np.minimum.reduce(shares))

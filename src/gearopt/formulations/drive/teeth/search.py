@@ -15,6 +15,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from gearopt.errors import SolveError
 from gearopt.formulations.drive.teeth.later_stages import (
     SLICE,
     Bound,
@@ -31,7 +32,7 @@ from gearopt.formulations.drive.teeth.tables import stage_tables, thinned
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.best_first import best_first
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.result import Budget, Watch
+from gearopt.optimise.result import Budget, Event, Watch
 from gearopt.optimise.terms import Array
 
 BEAM = 4  # nodes followed down at once; measured best for two to four stages
@@ -399,3 +400,35 @@ def within(train: Train, teeth: Teeth) -> bool:
         low.numerator * pinions <= wheels * low.denominator
         and wheels * high.denominator <= high.numerator * pinions
     )
+
+
+def possible(
+    train: Train, seconds: float, watch: Watch | None, shelf: list[RatedTable] | None = None
+) -> bool | None:
+    """Return whether any train meets all limits; None where that is not known in time.
+
+    shelf: as of `search`.
+    """
+    found = any_train(train, seconds, watch, shelf)
+    return found if found is None else bool(found)
+
+
+def any_train(
+    train: Train, seconds: float, watch: Watch | None, shelf: list[RatedTable] | None = None
+) -> Teeth | None:
+    """Return the teeth of a train that meets all limits, () if there is none; None: not known.
+
+    shelf: as of `search`.
+    """
+
+    def first(event: Event) -> bool:
+        wanted = watch is None or watch(event) is not False
+        return event.best is None and wanted  # one train is enough
+
+    try:
+        progress = search(train, 1, Budget(seconds=seconds), first, shelf=shelf)
+    except SolveError:  # too many pairs to examine
+        return None
+    if progress.found:
+        return progress.found[0][1]
+    return None if progress.clock.stopped else ()

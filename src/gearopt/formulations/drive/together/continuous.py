@@ -39,7 +39,7 @@ Facing = list[tuple[int, int, Body, Body]]
 def continuous(
     train: Train, make: Make, slabs: Slabs, start: tuple[tuple[GearPair, ...], tuple[float, ...]]
 ) -> Problem:
-    """Variables: those of `sizing_text`, angle [rad], left, bottom, width, height and the slabs' widths.
+    """Variables: of `sizing_text`, angle [rad], left, bottom, width, height and the slabs' widths.
 
     start: gear pairs and link angles. SolveError for keep-outs with a range along the shafts.
     """

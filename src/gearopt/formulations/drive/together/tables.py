@@ -278,7 +278,7 @@ def _stages(train: Train, tables: list[Table]) -> tuple[Array, ...]:
 def _loads(train: Train, tables: list[Table]) -> tuple[Array, Array, Index, Index, float]:
     """Return the loads of all pairs, or minimum widths by cells of torque (up to ENTRIES).
 
-    Of ratings these are the narrowest widths, in one cell: `rated_widths` makes others of them.
+    Of ratings these are the narrowest widths, in one cell: `search.narrower` makes others of them.
     """
     loads = [t.load for t in tables if t.load is not None]
     span = math.log(train.highest_ratio) + 2.0 * DELTA

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from gearopt.formulations.drive import sizing
-from gearopt.formulations.drive.teeth.existence import any_train, possible
 from gearopt.formulations.drive.teeth.progress import Teeth
 from gearopt.formulations.drive.teeth.rated import RatedTable
-from gearopt.formulations.drive.teeth.wide import narrowed
+from gearopt.formulations.drive.teeth.reach import narrowed
+from gearopt.formulations.drive.teeth.search import any_train, possible
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import THERE
