@@ -152,7 +152,7 @@ FORMULAS = (
         "C_H",
         "1 + A (u - 1); 1 + B (450 - HB) with a hardened pinion",
         "2001-D04, 14",
-        "`hardness`",
+        "`factors.hardness_ratio_factor`",
     ),
     (
         "C_p",

@@ -5,9 +5,8 @@ from agma import grid
 from agma_cases import digits, printed
 
 from gearopt.physics.iso6336.factors import CLAUSES
-from gearopt.physics.iso6336.materials import MATERIALS
+from gearopt.physics.iso6336.materials import LINES, MATERIALS
 from gearopt.physics.iso6336.refusals import SENTENCES
-from gearopt.physics.iso6336.strength_table import LINES
 
 HEAD = """\
 # Rating by ISO 6336

@@ -11,8 +11,7 @@ import gearopt
 from gearopt.formulations.drive.rating import DriveRating
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
-from gearopt.physics.iso6336.materials import CORES, QUALITIES, SURFACE_HARDENED
-from gearopt.physics.iso6336.strength_table import LINES
+from gearopt.physics.iso6336.materials import CORES, LINES, QUALITIES, SURFACE_HARDENED
 from gearopt.physics.mesh_loss import FRICTION_ERROR
 from gearopt.physics.shaft_forces import OTHER
 from gearopt.report.terminal import show

@@ -10,10 +10,9 @@ from gearopt.physics.geometry.contact import contact_path, usable_path
 from gearopt.physics.geometry.fillet import form_diameter, profile
 from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.geometry.tooth import tip_thickness
-from gearopt.physics.tooth.beam import tabulated
 from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.physics.tooth.finite_elements import fineness_of, pair_compliance
-from gearopt.physics.tooth.ladder import LEVELS, USUAL
+from gearopt.physics.tooth.ladder import LEVELS, USUAL, tabulated
 from gearopt.physics.tooth.mesh import gear_mesh
 from gearopt.physics.tooth.validity import cheapest, doubts, unsupported
 

@@ -17,8 +17,8 @@ from gearopt.formulations.dynamics.motion.integrate import (
     STEPPERS,
     generalised,
     march,
+    numbers,
 )
-from gearopt.formulations.dynamics.motion.numbers import numbers
 from gearopt.formulations.dynamics.motion.simulate import exact_motion
 from gearopt.formulations.dynamics.motion.stability import largest
 from gearopt.formulations.dynamics.motion.timeline import timeline

@@ -10,7 +10,7 @@ import pytest
 
 import gearopt
 from gearopt.errors import SceneError
-from gearopt.formulations.strain_wave.duty import Duty, equal_pressure, loads_at, shared_pressure
+from gearopt.formulations.strain_wave.demand import Duty, equal_pressure, loads_at, shared_pressure
 from gearopt.physics.strain_wave.clearance import interference
 from gearopt.physics.strain_wave.conjugate import contact, flank
 from gearopt.physics.strain_wave.cutter import blank_profile, envelope

@@ -12,9 +12,8 @@ from gearopt.bench import timed
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.tooth import finite_elements
-from gearopt.physics.tooth.beam import tabulated
 from gearopt.physics.tooth.elastic import PLANES, ElasticPair
-from gearopt.physics.tooth.ladder import LEVELS, Level
+from gearopt.physics.tooth.ladder import LEVELS, Level, tabulated
 from gearopt.physics.tooth.trapezoid import trapezoid
 from gearopt.physics.tooth.validity import unsupported, usual_plane
 

@@ -8,8 +8,7 @@ import math
 from typing import Any
 
 from gearopt.formulations.strain_wave import sampled
-from gearopt.formulations.strain_wave.demand import FREE, Demand
-from gearopt.formulations.strain_wave.duty import Duty
+from gearopt.formulations.strain_wave.demand import FREE, Demand, Duty
 from gearopt.formulations.strain_wave.exchange import exchange
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.pareto.evolution import front

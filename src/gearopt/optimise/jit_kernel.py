@@ -32,7 +32,10 @@ class _Files(IndexDataCacheFile):  # type: ignore[misc, unused-ignore]
     """The index of a kernel and its machine code, with checksums; an interface of numba."""
 
     def _load_index(self) -> Any:
-        return super()._load_index() if sound(self._index_path) else {}
+        try:
+            return super()._load_index() if sound(self._index_path) else {}
+        except (ImportError, AttributeError):  # it names classes that have moved since
+            return {}
 
     def _load_data(self, name: str) -> Any:
         if not sound(self._data_path(name)):

@@ -9,7 +9,7 @@ import pytest
 from servo_trains import PAPER
 from uncompiled import uncompiled
 
-from gearopt.formulations.servo import choice, choice_search, servo_box, split
+from gearopt.formulations.servo import choice, servo_box, split
 from gearopt.formulations.servo.choice import Choice, Springs, train_problem
 from gearopt.formulations.servo.ratio import Drive, ServoDuty
 from gearopt.formulations.servo.servo_box import Room, ServoBox, first_that_fits, of_train
@@ -94,9 +94,7 @@ def compared(seeds):
         assert found.status == "optimal", (seed, found.message)
         assert found.value == pytest.approx(factor * best, rel=1e-12), seed
         answered += 1
-        given = choice_search.best_kept(
-            train, goal, chosen.kept, math.inf, Clock(Budget()), some=True
-        )
+        given = choice.best_kept(train, goal, chosen.kept, math.inf, Clock(Budget()), some=True)
         assert chosen.keeps(given)
     return answered, impossible
 
@@ -136,11 +134,11 @@ def test_a_search_stops_when_told_and_pauses_change_nothing(monkeypatch):
     train = posed(rng)
     points = split.feasible(train)
     chosen = Choice(train, "mass", *asked(train, points, rng))
-    whole = choice_search.best_kept(train, "mass", chosen.kept, 1e-3, Clock(Budget()))
-    monkeypatch.setattr(choice_search, "KERNEL_STEPS", (1, 1))
+    whole = choice.best_kept(train, "mass", chosen.kept, 1e-3, Clock(Budget()))
+    monkeypatch.setattr(choice, "KERNEL_STEPS", (1, 1))
     seen = []
     clock = Clock(Budget(), lambda event: seen.append(event) or True)
-    assert np.array_equal(choice_search.best_kept(train, "mass", chosen.kept, 1e-3, clock), whole)
+    assert np.array_equal(choice.best_kept(train, "mass", chosen.kept, 1e-3, clock), whole)
     assert len(seen) > 100
     with pytest.raises(TimeoutError):
-        choice_search.best_kept(train, "mass", chosen.kept, 1e-3, Clock(Budget(seconds=0.0)))
+        choice.best_kept(train, "mass", chosen.kept, 1e-3, Clock(Budget(seconds=0.0)))

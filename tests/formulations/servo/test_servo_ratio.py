@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from gearopt.formulations.servo.ratio import Drive, acceleration, best_ratio, move, swing
-from gearopt.formulations.servo.ratio.secant_bound import convex_bound
+from gearopt.formulations.servo.ratio.acceleration import convex_bound
 from gearopt.formulations.servo.split import core, staged
 from gearopt.optimise import tape
 from gearopt.optimise.solve import solve

@@ -17,7 +17,6 @@ from gearopt.formulations.servo.split import (
     feasible,
     first_ratio,
     lightest_stage_ratio,
-    order,
     problem,
     relaxation,
     stage_counts,
@@ -292,8 +291,8 @@ def test_looks_at_the_clock_change_nothing(goal, method, monkeypatch):
     train = replace(PAPER, pinion_teeth=(16, 22), modules=PAPER.modules[2:4])
     whole, listed = solve(problem(train, goal), method), feasible(train, goal)
     monkeypatch.setattr(teeth, "KERNEL_STEPS", (1, 1))
-    monkeypatch.setattr(order, "KERNEL_STEPS", 1)
-    monkeypatch.setattr(order, "FIRST_NOTES", 1)
+    monkeypatch.setattr(teeth, "LISTING_STEPS", 1)
+    monkeypatch.setattr(teeth, "FIRST_NOTES", 1)
     seen, checks = [], []
     parts = solve(problem(train, goal), method, watch=lambda event: seen.append(event) or True)
     assert parts.to_dict() | {"seconds": 0} == whole.to_dict() | {"seconds": 0}

@@ -8,9 +8,8 @@ import pytest
 
 from gearopt.bench.wave_design import DEMAND, STARTS
 from gearopt.formulations.strain_wave import sampled
-from gearopt.formulations.strain_wave.box_bounds import RISE, least_used, proof
 from gearopt.formulations.strain_wave.demand import FREE
-from gearopt.formulations.strain_wave.exchange import exchange
+from gearopt.formulations.strain_wave.exchange import RISE, exchange, least_used, proof
 from gearopt.formulations.strain_wave.impossible import least_factor, nearest, told
 from gearopt.optimise.clock import Clock
 from gearopt.physics.strain_wave.gearing import WAVES, StrainWave

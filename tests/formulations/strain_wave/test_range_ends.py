@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from gearopt.formulations.strain_wave.demand import FREE
-from gearopt.formulations.strain_wave.exchange import exchange
-from gearopt.formulations.strain_wave.range_ends import WIDER, ends_of, slopes_of
+from gearopt.formulations.strain_wave.exchange import WIDER, ends_of, exchange, slopes_of
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.solve import solve

@@ -8,9 +8,14 @@ import pytest
 from gearopt.bench.wave_design import DEMAND, STARTS
 from gearopt.errors import SolveError
 from gearopt.formulations.strain_wave import sampled
-from gearopt.formulations.strain_wave.demand import FREE, limits, squares
+from gearopt.formulations.strain_wave.demand import (
+    FREE,
+    equal_pressure,
+    limits,
+    shared_pressure,
+    squares,
+)
 from gearopt.formulations.strain_wave.design import Passage, problem, variables
-from gearopt.formulations.strain_wave.duty import equal_pressure, shared_pressure
 from gearopt.formulations.strain_wave.exchange import design_of, exchange, stretched
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.compare import compare

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from gearopt.formulations.strain_wave.duty import (
+from gearopt.formulations.strain_wave.demand import (
     Duty,
     equal_pressure,
     loads_at,

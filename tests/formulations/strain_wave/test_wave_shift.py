@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearopt.formulations.strain_wave.duty import Duty, equal_pressure
+from gearopt.formulations.strain_wave.demand import Duty, equal_pressure
 from gearopt.formulations.strain_wave.shift import (
     largest_addendum,
     last_shift_of_one_pair,

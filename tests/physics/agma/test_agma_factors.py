@@ -16,6 +16,7 @@ from gearopt.physics.agma.factors import (
     alignment_factor,
     dynamic_factor,
     elastic_coefficient,
+    hardness_ratio_factor,
     highest_speed,
     lewis_form,
     load_distribution_factor,
@@ -25,9 +26,9 @@ from gearopt.physics.agma.factors import (
     rim_factor,
     rim_factor_b88,
     size_factor,
+    surface_hardened_factor,
     temperature_factor,
 )
-from gearopt.physics.agma.hardness import hardness_ratio_factor, surface_hardened_factor
 from gearopt.physics.agma.life import bending_curve, pitting_curve
 from gearopt.physics.agma.stress import (
     bending_safety,

@@ -7,9 +7,8 @@ import pytest
 from moving_pairs import paper_pair
 
 from gearopt.formulations.dynamics.motion.stability import largest
-from gearopt.physics.motion.linear import linear, mesh_shares, modes, with_modal_damping
+from gearopt.physics.motion.linear import linear, mesh_shares, modes, tongues, with_modal_damping
 from gearopt.physics.motion.stiffness_wave import of_contact_ratio, trapezoid
-from gearopt.physics.motion.tongues import tongues
 
 WAVE = trapezoid(2e5, 0.2, 0.68)
 CASES = {  # bearings [N/mm], mode (from 1), harmonic: predicted, found half width and damping

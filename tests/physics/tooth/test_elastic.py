@@ -9,10 +9,9 @@ from reference_pairs import elastic, force
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.fillet import form_diameter, profile
 from gearopt.physics.geometry.tooth import tip_thickness
-from gearopt.physics.tooth.beam import tabulated
 from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.physics.tooth.foundation import torsion_compliance
-from gearopt.physics.tooth.ladder import COUPLINGS, LEVELS
+from gearopt.physics.tooth.ladder import COUPLINGS, LEVELS, tabulated
 
 
 def test_geometry_of_the_reference_pair_as_another_program_has_it():

@@ -10,7 +10,6 @@ from test_ladder import ELEMENTS
 
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.tooth import finite_elements
-from gearopt.physics.tooth.beam import profile_compliance
 from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.physics.tooth.finite_elements import (
     compliance_matrix,
@@ -20,7 +19,7 @@ from gearopt.physics.tooth.finite_elements import (
 )
 from gearopt.physics.tooth.foundation import sainsot_compliance, torsion_compliance
 from gearopt.physics.tooth.hertz import half_width
-from gearopt.physics.tooth.ladder import COUPLINGS
+from gearopt.physics.tooth.ladder import COUPLINGS, profile_compliance
 from gearopt.physics.tooth.mesh import Fineness, gear_mesh, joined, ring_block
 
 INNER, OUTER = 15.0, 33.75  # mm, of the pinion's ring

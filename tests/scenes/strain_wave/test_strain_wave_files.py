@@ -7,9 +7,8 @@ import pytest
 
 import gearopt
 from gearopt.errors import SceneError, SolveError
-from gearopt.formulations.strain_wave.duty import equal_pressure, loads_at, pressures
-from gearopt.formulations.strain_wave.exchange import design_of
-from gearopt.formulations.strain_wave.range_ends import RangeEnd
+from gearopt.formulations.strain_wave.demand import equal_pressure, loads_at, pressures
+from gearopt.formulations.strain_wave.exchange import RangeEnd, design_of
 from gearopt.formulations.strain_wave.report import Deflected, WaveDesign, used
 from gearopt.optimise.typed import typed
 from gearopt.report.kinds.strain_wave.tables import loads

@@ -27,10 +27,17 @@ from gearopt.formulations.pair.contact import ContactLoad, PairContact
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.kinematics import growth
-from gearopt.physics.motion.linear import Linear, Static, linear, mesh_shares, modes, static
+from gearopt.physics.motion.linear import (
+    Linear,
+    Static,
+    linear,
+    mesh_shares,
+    modes,
+    static,
+    tongues,
+)
 from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.physics.motion.stiffness_wave import Wave
-from gearopt.physics.motion.tongues import tongues
 
 MILLI = 1e3  # ms of a s
 Grid = tuple[float, float, int]  # ends and how many, equally far apart

@@ -260,7 +260,7 @@ def best_of_row(s, goal, kept, work, i, z1, z2, j, z3):
 
 @entry
 def best_kept(s, goal, kept, work, most):
-    """Find the best train between ends, for a slice of `most` steps; see `choice_search`.
+    """Find the best train between ends, for a slice of `most` steps; see `choice`.
 
     Returns the first stages and trains looked at, and whether a box is undecided.
     """

@@ -11,17 +11,19 @@ from typing import Annotated, Any, TypeVar
 import numpy as np
 
 from gearopt.formulations.strain_wave.cutter_report import Cutter, CutterDesign, cutter_of
-from gearopt.formulations.strain_wave.demand import Demand, limits, rim_of, slipping
-from gearopt.formulations.strain_wave.design import COUNT
-from gearopt.formulations.strain_wave.duty import (
+from gearopt.formulations.strain_wave.demand import (
+    Demand,
     Duty,
     equal_pressure,
+    limits,
     loads_turned,
     pressures,
+    rim_of,
     shared_pressure,
+    slipping,
 )
-from gearopt.formulations.strain_wave.exchange import CUTTING, STEP_DEG, stretched
-from gearopt.formulations.strain_wave.range_ends import RangeEnd
+from gearopt.formulations.strain_wave.design import COUNT
+from gearopt.formulations.strain_wave.exchange import CUTTING, STEP_DEG, RangeEnd, stretched
 from gearopt.formulations.strain_wave.sharing import REACH, Loads
 from gearopt.formulations.strain_wave.shift import (
     largest_addendum,

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearopt.formulations.strain_wave.duty import Duty, equal_pressure, shared_pressure
+from gearopt.formulations.strain_wave.demand import Duty, equal_pressure, shared_pressure
 from gearopt.physics.strain_wave.clearance import interference, interferes
 from gearopt.physics.strain_wave.conjugate import Flank, flank
 from gearopt.physics.strain_wave.gearing import StrainWave

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.strain_wave.cutter_report import Cutter, cutter_of
-from gearopt.formulations.strain_wave.demand import Demand, common_limits
-from gearopt.formulations.strain_wave.duty import SHIFTS, Duty
+from gearopt.formulations.strain_wave.demand import SHIFTS, Demand, Duty, common_limits
 from gearopt.formulations.strain_wave.exchange import STEP_DEG
 from gearopt.formulations.strain_wave.report import (
     ROWS,

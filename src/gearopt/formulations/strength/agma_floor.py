@@ -13,7 +13,7 @@ import numpy as np
 
 from gearopt.formulations.strength.rated import MODES, Box
 from gearopt.optimise.terms import Array
-from gearopt.physics.agma import factors, hardness
+from gearopt.physics.agma import factors
 from gearopt.physics.agma.batch import safeties
 from gearopt.physics.agma.bending import (
     bending_factor,
@@ -209,12 +209,12 @@ def _hard(case: Any, ratio: tuple[float, float]) -> Monomial:
     if "C_H" in case.given or plain:
         return Monomial(1.0, 0.0)
     if pinion.kind in SURFACE_HARD_KINDS:
-        return Monomial(float(hardness.surface_hardened_factor(pinion.finish, wheel.hardness)), 0.0)
+        return Monomial(float(factors.surface_hardened_factor(pinion.finish, wheel.hardness)), 0.0)
 
     def law(u: Any) -> Any:
-        return hardness.hardness_ratio_factor(pinion.hardness, wheel.hardness, u)
+        return factors.hardness_ratio_factor(pinion.hardness, wheel.hardness, u)
 
-    return _chord(law, *ratio, ratio[1] <= hardness.LARGEST_RATIO)
+    return _chord(law, *ratio, ratio[1] <= factors.LARGEST_RATIO)
 
 
 def _geometry(standard: Any, box: Box, choice: str) -> tuple[Any, tuple[Line, Line], Any]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.physics.agma import factors, hardness, stress
+from gearopt.physics.agma import factors, stress
 from gearopt.physics.agma.rating_factors import (
     SURFACE_HARD_KINDS,
     Case,
@@ -190,5 +190,5 @@ def _hardness_ratio(case: Case) -> Any:
     if wheel.kind != "through-hardened" or unknown_hardness(pinion) or unknown_hardness(wheel):
         return 1.0
     if pinion.kind in SURFACE_HARD_KINDS:
-        return hardness.surface_hardened_factor(pinion.finish, wheel.hardness)
-    return hardness.hardness_ratio_factor(pinion.hardness, wheel.hardness, case.pair.ratio)
+        return factors.surface_hardened_factor(pinion.finish, wheel.hardness)
+    return factors.hardness_ratio_factor(pinion.hardness, wheel.hardness, case.pair.ratio)

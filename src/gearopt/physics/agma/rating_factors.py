@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from gearopt.physics.agma import allowables, factors, hardness, life
+from gearopt.physics.agma import allowables, factors, life
 from gearopt.physics.agma.refusals import GeometryFactors, single_factors
 from gearopt.physics.gears import GearPair
 from gearopt.physics.rating import Factor, Operation
@@ -262,12 +262,12 @@ def _hardness_ratio(case: Case) -> Factor:
     if unknown_hardness(pinion) or unknown_hardness(wheel):
         return Factor("C_H", (1.0, 1.0), clause, remark="1: no hardness")
     if pinion.kind in SURFACE_HARD_KINDS:
-        value = hardness.surface_hardened_factor(pinion.finish, wheel.hardness)
-        low, high = hardness.WHEELS
+        value = factors.surface_hardened_factor(pinion.finish, wheel.hardness)
+        low, high = factors.WHEELS
         remark = "" if low <= wheel.hardness <= high else f"wheels of {low:g} to {high:g} HB"
     else:
-        ratio, most = float(case.pair.ratio), hardness.LARGEST_RATIO
-        value = hardness.hardness_ratio_factor(pinion.hardness, wheel.hardness, ratio)
+        ratio, most = float(case.pair.ratio), factors.LARGEST_RATIO
+        value = factors.hardness_ratio_factor(pinion.hardness, wheel.hardness, ratio)
         if ratio > most and value > 1.0:
             remark = f"that of a ratio of {most:g}, where the chart ends"
     return Factor("C_H", (1.0, float(value)), clause, "", not remark, remark)

@@ -6,10 +6,15 @@ from typing import Any
 from pydantic import ValidationError
 
 from gearopt.formulations.dynamics.design import Chosen
-from gearopt.formulations.dynamics.orbit.chosen import chosen
 from gearopt.formulations.dynamics.orbit.climbing import JUDGE_MARGIN, begun, posed
 from gearopt.formulations.dynamics.orbit.impossible import impossible, limited
-from gearopt.formulations.dynamics.orbit.least_vibration import Exchanged, exchange, least, methods
+from gearopt.formulations.dynamics.orbit.least_vibration import (
+    Exchanged,
+    chosen,
+    exchange,
+    least,
+    methods,
+)
 from gearopt.formulations.dynamics.orbit.task import MICRO, VARIABLES, Task
 from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.explaining.explain import THERE

@@ -1,6 +1,6 @@
 """Numbers of a servo file that alone make a train possible, and how stiff or small one can be.
 
-Every change is read by the rules of the file and searched by the kernel of `choice_search`, which
+Every change is read by the rules of the file and searched by the kernel of `choice`, which
 proves that there is no train or shows one; a number that helps is moved as little as that takes.
 """
 
@@ -12,8 +12,7 @@ from fractions import Fraction
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations.servo.choice import Springs, train_problem
-from gearopt.formulations.servo.choice_search import best_kept
+from gearopt.formulations.servo.choice import Springs, best_kept, train_problem
 from gearopt.formulations.servo.impossible import WIDER
 from gearopt.formulations.servo.split.servo_train import pairs
 from gearopt.optimise.clock import Clock

@@ -9,9 +9,15 @@ from typing import Any
 from gearopt.errors import SolveError
 from gearopt.formulations.strain_wave import sampled
 from gearopt.formulations.strain_wave.demand import FREE, PRESSURE, VOLUME
-from gearopt.formulations.strain_wave.exchange import CUTTING, Exchanged, design_of, exchange
+from gearopt.formulations.strain_wave.exchange import (
+    CUTTING,
+    Exchanged,
+    design_of,
+    ends_of,
+    exchange,
+    slopes_of,
+)
 from gearopt.formulations.strain_wave.impossible import told
-from gearopt.formulations.strain_wave.range_ends import ends_of, slopes_of
 from gearopt.formulations.strain_wave.report import (
     RoundRow,
     WaveDesign,

@@ -11,8 +11,7 @@ from gearopt.formulations.strain_wave.demand import (
     UNITS,
     Demand,
 )
-from gearopt.formulations.strain_wave.exchange import CUTTING
-from gearopt.formulations.strain_wave.range_ends import WIDER, RangeEnd
+from gearopt.formulations.strain_wave.exchange import CUTTING, WIDER, RangeEnd
 from gearopt.formulations.strain_wave.report import INVOLUTE, WaveDesign
 from gearopt.formulations.strain_wave.swept_report import DOUBLE_ARC
 from gearopt.scenes.strain_wave.scene import STEEL, Scene

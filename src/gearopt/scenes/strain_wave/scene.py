@@ -6,8 +6,7 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from gearopt.formulations.strain_wave.cutter_report import USUAL, Cutter
-from gearopt.formulations.strain_wave.demand import FREE, Demand
-from gearopt.formulations.strain_wave.duty import Duty
+from gearopt.formulations.strain_wave.demand import FREE, Demand, Duty
 from gearopt.formulations.strain_wave.report import INVOLUTE
 from gearopt.formulations.strain_wave.swept_report import HALF_LOCUS, Law
 from gearopt.physics.strain_wave.gearing import StrainWave

@@ -10,9 +10,10 @@ from scipy import integrate
 from gearopt.formulations.dynamics.motion.integrate import (
     MARCH,
     composition,
+    deformation,
     march,
+    numbers,
 )
-from gearopt.formulations.dynamics.motion.numbers import deformation, numbers
 from gearopt.formulations.dynamics.motion.reference import cvodes, scipy_motion
 from gearopt.formulations.dynamics.motion.simulate import exact_motion, piecewise_linear, simulate
 from gearopt.formulations.dynamics.motion.timeline import timeline

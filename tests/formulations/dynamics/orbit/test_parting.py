@@ -9,8 +9,13 @@ from least_vibration_task import BEST, HEAVY, TASK
 from gearopt.formulations.dynamics.orbit import parting_text
 from gearopt.formulations.dynamics.orbit.climbing import climb, measure, posed
 from gearopt.formulations.dynamics.orbit.least_vibration import methods
-from gearopt.formulations.dynamics.orbit.parting_text import elements, rounded, start
-from gearopt.formulations.dynamics.orbit.settled import size, worst_motions
+from gearopt.formulations.dynamics.orbit.parting_text import (
+    elements,
+    rounded,
+    size,
+    start,
+    worst_motions,
+)
 from gearopt.formulations.dynamics.orbit.task import worst
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget

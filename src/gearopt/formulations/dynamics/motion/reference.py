@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.dynamics.motion.integrate import MARCH, Marched
-from gearopt.formulations.dynamics.motion.numbers import Numbers, numbers
+from gearopt.formulations.dynamics.motion.integrate import MARCH, Marched, Numbers, numbers
 from gearopt.formulations.dynamics.motion.timeline import timeline
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.tape import legacy_numpy

@@ -14,7 +14,7 @@ import numpy as np
 from gearopt.formulations.dynamics.motion.stability import largest
 from gearopt.formulations.dynamics.orbit import orbit_text, parting_text
 from gearopt.formulations.dynamics.orbit.orbit_text import PEAKS, Cut, with_cuts
-from gearopt.formulations.dynamics.orbit.settled import size, worst_motions
+from gearopt.formulations.dynamics.orbit.parting_text import size, worst_motions
 from gearopt.formulations.dynamics.orbit.task import Task, pair_of, worst
 from gearopt.optimise.certificate import certify
 from gearopt.optimise.clock import Clock

@@ -23,7 +23,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.terms import Array, Terms
 
-KERNEL = "gearopt.formulations.pair.relief.relief_worst_kernel"
+KERNEL = "gearopt.formulations.pair.relief.relief_box_kernel"
 GAP = 1e-3  # relative, of a worst case
 SHORTEST = 1e-3  # of a length: a tolerance leaves as much of it
 SIGNS = np.array(np.meshgrid(*[(-1.0, 1.0)] * 4)).reshape(4, -1).T  # corners of the tolerances

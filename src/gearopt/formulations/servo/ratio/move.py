@@ -13,6 +13,7 @@ import numpy as np
 from gearopt.formulations.servo.ratio.acceleration import (
     acceleration_variable,
     best_ratio,
+    convex_bound,
     impossible,
     law_of,
     proof,
@@ -30,7 +31,6 @@ from gearopt.formulations.servo.ratio.drive import (
     present,
     quotient,
 )
-from gearopt.formulations.servo.ratio.secant_bound import convex_bound
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Param, Terms, Var

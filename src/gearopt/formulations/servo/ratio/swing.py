@@ -5,9 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.servo.ratio.acceleration import impossible, proof, unbounded
+from gearopt.formulations.servo.ratio.acceleration import convex_bound, impossible, proof, unbounded
 from gearopt.formulations.servo.ratio.drive import Drive, friction_torque, inertia_at_motor, present
-from gearopt.formulations.servo.ratio.secant_bound import convex_bound
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Param, Terms

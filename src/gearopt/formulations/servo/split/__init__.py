@@ -14,11 +14,10 @@ from gearopt.formulations.servo.split.core import (
     staged,
 )
 from gearopt.formulations.servo.split.numbers import posed
-from gearopt.formulations.servo.split.order import feasible, points, trains
 from gearopt.formulations.servo.split.relaxation import relaxation
 from gearopt.formulations.servo.split.servo_train import ServoTrain
 from gearopt.formulations.servo.split.stiff import StiffTrain, stiff
-from gearopt.formulations.servo.split.teeth import problem
+from gearopt.formulations.servo.split.teeth import feasible, points, problem, trains
 
 __all__ = [
     "Bodies",

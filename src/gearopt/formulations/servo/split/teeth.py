@@ -1,10 +1,12 @@
 """The integer problem: whole teeth and modules of a two-stage servo train, by exhaustion.
 
-`enumeration` evaluates every train, `exact` only those that can be the best.
+`enumeration` evaluates every train, `exact` only those that can be the best. `feasible` and
+`trains` list trains as points of `problem`, (trains, 6); their `check` is called several times a
+second and may raise, to stop.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -164,3 +166,56 @@ def point(given: Numbers, row: Any) -> Array:
     """Return the point of a kernel's row: pinion teeth, wheel teeth, modules, of both stages."""
     z1, z2, z3, z4, i, j = (int(v) for v in row)
     return np.array([z1, z3, z2, z4, given.module[i], given.module[j]], float)
+
+
+LISTING_STEPS = 1_000_000  # of the kernel that lists trains, between two checks
+FIRST_NOTES = 4096  # trains that it may note between two checks, at first
+
+
+def unchecked() -> None:
+    """Let a list of trains go on to its end."""
+
+
+def feasible(
+    train: ServoTrain,
+    goal: str = "inertia",
+    maximum: int = 0,
+    check: Callable[[], None] = unchecked,
+) -> Array | None:
+    """Return all feasible trains; None for more than `maximum` above 0.
+
+    A duty as goal adds its limits.
+    """
+    return _listed(*posed(train, goal), -math.inf, math.inf, maximum, check)
+
+
+def trains(train: ServoTrain, error: float) -> Array:
+    """Return all feasible trains with an error [rad] up to `error`, the minimum first."""
+    found = _listed(*posed(train, "error"), -math.inf, error, 0, unchecked)
+    assert found is not None
+    return found[problem(train, "error").batch(found).F[:, 0].argsort(kind="stable")]
+
+
+def _listed(
+    given: Numbers, aim: int, above: float, maximum: float, limit: int, check: Callable[[], None]
+) -> Array | None:
+    """Return trains between two values; None where they are more than a limit above 0."""
+    parts, total, first = [], 0, 0
+    rows, count = np.empty((FIRST_NOTES, 6), np.int64), kernel(KERNEL).first_stages(given)[0]
+    while first < count:
+        check()
+        good, last = kernel(DUTY).between(given, aim, first, LISTING_STEPS, above, maximum, rows)
+        if good > len(rows):
+            rows = np.empty((2 * good, 6), np.int64)
+            continue
+        parts.append(rows[:good].copy())
+        total, first = total + good, last
+        if 0 < limit < total:
+            return None
+    return points(given, np.concatenate([rows[:0], *parts]))
+
+
+def points(given: Numbers, rows: Any) -> Array:
+    """Return the points of a kernel's rows (N, 6): pinion and wheel teeth, modules."""
+    z1, z2, z3, z4, i, j = rows.T
+    return np.column_stack([z1, z3, z2, z4, given.module[i], given.module[j]]).astype(float)
