@@ -8,8 +8,8 @@ import numpy as np
 from gearopt.bench import curvature, wave_cutter
 from gearopt.formulations.strain_wave.cutter_fit import arc_edge, straight_edge
 from gearopt.formulations.strain_wave.demand import Duty, equal_pressure, shared_pressure
-from gearopt.formulations.strain_wave.shift import largest_addendum, last_shift_of_one_pair
 from gearopt.formulations.strain_wave.sharing import shared, teeth_of
+from gearopt.formulations.strain_wave.shift import largest_addendum, last_shift_of_one_pair
 from gearopt.physics.strain_wave.clearance import (
     interference,
     teeth_within,
