@@ -1,4 +1,4 @@
-"""Methods on drives and the Golinski reducer: gap to what is proven, at equal evaluations and time.
+"""Methods on drives and the Golinski reducer: gap to a proven bound, at equal effort.
 
 The random drives are those of `random_drive(0)` ... `random_drive(4)`; each of their numbers is
 drawn from a range that gear catalogues span.
@@ -28,7 +28,7 @@ RANDOM_DRIVES = 5
 
 
 def run(repeat: int) -> list[dict[str, Any]]:
-    """Return rows: case, method, what is equal; medians over `repeat` seeds, worst gap."""
+    """Rows: case, method, the equal budget; medians over `repeat` seeds, worst gap."""
     return [row for name, found in comparisons(repeat) for row in _rows(name, found)]
 
 

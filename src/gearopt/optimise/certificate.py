@@ -1,4 +1,4 @@
-"""Judges an outcome from the problem's own terms, never from what a method says.
+"""Judges an outcome from the problem's own terms, never from a method's word.
 
 Tolerances: a row may exceed its limit by FEASIBLE (the unit of a row is 1); a stationary point has
 stationarity and complementarity below STATIONARY and no direction along which the objective falls;
@@ -43,7 +43,7 @@ CONVEX_IN_LOGARITHMS, CONVEX_QUADRATIC = (
 
 @dataclass(frozen=True)
 class Verdict:
-    """What is certain: status, objective, bound and gap (or None), residuals, proof, words.
+    """The certified facts: status, objective, bound and gap (or None), residuals, proof, words.
 
     multipliers: {name of a limit or an equality: d objective / d right-hand side}.
     """

@@ -1,4 +1,4 @@
-"""What a run has spent, and how it is followed: its clock, and the watchers of its parts."""
+"""The effort of a run, and how it is followed: its clock, and the watchers of its parts."""
 
 import math
 import time
@@ -39,7 +39,7 @@ class Clock:
 
     @property
     def left(self) -> Budget:
-        """Return what is left of the budget."""
+        """Rest of the budget."""
         return self.budget.less(self.seconds, self.evaluations)
 
     @property
@@ -53,12 +53,12 @@ class Clock:
         return late or (most is not None and evaluations >= most)
 
     def within(self, seconds: float) -> float:
-        """Return so many seconds, or what is left if that is less."""
+        """So many seconds, or the rest of the budget if that is less."""
         left = self.left.seconds
         return seconds if left is None else min(seconds, left)
 
     def tell(self, more: int = 0) -> bool:
-        """Report to the watcher what is reached; return whether the run continues.
+        """Report best value and bound to the watcher; return whether the run continues.
 
         more: evaluations under way that are not counted yet.
         """
@@ -111,7 +111,7 @@ def in_part(
 
 
 def of_problem(watch: Watch | None, problem: "Problem | Conic") -> Watch | None:
-    """Return a watcher whose events name their problem and what is minimised."""
+    """Watcher whose events name their problem and its objective."""
     if watch is None:
         return None
     name, objective = problem.name, problem.rows.objectives[0]
@@ -134,7 +134,7 @@ def of_others(watch: Watch | None, part: str = OTHERS) -> Watch | None:
 
 
 def tell_known(watch: Watch | None, result: Result) -> None:
-    """Tell a watcher what is proven already, before its remedies are sought."""
+    """Tell a watcher the facts that are proven already, before its remedies are sought."""
     if watch is not None:
         watch(Event(result.seconds, result.evaluations, part=OTHERS, known=result))
 

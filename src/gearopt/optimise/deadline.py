@@ -45,7 +45,7 @@ def allowed(on_floats: float) -> float:
 
 @contextmanager
 def within(seconds: float) -> Iterator[None]:
-    """Raise TimeoutError from what has not ended after so many seconds, with its line.
+    """Raise TimeoutError from work that has not ended after so many seconds, with its line.
 
     Of its thread's processor time, where other work on the machine makes that the smaller, but for
     WAITED times as long at most.

@@ -1,4 +1,4 @@
-"""What a text means: the numbers it gives on floats, one point at a time; and where it is wrong.
+"""The meaning of a text: its numbers on floats, one point at a time; and where it is wrong.
 
 Everything else must agree with that. A population is run through a text at once only where the text
 is proven elementwise: a `Scalar` passes through it, which knows operators and numpy's elementwise
@@ -54,7 +54,7 @@ SYMBOLS = (  # what exceptions of texts run on symbols say, and the remedy
 
 @contextmanager
 def blaming(text: Callable[..., Any], where: str, doing: str) -> Iterator[None]:
-    """Make what a text raises a SolveError that names its line; numpy warns of nothing.
+    """Make an error that a text raises a SolveError that names its line; numpy warns of nothing.
 
     where: the name of the text; doing: what cannot be done with it.
     """
@@ -79,7 +79,7 @@ def quiet() -> Iterator[None]:
 
 
 def remedy(broken: BaseException | None) -> str:
-    """Return what to write instead of what a symbol does not know."""
+    """Text to write instead of an operation that a symbol does not know."""
     return next(words for part, words in SYMBOLS if part in str(broken))
 
 
@@ -148,7 +148,7 @@ def _is_scalar(value: Any) -> bool:
 
 
 def text_of(problem: "Problem", repeat: Repeat | None) -> tuple[Any, str]:
-    """Return the text of a problem or of one of its repeats, and what messages call it."""
+    """Text of a problem or of one of its repeats, and its name in messages."""
     if repeat is None:
         return problem.evaluate, problem.name
     return repeat.evaluate, f"{problem.name}.{repeat.name}"
@@ -173,7 +173,7 @@ def called(
 
 
 def at(problem: "Problem", repeat: Repeat | None, shared: Any, own: Any, row: int) -> Terms:
-    """Return the terms of a text on floats; SolveError says what is wrong with it."""
+    """Terms of a text on floats; SolveError names its fault."""
     data = {k: np.float64(v[row]) for k, v in repeat.data.items()} if repeat else {}
     with blaming(*text_of(problem, repeat), "evaluated"):
         terms = called(problem, repeat, shared, own, data)
@@ -227,7 +227,7 @@ def same_way(problem: "Problem", other: "Problem") -> None:
 
 
 def _obstacle(problem: "Problem", repeat: Repeat | None) -> str:
-    """Return what in a text is not elementwise; "" for nothing."""
+    """First operation of a text that is not elementwise; "" for none."""
     shared, own = (
         [Scalar() for v in variables for _ in range(v.size)]
         for variables in (problem.variables, repeat.variables if repeat else ())

@@ -105,7 +105,7 @@ def compiled(work: Callable[[], Any], entries: tuple[Any, ...], watch: Watch | N
 
 
 def compiling(work: Callable[[], Any]) -> Any:
-    """Return what `work`, which compiles kernels, returns; it takes four fifths of the time so."""
+    """Result of `work`, which compiles kernels; it takes four fifths of the time so."""
     collects = gc.isenabled()
     gc.disable()  # what numba makes of a function is kept until it is compiled
     try:
@@ -143,7 +143,7 @@ class Warm:
 
 
 def compiling_aside(clock: Clock, entry: Any, work: Callable[[], Any]) -> Any:
-    """Return what `work` returns; the time of compiling the kernel it calls is not the clock's.
+    """Result of `work`; the time of compiling the kernel it calls is not the clock's.
 
     None if the watcher ended that.
     """

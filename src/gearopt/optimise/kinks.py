@@ -135,7 +135,7 @@ Near = Callable[..., Any]
 
 @cache
 def _bends() -> dict[int, tuple[str, Near]]:
-    """Return by casadi's operation what it is called, and whether its numbers are at a kink."""
+    """Name of casadi's operation, and whether its numbers are at a kink."""
     import casadi as ca
 
     def zero(a: Any, size: Any) -> Any:

@@ -31,7 +31,7 @@ DEEP = 30  # sums in products in sums; what is nested deeper stays as it is
 
 @dataclass(frozen=True)
 class Split:
-    """What Ipopt solves: casadi expressions of z = (y, u) and p; start(y, p) -> u.
+    """A problem as Ipopt takes it: casadi expressions of z = (y, u) and p; start(y, p) -> u.
 
     The objective, inequalities (<= 0) and equalities (= 0) of a form; levels (<= 0) hold each u.
     """

@@ -1,4 +1,4 @@
-"""Options of a call held to their sort: what is wrong by name, and what to write."""
+"""Options of a call held to their sort: the wrong one by name, and its remedy."""
 
 from collections.abc import Callable, Mapping
 from difflib import get_close_matches
@@ -54,7 +54,7 @@ NONE = (
 
 
 def check(**options: Any) -> None:
-    """Raise ValueError for the first option of another sort than it has, with what to write."""
+    """Raise ValueError for the first option of another sort than it has, with its remedy."""
     for name, value in options.items():
         right, words = SORTS[name]
         if not (value is None and name in NONE) and not right(value):
@@ -89,7 +89,7 @@ def in_turn(call: Callable[P, R]) -> Callable[P, R]:
 
 
 def _meant(name: str, known: list[str]) -> str:
-    """Return what an unknown option may mean, and the options there are."""
+    """Options that an unknown one may mean, and the options there are."""
     if name in ("seconds", "evaluations", "time", "timeout", "time_limit") and "budget" in known:
         spent = "evaluations" if name == "evaluations" else "seconds"
         return f": write budget=Budget({spent}=...)"

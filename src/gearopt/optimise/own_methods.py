@@ -1,4 +1,4 @@
-"""Methods that a problem brings itself: what may be declared, how one is run, what it must return.
+"""Methods that a problem brings itself: their declarations, how one is run, its result.
 
 The claims of such a method count, so that what it returns is held to its sort before it is judged.
 """

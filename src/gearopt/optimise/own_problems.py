@@ -1,4 +1,4 @@
-"""A problem of a user's own: where a method starts, which one is taken, what would prove more."""
+"""A problem of a user's own: where a method starts, which one is taken, how to prove more."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -56,7 +56,7 @@ def _of_sampler(name: str) -> str:
 
 
 def _provable(problem: Problem | Conic, result: Result) -> str:
-    """Return what to declare so that a problem without a bound is a geometric program; "" if none.
+    """Declarations by which a problem without a bound is a geometric program; "" if there are none.
 
     That its terms are log-convex is read from the tape, as if every variable were log.
     """

@@ -1,4 +1,4 @@
-"""What a problem is: parameters, variables, and one plain text that computes its terms.
+"""A problem: parameters, variables, and one plain text that computes its terms.
 
 The same text is run by numpy on whole populations (`Problem.batch`), traced once by casadi
 (`Problem.traced`, for derivatives and certificates) and called compiled (`Problem.compiled`).
@@ -117,17 +117,17 @@ class Problem:
             raise ValueError(f"problem {self.name} has no variables")
 
     def __reduce__(self) -> tuple[type, tuple[Any, ...]]:
-        """What copies and other processes build it from: all but what was traced and built."""
+        """Fields that copies and other processes build it from: all but traces and tables."""
         return declared(self)
 
     def _sharing(self, **changes: Any) -> "Problem":
-        """Return the problem with other fields; what was traced and built is kept."""
+        """The problem with other fields; traces and tables are kept."""
         other = replace(self, **changes)
         object.__setattr__(other, "memo", self.memo)
         return other
 
     def at(self, **values: Number) -> "Problem":
-        """Return the problem with other parameter values; what was traced and built is kept."""
+        """The problem with other parameter values; traces and tables are kept."""
         known = {q.name for q in self.parameters}
         if unknown := set(values) - known:
             raise ValueError(f"problem {self.name} has no parameter {unknown.pop()!r}")
@@ -148,7 +148,7 @@ class Problem:
         return tuple(found)
 
     def within(self, name: str, lower: Number, upper: Number) -> "Problem":
-        """Return the problem with other bounds of one shared variable; what was built is kept."""
+        """The problem with other bounds of one shared variable; traces and tables are kept."""
         if name not in {v.name for v in self.variables}:
             raise ValueError(f"problem {self.name} has no variable {name!r}")
         variables = tuple(

@@ -1,4 +1,4 @@
-"""What comes back: `Outcome` from a method (a claim), `Result` after certification (a fact)."""
+"""Answers: `Outcome` from a method (a claim), `Result` after certification (a fact)."""
 
 import json
 import math
@@ -32,7 +32,7 @@ def is_number(value: Any) -> bool:
 
 @dataclass(frozen=True)
 class Budget:
-    """What a method may spend: wall seconds and evaluations (None: no bound).
+    """Effort that a method may spend: wall seconds and evaluations (None: no bound).
 
     gap: a method with a bound of its own may stop when its relative gap is this small.
     """
@@ -51,7 +51,7 @@ class Budget:
                 raise ValueError(f"Budget({name}={value!r}): write a {sort} of at least 0")
 
     def less(self, seconds: float, evaluations: int = 0) -> "Budget":
-        """Return what is left of it after so much is spent."""
+        """Rest of the budget after some effort."""
         return replace(
             self,
             seconds=None if self.seconds is None else max(0.0, self.seconds - seconds),
@@ -89,7 +89,7 @@ Watch = Callable[[Event], bool]
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a method found and claims; `certify` judges it.
+    """A method's claim; `certify` judges it.
 
     x: the best point (n,), or None. finished: it ran to its own end, not out of budget.
     lam_g, lam_h: multipliers of the form's rows. infeasible: it claims there is no feasible point,
@@ -211,7 +211,7 @@ class Result:
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Result":
-        """Return the inverse of `to_dict`; ValueError for what is none, or of another format."""
+        """Inverse of `to_dict`; ValueError for a dict that is none, or of another format."""
         if not isinstance(data, Mapping) or "result" not in data:
             raise ValueError("is not a result of `gearopt solve --json`: it has no key `result`")
         if isinstance(data["result"], Mapping):
@@ -239,7 +239,7 @@ SHOWN = "gearopt.report.shown"  # who shows an answer, by name: this room import
 
 
 def shown(what: str, *of: Any) -> Any:
-    """Return what a function of the report room makes of an answer, imported when it is asked."""
+    """An answer as a function of the report room shows it, imported when it is asked."""
     return getattr(import_module(SHOWN), what)(*of)
 
 
@@ -250,7 +250,7 @@ def as_dict(record: Any) -> dict[str, Any]:
 
 
 def as_json(record: Any) -> str:
-    """Return the JSON text of what has a `to_dict`."""
+    """JSON text of an object that has a `to_dict`."""
     return json.dumps(record.to_dict(), indent=2, allow_nan=False)
 
 

@@ -22,7 +22,7 @@ ENTRIES = 1_000_000  # of the points that are evaluated at once
 
 
 def sizes(problem: Problem | Conic, x: Array) -> Array:
-    """Return the own scale of every variable at a point (n,): what it must move by to matter.
+    """Own scale of every variable at a point (n,): the change that matters.
 
     Itself for a log variable; else the largest of |x|, |guess| and LEAST_SCALE of its box, at most
     the width of its box. 1 where all of these are zero or infinite.
@@ -76,7 +76,7 @@ def way(problem: Problem | Conic, x: Array) -> float:
 
 
 def zero_scale(problem: Problem | Conic, x: Array) -> float:
-    """Return what an objective of zero is measured by: the `way` from the guess.
+    """Scale of an objective of zero: the `way` from the guess.
 
     0 where the objective at x is no zero: where it moves by less than itself as every variable
     moves by FEASIBLE of its magnitude. A width of the box plays no part, as it may be any. From a
@@ -111,7 +111,7 @@ def gap(value: float, bound: float, scale: float = 0.0) -> float:
 
 
 def unit(value: float, scale: float) -> float:
-    """Return what differences of the objective are relative to: |value|, or of zero its scale."""
+    """Scale of differences of the objective: |value|, or of zero its scale."""
     return abs(value) if is_known(value, scale) else scale
 
 

@@ -1,4 +1,4 @@
-"""`solve`: run a method on a problem and certify what it returns."""
+"""`solve`: run a method on a problem and certify its outcome."""
 
 import math
 from collections import Counter
@@ -124,7 +124,7 @@ def _values(problem: str, name: str, value: Any, count: int) -> Array:
 
 
 def solve_within(clock: Clock, problem: Problem | Conic, method: str | None = None) -> Result:
-    """Solve within what a clock has left; a run that is stopped ends the rest too."""
+    """Solve within the rest of a clock; a run that is stopped ends the rest too."""
     result = solve(problem, method, clock.left, watch=clock.watch)
     clock.stopped = clock.stopped or result.status == "limit"
     return result
@@ -136,7 +136,7 @@ def default(problem: Problem | Conic) -> str:
 
 
 def judge(problem: Problem | Conic, method: str, outcome: Outcome, gap: float) -> Verdict:
-    """Return what is certain of a method's outcome, by the certificate of the problem's kind."""
+    """Verdict on a method's outcome, by the certificate of the problem's kind."""
     if isinstance(problem, Conic):
         from gearopt.optimise.conic import certificate as conic
 

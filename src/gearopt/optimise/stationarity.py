@@ -88,7 +88,7 @@ def own_scales(point: Point) -> Array:
 
 
 def acting(point: Point) -> Array:
-    """Return what acts on each variable over its own scale (n,): gradients and curvature.
+    """Forces on each variable over its own scale (n,): gradients and curvature.
 
     A logarithm that is proven convex has the unit 1: there a promise bounds the gap.
     """
@@ -137,7 +137,7 @@ NEWTON = 10  # steps from a straight line to a curve, by the Hessian at the poin
 
 @dataclass(frozen=True)
 class _Cone:
-    """Directions d (k,) of the free variables, in units of `unit`, along what holds.
+    """Directions d (k,) of the free variables, in units of `unit`, along the active rows.
 
     free (n,): which variables have no price on their bound. curved (k, k): Hessian. firm: rows of
     limits with a price and of equalities, loose: of all limits that hold, and of bounds without a

@@ -100,7 +100,7 @@ def trace(problem: Problem) -> Traced:
 
 
 def _compare(problem: Problem, terms: Any) -> None:
-    """Raise SolveError for a term whose tape is not what the text gives on floats."""
+    """Raise SolveError for a term whose tape differs from the text on floats."""
     points, p = sample(problem, POINTS), problem.parameter_values()
     batch, rows = problem.batch(points), problem.rows
     ours = np.hstack([batch.F, batch.G, batch.H])
@@ -150,7 +150,7 @@ def _block(problem: Problem, repeat: Repeat | None) -> Block:
 
 
 def _split(terms: Any) -> Any:
-    """Return columns of symbols, which are what arrays become, as tuples."""
+    """Columns of symbols, which arrays become, as tuples."""
     import casadi as ca
 
     def tuples(block: Any) -> Any:
@@ -276,7 +276,7 @@ def read(
     variable: Callable[[Var], Term],
     apply: Callable[[int, list[Term]], Term],
 ) -> tuple[list[Term], list[Term], list[Term]]:
-    """Return what a reader makes of the objectives of all blocks, and of all rows of f, g and h.
+    """Readings of the objectives of all blocks, and of all rows of f, g and h.
 
     variable(v): its reading of a component of v; apply: see `walk`.
     """
@@ -301,7 +301,7 @@ def read(
 
 
 def walk(function: Any, inputs: list[list[Any]], constant: Any, apply: Any) -> list[list[Any]]:
-    """Run a reader over a tape: what it makes of every scalar of every output.
+    """Run a reader over a tape; return its reading of every scalar of every output.
 
     inputs: one reading of every scalar of every input; constant(value) reads a number and
     apply(operation, readings) an operation.
@@ -361,7 +361,7 @@ def _power(base: Term, exponent: Term) -> Term:
 
 
 def fold(operation: int, values: list[Any]) -> Any:
-    """Return what an operation makes of numbers; None where this reader does not know it."""
+    """Value of an operation on numbers; None where this reader does not know it."""
     known = _folds().get(operation)
     return known(*values) if known else None
 

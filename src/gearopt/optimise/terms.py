@@ -100,7 +100,7 @@ class Var:
 
 @dataclass(frozen=True)
 class Terms:
-    """What an evaluation returns: {name: scalar, or a tuple = a block name[1], name[2], ...}.
+    """Terms of an evaluation: {name: scalar, or a tuple = a block name[1], name[2], ...}.
 
     minimise: objectives. limits: the user's utilisations, <= 1. defines: model rows <= 1
     (epigraphs, couplings), never relaxed nor shown. equal: quotients that must be 1.
@@ -273,7 +273,7 @@ def inequalities(terms: Terms) -> list[tuple[str, Any, str]]:
 
 
 def checked(terms: Any, where: str, numbers: bool = False) -> Terms:
-    """Return the terms of a text with arrays as blocks; SolveError for what is no term.
+    """Terms of a text with arrays as blocks; SolveError for a value that is no term.
 
     numbers: the text was run on floats, so every term is a real number.
     """
@@ -305,7 +305,7 @@ def _block(value: Any) -> Any:
 
 
 def _wrong(value: Any, numbers: bool) -> str:
-    """Return what a term is that it must not be; "" for a scalar."""
+    """Sort of a term that it must not be; "" for a scalar."""
     if isinstance(value, bool | np.bool_):
         return "a comparison; write a quotient that must not exceed 1, such as needed/allowed"
     if isinstance(value, tuple | list | np.ndarray | Mapping | set):

@@ -143,7 +143,7 @@ class Blank:
         return depth if depth >= 0.0 else None
 
     def backup(self, gear: Gear) -> Any:
-        """Return the backup ratio of what is below the root: m_B = t_R/h_t; None of solid gears.
+        """Backup ratio of the rim below the root: m_B = t_R/h_t; None of solid gears.
 
         t_R: the rim, or the wall around a bore; h_t: the whole depth of the teeth.
         """

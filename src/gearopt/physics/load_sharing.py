@@ -138,7 +138,7 @@ def share_dense(compliances: Any, separations: Any, load: Any) -> Sharing:
 def _closed(
     matrix: Array, lead: Array, load: Array, closed: Any, absent: Any
 ) -> tuple[Array, Sharing]:
-    """Return the sharing of pairs that are held closed, and what they lack [mm]."""
+    """Sharing of pairs that are held closed, and their missing approach [mm]."""
     own = matrix[..., closed[:, None], closed]
     sides = np.stack([np.ones(lead[..., closed].shape), lead[..., closed]], axis=-1)
     solved = np.linalg.solve(own, sides)

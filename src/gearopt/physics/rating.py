@@ -1,4 +1,4 @@
-"""What ratings of gear pairs share by any standard: operation, factors, results, Miner's sum.
+"""Common parts of ratings by any standard: operation, factors, results, Miner's sum.
 
 A rating is of floats; tuples are of pinion and wheel.
 """
@@ -17,7 +17,7 @@ ROUNDING = 2e-16  # of its logarithm
 
 @dataclass(frozen=True)
 class Operation:
-    """What the pair does: power [N mm/s], pinion_speed [rad/s], hours of life.
+    """Operation of the pair: power [N mm/s], pinion_speed [rad/s], hours of life.
 
     overload K_o of AGMA, K_A of ISO; temperature [degrees C] and reliability R, which AGMA asks;
     contacts: load cycles a revolution of pinion and wheel.
@@ -169,7 +169,7 @@ def damage(levels: Sequence[Level], growth: Any = 1.0) -> Any:
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def safety_ends(levels: Sequence[Level]) -> tuple[Any, Any]:
-    """Return between what numbers the safety factor of a spectrum lies, of floats or arrays.
+    """Numbers between which the safety factor of a spectrum lies, of floats or arrays.
 
     Above: no level may reach its strength at its own cycles; below: none reaches that at the
     cycles of all.

@@ -1,4 +1,4 @@
-"""Forces of a mesh, and what the shafts of a train carry by statics, without losses.
+"""Forces of a mesh, and loads of the shafts of a train by statics, without losses.
 
 Axes are parallel; the input turns clockwise, seen from its end: its angular velocity points away
 from that end, as positive axial forces do. Arguments of `mesh_forces` are floats, arrays of one

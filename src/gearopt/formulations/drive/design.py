@@ -129,7 +129,7 @@ class DriveDesign:
 
 
 def drive_design(data: Mapping[str, Any]) -> DriveDesign:
-    """Return the design that a result of a drive holds; ValueError names what does not belong."""
+    """Design that a result of a drive holds; ValueError names the keys that do not belong."""
     found: DriveDesign = typed(DriveDesign, data, "design")
     return found
 
@@ -244,7 +244,7 @@ def _stage(
 
 
 def _teeth(pair: GearPair) -> dict[str, Any]:
-    """Return what a stage says of how its teeth are cut."""
+    """Words of a stage on how its teeth are cut."""
     working, own = pair.working_angle, pair.pinion.transverse_pressure_angle
     found: dict[str, Any] = {
         "helix_angle_deg": round(math.degrees(pair.pinion.helix_angle), 12),

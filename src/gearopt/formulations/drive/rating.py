@@ -57,7 +57,7 @@ class RatingFactor:
 
 @dataclass(frozen=True, kw_only=True)
 class MeshRating:
-    """One mesh: contact, forces at the working pitch circles, losses, what it may transmit.
+    """One mesh: contact, forces at the working pitch circles, losses, transmissible torque.
 
     Of a load spectrum forces, velocity and friction are those of the level of largest force.
     governs: member and mode of the least safety, against the safety factors that are asked for;
@@ -92,7 +92,7 @@ class MeshRating:
 
 @dataclass(frozen=True, kw_only=True)
 class ShaftRating:
-    """One shaft: what it carries without losses.
+    """One shaft: its torque, speed and forces without losses.
 
     rotation: seen from the input end, where the input turns clockwise. axial_force: sum of its
     gears, positive away from the input end; the other way round with the rotation.

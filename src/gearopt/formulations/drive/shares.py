@@ -1,4 +1,4 @@
-"""What the gears of a stage add to the objective of a drive."""
+"""Shares of the stages in the objective of a drive."""
 
 import math
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ def share(
     option: int = 0,
     objective: str | None = None,
 ) -> Any:
-    """Return what the pair of a stage (counted from 0) adds to an objective, in its unit.
+    """Share of the pair of a stage (counted from 0) in an objective, in its unit.
 
     density [t/mm3], by default the train's; those of the stage's option come first. objective: by
     default the train's. total_length is that of the shafts in one line, from the rim of the first

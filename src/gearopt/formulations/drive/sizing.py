@@ -65,7 +65,7 @@ def smooth(train: Train) -> Callable[..., Outcome]:
 
 
 def choices(train: Train) -> Iterator[Choice]:
-    """Return every combination of what the smooth form needs fixed beforehand."""
+    """Every combination of the regimes that the smooth form needs fixed beforehand."""
     stages = [
         product(*(s.choices(bool(stage.toothing.helix_angle)) for s in _standards(stage)))
         for stage in train.stages
@@ -201,7 +201,7 @@ def _by_ipopt(train: Train, exact: Problem, begin: list[Array], clock: Clock) ->
 
 
 def _searched(train: Train, best: _Design | None, clock: Clock, seconds: float | None) -> Searched:
-    """Return what the search over cells finds beside the best design so far."""
+    """Designs and bound that the search over cells adds to the best design so far."""
     known = () if best is None else sizing_text.pairs(train, best.x)
     most = math.inf if best is None else best.value
     close = max(GAP_SHARE * clock.budget.gap, GAP_TOLERANCE)

@@ -193,7 +193,7 @@ def variables(train: Train) -> tuple[Var, ...]:
 
 
 def _lengths(train: Train) -> tuple[float, float]:
-    """Return the ends [mm] of searched modules and widths, far beyond what the file requires.
+    """Ends [mm] of searched modules and widths, far beyond the file's own limits.
 
     Finite, for the dual bound. A stage's size follows (T/s)^(1/3) at its torque, for a limit s.
     """

@@ -9,7 +9,7 @@ from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack, reference_diam
 
 @dataclass(frozen=True)
 class Toothing:
-    """What the gears of a stage have whatever their size; of two values the pinion's is first.
+    """Properties of the gears of a stage of any size; of two values the pinion's is first.
 
     helix_angle beta [rad] of both, below 60 degrees; racks: the basic rack of each, of one normal
     pressure angle; profile_shifts x and tip_alterations k in normal modules; thickness_allowances

@@ -76,7 +76,7 @@ class FaceWidth:
 
 @dataclass(frozen=True)
 class Stage:
-    """One stage: its load limits and what it may choose.
+    """One stage: its load limits and its choices of teeth, modules and face width.
 
     allowable: the limits of the train's strength law, in its order. modules: allowed normal modules
     [mm], increasing (for the continuous form its first and last are limits; empty: any).
@@ -150,7 +150,7 @@ class Train:
             self._check(objective)
 
     def _check(self, objective: str) -> None:
-        """Raise ValueError where an objective needs what the drive lacks."""
+        """Raise ValueError where an objective needs a number that the drive lacks."""
         if objective in LENGTHS and not self.on_reference:
             raise ValueError(f"the objective {objective} needs profile shifts that cancel")
         solid = self.density is not None or all(
@@ -267,7 +267,7 @@ class Train:
         return OBJECTIVES.get(self.objective, "")
 
     def numbers(self) -> dict[str, float | tuple[float, ...]]:
-        """Return every number of the drive by name, a float; one per stage for what stages have."""
+        """Every number of the drive by name, a float; one per stage for numbers of stages."""
         stages = self.stages
         return {
             "torque": self.torque,

@@ -1,1 +1,1 @@
-"""What is to be known of the motion of a pair: states, response, stability, speeds."""
+"""The motion of a pair on moving axes: states, response, stability, speeds."""

@@ -115,7 +115,7 @@ class Speeds:
 
 @dataclass(frozen=True, kw_only=True)
 class Chosen:
-    """The design of least vibration, its limits' numbers, and what the dense grid of speeds says.
+    """The design of least vibration, its limits' numbers, and its response over dense speeds.
 
     rounds: speeds, harmonics, objective and dense maximum [um] of every round of the exchange.
     parting_speeds: of the dense grid, at which teeth part. longest_repeat: mesh periods after which

@@ -1,4 +1,4 @@
-"""From a moving pair to what a result says of it: equilibrium, response, stability, speeds."""
+"""From a moving pair to a result's parts: equilibrium, response, stability, speeds."""
 
 import math
 from collections.abc import Sequence

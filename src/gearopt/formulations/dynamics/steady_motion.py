@@ -134,7 +134,7 @@ def linear_motion(pair: MovingPair, level: str, contact: Contact) -> Motion:
 
 
 def _growing(motion: Motion, jams: bool) -> Motion:
-    """Return what is told of a motion that grows for ever."""
+    """Record of a motion that grows for ever."""
     none, nothing = math.nan, np.full(ORDERS, math.nan)
     return replace(motion, rms=none, least=none, highest=none, amplitudes=nothing, jams=jams)
 
@@ -276,7 +276,7 @@ def _change(passed: Array, periods: int) -> float:
 
 
 def _told(pair: MovingPair, level: str, state: Array, repeats: int, clock: Clock) -> Motion | None:
-    """Return what is to be known of the motion from a state on, over the periods it repeats in.
+    """Amplitudes, contact losses and multiplier of the motion from a state on, over its periods.
 
     None: the clock stopped.
     """

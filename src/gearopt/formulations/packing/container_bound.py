@@ -247,7 +247,7 @@ def _rectangle(
 
 
 def _circle(plan: Plan, layers: tuple[Layer, ...]) -> float:
-    """Return the minimum radius of a circle: discs, pairs, Oler's inequality, what is fixed."""
+    """Minimum radius of a circle by discs, pairs, Oler's inequality and fixed cylinders."""
     inside = 0.0
     for layer in layers:
         rho = np.sort(np.array(layer))[::-1]

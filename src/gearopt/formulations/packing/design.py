@@ -58,7 +58,7 @@ class CylinderDesign:
 
 @dataclass(frozen=True, kw_only=True)
 class PackingDesign:
-    """What a result holds of a packing."""
+    """A packing as a result holds it."""
 
     container: ContainerDesign
     layers: tuple[LayerDesign, ...]
@@ -66,7 +66,7 @@ class PackingDesign:
 
 
 def packing_design(data: Mapping[str, Any]) -> PackingDesign:
-    """Return the design that a result of a packing holds; ValueError names what does not belong."""
+    """Design that a result of a packing holds; ValueError names the keys that do not belong."""
     found: PackingDesign = typed(PackingDesign, data, "design")
     return found
 

@@ -107,7 +107,7 @@ def _levels(layers: int) -> range:
 
 
 def _ends(plan: Plan) -> tuple[float, float, float, float]:
-    """Return the ends of a search in x and y [mm]: a row of all beyond what is fixed."""
+    """Ends of a search in x and y [mm]: a row of all cylinders beyond the fixed ones."""
     if plan.fixed:
         low, high, near, far = plan.held_box
         return low - plan.reach, high + plan.reach, near - plan.reach, far + plan.reach

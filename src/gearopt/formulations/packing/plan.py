@@ -1,4 +1,4 @@
-"""What is to be packed, and where things lie: cylinders, container, layers as plain numbers."""
+"""The input of a packing and places in it: cylinders, container, layers as plain numbers."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ class Cylinder:
 
 @dataclass(frozen=True)
 class Plan:
-    """What is to be packed, and into what.
+    """Cylinders to be packed, and the container.
 
     width: of the rectangle [mm], None where free. gap: between cylinders, wall: to the container,
     both sideways [mm]. min_layers, max_layers: ends of the number of layers, of which the first
@@ -116,7 +116,7 @@ class Plan:
 
     @cached_property
     def held_box(self) -> tuple[float, float, float, float]:
-        """Ends in x and y of what the fixed cylinders cover [mm]; zeros where none is fixed."""
+        """Ends in x and y of the fixed cylinders [mm]; zeros where none is fixed."""
         if not self.fixed:
             return 0.0, 0.0, 0.0, 0.0
         at = [(*(c.at or ()), c.radius) for c in self.cylinders if c.at is not None]

@@ -109,7 +109,7 @@ def numbers(plan: Plan, max_layers: int) -> Array:
 
 
 def held(plan: Plan) -> Any:
-    """Return what is fixed of each cylinder: 1 its place, 2 its layer."""
+    """Fixed properties of each cylinder: 1 its place, 2 its layer."""
     lifted = set(plan.lifted)
     return np.array(
         [(c.at is not None) + 2 * (k not in lifted) for k, c in enumerate(plan.cylinders)],

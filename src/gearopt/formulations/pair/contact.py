@@ -45,7 +45,7 @@ class ContactPoint:
 
 @dataclass(frozen=True, kw_only=True)
 class ContactLoad:
-    """What happens at one load: on the path of contact, and over one base pitch of travel.
+    """Contact at one load: on the path of contact, and over one base pitch of travel.
 
     load: relative to the torque of the duty. share, contact stress: of the pair of teeth at every
     position of the path. transmission error: approach of the gears along the line of action at
@@ -202,7 +202,7 @@ def column(values: Any) -> Columns:
 
 
 def _columns(made: PairMesh, positions: Any) -> dict[str, Any]:
-    """Return what belongs to positions s [mm] on the path, by the names of fields."""
+    """Columns of positions s [mm] on the path, by the names of fields."""
     path, pair = made.mesh.cycle.path, made.elastic.pair
     first, second = diameters_at(pair, path, positions)
     rolled = [
@@ -239,7 +239,7 @@ def _points(made: PairMesh) -> list[ContactPoint]:
 
 
 def at_loads(made: PairMesh, separations: Array) -> tuple[ContactLoad, ...]:
-    """Return what happens at every load; separations (p, n) [mm] by relief, infinite if absent."""
+    """Contact at every load; separations (p, n) [mm] by relief, infinite if absent."""
     found = made.mesh.sharing(separations)
     return tuple(
         _loaded(made, k, found.forces[k], found.approach[k]) for k in range(len(made.loads))
@@ -247,7 +247,7 @@ def at_loads(made: PairMesh, separations: Array) -> tuple[ContactLoad, ...]:
 
 
 def _loaded(made: PairMesh, k: int, forces: Array, error: Array) -> ContactLoad:
-    """Return what happens at a load (from 0): forces (p, n) [N], approach (p,) [mm]."""
+    """Contact at a load (from 0): forces (p, n) [N], approach (p,) [mm]."""
     force, round_ = made.mesh.loads[k], made.mesh.cycle
     shares = forces / force if force else np.zeros_like(forces)
     width = float(made.elastic.pair.face_width)
@@ -286,7 +286,7 @@ def contact_stress(elastic: ElasticPair, positions: Any, forces: Any) -> Any:
 
 
 def spectrum(travels: Any, values: Any, most: int = HARMONICS) -> list[float]:
-    """Return the mean and the amplitudes of the first harmonics of what repeats with travel 1.
+    """Mean and amplitudes of the first harmonics of a function that repeats with travel 1.
 
     values at ascending travels from 0 to 1, equal travels where it jumps, are joined by lines,
     whose integrals against exp(-2 pi i k t) are exact: piecewise linear functions have exact

@@ -1,4 +1,4 @@
-"""The relief of a spur pair for its report: both flanks, what it does at every load, and rules."""
+"""The relief of a spur pair for its report: both flanks, the contact at every load, and rules."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -26,7 +26,7 @@ DRAWN, MOST = 2000, 0.95  # reliefs as they are made, and the part of them told 
 
 @dataclass(frozen=True, kw_only=True)
 class FlankRelief:
-    """What is removed from the flanks of one gear: a (1 - x/l)^p at x from the tip.
+    """Depth removed from the flanks of one gear: a (1 - x/l)^p at x from the tip.
 
     amount a: normal to the flank, at the tip; length l: on the line of action; exponent p, None of
     a shape of its own, which the profile tells; diameter and roll angle where it starts, which a
@@ -104,7 +104,7 @@ class PairRelief:
 
 @dataclass(frozen=True)
 class Removed:
-    """What is removed from both flanks [mm] at the contacts (p, n) of a mesh; 0 where none is.
+    """Depth removed from both flanks [mm] at the contacts (p, n) of a mesh; 0 where there is none.
 
     lengths [mm] on the line of action; exponent of both, None of a shape of its own, whose points
     (3, m) are positions and what is removed there from pinion and wheel [mm].
@@ -118,7 +118,7 @@ class Removed:
 
     @classmethod
     def of(cls, mesh: Mesh, reliefs: tuple[Relief, Relief]) -> "Removed":
-        """Return what reliefs by amount, length and exponent remove."""
+        """Depth that reliefs by amount, length and exponent remove."""
         rows = zip(reliefs, mesh.from_tips, strict=True)
         pinion, wheel = (relief.removed(x) for relief, x in rows)
         first, second = reliefs
@@ -161,7 +161,7 @@ class Removed:
         return np.where(mesh.cycle.present, self.pinion + self.wheel, np.inf)
 
     def amounts(self, mesh: Mesh) -> tuple[float, float]:
-        """Return what is removed at the tips [mm] of pinion and wheel."""
+        """Depth removed at the tips [mm] of pinion and wheel."""
         along = mesh.cycle.along
         return float(along(self.pinion)[-1]), float(along(self.wheel)[0])
 
@@ -313,7 +313,7 @@ def as_made(
     seed: int,
     watch: Watch | None = None,
 ) -> MadeRelief | None:
-    """Return the worst case of a relief within tolerances, proven, and what drawn ones have.
+    """Worst case of a relief within tolerances, proven, and the spread of drawn ones.
 
     None where the watcher ended it before anything was known.
     """

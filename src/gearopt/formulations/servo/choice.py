@@ -46,7 +46,7 @@ KERNEL_STEPS = 2_000, 2_000_000  # of the kernel between two checks of the clock
 
 
 class Kept(NamedTuple):
-    """What a train keeps beside the limits of `split.problem`, as the kernel reads it.
+    """Stiffness and box that a train keeps beside the limits of `split.problem`, for the kernel.
 
     spring (5,): line stiffness of a mesh (0: by Lewis) and Young's modulus [MPa], face width [mm],
     compliance of the shaft [rad/(N mm)], minimum stiffness of the output [N mm/rad] (0: none). box:
@@ -131,7 +131,7 @@ SPRINGS = ("mesh of stage 2", "shaft between the stages", "mesh of stage 1")
 
 @dataclass(frozen=True)
 class Springs:
-    """What is given of meshes and shaft between the stages; lengths in mm, moduli in MPa.
+    """Given meshes and shaft between the stages; lengths in mm, moduli in MPa.
 
     shaft: diameter and length. line_stiffness: of a mesh; None where it follows from the gears'
     youngs_modulus and teeth. load_inertia [t mm2] and load_torque [N mm]: None for none. minimum:
@@ -192,7 +192,7 @@ class Springs:
 
 @dataclass(frozen=True)
 class Choice:
-    """A train to be chosen, what for, and what it must keep beside the limits of `split.problem`.
+    """A train to be chosen, its goal, and the limits that it keeps beside those of `split.problem`.
 
     springs: with the stiffness that is asked for; None for none. room: the box of a train, which it
     must fit; None for none. backlash: stages with a minimum backlash, what it is with all

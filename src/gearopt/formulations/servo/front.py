@@ -125,7 +125,7 @@ def front(
 def _sifted(
     choice: Choice, posed: Problem, best: Array, worth: Array, found: Array, clock: Clock
 ) -> tuple[Array, Array]:
-    """Return what is unbeaten of a front and of other trains that fit the box."""
+    """Unbeaten points of a front and of other trains that fit the box."""
     if not len(found):
         return best, worth
     values = posed.batch(found).F

@@ -77,7 +77,7 @@ def numbers(box: ServoBox) -> Numbers:
 
 @dataclass(frozen=True)
 class Room:
-    """What is given of a `ServoBox` without its train; motor_radius: of the motor's body [mm]."""
+    """Given numbers of a `ServoBox` without its train; motor_radius: of the motor's body [mm]."""
 
     motor_radius: float
     hub: float

@@ -1,4 +1,4 @@
-"""What a servo axis's result holds, as its JSON names it: every quantity with its unit in the key.
+"""The result of a servo axis, as its JSON names it: every quantity with its unit in the key.
 
 A field that has a default is left out of the JSON where it holds that.
 """
@@ -15,7 +15,7 @@ KG_M2 = 1e-3  # of a t mm2
 
 @dataclass(frozen=True)
 class Goal:
-    """What trains are judged by: an objective of the train or of the motion that it is for.
+    """Measure by which trains are compared: of the train or of the motion that it is for.
 
     unit: of the objective. factor: from it to `shown`, the unit that is shown. key: of a
     `ListedTrain`, whose value has a title. motion: that of [duty]; empty for any train's objective.
@@ -31,7 +31,7 @@ class Goal:
 
     @property
     def word(self) -> str:
-        """Return what lists of trains call it."""
+        """Label of the objective in lists of trains."""
         return self.name.removeprefix("inverse_").replace("_", " ")
 
     @property
@@ -107,7 +107,7 @@ class TrainDesign:
 
 @dataclass(frozen=True)
 class ListedTrain:
-    """A train of the list beside the chosen one, by what trains are compared.
+    """A train of the list beside the chosen one, with the figures by which trains are compared.
 
     best_of: by what it is the best of all, empty for none.
     """
@@ -135,7 +135,7 @@ class StageCount:
 
 @dataclass(frozen=True, kw_only=True)
 class Achieved:
-    """What an axis achieves at a ratio, loss_percent: worse than the best; without gears or with.
+    """Achievement of an axis at a ratio; loss_percent: worse than the best; without gears or with.
 
     Speed, torques and their shares where the motion knows them.
     """
@@ -167,7 +167,7 @@ class RatioCurve:
 
 @dataclass(frozen=True)
 class RatioDesign:
-    """The best total ratio of a motion, its value by name and unit, and what else achieves.
+    """The best total ratio of a motion, its value by name and unit, and that of other ratios.
 
     given: a ratio without gears. best_with_train: the best ratio with the chosen train's inertia.
     None where nothing of the kind is there, or the motor fails.
@@ -263,7 +263,7 @@ class ToleranceRow:
 
 @dataclass(frozen=True)
 class BudgetUse:
-    """A budget of errors and what the new tolerances use of it."""
+    """A budget of errors and its use by the new tolerances."""
 
     rule: str
     limit_deg: float
@@ -273,7 +273,7 @@ class BudgetUse:
 
 @dataclass(frozen=True)
 class Allocation:
-    """What the new tolerances cost and use."""
+    """Cost of the new tolerances and their use of the budgets."""
 
     budgets: tuple[BudgetUse, ...]
     cost: float
@@ -291,7 +291,7 @@ class Histogram:
 
 @dataclass(frozen=True)
 class DrawnErrors:
-    """What `count` draws say of the error beside its limit.
+    """Statistics of the error of `count` drawn axes, beside its limit.
 
     quantile: that of `probability`, within quantile_low .. quantile_high (None where the draws are
     too few for it); yield_share: of errors up to the limit, within yield_low .. yield_high; both
@@ -318,7 +318,7 @@ class DrawnErrors:
 
 
 def train_figures(train: TrainDesign, springs: StiffnessDesign | None) -> dict[str, float]:
-    """Return what trains are compared by: ratio, inertia, mass, error, stiffness, where known."""
+    """Figures by which trains are compared: ratio, inertia, mass, error, stiffness, where known."""
     keys = ("ratio", "inertia_kg_m2", "mass_kg", "error_deg")
     found = {key: getattr(train, key) for key in keys}
     if springs is not None:
@@ -329,7 +329,7 @@ def train_figures(train: TrainDesign, springs: StiffnessDesign | None) -> dict[s
 
 @dataclass(frozen=True)
 class ServoDesign:
-    """The design of a servo axis: what its file asks for."""
+    """The design of a servo axis: the parts that its file asks for."""
 
     ratio: RatioDesign | None = None
     train: TrainDesign | None = None
@@ -342,13 +342,13 @@ class ServoDesign:
     backlash: tuple[MeshBacklash, ...] = ()
 
     def __or__(self, other: "ServoDesign") -> "ServoDesign":
-        """Return both together; what the other has counts."""
+        """Both together; where both have a value, that of the other counts."""
         return replace(self, **_given(other))
 
 
 @dataclass(frozen=True)
 class ServoReport:
-    """What is reported beside the design. figures: by the names that docs/servo.md lists.
+    """Report beside the design. figures: by the names that docs/servo.md lists.
 
     trains: none of them where time was up, None where no train was chosen.
     """
@@ -361,7 +361,7 @@ class ServoReport:
     figures: Mapping[str, float] = field(default_factory=dict)
 
     def __or__(self, other: "ServoReport") -> "ServoReport":
-        """Return both together; what the other has counts."""
+        """Both together; where both have a value, that of the other counts."""
         return replace(self, **_given(other) | {"figures": {**self.figures, **other.figures}})
 
     def to_dict(self) -> dict[str, Any]:
@@ -372,7 +372,7 @@ class ServoReport:
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "ServoReport":
-        """Read what is known of it in the report of a result."""
+        """The known part in the report of a result."""
         own = {f.name for f in fields(cls)}
         figures = {k: v for k, v in data.items() if isinstance(v, float)}
         found: ServoReport = typed(cls, {k: v for k, v in data.items() if k in own})

@@ -177,7 +177,7 @@ def arc_cones(points: Vector, centre: Vector, least: float = 0.0) -> Conic:
 
 
 def arc_of_cones(points: Vector, start: ArcEdge, least_radius: float = 0.0) -> ArcEdge:
-    """Return the arc nearest to points [mm] by cones, linearised again about what is found.
+    """Arc nearest to points [mm] by cones, linearised again about each answer.
 
     start: as of `arc_edge`, about which they are linearised first. least_radius R_min [mm] that the
     arc has at least, on the side of the start. SolveError where none is found.

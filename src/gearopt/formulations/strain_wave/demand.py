@@ -1,4 +1,4 @@
-"""What a design of a strain wave gearing must meet, as one text for numbers, arrays and symbols."""
+"""Limits of a design of a strain wave gearing, as one text for numbers, arrays and symbols."""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""What an impossible request asks too much of: limits that no gearing in the ranges meets."""
+"""The conflict of an impossible request: limits that no gearing in the ranges meets."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -72,7 +72,7 @@ def _eased(posed: Problem, eased: tuple[str, ...] | None) -> Problem:
 
 
 def told(demand: Demand, found: Nearest) -> list[str]:
-    """Return what is asked and what is there of every limit that is exceeded, with units."""
+    """Limit and value of everything that is exceeded, with units."""
     gearing = demand.gearing(dict(zip(FREE, map(float, found.numbers), strict=True)))
     module, torque = float(gearing.module), 1e-3 * demand.ratchet_factor * demand.duty.torque
 

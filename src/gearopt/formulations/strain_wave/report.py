@@ -59,7 +59,7 @@ TURNS = 8  # positions of the wave generator over one pitch
 
 @dataclass(frozen=True, kw_only=True)
 class ToothLoad:
-    """A tooth: its number from the middle of the arc of contact, and what it carries."""
+    """A tooth: its number from the middle of the arc of contact, and its load."""
 
     tooth: Annotated[int, Shown("tooth")]
     wave_angle_deg: Annotated[float, Shown("on the wave", form=".3f")]
@@ -101,7 +101,7 @@ class RoundRow:
 
 @dataclass(frozen=True, kw_only=True)
 class WaveDesign:
-    """A strain wave gearing and what is computed of it.
+    """A strain wave gearing and all that is computed of it.
 
     law: how the teeth are made; what only involutes have is None of others, or empty. arc to
     relative_curvature: contacts by the tooth's angle on the wave, with heights over the neutral
@@ -192,13 +192,13 @@ class WaveDesign:
 
 @dataclass(frozen=True)
 class Extras:
-    """What a description may do without; left_out grows by the names of what time was short for."""
+    """Parts that a description may lack; left_out: names of those that time was short for."""
 
     clock: Clock
     left_out: list[str] = field(default_factory=list)
 
     def of(self, name: str, compute: Callable[[], T], without: T) -> T:
-        """Return what is computed, or `without` it where the time is over."""
+        """A computed part, or `without` it where the time is over."""
         if not self.clock.over:
             return compute()
         self.left_out.append(name)
@@ -364,7 +364,7 @@ def clearance_columns(arcs: Any, gaps: Any) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Carried:
-    """What the teeth of a lobe carry: number, angle phi [rad], gap [mm], load, pressure [MPa]."""
+    """Load of the teeth of a lobe: number, angle phi [rad], gap [mm], load, pressure [MPa]."""
 
     numbers: Any
     arcs: Any
@@ -374,7 +374,7 @@ class Carried:
 
 
 def _carried(duty: Duty, made: Flank) -> list[Carried]:
-    """Return what the teeth carry at TURNS positions of the wave generator over a pitch."""
+    """Loads of the teeth at TURNS positions of the wave generator over a pitch."""
     return [
         Carried(t.numbers, t.arcs, t.gaps, loads, pressures(duty, made, t, loads))
         for t, loads in loads_turned(duty, made, [k / TURNS for k in range(TURNS)])
@@ -442,7 +442,7 @@ def _deflected(made: Flank, by: float) -> Deflected:
 
 
 def gap_of(value: float) -> float:
-    """Return a clearance [mm] without what rounding leaves of a contact."""
+    """Clearance [mm], the rounding of a contact taken off."""
     return round(float(value), 9) + 0.0
 
 

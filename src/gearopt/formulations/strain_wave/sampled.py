@@ -41,7 +41,7 @@ WORST = 10.0  # utilisation of a design without a conjugate flank
 
 @dataclass(frozen=True)
 class Look:
-    """At which poses interference is looked for, and what of a contact is rounding [mm].
+    """Poses at which interference is looked for, and the rounding of a contact [mm].
 
     Poses every `step` degrees up to `reach` degrees from the major axis; points: of the flank.
     """

@@ -1,4 +1,4 @@
-"""The paper's search: profile shift against Hertz's pressure, and what gives it an end."""
+"""The paper's search: profile shift against Hertz's pressure, and the limits that end it."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace

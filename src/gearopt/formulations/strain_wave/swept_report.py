@@ -120,7 +120,7 @@ def _slope(gearing: StrainWave, tooth: Profile, share: float) -> float:
 
 
 def carried(duty: Duty, made: SweptGearing, shift: float = 0.0) -> Carried:
-    """Return what the teeth of one lobe carry, numbered from the major axis.
+    """Loads of the teeth of one lobe, numbered from the major axis.
 
     shift: turn of the wave generator in pitches. Arms and curvatures are those of the nearest pose
     of conjugate contact; of two contacts of a tooth the one that presses harder.

@@ -1,4 +1,4 @@
-"""What limits a gear pair at a torque and a speed: one file per law, and what all of them compute.
+"""Load limits of a gear pair at a torque and a speed: one file per law, and their common text.
 
 A law gives indices (stresses, load factors) of a loaded pair, each with a limit that a stage sets.
 Searches ask it for utilisations or narrowest face widths and know no formula.
@@ -37,12 +37,12 @@ class Limit:
 
     @property
     def design_key(self) -> str:
-        """What the index is called in a design: its name with its unit."""
+        """Name of the index in a design, with its unit."""
         return f"{self.name}_{self.unit}"
 
     @property
     def label(self) -> str:
-        """What reports call it."""
+        """Name of the index in reports."""
         return self.words or self.name.replace("_", " ")
 
 

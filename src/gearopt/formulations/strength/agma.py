@@ -51,7 +51,7 @@ class Agma:
     def case(
         self, pair: GearPair, torque: Any, speed: Any, given: Mapping[str, Any], level: int = 0
     ) -> Case:
-        """Return the case of a level of load with what is given beside."""
+        """Case of a level of load with the given factors."""
         operation = self.loads[level].of(self.operation, torque, speed)
         return Case(pair, operation, self.steels, self._practice(pair), {**given, **self.given})
 
@@ -95,7 +95,7 @@ class Agma:
         return agma_smooth.branches(pair, choice)
 
     def floor(self, box: Box, choice: str) -> AgmaFloor | None:
-        """Return lower bounds of what is used, as posynomials; None where there are none."""
+        """Lower bounds of the used load capacity, as posynomials; None where there are none."""
         return agma_floor(self, box, choice)
 
     @property

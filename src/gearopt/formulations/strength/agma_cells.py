@@ -1,4 +1,4 @@
-"""What AGMA 2001 needs of d1^2 b over cells of designs, at least."""
+"""Least d1^2 b that AGMA 2001 needs over cells of designs."""
 
 from typing import TYPE_CHECKING, Any
 

@@ -1,4 +1,4 @@
-"""Lower bounds of what AGMA 2001 uses of a load capacity, as posynomials over a box of designs.
+"""Lower bounds of the load capacity used by AGMA 2001, as posynomials over a box of designs.
 
 K_v is one as it is. K_m is bounded by its branches with chords, 1/I and 1/J by geometric series in
 the inverse numbers of teeth, life factors and C_H by their chords in logarithms.
@@ -63,7 +63,7 @@ class Monomial:
 
 @dataclass(frozen=True)
 class AgmaFloor:
-    """Lower bounds of what is used by bending and contact of pinion and wheel.
+    """Lower bounds of the capacity used by bending and contact of pinion and wheel.
 
     unit: what is used at T = d = b = m_t = 1 and all factors 1, of loads, at safety factors of 1.
     spreads: K_m >= a + b x + c max(w/(10 d), 0.05), rows of (a, b per mm, c). pitting(z1, u),
@@ -284,7 +284,7 @@ def _shared(lines: list[Line], box: Box) -> Callable[[Any, Any], Any]:
 
 
 def _part(pair: GearPair, member: int) -> Array:
-    """Return what the addendum of a member adds to the transverse contact ratio."""
+    """Part of a member's addendum in the transverse contact ratio."""
     path = contact_path(pair)
     return np.asarray((-path.start if member else path.end) / path.base_pitch)
 

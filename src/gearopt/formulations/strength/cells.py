@@ -53,7 +53,7 @@ class Cells:
         return replace(made, wheel=wheel)
 
     def blanks(self) -> list[GearPair]:
-        """Return pairs of all ends of modules and diameters: what is monotone in both is within."""
+        """Pairs of all ends of modules and diameters: a quantity monotone in both is within."""
         found = []
         for module in self.module:
             for end in (LOWER, UPPER):
@@ -64,7 +64,7 @@ class Cells:
         return found
 
     def teeth_alone(self, law: Callable[[GearPair], dict[str, Any]]) -> dict[str, Array]:
-        """Return the ranges (2, n) by name of what pairs have by their teeth alone.
+        """Ranges (2, n) by name of quantities that follow from the teeth alone.
 
         Thickness allowances are lengths: of teeth that have some the module counts, too.
         """

@@ -139,7 +139,7 @@ class Iso6336:
         return isinstance(other, Iso6336) and other.practice.shift == self.practice.shift
 
     def prepared(self, pair: GearPair) -> ToothTable:
-        """Return what the teeth of pairs (n,) have whatever their width."""
+        """Quantities of the teeth of pairs (n,), of any width."""
         return tooth_table(pair, self.practice.shift)
 
     @np.errstate(invalid="ignore", divide="ignore", over="ignore")
@@ -197,7 +197,7 @@ class Iso6336:
         return columns
 
     def found(self, case: Case) -> dict[str, Any]:
-        """Return what the materials alone have."""
+        """Numbers of the materials alone."""
         names = ("K_A", "K_gamma", "sigma_Hlim", "sigma_Flim", "C_a", "Z_E", "Z_X", "Y_ST", "Y_M")
         found: dict[str, Any] = {}
         for name in names:
@@ -205,7 +205,7 @@ class Iso6336:
         return found
 
     def _teeth(self, table: ToothTable, case: Case) -> Columns:
-        """Return what the teeth have, lengths [mm]."""
+        """Quantities of the teeth, lengths [mm]."""
         pair = case.pair
         first, second = (m.modulus for m in self.materials)
         modulus = 2.0 * first * second / (first + second) / stiffness.STEEL

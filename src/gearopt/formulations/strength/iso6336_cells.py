@@ -1,4 +1,4 @@
-"""What ISO 6336 needs of d1^2 b over cells of designs, at least.
+"""Least d1^2 b that ISO 6336 needs over cells of designs.
 
 With s = W0/c', V1 = W1/c', V2 = W2/c' of the line loads W0 = F_t K_A K_gamma/b, W1 = W0 K_v,
 W2 = W1 K_Hbeta [N/mm] all is a matter of lengths [mm]: deviations and deflections.
@@ -53,7 +53,7 @@ class IsoCells:
 
     @cached_property
     def found(self) -> dict[str, Any]:
-        """What the materials alone have."""
+        """Numbers of the materials alone."""
         return self.standard.found(self.cases[0])
 
     @cached_property

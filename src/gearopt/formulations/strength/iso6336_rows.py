@@ -1,4 +1,4 @@
-"""What of the load capacity is used by ISO 6336, at least, between two widths and two torques.
+"""Least load capacity used by ISO 6336 between two widths and two torques.
 
 Line loads W0 = F_t K_A K_gamma/b, W1 = W0 K_v, W2 = W1 K_Hbeta rise with the load; what they are
 at the ends bounds them: of two values the first is the least, the second the greatest.
@@ -128,7 +128,7 @@ class Box:
         return self.standard.given
 
     def parts(self) -> list[Any]:
-        """Return the least of what is used, or of stress where there are more loads; see MODES."""
+        """Least part of the capacity in use, or stress where there are more loads; see MODES."""
         at, before = self.columns, self.dynamic(LOWER)
         after = self.spread(LOWER, before)
         transverse = self._transverse(after)

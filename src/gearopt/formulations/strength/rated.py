@@ -1,4 +1,4 @@
-"""Ratings as limits: what the gears of a stage are made of, and the standards that rate them.
+"""Ratings as limits: ways of making the gears of a stage, and the standards that rate them.
 
 A stage may choose between options, each of one material a gear, accuracy and so on. An option is
 rated by one standard or two; a standard gives safety factors of any pair, and rows of pairs whose
@@ -22,14 +22,14 @@ REFUSED = 1e9  # utilisation of pairs that a standard refuses to rate
 
 @dataclass(frozen=True)
 class Load:
-    """One level of what a drive does: power and input speed over those of its duty, hours."""
+    """One level of a drive's duty: power and input speed over the full ones, hours."""
 
     hours: float
     power: float = 1.0
     speed: float = 1.0
 
     def of(self, operation: Operation, torque: Any, speed: Any) -> Operation:
-        """Return what a pair does at this level; torque [N mm] and speed [rad/s] of full load."""
+        """Operation of a pair at this level; torque [N mm] and speed [rad/s] of full load."""
         power = self.power * torque * speed
         return replace(operation, power=power, pinion_speed=self.speed * speed, hours=self.hours)
 
@@ -38,7 +38,7 @@ class Rows(Protocol):
     """Gear pairs (n,) at torques, whose face widths are sought."""
 
     def used(self, low: Array, high: Array) -> Array:
-        """Return a lower bound of what of the load capacity is used at widths from low to high.
+        """Lower bound of the part of the load capacity used at widths from low to high.
 
         Load over what gives the safety factors asked for: above 1 no width between them carries.
         Exact where both are one. low, high (n,) [mm], with no `border` between them.
@@ -56,11 +56,11 @@ class Standard(Protocol):
 
     @property
     def suffix(self) -> str:
-        """Return what tells its limits from those of others, "" or "_iso"."""
+        """Ending of the names of its limits, "" or "_iso"."""
 
     @property
     def monotone(self) -> bool:
-        """Return whether at one power what is used rises with the torque, for every width."""
+        """Whether at one power the used capacity rises with the torque, for every width."""
 
     def safeties(self, pair: GearPair, torque: Any, speed: Any) -> tuple[Any, Any, Any, Any]:
         """Return S_F1, S_F2, S_H1, S_H2 (of stress); NaN where the standard refuses the pair.
@@ -73,7 +73,7 @@ class Standard(Protocol):
         """Return the ends of the unknowns of `smooth` by name, and whether they are log."""
 
     def choices(self, helical: bool) -> tuple[str, ...]:
-        """Return what `smooth` needs fixed beforehand: one of these."""
+        """Regimes of which `smooth` needs one fixed beforehand."""
 
     def refined(self, pair: GearPair, choice: str) -> tuple[str, ...]:
         """Return choices near a pair of floats that are closer to the exact rating."""
@@ -97,13 +97,13 @@ class Standard(Protocol):
         """
 
     def floor(self, box: "Box", choice: str) -> "Floor | None":
-        """Return lower bounds of what is used over a box; None where there are none."""
+        """Lower bounds of the used capacity over a box; None where there are none."""
 
     def like(self, other: Any) -> bool:
-        """Return whether what `prepared` returns of another standard is the same."""
+        """Whether `prepared` of another standard returns the same."""
 
     def prepared(self, pair: GearPair) -> Any:
-        """Return what `rows` takes of pairs (n,) whatever their load and width."""
+        """Numbers of pairs (n,) that `rows` takes, of any load and width."""
 
     def rows(
         self,
@@ -121,7 +121,7 @@ class Standard(Protocol):
 
 @dataclass(frozen=True)
 class Option:
-    """One way of making the gears of a stage: its standards, and what tells it from others.
+    """One way of making the gears of a stage: its standards, and its name among others.
 
     densities [t/mm3], or None for that of the drive, prices of a kilogram, and names of materials,
     of pinion and wheel.
@@ -169,7 +169,7 @@ class IndexRows:
 
 @dataclass(frozen=True)
 class Box:
-    """What is known of the designs that a bound has to hold for.
+    """Ranges of the designs that a bound has to hold for.
 
     teeth: least and most of the pinion; ratio: least and most; speed [rad/s] of the pinion, least
     and most; widest: largest face width [mm], inf: unknown; toothing: of the gears.
@@ -183,13 +183,13 @@ class Box:
 
 
 class Floor(Protocol):
-    """Lower bounds of what is used of a load capacity, as posynomials."""
+    """Lower bounds of the used load capacity, as posynomials."""
 
     def utilisations(self, pair: GearPair, torque: Any, speed: Any, safety: Any) -> dict[str, Any]:
         """Return them by name, at required safety factors (S_F, S_H)."""
 
     def limits(self, pair: GearPair) -> dict[str, Any]:
-        """Return the limits that keep to what was chosen beforehand."""
+        """Limits that keep to the regime chosen beforehand."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What ratings take of pairs by their teeth alone, whatever their size: laws for cells of teeth."""
+"""Quantities of ratings that follow from the teeth alone, of any size: laws for cells of teeth."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -29,7 +29,7 @@ Law = Callable[[GearPair], dict[str, Any]]
 
 
 def agma_teeth(load: str, regimes: tuple[str, ...]) -> Law:
-    """Return the law of what pairs have by their teeth alone, for `Cells.teeth_alone`.
+    """Law of the quantities that follow from the teeth alone, for `Cells.teeth_alone`.
 
     By regime I (1 + 1/u), J_1 and J_2 with m_N = C_psi = 1; slope: (1 - C_psi^2)/m_F below m_F = 1.
     """
@@ -56,7 +56,7 @@ def agma_teeth(load: str, regimes: tuple[str, ...]) -> Law:
 
 
 def iso_teeth(shift: str) -> Law:
-    """Return the law of what pairs have by their teeth alone, for `Cells.teeth_alone`."""
+    """Law of the quantities that follow from the teeth alone, for `Cells.teeth_alone`."""
 
     def law(pair: GearPair) -> dict[str, Any]:
         path = contact_path(pair)

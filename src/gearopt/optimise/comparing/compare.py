@@ -98,7 +98,7 @@ def attempt(entry: Entry, seed: int, budget: Budget, follow: Callable[[Event], b
 
 
 def _scale(problem: Problem | Conic, x: Array, verdict: Verdict) -> float:
-    """Return what a gap of this point is measured by, if its objective is zero."""
+    """Scale of a gap of this point, if its objective is zero."""
     return verdict.certificate.get("scale") or zero_scale(problem, x)
 
 
@@ -145,7 +145,7 @@ def compared(
     message: str,
     **names: Any,
 ) -> Comparison:
-    """Return groups with what they rest on; message: "" where every run was made."""
+    """Groups with their data; message: "" where every run was made."""
     return Comparison(
         groups,
         tuple(range(plan.seeds)),

@@ -1,4 +1,4 @@
-"""What a comparison of methods found: runs, their statistics and curves; to JSON and back.
+"""A comparison of methods as a fact: runs, their statistics and curves; to JSON and back.
 
 A gap is (objective - reference)/|reference|; where the reference is zero, as far as that can be
 known, it is relative to the objective's own scale (see `scale`). The reference is the best bound
@@ -28,7 +28,7 @@ POINTS = 160  # of a curve, beyond which it is thinned to steps even in the loga
 
 @dataclass(frozen=True)
 class Run:
-    """One run of a method: what it spent, and what our own check found.
+    """One run of a method: its effort, and the findings of our own check.
 
     objective and gap: None without a feasible point. violation: of the point it returned, None
     where it returned none. seconds: of the method alone. steps: (seconds, evaluations, best so far)
@@ -76,7 +76,7 @@ class Summary:
 
 @dataclass(frozen=True)
 class Curve:
-    """Gap so far against what was spent: median and quartiles over seeds, None: not feasible."""
+    """Gap so far against effort: median and quartiles over seeds, None: not feasible."""
 
     spent: tuple[float, ...]
     low: tuple[float | None, ...]
@@ -132,7 +132,7 @@ class Group:
 
 @dataclass(frozen=True)
 class Comparison:
-    """All groups with what they rest on.
+    """All groups with the data that they rest on.
 
     budget: {evaluations, seconds, patience_seconds}; settings: {method: {name: value}}. bound_from:
     the method that was asked for a bound. objectives: of fronts, else (); most: largest values of
@@ -180,7 +180,7 @@ class Comparison:
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Comparison":
-        """Return the inverse of `to_dict`; ValueError for what is none, or of another format."""
+        """Inverse of `to_dict`; ValueError for a dict that is none, or of another format."""
         if not isinstance(data, Mapping) or "comparison" not in data:
             raise ValueError("is not a comparison: it has no key `comparison`")
         if data["comparison"] != FORMAT:

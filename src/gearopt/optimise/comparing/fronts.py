@@ -56,14 +56,14 @@ class Goal:
     limiting: Limiting | None = None
 
     def front(self, problem: Problem | Conic, method: str, *given: Any, **named: Any) -> Found:
-        """Return what a method finds of their front: `pareto.found`."""
+        """Front that a method finds: `pareto.found`."""
         named["limiting"] = self.limiting
         return found(problem, self.names, self.most, method, *given, **named)
 
 
 @dataclass(frozen=True)
 class Trial:
-    """One run and what it found: values (N, k) of its points, and how they grew."""
+    """One run and its points: values (N, k), and how they grew."""
 
     run: Run
     values: Array
@@ -76,7 +76,7 @@ class Trial:
 
     @property
     def evaluations(self) -> int:
-        """Return what the method counted."""
+        """Number of evaluations, in the method's own count."""
         return self.run.evaluations
 
 
@@ -179,7 +179,7 @@ def _violation(problem: Problem | Conic, made: Found) -> float | None:
 def _standard(
     model: Model, goal: Goal, watch: Follow | None, method: str | None
 ) -> tuple[str, Found] | None:
-    """Return the method of the reference front and what it found; None where nothing proves one."""
+    """Method of the reference front and its findings; None where nothing proves one."""
     problem = replace(model.problem)
     chosen = method or default(problem, goal.limiting)
     if chosen == NSGA:
@@ -268,7 +268,7 @@ def _thin(steps: Sequence[Step]) -> list[Step]:
 
 
 def _words(method: str, made: Found, count: int) -> str:
-    """Say what the reference front is."""
+    """Sentence on the reference front."""
     start = "Gaps are the part of the hypervolume that is missing"
     designs = f"{count} design" + ("" if count == 1 else "s")
     if not count:

@@ -25,7 +25,7 @@ KINDS = ("equal_evaluations", "equal_time")
 
 @dataclass(frozen=True)
 class Model:
-    """A problem with what a reader calls it, and the unit of its objective."""
+    """A problem with its name for a reader, and the unit of its objective."""
 
     problem: Problem | Conic
     words: str = ""
@@ -65,7 +65,7 @@ def entered(methods: Sequence[str], enter: Callable[[str], Entry]) -> list[Entry
 
 
 def warmed(entry: Entry, module: Any, run: Callable[[], Outcome | Found]) -> Entry:
-    """Return an entry with what the module of its method declares, after two short runs."""
+    """Entry with the declarations of its method's module, after two short runs."""
     entry = replace(
         entry,
         random=_own(entry.method, getattr(module, "RANDOM", True)),
@@ -91,7 +91,7 @@ def warmed(entry: Entry, module: Any, run: Callable[[], Outcome | Found]) -> Ent
 
 
 def _own(method: str, declared: Any) -> Any:
-    """Return what a module declares of a method: the same for all of them, or by name."""
+    """Declaration of a module for a method: the same for all of them, or by name."""
     by_name = isinstance(declared, Mapping) and method in declared
     return declared[method] if by_name else declared
 
@@ -130,7 +130,7 @@ class Job:
 
 
 class Made(Protocol):
-    """What a run was: its time and its evaluations are all that planning needs."""
+    """Time and evaluations of a run, all that planning needs."""
 
     @property
     def seconds(self) -> float:
@@ -138,7 +138,7 @@ class Made(Protocol):
 
     @property
     def evaluations(self) -> int:
-        """What the method counts."""
+        """Number of evaluations, in the method's own count."""
 
 
 M = TypeVar("M", bound=Made)

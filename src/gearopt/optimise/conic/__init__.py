@@ -1,1 +1,1 @@
-"""Linear and conic problems written in cvxpy: canonical data, scaling, and what they prove."""
+"""Linear and conic problems written in cvxpy: canonical data, scaling, and proofs."""

@@ -1,4 +1,4 @@
-"""The canonical data of a conic problem: what solvers see and what certificates are computed from.
+"""The canonical data of a conic problem, which solvers see and certificates are computed from.
 
 Minimise c.x + x.P x/2 + d over A x + s = b, s in K. K holds zero rows, then nonnegative rows, then
 second-order blocks. A block |(s_1, w)| <= s_0 that comes from a product (1/t, x^2/t, powers) is

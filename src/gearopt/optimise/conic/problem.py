@@ -20,7 +20,7 @@ from gearopt.optimise.terms import Array, Named, Number, Param, Terms, Var, chec
 
 @dataclass(frozen=True)
 class Model:
-    """A text as cvxpy holds it: what to set, what to read.
+    """A text as cvxpy holds it: parameters to set, values to read.
 
     inverses: 1/p of every parameter, for the text to multiply by; divided: ids of those it uses.
     blocks: (kind, expression (k,)) of limits, defines and equal rows, in the order of `names`.
@@ -60,7 +60,7 @@ class Conic:
         _ = self._declared
 
     def __reduce__(self) -> tuple[type, tuple[Any, ...]]:
-        """What copies and other processes build it from: all but what was canonicalised."""
+        """Fields that copies and other processes build it from: all but the canonical data."""
         return declared(self)
 
     @cached_property
@@ -74,7 +74,7 @@ class Conic:
         return {}
 
     def at(self, **values: Number) -> "Conic":
-        """Return the same problem with other parameter values; what was canonicalised is kept."""
+        """The same problem with other parameter values; its canonical data are kept."""
         other = replace(self, parameters=self._declared.at(**values).parameters)
         object.__setattr__(other, "memo", self.memo)
         return other
@@ -91,7 +91,7 @@ class Conic:
 
     @property
     def objectives(self) -> tuple[str, ...]:
-        """Return the names of what the text minimises, which may be several."""
+        """Names of the objectives of the text, which may be several."""
         signs = tuple(_sign(spread(q.value, q.size)) for q in self.parameters)
         return tuple(_symbols(self, signs)[-1].minimise)
 
@@ -214,7 +214,7 @@ def _build(problem: Conic, signs: tuple[str, ...]) -> Model:
 
 
 def _known_sign(variable: Var) -> dict[str, bool]:
-    """Return what cvxpy may conclude curvature from."""
+    """Sign from which cvxpy may conclude curvature."""
     lower, upper = spread(variable.lower, variable.size), spread(variable.upper, variable.size)
     if (lower >= 0).all():
         return {"nonneg": True}

@@ -1,4 +1,4 @@
-"""What is certain of the points that epsilon constraints found, in numbers and in words."""
+"""The certainty of the points that epsilon constraints found, in numbers and in words."""
 
 from typing import TYPE_CHECKING
 
@@ -49,7 +49,7 @@ def concluded(run: "Run", complete: bool = False) -> Found:
 
 
 def _sentence(run: "Run", points: tuple[Point, ...], complete: bool) -> str:
-    """Return what is proven of the points."""
+    """Sentence on the proof of the points."""
     if complete and points:
         return (STAIRS if not run.lines else SHUT).format(name=run.names[1], close=CLOSE)
     count = sum(p.proven for p in points)

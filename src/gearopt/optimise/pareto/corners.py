@@ -1,4 +1,4 @@
-"""What known points leave open: the corners below which a point that none beats may still lie.
+"""Open corners beside known points, below which a point that none beats may still lie.
 
 A point that no known one beats lies below one of the corners (local upper bounds). So a part of a
 search is of use only where its lower bounds lie below one; bounds of weighted sums count as well.

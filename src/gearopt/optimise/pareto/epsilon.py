@@ -333,7 +333,7 @@ def _solved(run: Run, name: str, most: Caps, near: Array | None = None) -> Point
 
 
 def _sampled(run: Run, problem: Problem) -> tuple[Point, ...]:
-    """Return what evolution finds of a front within a part of the budget, as starts of steps."""
+    """Points of a front that evolution finds within a part of the budget, as starts of steps."""
     clock = run.clock
     limits = {name: Limit.of(value, 0.0) for name, value in run.caps.items()}
     own, left = posed(problem, run.names, limits), clock.left

@@ -1,4 +1,4 @@
-"""What a method finds of a front: points with their values, and what was proven of each."""
+"""A front as a method finds it: points with their values, and the proof of each."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -44,7 +44,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Found:
-    """What a method returns of a front; points by the first objective, none beaten by another.
+    """A front as a method finds it; points by the first objective, none beaten by another.
 
     complete: every design that none beats is among them, proven. error: largest distance of the
     true front to the line through the points, in the ranges of the objectives; None: not known.

@@ -1,4 +1,4 @@
-"""A Pareto front as a fact: its designs, what is proven of them, how it grew; to JSON and back."""
+"""A Pareto front as a fact: its designs, their proof, how it grew; to JSON and back."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ STATUSES = ("complete", "proven", "not proven", "infeasible", "limit")
 
 @dataclass(frozen=True)
 class Objective:
-    """What is minimised: its name and unit, and the largest value of interest (None: any)."""
+    """An objective: its name and unit, and the largest value of interest (None: any)."""
 
     name: str
     unit: str = ""
@@ -124,7 +124,7 @@ class Front:
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "Front":
-        """Return the inverse of `to_dict`; ValueError for what is none, or of another format."""
+        """Inverse of `to_dict`; ValueError for a dict that is none, or of another format."""
         if not isinstance(data, Mapping) or "front" not in data:
             raise ValueError("is not a Pareto front: it has no key `front`")
         if data["front"] != FORMAT:

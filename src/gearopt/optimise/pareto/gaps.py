@@ -1,4 +1,4 @@
-"""What lies open between neighbours along a front of two objectives, where to step, and its error.
+"""Open gaps between neighbours along a front of two objectives, where to step, and their error.
 
 A step finds the least first objective f of designs whose second one, g, is at most a limit. Below a
 limit whose step leads back to the neighbour of smaller g nothing is left: from there on the gap is

@@ -1,4 +1,4 @@
-"""The front of what a method found: measured, with what is certain of it, and picked from."""
+"""A method's front, measured, certified and picked from."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -27,7 +27,7 @@ def judged(
     drawn: Callable[[Array], Mapping[str, Any]] | None = None,
     **names: Any,
 ) -> Front:
-    """Return the front of what a method found, measured, with the designs that rules pick.
+    """Front of a method's findings, measured, with the designs that rules pick.
 
     drawn: the design of a point as a kind of file shows it; by default variables by name.
     """
@@ -59,7 +59,7 @@ def judged(
 
 
 def status(made: Found) -> str:
-    """Return what is certain of a front."""
+    """Status of a front, by its proof."""
     if made.infeasible:
         return "infeasible"
     if made.complete:

@@ -1,4 +1,4 @@
-"""What a front is measured by: who is beaten, hypervolume, and the distance to a better front."""
+"""Measures of a front: dominance, hypervolume, and the distance to a better front."""
 
 import numpy as np
 from numpy.typing import NDArray

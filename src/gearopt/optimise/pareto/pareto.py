@@ -35,7 +35,7 @@ def found(
     watch: Watch | None = None,
     limiting: Limiting | None = None,
 ) -> Found:
-    """Return what a method finds of the front of some objectives of a problem.
+    """Front of some objectives of a problem by a method.
 
     names: two or three objectives, the first minimised where others are limited. most: largest
     values of interest, by name. method: one of METHODS; by default the problem's own exact one,

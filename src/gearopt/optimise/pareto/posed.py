@@ -20,7 +20,7 @@ VALUE = "value"  # value_cost: the cost of a point, whatever is minimised
 
 @dataclass(frozen=True)
 class Limit:
-    """The largest value of an objective, and what an excess is measured by (above 0).
+    """The largest value of an objective, and the scale of its violation (above 0).
 
     Where they are equal the row is a quotient, which keeps a posynomial what it is.
     """
@@ -93,7 +93,7 @@ Built = dict[tuple[str, ...], "Problem | Conic"]
 def kept(
     built: Built, problem: Problem | Conic, minimise: Sequence[str], limits: Mapping[str, Limit]
 ) -> Problem | Conic:
-    """Return `posed` from what was built before, which it fills."""
+    """`posed` from problems that were built before, or built now and kept."""
     key = (*minimise, *(f"{n} {one.most == one.scale}" for n, one in sorted(limits.items())))
     if key not in built:
         built[key] = posed(problem, minimise, limits)
@@ -106,7 +106,7 @@ def kept(
 
 
 def moved(problem: Problem | Conic, limits: Mapping[str, Limit]) -> Problem | Conic:
-    """Return what `posed` made with other limits of the same kind; what was built is kept.
+    """A problem of `posed` with other limits of the same kind; its traces are kept.
 
     The scales of a Conic are constants of its text, and stay.
     """
@@ -122,7 +122,7 @@ def moved(problem: Problem | Conic, limits: Mapping[str, Limit]) -> Problem | Co
 
 
 def scale(problem: Problem | Conic, name: str) -> float:
-    """Return what an excess of the limit of an objective is measured by."""
+    """Scale of the violation of an objective's limit."""
     known = _numbers(problem)
     return known.get(f"{SCALE}_{name}", known[f"{LIMIT_PREFIX}_{name}"])
 

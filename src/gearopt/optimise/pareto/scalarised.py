@@ -122,7 +122,7 @@ def _half(budget: Budget) -> Budget:
 
 
 def _part(clock: Clock, runs: int) -> Budget:
-    """Return an equal part of what a clock has left for so many runs."""
+    """Equal part of a clock's rest for so many runs."""
     left = clock.left
     return replace(
         left,

@@ -36,7 +36,7 @@ class Several:
 
 
 def impossible(of: str, names: Sequence[str], none: Outcome) -> Problem:
-    """Return a problem whose exact method claims what is known: that there is no design."""
+    """Problem whose exact method claims a known fact: that there is no design."""
     return Problem(
         of,
         (Var("x", "", 0.0, 1.0, 0.5),),
@@ -108,7 +108,7 @@ def solved(
 
 
 def _each(posed: Several, given: Mapping[str, Any], clock: Clock) -> list[Front]:
-    """Return the front of each of several problems, in equal shares of what is left of the time."""
+    """Front of each of several problems, in equal shares of the time that is left."""
     every, fronts = (replace(posed, others=()), *posed.others), list[Front]()
     for k, one in enumerate(every):
         left = clock.left

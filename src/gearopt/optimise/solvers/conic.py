@@ -192,7 +192,7 @@ SLACK = 1e-9  # feasibility asked of a design that is kept; the certificate bear
 
 @dataclass
 class _Search:
-    """What the search knows; it has state because nodes share the best design.
+    """Incumbent and leaves of the search; it has state because nodes share the best design.
 
     clock: counts relaxations solved. x: best design so far; scale: the cost's own there. leaves:
     closed nodes.

@@ -28,7 +28,7 @@ SETTINGS = {"solver": "Clarabel", "tolerances": TOLERANCES}
 
 @dataclass(frozen=True)
 class _Model:
-    """A problem as cvxpy holds it: what to set, what to read."""
+    """A problem as cvxpy holds it: parameters to set, values to read."""
 
     problem: Any
     variables: tuple[Any, ...]

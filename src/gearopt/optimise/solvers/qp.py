@@ -60,7 +60,7 @@ class _Program:
 
 
 def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-    """Solve a convex quadratic program; SolveError names what makes the problem none.
+    """Solve a convex quadratic program; SolveError names the term that makes the problem none.
 
     The solvers are deterministic, and cannot be interrupted: `watch` and the budget are asked
     before each, and `watch` with the answer.

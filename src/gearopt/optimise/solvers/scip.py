@@ -300,7 +300,7 @@ def _follow(scip: Any, clock: Clock, scale: float) -> None:
     kinds = (SCIP_EVENTTYPE.NODESOLVED, SCIP_EVENTTYPE.BESTSOLFOUND)
 
     class Follower(Eventhdlr):  # type: ignore[misc]
-        """What SCIP calls."""
+        """The event handler that SCIP calls."""
 
         def eventinit(self) -> None:
             for kind in kinds:

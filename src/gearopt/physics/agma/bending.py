@@ -46,7 +46,7 @@ class LoadedTooth:
 
 @dataclass(frozen=True)
 class BendingFactor:
-    """J of one member and what it is made of, lengths in normal modules.
+    """J of one member and its parts, lengths in normal modules.
 
     height h_F and thickness s_F of the critical section; form Y; concentration K_f; value J.
     2101 calls J Y_J.

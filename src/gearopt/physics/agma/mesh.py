@@ -22,7 +22,7 @@ REGIMES = ("spur", "low", "conventional")
 
 @dataclass(frozen=True)
 class Mesh:
-    """What 908 takes from a pair: its path of contact, overlap and load sharing.
+    """A pair as 908 takes it: its path of contact, overlap and load sharing.
 
     overlap m_F; sharing: load sharing ratio m_N; overlap_factor: helical overlap factor C_psi,
     squared; conventional: whether m_F > 1, or None where the regime is given by name.

@@ -1,4 +1,4 @@
-"""What a rating by AGMA 2001-D04 starts from, and every factor with its clause."""
+"""The data of a rating by AGMA 2001-D04, and every factor with its clause."""
 
 import math
 from collections.abc import Mapping
@@ -64,7 +64,7 @@ class Practice:
 
 @dataclass(frozen=True)
 class Case:
-    """What the factors are computed from."""
+    """Data that the factors are computed from."""
 
     pair: GearPair
     operation: Operation
@@ -163,7 +163,7 @@ def _bending(case: Case) -> Factor:
 
 
 def _of_helix(case: Case) -> tuple[bool, str]:
-    """Return whether published values confirm I and J, and what is to be remarked."""
+    """Whether published values confirm I and J, and the remark on it."""
     if case.pair.overlap_ratio == 0.0:
         return True, ""
     return False, "helical: two sources have the method, no published table confirms its values"

@@ -65,7 +65,7 @@ class GeometryFactors:
 
 @np.errstate(invalid="ignore", divide="ignore", over="ignore")
 def geometry_factors(pair: GearPair, load: str = "highest single") -> GeometryFactors:
-    """Return I and J of a pair of floats or of arrays of one shape, and what refuses them.
+    """I and J of a pair of floats or of arrays of one shape, and the codes that refuse them.
 
     load as of `bending.loaded_tooth`. No exception for any finite numbers, and no NaN without a
     refusal. Flaws that a designer may accept refuse nothing: see `geometry.flaws`.
@@ -111,7 +111,7 @@ def _no_involute(gear: Gear) -> Any:
 
 
 def single_factors(pair: GearPair, load: str = "highest single") -> GeometryFactors:
-    """Return I and J of one pair of floats; ValueError says what refuses them, by its name."""
+    """I and J of one pair of floats; ValueError names the rule that refuses them."""
     found = geometry_factors(pair, load)
     if found.refusal:
         name = REFUSALS[int(found.refusal)]

@@ -1,4 +1,4 @@
-"""I and J as a gradient solver wants them: one text without branches, and what that costs.
+"""I and J for a gradient solver: one text without branches, and its error.
 
 The regime is chosen beforehand, the tool angles of the critical sections are variables of the
 problem, and the tangency of the parabolas are its equalities: no table and no inner loop. For m_F >

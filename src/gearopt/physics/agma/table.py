@@ -28,7 +28,7 @@ Three = tuple[Any, Any, Any]
 
 @dataclass(frozen=True)
 class FactorTable:
-    """What I and J of pairs depend on but the face width, arrays of one shape.
+    """Quantities of pairs that give I and J at any face width, arrays of one shape.
 
     low: I/C_psi^2, J_1/C_psi, J_2/C_psi of spur gears and m_F <= 1; slope: (1 - C_psi^2)/m_F; high:
     I m_N, J_1 m_N, J_2 m_N of m_F > 1; contact: transverse contact ratio; axial: axial pitch p_x
@@ -45,7 +45,7 @@ class FactorTable:
     refusal: tuple[Any, Any]
 
     def take(self, place: Any) -> "FactorTable":
-        """Return the table of some pairs; place: what numpy takes as an index of its arrays."""
+        """Table of some pairs; place: an index of arrays, as numpy takes it."""
 
         def of(three: Three) -> Three:
             return three[0][place], three[1][place], three[2][place]

@@ -55,7 +55,7 @@ class ContactPath:
 
 @np.errstate(invalid="ignore")
 def contact_path(pair: GearPair, form_diameters: tuple[Any, Any] | None = None) -> ContactPath:
-    """Return the path of contact between the tip circles, or what form circles leave of it.
+    """Path of contact between the tip circles, or between form circles within them.
 
     form_diameters d_Ff of pinion and wheel [mm] (`fillet.form_diameter`): contact ends there where
     the mate's tip reaches deeper, as undercut and interference make it. Source: ISO 21771:2007,

@@ -65,7 +65,7 @@ def flaws(pair: GearPair, of: str = "") -> tuple[Flaw, ...]:
 
 
 def _of_gear(member: str, gear: Gear) -> list[Flaw]:
-    """Return what is wrong with one gear, whatever its mate."""
+    """Flaws of one gear with any mate."""
     found = []
     if tool_tip(gear).half_width < 0.0:
         most = float(largest_tip_radius(gear.rack.pressure_angle, gear.rack.dedendum))
@@ -100,7 +100,7 @@ def _of_gear(member: str, gear: Gear) -> list[Flaw]:
 
 
 def _undercut(member: str, gear: Gear, depth: float) -> str:
-    """Say that a gear is undercut by a depth in modules, and what avoids it."""
+    """Sentence on a gear that is undercut by a depth in modules, with its remedies."""
     limit = float(teeth_without_undercut(gear.rack, gear.helix_angle))
     least = 2.0 * NEGLIGIBLE * np.cos(gear.helix_angle)
     least = math.ceil(limit - least / np.sin(gear.transverse_pressure_angle) ** 2)
@@ -114,7 +114,7 @@ def _undercut(member: str, gear: Gear, depth: float) -> str:
 
 
 def _of_pair(pair: GearPair, of: str) -> list[Flaw]:
-    """Return what is wrong with the mesh of two gears that have teeth."""
+    """Flaws of the mesh of two gears that have teeth."""
     if not math.isfinite(float(pair.working_angle)):
         text = (
             f"No centre distance{of} goes with its profile shifts: their sum is too small."

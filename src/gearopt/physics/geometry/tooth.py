@@ -1,4 +1,4 @@
-"""Tooth thickness, and what is measured for it: span, dimension over balls, backlash.
+"""Tooth thickness and the dimensions that measure it: span, dimension over balls, backlash.
 
 Arguments are gears and pairs of floats, arrays of one shape or casadi scalars.
 """

@@ -1,4 +1,4 @@
-"""What a rating by ISO 6336 starts from, beside pair and operation."""
+"""Data of a rating by ISO 6336, beside pair and operation."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

@@ -102,7 +102,7 @@ def _none(case: Case, found: Found) -> Doubt:
 
 
 def _of_2019(case: Case, what: str) -> Doubt:
-    """Return the doubt of what only the edition of 2019 has."""
+    """Doubts of factors that only the edition of 2019 has."""
     return (
         (False, f"{what} of 2019: {UNCHECKED}") if case.practice.edition == "2019" else (True, "")
     )

@@ -33,7 +33,7 @@ def lower_limit(line_load: Any) -> Any:
 
 @dataclass(frozen=True)
 class Dynamics:
-    """What K_v depends on but speed: relative deviations B_p, B_f, B_k, and eps_gamma.
+    """Data of K_v but the speed: relative deviations B_p, B_f, B_k, and eps_gamma.
 
     B_p = c' f_pbeff/w, B_f = c' f_falphaeff/w, B_k = |1 - c' C_a/w|, w = F_t K_A/b.
     """

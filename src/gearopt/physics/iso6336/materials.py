@@ -1,4 +1,4 @@
-"""Strengths of materials by ISO 6336-5, table 1, and what else parts 1 to 3 ask of a material."""
+"""Strengths of materials by ISO 6336-5, table 1, and their families in parts 1 to 3."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""The rating of one gear pair by ISO 6336: stresses, safety factors, lives, what governs.
+"""The rating of one gear pair by ISO 6336: stresses, safety factors, lives, governing one.
 
 Of floats. What is given replaces what is computed, factor by factor.
 """

@@ -85,7 +85,7 @@ def _of_gears(pair: GearPair) -> list[Any]:
 
 
 def refuse(pair: GearPair, practice: Practice) -> None:
-    """Raise ValueError with the name of what refuses a pair of floats."""
+    """Raise ValueError with the name of the rule that refuses a pair of floats."""
     if found := int(refusal(pair, practice.shift)):
         name = REFUSALS[found]
         raise ValueError(f"{name}: {SENTENCES[name]}")

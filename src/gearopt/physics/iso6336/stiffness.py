@@ -93,7 +93,7 @@ def single_stiffness(
 
 
 def light_load(line_load: Any) -> Any:
-    """Return what is left of c' at a line load F_t K_A/b [N/mm], as `single_stiffness` has it."""
+    """Part of c' that is left at a line load F_t K_A/b [N/mm], as `single_stiffness` has it."""
     return np.minimum(line_load / LEAST_LINE_LOAD, 1.0) ** 0.25
 
 

@@ -1,4 +1,4 @@
-"""What ratings by ISO 6336 of many pairs ask of the teeth alone, whatever face width and load.
+"""Quantities of the teeth alone that ratings by ISO 6336 take, of any face width and load.
 
 For searches over numbers of teeth, modules and face widths: tooth forms, contact ratios and
 stiffness depend on the pair but for its size, and change with it as lengths do.
@@ -44,7 +44,7 @@ class ToothTable:
     axial: Any
 
     def take(self, place: Any) -> "ToothTable":
-        """Return the table of some pairs; place: what numpy takes as an index of its arrays."""
+        """Table of some pairs; place: an index of arrays, as numpy takes it."""
 
         def of(value: Any) -> Any:
             return tuple(v[place] for v in value) if isinstance(value, tuple) else value[place]

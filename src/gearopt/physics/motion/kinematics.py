@@ -1,4 +1,4 @@
-"""Deformation of a mesh whose axes move: what the displacement of the axes adds to it.
+"""Deformation of a mesh whose axes move: the part of the axes' displacement.
 
 delta = g(u, v) - s: u, v [mm] are the displacement of the wheel's axis against the pinion's, along
 the line of centres at rest and across it; s = r_b1 theta_1 + r_b2 theta_2. The functions here give

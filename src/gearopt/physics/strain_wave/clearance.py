@@ -186,7 +186,7 @@ def interferes(flank: Flank, step_deg: float, points: int) -> bool:
 def _minima(
     look: Look, pose: Callable[[Any], Pose], items: Any, angles: Any, at: Pose
 ) -> list[tuple[int, float, float, bool]]:
-    """Return of every item its least gaps: item, gap, angle, whether at an end of what counts.
+    """Least gaps of every item: item, gap, angle, whether at an end of the counted range.
 
     look(items, poses) -> gap, and how far it counts: where that is at least 0. at: the poses of
     the angles.

@@ -81,7 +81,7 @@ def envelope(profile: Profile, pitch_radius: float, cutter_radius: float = math.
 
 @np.errstate(invalid="ignore")
 def generated(cutter: Profile, pitch_radius: float, cutter_radius: float = math.inf) -> Vector:
-    """Return what a cutter's points generate on a blank of a pitch radius [mm]: (13) backwards."""
+    """Profile that a cutter's points generate on a blank of a pitch radius [mm]: (13) backwards."""
     if math.isinf(cutter_radius):
         z, normal = cutter.points, cutter.directions.left
         roll = (z.y - z.x * normal.y / normal.x) / pitch_radius

@@ -1,4 +1,4 @@
-"""Widths of lands and spaces that a gearing keeps: what is too thin cannot be made."""
+"""Widths of lands and spaces of a gearing: teeth that are too thin cannot be made."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Teeth of any law in mesh: the flexspline's are given, the circular spline's are what they leave.
+"""Teeth of any law in mesh: the flexspline's are given and sweep the circular spline's.
 
 The space of the circular spline is bounded by what a tooth sweeps over the whole wave, so that
 nothing interferes; where the boundary is the envelope of the tooth, the flanks are conjugate.

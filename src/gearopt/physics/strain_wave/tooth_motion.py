@@ -70,7 +70,7 @@ class Motion:
 
 
 def pose_of(gearing: StrainWave, curve: NeutralCurve, angle: Any) -> Pose:
-    """Return the pose of a tooth at the polar angle p [rad] as `motion`, without what moves it."""
+    """Pose of a tooth at the polar angle p [rad] as `motion`, without its derivatives."""
     rho, slope, _, _ = radii(curve, angle)
     back = -gearing.teeth_ratio * arc_angle(curve, angle)
     return Pose(polar(rho, angle + back), angle - np.arctan2(slope, rho) + back)

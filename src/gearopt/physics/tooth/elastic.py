@@ -1,4 +1,4 @@
-"""What deforms: two spur gears with bores and materials, and where a force acts on a tooth."""
+"""The elastic pair: two spur gears with bores and materials, and where a force acts on a tooth."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -99,7 +99,7 @@ class LoadLine:
 
 @dataclass(frozen=True)
 class ElasticPair:
-    """A spur pair that deforms: a pair of floats, bores d_i1, d_i2 [mm], and what it is made of.
+    """A spur pair that deforms: a pair of floats, bores d_i1, d_i2 [mm], and its material.
 
     moduli E [MPa], poissons nu; plane "stress" or "strain" for both gears. ValueError for helical
     gears, a bore outside 0 to d_f, an unknown plane, and teeth whose flanks meet below the tip

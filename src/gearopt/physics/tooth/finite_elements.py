@@ -96,7 +96,7 @@ def body(member: ElasticGear, fineness: Fineness) -> Body:
 
 
 def factorised(member: ElasticGear, made: GearMesh) -> tuple[Any, Callable[[Any], Any]]:
-    """Return scikit-fem's basis of a mesh, and what solves for displacements (dofs, N).
+    """Basis of a mesh of scikit-fem, and the solver for displacements (dofs, N).
 
     Per unit face width, the bore held; plane stress or strain as the member says. ImportError that
     names the extra to install, without scikit-fem.
@@ -167,7 +167,7 @@ def fineness_of(elastic: ElasticPair, force: Any, halvings: int) -> tuple[Finene
 
 
 def bodies(elastic: ElasticPair, force: Any, halvings: int = 0) -> tuple[Body, Body]:
-    """Return both gears, factorised; what was asked before is kept for a few of them."""
+    """Both gears, factorised; the last few gears are kept."""
     rows = zip(elastic.members, fineness_of(elastic, force, halvings), strict=True)
     pinion, wheel = (body(*row) for row in rows)
     return pinion, wheel

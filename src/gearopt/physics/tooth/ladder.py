@@ -121,7 +121,7 @@ def _printed(elastic: ElasticPair, positions: Any, lines: Any, force: Any) -> An
 
 
 def _sum(*teeth: OfTooth, contact: OfContact = contact_compliance) -> Compliance:
-    """Return the sum of what deforms in both teeth and of their contact."""
+    """Sum of the compliances of both teeth and of their contact."""
 
     def compliance(elastic: ElasticPair, positions: Any, force: Any) -> Any:
         lines = elastic.load_lines(positions)

@@ -1,4 +1,4 @@
-"""What a model of elastic teeth does not cover, said in sentences; and the cheapest that suits."""
+"""Limits of the models of elastic teeth, in sentences; and the cheapest that suits."""
 
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.flaws import THIN_TIP
@@ -64,7 +64,7 @@ def refused(elastic: ElasticPair, level: str) -> tuple[str, ...]:
 
 
 def doubts(elastic: ElasticPair, level: str) -> tuple[str, ...]:
-    """Return what a level does not cover of a pair, in sentences; `unsupported` ones first.
+    """Sentences on effects that a level leaves out of a pair; `unsupported` ones first.
 
     A rigid shaft, and teeth that touch over the whole face width, are assumed of every pair and not
     said here.
@@ -134,7 +134,7 @@ def _outside_fit(name: str, member: ElasticGear) -> list[str]:
 
 
 def _of_pair(elastic: ElasticPair) -> tuple[str, ...]:
-    """Return what is said of both gears: contact that breaks off, an unlikely plane."""
+    """Remarks on both gears: contact that breaks off, an unlikely plane."""
     found, ratio = [], float(elastic.path.transverse_ratio)
     if ratio < 1.0:
         found.append(

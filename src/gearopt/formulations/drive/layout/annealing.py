@@ -87,7 +87,7 @@ def ready(chain: Chain, watch: Watch | None, free: bool = False) -> bool:
 
 
 def point(chain: Chain, found: Array) -> Array | None:
-    """Return the problem's point of what `anneal` found."""
+    """Point of the problem from the numbers that `anneal` found."""
     if not np.isfinite(found[0]):
         return None
     return np.append(found[2:], found[1]) if chain.factor.size > 1 else found[2:].copy()

@@ -1,4 +1,4 @@
-"""Shafts as a chain of links in the plane across them: what its kernels and problems share."""
+"""Shafts as a chain of links in the plane across them, as its kernels and problems share it."""
 
 import math
 from typing import NamedTuple

@@ -38,7 +38,7 @@ Polish = Callable[[Array], tuple[Array, float]]
 
 @dataclass
 class Search:
-    """A search as it runs; its state is what a stopped one still knows.
+    """A search as it runs; its state is the knowledge that a stopped one still has.
 
     clock: counts layouts measured and cells examined (nodes); has the best value and what is
     proven. x: the best layout. empty: no layout is feasible.

@@ -40,7 +40,7 @@ def of_any_gears(box: Gearbox) -> list[str]:
 
 
 def _axial(box: Gearbox) -> Iterator[str]:
-    """Yield what every order of slabs lacks: that of the order with the smallest clash."""
+    """Faults of every order of slabs: those of the order with the smallest clash."""
     one = arrangements(box)[0]
     longest = box.largest[2] * (1.0 + 1e-9)
     if not clashes(box, one) and one.length <= longest:
@@ -192,7 +192,7 @@ def _between(a: Place, b: Place) -> tuple[float, float]:
 
 
 def _sentence(clash: Clash) -> str:
-    """Return what two axes lack, in numbers: `Wheel 1 and shaft 3 ...`."""
+    """Missing distance of two axes, in numbers: `Wheel 1 and shaft 3 ...`."""
     first, last = clash.need.between
     a, b = (k + 1 for k in clash.shafts)
     between = f"stage {a}" if b == a + 1 else f"stages {a} to {b - 1} in one line"

@@ -1,4 +1,4 @@
-"""The input of a layout: gear pairs, shafts, clearances, what is in the way, what is wanted.
+"""The input of a layout: gear pairs, shafts, clearances, obstacles, and the objective.
 
 Stages and shafts are counted from 0 here; shaft k carries wheel k - 1 and pinion k, so that the
 input shaft is 0 and the output shaft is the number of stages. y and z lie across the shafts with
@@ -62,7 +62,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Gearbox:
-    """What is to be laid out.
+    """Gears, shafts and obstacles that are to be laid out.
 
     partial: shafts end beside their gears instead of passing the whole box. slabs: the stages of
     each axial slab in order (None: the best). motor: radius of a motor on the input shaft at the

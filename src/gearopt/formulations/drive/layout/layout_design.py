@@ -1,4 +1,4 @@
-"""A layout in the words of its drawing: what a result holds of box, shafts, gears and gaps.
+"""A layout as a result holds it: box, shafts, gears and gaps, by the names of its drawing.
 
 Fields are the keys of a result, with their units; x runs along the shafts from the inner face of
 the box, y and z across them from the axis of shaft 1, the input. Counting starts at 1.
@@ -127,7 +127,7 @@ class BearingDesign:
 
 @dataclass(frozen=True, kw_only=True)
 class GapDesign:
-    """Clear distance of two bodies that must keep apart, what is needed, and that of their axes."""
+    """Clear distance of two bodies that must keep apart, the least one, and that of their axes."""
 
     between: tuple[str, str]
     gap_mm: float

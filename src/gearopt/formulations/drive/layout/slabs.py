@@ -1,4 +1,4 @@
-"""Along the shafts: which stages share a slab, in which order, and what then must keep apart."""
+"""Along the shafts: which stages share a slab, in which order, and which bodies must keep apart."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -59,7 +59,7 @@ class Clash:
 
     @property
     def short(self) -> float:
-        """What is missing [mm]."""
+        """Missing length [mm]."""
         return self.need.distance - self.there
 
 

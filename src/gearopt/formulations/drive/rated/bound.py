@@ -68,7 +68,7 @@ def _least(train: Train, k: int, pair: GearPair, density: Any, option: int, obje
 
 
 def box(train: Train, k: int, most: float) -> Box:
-    """Return what holds for a stage of every design of at most an objective."""
+    """Bounds of a stage's sizes over all designs whose objective is at most a value."""
     stage, highest = train.stages[k], float(train.highest_ratio)
     numbers = SimpleNamespace(**train.numbers())
     teeth = max(1.0, numbers.pinion_low[k]), min(SEARCH_SPAN, numbers.pinion_high[k])
@@ -98,7 +98,7 @@ def _widest(train: Train, k: int, ratio: float, most: float) -> float:
 
 
 def solved(clock: Clock, made: Problem) -> Result:
-    """Return the certified answer of Ipopt within ITERATIONS and what a clock has left."""
+    """Certified answer of Ipopt within ITERATIONS and the budget that a clock has left."""
     before, left = clock.evaluations, clock.left
     most = ITERATIONS if left.evaluations is None else min(ITERATIONS, left.evaluations)
     own = Budget(left.seconds, most)

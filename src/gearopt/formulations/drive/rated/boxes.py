@@ -134,7 +134,7 @@ def first_boxes(shafts: Shafts, k: int) -> Boxes:
 
 
 def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
-    """Return what may hold designs, made as small as limits and ratings allow, and least shares."""
+    """Boxes that may hold designs, made as small as limits and ratings allow, and least shares."""
     stage = shafts.train.stages[k]
     before, after = shafts.torques(k, boxes)
     sizes = boxes.sizes.copy()
@@ -168,14 +168,14 @@ def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
 
 
 def _possible(sizes: Array) -> Array:
-    """Return which boxes are not empty; what is empty by rounding alone is made a point."""
+    """Mask of boxes that are not empty; a box empty by rounding alone is made a point."""
     found = (sizes[:, 1] >= sizes[:, 0] - ROUND).all(axis=0)
     sizes[:, 1] = np.maximum(sizes[:, 0], sizes[:, 1])
     return np.asarray(found)
 
 
 def _follow(train: Train, k: int, sizes: Array) -> None:
-    """Make boxes smaller by what their rows have to do with one another, in place."""
+    """Make boxes smaller by the rows that tie their sides, in place."""
     stage = train.stages[k]
     cosine = math.log(stage.toothing.cosine)
     numbers = dict[str, Any](train.numbers())
@@ -235,13 +235,13 @@ def _needed_by_weak(stage: Any, cells: Cells, safety: Any, usual: Array) -> Arra
 
 
 def _moved(shafts: Shafts, k: int, before: Any, after: Any) -> Any:
-    """Return what potentials add to the share of a stage at torques before and after it."""
+    """Addition of the potentials to the share of a stage at torques before and after it."""
     (first, second), (at, then) = shafts.potential[k : k + 2], shafts.middle[k : k + 2]
     return first * (before - at) - second * (after - then)
 
 
 def _of_sizes(shafts: Shafts, k: int, sizes: Array, before: Array, after: Array) -> Array:
-    """Return the share of the least sizes of boxes, and what the potentials move at least."""
+    """Share of the least sizes of boxes, and the least addition of the potentials."""
     own, moved = _least_sizes(shafts, k, sizes, before, after)
     return np.asarray(own * (1.0 - MARGIN) + moved)
 
@@ -249,7 +249,7 @@ def _of_sizes(shafts: Shafts, k: int, sizes: Array, before: Array, after: Array)
 def _least_sizes(
     shafts: Shafts, k: int, sizes: Array, before: Array, after: Array
 ) -> tuple[Array, Array]:
-    """Return the share of the least sizes of boxes, and what the potentials add to it at least."""
+    """Share of the least sizes of boxes, and the least addition of the potentials to it."""
     size = np.exp(sizes[:, LOWER])
     own = shafts.train.stages[k].toothing
     pair = own.of_diameter(size[M], size[Z], size[D], size[U], size[B])
@@ -285,7 +285,7 @@ def _of_ratings(
 
 
 def cut(shafts: Shafts, k: int, boxes: Boxes, limit: Array) -> Boxes:
-    """Return boxes without designs whose share, less what potentials move, exceeds a limit (n,)."""
+    """Boxes without designs whose share, less the potentials' addition, exceeds a limit (n,)."""
     before, after = shafts.torques(k, boxes)
     sizes = boxes.sizes.copy()
     own, moved = _least_sizes(shafts, k, sizes, before, after)

@@ -134,7 +134,7 @@ def smallest(
 def _judges(
     train: Train, k: int, torque: float, speed: float
 ) -> Iterator[Callable[[GearPair], Any]]:
-    """Return what accepts pairs (n,) of a stage: its load limits, then each of its standards."""
+    """Tests of pairs (n,) of a stage: its load limits, then each of its standards."""
     stage = train.stages[k]
     if train.law.limits:
         law = train.law

@@ -275,7 +275,7 @@ def _front(train: Train, problem: Problem, budget: Budget, watch: Watch | None) 
 def _searched(
     train: Train, count: int, floor: float, budget: Budget, watch: Watch | None
 ) -> tuple[Train, Progress, str]:
-    """Search for the best train; return the drive that holds all of use and what was not searched.
+    """Search for the best train; return the drive that holds all of use and the search's reach.
 
     Wide ranges are searched among few pinions first, which leaves out pinions of no use. If there
     still are more pairs than memory takes, the search among few pinions is all there is.
@@ -306,7 +306,7 @@ def _searched(
 
 
 def _why(progress: Progress, count: int) -> str:
-    """Return why a search ended before it was exhausted, and what that means for the list."""
+    """Reason why a search ended before it was exhausted, and its consequence for the list."""
     if not progress.found:
         return "stopped before a train was found: allow more time"
     why = "the requested gap is reached" if progress.enough else "stopped before it was exhausted"
@@ -352,7 +352,7 @@ def _choices(train: Train, teeth: Teeth) -> tuple[float, tuple[GearPair, ...], t
 
 
 def point(train: Train, pairs: Iterable[GearPair], options: Iterable[int] | None = None) -> Array:
-    """Return the point of `problem` of gear pairs; what ties their face widths is ignored.
+    """Point of `problem` of gear pairs; rules that tie their face widths are ignored.
 
     options: of every stage, from 0; by default the first ones.
     """

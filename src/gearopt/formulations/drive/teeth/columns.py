@@ -1,4 +1,4 @@
-"""The tooth pairs of one stage and what its limits allow of each; ties are decided in fractions."""
+"""Tooth pairs of one stage within its limits; ties are decided in fractions."""
 
 import math
 from collections.abc import Callable

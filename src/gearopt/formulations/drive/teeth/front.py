@@ -45,7 +45,7 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class Choice:
-    """What stages are made of, (n, stages): pairs (indices), modules and widths [mm], options."""
+    """Pairs (indices), modules, widths [mm] and options of stages, (n, stages)."""
 
     pair: Index
     module: Array
@@ -188,7 +188,7 @@ def _inside(run: Search) -> None:
 
 
 def _add_teeth(run: Search, teeth: Teeth) -> None:
-    """Add what trains of given teeth can be."""
+    """Add the designs that trains of given teeth allow."""
     nodes = _root(run)
     for (z1, z2), table in zip(teeth, run.tables, strict=True):
         pair = np.flatnonzero((table.z1 == z1) & (table.z2 == z2))
@@ -303,7 +303,7 @@ def _row(
 
 
 def _costs(run: Search, level: int, pair: GearPair, option: int) -> Array:
-    """Return what pairs add to every objective and weighted sum (n, objectives + w)."""
+    """Shares of pairs in every objective and weighted sum, (n, objectives + w)."""
     names = run.train.objectives
     made = [share(run.train, level, pair, option=option, objective=name) for name in names]
     return weighed(np.stack([np.asarray(m, float) for m in made], axis=1), run.weights)

@@ -88,7 +88,7 @@ def limited(train: Train, name: str, most: Mapping[str, float]) -> Problem:
 
 
 def carrying(train: Train, used: float) -> Train:
-    """Return the drive whose load limits are so much of what they were, from above 0 to 1."""
+    """The drive with load limits times a factor above 0 and up to 1."""
     stages = [replace(s, allowable=tuple(used * a for a in s.allowable)) for s in train.stages]
     bending, contact = train.safety
     return replace(train, stages=tuple(stages), safety=(bending / used, contact / used))

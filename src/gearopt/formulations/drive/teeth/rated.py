@@ -54,7 +54,7 @@ class RatedTable(Table):
 
     @cached_property
     def _prepared(self) -> list[list[Any]]:
-        """What standards take of the pairs, by option and standard; (modules n,) by module."""
+        """Data that standards take of the pairs, by option and standard; (modules n,) by module."""
         modules = self.modules if self._by_module else np.ones(1)
         z1, z2 = (np.tile(z, len(modules)) for z in (self.z1, self.z2))
         pair = self.train.pair(self.position, np.repeat(modules, len(self.z1)), z1, z2, 1.0)
@@ -72,7 +72,7 @@ class RatedTable(Table):
         return found
 
     def known(self, other: "RatedTable", standard: Standard) -> Iterator[Any]:
-        """Yield what a like standard took of another table's pairs, where this one has them all."""
+        """Data that a like standard took of another table's pairs, where this one has them all."""
         place = self._place(other)
         if place is None:
             return
@@ -308,7 +308,7 @@ class RatedTable(Table):
         return best
 
     def _worth(self, pair: GearPair, width: Array, option: int) -> Array:
-        """Return what pairs of these face widths [mm] add to the objective."""
+        """Share of pairs of these face widths [mm] in the objective."""
         made = share(self.train, self.position, pair.of_width(width), option=option)
         return np.asarray(made)
 
@@ -322,7 +322,7 @@ class RatedTable(Table):
     def _improve(
         self, best: Found, rows: Index, pair: Index, module: Index, option: int, width: Array
     ) -> None:
-        """Put what carries and costs less in the place of what was best so far."""
+        """Put pairs that carry and cost less in the place of the best so far."""
         some = np.isfinite(width)
         rows, pair, module, width = rows[some], pair[some], module[some], width[some]
         best.first[rows] = np.minimum(best.first[rows], module)

@@ -156,7 +156,7 @@ def _look(
 def _rounds(
     train: Train, tables: list[Table], progress: Progress, patience: float
 ) -> Iterator[float]:
-    """Search on ever finer grids; yield the bound of what is left, inf: none; end impatiently."""
+    """Search on ever finer grids; yield the bound of open nodes, inf: none; end impatiently."""
     coarse, useful = train.rated, None  # whose bounds take long: few cells at first
     delta = _width(tables) * (FIRST_CELLS if coarse else 1.0)
     first: Array | None = None
@@ -200,7 +200,7 @@ def _least(tables: list[Table], rest: Bound, first: Array) -> float:
 def _dive(
     train: Train, tables: list[Table], rest: Bound, progress: Progress, first: Array | None = None
 ) -> None:
-    """Look for a train among the most promising nodes, so that a search knows what is of use.
+    """Look for a train among the most promising nodes: its objective cuts the search after it.
 
     first: bounds of the first stage's pairs, where they are known.
     """
@@ -221,7 +221,7 @@ def _root() -> Chunk:
 def _closed(
     train: Train, tables: list[Table], rest: Bound, progress: Progress, patience: float
 ) -> float:
-    """Run one search; return the bound of what is left for a finer grid, inf where nothing is."""
+    """Least bound that one search leaves for a finer grid, inf where it is exhausted."""
 
     def goes_on(lower: float, _: Chunk) -> bool:
         if lower > progress.threshold:

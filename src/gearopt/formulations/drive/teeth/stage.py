@@ -252,7 +252,7 @@ class Table:
         return low, high if ends[1] is None else np.minimum(high, float(ends[1]) * m)
 
     def _share(self, pair: GearPair, width: Any) -> Array:
-        """Return what pairs of these face widths [mm] add to the objective."""
+        """Share of pairs of these face widths [mm] in the objective."""
         return np.asarray(share(self.train, self.position, pair.of_width(width)))
 
     def _bisected_capacity(self, module: int) -> Array:

@@ -73,7 +73,7 @@ class Design:
 
 @dataclass
 class Search:
-    """A search as it runs; its state is what a stopped one still knows.
+    """A search as it runs; its state is the knowledge that a stopped one still has.
 
     clock: counts choices and cells examined; has the best value and what is proven. best: the best
     design. Nodes by number of stages chosen: made, and left after a check of their layout. trains:
@@ -102,7 +102,7 @@ class Search:
 
 
 def cuts(value: float, margin: float) -> tuple[float, float]:
-    """Return two values: what is not below the first is dropped, what is below the second sought.
+    """Two values: nodes not below the first are dropped, designs below the second are sought.
 
     Between the two a search may do either: equal, it would resolve their level without end.
     """
@@ -198,7 +198,7 @@ def _below(search: Search, box: Gearbox, order: Arrangement, margin: float) -> b
 
 @dataclass(frozen=True)
 class Work:
-    """What passes work with: pairs of use and tables, made for a best value."""
+    """Pairs of use and tables that passes work with, made for a best value."""
 
     value: float
     drive: Drive
@@ -253,7 +253,7 @@ def prove(search: Search, work: Work, margin: float) -> bool:
 
 
 def _last_looks(search: Search, drive: Drive, nodes: Nodes, bounds: Array, margin: float) -> None:
-    """Lay out whole trains that may be below the cut; what is not proven of one ends the search."""
+    """Lay out whole trains that may be below the cut; one without a proof ends the search."""
     for node, value in zip(nodes, bounds, strict=True):
         teeth = tuple((round(drive.z1[p]), round(drive.z2[p])) for p, _ in node)
         if value < search.value * (1.0 - margin) and within(search.train, teeth):

@@ -257,7 +257,7 @@ def _pairs(tables: list[Table]) -> tuple[Any, ...]:
 
 
 def _stages(train: Train, tables: list[Table]) -> tuple[Array, ...]:
-    """Return what belongs to a stage as a whole, from modules to its face width."""
+    """Numbers of whole stages, from modules to face widths."""
     faces = [s.face_width for s in train.stages]
     modules = np.full((len(tables), max(len(t.modules) for t in tables)), np.inf)
     for k, t in enumerate(tables):

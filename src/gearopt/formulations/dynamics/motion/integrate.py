@@ -28,7 +28,7 @@ HHT, RHO = 0.05, 0.9  # numerical damping: alpha of HHT, spectral radius of gene
 
 @dataclass(frozen=True)
 class Marched:
-    """States (outputs, 2 n) at the times asked; steps, and what they cost: rates evaluated.
+    """States (outputs, 2 n) at the times asked; steps, and how many rates were evaluated.
 
     Where a clock stopped, at the first of the times alone. events: times that teeth part or meet.
     jammed [s]: when both flanks are first pressed at once, as axes in the plane came together; None

@@ -59,7 +59,7 @@ class _Try:
     spent: int
 
     def ahead(self, asked: float) -> float:
-        """Return what is likely to be spent until the error asked is met."""
+        """Rates that are likely to be evaluated until the error asked is met."""
         order = STEPPERS[self.method].order
         wanted = min(max(self.error, asked), 1e6) / asked
         return float(self.motion.rates * max(2.0, wanted ** (1.0 / order)))

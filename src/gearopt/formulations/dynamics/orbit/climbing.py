@@ -73,7 +73,7 @@ def begun(task: Task, point: Sequence[float]) -> Problem:
 
 
 def _guess(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-    """Return the guess as it is: what a search has found, to be certified."""
+    """The guess as it is, a point of a search, to be certified."""
     return Outcome(problem.bounds()[2], evaluations=1)
 
 

@@ -198,7 +198,7 @@ SPEEDS_BEFORE = 91  # speeds of the pair before, between which its curve is stra
 def chosen(
     task: Task, values: Sequence[float], before: MovingPair | None, rounds: Sequence[dict[str, Any]]
 ) -> Chosen:
-    """Return what is to be known of a design (5,) over all speeds, beside the pair before it.
+    """Response of a design (5,) at all speeds, beside that of the pair before it.
 
     before: None where there is no time left for it.
     Of motions that rising and falling speeds lead to, the larger one.

@@ -1,4 +1,4 @@
-"""What is asked of a pair over a range of speeds, and the periodic motions of a design."""
+"""Limits and ranges of a pair over a range of speeds, and the periodic motions of a design."""
 
 import math
 from collections.abc import Sequence
@@ -63,7 +63,7 @@ class Task:
 
 
 class Parts(NamedTuple):
-    """What a design is made of: masses [t], m_e [t], stiffnesses [N/mm], damping [N s/mm]."""
+    """Parts of a design: masses [t], m_e [t], stiffnesses [N/mm], damping [N s/mm]."""
 
     masses: tuple[Any, Any]
     mesh_mass: Any

@@ -1,4 +1,4 @@
-"""The best relief of any shape: what is removed at every sampled point of the path of contact.
+"""The best relief of any shape: the depth removed at every sampled point of the path of contact.
 
 The shape falls from the start of the path to its middle and rises from there to its end, and may
 have to be convex on either side, as linear, parabolic and power reliefs are. The middle itself is
@@ -33,7 +33,7 @@ UNIT = 1e-3  # mm: of rows of shape and contact
 
 @dataclass(frozen=True)
 class Shape:
-    """What a free relief may be: most [mm] anywhere; convex on either side of the middle or not.
+    """Limits of a free relief: most [mm] anywhere; convex on either side of the middle or not.
 
     short: nothing is removed where a single pair carries. complete: no pair loses contact at any
     load.
@@ -89,7 +89,7 @@ class Profile:
 
     @cached_property
     def rows(self) -> Array:
-        """Rows (r, m) of which every product with what is removed is at most 0: the shape."""
+        """Rows (r, m) of which every product with the removed depths is at most 0: the shape."""
         size, middle = len(self.points), self.middle
         steps = np.diff(np.eye(size), axis=0)  # rises from point to point
         steps[middle:] *= -1.0
@@ -111,7 +111,7 @@ class Profile:
         return np.where(single & self.shape.short, 0.0, most)
 
     def separations(self, removed: Any) -> Array:
-        """Return separations (..., p, n) [mm] of what is removed (..., m) [mm] at the points."""
+        """Separations (..., p, n) [mm] of depths removed (..., m) [mm] at the points."""
         return np.where(self.place >= 0, np.asarray(removed)[..., self.place], np.inf)
 
 
@@ -249,7 +249,7 @@ class Program:
         return np.vstack(rows), np.concatenate(right)
 
     def value(self, removed: Array) -> float:
-        """Return the exact value [um] of what is removed [um]."""
+        """Exact value [um] of removed depths [um]."""
         mesh = self.profile.mesh
         criteria = mesh.criteria(self.profile.separations(removed / MICRO))
         return MICRO * float(criteria.peak_to_peak.max())
@@ -341,7 +341,7 @@ class _Search:
         return sorted(found, key=lambda cut: -found[cut])[:TRIED]
 
     def halves(self, node: Node, cut: tuple[int, float]) -> list[Node]:
-        """Return what a cut leaves: d falls along the travel, so one range narrows the others."""
+        """Nodes that a cut leaves: d falls along the travel, so one range narrows the others."""
         k, kink = cut
         low, high = node.low.copy(), node.high.copy()
         high[k:], low[: k + 1] = np.minimum(high[k:], kink), np.maximum(low[: k + 1], kink)

@@ -1,4 +1,4 @@
-"""A spur pair in mesh under several loads, and what relief does to it."""
+"""A spur pair in mesh under several loads, and the effect of relief on it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -16,7 +16,7 @@ HARMONICS = 3  # of the tooth mesh frequency, that criteria name
 
 @dataclass(frozen=True)
 class Relief:
-    """What is removed from the flanks of one gear towards its tip: a (1 - x/l)^p, x from the tip.
+    """Depth removed from the flanks of one gear towards its tip: a (1 - x/l)^p, x from the tip.
 
     amount a [mm] at the tip, normal to the flank; length l [mm] and distance x from the tip along
     the line of action; exponent p: 1 linear, 2 parabolic. Floats, or arrays (N,) of N designs.
@@ -27,7 +27,7 @@ class Relief:
     exponent: Any = 1.0
 
     def removed(self, from_tip: Any) -> Any:
-        """Return what is removed [mm] at distances x [mm] from the tip, (..., p, n)."""
+        """Depth removed [mm] at distances x [mm] from the tip, (..., p, n)."""
         a, length, power = (np.asarray(v, float)[..., None, None] for v in self._numbers)
         return a * np.maximum(1.0 - from_tip / length, 0.0) ** power
 
@@ -94,7 +94,7 @@ class Mesh:
         return waves - waves.sum(axis=1, keepdims=True) * self.weights  # of a constant: 0
 
     def separations(self, pinion: Relief, wheel: Relief) -> Array:
-        """Return what both reliefs remove at each contact [mm], (..., p, n); infinite without one.
+        """Depth that both reliefs remove at each contact [mm], (..., p, n); infinite without one.
 
         Source: equation (15) of the paper of Hwang and others: the sum over both flanks.
         """
@@ -108,13 +108,13 @@ class Mesh:
         return share(self.compliances, apart, loads, self.coupling)
 
     def criteria(self, separations: Any) -> "Criteria":
-        """Return what a relief is judged by, from separations (..., p, n) [mm]."""
+        """Measures of a relief, from separations (..., p, n) [mm]."""
         return Criteria(self, self.sharing(separations))
 
 
 @dataclass(frozen=True)
 class Criteria:
-    """What a relief is judged by; every value (..., l), one for each load.
+    """Measures by which reliefs are compared; every value (..., l), one for each load.
 
     Shares of loads are of the load in question; of a load of zero they are 0.
     """

@@ -22,7 +22,7 @@ LARGEST_AMOUNT = 30e-3  # mm: amount beyond which no relief of such gears goes
 
 @dataclass(frozen=True)
 class Ranges:
-    """What a relief may be: amounts [mm] and lengths [mm] of both gears from least to most.
+    """Ranges of a relief: amounts [mm] and lengths [mm] of both gears from least to most.
 
     exponents of pinion and wheel, at least 1, which are given.
     """
@@ -89,7 +89,7 @@ def problem(
 
 
 def _goal(mesh: Mesh, name: str, limits: dict[str, float]) -> Goal:
-    """Return what the search minimises, and what it keeps below limits [mm]."""
+    """Objective of the search, and the limits [mm] that it keeps to."""
     loads = np.arange(1, len(mesh.loads) + 1)
 
     def which(of: str) -> Any:

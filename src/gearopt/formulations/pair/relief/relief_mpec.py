@@ -99,7 +99,7 @@ def _repeat(
 
 
 def _removed(x: Any, p: Any, row: Any, pair: int, exponents: tuple[float, float]) -> Any:
-    """Return what both gears' relief removes from a pair [um], its beginning rounded."""
+    """Depth that both gears' reliefs remove from a pair [um], its beginning rounded."""
     found = 0.0
     for gear, power in enumerate(exponents):
         u = 1.0 - getattr(row, f"tip{gear}{pair}") / x.length[gear]

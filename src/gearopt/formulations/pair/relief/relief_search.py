@@ -42,7 +42,7 @@ STOPPED = (
 
 @dataclass(frozen=True)
 class Numbers:
-    """What the kernel needs of a mesh, in um and N: uncoupled stiffnesses (p, n), tips (2, p, n).
+    """A mesh as the kernel takes it, in um and N: uncoupled stiffnesses (p, n), tips (2, p, n).
 
     low, high (4,): a1, l1, a2, l2 with a = amount^(1/p); exponents (2,), loads (q,); waves (h, p)
     from approaches to the parts of their harmonics.
@@ -114,7 +114,7 @@ class Goal:
         return float((measures / self.most).max())
 
     def value(self, measures: Array) -> float:
-        """Return what is minimised [um]; infinite where a limit is exceeded."""
+        """Objective [um]; infinite where a limit is exceeded."""
         return float(measures[self.minimised].max()) if self.used(measures) <= 1.0 else np.inf
 
     def weights(self, aim: float) -> Array:

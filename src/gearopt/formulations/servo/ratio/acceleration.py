@@ -180,7 +180,7 @@ def proof(root: bool = False) -> dict[str, Any]:
 
 
 def impossible(reason: str) -> Outcome:
-    """Return an outcome for a drive that cannot do what is asked."""
+    """Outcome for a drive that cannot meet its duty."""
     found = proof() | {"reason": reason, "sentence": f"Proof: {reason}."}
     return Outcome(None, infeasible=True, proof=found, message=reason, evaluations=1)
 

@@ -1,4 +1,4 @@
-"""What an axis achieves at a ratio, with a train or without, beside the best: by its duty."""
+"""The achievement of an axis at a ratio, with a train or without, beside the best: by its duty."""
 
 import math
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ def judged(duty: ServoDuty, ratio: Any) -> Any:
 
 
 def achieved(bare: ServoDuty, one: Candidate, best: float) -> Achieved | None:
-    """Return what a candidate achieves beside the best value; None where the motor fails."""
+    """Achievement of a candidate beside the best value; None where the motor fails."""
     if why_not(bare, one):
         return None
     duty, ratio = bare.with_gears(one.inertia or 0.0), one.ratio
@@ -75,7 +75,7 @@ def _speeds(duty: ServoDuty, ratio: float) -> dict[str, float]:
 
 
 def _torques(duty: ServoDuty, ratio: float, value: float) -> dict[str, float]:
-    """Return what the motor's torque is spent on while it accelerates; of a swing, the peak."""
+    """Parts of the motor's torque while it accelerates; of a swing, at the peak."""
     axis = duty.drive
     to_load = axis.load_inertia / (axis.efficiency * ratio)
     friction = axis.motor_friction + axis.load_friction / (axis.efficiency * ratio)
@@ -119,7 +119,7 @@ def best_ratio_of(duty: ServoDuty) -> float | None:
 
 
 def landmarks(duty: ServoDuty) -> dict[str, float]:
-    """Return the ratio of equal inertias, and what less friction would give at standstill.
+    """Ratio of equal inertias, and the gain of less friction at standstill.
 
     Losses of the train count: J_L/eta in the place of J_L, as a = T/(2 sqrt(J_L J_M/eta)) at
     N = sqrt(J_L/(eta J_M)).

@@ -1,4 +1,4 @@
-"""What is given of a motor, its gears and its load, and the rows that all duties share."""
+"""The given motor, its gears and its load, and the rows that all duties share."""
 
 import math
 from dataclasses import dataclass, fields, replace

@@ -1,4 +1,4 @@
-"""What a load does, with the motor that drives it: what every ratio and gear inertia give."""
+"""The motion of a load with the motor that drives it: values of every ratio and gear inertia."""
 
 import math
 from dataclasses import dataclass, replace
@@ -42,7 +42,7 @@ class ServoDuty:
 
     @property
     def goal(self) -> str:
-        """Return what is minimised: the name of a `Goal`."""
+        """Name of the `Goal` that is minimised."""
         return MOTIONS[self.motion].name
 
     @property
@@ -92,7 +92,7 @@ class ServoDuty:
         return load_deceleration(ratio, *inertias, drive.braking_torque, drive.load_friction)
 
     def value(self, ratio: Any, gears: Any = 0.0) -> Any:
-        """Return what is minimised [s2/rad, s or N mm]; very large where the load does not move."""
+        """Objective [s2/rad, s or N mm]; very large where the load does not move."""
         own = self.drive
         if self.motion == "swing":
             inertias = own.load_inertia, own.inertia + gears

@@ -28,7 +28,7 @@ LARGEST = 2**61  # of whole numbers that are added in 64 bits
 
 @dataclass(frozen=True)
 class Bodies:
-    """Diameters [mm] of what is beside the gears, exactly; 0 where one is not known.
+    """Diameters [mm] of bodies beside the gears, exactly; 0 where one is not known.
 
     shaft: between the stages. output_shaft: with its hub. motor: its body.
     """
@@ -43,7 +43,7 @@ class Bodies:
 
 
 def rows(bodies: Bodies, pairs: Pairs) -> dict[str, Any]:
-    """Return limits of real gears: what must fit over the room that is there."""
+    """Limits of real gears: needed room over the room that there is."""
     shaft, output, motor = (float(d) for d in (bodies.shaft, bodies.output_shaft, bodies.motor))
     first, second = pairs
     d1, d2, d3, d4 = (gear.reference_diameter for pair in pairs for gear in pair.gears)

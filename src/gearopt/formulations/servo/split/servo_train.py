@@ -1,4 +1,4 @@
-"""What is given of a two-stage servo train, and what its sizes make of it.
+"""The given numbers of a two-stage servo train, and the train of given sizes.
 
 Stage 1 is at the motor, stage 2 at the load; gears 2 and 3 share a shaft. All gears are solid
 discs, the last one may be a sector. Numbers at which a tie may occur are exact fractions.

@@ -139,7 +139,7 @@ def _exact(choice: Choice) -> Any:
 
 def _front(choice: Choice) -> Any:
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
-        """Return all picks that none beats: what the dynamic program keeps after the last one."""
+        """All picks that none beats: those that the dynamic program keeps in the end."""
         clock = Clock(budget, watch)
         found, none = _picked(choice, clock)
         if none is not None:
@@ -158,7 +158,7 @@ def _front(choice: Choice) -> Any:
 
 
 def _picked(choice: Choice, clock: Clock) -> tuple["Picked", Outcome | None]:
-    """Return what the program keeps; and the outcome where that is nothing, or it was stopped."""
+    """Grades that the program keeps; and the outcome where there are none, or it was stopped."""
     rows, limit, _ = _numbers(choice)
     found = picked(*rows, limit, clock)
     if not found.finished:

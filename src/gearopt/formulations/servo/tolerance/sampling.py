@@ -1,4 +1,4 @@
-"""Drawn errors of a stack: what a budget gives in fact, with intervals that need no assumption.
+"""Drawn errors of a stack, with intervals of their quantiles that need no assumption.
 
 The error is e = sum s_i t_i X_i, X_i from the components' distributions. Its quantile has the
 interval between two order statistics: X_(r) <= Q_p unless fewer than r of the draws are below Q_p,

@@ -180,7 +180,7 @@ class Stack:
 
     @cached_property
     def most(self) -> Array:
-        """Return upper ends [mm], (components,): as given, or what alone uses up a budget.
+        """Upper ends [mm], (components,): as given, or the tolerance that alone uses up a budget.
 
         No t that keeps the limits is beyond them.
         """
