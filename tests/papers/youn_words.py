@@ -13,7 +13,6 @@ from gearopt.physics.backlash import (
 )
 from gearopt.physics.servo_drive import load_acceleration
 from gearopt.physics.tolerances import SCOPE, total_pitch_tolerance
-from gearopt.physics.transmission_error import unrelated_amplitude
 
 BEST = math.sqrt(youn.J_L / youn.J_M)
 DEVIATIONS = tuple(zip(youn.PITCH, (48.0, 104.0), strict=True))
@@ -101,7 +100,7 @@ def both_members(grade):
     ]
     ratios = (8.0, 8.0, 1.0, 1.0)
     each = [math.degrees(a / n) for a, n in zip(turned, ratios, strict=True)]
-    return math.degrees(output_error(turned, ratios)), unrelated_amplitude(each)
+    return math.degrees(output_error(turned, ratios)), math.hypot(*each)
 
 
 def grade_rows():

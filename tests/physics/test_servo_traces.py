@@ -11,7 +11,6 @@ from gearopt.physics import (
     servo_drive,
     stiffness,
     tolerances,
-    transmission_error,
 )
 
 LAWS = [
@@ -41,7 +40,6 @@ LAWS = [
     lambda a, b, c, d: tolerances.total_profile_tolerance(a, b, c),
     lambda a, b, c, d: tolerances.total_helix_tolerance(a, b, c),
     lambda a, b, c, d: tolerances.runout_tolerance(a, b, c),
-    lambda a, b, c, d: transmission_error.eccentricity_error(a, b, 0.3 * c),
 ]
 
 

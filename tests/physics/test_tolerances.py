@@ -18,11 +18,6 @@ from gearopt.physics.tolerances import (
     total_pitch_tolerance,
     total_profile_tolerance,
 )
-from gearopt.physics.transmission_error import (
-    eccentricity_error,
-    in_phase_amplitude,
-    unrelated_amplitude,
-)
 
 
 @pytest.mark.parametrize(("diameter", "deviation", "grade"), [(48, 29, 6.67), (104, 33, 6.72)])
@@ -45,7 +40,7 @@ def test_pitch_term_of_both_members_at_the_output(grade, worst, rss):
     ratios = (8.0, 8.0, 1.0, 1.0)
     assert math.degrees(output_error(angles, ratios)) == pytest.approx(worst, abs=6e-5)
     each = [math.degrees(a / n) for a, n in zip(angles, ratios, strict=True)]
-    assert unrelated_amplitude(each) == pytest.approx(rss, abs=6e-5)
+    assert math.hypot(*each) == pytest.approx(rss, abs=6e-5)
 
 
 def test_grade_6_of_a_common_gear():
@@ -85,19 +80,3 @@ def test_outside_its_scope_the_standard_says_nothing():
     assert margins["diameter"] > 0.0 and margins["grade"] < 0.0
     with pytest.raises(ValueError, match="no range of 'width'"):
         scope(width=3.0)
-
-
-def test_equal_eccentricities_on_one_shaft_cancel():
-    error = eccentricity_error(0.01, 48.0, math.radians(20.0))
-    assert error == pytest.approx(0.01 / (24.0 * math.cos(math.radians(20.0))), rel=1e-15)
-    assert in_phase_amplitude([error, error], [0.3, 0.3 + math.pi]) < 1e-15 * error * 10
-    assert in_phase_amplitude([error, error], [0.3, 0.3]) == pytest.approx(2.0 * error)
-    assert in_phase_amplitude([3.0, 4.0], [0.0, math.pi / 2]) == pytest.approx(5.0)
-
-
-def test_unrelated_phases_add_in_squares():
-    """Root mean square over all phases of two sines, by quadrature on a torus."""
-    angle = np.linspace(0.0, 2.0 * math.pi, 200, endpoint=False)
-    total = 3.0 * np.sin(angle)[:, None] + 2.0 * np.sin(angle)[None, :]
-    rms = math.sqrt(np.mean(total**2))
-    assert unrelated_amplitude([3.0, 2.0]) == pytest.approx(math.sqrt(2.0) * rms, rel=1e-12)

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from dense_sharing import share_dense
 
 from gearopt.formulations.pair.sharing import KERNEL, conic, problem, share_rows
 from gearopt.optimise import kernels
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.solve import solve
-from gearopt.physics.load_sharing import share, share_dense
+from gearopt.physics.load_sharing import share
 
 C, E, W, C12 = (3e-6, 4e-6, 5e-6), (0.0, 0.005, 0.05), 5000.0, 1e-6
 # by hand: pairs 1 and 2 carry, 2e-6 F1 = 3e-6 F2 + 0.005, F1 + F2 = 5000

@@ -1,14 +1,12 @@
-"""Drawn errors against exact moments and quantiles; offsets that keep a least backlash."""
+"""Drawn errors against exact moments and quantiles."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from servo_tolerances import BASE, E_WC, PRESSURE_ANGLE, S, stack
+from servo_tolerances import BASE, E_WC, S, stack
 
 from gearopt.formulations.servo.tolerance import problem
-from gearopt.formulations.servo.tolerance.backlash import Mesh, bilateral, offset_of
 from gearopt.formulations.servo.tolerance.sampling import binomial_interval, drawn, order_interval
 from gearopt.formulations.servo.tolerance.stack import (
     NORMAL,
@@ -17,11 +15,10 @@ from gearopt.formulations.servo.tolerance.stack import (
     Component,
     ErrorBudget,
     Stack,
-    offset,
 )
 from gearopt.optimise.solve import solve
 
-LAWS = (UNIFORM, RUN_OUT, NORMAL, offset(RUN_OUT), offset(NORMAL))
+LAWS = UNIFORM, RUN_OUT, NORMAL
 
 
 def moments(parts, t):
@@ -132,71 +129,3 @@ def test_few_draws_and_seeds():
     assert few == drawn(base, BASE, E_WC, 100) != drawn(base, BASE, E_WC, 100, seed=1)
     with pytest.raises(ValueError, match="two draws"):
         drawn(base, BASE, E_WC, 1)
-
-
-def meshes(stack_, backlash=0.005):
-    radial = [k for k, c in enumerate(stack_.components) if "pitch" not in c.name]
-    return tuple(
-        Mesh(
-            stage,
-            tuple(k for k in radial if stack_.components[k].name.startswith(stage)),
-            backlash,
-            PRESSURE_ANGLE,
-        )
-        for stage in ("12", "34")
-    )
-
-
-def test_a_least_backlash_costs_budget():
-    """5 um in both stages: 0.0070 deg; radial sensitivities double."""
-    base = stack(("worst_case", E_WC))
-    about = bilateral(base, meshes(base))
-    lost = math.degrees(2 * 0.005 / (48 * 8) + 2 * 0.005 / 104)
-    assert lost == pytest.approx(0.0070, abs=5e-5)
-    assert about.budgets[0].error == pytest.approx(E_WC - lost, rel=1e-14)
-    doubled = [
-        b.sensitivity / a.sensitivity
-        for a, b in zip(base.components, about.components, strict=True)
-    ]
-    assert doubled == [1.0 if "pitch" in c.name else 2.0 for c in base.components]
-
-
-def test_backlash_of_the_offset_lies_between_what_is_asked_and_what_is_counted():
-    """j = 2 tan(alpha) (c + X) over all deviations X in +-t: from j_req to j_req + 4 tan sum t."""
-    base = stack(("worst_case", E_WC))
-    about = bilateral(base, meshes(base))
-    t = np.array(solve(problem(about)).design["t_mm"])
-    error = math.fsum(
-        c.sensitivity * w for c, w in zip(base.components, t, strict=True) if "pitch" in c.name
-    )
-    for mesh, (diameter, ratio) in zip(meshes(base), ((48.0, 8.0), (104.0, 1.0)), strict=True):
-        radial = t[list(mesh.components)].sum()
-        least, most = (
-            2 * math.tan(PRESSURE_ANGLE) * (offset_of(mesh, t) + sign * radial) for sign in (-1, 1)
-        )
-        assert least == pytest.approx(0.005, rel=1e-12)
-        error += math.degrees(2 * most / (diameter * ratio))
-    assert error == pytest.approx(E_WC, rel=1e-12)  # the greatest backlash, and the pitch
-
-
-@pytest.mark.parametrize("law", [UNIFORM, RUN_OUT, NORMAL])
-def test_moments_about_the_offset(law):
-    """Mean s t and the sd of s X t, X on [-1, 1], of twice the sensitivity."""
-    base = Stack((Component("a", 3.0, 1.0, distribution=law),), (ErrorBudget("mean_plus_sd", 9.0),))
-    (about,) = bilateral(base, (Mesh("m", (0,), 0.0, PRESSURE_ANGLE),)).components
-    spread = 3.0**-0.5 if law is UNIFORM else law.sd
-    assert about.sensitivity * about.distribution.mean == pytest.approx(3.0, rel=1e-15)
-    assert about.sensitivity * about.distribution.sd == pytest.approx(3.0 * spread, rel=1e-15)
-
-
-def test_what_bilateral_refuses():
-    base = stack(("worst_case", E_WC))
-    with pytest.raises(ValueError, match="leaves out the offset"):
-        bilateral(stack(("rss", E_WC)), meshes(base))
-    with pytest.raises(ValueError, match="of the budget worst_case"):
-        bilateral(base, meshes(base, 0.1))
-    both = replace(meshes(base)[0], components=(0, 13))
-    with pytest.raises(ValueError, match="2 sensitivities"):
-        bilateral(base, (both,))
-    with pytest.raises(ValueError, match="one mesh, once"):
-        bilateral(base, (*meshes(base), meshes(base)[0]))

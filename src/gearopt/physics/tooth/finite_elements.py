@@ -15,12 +15,11 @@ import numpy as np
 
 from gearopt.physics.tooth.elastic import ElasticGear, ElasticPair
 from gearopt.physics.tooth.hertz import half_width
-from gearopt.physics.tooth.mesh import TEETH, Fineness, GearMesh, gear_mesh
+from gearopt.physics.tooth.mesh import Fineness, GearMesh, gear_mesh
 
 PER_HALF_WIDTH = 3.0  # elements: halving all of them changes a stiffness by less than 1e-3
 FINEST = 0.01  # modules: no element is smaller, however light the load
 HALF_CONTACT = 0.04  # modules: half a contact under a load that teeth of steel may carry
-MESHED = TEETH // 2 + 1  # pairs of teeth in contact
 AT_ONCE = 64  # loads, each of which takes a column of all dofs
 PRESSED = 64  # points at which the pressure of a contact acts
 EXTRA = "finite elements of teeth need scikit-fem: pip install 'gearopt[fem]'"
@@ -204,25 +203,6 @@ def pair_compliance(elastic: ElasticPair, positions: Any, force: Any, halvings: 
             some = slice(k, k + AT_ONCE)
             total[some] += each.moved(each.pressed(at[some], wide[some]), 0, at[some]) / width
     return total.reshape(shape)[()]
-
-
-def compliance_matrix(
-    elastic: ElasticPair, position: float, force: float, halvings: int = 0
-) -> Any:
-    """Return C (n, n) [mm/N] of all n pairs of teeth that touch with one pair at a position.
-
-    Pairs in the order of their positions s, one base pitch apart; C_ij: how far pair i gives way
-    under a unit force on pair j, pressed as `force` [N] on each would. ValueError for more than 3
-    pairs, as two teeth on either side of the loaded one are meshed.
-    """
-    path = elastic.path
-    steps = np.arange(
-        np.ceil((path.start - position) / path.base_pitch - 1e-9),
-        np.floor((path.end - position) / path.base_pitch + 1e-9) + 1.0,
-    )
-    if len(steps) > MESHED:
-        raise ValueError(f"{len(steps)} pairs of teeth touch: finite elements mesh {MESHED}")
-    return _matrix(elastic, position + steps * path.base_pitch, force, halvings)
 
 
 def _matrix(elastic: ElasticPair, places: Any, force: float, halvings: int = 0) -> Any:

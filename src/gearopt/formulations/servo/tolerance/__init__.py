@@ -7,8 +7,8 @@
 `stack` has what l and q are for the worst case, RSS, and mean + kappa sd. Where all k > 0 cost and
 budgets are log-convex, so `ipopt` and `gp` find the optimum and the dual bound proves it.
 `exact` is the closed form, or the roots of the optimality conditions, with a bound of its own.
-`conic` states the same as cones, `grades` chooses among few tolerances per component, `backlash`
-turns tolerances with a minimum backlash into this form, `sampling` draws what comes out.
+`conic` states the same as cones, `grades` chooses among few tolerances per component,
+`sampling` draws errors.
 """
 
 from collections.abc import Mapping

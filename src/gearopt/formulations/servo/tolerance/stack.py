@@ -52,16 +52,6 @@ RUN_OUT = Distribution("t cos(phi), phi uniform", 0.0, 0.5**0.5, _run_out)
 NORMAL = Distribution("normal, 3 sd = t", 0.0, 1.0 / 3.0, _normal)
 
 
-def offset(law: Distribution) -> Distribution:
-    """Return X on [-t, t] about the offset t that it needs, as a part of 2 t: (1 + X)/2."""
-    return Distribution(
-        f"{law.name}, offset by t",
-        0.5 * (1.0 + law.mean),
-        0.5 * law.sd,
-        lambda generator, count: 0.5 * (1.0 + law.draw(generator, count)),
-    )
-
-
 @dataclass(frozen=True)
 class Component:
     """One tolerance t [mm]: its share of the error, its cost and its range.
