@@ -131,7 +131,7 @@ class Chosen:
     displacement_mm: Annotated[float, Shown("displacement of an axis", unit="um")]
     dense_maximum_mm: Annotated[float, Shown("largest over all speeds", unit="um")]
     highest_mm: Annotated[float, Shown("largest deformation", unit="um")]
-    largest_multiplier: Annotated[float, Shown("largest multiplier of all speeds")]
+    largest_multiplier: Annotated[float | None, Shown("largest multiplier of all speeds")]
     harmonics: int
     speed_rpm: Columns
     rounds: tuple[tuple[float, float, float, float], ...]

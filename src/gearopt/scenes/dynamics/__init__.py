@@ -82,7 +82,7 @@ def _least(scene: Scene, ask: Ask, before: MovingPair, clock: Clock) -> Result:
     at = best.dense_rpm[best.dense_mm.index(max(best.dense_mm))]
     values = [getattr(best, name) for name in BEST]
     design = replace(_design(scene, pair_of(task, values, at), "line", clock), chosen=best)
-    if clock.stopped:
+    if clock.over:
         text = f"{result.message} {_missing(scene, design)}".strip()
         result = replace(result, message=text)
     said = (*told(best, result, scene.optimise.periods), *warnings(design, scene.module))
@@ -163,6 +163,8 @@ def _missing(scene: Scene, design: DynamicsDesign) -> str:
             found.append("falling speeds")
     if design.chosen is not None and set(design.chosen.before_mm) == {None}:
         found.append("the motions of the file's own pair over speed")
+    if design.chosen is not None and design.chosen.largest_multiplier is None:
+        found.append("the largest multiplier")
     return f"Stopped early: {', '.join(found)} missing." if found else ""
 
 

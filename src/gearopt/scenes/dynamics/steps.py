@@ -29,6 +29,7 @@ from gearopt.scenes.explaining.numbers import content
 from gearopt.scenes.explaining.shorter import shorter
 from gearopt.scenes.reading.ask import Ask
 
+PRICED = 1.0  # s: a budget that leaves time for multipliers, some half a second, once it is spent
 BEST = ("bearing_stiffness_N_per_mm", "contact_ratio", "ramp", "face_width_mm", "rim")
 
 
@@ -83,18 +84,23 @@ def optimised(
     if result.value is None:
         return result, None, task
     values = tuple(float(v) for v in list(result.design.values())[: len(VARIABLES)])
-    beside_it = None if clock.stopped else before
-    best = chosen(task, values, beside_it, made.rounds if made else ())
+    best = chosen(task, values, before, made.rounds if made else (), clock)
     return _judged(result, best, task), best, task
 
 
 def _certified(task: Task, made: Exchanged | None, clock: Clock, ask: Ask) -> Result:
-    """Return the certified result of a search, which has spent a clock."""
+    """Return the certified result of a search, which has spent a clock.
+
+    Of a search that a budget below PRICED ended, without multipliers and the residuals by them.
+    """
     if made is None:
         nothing = Outcome(None, not clock.stopped, message="no start led to a design")
         problem = posed(task, {"screened": lambda *_: nothing})
     else:
         problem = made.best.problem.starting(made.best.whole)
+    if made is not None and clock.stopped and (ask.budget.seconds or PRICED) < PRICED:
+        plain = Outcome(made.best.whole, False, stationary=False, evaluations=1)
+        problem = replace(problem, methods={"screened": lambda *_: plain})
     result, _ = run(problem, "screened", seed=ask.seed, gap=ask.gap)
     status = "limit" if clock.stopped else result.status
     return replace(result, status=status, evaluations=clock.evaluations)
@@ -109,8 +115,10 @@ def _judged(result: Result, best: Chosen, task: Task) -> Result:
     value, limits = result.value / MICRO, {k: v for k, v in result.limits.items() if "[" not in k}
     parted = [v for k, v in result.limits.items() if "separation" in k]
     limits |= {"separation": max(parted)} if parted else {}
-    if task.most_growth is not None:
+    if task.most_growth is not None and best.largest_multiplier is not None:
         limits["stability"] = best.largest_multiplier / task.most_growth
+    elif task.most_growth is not None:
+        result = replace(result, status="limit")
     if task.backlash is not None:
         at = dict(zip(best.dense_rpm, best.dense_mm, strict=True))
         simulated = max(at[speed] for speed in best.speed_rpm)

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gearopt.formulations.dynamics.motion.stability import largest
+from gearopt.formulations.dynamics.motion.stability import largest, ready
 from gearopt.formulations.dynamics.orbit import orbit_text, parting_text
 from gearopt.formulations.dynamics.orbit.orbit_text import PEAKS, Cut, with_cuts
 from gearopt.formulations.dynamics.orbit.parting_text import size, worst_motions
@@ -27,6 +27,7 @@ from gearopt.physics.motion.linear import linear
 JUDGE_MARGIN = 0.01  # of an objective, by which what is judged more closely may exceed it
 JUDGE_HARMONICS = 40  # harmonics of the judge of a mesh in contact
 AGAIN = 3  # runs from the motions that a design really has
+SPARE_SECONDS = 0.5  # for the multipliers of a design once the budget is spent
 GROWTHS = 91  # speeds at which the multipliers of a design are looked at
 STEP = 1e-4  # of a range: differences of the largest multiplier
 REACH, SHORTEST = 0.25, 1e-5  # of the ranges: steps within a limit of the multiplier
@@ -84,7 +85,7 @@ def climb(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbed |
     found = _contact(task, problem, point, clock)
     if found is None or task.most_growth is None:
         return found
-    return _steadied(task, problem, found, clock) or _as_it_is(task, problem, point)
+    return _steadied(task, problem, found, clock) or _as_it_is(task, problem, point, clock)
 
 
 def measure(task: Task, point: Array, speeds_rpm: Array, clock: Clock) -> Array:
@@ -124,8 +125,8 @@ def _steadied(task: Task, problem: Problem, found: Climbed, clock: Clock) -> Cli
     approximations there become rows of the problem beside those before, which is solved again.
     """
     cuts = list[Cut]()
-    while growth(task, found.point) > _most(task) + WITHIN:
-        cuts += _tangents(task, found.point)[:1]
+    while growth(task, found.point, clock) > _most(task) + WITHIN:
+        cuts += _tangents(task, found.point, clock)[:1]
         made = None
         if len(cuts) <= PEAKS and not clock.over:
             made = _contact(task, with_cuts(problem, cuts), found.point, clock)
@@ -154,24 +155,30 @@ def _improved(task: Task, problem: Problem, best: Climbed, clock: Clock) -> Clim
         made: Climbed | None = best
         for _ in range(CORRECTED):  # a step that ends beyond the limit is taken again from there
             assert made is not None
-            rows = [*_tangents(task, made.point), *region]
+            rows = [*_tangents(task, made.point, clock), *region]
+            if clock.over:
+                return best
             made = _contact(task, with_cuts(problem, rows), made.point, clock)
-            if made is None or growth(task, made.point) <= _most(task) + WITHIN:
+            if made is None or growth(task, made.point, clock) <= _most(task) + WITHIN:
                 break
-        within = made is not None and growth(task, made.point) <= _most(task) + WITHIN
+        within = made is not None and growth(task, made.point, clock) <= _most(task) + WITHIN
         if made is not None and within and made.objective < (1.0 - GAIN) * best.objective:
             best = made
         else:
             reach /= 4.0
-    return best._replace(problem=with_cuts(problem, _tangents(task, best.point)))
+    rows = _tangents(task, best.point, clock)
+    return best if clock.over else best._replace(problem=with_cuts(problem, rows))
 
 
-def _tangents(task: Task, point: Array) -> list[Cut]:
+def _tangents(task: Task, point: Array, clock: Clock) -> list[Cut]:
     """Return linear approximations of the limit on the multiplier at a design.
 
-    Of the speeds at which it has its highest peaks, the highest first.
+    Of the speeds at which it has its highest peaks, the highest first. None where the clock is
+    over.
     """
-    growths, slopes = _growths(task, point), growth_slopes(task, point)
+    growths, slopes = _growths(task, point, clock), growth_slopes(task, point, clock)
+    if clock.over:
+        return []
     padded = np.concatenate([[-np.inf], growths, [-np.inf]])
     peaks = np.flatnonzero((growths >= padded[:-2]) & (growths > padded[2:]))
     highest = peaks[np.argsort(-growths[peaks], kind="stable")][:PEAKS]
@@ -188,10 +195,10 @@ def _most(task: Task) -> float:
     return task.most_growth
 
 
-def _as_it_is(task: Task, problem: Problem, point: Array) -> Climbed | None:
+def _as_it_is(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbed | None:
     """Return a design with its own motions, where it is within the limit of the multiplier."""
     assert task.most_growth is not None
-    if growth(task, point) > task.most_growth + WITHIN:
+    if known_growth(task, point, clock) > task.most_growth + WITHIN:
         return None
     return _with_its_motions(task, problem, point)
 
@@ -203,25 +210,41 @@ def _with_its_motions(task: Task, problem: Problem, point: Array) -> Climbed | N
     return None if value is None else Climbed(problem, found, value, value)
 
 
-def growth(task: Task, point: Array) -> float:
-    """Return the largest Floquet multiplier of a design in contact over all speeds."""
-    return float(_growths(task, point).max())
+def known_growth(task: Task, point: Array, clock: Clock) -> float:
+    """Return `growth`, with SPARE_SECONDS where less is left of a clock."""
+    pair, left = pair_of(task, point, task.speeds_rpm[0]), clock.left.seconds
+    ready(linear(pair, "line"), pair.wave, Clock(watch=clock.watch))
+    seconds = None if left is None else max(left, SPARE_SECONDS)
+    return growth(task, point, Clock(Budget(seconds)))
 
 
-def _growths(task: Task, point: Array) -> Array:
+def growth(task: Task, point: Array, clock: Clock | None = None) -> float:
+    """Return the largest Floquet multiplier of a design in contact over all speeds.
+
+    Infinite where the clock stops.
+    """
+    return float(_growths(task, point, clock).max())
+
+
+def _growths(task: Task, point: Array, clock: Clock | None) -> Array:
     speeds = np.linspace(task.speeds_rpm[0], task.speeds_rpm[-1], GROWTHS)
     pair = pair_of(task, point, float(speeds[0]))
-    return largest(linear(pair, "line"), pair.wave, task.teeth * speeds / 60.0)
+    found = largest(linear(pair, "line"), pair.wave, task.teeth * speeds / 60.0, clock)
+    return np.pad(found, (0, GROWTHS - len(found)), constant_values=np.inf)
 
 
-def growth_slopes(task: Task, point: Array) -> Array:
-    """Return derivatives of the multipliers (5, GROWTHS) by the design, into the ranges."""
+def growth_slopes(task: Task, point: Array, clock: Clock | None = None) -> Array:
+    """Return derivatives of the multipliers (5, GROWTHS) by the design, into the ranges.
+
+    NaN where the clock stops.
+    """
     low, high = task.box()
     step = STEP * (high - low)
     step = np.where(point + step > high, -step, step)
-    own = _growths(task, point)
-    moved = [_growths(task, point + one) - own for one in np.diag(step)]
-    return np.array(moved) / np.where(step, step, np.inf)[:, None]
+    each = [_growths(task, point + one, clock) for one in (0.0 * step, *np.diag(step))]
+    with np.errstate(invalid="ignore"):
+        moved = np.array(each[1:]) - each[0]
+    return np.asarray(moved / np.where(step, step, np.inf)[:, None])
 
 
 def _parting(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbed | None:

@@ -4,6 +4,7 @@ Between the speeds that are judged resonances may hide; the exchange looks for t
 adds the worst, and solves again. `chosen` is the design as a result holds it, over a dense grid.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -19,6 +20,7 @@ from gearopt.formulations.dynamics.orbit.climbing import (
     Climbed,
     climb,
     growth,
+    known_growth,
     measure,
     posed,
 )
@@ -71,7 +73,7 @@ def starts(task: Task, pool: Array, clock: Clock) -> Array:
     """
     space = box(reduced(task))
     if task.most_growth is not None:
-        grown = np.array([growth(task, point) for point in pool])
+        grown = np.array([growth(task, point, clock) for point in pool])
         over = np.maximum(grown - task.most_growth, 0.0)
         pool = pool[np.argsort(over, kind="stable")]
     if task.backlash is None:
@@ -196,11 +198,15 @@ SPEEDS_BEFORE = 91  # speeds of the pair before, between which its curve is stra
 
 
 def chosen(
-    task: Task, values: Sequence[float], before: MovingPair | None, rounds: Sequence[dict[str, Any]]
+    task: Task,
+    values: Sequence[float],
+    before: MovingPair,
+    rounds: Sequence[dict[str, Any]],
+    clock: Clock,
 ) -> Chosen:
     """Response of a design (5,) at all speeds, beside that of the pair before it.
 
-    before: None where there is no time left for it.
+    That pair is left out where the clock has stopped, the largest multiplier where it takes long.
     Of motions that rising and falling speeds lead to, the larger one.
     """
     point, speeds = np.array(values, float), dense(task)
@@ -208,7 +214,8 @@ def chosen(
     made = orbit_parts(task, kb, ratio, width, rim)
     found, highest, repeats = _motions(task, point, speeds)
     coarse = np.linspace(speeds[0], speeds[-1], SPEEDS_BEFORE)
-    told = np.full(SPEEDS_BEFORE, np.nan) if before is None else _before(task, before, coarse)
+    grown = known_growth(task, point, clock)
+    told = np.full(SPEEDS_BEFORE, np.nan) if clock.stopped else _before(task, before, coarse)
     return Chosen(
         bearing_stiffness_N_per_mm=kb,
         contact_ratio=ratio,
@@ -224,7 +231,7 @@ def chosen(
         dense_mm=parts.columns(found / MICRO, 7),
         before_mm=parts.gaps(np.interp(speeds, coarse, told), 7),
         dense_maximum_mm=float(found.max()) / MICRO,
-        largest_multiplier=growth(task, point),
+        largest_multiplier=grown if math.isfinite(grown) else None,
         highest_mm=float(highest.max()) / MICRO,
         parting_speeds=int(np.sum(highest > 0.0)),
         longest_repeat=repeats,
