@@ -4,7 +4,7 @@ import json
 import math
 import platform
 from collections.abc import Callable, Mapping
-from dataclasses import MISSING, asdict, dataclass, field, fields, replace
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass, replace
 from functools import cache
 from importlib import import_module
 from importlib.metadata import version
@@ -245,8 +245,7 @@ def shown(what: str, *of: Any) -> Any:
 
 def as_dict(record: Any) -> dict[str, Any]:
     """Return the fields of a dataclass as JSON holds them."""
-    found: dict[str, Any] = plain(asdict(record))
-    return found
+    return {f.name: plain(getattr(record, f.name)) for f in fields(record)}
 
 
 def as_json(record: Any) -> str:
@@ -303,7 +302,9 @@ def versions(*packages: str) -> dict[str, str]:
 
 
 def plain(value: Any) -> Any:
-    """Return A value as JSON holds it: dicts, lists, numbers; None for NaN and infinities."""
+    """Return a value as JSON holds it: dicts, lists, numbers; None for NaN and infinities."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return as_dict(value)
     if isinstance(value, Mapping):
         return {str(k): plain(v) for k, v in value.items()}
     if isinstance(value, list | tuple):

@@ -9,6 +9,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
+from functools import lru_cache
 from typing import Any
 
 from gearopt.units import UNITS
@@ -34,6 +35,7 @@ NO_GAP = 1e-8  # a gap below it is rounding of the bound
 _ROUNDING = {-1: ROUND_FLOOR, 0: ROUND_HALF_EVEN, 1: ROUND_CEILING}
 
 
+@lru_cache(1 << 15)  # designs of a front have most of their numbers in common
 def rounded(value: float, digits: int, decimals: int | None = None, way: int = 0) -> str:
     """Return a number with so many significant digits, integer digits never cut.
 
@@ -78,7 +80,7 @@ def read_in(objective: str, unit: str) -> str:
     return "um_or_uin" if small else unit
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # a system of units is itself alone, and a key of caches
 class Measures:
     """How quantities are shown: of every suffix the unit's sign and the factor to it.
 

@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 from gearopt.formulations.strength import laws
@@ -92,6 +93,7 @@ def edit(change: Mapping[str, Any]) -> str:
     return f"{key} = {write}" if write else f"remove {key}"
 
 
+@lru_cache(4096)
 def heading(key: str, measures: Measures = METRIC) -> str:
     """Return `face_width_mm` as "face width [mm]"."""
     stem, suffix = parted(key, measures)
@@ -104,6 +106,7 @@ def is_module(key: str) -> bool:
     return key.endswith(_MODULES)
 
 
+@lru_cache(4096)
 def parted(key: str, measures: Measures = METRIC) -> tuple[str, str]:
     """Return name and unit of a key: `face_width_mm` is ("face_width", "mm")."""
     if is_module(key):

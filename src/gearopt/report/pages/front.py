@@ -2,7 +2,7 @@
 
 import base64
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from gearopt.formulations.drive.design import drive_design
@@ -26,7 +26,8 @@ LINES = 2  # designs at least, that are drawn as lines
 
 def page(front: Front, html: str = "page.html", measures: Measures = METRIC) -> str:
     """Return one self-contained HTML page; html: where the command at its foot writes it."""
-    front = Front.from_dict(front.to_dict())  # plain numbers, as a file of it has them
+    data = front.to_dict()
+    front = Front.from_dict(data)  # plain numbers, as a file of it has them
     each = [front_designs.numbers(p.design, measures) for p in front.points]
     sections = _lost(front, measures), _spent(front), assumptions(front, measures)
     return render(
@@ -39,7 +40,7 @@ def page(front: Front, html: str = "page.html", measures: Measures = METRIC) -> 
         count=len(front.points),
         first=[_summary(front, measures), *_drawn(front, measures)],
         last=[section for section in sections if section],
-        json=_link(front),
+        json=_link(data),
         source=_source(front),
         **_picking(front, each, measures),
     )
@@ -157,9 +158,9 @@ def _spent(front: Front) -> Section:
     return Section("How it was found", words=said, figures=figures, tables=shown)
 
 
-def _link(front: Front) -> str:
-    """Return the front as JSON, as an address that needs no network."""
-    text = json.dumps(front.to_dict(), separators=(",", ":"), allow_nan=False)
+def _link(data: Mapping[str, Any]) -> str:
+    """Return a front as JSON, as an address that needs no network."""
+    text = json.dumps(data, separators=(",", ":"), allow_nan=False)
     return "data:application/json;base64," + base64.b64encode(text.encode()).decode()
 
 

@@ -1,6 +1,6 @@
 """The objectives of a servo axis, and the problem of several of them at once."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from gearopt.errors import SolveError
@@ -44,8 +44,7 @@ def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
         return Several(_trains(scene, names, method), listed, lambda x: _train(scene, x))
     gears = given_gears(scene)
     assert gears is not None
-    problem = _tolerances(scene, gears, names, method)
-    return Several(problem, listed, lambda x: _allotted(scene, gears, x))
+    return Several(_tolerances(scene, gears, names, method), listed, _allotted(scene, gears))
 
 
 def _trains(scene: Scene, names: Sequence[str], method: str | None) -> Problem:
@@ -101,9 +100,14 @@ def _tolerances(
     return conic.several(own, {v: k for k, v in _errors(scene).items()}, names, lost)
 
 
-def _allotted(scene: Scene, gears: Pairs, x: Array) -> Mapping[str, Any]:
-    """Return the tolerances of a point, each beside the old one, with the gears."""
-    own, t = tolerance_part.stack(scene, gears), tolerance_part.widths(scene, x)
-    rows = tolerance_part.rows(scene, own, t)
-    found: Mapping[str, Any] = untyped(ServoDesign(train=described(scene, gears), tolerances=rows))
-    return found
+def _allotted(scene: Scene, gears: Pairs) -> Callable[[Array], Mapping[str, Any]]:
+    """Return how the tolerances of a point are shown, each beside the old one, with the gears."""
+    train: Mapping[str, Any] = untyped(ServoDesign(train=described(scene, gears)))
+    own = None if tolerance_part.spent(scene, gears) else tolerance_part.stack(scene, gears)
+
+    def shown(x: Array) -> Mapping[str, Any]:
+        assert own is not None
+        rows = tolerance_part.rows(scene, own, tolerance_part.widths(scene, x))
+        return {**train, "tolerances": untyped(rows)}
+
+    return shown
