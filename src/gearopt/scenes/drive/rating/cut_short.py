@@ -6,6 +6,7 @@ from dataclasses import replace
 from gearopt.formulations.drive import sizing, sizing_text
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.certificate import reconcile
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result
 from gearopt.scenes.reading.ask import Ask
@@ -25,9 +26,9 @@ def bounded(
     seconds = ask.budget.seconds
     if seconds is None or not real or ask.method not in (None, "exact"):
         return sized(ask, whole)
-    kept = min(KEPT, SHARE * seconds)
+    kept, clock = min(KEPT, SHARE * seconds), Clock(ask.budget)
     found = sized(replace(ask, budget=ask.budget.less(kept)), whole)
-    if found.status != "limit":
+    if found.status != "limit" or clock.over:  # a first train takes what it takes
         return found
     alone = replace(sizing_text.exact_text(train), methods={"smooth": sizing.searched(train)})
     ideal = sized(Ask(None, Budget(kept), watch=ask.watch), alone)
