@@ -198,5 +198,5 @@ def test_erratum_20_which_grade_the_pitch_errors_are():
         six, seven = (total_pitch_tolerance(d, 0.5, grade) for grade in (6, 7))
         assert six < deviation < seven
     text = row_of(20)
-    assert "a guess" in text and "(from memory)" in text
+    assert "a guess" in text and "unverified)" in text
     assert abs(17 - 6.72 - 11) < abs(17 - 6.72 - 13) and f"Q {17 - 6.72:.1f}" in text

@@ -8,7 +8,7 @@ from youn_words import CLAIMED, DEVIATIONS, grade_of, printed_total, windows
 
 from gearopt.physics.servo_drive import load_acceleration
 
-NU = 0.28  # of steel, from memory
+NU = 0.28  # of steel, unverified
 
 
 def first():
@@ -67,7 +67,7 @@ def equations():
         7: "(12): 4 D² with D a radius | r², without 4 | 4 on a radius makes the teeth "
         f"{4 * k[0]:.0f} and {4 * k[1]:.0f} N/(mm µm) stiff, on a diameter {16 * k[0]:.0f} and "
         f"{16 * k[1]:.0f}, corrected {k[0]:.1f} and {k[1]:.1f} (steel: about 14, "
-        "from memory of ISO 6336)",
+        "by ISO 6336, unverified)",
         8: f"(13): pi G D⁴/(2 L) with D a diameter | 32 for 2 | {literal / 1e6:.1f}e6 for "
         f"{right / 1e6:.3f}e6 gf cm/rad: {literal / right:.0f} times",
         9: f"k_s = 0.47e8 gf cm/rad | {right / 1e6:.2f}e6 | needs L = {lengths[0]:.1f} mm, or as "
@@ -95,8 +95,8 @@ def results():
         f"much: {double['pitch error at the output']:.4f} for "
         f"{budget['pitch error at the output']:.4f} degrees at the output",
         14: f"Table 5: E {1e-3 * youn.E:.1f} with G {1e-3 * youn.G:.1f} GPa | G "
-        f"{1e-3 * softer:.1f} GPa | Poisson's ratio would be {nu:.2f}; with {NU} (from memory) G "
-        f"is {100 * (youn.G / softer - 1):.0f} % too large, and the output "
+        f"{1e-3 * softer:.1f} GPa | Poisson's ratio would be {nu:.2f}; with {NU} (of steel, "
+        f"unverified) G is {100 * (youn.G / softer - 1):.0f} % too large, and the output "
         f"{100 * (1 - bound[0] / chain()[0]):.0f} % softer than above",
     }
 
@@ -123,7 +123,7 @@ def wording():
         f"{1e-3 * youn.E:.1f} and G {1e-3 * youn.G:.1f} GPa, of steel",
         20: 'Table 1: "AGMA QIID" | Q11D, a guess | may be a fault of the reading; Table 3 is '
         f"grade {grades[0]:.2f}, {grades[1]:.2f} of ISO 1328-1, Q {17 - max(grades):.1f} by Q = 17 "
-        "- grade (from memory), nearer to 11 than to the 13 of the other gears",
+        "- grade (a rule of thumb, unverified), nearer to 11 than to the 13 of the other gears",
     }
 
 

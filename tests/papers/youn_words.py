@@ -167,7 +167,7 @@ def repeated():
         f"for every k_s that rounds to {youn.K_SHAFT / 1e8:g}e8",
         f"with it, it would be {whole / 1e6:.3f}e6",
         f"with {BEST:.4f} |",
-        f"Buckingham's mean Z is {BUCKINGHAM}, from memory",
+        f"Buckingham's mean Z is {BUCKINGHAM}, unverified",
         "each mesh at their F_pT, on the diameters of Table 4",
         f"The paper takes grade {min(grade_of(p, d) for p, d in DEVIATIONS):.0f}, nearly",
         f"module of {SCOPE['module'][0]:g} mm is its edge",

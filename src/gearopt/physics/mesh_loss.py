@@ -15,7 +15,7 @@ from gearopt.physics.geometry.tooth import base_helix_angle
 # Part by which a computed coefficient of friction, and so a loss, may be wrong: the largest of the
 # differences found. Lubricant factors X_L in a program of authors who measured torque losses of
 # gears (cfernandesFEUP/GEARpie: mineral oil 0.846, polyalphaolefin and ester 0.65, polyglycol
-# 0.585) are 15 to 22 % below those of the formula (1, 0.8, 0.75: from memory). By local friction a
+# 0.585) are 15 to 22 % below those of the formula (1, 0.8, 0.75: unverified). By local friction a
 # loss was 30 % below the one by means over the mesh (J. Tribology 147, 112201, abstract: an
 # internal gear). How far the tests scatter that the formula fits was not found: unverified.
 FRICTION_ERROR = 0.3

@@ -1,7 +1,7 @@
 """Flank tolerances of cylindrical gears by grade: ISO 1328-1:2013, clause 5.
 
 Formulas and rounding rule (5.2.3) agree in three or more independent public implementations; the
-runout of its informative annex is from memory and one of them: unverified. Sizes and tolerances in
+runout of its informative annex stands in one of them alone: unverified. Sizes and tolerances in
 mm, unrounded; `rounded_tolerance` rounds as the standard asks. The standard holds within `scope`
 and does not allow extrapolation. Arguments are floats, arrays of one shape, or casadi scalars;
 grades may be fractions (6.5 lies between 6 and 7).

@@ -110,6 +110,13 @@ def show(result: Result, console: Console, measures: Measures = METRIC) -> None:
     for make in pages_of_result(result).terminal:
         if (section := make(result, measures)) is not None:
             _print(section.terminal, console)
+    if count := len(result.report.get("assumptions", ())):
+        words = (
+            "1 assumption; --html and --json tell it."
+            if count == 1
+            else (f"{count} assumptions; --html and --json list them.")
+        )
+        console.print(Text(words, style="dim"))
 
 
 def show_explanation(

@@ -39,7 +39,7 @@ THERE = ("optimal", "stationary", "feasible")  # a design exists
 STEP = 1e-3  # relative, of the re-solves that check a sensitivity
 ZERO = 1e-9  # of the objective at the guess
 EASE = 0.01  # relative, of the step whose effect is reported
-DIGITS = 6  # of a number that is proposed; rounded to the easy side
+DIGITS = 6  # of a number that is proposed; rounded to relax the limit
 # a proposal asks for this much more than the factor found, to be feasible in doubles
 FEASIBILITY_MARGIN = 2e-7
 
@@ -246,7 +246,7 @@ def _remedy(problem: Problem, repair: Repair, clock: Clock) -> Remedy:
 
 
 def _asked(handle: Handle, factor: float) -> float:
-    """Return the factor of a number of DIGITS digits, on the easy side of what is needed."""
+    """Return the factor of a number of DIGITS digits, rounded to relax the limit."""
     needed = handle.relaxed(factor * (1.0 + FEASIBILITY_MARGIN))
     rounding = ROUND_CEILING if handle.direction > 0 else ROUND_FLOOR
     number = float(Context(prec=DIGITS, rounding=rounding).plus(Decimal(needed)))

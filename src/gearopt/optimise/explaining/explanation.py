@@ -13,7 +13,7 @@ FORMAT = 1
 class Change:
     """One edit: at `key`, where `was` stands (or is inherited), write `write` ("": remove it).
 
-    factor: how far the limit moves, >= 1. short: what one would write, rounded to the easy side,
+    factor: how far the limit moves, >= 1. short: what one would write, rounded to relax the limit,
     where a design exists with it, too; "" where `write` is short, or nothing shorter was verified.
     """
 
@@ -42,7 +42,7 @@ class Remedy:
     is proven impossible (None: not proven). verified: status with the edits, and with each taken
     back by 0.1 %, one tooth or one module ({"with": ..., "with_less": ...}); "nearer": of ratios
     nearer to the one asked for; "others": what all other single numbers need; "rounded": how far
-    numbers were rounded to the easy side, after they were taken back.
+    numbers were rounded to relax the limit, after they were taken back.
     """
 
     kind: str

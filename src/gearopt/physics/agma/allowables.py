@@ -9,7 +9,10 @@ from dataclasses import dataclass
 
 PSI = 4.4482216152605 / 25.4**2  # MPa
 HARDNESS = (180.0, 400.0)  # HB: range of the lines of through-hardened steel
-NITRIDED_CORE = {"nitrided": (255.0, 345.0), "nitralloy": (255.0, 345.0)}  # HB, from memory
+NITRIDED_CORE = {
+    "nitrided": (255.0, 345.0),
+    "nitralloy": (255.0, 345.0),
+}  # HB, unverified: of no text at hand
 REVERSED = 0.7  # of s_at: idlers and fully reversed loads. AGMA 2001-D04, clause 16; Shigley
 
 # the public program: r3kste/pydome, `Spur`; the table: engineersedge.com

@@ -52,7 +52,7 @@ def mesh_of(pair: GearPair, regime: str | None = None, smooth: bool = False) -> 
     m_N = 1 for spur gears and for m_F <= 1, else F/L_min (`shortest_lines`). C_psi^2 = 1 - m_F
     (1 - rho_m1 rho_m2 Z/(rho_1 rho_2 p_N)) for m_F <= 1, else 1; rho_m at the mean of the working
     flank, rho at the lowest point of single tooth contact (`curvatures`).
-    Source: AGMA 908-B89, clause 4 [from memory], as a public program of AGMA 2101-D04 has it.
+    Source: AGMA 908-B89, clause 4 [unverified], as a public program of AGMA 2101-D04 has it.
     """
     if regime not in (None, *REGIMES):
         raise ValueError(f"no regime {regime!r}; known: {', '.join(REGIMES)}")

@@ -88,7 +88,7 @@ FAMILIES = {name: name for name in MATERIALS} | {
     **dict.fromkeys(("V carbon", "V alloy", "V cast carbon", "V cast alloy"), "V"),
 }
 SURFACE_HARDENED = ("Eh", "IF", "NT", "NV", "NV nitrocarburised")
-VICKERS_TENSILE = 3.2  # MPa of tensile strength a unit of hardness; unverified, from memory
+VICKERS_TENSILE = 3.2  # MPa of tensile strength a unit of hardness; unverified: of no text at hand
 YIELD_RATIO = {"St": 0.55, "V": 0.75}  # of yield point and tensile strength; unverified, memory
 
 

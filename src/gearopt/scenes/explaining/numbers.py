@@ -96,12 +96,6 @@ def at(scene: Any, path: Path) -> Any:
     return scene
 
 
-def one_at(scene: Any, path: Path) -> Any:
-    """Return what stands at the place of a `Number`: of a range of equal ends one of them."""
-    value = at(scene, path)
-    return value[0] if isinstance(value, tuple) else value
-
-
 def put(scene: Any, path: Path, value: Any) -> Any:
     """Return the scene with another value at a place; not checked against the file's rules."""
     if not path:
@@ -197,7 +191,7 @@ def _is_decimal(value: Fraction) -> bool:
 
 
 def eased(value: Any, factor: float, direction: int) -> Any:
-    """Return a number moved by a factor >= 1 up (+1) or down (-1), rounded to its easy side.
+    """Return a number moved by a factor >= 1 up (+1) or down (-1), rounded to relax the limit.
 
     Integers stay integers (one that is meant but for rounding is taken); others keep DIGITS digits
     and get FEASIBILITY_MARGIN, to be feasible in doubles. Zero is shifted by (factor - 1)
@@ -217,14 +211,6 @@ def eased(value: Any, factor: float, direction: int) -> Any:
     return _rounded(value * moved, direction)
 
 
-def cut(value: Any, way: int, digits: int = DIGITS) -> Any:
-    """Return a quantity or fraction of so many digits, rounded up (+1) or down (-1)."""
-    number = value.number if isinstance(value, Quantity) else value
-    context = Context(prec=digits, rounding=ROUND_CEILING if way > 0 else ROUND_FLOOR)
-    short = Fraction(context.divide(Decimal(number.numerator), Decimal(number.denominator)))
-    return replace(value, number=short) if isinstance(value, Quantity) else short
-
-
 def rounded(size: float, like: Quantity, direction: float) -> str:
     """Return a length in mm in the unit of another, rounded up (> 0) or down by at most SLIGHT."""
     per_mm = float(like.of(Fraction(1)).number)
@@ -241,7 +227,7 @@ def _shifted(zero: Any, factor: float, direction: int) -> Any:
 
 
 def _rounded(value: Fraction, direction: int) -> Fraction:
-    """Return a number with room, of DIGITS digits, on the easy side; a short one is kept."""
+    """Return a number of DIGITS digits with room to relax the limit; a short one is kept."""
 
     def decimal(number: Fraction, digits: int, rounding: str) -> Fraction:
         context = Context(prec=digits, rounding=rounding)

@@ -18,7 +18,7 @@ Works = Callable[[dict[str, Any], float], bool]  # (edits, seconds): whether a d
 
 
 def shorter(found: Sequence[Remedy], clock: Clock, works: Works) -> tuple[Remedy, ...]:
-    """Return remedies with `short` of each change: few digits, rounded to the easy side.
+    """Return remedies with `short` of each change: few digits, rounded to relax the limit.
 
     Only where the file with these edits, read and solved again, has a design; as long as time is
     left.
@@ -28,8 +28,6 @@ def shorter(found: Sequence[Remedy], clock: Clock, works: Works) -> tuple[Remedy
 
 def _one(remedy: Remedy, clock: Clock, works: Works) -> Remedy:
     tried = remedy
-    if any(change.short for change in remedy.changes):
-        return remedy
     for digits in DIGITS if remedy.kind != EXACT else ():
         short = [_short(change, digits) for change in remedy.changes]
         pairs = zip(remedy.changes, short, strict=True)
