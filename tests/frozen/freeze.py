@@ -3,7 +3,8 @@
 Every file of problems/, every example and seeded variants of a kind are solved (given gears:
 rated) without a limit of time, and one JSON file a case holds what the result says, floats in hex,
 with the text of the terminal and all tables. `compare.py A B` holds two of these folders against
-each other. With --explain the explanations of impossible variants are kept instead.
+each other. With --explain the explanations of the impossible files of `impossible.json` are kept
+instead, and whether each remedy, solved again, has a design, for `compare_explanations.py A B`.
 
 A run that is not over in LONGEST seconds is made again with the number of evaluations that it had
 after FIRST seconds; that number stands in OUT/evaluations.json, which a later run is given by
@@ -15,19 +16,34 @@ import json
 import random
 import re
 import shutil
+import sys
 import tempfile
 import time
 import tomllib
 from decimal import Decimal
 from pathlib import Path
 
+if "--explain" in sys.argv:  # budgets count CPU seconds: a busy machine changes no answer
+    time.perf_counter = time.process_time
+
 import gearopt
 from gearopt.errors import GearoptError
 from gearopt.report import shown
+from gearopt.scenes.explaining.default import explain
+from gearopt.scenes.explaining.numbers import content
+from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import examples
 from gearopt.scenes.reading.toml import toml_text
 
-PROBLEMS = Path(__file__).parents[2] / "problems"
+HERE = Path(__file__).parent
+sys.path += [str(HERE.parent / "scenes"), str(HERE.parent / "scenes" / "drive")]
+from bars import KIND, Bars  # noqa: E402
+from edits import edited  # noqa: E402
+from given_drives import given_drive  # noqa: E402
+
+PROBLEMS = HERE.parents[1] / "problems"
+CHECKED = 10.0  # s, at most, in which a remedy is solved again
+DECIMAL = re.compile(r"\d+\.\d+$")
 LONGEST, FIRST = 60.0, 20.0  # s of a run without a limit; s after which its evaluations are counted
 VARIANTS = 30  # of a kind, every third with a number divided by SHARPER
 SHARPER = 4
@@ -169,14 +185,52 @@ def record(result):
     return kept(result.to_dict()) | {"terminal": text.splitlines(), "tables": tables}
 
 
-def explained(path):
-    """What is kept of an explanation: conflict, remedies with their changes, CPU seconds."""
-    begun = time.process_time()
-    explanation = gearopt.explain(path)
-    seconds = time.process_time() - begun
+def impossible(folder):
+    """Name, and what `explain` takes, of every file of impossible.json.
+
+    A file of problems/ with changes, a seed of random drives whose teeth are given, or bars.
+    """
+    for name, case in json.loads((HERE / "impossible.json").read_text()).items():
+        if "bar" in case:
+            table = {k: Decimal(v) if k == "safety" else v for k, v in case["bar"].items()}
+            yield name, Bars.model_validate({"bar": table}), {}
+        elif "seed" in case:
+            path = Path(folder) / f"{name}.toml"
+            path.write_text(given_drive(case["seed"]), encoding="utf-8")
+            yield name, path, {}
+        else:
+            changes = {k: plain_number(v) for k, v in case["changes"].items()}
+            yield name, Path(folder) / f"{case['file']}.toml", changes
+
+
+def plain_number(value):
+    """A number of a change; decimals are kept as text."""
+    return Decimal(value) if isinstance(value, str) and DECIMAL.match(value) else value
+
+
+def explained(what, changes, seconds):
+    """What is kept of an explanation: conflict, remedies, CPU seconds, remedies that hold."""
+    begun, budget = time.process_time(), gearopt.Budget(seconds=seconds)
+    if isinstance(what, Bars):
+        explanation = explain(KIND, what, Ask(budget=budget))
+    else:
+        explanation = gearopt.explain(what, changes, budget=budget)
+    cpu = time.process_time() - begun
     plain = explanation.to_dict()
     plain["result"] = plain["result"] and {"status": plain["result"]["status"]}
-    return kept(plain) | {"cpu": seconds}
+    again = [holds(what, changes, remedy) for remedy in explanation.remedies]
+    return plain | {"cpu": cpu, "holds": again}
+
+
+def holds(what, changes, remedy):
+    """Whether the file with the edits of a remedy has a design; None: not decided in CHECKED."""
+    if isinstance(what, Bars):
+        return KIND.solve(edited(content(what), remedy, model=Bars), Ask()).value is not None
+    budget = gearopt.Budget(seconds=CHECKED)
+    answer = gearopt.solve(what, {**changes, **remedy.edits}, budget=budget, gap=1.0)
+    if answer.value is not None:
+        return bool(answer.feasible)
+    return False if answer.status == "infeasible" else None
 
 
 def main():
@@ -185,12 +239,16 @@ def main():
     parser.add_argument("out", type=Path)
     parser.add_argument("--evaluations", type=Path, help="evaluations.json of an earlier run")
     parser.add_argument("--explain", action="store_true", help="explanations of impossible files")
+    parser.add_argument("--seconds", type=float, default=20.0, help="at most, of an explanation")
     parser.add_argument("--only", default="", help="regular expression of the cases' names")
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
     counts = json.loads(given.evaluations.read_text()) if given.evaluations else {}
     with tempfile.TemporaryDirectory() as folder:
         shutil.copytree(PROBLEMS, folder, dirs_exist_ok=True)
+        if given.explain:
+            explain_all(given, folder)
+            return
         for name, text in cases().items():
             if not re.search(given.only, name):
                 continue
@@ -198,19 +256,27 @@ def main():
             path.write_text(text, encoding="utf-8")
             begun = time.process_time()
             try:
-                answer = answered(path, counts)
-                held = record(answer)
-                if given.explain:
-                    if answer.status != "infeasible":
-                        continue
-                    held = explained(path)
+                held = record(answered(path, counts))
             except GearoptError as reason:
                 held = {"refused": str(reason).replace(folder, "")}
-            seconds = time.process_time() - begun
-            print(f"{name:<32} {held.get('status', '')!s:<12} {seconds:7.2f} s", flush=True)
-            held |= {"toml": text, "cpu": seconds if "cpu" not in held else held["cpu"]}
+            held |= {"toml": text, "cpu": time.process_time() - begun}
+            print(f"{name:<32} {held.get('status', '')!s:<12} {held['cpu']:7.2f} s", flush=True)
             (given.out / f"{name}.json").write_text(json.dumps(held, indent=1), encoding="utf-8")
     (given.out / "evaluations.json").write_text(json.dumps(counts, indent=1), encoding="utf-8")
+
+
+def explain_all(given, folder):
+    """Freeze the explanations of all impossible files into a folder."""
+    for name, what, changes in impossible(folder):
+        if not re.search(given.only, name):
+            continue
+        try:
+            held = explained(what, changes, given.seconds)
+        except GearoptError as reason:
+            held = {"refused": str(reason).replace(folder, ""), "cpu": 0.0}
+        ways = " ".join(c["key"] for r in held.get("remedies", ()) for c in r["changes"])
+        print(f"{name:<16} {held['cpu']:7.2f} s {held.get('holds', '')} {ways}", flush=True)
+        (given.out / f"{name}.json").write_text(json.dumps(held, indent=1), encoding="utf-8")
 
 
 if __name__ == "__main__":

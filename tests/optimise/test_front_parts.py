@@ -23,11 +23,19 @@ from gearopt.optimise.pareto.gaps import (
     ranked,
     spread,
 )
-from gearopt.optimise.pareto.judged import status
-from gearopt.optimise.pareto.measures import hypervolume, igd, nadir, reference, unbeaten
-from gearopt.optimise.pareto.pick import knee, neighbours, picks, scaled
+from gearopt.optimise.pareto.judged import status, united
+from gearopt.optimise.pareto.measures import (
+    hypervolume,
+    igd,
+    knee,
+    nadir,
+    neighbours,
+    picks,
+    reference,
+    scaled,
+    unbeaten,
+)
 from gearopt.optimise.pareto.posed import Limit, caps, moved, posed, scale
-from gearopt.optimise.pareto.united import united
 from gearopt.optimise.result import Event
 
 

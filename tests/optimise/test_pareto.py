@@ -9,8 +9,15 @@ import pytest
 import gearopt
 from gearopt import Budget, Conic, Front, Param, Problem, SolveError, Terms, Var
 from gearopt.optimise.pareto.corners import corners, useful, weighed
-from gearopt.optimise.pareto.measures import hypervolume, igd, reference, unbeaten
-from gearopt.optimise.pareto.pick import knee, neighbours, picks
+from gearopt.optimise.pareto.measures import (
+    hypervolume,
+    igd,
+    knee,
+    neighbours,
+    picks,
+    reference,
+    unbeaten,
+)
 
 
 def discs():

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from gearopt import Front
 from gearopt.optimise.pareto.front import FrontPoint, Growth, Impossible, Objective
-from gearopt.optimise.pareto.pick import Pick
+from gearopt.optimise.pareto.measures import Pick
 
 KEPT = Path(__file__).parents[2] / "docs" / "pictures" / "elevator.json"
 KNEE = "the point furthest below the straight line"

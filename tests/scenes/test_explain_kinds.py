@@ -5,29 +5,21 @@ import re
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Annotated
 
-import numpy as np
 import pytest
+from bars import KIND, Bars
 from campaigns import few
 from edits import edited, scene_of
-from pydantic import Field
 
 import gearopt
-from gearopt import Param, Problem, SolveError, Terms, Var
-from gearopt.optimise.comparing.runs import Model
+from gearopt import SolveError
 from gearopt.optimise.explaining.handles import each_word, handles
-from gearopt.optimise.result import Outcome
-from gearopt.optimise.solve import solve as solve_problem
 from gearopt.scenes.explaining import default
 from gearopt.scenes.explaining.default import explain
 from gearopt.scenes.explaining.influences import STEP
 from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.reading.fields import Table, number, quantity, whole
 from gearopt.scenes.reading.load import kind_named, kind_of, read
 from gearopt.scenes.reading.mistakes import table_of
-from gearopt.units import Quantity
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 TRAIN = kind_named("compound").example.text
@@ -178,52 +170,6 @@ def test_an_unproven_packing_is_followed_and_whole_numbers_are_left_alone():
     assert by_key(found)["container.gap"].resolved[1] > 0.0
 
 
-class Bar(Table):
-    """A bar of round steel under a pull."""
-
-    pull: Annotated[Quantity, quantity("torque", "10 N m")] = Field(description="Pull")
-    stress: Annotated[Quantity, quantity("stress", "100 MPa")] = Field(description="Allowed")
-    safety: Annotated[Fraction, number("1.5", 0, 10)] = Field(description="Factor on the pull")
-    most: Annotated[int, whole(1, 1, 100)] = Field(description="Most bars beside each other")
-    diameter: Annotated[Quantity, quantity("length", "5 mm")] = Field(description="Largest")
-
-
-class Bars(Table):
-    """A further kind, which has no explain of its own."""
-
-    bar: Bar
-
-
-def bars(own, method=""):
-    """Least section n d^2 of n bars, whole, of d up to a largest; in the units of the file."""
-    bar = own.bar
-
-    def evaluate(x, p):
-        stress = p.pull * p.safety / (x.n * x.d**2)
-        return Terms({"section": x.n * x.d**2}, {"stress": stress / p.stress, "size": x.d / p.most})
-
-    proof = {"method": "closed form", "sentence": "Proof: a closed form."}
-
-    def exact(problem, budget, seed, watch):
-        pull, stress, safety, most = problem.parameter_values()
-        least = pull * safety / stress
-        n = math.ceil(least / most**2 - 1e-9)
-        if n > bar.most:
-            return Outcome(None, infeasible=True, proof=proof)
-        return Outcome(np.array([n, math.sqrt(least / n)]), bound=least * (1 - 1e-12), proof=proof)
-
-    parameters = (
-        Param("pull", "N mm", bar.pull.value, key="bar.pull", role="given"),
-        Param("stress", "MPa", bar.stress.value, key="bar.stress", role="limit"),
-        Param("safety", "", float(bar.safety), key="bar.safety", role="limit"),
-        Param("most", "mm", bar.diameter.value, key="bar.diameter", role="limit"),
-    )
-    n = Var("n", "", 1, bar.most, 1, integer=True, key=("", "bar.most"))
-    d = Var("d", "mm", 0.01, 1e3, 1.0, log=True, search=True)
-    return Model(Problem("bars", (n, d), parameters, evaluate, methods={"exact": exact}))
-
-
-KIND = SimpleNamespace(posed=bars, solve=lambda own, ask: solve_problem(bars(own).problem))
 FILE = {
     "bar": {
         **{"pull": "10 N m", "stress": "100 MPa", "safety": Decimal("1.5")},

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from gearopt.optimise.pareto.front import Front, Objective
-from gearopt.optimise.pareto.pick import neighbours
+from gearopt.optimise.pareto.measures import neighbours
 from gearopt.report.command import SECONDS
 from gearopt.report.measures import METRIC, Measures, read_in
 from gearopt.report.section import Cell, Table, cell

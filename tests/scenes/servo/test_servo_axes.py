@@ -27,7 +27,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.report.kinds.servo.housing import box as box_section
 from gearopt.report.measures import METRIC
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.servo.remedies import blocked
+from gearopt.scenes.servo.remedies import remedies
 
 PIXEL = 0.02  # rounding of a drawing
 
@@ -123,6 +123,13 @@ FIELDS = {
 }
 
 
+def thinned(change):
+    was, write = (
+        F(text.strip('"').split()[0]) if " mm" in text else 0 for text in (change.was, change.write)
+    )
+    return change.key in FIELDS and write < was
+
+
 def thinner(axis, remedy, more=1.0):
     """The axis with a remedy's diameters, so many times as large."""
     new = {FIELDS[c.key]: F(c.write.strip('"').split()[0]) * F(more) for c in remedy.changes}
@@ -136,13 +143,13 @@ def check_ways_out(seed, most_pinions=3):
     axis = random_axis(seed, most_pinions)
     if trains(axis) or not trains(axis, clear=False):
         return None
-    explained = blocked(read(axis.text().encode(), "axis.toml")[1], Clock())
+    explained = remedies(read(axis.text().encode(), "axis.toml")[1], Clock())
     assert set(explained.conflict) <= {"shaft", "motor", "output_shaft"} and explained.conflict
-    sized = [r for r in explained.remedies if r.what.split(".")[0] in ("shaft", "space", "train")]
+    sized = [r for r in explained.remedies if all(thinned(c) for c in r.changes)]
     for remedy in sized:
         assert trains(thinner(axis, remedy))
         assert not trains(thinner(axis, remedy, 1.001))
-        assert remedy.verified["with"] == "optimal"
+        assert remedy.verified["with"] == "feasible"
         assert read(thinner(axis, remedy).text().encode(), "axis.toml")
     return len(sized)
 

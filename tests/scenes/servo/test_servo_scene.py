@@ -236,8 +236,9 @@ def test_shafts_in_the_way_change_the_train_and_are_named():
     left = np.minimum(m2 * (z3 + z4) - m1 * (z2 + 2), m2 * (z4 - 2.5))  # around the output's axis
     clear = (m1 * (z2 - 2.5) >= 8.0) & (m2 * (z3 - 2.5) >= 8.0) & (m1 * (z1 + z2) >= 32.0)
     largest = left[clear].max()
-    assert only.changes[0].write == f'"{largest:.5g} mm"' and largest == pytest.approx(88.9)
-    assert only.verified == {"with": "optimal", "with_less": "infeasible"} and only.bound is None
+    written = float(only.changes[0].write.strip('"').split()[0])
+    assert largest / 1.0005 < written <= largest == pytest.approx(88.9)
+    assert only.verified == {"with": "feasible", "with_less": "infeasible"} and only.bound is None
     _, sure = remedy_words(explained.to_dict())  # whole teeth alone are excluded
     assert "none with 0.1 %" in sure and "real-valued" not in sure
 

@@ -1,6 +1,5 @@
 """The conflict of an impossible request: limits that no gearing in the ranges meets."""
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -16,9 +15,6 @@ from gearopt.optimise.terms import Array, Terms, Var
 GUARDS = ("curvature", "cusp")  # keep the flank regular: there is no gearing without them
 STRENGTH = ("pairs", "rim_fatigue", "ratcheting")  # a size may fall short of them
 EXCESSES = (-0.99, 1e6)  # of utilisations over 1: ends of the search
-FARTHEST = 1e6  # factor up to which a number is moved
-SECANTS = 12
-LOG_TOLERANCE = 2e-5  # of the logarithm of a utilisation that counts as 1
 
 
 @dataclass(frozen=True)
@@ -98,32 +94,3 @@ def told(demand: Demand, found: Nearest) -> list[str]:
     over = {n: u for n, u in found.used.items() if u > 1.0 + FEASIBLE}
     order = sorted(over, key=lambda n: -over[n])
     return [f"{n.replace('_', ' ')}: {words[n](over[n])}" for n in order]
-
-
-def least_factor(
-    excess: Callable[[float], float | None], way: int, power: float = 1.0
-) -> float | None:
-    """Return the factor >= 1 by which a number must grow (way 1) or shrink (-1) at least.
-
-    excess(factor): the smallest largest excess with the number times it, None where none is known.
-    Utilisations are nearly powers of a number, so that secants of their logarithms come near in a
-    few steps; power: about which one, at first. None where no factor up to FARTHEST is found.
-    """
-
-    def used(x: float) -> float | None:
-        found = excess(math.exp(way * x))
-        return None if found is None else math.log1p(found)
-
-    last, before = 0.0, used(0.0)
-    if before is None or before <= 0.0:
-        return None if before is None else 1.0
-    x = before / power
-    for _ in range(SECANTS):
-        now = used(x) if x < math.log(FARTHEST) else None
-        if now is None:
-            return None
-        if -LOG_TOLERANCE < now <= 0.0:
-            return math.exp(x)
-        slope = min((now - before) / (x - last), -0.1)
-        last, before, x = x, now, max(x - (now + 0.5 * LOG_TOLERANCE) / slope, 0.1 * x)
-    return math.exp(x) if before <= 0.0 else None

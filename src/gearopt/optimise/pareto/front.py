@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from gearopt.optimise.pareto.pick import Pick
+from gearopt.optimise.pareto.measures import Pick
 from gearopt.optimise.result import as_dict, as_json, loads, shown, versions
 from gearopt.optimise.typed import typed
 

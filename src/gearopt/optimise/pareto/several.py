@@ -10,9 +10,8 @@ from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Front, Objective
-from gearopt.optimise.pareto.judged import judged
+from gearopt.optimise.pareto.judged import judged, united
 from gearopt.optimise.pareto.pareto import EXACT, default, found
-from gearopt.optimise.pareto.united import united
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array, Terms, Var

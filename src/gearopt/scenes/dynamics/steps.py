@@ -1,9 +1,6 @@
 """The table [optimise]: the search, what proves it impossible, and what is said of the best."""
 
 from dataclasses import asdict, replace
-from typing import Any
-
-from pydantic import ValidationError
 
 from gearopt.formulations.dynamics.design import Chosen
 from gearopt.formulations.dynamics.orbit.climbing import JUDGE_MARGIN, begun, posed
@@ -17,16 +14,14 @@ from gearopt.formulations.dynamics.orbit.least_vibration import (
 )
 from gearopt.formulations.dynamics.orbit.task import MICRO, VARIABLES, Task
 from gearopt.optimise.clock import Clock, in_part, of_others
-from gearopt.optimise.explaining.explain import THERE
-from gearopt.optimise.explaining.explanation import Remedies, Remedy
+from gearopt.optimise.explaining.explanation import Remedies
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.solve import run
 from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.scenes.dynamics.scene import Scene
 from gearopt.scenes.explaining.default import remedies
-from gearopt.scenes.explaining.numbers import content
-from gearopt.scenes.explaining.shorter import shorter
+from gearopt.scenes.explaining.possible import Verdict, of_status
 from gearopt.scenes.reading.ask import Ask
 
 PRICED = 1.0  # s: a budget that leaves time for multipliers, some half a second, once it is spent
@@ -157,47 +152,19 @@ def told(best: Chosen, result: Result, periods: int) -> list[str]:
 
 
 def _ways_out(scene: Scene, task: Task, clock: Clock) -> Remedies:
-    """Return each number of the file that alone makes it possible, with few digits.
+    """Return each number of the file that alone makes it possible."""
+    left = Clock(clock.left, of_others(clock.watch))
+    return remedies(scene, limited(task), left, possible)
+
+
+def possible(scene: Scene, clock: Clock) -> Verdict:
+    """Return whether a file has a design.
 
     Without a limit of motions, what the ranges allow is possible; with one the file is solved.
     """
-    left = Clock(clock.left, of_others(clock.watch))
-
-    def status(other: Scene) -> str:
-        asked = other.task
-        if impossible(asked) is not None:
-            return "infeasible"
-        if asked.margin is None and asked.most_growth is None:
-            return "feasible"
-        found, _ = run(whole_problem(asked), None, left.left, watch=left.watch)
-        return found.status
-
-    def works(edits: dict[str, Any], seconds: float) -> bool:
-        other = _edited(scene, edits)
-        return other is not None and status(other) in THERE
-
-    found = remedies(scene, limited(task), left, status)
-    short = shorter(found.remedies, left, works)
-    return replace(found, remedies=tuple(map(_written_short, short)))
-
-
-def _edited(scene: Scene, edits: dict[str, Any]) -> Scene | None:
-    """Return the scene with other numbers of [optimise], by their keys; None where refused."""
-    tables = content(scene)
-    for key, value in edits.items():
-        name, _, end = key.removeprefix("optimise.").rstrip("]").partition("[")
-        held = tables["optimise"]
-        if end:
-            held[name] = [value if k == int(end) - 1 else v for k, v in enumerate(held[name])]
-        else:
-            held[name] = value
-    try:
-        return Scene.model_validate(tables)
-    except ValidationError:
-        return None
-
-
-def _written_short(remedy: Remedy) -> Remedy:
-    """Return a remedy that is written as it was rounded, so that nothing rounds it again."""
-    changes = tuple(replace(c, write=c.short or c.write, short="") for c in remedy.changes)
-    return replace(remedy, changes=changes)
+    task = scene.task
+    if impossible(task) is not None:
+        return Verdict(False)
+    if task.margin is None and task.most_growth is None:
+        return Verdict(True)
+    return of_status(run(whole_problem(task), None, clock.left, watch=clock.watch)[0].status)

@@ -7,7 +7,7 @@ from typing import Any
 from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.explaining.explain import THERE, binding
+from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import (
     Change,
     Explanation,
@@ -16,32 +16,19 @@ from gearopt.optimise.explaining.explanation import (
     Remedy,
 )
 from gearopt.optimise.explaining.handles import Handle, handles
-from gearopt.optimise.explaining.repair import (
-    CERTAIN,
-    FACTORS_TRIED,
-    SLACK_TRIED,
-    any_resolves,
-    conflict,
-    least_value,
-)
+from gearopt.optimise.explaining.repair import CERTAIN, any_resolves, conflict
 from gearopt.optimise.explaining.sensitivity import of_fixed, sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
+from gearopt.scenes.explaining.engine import Group, Questions, singles, with_least
 from gearopt.scenes.explaining.influences import Basis, Solved, influences, stepped
-from gearopt.scenes.explaining.numbers import (
-    Number,
-    apart,
-    eased,
-    moved,
-    numbers,
-    taken_back,
-    written,
-)
+from gearopt.scenes.explaining.moves import DUTY, LIMIT, Move
+from gearopt.scenes.explaining.numbers import Number, numbers, one_at
+from gearopt.scenes.explaining.possible import Possible, Verdict, of_status
 from gearopt.scenes.kind import Kind, S
 from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.reading.toml import toml_text
 
 BASIS = (
     " by Lagrange multipliers, checked by solving again. "
@@ -139,30 +126,28 @@ def _impossible(
     if isinstance(problem, Conic):
         names = tuple(result.proof.get("conflict", ()))
         return Explanation(result, names, message=result.message, seconds=clock.seconds)
-    found = remedies(scene, problem, clock, lambda other: answer(other).status)
+
+    def possible(other: Any, within: Clock) -> Verdict:
+        return of_status(answer(other).status)
+
+    found = remedies(scene, problem, clock, possible)
     return Explanation(result, **vars(found), seconds=clock.seconds)
 
 
-def remedies(scene: Any, problem: Problem, clock: Clock, status: Callable[[Any], str]) -> Remedies:
+def remedies(scene: Any, problem: Problem, clock: Clock, possible: Possible[Any]) -> Remedies:
     """Return the conflict of an impossible file, and each number that alone makes it possible.
 
     problem: what is solved for the file; its handles, or those of its `relaxed` form, say by their
-    keys which numbers are limits or given, and which way is easier. status(scene): of a changed
-    file, solved. A remedy is reported only if the file with it, read again, has a design.
+    keys which numbers are limits or given, and which way is easier. possible: of a changed file.
     """
     relaxed, problem = problem.relaxed is not None, problem.relaxed or problem
     known = _handles(problem)
-    found = [r for n, h in _keyed(scene, known) if (r := alone(scene, n, h, clock, status))]
-    own = sorted((r for r in found if r.kind != "less"), key=lambda r: r.factor)
-    if own:
-        tried = "not all known" if clock.over else "need more"
-        least = replace(own[0], kind="least", verified={**own[0].verified, "others": tried})
-        own = [least, *own[1:]]
+    groups = (Group((move,)) for move in _moves(scene, known))
+    ways = with_least(singles(Questions(scene, possible, clock), groups), not clock.over)
     blamed = _conflict(problem, known, clock)
-    others = tuple(r for r in found if r.kind == "less")
     late = "the budget ended before all remedies were tried" if clock.over else ""
     sure = not relaxed and any_resolves(problem, known, blamed, clock)
-    return Remedies(tuple(h.name for h in blamed), (*own, *others), late, sure)
+    return Remedies(tuple(h.name for h in blamed), ways, late, sure)
 
 
 def _conflict(problem: Problem, known: Sequence[Handle], clock: Clock) -> tuple[Handle, ...]:
@@ -173,48 +158,13 @@ def _conflict(problem: Problem, known: Sequence[Handle], clock: Clock) -> tuple[
     return conflict(problem, limits, clock) or conflict(problem, known, clock)
 
 
-def _keyed(scene: Any, known: Sequence[Handle]) -> Iterator[tuple[Number, Handle]]:
+def _moves(scene: Any, known: Sequence[Handle]) -> Iterator[Move]:
     """Yield the numbers of a file that handles name, once each way."""
     places = {n.key: n for n in numbers(scene, defaults=True)}
     named = {(h.key, h.direction): h for h in known if h.key in places}
-    for (key, _), handle in named.items():
-        yield places[key], handle
-
-
-def alone(
-    scene: Any, number: Number, handle: Handle, clock: Clock, status: Callable[[Any], str]
-) -> Remedy | None:
-    """Return a number moved alone as little as that takes; None where it does not help.
-
-    handle: its direction, and whether it is given; status(scene): of a changed file, solved.
-    """
-    way = handle.direction
-    words: dict[str, bool] = dict.fromkeys(THERE, True) | {"infeasible": False}
-
-    def at(factor: float, back: float = 0.0) -> Any:
-        value = eased(number.value, factor, way)
-        return moved(scene, number.path, taken_back(value, number.value, back) if back else value)
-
-    def tried(factor: float, back: float = 0.0) -> str:
-        other = None if clock.over else at(factor, back)
-        return "undecided" if other is None else status(other)
-
-    def works(factor: float, back: float = 0.0) -> bool | None:
-        return words.get(tried(factor, back))
-
-    wider = [f for f in FACTORS_TRIED if at(f) is not None]
-    if not wider:
-        return None
-    least = least_value(1.0, tuple(wider), works)
-    if least is None:
-        return None
-    value = eased(number.value, least, way)
-    was, write = (toml_text(written(v, number.path)) for v in (number.value, value))
-    change = Change(number.key, was, write, apart(number.value, value))
-    verified = {"with": tried(least), "with_less": tried(least, SLACK_TRIED)}
-    verified = {k: "feasible" if w in THERE else w for k, w in verified.items()}
-    kind, what = "less" if handle.given else "alone", number.key
-    return Remedy(kind, what, (change,), change.factor, None, verified)
+    for (key, way), handle in named.items():
+        role, path = DUTY if handle.given else LIMIT, places[key].path
+        yield Move(path, way, role, key, far_first=False, inherits=one_at)
 
 
 def eases(problem: Problem | Conic) -> dict[str, int]:

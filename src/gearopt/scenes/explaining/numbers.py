@@ -96,6 +96,12 @@ def at(scene: Any, path: Path) -> Any:
     return scene
 
 
+def one_at(scene: Any, path: Path) -> Any:
+    """Return what stands at the place of a `Number`: of a range of equal ends one of them."""
+    value = at(scene, path)
+    return value[0] if isinstance(value, tuple) else value
+
+
 def put(scene: Any, path: Path, value: Any) -> Any:
     """Return the scene with another value at a place; not checked against the file's rules."""
     if not path:
@@ -209,6 +215,14 @@ def eased(value: Any, factor: float, direction: int) -> Any:
             return near
         return math.ceil(number) if direction > 0 else math.floor(number)
     return _rounded(value * moved, direction)
+
+
+def cut(value: Any, way: int, digits: int = DIGITS) -> Any:
+    """Return a quantity or fraction of so many digits, rounded up (+1) or down (-1)."""
+    number = value.number if isinstance(value, Quantity) else value
+    context = Context(prec=digits, rounding=ROUND_CEILING if way > 0 else ROUND_FLOOR)
+    short = Fraction(context.divide(Decimal(number.numerator), Decimal(number.denominator)))
+    return replace(value, number=short) if isinstance(value, Quantity) else short
 
 
 def rounded(size: float, like: Quantity, direction: float) -> str:

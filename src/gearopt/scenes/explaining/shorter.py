@@ -28,6 +28,8 @@ def shorter(found: Sequence[Remedy], clock: Clock, works: Works) -> tuple[Remedy
 
 def _one(remedy: Remedy, clock: Clock, works: Works) -> Remedy:
     tried = remedy
+    if any(change.short for change in remedy.changes):
+        return remedy
     for digits in DIGITS if remedy.kind != EXACT else ():
         short = [_short(change, digits) for change in remedy.changes]
         pairs = zip(remedy.changes, short, strict=True)

@@ -11,13 +11,15 @@ from typing import Any
 from gearopt.formulations.servo.choice import binding, train_problem
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Change, Remedies, Remedy
+from gearopt.optimise.explaining.repair import SLACK_TRIED
 from gearopt.optimise.solve import solve_within
-from gearopt.scenes.explaining.numbers import moved, times
+from gearopt.scenes.explaining.numbers import cut, moved, times
 from gearopt.scenes.reading.toml import dotted
-from gearopt.scenes.servo.alone import SLACK_TRIED, short
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import THICKNESS, TWO_SIDED
 from gearopt.units import Quantity
+
+DIGITS = 3  # of a minimum backlash that is proposed
 
 
 def binds(scene: Scene, clock: Clock) -> Remedies | None:
@@ -56,7 +58,7 @@ def _way(scene: Scene, key: str, missing: dict[int, float], clock: Clock) -> Rem
     if status != "optimal":
         return None
     bound = back is not None and binding(back.choice().backlash) is not None
-    verified = {"with": status, "rounded": "to the side that eases the limit"}
+    verified = {"with": "feasible", "rounded": "to the side that eases the limit"}
     verified["with_less"] = "infeasible" if bound else "undecided"
     what = ", ".join(change.key for change in changes)
     return Remedy(
@@ -79,7 +81,7 @@ def _moved(was: Any, key: str, by: float, exact: bool = False) -> Any:
         new = times(was, 1.0 + by / was.value)
         if new.number <= 0:
             return None
-        return new if exact else short(new, -1)
+        return new if exact else cut(new, -1, DIGITS)
     zero = times(was, 0.0) if isinstance(was, Quantity) else None
     ends = was if zero is None else ((times(was, -1.0), zero) if key in THICKNESS else (zero, was))
     way = -1 if key in THICKNESS else 1

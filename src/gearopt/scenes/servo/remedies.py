@@ -1,7 +1,7 @@
-"""What to write instead where no train is accurate enough: found by solving, and solved again."""
+"""What to write instead where no train is possible: why, and the smallest changes that help."""
 
-from dataclasses import replace
-from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -15,17 +15,66 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Change, Remedies, Remedy
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve, solve_within
-from gearopt.scenes.explaining.numbers import times
-from gearopt.scenes.servo.alone import alone, reached
+from gearopt.physics.gears import SERIES_I, SERIES_II
+from gearopt.scenes.explaining.engine import (
+    Group,
+    Questions,
+    singles,
+    with_least,
+    within,
+)
+from gearopt.scenes.explaining.moves import DUTY, LIMIT, Move
+from gearopt.scenes.explaining.numbers import STEP_FROM_ZERO, Path, at, cut, put, times
+from gearopt.scenes.reading.toml import dotted, toml_text
 from gearopt.scenes.servo.backlash import binds
+from gearopt.scenes.servo.reach import possible, reached
 from gearopt.scenes.servo.scene import Scene
-from gearopt.scenes.servo.tables.mesh import WORDS, Mesh
+from gearopt.scenes.servo.tables.mesh import WORDS
 from gearopt.scenes.servo.train import errors, of_point
 from gearopt.units import Quantity
 
-DIGITS = 5  # of a number that is proposed; rounded to relax the limit
-FEASIBILITY_MARGIN = 1e-9  # by which a proposal is easier, to be feasible in doubles
-SLACK_TRIED = 1e-3  # a remedy that much smaller must be impossible
+FARTHEST_FACTOR = 1000.0  # factor up to which a limit is moved
+WIDEST_FACTOR = 2.0  # the same of numbers that widen the search
+MARGIN = 1.0 + 1e-9  # by which the least error is enlarged, to be feasible in doubles
+# mm, as makers list them
+SHAFT_DIAMETERS = tuple(Fraction(k, 20) for k in (4, 5, 6, 8, 10, 12, 14, 16, 18))
+LIMITS: tuple[tuple[Path, int], ...] = (  # of a file, and the way that is easier
+    (("stiffness", "frequency"), -1),
+    (("stiffness", "windup"), 1),
+    (("space", "width"), 1),
+    (("space", "height"), 1),
+    (("space", "motor_diameter"), -1),
+    (("space", "hub_diameter"), -1),
+    (("train", "bending_stress"), 1),
+    (("train", "output_torque"), -1),
+    (("train", "face_width"), 1),
+    (("train", "output_shaft_diameter"), -1),
+    (("train", "second_pinion_diameter"), -1),
+    (("shaft", "diameter"), 1),
+    (("shaft", "diameter"), -1),
+    (("shaft", "length"), -1),
+)
+RANGES: tuple[tuple[Path, int], ...] = (
+    (("motor", "torque"), -1),  # loads the teeth less, and may move the load no more
+    (("train", "wheel_tip_diameters", 0), 1),
+    (("train", "wheel_tip_diameters", 1), 1),
+    (("train", "ratio_tolerance"), 1),
+    (("train", "ratio", 0), -1),
+    (("train", "ratio", 1), 1),
+    (("train", "pinion_teeth", 0), -1),
+    (("train", "pinion_teeth", 1), 1),
+    (("train", "wheel_teeth"), 1),
+)
+ERROR, SHAFT, TOLERANCE = ("accuracy", "error"), ("shaft", "diameter"), ("train", "ratio_tolerance")
+SIDES = ("space", "width"), ("space", "height")
+DIAMETERS: tuple[Path, ...] = (
+    SHAFT,
+    ("space", "motor_diameter"),
+    ("space", "hub_diameter"),
+    ("train", "output_shaft_diameter"),
+)
+HUB, OUTPUT = DIAMETERS[2:]
+LESS_BY = 1e-2  # relative, by which two sides move less than one, to be told
 LOOSE = "90 deg"  # an error that no train misses
 CAUSE_UNKNOWN = "time ran out before the cause was identified"
 PATIENCE = 20.0, 5.0  # seconds, for numbers that help alone; where a duty chooses
@@ -49,13 +98,19 @@ COVERED = (
     "thin that is: allow a larger last wheel, or smaller modules"
 )
 
-Place = tuple[str, str]  # table and key
-PLACES: tuple[Place, ...] = (
-    ("shaft", "diameter"),
-    ("space", "motor_diameter"),
-    ("space", "hub_diameter"),
-    ("train", "output_shaft_diameter"),
-)
+
+@dataclass(frozen=True)
+class Cause:
+    """Why a train is impossible.
+
+    names: of limits in conflict; message: the cause in words. error: the least error of a train
+    over the one that is asked for, and a bound of it. bodies: whether they leave no train room.
+    """
+
+    names: tuple[str, ...] = ()
+    message: str = ""
+    error: tuple[float, float] | None = None
+    bodies: bool = False
 
 
 def remedies(scene: Scene, clock: Clock, message: str = NO_TEETH) -> Remedies:
@@ -63,33 +118,141 @@ def remedies(scene: Scene, clock: Clock, message: str = NO_TEETH) -> Remedies:
 
     message: of the search. Numbers that help alone are looked for at most PATIENCE.
     """
-    if (found := binds(scene, clock)) is not None:
-        return found
-    found = _cause(scene, clock, message)
+    if (bound := binds(scene, clock)) is not None:
+        return bound
+    cause = why(scene, clock, message)
     if clock.over:
-        return found
+        return Remedies(cause.names, message=cause.message)
     assert scene.train is not None
-    patience = PATIENCE[bool(GOALS[scene.train.goal].motion)]
-    budget = replace(clock.left, seconds=clock.within(patience))
-    within = Clock(budget, clock.watch)
-    known = frozenset(change.key for way in found.remedies for change in way.changes)
-    more = alone(scene, within, known)
-    if found.conflict:  # their bound is of whole teeth
-        more = tuple(replace(way, bound=None) for way in more)
-    elif found.remedies == () and more and more[0].kind == "alone":
-        tried = "not all known" if within.over else "need more"
-        least = replace(more[0], kind="least", verified={**more[0].verified, "others": tried})
-        more = (least, *more[1:])
-    words = found.message
-    if found.conflict and (kept := [KEPT[name] for name in scene.choice().apart]):
-        words += f"{'; ' if words else ''}every remedy also keeps {' and '.join(kept)}"
-    if within.over:
-        words += "; time ran out before all numbers of the file were tried" if words else ""
-    return replace(found, remedies=(*found.remedies, *more), message=words)
+    left = within(clock, PATIENCE[bool(GOALS[scene.train.goal].motion)])
+    asked = Questions(scene, possible, left, lower_bounds=not cause.names)
+    single = {(move.path, move.way): move for move in moves(scene)}
+    found = singles(asked, _errors(scene, cause))
+    found += singles(asked, (Group((move,)) for move in single.values()))
+    moved = {change.key for remedy in found for change in remedy.changes}
+    thinner = [single[path, -1] for path in DIAMETERS if (path, -1) in single]
+    bodies = cause.bodies and not moved & {dotted(move.path) for move in thinner}
+    if bodies and len(thinner) > 1:
+        found += singles(asked, [Group(tuple(thinner), what="all diameters")])
+    found += _both_sides(asked, single, found)
+    found += [] if (module := _module(asked)) is None else [module]
+    sentences = [cause.message] if cause.message else []
+    if bodies and not left.over and not any(r.what == "all diameters" for r in found):
+        sentences.append("with smaller bodies, the box, the stiffness or the duty is still not met")
+    if cause.names and (kept := [KEPT[name] for name in scene.choice().apart]):
+        sentences.append(f"every remedy also keeps {' and '.join(kept)}")
+    if left.over and sentences:
+        sentences.append("time ran out before all numbers of the file were tried")
+    own = with_least(found, not left.over)
+    return Remedies(cause.names, own, "; ".join(sentences))
 
 
-def _cause(scene: Scene, clock: Clock, message: str) -> Remedies:
-    """Return the conflict of an impossible train, and what is proposed by its cause."""
+def moves(scene: Scene) -> Iterator[Move]:
+    """Yield every number of a file that may help, and the way that does."""
+    for path, way in (*LIMITS, *RANGES):
+        value = _given(scene, path)
+        if path == HUB and value is not None and (shaft := _given(scene, OUTPUT)):
+            value = None if value.value <= shaft.value else value
+        if not getattr(value, "number", value):
+            continue
+        role = DUTY if path == ("train", "output_torque") else LIMIT
+        far = FARTHEST_FACTOR if (path, way) in LIMITS else WIDEST_FACTOR
+        yield Move(path, way, role, far=far, inherits=_given)
+    if scene.train is not None and scene.train.ratio_tolerance == 0:
+        steps = tuple(1.0 + float(wide / STEP_FROM_ZERO) for wide in impossible.WIDER)
+        yield Move(TOLERANCE, 1, steps=steps)
+
+
+def _given(scene: Scene, path: Path) -> Any:
+    """Return a number of the file that may move; None where there is none.
+
+    A single ratio has a tolerance, a range of ratios has ends.
+    """
+    table = getattr(scene, str(path[0]))
+    if table is None or (path == TOLERANCE and table.ratio[0] != table.ratio[1]):
+        return None
+    if path[:2] == ("train", "ratio") and table.ratio[0] == table.ratio[1]:
+        return None
+    value = at(scene, path)
+    return Fraction(1, 100) if path == TOLERANCE and value is None else value
+
+
+def _errors(scene: Scene, cause: Cause) -> Iterator[Group]:
+    """Yield the error that is asked for, and all deviations, to which errors are in proportion."""
+    if cause.error is None:
+        return
+    factor, bound = cause.error
+    yield Group((Move(("accuracy", "error"), 1),), factor, bound)
+    finer = [
+        Move(("mesh", k, name), -1, write=_finer, factor=_finer_by)
+        for k, mesh in enumerate(scene.mesh)
+        for name in WORDS
+        if (was := getattr(mesh, name)) and (isinstance(was, tuple) or was.number > 0)
+    ]
+    yield Group(tuple(finer), factor, bound, "all deviations")
+
+
+def _finer(now: Any, factor: float, move: Move) -> Any:
+    """Return a deviation, or both of its allowances, divided by a factor, rounded towards zero."""
+    if isinstance(now, tuple):
+        return tuple(_finer(end, factor, move) for end in now)
+    return cut(times(now, 1.0 / factor), 1 if now.number < 0 else -1)
+
+
+def _finer_by(before: Any, after: Any) -> float:
+    """Return the factor by which a deviation, or its larger allowance, became smaller."""
+    ends = [
+        sorted(map(abs, (float(e.number) for e in v)))
+        if isinstance(v, tuple)
+        else [float(v.number)]
+        for v in (before, after)
+    ]
+    return ends[0][-1] / ends[1][-1]
+
+
+def _both_sides(asked: Questions, single: dict[Any, Move], found: list[Remedy]) -> list[Remedy]:
+    """Return both sides of the box larger by one factor, where that is less than of one alone."""
+    scene = asked.scene
+    if scene.space is None or not scene.space.required:
+        return []
+    both = tuple(single[side, 1] for side in SIDES)
+    alone = [r.factor for r in found if r.what in map(dotted, SIDES)]
+    return [
+        remedy
+        for remedy in singles(asked, [Group(both, what="both sides of the box")])
+        if all(remedy.factor * (1.0 + LESS_BY) < factor for factor in alone)
+    ]
+
+
+def _module(asked: Questions) -> Remedy | None:
+    """Return the nearest module that alone, added to the list, makes a train possible.
+
+    None for lists of diametral pitches.
+    """
+    path: Path = ("train", "modules")
+    own = at(asked.scene, path)
+    sizes = [m.exact[0] for m in own]
+    if own[0].reciprocal:
+        return None
+
+    def far(m: Fraction) -> float:
+        return min(float(max(m, o) / min(m, o)) for o in sizes)
+
+    series = (*SHAFT_DIAMETERS, *SERIES_I, *SERIES_II)
+    others = (m for m in series if m not in sizes and far(m) <= WIDEST_FACTOR)
+    for module in sorted(others, key=far):
+        more = (*own, own[0].of(module))
+        if asked.ask(put(asked.scene, path, more), possible).answer:
+            was, write = (toml_text([str(m) for m in listed]) for listed in (own, more))
+            change = Change("train.modules", was, write, far(module))
+            return Remedy(
+                "choice", "train.modules", (change,), far(module), None, {"with": "feasible"}
+            )
+    return None
+
+
+def why(scene: Scene, clock: Clock, message: str) -> Cause:
+    """Return the conflict of an impossible train, and the cause; message: of the search."""
     asked = scene.accuracy.error
     assert scene.train is not None
     if GOALS[scene.train.goal].motion:
@@ -97,13 +260,11 @@ def _cause(scene: Scene, clock: Clock, message: str) -> Remedies:
         if still.status == "optimal":
             return _of_duty(scene, clock)
         if still.status != "infeasible":
-            return Remedies(message=CAUSE_UNKNOWN)
+            return Cause(message=CAUSE_UNKNOWN)
         message = still.message
     rooms = blocked(scene, clock)
-    if asked is None and rooms is not None:
-        return rooms
     if asked is None:
-        return _other(scene, message, clock)
+        return rooms or _other(scene, message, clock)
     free = with_error(scene, units.parse(LOOSE, "angle"))
     least = solve_within(clock, train_problem(_aiming(free, "error").choice()))
     if least.status == "infeasible":
@@ -111,17 +272,29 @@ def _cause(scene: Scene, clock: Clock, message: str) -> Remedies:
             return rooms
         other = _other(free, least.message, clock)
         return replace(other, message=f"{ASIDE}, {other.message}")
-    if least.status != "optimal":
-        return Remedies(message="time ran out before the minimum possible error was proven")
-    best = units.parse(f"{least.value!r} deg", "angle")
-    names = impossible.in_conflict(scene.servo_train(), clock)
-    floor = impossible.minimum_error(scene.servo_train(), clock) if names else None
-    bound = (floor or best.value) / asked.value
-    found = [one(scene, best, bound, clock) for one in (_wider, _finer)]
-    proven = tuple(r for r in found if r.verified["with"] == "optimal")
+    if least.status != "optimal" or least.value is None:
+        return Cause(message="time ran out before the minimum possible error was proven")
+    factor = units.parse(f"{least.value!r} deg", "angle").value / asked.value
     if rooms is not None:
-        return replace(rooms, remedies=(*rooms.remedies, *proven))
-    return Remedies(names, proven, _message(free, least))
+        return replace(rooms, error=(factor * MARGIN, factor))
+    names = impossible.in_conflict(scene.servo_train(), clock)
+    real = impossible.minimum_error(scene.servo_train(), clock) if names else None
+    bound = factor if real is None else real / asked.value
+    return Cause(names, _message(free, least), (factor * MARGIN, bound))
+
+
+def blocked(scene: Scene, clock: Clock) -> Cause | None:
+    """Return what stands in the way; None where a train is impossible without it too."""
+    blamed = impossible.in_the_way(scene.servo_train(), clock)
+    if blamed is None:
+        return None
+    names = tuple(name for name, diameter in vars(blamed).items() if diameter > 0)
+    if not names:
+        return Cause(("output_shaft",), COVERED)
+    what = " and ".join(name.replace("_", " ") for name in names)
+    return Cause(
+        names, f"no train that meets all other limits leaves room for the {what}", bodies=True
+    )
 
 
 def _aiming(scene: Scene, aim: str) -> Scene:
@@ -131,7 +304,7 @@ def _aiming(scene: Scene, aim: str) -> Scene:
     return scene.model_copy(update={"train": train})
 
 
-def _other(scene: Scene, message: str, clock: Clock) -> Remedies:
+def _other(scene: Scene, message: str, clock: Clock) -> Cause:
     """Return why a train is impossible whatever its error: limits in conflict, and a sentence.
 
     message: of the search.
@@ -139,15 +312,15 @@ def _other(scene: Scene, message: str, clock: Clock) -> Remedies:
     train = scene.servo_train()
     if names := impossible.in_conflict(train, clock):
         why = "real-valued teeth and modules do not meet all other limits either"
-        return Remedies(names, message=why)
+        return Cause(names, message=why)
     if impossible.by_motion(train, clock):
-        return Remedies(message=LOADED)
+        return Cause(message=LOADED)
     if message != NO_TEETH:  # it names the box, or the stiffness
-        return Remedies(message=_reached(scene, clock) or message)
+        return Cause(message=_reached(scene, clock) or message)
     if (other := impossible.with_wider_ratio(train, clock)) is not None:
         own, ends = (_span(scene, one) for one in (train, other))
-        return Remedies(message=f"no whole teeth make the ratio {own}; {ends} some do")
-    return Remedies(message=CAUSE_UNKNOWN if clock.over else WHOLE)
+        return Cause(message=f"no whole teeth make the ratio {own}; {ends} some do")
+    return Cause(message=CAUSE_UNKNOWN if clock.over else WHOLE)
 
 
 def _reached(scene: Scene, clock: Clock) -> str:
@@ -167,7 +340,7 @@ def _span(scene: Scene, train: split.ServoTrain) -> str:
     return f"between {low} and {high}"
 
 
-def _of_duty(scene: Scene, clock: Clock) -> Remedies:
+def _of_duty(scene: Scene, clock: Clock) -> Cause:
     """Return what of the duty no train keeps, where some keep all else: limits, a sentence."""
     train = scene.servo_train()
     duty = train.duty
@@ -175,13 +348,11 @@ def _of_duty(scene: Scene, clock: Clock) -> Remedies:
     names = impossible.in_conflict(train, clock, duty.goal)
     if duty.max_ratio is not None and duty.max_ratio < train.ratios[0]:
         why = f"the motor's speed limit allows a total ratio of at most {float(duty.max_ratio):.6g}"
-        return Remedies(names, message=f"the cause is the duty: {why}")
+        return Cause(names, message=f"the cause is the duty: {why}")
     alone = solve(duty.problem())
     if alone.status == "infeasible":
-        return Remedies(
-            names, message=f"the cause is the duty, whatever the train: {alone.message}"
-        )
-    return Remedies(names, message=MOTOR)
+        return Cause(names, message=f"the cause is the duty, whatever the train: {alone.message}")
+    return Cause(names, message=MOTOR)
 
 
 def with_error(scene: Scene, error: Quantity) -> Scene:
@@ -191,6 +362,7 @@ def with_error(scene: Scene, error: Quantity) -> Scene:
 
 
 def _message(scene: Scene, least: Result) -> str:
+    """Return the least error of a train, and its largest parts."""
     import numpy as np
 
     point = np.array(
@@ -206,165 +378,4 @@ def _message(scene: Scene, least: Result) -> str:
     return (
         f"the most accurate train has an error of {least.value:.5f} deg; its largest parts "
         f"are {largest}"
-    )
-
-
-def _rounded(value: float, up: bool) -> str:
-    context = Context(prec=DIGITS, rounding=ROUND_CEILING if up else ROUND_FLOOR)
-    return f"{context.create_decimal(Decimal(value)).normalize():f}"
-
-
-def _wider(scene: Scene, best: Quantity, bound: float, clock: Clock) -> Remedy:
-    """Return the minimum error that can be asked for."""
-    asked = scene.accuracy.error
-    assert asked is not None
-    scale = asked.value / float(asked.number)
-    write = f"{_rounded(best.value / scale * (1.0 + FEASIBILITY_MARGIN), True)} {asked.unit}"
-    less = units.parse(f"{best.value / scale * (1.0 - SLACK_TRIED)!r} {asked.unit}", "angle")
-    new = units.parse(write, "angle")
-    factor = new.value / asked.value
-    return Remedy(
-        "least",
-        "accuracy.error",
-        (Change("accuracy.error", f'"{asked}"', f'"{write}"', factor),),
-        factor,
-        bound,
-        {
-            "with": _status(with_error(scene, new), clock),
-            "with_less": _status(with_error(scene, less), clock),
-        },
-    )
-
-
-def _finer(scene: Scene, best: Quantity, bound: float, clock: Clock) -> Remedy:
-    """Return all deviations smaller by one factor: every train's error is in proportion to it."""
-    asked = scene.accuracy.error
-    assert asked is not None
-    part = asked.value / best.value * (1.0 - FEASIBILITY_MARGIN)
-    changes = [
-        Change(f"mesh[{k}].{name}", _text(was), _text(_times(was, part)), 1.0 / part)
-        for k, mesh in enumerate(scene.mesh, 1)
-        for name in WORDS
-        if (was := getattr(mesh, name)) and (isinstance(was, tuple) or was.number > 0)
-    ]
-    verified = {
-        "with": _status(_scaled(scene, part), clock),
-        "with_less": _status(_scaled(scene, part * (1.0 + SLACK_TRIED), exact=True), clock),
-    }
-    return Remedy("even", "all deviations", tuple(changes), 1.0 / part, bound, verified)
-
-
-def _times(was: Any, part: float) -> Any:
-    """Return a deviation, or both of its allowances, times a part, rounded towards zero."""
-    if isinstance(was, tuple):
-        return tuple(_times(end, part) for end in was)
-    size = Fraction(_rounded(abs(float(was.number)) * part, False))
-    return replace(was, number=size if was.number > 0 else -size)
-
-
-def _text(value: Any) -> str:
-    """Return a deviation as a file writes it."""
-    ends = value if isinstance(value, tuple) else (value,)
-    texts = ", ".join(f'"{end}"' for end in ends)
-    return f"[{texts}]" if isinstance(value, tuple) else texts
-
-
-def _scaled(scene: Scene, part: float, exact: bool = False) -> Scene:
-    def scaled(mesh: Mesh) -> Mesh:
-        update = {}
-        for name in WORDS:
-            was = getattr(mesh, name)
-            if isinstance(was, tuple):
-                update[name] = tuple(times(e, part) for e in was) if exact else _times(was, part)
-            elif was is not None and was.number > 0:
-                update[name] = times(was, part) if exact else _times(was, part)
-        return mesh.model_copy(update=update)
-
-    return scene.model_copy(update={"mesh": tuple(scaled(mesh) for mesh in scene.mesh)})
-
-
-def _status(scene: Scene, clock: Clock) -> str:
-    return "limit" if clock.over else solve_within(clock, train_problem(scene.choice())).status
-
-
-def blocked(scene: Scene, clock: Clock) -> Remedies | None:
-    """Return what stands in the way; None where a train is impossible without it too."""
-    blamed = impossible.in_the_way(scene.servo_train(), clock)
-    if blamed is None:
-        return None
-    names = tuple(name for name, diameter in vars(blamed).items() if diameter > 0)
-    if not names:
-        return Remedies(("output_shaft",), (), COVERED)
-    what = " and ".join(name.replace("_", " ") for name in names)
-    message = f"no train that meets all other limits leaves room for the {what}"
-    ways = _bodies(scene, clock)
-    proven = tuple(way for way in ways if way.verified["with"] == "optimal")
-    if clock.over:
-        message += "; the budget ended before all remedies were tried"
-    elif ways and not proven:
-        message += "; with smaller bodies, the box, the stiffness or the duty is still not met"
-    return Remedies(names, proven, message)
-
-
-def _diameters(scene: Scene) -> dict[Place, Quantity]:
-    """Return the diameters above zero that a file gives."""
-    given = {p: getattr(getattr(scene, p[0]), p[1], None) for p in PLACES}
-    return {p: q for p, q in given.items() if q is not None and q.number > 0}
-
-
-def _bodies(scene: Scene, clock: Clock) -> tuple[Remedy, ...]:
-    """Return each diameter alone, the smallest change first; all alike where none alone helps."""
-    given = [p for p in _diameters(scene) if p != PLACES[3] or scene.space is None]
-    found = [_smaller(scene, (place,), clock) for place in given]
-    alone = sorted((way for way in found if way is not None), key=lambda way: way.factor)
-    if alone or len(given) < 2:
-        return tuple(alone)
-    alike = _smaller(scene, tuple(given), clock)
-    return () if alike is None else (alike,)
-
-
-def _smaller(scene: Scene, places: tuple[Place, ...], clock: Clock) -> Remedy | None:
-    """Return the largest part of some diameters that leaves a train; None where none does."""
-
-    def thinner(part: float) -> Scene:
-        return _thinner(scene, places, part)
-
-    part = impossible.largest_part(lambda part: thinner(part).servo_train(), clock)
-    if part is None:
-        return None
-    new = thinner(part)
-    changes = _changes(scene, new)
-    less = thinner(min(part * (1.0 + SLACK_TRIED), 1.0))
-    verified = {"with": _status(new, clock), "with_less": _status(less, clock)}
-    kind = "least" if len(places) == 1 else "even"
-    what = ".".join(places[0]) if len(places) == 1 else "all diameters"
-    factor = max(change.factor for change in changes)
-    return Remedy(kind, what, changes, factor, None, verified)  # a bound is of real-valued teeth
-
-
-def _thinner(scene: Scene, places: tuple[Place, ...], part: float) -> Scene:
-    """Return the scene with a part of some diameters, rounded down; a hub surrounds its shaft."""
-    for place in places:
-        was = _diameters(scene)[place]
-        number = Fraction(_rounded(float(was.number) * part, False))
-        scene = _with(scene, place, replace(was, number=number))
-    given = _diameters(scene)
-    hub, shaft = given.get(PLACES[2]), given.get(PLACES[3])
-    if hub is not None and shaft is not None and hub.value < shaft.value:
-        scene = _with(scene, PLACES[3], hub)
-    return scene
-
-
-def _with(scene: Scene, place: Place, diameter: Quantity) -> Scene:
-    table, key = place
-    changed = getattr(scene, table).model_copy(update={key: diameter})
-    return scene.model_copy(update={table: changed})
-
-
-def _changes(before: Scene, after: Scene) -> tuple[Change, ...]:
-    new = _diameters(after)
-    return tuple(
-        Change(".".join(p), f'"{was}"', f'"{new[p]}"', was.value / new[p].value)
-        for p, was in _diameters(before).items()
-        if new[p] != was
     )

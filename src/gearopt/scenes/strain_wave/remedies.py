@@ -6,20 +6,18 @@ from dataclasses import replace
 from gearopt.formulations.strain_wave.demand import GAP_UNIT
 from gearopt.formulations.strain_wave.design import problem
 from gearopt.formulations.strain_wave.exchange import Exchanged, exchange
-from gearopt.formulations.strain_wave.impossible import least_factor, nearest
+from gearopt.formulations.strain_wave.impossible import nearest
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.explaining.explanation import Change, Explanation, Remedies, Remedy
+from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.scenes.explaining.default import at_point, eases, of_design
-from gearopt.scenes.explaining.numbers import Number, apart, at, eased, moved, times, written
-from gearopt.scenes.reading.toml import toml_text
+from gearopt.scenes.explaining.engine import Group, Questions, singles, with_least
+from gearopt.scenes.explaining.moves import DUTY, Move
+from gearopt.scenes.explaining.possible import UNKNOWN, Verdict
 from gearopt.scenes.strain_wave.scene import Scene
 
-MOVED = {  # the way that eases them, and the power of them that loads go with
-    ("duty", "torque"): (-1, 1.0),
-    ("duty", "outer_diameter"): (1, 3.0),
-}
+MOVES = (Move(("duty", "torque"), -1, DUTY), Move(("duty", "outer_diameter"), 1, power=3.0))
 EASES = {  # beside ends of ranges: what eases a limit
     "design.pairs": -1,
     "design.safety": -1,
@@ -33,42 +31,29 @@ LIMITS = (  # but for those that only keep the flank regular
     *("minor_axis", "flexspline_land", "flexspline_space", "spline_land"),
 )
 NOTHING = 1e-6  # MPa: a multiplier below it is rounding
-ROOMY = (1.0, 1.001, 1.01)  # factors by which a change is made larger until a design is found
+
+
+def possible(scene: Scene, clock: Clock) -> Verdict:
+    """Return the excess of the nearest gearing that is found, whose flanks may cut each other."""
+    least = nearest(scene.demand(), scene.start(), clock)
+    return UNKNOWN if least is None else Verdict(least.excess <= 0.0, least.excess)
+
+
+def clear(scene: Scene, clock: Clock) -> Verdict:
+    """Return whether a gearing without interference is found."""
+    return Verdict(exchange(scene.demand(), scene.start(), clock).clear or None)
 
 
 def ways_out(scene: Scene, found: Exchanged, clock: Clock) -> Remedies:
     """Return the limits in conflict, and torque and outer diameter moved alone until they do."""
-    used = found.nearest.used if found.nearest else {}
+    assert found.nearest is not None
+    used = found.nearest.used
     over = sorted((n for n, u in used.items() if u > 1.0), key=lambda n: -used[n])
     names = tuple(found.result.proof.get("conflict", over))
-    tried = (_moved(scene, path, *how, clock) for path, how in MOVED.items())
+    asked = Questions(scene, possible, clock, clear, excess=found.nearest.excess)
+    tried = singles(asked, (Group((move,)) for move in MOVES))
     late = "the budget ended before all remedies were tried"
-    return Remedies(names, tuple(r for r in tried if r), late if clock.over else "")
-
-
-def _moved(
-    scene: Scene, path: tuple[str, ...], way: int, power: float, clock: Clock
-) -> Remedy | None:
-    """Return a number of the file moved as little as a design takes; None where none helps."""
-    number = Number(path, at(scene, path))
-
-    def excess(factor: float) -> float | None:
-        other = None if clock.over else moved(scene, path, times(number.value, factor))
-        least = None if other is None else nearest(other.demand(), other.start(), clock)
-        return None if least is None else least.excess
-
-    factor = least_factor(excess, way, power)
-    for room in ROOMY if factor else ():
-        assert factor is not None
-        value = eased(number.value, factor * room, way)
-        other = moved(scene, path, value)
-        if other is not None and exchange(other.demand(), other.start(), clock).clear:
-            was, write = (toml_text(written(v, path)) for v in (number.value, value))
-            change = Change(number.key, was, write, apart(number.value, value))
-            sure = {"with": "feasible", "with_less": "undecided"}
-            kind = "less" if way < 0 else "alone"
-            return Remedy(kind, number.key, (change,), change.factor, None, sure)
-    return None
+    return Remedies(names, with_least(tried, False), late if clock.over else "")
 
 
 def influences(scene: Scene, result: Result, clock: Clock, gap: float) -> Explanation:

@@ -1,0 +1,401 @@
+"""The smallest changes of a file that make it possible: one search for all kinds of files.
+
+A kind gives the numbers that may move (`moves.Move`) and answers whether a changed file has a
+design (`possible.Possible`). A number, or several by one factor, is moved as little as that takes:
+numbers that take steps to the first that does; others by secants where the excess of the nearest
+design is known, else to the farthest first, which rejects most by one question, and by halving the
+logarithm of the change. A remedy is reported only if the file with it, as written, has a design.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.explaining.explanation import Remedy
+from gearopt.optimise.explaining.handles import REACH
+from gearopt.optimise.explaining.repair import DOUBTS, FACTOR_TOLERANCE, SLACK_TRIED
+from gearopt.optimise.result import Budget
+from gearopt.scenes.explaining.moves import DUTY, Edited, Move, Moves, edited, less, shorter
+from gearopt.scenes.explaining.possible import UNKNOWN, WORDS, Possible, Verdict
+
+ROUGH = 1.02  # ratio of a refused to an allowed factor up to which every number is known first
+FACTORS_TRIED = (1e6, 1e3, 16.0, 4.0, 2.0, 1.3, 1.1)  # the first that is decided counts
+SECANTS = 24
+NO_PROGRESS = 1e-2  # of that logarithm: what falls by less in a step does not fall
+LOG_TOLERANCE = 2e-5  # of the logarithm of a utilisation that counts as 1
+ROOM = (1.0, 1.001, 1.01)  # times a factor that was found by an excess, until a design is found
+CLOSER = (1.00005, 1.000005, 1.0 + 1e-7)  # the same in turn, where a little less suffices
+JOINT = "least"  # kind of a remedy whose numbers do not move alike: each of them is needed
+DIGITS = (3, 4)  # significant digits of what one would write, tried in turn
+
+
+@dataclass(frozen=True)
+class Group:
+    """Numbers that move by one factor.
+
+    floor: the least factor that may suffice; bound: the same as proven; what: their name in a
+    remedy, by default the numbers'.
+    """
+
+    numbers: tuple[Move, ...]
+    floor: float = 1.0
+    bound: float | None = None
+    what: str = ""
+
+    @property
+    def moves(self) -> Moves:
+        """Return the numbers at the least factor that they may have."""
+        return tuple((move, self.floor) for move in self.numbers)
+
+
+@dataclass
+class Questions:
+    """Questions whether a changed file has a design; it has state because it keeps the answers.
+
+    scene: the impossible file. possible: asked while a factor is sought; sure: the same of a remedy
+    as it is written, where that takes longer. clock: of all questions; seconds: of one, at most.
+    excess: that of the file itself, where it is known. lower_bounds: whether a factor that is
+    proven too small is told as a bound. far: the factor, beyond a floor, up to which is tried.
+    apply: makes the file with numbers moved.
+    """
+
+    scene: Any
+    possible: Possible[Any]
+    clock: Clock
+    sure: Possible[Any] | None = None
+    seconds: float = math.inf
+    excess: float | None = None
+    lower_bounds: bool = False
+    far: float = REACH
+    apply: Callable[[Any, Moves], Edited | None] = edited
+    answers: dict[tuple[Any, ...], Verdict] = field(default_factory=dict)
+
+    def edited(self, moves: Moves) -> Edited | None:
+        """Return the file with numbers moved; None where its rules refuse it."""
+        return self.apply(self.scene, moves)
+
+    def verdict(self, moves: Moves) -> Verdict | None:
+        """Return whether the file with numbers moved is possible; None: its rules refuse it."""
+        there = self.edited(moves)
+        if there is None:
+            return None
+        key = tuple((change.key, change.write) for change in there.changes)
+        if key not in self.answers:
+            verdict = self.ask(there.scene, self.possible)
+            if self.clock.over:
+                return verdict
+            self.answers[key] = verdict
+        return self.answers[key]
+
+    def possible_with(self, moves: Moves) -> bool | None:
+        """Return whether the file with numbers moved is possible; None: refused, or not known."""
+        verdict = self.verdict(moves)
+        return None if verdict is None else verdict.answer
+
+    def beside(self, fixed: Moves) -> "Questions":
+        """Return the questions whose moves stand beside others, which are as they are."""
+        return replace(self, apply=lambda scene, moves: self.apply(scene, (*moves, *fixed)))
+
+    def ask(self, scene: Any, possible: Possible[Any]) -> Verdict:
+        """Return the answer to one question; unknown where time is up or nothing decides it."""
+        if self.clock.over:
+            return UNKNOWN
+        clock = self.clock
+        if math.isfinite(self.seconds):
+            budget = replace(clock.left, seconds=clock.within(self.seconds))
+            clock = Clock(budget, clock.watch)
+        try:
+            return possible(scene, clock)
+        except (SolveError, TimeoutError):
+            return UNKNOWN
+
+
+@dataclass
+class Known:
+    """Moves with a common factor that suffice; it has state because the search narrows it.
+
+    moves: with the least factors they may have, times which `low` does not suffice (sure: that is
+    proven) and `high` does. excess: whether an excess led there. bound: proven for the factor.
+    stepped: every smaller change was tried.
+    """
+
+    moves: Moves
+    low: float
+    high: float
+    sure: bool = True
+    excess: bool = False
+    bound: float | None = None
+    stepped: bool = False
+
+    def at(self, factor: float) -> Moves:
+        """Return the moves with another common factor, none beyond the farthest it may have."""
+        return grown(self.moves, factor)
+
+
+def grown(moves: Moves, factor: float) -> Moves:
+    """Return moves times a common factor, none beyond the farthest it may have."""
+    return tuple((m, min(f * factor, max(f, m.far))) for m, f in moves)
+
+
+def within(clock: Clock, seconds: float, share: float = 1.0) -> Clock:
+    """Return a clock of so many seconds, or of a share of what is left if that is less."""
+    left = clock.left.seconds
+    own = seconds if left is None else min(seconds, share * left)
+    return Clock(replace(clock.left, seconds=own) if math.isfinite(own) else Budget(), clock.watch)
+
+
+def smallest(asked: Questions, moves: Moves, bound: float | None = None) -> Known | None:
+    """Return the common factor of moves that is known roughly to suffice; None: none is known."""
+    steps = moves[0][0].steps if len(moves) == 1 else ()
+    if steps:
+        return _first_step(asked, moves[0][0], steps, bound)
+    if any(factor > 1.0 for _, factor in moves):  # a floor, which often suffices
+        first = asked.verdict(moves)
+        if first is not None and first.answer:
+            return Known(moves, 1.0, 1.0, bound=bound)
+    if asked.excess is not None:
+        return _by_secants(asked, moves, asked.excess)
+    known = _bracketed(asked, moves)
+    if known is not None:
+        known.bound = bound
+        narrow(asked, known, ROUGH)
+    return known
+
+
+def _first_step(
+    asked: Questions, move: Move, steps: Sequence[float], bound: float | None
+) -> Known | None:
+    """Return the first step of a number with which the file is possible."""
+    sure, before = True, 1.0
+    for factor in steps:
+        verdict = asked.verdict(((move, factor),))
+        if verdict is None or asked.clock.over:
+            return None
+        if verdict.answer:
+            return Known(((move, factor),), before / factor, 1.0, sure, bound=bound, stepped=True)
+        sure, before = sure and verdict.answer is False, factor
+    return None
+
+
+def _by_secants(asked: Questions, moves: Moves, excess: float) -> Known | None:
+    """Return the factor with which the excess of the nearest design vanishes; None: not found.
+
+    Utilisations are nearly powers of a number, so that secants of their logarithms come near in a
+    few steps, between factors that are known to suffice and not to; `power` says at first which.
+    """
+    low, high, stalled = 0.0, math.inf, 0
+    last, before = 0.0, math.log1p(excess)
+    x = before / moves[0][0].power
+    for _ in range(SECANTS):
+        verdict = asked.verdict(grown(moves, math.exp(x))) if x < math.log(REACH) else None
+        if verdict is None or verdict.excess is None:
+            break
+        now = math.log1p(verdict.excess)
+        low, high = (low, min(high, x)) if now <= 0.0 else (max(low, x), high)
+        if -LOG_TOLERANCE < now <= 0.0 or high - low < math.log(FACTOR_TOLERANCE):
+            break
+        stalled += math.isinf(high) and now > before - NO_PROGRESS
+        if stalled > 1:
+            return None
+        slope = min((now - before) / (x - last), -0.1)
+        last, before, x = x, now, max(x - (now + 0.5 * LOG_TOLERANCE) / slope, 0.1 * x)
+        x = x if low < x < high else 0.5 * (low + high)
+    if math.isinf(high):
+        return None
+    return Known(moves, math.exp(high), math.exp(high), excess=True)
+
+
+def _bracketed(asked: Questions, moves: Moves) -> Known | None:
+    """Return a factor that suffices; None where the farthest that is decided does not.
+
+    Other numbers are tried from near on.
+    """
+    far = min(asked.far, max(move.far / factor for move, factor in moves))
+    tried = [far, *(f for f in FACTORS_TRIED if f < far)]
+    if not all(move.far_first for move, _ in moves):
+        low = 1.0
+        for factor in tried[::-1]:
+            verdict = asked.verdict(grown(moves, factor))
+            if verdict is not None and verdict.answer:
+                return Known(moves, low, factor)
+            low = factor
+        return None
+    for factor in tried:
+        verdict = asked.verdict(grown(moves, factor))
+        if verdict is not None and verdict.answer is not None:
+            known = Known(moves, 1.0, factor)
+            return known if verdict.answer else None
+        if asked.clock.over:
+            break
+    return None
+
+
+def narrow(asked: Questions, known: Known, close: float, clock: Clock | None = None) -> None:
+    """Halve the logarithm of the change that is not known, until its ends are this close.
+
+    What stays undecided is not known to suffice. clock: of this search, beside that of all.
+    """
+    doubts = 0
+    while known.high > known.low * close and doubts < DOUBTS:
+        if asked.clock.over or clock is not None and clock.over:
+            return
+        middle = _between(known.low, known.high)
+        there, ends = asked.edited(known.at(middle)), map(asked.edited, map(known.at, _ends(known)))
+        if there is not None and any(_same(there, end) for end in ends):
+            return  # of whole numbers
+        verdict = asked.verdict(known.at(middle)) or UNKNOWN
+        doubts += verdict.answer is None
+        if verdict.answer:
+            known.high = middle
+        else:
+            known.low, known.sure = middle, verdict.answer is False
+
+
+def _between(low: float, high: float) -> float:
+    """Return a factor between two: of far ones that of the geometric mean of their logarithms."""
+    near, far = math.log(low), math.log(high)
+    least = math.log(ROUGH)
+    return math.exp(math.sqrt(max(near, least) * far) if far > 4.0 * least else 0.5 * (near + far))
+
+
+def _ends(known: Known) -> tuple[float, float]:
+    return known.low, known.high
+
+
+def _same(one: Edited, other: Edited | None) -> bool:
+    return other is not None and [c.write for c in one.changes] == [c.write for c in other.changes]
+
+
+def as_remedy(
+    asked: Questions, known: Known, kind: str, what: str = "", sharp: Clock | None = None
+) -> Remedy | None:
+    """Return moves as edits that were tried as they are written; None where no design is known.
+
+    sharp: a clock of the question whether less suffices, too.
+    """
+    there = _written(asked, known)
+    if there is None:
+        return None
+    word, closer = _less(asked, known, there, kind, sharp), list(CLOSER)
+    while word == "feasible" and kind != JOINT and closer:
+        narrow(asked, known, closer[0], sharp)
+        there, closer = _written(asked, known) or there, closer[1:]
+        word = _less(asked, known, there, kind, sharp)
+    factors = [change.factor for change in there.changes]
+    factor = math.prod(factors) if kind == JOINT else max(factors)
+    names = dict.fromkeys(move.words for move, _ in known.moves)
+    verified = {"with": "feasible", "with_less": word}
+    changes = _shortened(asked, there).changes
+    return Remedy(kind, what or ", ".join(names), changes, factor, known.bound, verified)
+
+
+def _written(asked: Questions, known: Known) -> Edited | None:
+    """Return the edits of moves that were tried as they are written; None: no design is known."""
+    for room in ROOM if known.excess else (1.0,):
+        moves = known.at(known.high * room)
+        there = asked.edited(moves)
+        if there is not None and _works(asked, there, moves):
+            return there
+    return None
+
+
+def _less(asked: Questions, known: Known, there: Edited, kind: str, sharp: Clock | None) -> str:
+    """Return what is known of moves taken back a little, together or each of them: one word."""
+    if known.stepped:
+        return "infeasible" if known.sure else "undecided"
+    if known.excess or sharp is not None and sharp.over:
+        return "undecided"
+    each = range(len(there.places)) if kind == JOINT else (None,)
+    words = {WORDS[_possible(asked, less(asked.scene, there, SLACK_TRIED, k))] for k in each}
+    return words.pop() if len(words) == 1 else "mixed"
+
+
+def least(asked: Questions, moves: Moves) -> Known | None:
+    """Return the common factor of moves that suffices, closely; None: none is known."""
+    known = smallest(asked, moves)
+    if known is not None:
+        narrow(asked, known, FACTOR_TOLERANCE)
+    return known
+
+
+def enlarged(asked: Questions, moves: Moves) -> Moves | None:
+    """Return moves with the least common factor beyond their own that suffices; None: none does."""
+    known = least(asked, moves)
+    return None if known is None else known.at(known.high)
+
+
+def trimmed(asked: Questions, moves: Moves) -> Moves:
+    """Return moves of which each is needed, and as small as the others allow."""
+    kept = moves
+    for move, factor in moves[::-1]:
+        others = tuple(m for m in kept if m[0] is not move)
+        beside = asked.beside(others)
+        if others and beside.possible_with(()):
+            kept = others
+            continue
+        known = Known(((move, 1.0),), 1.0, factor)
+        narrow(beside, known, FACTOR_TOLERANCE)
+        kept = tuple((m, known.high if m is move else f) for m, f in kept)
+    return kept
+
+
+def _works(asked: Questions, there: Edited, moves: Moves) -> bool:
+    if asked.sure is None:
+        verdict = asked.verdict(moves)
+        return verdict is not None and bool(verdict.answer)
+    return bool(asked.ask(there.scene, asked.sure).answer)
+
+
+def _possible(asked: Questions, scene: Any) -> bool | None:
+    return None if scene is None else asked.ask(scene, asked.sure or asked.possible).answer
+
+
+def _shortened(asked: Questions, there: Edited) -> Edited:
+    """Return the edits with `short`: as one would write them, where a design exists so, too."""
+    for digits in DIGITS:
+        short = shorter(asked.scene, there, digits)
+        if short is not None and _possible(asked, short.scene):
+            return short
+    return there
+
+
+def singles(asked: Questions, groups: Iterable[Group], sharp: Clock | None = None) -> list[Remedy]:
+    """Return the groups of numbers that suffice by one factor: first roughly, then sharper.
+
+    sharp: a clock of what makes them sharper.
+    """
+    rough = [(g, k) for g in groups if (k := smallest(asked, g.moves, g.bound)) is not None]
+    found = []
+    for group, known in rough:
+        narrow(asked, known, FACTOR_TOLERANCE, sharp)
+        if asked.lower_bounds and known.sure and known.low > 1.0 and known.bound is None:
+            known.bound = known.low
+        kind = "even" if len(group.numbers) > 1 else "alone"
+        kind = "less" if all(move.role == DUTY for move in group.numbers) else kind
+        made = as_remedy(asked, known, kind, group.what, sharp)
+        found += [] if made is None else [made]
+    return found
+
+
+def with_least(found: Sequence[Remedy], complete: bool) -> tuple[Remedy, ...]:
+    """Return remedies of which the smallest that keeps the duty is said to be so.
+
+    complete: whether all others were tried, with an answer.
+    """
+    found = sorted(found, key=_order)
+    if not found or found[0].kind not in ("alone", "even"):
+        return tuple(found)
+    others = "need more" if complete else "not all known"
+    verified = {**found[0].verified, "others": others}
+    return (replace(found[0], kind="least", verified=verified), *found[1:])
+
+
+def _order(remedy: Remedy) -> tuple[int, float]:
+    """Return what sorts remedies: those that keep the duty first, choices last."""
+    return ("less", "choice").index(remedy.kind) + 1 if remedy.kind in (
+        "less",
+        "choice",
+    ) else 0, remedy.factor

@@ -1,0 +1,148 @@
+"""The numbers of a file that a remedy may move, and the file with some of them moved."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from gearopt.optimise.explaining.explanation import Change
+from gearopt.optimise.explaining.handles import REACH, Handle
+from gearopt.scenes.explaining.numbers import (
+    Path,
+    allowed,
+    apart,
+    at,
+    cut,
+    eased,
+    put,
+    taken_back,
+    written,
+)
+from gearopt.scenes.reading.toml import dotted, toml_text
+from gearopt.units import Quantity
+
+LIMIT, SIZE, DUTY = "limit", "size", "duty"  # roles; a size is given, a duty is what is asked for
+
+
+def _eased(now: Any, factor: float, move: "Move") -> Any:
+    return eased(now, factor, move.way)
+
+
+@dataclass(frozen=True)
+class Move:
+    """A number of a file, moved one way by a factor >= 1.
+
+    path: its place. way: +1 up, -1 down. role: LIMIT, SIZE (given) or DUTY (asks for less). family:
+    the limits it sets, in a remedy's words; its key by default. steps: factors of all its values,
+    the nearest first, of a number that takes steps. far: the largest factor that is tried.
+    far_first: more of it is never harder, nor its farthest harder to solve. power: of it that
+    utilisations go with, about. handles: what of a relaxed form it moves. inherits(scene, path):
+    what holds there; write(now, factor, move): what to write; back(now, before, part): the same a
+    little less; text(value, path): what a file holds; factor(before, after): how far it moved.
+    listed: its values are of a list, so that none is rounded.
+    """
+
+    path: Path
+    way: int
+    role: str = LIMIT
+    family: str = ""
+    steps: tuple[float, ...] = ()
+    far: float = REACH
+    far_first: bool = True
+    power: float = 1.0
+    handles: tuple[Handle, ...] = ()
+    inherits: Callable[[Any, Path], Any] = at
+    write: Callable[[Any, float, "Move"], Any] = _eased
+    back: Callable[[Any, Any, float], Any] = taken_back
+    text: Callable[[Any, Path], Any] = written
+    listed: bool = False
+    factor: Callable[[Any, Any], float] = apart
+
+    def to_values(self, now: Any, values: Sequence[Any]) -> "Move":
+        """Return the move of a number that takes steps: to one of some values, near ones first."""
+        known = {apart(now, value): value for value in values}
+        return replace(self, steps=tuple(known), write=lambda now, f, move: known[f], listed=True)
+
+    @property
+    def words(self) -> str:
+        """Return what moves, in a remedy's words."""
+        return self.family or dotted(self.path)
+
+
+Moves = tuple[tuple[Move, float], ...]
+
+
+@dataclass(frozen=True)
+class Edited:
+    """A changed scene, and the edits that lead to it, one of each place that moves."""
+
+    scene: Any
+    changes: tuple[Change, ...]
+    places: tuple[Move, ...]
+
+
+def edited(scene: Any, moves: Moves) -> Edited | None:
+    """Return the scene with numbers moved by factors; None where the rules of its file refuse it.
+
+    A number that others inherit moves before them.
+    """
+    new, places = scene, dict[Path, Move]()
+    for move, factor in moves:
+        value = move.write(move.inherits(new, move.path), factor, move)
+        if value is None:
+            return None
+        new = put(new, move.path, value)
+        places.setdefault(move.path, move)
+    if not allowed(new):
+        return None
+    return changed(scene, new, tuple(places.values()))
+
+
+def changed(scene: Any, new: Any, places: Sequence[Move]) -> Edited:
+    """Return the edits that lead from a scene to another, which differs at some places."""
+    changes = []
+    for move in places:
+        was, now = (move.inherits(one, move.path) for one in (scene, new))
+        old, write = (toml_text(move.text(value, move.path)) for value in (was, now))
+        changes.append(Change(dotted(move.path), old, write, move.factor(was, now)))
+    return Edited(new, tuple(changes), tuple(places))
+
+
+def less(scene: Any, there: Edited, part: float, only: int | None = None) -> Any:
+    """Return the edited scene with all changes, or one, taken back by a part of their size.
+
+    Whole numbers go back by one. None where the rules of the file refuse that.
+    """
+    new = there.scene
+    for k, move in enumerate(there.places):
+        if only is None or k == only:
+            before, now = (move.inherits(one, move.path) for one in (scene, new))
+            new = put(new, move.path, move.back(now, before, part))
+    return new if allowed(new) else None
+
+
+def shorter(scene: Any, there: Edited, digits: int) -> Edited | None:
+    """Return the edits with every moved number of so few digits, away from what was there.
+
+    None where none is shorter.
+    """
+    new, changes = there.scene, []
+    for move, change in zip(there.places, there.changes, strict=True):
+        before, now = (move.inherits(one, move.path) for one in (scene, there.scene))
+        value = now if move.listed else _short(before, now, move.way, digits)
+        text = toml_text(move.text(value, move.path))
+        changes.append(replace(change, short="" if text == change.write else text))
+        new = put(new, move.path, value)
+    if not any(change.short for change in changes) or not allowed(new):
+        return None
+    return Edited(new, tuple(changes), there.places)
+
+
+def _short(before: Any, now: Any, way: int, digits: int) -> Any:
+    """Return a quantity or fraction of few digits, rounded to relax the limit; whole numbers stay."""
+    if isinstance(now, tuple):
+        old = before if isinstance(before, tuple) else (before, before)
+        return tuple(_short(b, n, way, digits) for b, n in zip(old, now, strict=True))
+    if now == before or isinstance(now, int):
+        return now
+    reciprocal = isinstance(now, Quantity) and now.reciprocal
+    return cut(now, -way if reciprocal else way, digits)

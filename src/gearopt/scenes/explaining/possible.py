@@ -1,0 +1,37 @@
+"""Whether a changed file has a design: what a kind answers to the search for remedies."""
+
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
+
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.explaining.explain import THERE
+
+S = TypeVar("S", contravariant=True)
+WORDS = {True: "feasible", False: "infeasible", None: "undecided"}
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether a file has a design.
+
+    answer: None where that is not known in time. excess: the largest utilisation over 1 of the
+    nearest design that is known, at most 0 where it is one; None: only the answer is known.
+    """
+
+    answer: bool | None
+    excess: float | None = None
+
+
+UNKNOWN = Verdict(None)
+
+
+class Possible(Protocol[S]):
+    """Answers whether a scene, which the rules of its file take, has a design, within a clock."""
+
+    def __call__(self, scene: S, clock: Clock, /) -> Verdict:
+        """Return the verdict."""
+
+
+def of_status(status: str) -> Verdict:
+    """Verdict of the status of a file that was solved."""
+    return Verdict(True if status in THERE else (False if status == "infeasible" else None))
