@@ -138,7 +138,7 @@ def shorter(scene: Any, there: Edited, digits: int) -> Edited | None:
 
 
 def _short(before: Any, now: Any, way: int, digits: int) -> Any:
-    """Return a quantity or fraction of few digits, rounded to relax the limit; whole numbers stay."""
+    """Return a quantity or fraction of few digits that relaxes the limit; whole numbers stay."""
     if isinstance(now, tuple):
         old = before if isinstance(before, tuple) else (before, before)
         return tuple(_short(b, n, way, digits) for b, n in zip(old, now, strict=True))
