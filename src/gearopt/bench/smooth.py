@@ -13,10 +13,9 @@ from gearopt.formulations.strength.agma import Agma
 from gearopt.formulations.strength.agma_smooth import UNKNOWNS
 from gearopt.formulations.strength.iso6336 import Iso6336
 from gearopt.formulations.strength.rated import MODES, Load
-from gearopt.physics.agma.batch import distribution
 from gearopt.physics.agma.bending import critical_theta, loaded_tooth, seen_from_wheel
 from gearopt.physics.agma.mesh import REGIMES, mesh_of
-from gearopt.physics.agma.rating_factors import Practice, Steel
+from gearopt.physics.agma.rating_factors import Practice, Steel, distribution
 from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336.case import Practice as IsoPractice
 from gearopt.physics.iso6336.chain import quantities

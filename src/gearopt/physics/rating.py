@@ -3,7 +3,8 @@
 A rating is of floats; tuples are of pinion and wheel.
 """
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -148,6 +149,25 @@ class Level:
         """Return that of some rows of arrays."""
         cycles, stress = (x[place] if np.ndim(x) else x for x in (self.cycles, self.stress))
         return Level(cycles, self.curve.take(place), stress)
+
+
+def check_numbers(operation: Operation, overload: str, given: Mapping[str, Any]) -> None:
+    """Refuse numbers without which no stress or no safety factor is one.
+
+    overload: name of that factor in the standard; given: factors that have to be above 0.
+    """
+    asked = {
+        "power": operation.power,
+        "pinion speed": operation.pinion_speed,
+        overload: operation.overload,
+    }
+    asked |= {name: min(np.ravel(value)) for name, value in given.items()}
+    for name, value in asked.items():
+        if not 0.0 < value < math.inf:
+            idle = "; a level without load does no damage: leave it out" if name == "power" else ""
+            raise ValueError(f"{name} is {value:g}, and has to be above 0{idle}")
+    if not operation.hours >= 0.0:
+        raise ValueError(f"the life is {operation.hours:g} h: it cannot be below 0")
 
 
 def miner_sum(cycles: Iterable[Any], lives: Iterable[Any]) -> Any:

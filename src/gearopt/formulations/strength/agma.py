@@ -18,13 +18,12 @@ from gearopt.formulations.strength.rated import Box, Load, Smooth
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma import factors
 from gearopt.physics.agma.batch import (
-    distribution,
     rate_rows,
     safeties,
     spectrum_rows,
     spectrum_safeties,
 )
-from gearopt.physics.agma.rating_factors import Case, Practice, Steel
+from gearopt.physics.agma.rating_factors import Case, Practice, Steel, distribution
 from gearopt.physics.agma.table import FactorTable, factor_table
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import GearPair

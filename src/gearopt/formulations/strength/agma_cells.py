@@ -8,7 +8,8 @@ from gearopt.formulations.strength.cells import LOWER, UPPER, Cells
 from gearopt.formulations.strength.teeth_alone import agma_teeth
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma import factors
-from gearopt.physics.agma.batch import distribution, safeties
+from gearopt.physics.agma.batch import safeties
+from gearopt.physics.agma.rating_factors import distribution
 from gearopt.physics.geometry.tooth import base_helix_angle
 
 if TYPE_CHECKING:

@@ -12,10 +12,10 @@ import numpy as np
 
 from gearopt.formulations.strength.rated import Smooth
 from gearopt.physics.agma import factors
-from gearopt.physics.agma.batch import distribution, safeties
+from gearopt.physics.agma.batch import safeties
 from gearopt.physics.agma.bending import critical_theta, loaded_tooth, seen_from_wheel
 from gearopt.physics.agma.mesh import mean_load_sharing, mesh_of
-from gearopt.physics.agma.rating_factors import Practice
+from gearopt.physics.agma.rating_factors import Practice, distribution
 from gearopt.physics.agma.smooth import smooth_factors
 from gearopt.physics.choosing import choose
 from gearopt.physics.gears import GearPair

@@ -9,19 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.physics.agma import factors, stress
+from gearopt.physics.agma import stress
 from gearopt.physics.agma.rating_factors import (
-    SURFACE_HARD_KINDS,
     Case,
     Practice,
     Steel,
     check_lives,
     computed,
     life_curves,
-    unknown_hardness,
+    value,
 )
 from gearopt.physics.agma.refusals import GeometryFactors, geometry_factors
-from gearopt.physics.gears import Gear, GearPair
+from gearopt.physics.gears import GearPair
 from gearopt.physics.rating import Level, Operation, Ratings, spectrum_safety
 
 MODES = (False, 0), (False, 1), (True, 0), (True, 1)  # contact, member: order of safety factors
@@ -62,10 +61,11 @@ def safeties(case: Case, pitting: Any, bending: tuple[Any, Any]) -> tuple[Any, A
     given = case.given
     pitting, bending = given.get("I", pitting), given.get("J", bending)
     one: dict[str, Any] = {symbol: computed(case, symbol).value for symbol in CONSTANT}
-    diameter, load = working_load(case)
-    shared = one["K_o"] * shared_factors(case)
-    size, rim = paired_factors(case)
-    strong_f, strong_h = strengths(case, one)
+    diameter, operation = case.diameter, case.operation
+    load = stress.tangential_load(operation.power, operation.pinion_speed, diameter)
+    shared = one["K_o"] * (value(case, "K_v") * value(case, "K_m"))
+    size, rim = value(case, "K_s"), value(case, "K_B")
+    strong_f, strong_h = _strengths(case, one)
     width = case.pair.face_width
     transverse = case.pair.pinion.reference_diameter / case.pair.pinion_teeth
     found = []
@@ -117,78 +117,16 @@ def spectrum_safeties(
     return found[0], found[1], found[2], found[3]
 
 
-def working_load(case: Case) -> tuple[Any, Any]:
-    """Return the working pitch diameter of the pinion [mm] and W_t there [N]."""
-    diameter = case.pair.working_diameters[0]
-    operation = case.operation
-    return diameter, stress.tangential_load(operation.power, operation.pinion_speed, diameter)
-
-
-def shared_factors(case: Case) -> Any:
-    """Return K_v K_m."""
-    diameter, given, practice = case.pair.working_diameters[0], case.given, case.practice
-    dynamic, spread = given.get("K_v"), given.get("K_m")
-    if dynamic is None:
-        speed = 0.5 * case.operation.pinion_speed * diameter
-        dynamic = factors.dynamic_factor(speed, practice.quality)
-    if spread is None:
-        spread = distribution(practice, case.pair.face_width, diameter)
-    return dynamic * spread
-
-
-def distribution(practice: Practice, width: Any, diameter: Any) -> Any:
-    """Return K_m of a face width and the working pitch diameter of the pinion [mm]."""
-    made = practice.curve, practice.crowned, practice.offset, practice.adjusted
-    return factors.load_distribution_factor(width, diameter, *made)
-
-
-def paired_factors(case: Case) -> tuple[Any, Any]:
-    """Return K_s and K_B of pinion and wheel."""
-    given = case.given
-    size, rim = given.get("K_s"), given.get("K_B")
-    if size is None:
-        size = tuple(_size(case, gear) for gear in case.pair.gears)
-    if rim is None:
-        new = case.practice.edition == "D04"
-        law = factors.rim_factor if new else factors.rim_factor_b88
-        rim = tuple(1.0 if ratio is None else law(ratio) for ratio in case.practice.backup)
-    return size, rim
-
-
-def _size(case: Case, gear: Gear) -> Any:
-    if not case.practice.size:
-        return 1.0
-    form = factors.lewis_form(gear.teeth)
-    return factors.size_factor(gear.face_width, gear.reference_diameter / gear.teeth, form)
-
-
-def strengths(case: Case, one: Mapping[str, Any]) -> tuple[list[Any], list[Any]]:
+def _strengths(case: Case, one: Mapping[str, Any]) -> tuple[list[Any], list[Any]]:
     """Return s_at Y_N/(K_T K_R) and s_ac Z_N C_H/(K_T K_R) of pinion and wheel [MPa].
 
     one: constant factors by symbol.
     """
     weaker = one["K_T"] * one["K_R"]
-    ratios = case.given.get("C_H") or (1.0, _hardness_ratio(case))
+    ratios = value(case, "C_H")
     made: list[list[Any]] = []
     for contact in (False, True):
-        name = "Z_N" if contact else "Y_N"
-        life = case.given.get(name) or life_factors(case, contact)
+        life = value(case, "Z_N" if contact else "Y_N")
         strong = one["s_ac" if contact else "s_at"]
         made.append([strong[k] * life[k] / weaker for k in (0, 1)])
     return made[0], [made[1][k] * ratios[k] for k in (0, 1)]
-
-
-def life_factors(case: Case, contact: bool) -> tuple[Any, Any]:
-    """Return Z_N or Y_N of pinion and wheel at the cycles of the operation."""
-    curves, (first, second) = life_curves(case, contact), case.cycles
-    return curves[0].factor(first), curves[1].factor(second)
-
-
-def _hardness_ratio(case: Case) -> Any:
-    """Return C_H of the wheel."""
-    pinion, wheel = case.steels
-    if wheel.kind != "through-hardened" or unknown_hardness(pinion) or unknown_hardness(wheel):
-        return 1.0
-    if pinion.kind in SURFACE_HARD_KINDS:
-        return factors.surface_hardened_factor(pinion.finish, wheel.hardness)
-    return factors.hardness_ratio_factor(pinion.hardness, wheel.hardness, case.pair.ratio)

@@ -3,11 +3,8 @@
 Of floats. What is given replaces what is computed, factor by factor.
 """
 
-import math
 from collections.abc import Mapping
 from typing import Any
-
-import numpy as np
 
 from gearopt.physics.agma import stress
 from gearopt.physics.agma.rating_factors import (
@@ -28,6 +25,7 @@ from gearopt.physics.rating import (
     Operation,
     Rating,
     Spectrum,
+    check_numbers,
     check_symbols,
     damage,
     governing,
@@ -52,32 +50,17 @@ def rate(
     check_symbols(given, (*SHARED, *PAIRED))
     if practice.edition not in EDITIONS:
         raise ValueError(f"no edition {practice.edition!r}; known: {', '.join(EDITIONS)}")
-    _check(operation, given)
+    check_numbers(operation, "overload factor", given)
     case = Case(pair, operation, steels, practice, given)
     return _results(case, {factor.symbol: factor for factor in all_factors(case)})
-
-
-def _check(operation: Operation, given: Mapping[str, Any]) -> None:
-    """Refuse numbers without which no stress or no safety factor is one."""
-    asked = {
-        "power": operation.power,
-        "pinion speed": operation.pinion_speed,
-        "overload factor": operation.overload,
-    }
-    asked |= {name: min(np.ravel(value)) for name, value in given.items()}
-    for name, value in asked.items():
-        if not 0.0 < value < math.inf:
-            idle = "; a level without load does no damage: leave it out" if name == "power" else ""
-            raise ValueError(f"{name} is {value:g}, and has to be above 0{idle}")
-    if not operation.hours >= 0.0:
-        raise ValueError(f"the life is {operation.hours:g} h: it cannot be below 0")
 
 
 def _results(case: Case, found: dict[str, Factor]) -> Rating:
     """Return stresses, safety factors and lives of the factors."""
     one: dict[str, Any] = {symbol: factor.value for symbol, factor in found.items()}
     power, speed = case.operation.power, case.operation.pinion_speed
-    load = stress.tangential_load(power, speed, case.diameter)
+    diameter = float(case.diameter)
+    load = stress.tangential_load(power, speed, diameter)
     width, weaker = case.pair.face_width, (one["K_T"], one["K_R"])
     transverse = case.pair.pinion.reference_diameter / case.pair.pinion_teeth
     bent, pressed, s_f, s_h = [], [], [], []
@@ -85,7 +68,7 @@ def _results(case: Case, found: dict[str, Factor]) -> Rating:
         product = one["K_o"] * one["K_v"] * one["K_m"] * one["K_s"][k]
         of_rim = product * one["K_B"][k]
         bent.append(float(stress.bending_stress(load, width, transverse, one["J"][k], of_rim)))
-        own = one["C_p"], load, width, case.diameter, one["I"], product * one["C_f"]
+        own = one["C_p"], load, width, diameter, one["I"], product * one["C_f"]
         pressed.append(float(stress.contact_stress(*own)))
         s_f.append(stress.bending_safety(one["s_at"][k], one["Y_N"][k], *weaker, bent[k]))
         strong = one["s_ac"][k], one["Z_N"][k], one["C_H"][k]
@@ -98,7 +81,7 @@ def _results(case: Case, found: dict[str, Factor]) -> Rating:
     return Rating(
         found,
         float(load),
-        case.speed,
+        float(case.speed),
         (bent[0], bent[1]),
         (pressed[0], pressed[1]),
         (s_f[0], s_f[1]),

@@ -73,14 +73,14 @@ class Case:
     given: Mapping[str, Any] = field(default_factory=dict)
 
     @property
-    def diameter(self) -> float:
+    def diameter(self) -> Any:
         """Working pitch diameter of the pinion [mm]."""
-        return float(self.pair.working_diameters[0])
+        return self.pair.working_diameters[0]
 
     @property
-    def speed(self) -> float:
+    def speed(self) -> Any:
         """Pitch line velocity [mm/s]."""
-        return float(0.5 * self.operation.pinion_speed * self.diameter)
+        return 0.5 * self.operation.pinion_speed * self.diameter
 
     @cached_property
     def geometry(self) -> GeometryFactors:
@@ -97,6 +97,61 @@ class Case:
         return life.cycles_of(hours, rpm, first), wheel
 
 
+def value(case: Case, symbol: str) -> Any:
+    """Value of a factor of _LAWS, given or by its law: of floats, arrays or casadi scalars."""
+    given = case.given.get(symbol)
+    return _LAWS[symbol](case) if given is None else given
+
+
+def distribution(practice: Practice, width: Any, diameter: Any) -> Any:
+    """K_m of a face width and the working pitch diameter of the pinion [mm]."""
+    made = practice.curve, practice.crowned, practice.offset, practice.adjusted
+    return factors.load_distribution_factor(width, diameter, *made)
+
+
+def _sizes(case: Case) -> tuple[Any, Any]:
+    if not case.practice.size:
+        return 1.0, 1.0
+    first, second = (
+        factors.size_factor(
+            gear.face_width, gear.reference_diameter / gear.teeth, factors.lewis_form(gear.teeth)
+        )
+        for gear in case.pair.gears
+    )
+    return first, second
+
+
+def _rims(case: Case) -> tuple[Any, Any]:
+    law = factors.rim_factor if case.practice.edition == "D04" else factors.rim_factor_b88
+    first, second = (1.0 if ratio is None else law(ratio) for ratio in case.practice.backup)
+    return first, second
+
+
+def _life_factors(case: Case, contact: bool) -> tuple[Any, Any]:
+    (pinion, wheel), (first, second) = life_curves(case, contact), case.cycles
+    return pinion.factor(first), wheel.factor(second)
+
+
+def _hardness_ratios(case: Case) -> tuple[Any, Any]:
+    pinion, wheel = case.steels
+    if wheel.kind != "through-hardened" or unknown_hardness(pinion) or unknown_hardness(wheel):
+        return 1.0, 1.0
+    if pinion.kind in SURFACE_HARD_KINDS:
+        return 1.0, factors.surface_hardened_factor(pinion.finish, wheel.hardness)
+    return 1.0, factors.hardness_ratio_factor(pinion.hardness, wheel.hardness, case.pair.ratio)
+
+
+_LAWS = {
+    "K_v": lambda case: factors.dynamic_factor(case.speed, case.practice.quality),
+    "K_m": lambda case: distribution(case.practice, case.pair.face_width, case.diameter),
+    "K_s": _sizes,
+    "K_B": _rims,
+    "Y_N": lambda case: _life_factors(case, False),
+    "Z_N": lambda case: _life_factors(case, True),
+    "C_H": _hardness_ratios,
+}
+
+
 def all_factors(case: Case) -> list[Factor]:
     """Return all factors of a case, given ones in the place of computed ones."""
     return [computed(case, symbol) for symbol in (*SHARED, *PAIRED)]
@@ -110,24 +165,18 @@ def computed(case: Case, symbol: str) -> Factor:
 
 
 def _dynamic(case: Case) -> Factor:
-    quality, speed = case.practice.quality, case.speed
-    most = float(factors.highest_speed(quality))
-    remark = "" if speed <= most else f"beyond the curve, which ends at {1e-3 * most:.1f} m/s"
-    value = float(factors.dynamic_factor(speed, quality))
-    return Factor("K_v", value, "2001-D04, 8", remark=remark)
+    most = float(factors.highest_speed(case.practice.quality))
+    remark = "" if case.speed <= most else f"beyond the curve, which ends at {1e-3 * most:.1f} m/s"
+    return Factor("K_v", float(value(case, "K_v")), "2001-D04, 8", remark=remark)
 
 
 def _distribution(case: Case) -> Factor:
-    practice, width = case.practice, float(case.pair.face_width)
-    value = factors.load_distribution_factor(
-        width, case.diameter, practice.curve, practice.crowned, practice.offset, practice.adjusted
-    )
-    remark = ""
+    width, remark = case.pair.face_width, ""
     if width > factors.WIDEST:
         remark = f"face widths up to {factors.WIDEST:.0f} mm"
     elif width > 2.0 * case.diameter:
         remark = "face widths up to 2 pinion diameters"
-    return Factor("K_m", float(value), "2001-D04, 15", remark=remark)
+    return Factor("K_m", float(value(case, "K_m")), "2001-D04, 15", remark=remark)
 
 
 def _reliability(case: Case) -> Factor:
@@ -170,30 +219,22 @@ def _of_helix(case: Case) -> tuple[bool, str]:
 
 
 def _rim(case: Case) -> Factor:
-    new = case.practice.edition == "D04"
-    law = factors.rim_factor if new else factors.rim_factor_b88
-    ratios = [math.inf if ratio is None else ratio for ratio in case.practice.backup]
-    if min(ratios) <= 0.0:
-        raise ValueError(f"no K_B of a backup ratio of {min(ratios):g}: above 0")
-    first, second = (1.0 if math.isinf(ratio) else float(law(ratio)) for ratio in ratios)
-    remark = "" if min(ratios) >= factors.THINNEST else "rims thinner than the chart has"
+    thinnest = min(math.inf if ratio is None else ratio for ratio in case.practice.backup)
+    if thinnest <= 0.0:
+        raise ValueError(f"no K_B of a backup ratio of {thinnest:g}: above 0")
+    remark = "" if thinnest >= factors.THINNEST else "rims thinner than the chart has"
     clause = f"2001-{case.practice.edition}, annex B"
-    return Factor("K_B", (first, second), clause, "", new or math.isinf(min(ratios)), remark)
+    verified = case.practice.edition == "D04" or math.isinf(thinnest)
+    return Factor("K_B", _floats(_rims(case)), clause, "", verified, remark)
 
 
 def _size(case: Case) -> Factor:
-    if not case.practice.size:
-        return Factor("K_s", (1.0, 1.0), "2001-D04, 20")
-    gears, width = case.pair.gears, case.pair.face_width
-    first, second = (
-        float(
-            factors.size_factor(
-                width, gear.reference_diameter / gear.teeth, factors.lewis_form(gear.teeth)
-            )
-        )
-        for gear in gears
-    )
-    return Factor("K_s", (first, second), "Shigley, eq. 14-10")
+    clause = "Shigley, eq. 14-10" if case.practice.size else "2001-D04, 20"
+    return Factor("K_s", _floats(_sizes(case)), clause)
+
+
+def _floats(both: tuple[Any, Any]) -> tuple[float, float]:
+    return float(both[0]), float(both[1])
 
 
 def unknown_hardness(steel: Steel) -> bool:
@@ -224,16 +265,13 @@ def _strength(case: Case, contact: bool) -> Factor:
 
 
 def _cycle_factor(case: Case, contact: bool) -> Factor:
-    curves = life_curves(case, contact)
-    first, second = (
-        float(curve.factor(cycles)) for curve, cycles in zip(curves, case.cycles, strict=True)
-    )
     remark = "" if max(case.cycles) <= life.LONGEST_LIFE else f"beyond {life.LONGEST_LIFE:g} cycles"
     if not contact and any(unknown_hardness(steel) for steel in case.steels):
         remark = remark or f"no hardness: curve of {min(life.BENDING):g} HB"
     symbol = "Z_N" if contact else "Y_N"
     induction = not contact and any(s.treatment.startswith("induction") for s in case.steels)
-    return Factor(symbol, (first, second), "2001-D04, 17", "", not induction, remark)
+    made = _floats(_life_factors(case, contact))
+    return Factor(symbol, made, "2001-D04, 17", "", not induction, remark)
 
 
 def check_lives(given: Mapping[str, Any]) -> None:
@@ -256,21 +294,17 @@ def life_curves(case: Case, contact: bool) -> tuple[life.Curve, life.Curve]:
 
 def _hardness_ratio(case: Case) -> Factor:
     pinion, wheel = case.steels
-    clause, remark = "2001-D04, 14", ""
+    clause, remark, made = "2001-D04, 14", "", _floats(_hardness_ratios(case))
     if wheel.kind != "through-hardened":
-        return Factor("C_H", (1.0, 1.0), clause)
+        return Factor("C_H", made, clause)
     if unknown_hardness(pinion) or unknown_hardness(wheel):
-        return Factor("C_H", (1.0, 1.0), clause, remark="1: no hardness")
+        return Factor("C_H", made, clause, remark="1: no hardness")
+    (low, high), most = factors.WHEELS, factors.LARGEST_RATIO
     if pinion.kind in SURFACE_HARD_KINDS:
-        value = factors.surface_hardened_factor(pinion.finish, wheel.hardness)
-        low, high = factors.WHEELS
         remark = "" if low <= wheel.hardness <= high else f"wheels of {low:g} to {high:g} HB"
-    else:
-        ratio, most = float(case.pair.ratio), factors.LARGEST_RATIO
-        value = factors.hardness_ratio_factor(pinion.hardness, wheel.hardness, ratio)
-        if ratio > most and value > 1.0:
-            remark = f"that of a ratio of {most:g}, where the chart ends"
-    return Factor("C_H", (1.0, float(value)), clause, "", not remark, remark)
+    elif case.pair.ratio > most and made[1] > 1.0:
+        remark = f"that of a ratio of {most:g}, where the chart ends"
+    return Factor("C_H", made, clause, "", not remark, remark)
 
 
 _COMPUTED = {

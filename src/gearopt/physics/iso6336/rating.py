@@ -3,12 +3,9 @@
 Of floats. What is given replaces what is computed, factor by factor.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
-
-import numpy as np
 
 from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336 import chain
@@ -22,6 +19,7 @@ from gearopt.physics.rating import (
     Operation,
     Rating,
     Spectrum,
+    check_numbers,
     check_symbols,
     damage,
     governing,
@@ -29,6 +27,7 @@ from gearopt.physics.rating import (
 )
 
 LIVES = ("Z_NT", "Y_NT")
+ZERO = ("f_pb", "f_falpha", "f_ma", "C_a")  # deviations that may be given as 0
 
 
 def rate(
@@ -59,28 +58,10 @@ def _case(
     practice, given = practice or Practice(), dict(given or {})
     check_symbols(given, (*SHARED, *PAIRED))
     check(practice)
-    _numbers(operation, given)
+    positive = {name: value for name, value in given.items() if name not in ZERO}
+    check_numbers(operation, "application factor", positive)
     refuse(pair, practice)
     return Case(pair, operation, materials, practice, given)
-
-
-def _numbers(operation: Operation, given: Mapping[str, Any]) -> None:
-    """Refuse numbers without which no stress or no safety factor is one."""
-    asked = {
-        "power": operation.power,
-        "pinion speed": operation.pinion_speed,
-        "application factor": operation.overload,
-    }
-    asked |= {name: min(np.ravel(value)) for name, value in given.items() if name not in ZERO}
-    for name, value in asked.items():
-        if not 0.0 < value < math.inf:
-            idle = "; a level without load does no damage: leave it out" if name == "power" else ""
-            raise ValueError(f"{name} is {value:g}, and has to be above 0{idle}")
-    if not operation.hours >= 0.0:
-        raise ValueError(f"the life is {operation.hours:g} h: it cannot be below 0")
-
-
-ZERO = ("f_pb", "f_falpha", "f_ma", "C_a")  # deviations that may be given as 0
 
 
 def _results(case: Case, found: dict[str, Any]) -> Rating:
