@@ -20,7 +20,7 @@ from gearopt.report.drawing.sheet import Drawing
 from gearopt.report.kinds import packing, pair
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages import front_plots
-from gearopt.report.pages.front_values import drawn
+from gearopt.report.pages.front_plots import drawn
 from gearopt.report.section import Section
 
 ROOT = Path(__file__).parents[1]

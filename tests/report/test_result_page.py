@@ -19,8 +19,7 @@ from gearopt.formulations.drive.layout.layout_design import LayoutDesign
 from gearopt.optimise.typed import typed
 from gearopt.physics.gears import Gear
 from gearopt.report.drawing.bodies import keep_outs, layout_of, nearest
-from gearopt.report.drawing.row import SHEET
-from gearopt.report.drawing.sheet import SIZE
+from gearopt.report.drawing.sheet import SHEET, SIZE
 from gearopt.report.drawing.solid import Toothed, block, gear_mesh, rod, upright
 from gearopt.report.kinds.drive.layout_solid import MAX_TRIANGLES
 from gearopt.report.pages import frame

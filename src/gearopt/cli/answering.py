@@ -29,7 +29,7 @@ from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.runs import EVALUATIONS, SEEDS, Progress
 from gearopt.optimise.comparing.runs import SECONDS as EACH
 from gearopt.optimise.result import Budget, Result
-from gearopt.report.command import SECONDS, TOP_ON_PAGE
+from gearopt.report.words import SECONDS, TOP_ON_PAGE
 
 PAGE_SHARE = 1.0  # of the time of an answer, at most, for the sensitivities of its page
 Seconds = Annotated[float, typer.Option(min=0.0, help="Stop after this time.")]

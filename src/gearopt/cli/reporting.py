@@ -27,7 +27,7 @@ from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result, loads
-from gearopt.report.command import again
+from gearopt.report.words import again
 from gearopt.report.measures import METRIC, SYSTEMS, Measures
 from gearopt.scenes.reading.files import LARGEST_KEPT, first_bytes
 

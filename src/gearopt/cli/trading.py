@@ -8,7 +8,7 @@ from gearopt.cli.app import TO_BEGIN, Csv, File, Html, Json, Most, Units, app, f
 from gearopt.cli.reporting import answer, checked, traded
 from gearopt.cli.watching import watching
 from gearopt.optimise.result import Budget
-from gearopt.report.command import SECONDS
+from gearopt.report.words import SECONDS
 
 
 @app.command(rich_help_panel=TO_BEGIN)

@@ -6,10 +6,9 @@ from typing import Any
 
 from gearopt.optimise.pareto.front import Front, Objective
 from gearopt.optimise.pareto.measures import neighbours
-from gearopt.report.command import SECONDS
 from gearopt.report.measures import METRIC, Measures, read_in
 from gearopt.report.section import Cell, Table, cell
-from gearopt.report.words import MODULE, number
+from gearopt.report.words import MODULE, SECONDS, number
 
 SHOWN = 24  # rows on the terminal; the page and the CSV hold all
 VERDICTS = {

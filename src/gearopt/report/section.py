@@ -16,8 +16,7 @@ from rich.text import Text
 
 from gearopt.optimise.typed import Shown
 from gearopt.report.drawing.player import Animation
-from gearopt.report.drawing.row import Row
-from gearopt.report.drawing.sheet import Drawing
+from gearopt.report.drawing.sheet import Drawing, Row
 from gearopt.report.measures import Measures
 from gearopt.report.plots import Figure
 from gearopt.report.words import number, parted, share

@@ -238,8 +238,8 @@ def measures_of(units: str) -> Measures:
 
 def whole_page(result: Result, units: str) -> str:
     """Return the page of a result, as `gearopt report --html` writes it."""
-    from gearopt.report.command import again
     from gearopt.report.pages.result import page
+    from gearopt.report.words import again
 
     measures = measures_of(units)
     return page(result, again(result, "page.html", measures), measures)

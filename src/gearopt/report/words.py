@@ -1,7 +1,8 @@
-"""Names, numbers and the first words of a result, as page and terminal both show them."""
+"""Names, numbers and the first words of a result, and the command that makes its page again."""
 
 import math
 import re
+import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
@@ -27,6 +28,9 @@ RULED = ("process one", "process two")  # parts that are designs by rules
 EXACT = 1e-6  # a gap below it is called optimal, one above it is named
 
 INVERSE = {"inverse acceleration": ("acceleration", "rad/s²")}  # name and unit of the inverse
+SECONDS = 60.0  # that a run may take
+TOP_ON_PAGE = 10  # trains that a page lists
+DEFAULTS = {"seconds": SECONDS, "seed": 0, "top": TOP_ON_PAGE}
 
 
 def limit_words(name: str, staged: bool = True) -> str:
@@ -243,3 +247,26 @@ def limit_rows(
     stages = max((i for r in rows.values() for i in r), default=0)
     order = (*range(1, stages + 1), 0)
     return stages, [(limit_words(stem), [r.get(k) for k in order]) for stem, r in rows.items()]
+
+
+def again(result: Result, html: str, measures: Measures) -> str:
+    """Return the command that makes a page again, without default options; "" if none.
+
+    html: where it writes the page. A run from Python without a limit of time had more of it than
+    any command. One that changed the tables of its file was Python's.
+    """
+    if result.file is None:
+        return ""
+    verb = "rate" if result.name == RATING else "solve"
+    if changes := result.options.get("changes"):
+        return f"gearopt.{verb}({result.file!r}, {changes!r})"
+    words = ["gearopt", verb, result.file]
+    if result.options and result.options.get("seconds") is None:
+        words += ["--seconds", "1e9"]
+    for name in ("method", "seconds", "gap", "seed", "top"):
+        value = result.options.get(name)
+        if value is not None and value != DEFAULTS.get(name):
+            words += [f"--{name}", f"{value:.12g}" if isinstance(value, float) else str(value)]
+    if measures is not METRIC:
+        words += ["--units", measures.name]
+    return shlex.join([*words, "--html", html])

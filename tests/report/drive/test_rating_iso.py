@@ -9,7 +9,7 @@ from test_rating_page import rows, text, told
 
 import gearopt
 from gearopt.report.answer import decided, opening
-from gearopt.report.kinds.drive.rating_symbols import greek
+from gearopt.report.kinds.drive.rating_words import greek
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.result import page, sections
 from gearopt.report.words import limit_words

@@ -11,9 +11,15 @@ from gearopt.formulations.pair.relief.meshing import Relief
 from gearopt.formulations.pair.relief_map import Removed, described
 from gearopt.physics.gears import GearPair
 from gearopt.physics.tooth.elastic import ElasticPair
-from gearopt.report.kinds.pair.relief import grinding
-from gearopt.report.kinds.pair.relief_plots import diameter_at, flanks, harmonics, profile, steps
-from gearopt.report.kinds.pair.sections import moving
+from gearopt.report.kinds.pair.contact import moving
+from gearopt.report.kinds.pair.relief import (
+    diameter_at,
+    flanks,
+    grinding,
+    harmonics,
+    profile_plot,
+    steps,
+)
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.result import sections
 
@@ -100,7 +106,7 @@ def test_in_inches_every_number_to_grind_is_in_inches(relieved):
 def test_the_plot_of_a_flank_has_both_axes_alike(relieved):
     _, relief = relieved
     for k, one in enumerate(flanks(*relieved, PAIR)):
-        figure = profile(one, METRIC)
+        figure = profile_plot(one, METRIC)
         across, above = figure.layout["xaxis"], figure.layout["xaxis2"]
         assert above["matches"] == "x" and above["overlaying"] == "x"
         base = float(PAIR.gears[k].base_diameter)
@@ -129,7 +135,7 @@ def test_a_shape_of_its_own_is_told_by_its_points(relieved):
     for one, other in zip(flanks(found, free, PAIR), flanks(found, relief, PAIR), strict=True):
         rolls = other.at(40)
         assert one.removed(rolls) == pytest.approx(other.removed(rolls), abs=6e-5)
-        assert "convex" in profile(one, METRIC).caption
+        assert "convex" in profile_plot(one, METRIC).caption
         assert steps(one, METRIC).values[1][-1][2] == pytest.approx(1e3 * one.told.amount_mm)
 
 

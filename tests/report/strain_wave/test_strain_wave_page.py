@@ -9,7 +9,7 @@ import pytest
 
 from gearopt.formulations.strain_wave.report import WaveDesign
 from gearopt.optimise.typed import typed
-from gearopt.report.drawing.row import Row
+from gearopt.report.drawing.sheet import Row
 from gearopt.report.kinds.strain_wave import cutter, moving, numbers, search, shift, tiles, warns
 from gearopt.report.kinds.strain_wave.cutter import drawing
 from gearopt.report.kinds.strain_wave.motion import drawn, running

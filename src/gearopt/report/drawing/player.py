@@ -13,9 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.report.drawing.packed import packed
-from gearopt.report.drawing.row import Row
-from gearopt.report.drawing.sheet import Drawing, Sheet
+from gearopt.report.drawing.sheet import Drawing, Row, Sheet, packed
 
 ABOVE = 12.0  # px from the origin of a body up to its label
 

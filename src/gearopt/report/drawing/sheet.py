@@ -5,6 +5,9 @@ coloured by the classes of drawing.css in light and dark.
 """
 
 import math
+import sys
+from array import array
+from base64 import b64encode
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -19,6 +22,10 @@ HATCH = 9.0  # between the lines of a hatch, px
 MAX_POINTS = 1_000_000  # points or lines of one mark: more than any drawing has room for
 COLOURS = 8  # --series-1 ... in frame.css, distinct for the colour-blind
 Point = tuple[float, float]
+SHEET = 660.0  # px across an A4 sheet inside its margins
+GUTTER = 18.0  # px between drawings, as in drawing.css
+TALL = 480.0  # px of a sheet that drawings may take, where their text stays legible
+LEGIBLE = 0.58  # of a text of 12 px: 5.2 pt on paper
 
 
 @dataclass(frozen=True)
@@ -362,3 +369,44 @@ def _along(start: Point, end: Point) -> Iterable[Point]:
 def series(k: int) -> str:
     """Return the colour of the k-th of a series, from 1; after eight they begin again."""
     return f"--series-{(k - 1) % COLOURS + 1}"
+
+
+@dataclass(frozen=True)
+class Row:
+    """Drawings that stand side by side where there is room, and shrink alike."""
+
+    drawings: Sequence[Drawing]
+
+    @property
+    def widest(self) -> float:
+        """Return the width of the widest drawing [px]; all shrink with it, to keep one scale."""
+        return max(drawing.width for drawing in self.drawings)
+
+    @property
+    def sheet(self) -> float:
+        """Return what an A4 sheet has room for [px]."""
+        return SHEET
+
+    @property
+    def printed(self) -> float:
+        """Return how much the drawings shrink in print so that all stand side by side, or two.
+
+        They leave room on the sheet for other things, but their text stays legible.
+        """
+        low = max(TALL / max(drawing.height for drawing in self.drawings), LEGIBLE)
+        for some in (self.drawings, self.drawings[:2]):
+            wide = sum(drawing.width + GUTTER for drawing in some) - GUTTER
+            if (share := SHEET / wide) > LEGIBLE:
+                return min(1.0, share, low)
+        return min(1.0, low)
+
+
+def packed(kind: str, values: Iterable[float]) -> dict[str, str]:
+    """Return numbers in base64, little-endian: f = 32-bit floats, I = unsigned integers."""
+    data = array(kind, values)
+    if kind == "I" and max(data, default=0) < 2**16:
+        data = array("H", data)
+    if sys.byteorder == "big":
+        data.byteswap()
+    word = {"f": "f4", "I": "u4", "H": "u2"}[data.typecode]
+    return {"dtype": word, "bdata": b64encode(data.tobytes()).decode("ascii")}

@@ -12,7 +12,7 @@ from typing import Any
 from gearopt.physics.blanks import Body
 from gearopt.physics.gears import Gear, Rack
 from gearopt.physics.geometry.fillet import profile
-from gearopt.report.drawing.packed import packed
+from gearopt.report.drawing.sheet import packed
 from gearopt.report.measures import Measures
 from gearopt.report.plots import LOOK
 

@@ -17,7 +17,7 @@ from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages import front_designs, front_plots
 from gearopt.report.pages.frame import render
 from gearopt.report.pages.front_designs import Numbers
-from gearopt.report.pages.front_values import Drawn, drawn
+from gearopt.report.pages.front_plots import Drawn, drawn
 from gearopt.report.section import Section, Tile
 from gearopt.report.words import effort, sentence
 

@@ -21,7 +21,6 @@ from gearopt.report.kinds import Pages
 from gearopt.report.kinds.drive import (
     impossible_layout,
     layout_solid,
-    rating_factors,
     rating_gears,
     rating_tables,
     rating_words,
@@ -357,12 +356,12 @@ def _in_one_line(result: Result, measures: Measures) -> Section | None:
 
 DRAWINGS = (layout_views.section, layout_solid.section, _in_one_line)
 RATINGS = (
-    *(rating_gears.gears, rating_tables.forces, rating_factors.factors),
+    *(rating_gears.gears, rating_tables.forces, rating_gears.factors),
     *(rating_gears.levels, mesh_view.section, rating_tables.teeth),
 )
 PAGES_OF_GIVEN = Pages(
     sections=(summary, *RATINGS[:2], *DRAWINGS, *RATINGS[2:], numbers, asked, assumptions),
-    terminal=(rating_gears.gears, rating_factors.factors, rating_tables.forces),
+    terminal=(rating_gears.gears, rating_gears.factors, rating_tables.forces),
     tiles=rating_words.tiles,
     binding_limit=rating_words.binding_limit,
     figures=rating_words.figures,

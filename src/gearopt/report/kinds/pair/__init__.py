@@ -13,10 +13,8 @@ from gearopt.report.kinds import Pages, drive
 from gearopt.report.kinds.drive import rating_words
 from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
 from gearopt.report.kinds.pair import relief as pair_relief
-from gearopt.report.kinds.pair import relief_plots
+from gearopt.report.kinds.pair.contact import TABLES, in_space, moving, pair_of, teeth, travel
 from gearopt.report.kinds.pair.relief import relief_of
-from gearopt.report.kinds.pair.sections import in_space, moving, pair_of, teeth
-from gearopt.report.kinds.pair.tables import TABLES, travel
 from gearopt.report.kinds.pair.words import answers, of_duty
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.section import Section, Table, Tile
@@ -126,9 +124,9 @@ def relief(result: Result, measures: Measures) -> Section | None:
     told: tuple[str | Table, ...] = ("\n".join(words), *shown)
     if (pair := pair_of(result)) is None:
         return Section("Relief", words=words, tables=tables, terminal=told)
-    flanks = relief_plots.flanks(made, found, pair)
-    figures = [relief_plots.profile(flank, measures) for flank in flanks]
-    tables += [relief_plots.steps(flank, measures) for flank in flanks]
+    flanks = pair_relief.flanks(made, found, pair)
+    figures = [pair_relief.profile_plot(flank, measures) for flank in flanks]
+    tables += [pair_relief.steps(flank, measures) for flank in flanks]
     return Section("Relief", words=words, figures=figures, tables=tables, terminal=told)
 
 
@@ -145,7 +143,7 @@ def harmonics(result: Result, measures: Measures) -> Section | None:
     found, made = contact_of(result), relief_of(result)
     if found is None or made is None:
         return None
-    return relief_plots.harmonics(found, made, measures)
+    return pair_relief.harmonics(found, made, measures)
 
 
 def numbers(result: Result, measures: Measures) -> Section | None:

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.strain_wave.cutter_report import CutterDesign
-from gearopt.report.drawing.row import SHEET
-from gearopt.report.drawing.sheet import Drawing, Place, Sheet, Window, series
+from gearopt.report.drawing.sheet import SHEET, Drawing, Place, Sheet, Window, series
 from gearopt.report.measures import Measures
 
 Frame = tuple[float, float, float, float]
