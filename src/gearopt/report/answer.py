@@ -98,7 +98,7 @@ def _tiles(result: Result, measures: Measures) -> list[Tile]:
 
 
 def _notes(result: Result) -> list[str]:
-    """Return what is reported of this answer, and the message of a run."""
+    """Notes on this answer, and the message of a run."""
     if result.status == "infeasible":
         return []
     lines = list(result.report.get("notes", []))
@@ -177,7 +177,7 @@ def _method(result: Result) -> list[str]:
 
 
 def meaning(result: Result) -> str:
-    """Say what the status of a result means, and what it does not mean."""
+    """Meaning of the status of a result, and its limits."""
     known, status = result.bound is not None, result.status
     if status == "optimal":
         return (
@@ -203,7 +203,7 @@ def meaning(result: Result) -> str:
 
 
 def proven(result: Result, measures: Measures) -> Section:
-    """Say what the status means and how it is proven, with the numbers of every part."""
+    """Meaning and proof of the status, with the numbers of every part."""
     parts = (result, *result.parts)
     heads = ("", *(PARTS.get(part.name, part.name.replace("_", " ")) for part in parts))
     columns = [_column(part, measures) for part in parts]
@@ -227,7 +227,7 @@ def _numbers(arithmetic: str) -> str:
 
 
 def _column(part: Result, measures: Measures) -> list[Any]:
-    """Return what ROWS names, of a result or one of its parts; "" for what it has not."""
+    """Values of ROWS of a result or one of its parts; "" for those it has not."""
     name, unit = objective(part)
     bound = WAYS["below"]  # of the objective itself, which is minimised
     amounts = (_amount(v, unit, measures, way) for v, way in ((part.value, 0), (part.bound, bound)))

@@ -36,12 +36,12 @@ DISTANCE = (
 assert (CATALOGUE_GAP, PROOF_GAP) == (1e-3, 1e-6)  # as the headings say
 
 
-def columns(found: Comparison) -> tuple[tuple[str, str, str], ...]:
+def columns(comparison: Comparison) -> tuple[tuple[str, str, str], ...]:
     """Return the columns of its tables: heading, unit, what it says."""
-    return (*COLUMNS, DISTANCE) if found.objectives else COLUMNS
+    return (*COLUMNS, DISTANCE) if comparison.objectives else COLUMNS
 
 
-def cells(found: Comparison, sample: Sample) -> tuple[str, ...]:
+def cells(comparison: Comparison, sample: Sample) -> tuple[str, ...]:
     """Return the row of a method, in the order of `columns`."""
     s = sample.summary
     row = (
@@ -54,7 +54,7 @@ def cells(found: Comparison, sample: Sample) -> tuple[str, ...]:
         f"{s.evaluations:,.0f}",
         f"{s.seconds:.3g}",
     )
-    return (*row, percent(s.distance)) if found.objectives else row
+    return (*row, percent(s.distance)) if comparison.objectives else row
 
 
 def percent(gap: float | None) -> str:
@@ -67,9 +67,9 @@ def percent(gap: float | None) -> str:
     return f"{value:,.0f}" if value >= 100 else f"{value:.2g}" if value < 10 else f"{value:.3g}"
 
 
-def kinds(found: Comparison) -> tuple[tuple[str, str, str], ...]:
+def kinds(comparison: Comparison) -> tuple[tuple[str, str, str], ...]:
     """Return field of a row, heading and budget of both comparisons."""
-    budget = found.budget
+    budget = comparison.budget
     return (
         ("equal_evaluations", "Equal evaluations", f"{budget['evaluations']:,} per run"),
         ("equal_time", "Equal time", f"{budget['seconds']:g} s per run"),
@@ -77,7 +77,7 @@ def kinds(found: Comparison) -> tuple[tuple[str, str, str], ...]:
 
 
 def reference(group: Group) -> str:
-    """Say what the gaps of a group are measured from."""
+    """Reference from which the gaps of a group are measured."""
     name = group.objective.replace("_", " ")
     proving = [row.method for row in group.rows if _impossible(row)]
     if proving:
@@ -113,7 +113,7 @@ def unit_of(group: Group) -> str:
 
 
 def _own(group: Group) -> str:
-    """Say what the gaps to a reference of zero are measured by."""
+    """Scale of gaps to a reference of zero."""
     if not group.scale:
         return "1, because the bound is zero"
     scale = amount(group.scale, unit_of(group))
@@ -134,7 +134,7 @@ def _impossible(row: Row) -> bool:
 
 
 def verdict(group: Group, row: Row) -> str:
-    """Say what a method achieved in equal time, in one sentence without its name."""
+    """Achievement of a method in equal time, in one sentence without its name."""
     if row.refused:
         return f"cannot take this problem: {row.refused}"
     sample = row.equal_time
@@ -174,10 +174,10 @@ def _why(sample: Sample) -> str:
     return f" ({message})" if message else ""
 
 
-def ended(found: Comparison, row: Row) -> str:
+def ended(comparison: Comparison, row: Row) -> str:
     """Say how many runs by evaluations the clock ended, "" for none."""
     sample = row.equal_evaluations
-    planned, patience = found.budget["evaluations"], found.budget["patience_seconds"]
+    planned, patience = comparison.budget["evaluations"], comparison.budget["patience_seconds"]
     runs = sample.runs if sample else ()
     late = [run for run in runs if run.seconds >= patience and run.evaluations < planned]
     if not late:
@@ -196,24 +196,24 @@ def _setting(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def command(found: Comparison) -> str:
+def command(comparison: Comparison) -> str:
     """Return the command that repeats the comparison."""
-    methods = [row.method for group in found.groups for row in group.rows]
-    budget = found.budget
-    if found.file is None or found.changes:
-        fronts = f"objectives={list(found.objectives)}, " if found.objectives else ""
-        fronts += f"most={dict(found.most)}, " if found.most else ""
-        what = f"{found.file!r}, {found.changes!r}" if found.file else "problem"
+    methods = [row.method for group in comparison.groups for row in group.rows]
+    budget = comparison.budget
+    if comparison.file is None or comparison.changes:
+        fronts = f"objectives={list(comparison.objectives)}, " if comparison.objectives else ""
+        fronts += f"most={dict(comparison.most)}, " if comparison.most else ""
+        what = f"{comparison.file!r}, {comparison.changes!r}" if comparison.file else "problem"
         return (
-            f"gearopt.compare({what}, {fronts}methods={methods}, seeds={len(found.seeds)}, "
+            f"gearopt.compare({what}, {fronts}methods={methods}, seeds={len(comparison.seeds)}, "
             f"evaluations={budget['evaluations']}, seconds={budget['seconds']:g})"
         )
-    more = f" --bound-from {found.bound_from}" if found.bound_from else ""
-    more += f" --objectives {','.join(found.objectives)}" if found.objectives else ""
-    more += "".join(f" --most {name}={value:g}" for name, value in found.most.items())
+    more = f" --bound-from {comparison.bound_from}" if comparison.bound_from else ""
+    more += f" --objectives {','.join(comparison.objectives)}" if comparison.objectives else ""
+    more += "".join(f" --most {name}={value:g}" for name, value in comparison.most.items())
     return (
-        f"gearopt compare {shlex.quote(found.file)} --methods {','.join(methods)} "
-        f"--seeds {len(found.seeds)} --evaluations {budget['evaluations']} "
+        f"gearopt compare {shlex.quote(comparison.file)} --methods {','.join(methods)} "
+        f"--seeds {len(comparison.seeds)} --evaluations {budget['evaluations']} "
         f"--seconds {budget['seconds']:g}{more}"
     )
 

@@ -22,7 +22,7 @@ ENDS = ("ratio_low", "ratio_high")  # limits of one range
 GIVEN = ("common_divisor",)  # rules that every design of the file is at the end of
 
 
-def lead(result: Result, own: str = "") -> str:
+def lead(result: Result, text: str = "") -> str:
     """Return one sentence: what decides, is exceeded, or cannot be met together.
 
     own: what the kind of result says of a design, instead of its limits.
@@ -31,8 +31,8 @@ def lead(result: Result, own: str = "") -> str:
         return _impossible(result)
     if result.value is None and not result.given:
         return f"{_stopped(result)}: no design was found, which does not prove that there is none"
-    if own or not result.given:
-        return own or of_limits(result)
+    if text or not result.given:
+        return text or of_limits(result)
     over = _over(result.limits, has_stages(result))
     return f"the given design exceeds {_on(over)}" if over else of_limits(result)
 
@@ -76,11 +76,11 @@ def _some(names: Sequence[str], staged: bool) -> str:
 def _over(limits: Mapping[str, float], staged: bool) -> list[str]:
     """Return the limits that are exceeded, and by how much."""
     worst = sorted((u, n) for n, u in limits.items() if u > 1.0 + REACHED)[::-1]
-    found = [
+    sentences = [
         f"{limit_words(n, staged)} by {rounded(100.0 * (u - 1.0), 2)} %" for u, n in worst[:NAMED]
     ]
     more = len(worst) - NAMED
-    return found if more <= 0 else [*found, f"{more} other limits"]
+    return sentences if more <= 0 else [*sentences, f"{more} other limits"]
 
 
 def of_limits(result: Result, shown: Collection[str] = ()) -> str:
@@ -91,14 +91,14 @@ def of_limits(result: Result, shown: Collection[str] = ()) -> str:
     may decide or not.
     """
     left_out = {*GIVEN, *ENDS, *shown}
-    own = {n: u for n, u in result.limits.items() if _stem(n) not in left_out}
-    reached = [n for n, u in own.items() if u >= 1.0 - REACHED]
+    text = {n: u for n, u in result.limits.items() if _stem(n) not in left_out}
+    reached = [n for n, u in text.items() if u >= 1.0 - REACHED]
     relaxed = next((part.limits for part in result.parts if part.name == "sizing"), {})
-    decisive = [n for n in own if relaxed.get(n, 0.0) >= 1.0 - REACHED] or reached
+    decisive = [n for n in text if relaxed.get(n, 0.0) >= 1.0 - REACHED] or reached
     if result.method == "exact" and result.design.get("rating") and not relaxed:
         decisive = []
     ends = [n for n in reached if n not in decisive]
-    rest = {n: u for n, u in own.items() if n not in (*decisive, *ends) and not _is_end(n)}
+    rest = {n: u for n, u in text.items() if n not in (*decisive, *ends) and not _is_end(n)}
     parts = [_decided(result, decisive)] if decisive else []
     parts += (
         [f"{_on(grouped(ends, has_stages(result)), len(ends))} {_verb(len(ends))} active"]
@@ -127,13 +127,13 @@ def _stem(name: str) -> str:
 
 def _decided(result: Result, names: list[str]) -> str:
     """Return that limits determine the optimum, where that is certain; else that they bind."""
-    found = grouped(names, has_stages(result))
-    if len(found) > NAMED:
-        found = [*found[: NAMED - 1], f"{len(found) - NAMED + 1} other limits"]
+    text = grouped(names, has_stages(result))
+    if len(text) > NAMED:
+        text = [*text[: NAMED - 1], f"{len(text) - NAMED + 1} other limits"]
     if result.status not in PROVEN:
-        return f"{_on(found, len(names))} {_verb(len(names))} active"
+        return f"{_on(text, len(names))} {_verb(len(names))} active"
     determine = "determines" if len(names) == 1 else "determine"
-    return f"{_on(found, len(names))} {determine} the {_goal(result)}"
+    return f"{_on(text, len(names))} {determine} the {_goal(result)}"
 
 
 def _on(words: Sequence[str], count: int | None = None) -> str:
@@ -176,7 +176,7 @@ def _tolerance(result: Result) -> list[str]:
 
 
 def _free(result: Result) -> str:
-    """Return what is said where no limit is reported."""
+    """Sentence where no limit is reported."""
     if result.status in PROVEN:
         return "no limit is active at the optimum"
     return "no limit is active" if result.status == "evaluated" else "a better design may exist"

@@ -49,11 +49,11 @@ def tables(result: Result, measures: Measures) -> Section | None:
     if not design:
         return None
     stages = design.pop("stages", [])
-    found = [stage_table(stages, measures)] if stages else []
-    found += tables_of("", design, measures)
-    short = [table for table in found if table.name in ("stages", "totals")]
+    shown = [stage_table(stages, measures)] if stages else []
+    shown += tables_of("", design, measures)
+    short = [table for table in shown if table.name in ("stages", "totals")]
     known = result.value is not None or result.given
-    return Section("Design", tables=found, terminal=short if known else ())
+    return Section("Design", tables=shown, terminal=short if known else ())
 
 
 def stage_table(
@@ -63,22 +63,22 @@ def stage_table(
 ) -> Table:
     """Return the stages side by side; page_only: keys of rows that only the page shows."""
     heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
-    found, hidden = [], []
+    rows, hidden = [], []
     for key, (_, unit) in STAGE_ROWS.items():
         if not (_own_teeth(key, stages) if key in OF_TEETH else all(key in s for s in stages)):
             continue
         label = stage_label(key, measures)
         if key == MODULE:
-            found.append([label, *(measures.of_module(s[key]) for s in stages)])
+            rows.append([label, *(measures.of_module(s[key]) for s in stages)])
             continue
         values = [s.get(key, OF_TEETH.get(key)) for s in stages]
-        found.append([label, *(cell(value, unit, measures) for value in values)])
+        rows.append([label, *(cell(value, unit, measures) for value in values)])
         if key in page_only:
             hidden.append(label)
         if key == VOLUME and len(stages) > 1:
             whole = sum(s[key] for s in stages)
-            found.append([SHARE, *(percent(s[key] / whole) for s in stages)])
-    return Table("stages", heads, found, page_only=[*hidden, SHARE], across=True)
+            rows.append([SHARE, *(percent(s[key] / whole) for s in stages)])
+    return Table("stages", heads, rows, page_only=[*hidden, SHARE], across=True)
 
 
 def _own_teeth(key: str, stages: Sequence[Mapping[str, Any]]) -> bool:
@@ -94,7 +94,7 @@ def _own_teeth(key: str, stages: Sequence[Mapping[str, Any]]) -> bool:
 
 
 def stage_label(key: str, measures: Measures) -> str:
-    """Return what a key of a stage is called, with its unit."""
+    """Label of a key of a stage, with its unit."""
     if key == MODULE:
         return "{} {} [{}]".format(*measures.module)
     words, unit = STAGE_ROWS.get(key, (key, ""))
@@ -109,11 +109,18 @@ def ratio_tile(ratio: float, error_percent: float) -> Tile:
 def trains(result: Result, measures: Measures) -> Section | None:
     """Return the best distinct trains in proven order; None where only one was asked for."""
     gears = (part for part in result.parts if part.name == "gears")
-    best = next((one for one in (result, *gears) if len(one.report.get("trains", ())) > 1), None)
+    best = next(
+        (
+            candidate
+            for candidate in (result, *gears)
+            if len(candidate.report.get("trains", ())) > 1
+        ),
+        None,
+    )
     if best is None:
         return None
-    found, (name, unit) = best.report["trains"], objective(best)
-    minimum, stages = found[0]["objective"], len(found[0]["stages"])
+    ranked, (name, unit) = best.report["trains"], objective(best)
+    minimum, stages = ranked[0]["objective"], len(ranked[0]["stages"])
     length = measures.unit("mm")
     goal, centres = (
         f"{name}\n{measures.unit(unit)}".rstrip(),
@@ -124,7 +131,7 @@ def trains(result: Result, measures: Measures) -> Section | None:
         f"{words} {k}" for k in range(1, stages + 1) for words in (*teeth_heads(measures), "a")
     ]
     single = [f"{h} [{length}]" if h[0] == "a" else h for h in single]
-    rows = [_train_row(k, train, minimum, unit, measures) for k, train in enumerate(found, 1)]
+    rows = [_train_row(k, train, minimum, unit, measures) for k, train in enumerate(ranked, 1)]
     first, last = names
     heads = ("", first, "above the best, %", "ratio", teeth_head(measures), last, *single)
     table = Table(
@@ -172,19 +179,19 @@ def tables_of(name: str, group: Mapping[str, Any], measures: Measures) -> list[T
 
     Several values of a key stand side by side.
     """
-    found, single = [], []
+    lists, single = [], []
     for key, value in group.items():
         if isinstance(value, Mapping):
-            found += tables_of(heading(key, measures), value, measures)
+            lists += tables_of(heading(key, measures), value, measures)
         elif _records(value):
-            found.append(records(heading(key, measures), value, measures))
+            lists.append(records(heading(key, measures), value, measures))
         elif value is not None and value != []:
             single.append([heading(key, measures), *_cells(key, value, measures)])
     if not single:
-        return found
+        return lists
     rows = list(zip(*zip_longest(*single, fillvalue=""), strict=True))
     heads = [""] * len(rows[0])
-    return [Table(name or "totals", heads, rows, name), *found]
+    return [Table(name or "totals", heads, rows, name), *lists]
 
 
 def _records(value: Any) -> bool:

@@ -37,19 +37,21 @@ REMEDY_HEADS = (
 
 def sensitivities(result: Result, measures: Measures) -> Section | None:
     """Return the sensitivities of the file's numbers; None if they are not asked for."""
-    found = result.report.get("prices")
-    return of_influences(found, result, measures) if found and result.value is not None else None
+    prices = result.report.get("prices")
+    return of_influences(prices, result, measures) if prices and result.value is not None else None
 
 
-def of_influences(found: Mapping[str, Any], result: Result, measures: Measures = METRIC) -> Section:
+def of_influences(
+    prices: Mapping[str, Any], result: Result, measures: Measures = METRIC
+) -> Section:
     """Return the effect of every number on the objective, and what the columns mean.
 
-    found: influences, message and basis, see `optimise.explaining.explanation`.
+    prices: influences, message and basis, see `optimise.explaining.explanation`.
     """
-    rows = [_row(one) for one in found["influences"]]
-    steps = [k for k, head in enumerate(HEADS) if _sloped(found) or head not in SLOPES]
+    rows = [_row(influence) for influence in prices["influences"]]
+    steps = [k for k, head in enumerate(HEADS) if _sloped(prices) or head not in SLOPES]
     rows = [[row[k] for k in steps] for row in rows]
-    idle = [one["key"] for one in found["influences"] if _is_idle(one)]
+    idle = [influence["key"] for influence in prices["influences"] if _is_idle(influence)]
     table = Table(
         "sensitivities",
         [HEADS[k] for k in steps],
@@ -60,7 +62,7 @@ def of_influences(found: Mapping[str, Any], result: Result, measures: Measures =
         read_only=READ_ONLY,
         wrap=0,
     )
-    words = list(map(measures.words, influence_words(found, result)))
+    words = list(map(measures.words, influence_words(prices, result)))
     tables = (table,) if len(idle) < len(rows) else ()
     if idle:
         name = objective(result)[0]
@@ -69,45 +71,53 @@ def of_influences(found: Mapping[str, Any], result: Result, measures: Measures =
     return Section("Sensitivities", words=words, tables=tables, half=True, terminal=terminal)
 
 
-def _sloped(found: Mapping[str, Any]) -> bool:
+def _sloped(prices: Mapping[str, Any]) -> bool:
     """Return whether some number has a sensitivity, by multipliers or by solving again."""
     return any(
-        s is not None for i in found["influences"] for s in (i["sensitivity"], *i["resolved"])
+        s is not None for i in prices["influences"] for s in (i["sensitivity"], *i["resolved"])
     )
 
 
-def _is_idle(one: Mapping[str, Any]) -> bool:
+def _is_idle(influence: Mapping[str, Any]) -> bool:
     """Return whether a number changes nothing: not by 1 %, to either side, nor when it is eased."""
-    slopes = [s for s in (one["sensitivity"], *one["resolved"]) if s is not None]
-    known = bool(slopes) or one["price"] is not None
-    return known and all(abs(s) < FLAT for s in slopes) and abs(one["price"] or 0.0) < NOTHING
+    slopes = [s for s in (influence["sensitivity"], *influence["resolved"]) if s is not None]
+    known = bool(slopes) or influence["price"] is not None
+    return known and all(abs(s) < FLAT for s in slopes) and abs(influence["price"] or 0.0) < NOTHING
 
 
-def _row(one: Mapping[str, Any]) -> list[Any]:
-    """Return what HEADS names of a number, in words and as plain numbers."""
-    slope, both, effect = _percent(one["sensitivity"]), _sides(one["resolved"]), price(one["price"])
-    change = None if one["price"] is None else 100.0 * clean(one["price"])
-    plain = [None if s is None else clean(s) for s in (one["sensitivity"], *one["resolved"])]
+def _row(influence: Mapping[str, Any]) -> list[Any]:
+    """Values of HEADS of a number, in words and as plain numbers."""
+    slope, both, effect = (
+        _percent(influence["sensitivity"]),
+        _sides(influence["resolved"]),
+        price(influence["price"]),
+    )
+    change = None if influence["price"] is None else 100.0 * clean(influence["price"])
+    plain = [
+        None if s is None else clean(s) for s in (influence["sensitivity"], *influence["resolved"])
+    ]
     return [
-        *(one["key"], one["value"], slope, both, one["step"], effect),
+        *(influence["key"], influence["value"], slope, both, influence["step"], effect),
         *(Cell(change, effect), slope or both, *plain),
     ]
 
 
-def influence_words(found: Mapping[str, Any], result: Result) -> list[str]:
-    """Say what the columns mean, and what is missing."""
+def influence_words(prices: Mapping[str, Any], result: Result) -> list[str]:
+    """Meaning of the columns, and what is missing."""
     name = objective(result)[0]
-    lines = [found["message"][0].upper() + found["message"][1:] + "."] if found["message"] else []
-    if not found["influences"]:
+    lines = (
+        [prices["message"][0].upper() + prices["message"][1:] + "."] if prices["message"] else []
+    )
+    if not prices["influences"]:
         return lines or ["No number of the file was examined."]
-    if not _sloped(found):
+    if not _sloped(prices):
         return [
             *lines,
             f"Change of the {name} as one number changes by a step: solved again for each.",
         ]
     slope = f"Sensitivity of the {name}: d ln objective / d ln number, % per %"
-    if any(i["sensitivity"] is not None for i in found["influences"]):
-        return [*lines, f"{slope}{found.get('basis', '')}."]
+    if any(i["sensitivity"] is not None for i in prices["influences"]):
+        return [*lines, f"{slope}{prices.get('basis', '')}."]
     return [*lines, f"{slope}, by re-solving."]
 
 
@@ -145,27 +155,27 @@ def _sides(resolved: Sequence[float | None]) -> str:
 
 
 def remedies(result: Result, measures: Measures) -> Section | None:
-    """Say what to write instead of an impossible request; None elsewhere."""
-    found: Mapping[str, Any] = result.report.get("ways_out") or {}
-    if not found or found.get("untried"):
+    """Remedies of an impossible request; None elsewhere."""
+    ways_out: Mapping[str, Any] = result.report.get("ways_out") or {}
+    if not ways_out or ways_out.get("untried"):
         return None
-    rows, sure = remedy_words(found)
-    if not rows and not found["conflict"] and found["message"] in result.message:
+    rows, sure = remedy_words(ways_out)
+    if not rows and not ways_out["conflict"] and ways_out["message"] in result.message:
         return None  # the first sentence says it
     tables = [Table("remedies", REMEDY_HEADS, rows, words=True, left=3)] if rows else []
-    if not rows and found["message"] and found["message"] in result.message:
+    if not rows and ways_out["message"] and ways_out["message"] in result.message:
         sure += " No remedy was found by relaxing limits."  # the message stands above
     sure = measures.words(sure)
     words = [] if rows else [sure]  # of remedies `proven` says it
     return Section("Remedies", words=words, tables=tables, terminal=[*tables, sure])
 
 
-def remedy_words(found: Mapping[str, Any]) -> tuple[list[list[Any]], str]:
+def remedy_words(report: Mapping[str, Any]) -> tuple[list[list[Any]], str]:
     """Return rows of edits below REMEDY_HEADS, and how sure these are.
 
-    found: conflict, remedies and message, as `explain` and `solve` have them.
+    report: conflict, remedies and message, as `explain` and `solve` have them.
     """
-    conflict, ways, missing = found["conflict"], found["remedies"], sentence(found["message"])
+    conflict, ways, missing = report["conflict"], report["remedies"], sentence(report["message"])
     if not ways:
         return [], missing or "No remedy was found by relaxing limits."
     rows = [row for way in ways for row in _rows(way)]
@@ -186,7 +196,7 @@ def remedy_words(found: Mapping[str, Any]) -> tuple[list[list[Any]], str]:
 
 
 def _less(ways: Sequence[Mapping[str, Any]]) -> str:
-    """Say what is known of smaller changes."""
+    """Knowledge about smaller changes, in words."""
     moved = [way for way in ways if way["kind"] != "choice"]
     doubtful = [
         way["changes"][0]["key"]

@@ -45,33 +45,35 @@ def words(name: str) -> str:
 
 def decided(front: Front, measures: Measures = METRIC) -> list[str]:
     """Return in sentences what was found, and how sure it is."""
-    found = [str(front.proof.get("sentence", ""))]
+    sentences = [str(front.proof.get("sentence", ""))]
     count = len(front.points)
     if count:
         ends = "; ".join(
-            f"{words(one.name)} {_span(front, k, measures)}"
-            for k, one in enumerate(front.objectives)
+            f"{words(step.name)} {_span(front, k, measures)}"
+            for k, step in enumerate(front.objectives)
         )
         designs = "1 design" if count == 1 else f"{count:,} designs"
         among = "on the Pareto front" if front.whole else "found, none dominated by another of them"
-        found.insert(0, f"{designs} {among}: {ends}.")
+        sentences.insert(0, f"{designs} {among}: {ends}.")
         if not front.whole:
-            found.append("Parts of the front may be missing; a pick is from these designs alone.")
+            sentences.append(
+                "Parts of the front may be missing; a pick is from these designs alone."
+            )
     if front.error is not None:
         part = f"{100.0 * front.error:.2g} % of the ranges of its objectives"
-        found.append(f"The true front lies within {part} of the line through these points.")
+        sentences.append(f"The true front lies within {part} of the line through these points.")
         if front.error > COARSE:
-            found.append("A better pick may lie between them.")
+            sentences.append("A better pick may lie between them.")
     if front.impossible:
-        count, proven = len(front.impossible), sum(one.proven for one in front.impossible)
+        count, proven = len(front.impossible), sum(step.proven for step in front.impossible)
         steps = "1 step was" if count == 1 else f"{count} steps were"
-        found.append(
+        sentences.append(
             f"{steps} skipped: no design meets the limits on the objectives there "
             f"({proven} proven)."
         )
     if front.message:
-        found.append(f"{front.message[0].upper()}{front.message[1:]}.")
-    return [one for one in found if one]
+        sentences.append(f"{front.message[0].upper()}{front.message[1:]}.")
+    return [step for step in sentences if step]
 
 
 def _span(front: Front, k: int, measures: Measures) -> str:
@@ -82,13 +84,13 @@ def _span(front: Front, k: int, measures: Measures) -> str:
 
 def picked(front: Front, measures: Measures = METRIC) -> list[str]:
     """Return for every design that a rule takes its reason, and what its neighbours cost."""
-    found: dict[int, list[str]] = {}
+    by_place: dict[int, list[str]] = {}
     for pick in front.picks:
-        found.setdefault(pick.place, []).append(f"{pick.rule} ({pick.reason})")
+        by_place.setdefault(pick.place, []).append(f"{pick.rule} ({pick.reason})")
     return [
         f"Design {place + 1}: {'; '.join(reasons)}. {_values(front, place, measures)}."
         f"{_beside(front, place)}"
-        for place, reasons in found.items()
+        for place, reasons in by_place.items()
     ]
 
 
@@ -100,15 +102,15 @@ def _values(front: Front, place: int, measures: Measures) -> str:
 
 
 def _beside(front: Front, place: int) -> str:
-    """Return what the designs next to one gain and lose, in per cent."""
+    """Gains and losses of the designs next to one, in per cent."""
     import numpy as np
 
     values = np.array([p.values for p in front.points])
     rows = []
     for other in neighbours(values, place):
         changes = [
-            f"{words(one.name)} {_change(after / before - 1.0)}"
-            for one, before, after in zip(
+            f"{words(objective.name)} {_change(after / before - 1.0)}"
+            for objective, before, after in zip(
                 front.objectives, values[place], values[other], strict=True
             )
             if before
@@ -129,31 +131,31 @@ def table(front: Front, measures: Measures = METRIC, most: int | None = None) ->
     most: rows; the picks and the ends are among them.
     """
     kept = chosen(front, most)
-    heads = [head(one, measures) for one in front.objectives]
+    heads = [head(objective, measures) for objective in front.objectives]
     taken = rules(front)
     gears = any(stages_of(p.design) for p in front.points)
     rows = [
         (
             k + 1,
             *(
-                cell(v, unit_of(one), measures)
-                for v, one in zip(front.points[k].values, front.objectives, strict=True)
+                cell(v, unit_of(objective), measures)
+                for v, objective in zip(front.points[k].values, front.objectives, strict=True)
             ),
             ", ".join(taken.get(k, ())),
             *([_gears(front.points[k].design, measures)] if gears else []),
         )
         for k in kept
     ]
-    made = [f"{measures.module[1]}, z1/z2"] if gears else []
-    return Table("front", ("", *heads, "pick", *made), rows, wrap=10)
+    last = [f"{measures.module[1]}, z1/z2"] if gears else []
+    return Table("front", ("", *heads, "pick", *last), rows, wrap=10)
 
 
 def rules(front: Front) -> dict[int, list[str]]:
     """Return the places that rules pick, each with their names."""
-    found: dict[int, list[str]] = {}
+    names: dict[int, list[str]] = {}
     for pick in front.picks:
-        found.setdefault(pick.place, []).append(pick.rule)
-    return found
+        names.setdefault(pick.place, []).append(pick.rule)
+    return names
 
 
 def chosen(front: Front, most: int | None) -> list[int]:
@@ -165,21 +167,21 @@ def chosen(front: Front, most: int | None) -> list[int]:
     return sorted(spread | {pick.place for pick in front.picks})
 
 
-def unit_of(one: Objective) -> str:
+def unit_of(objective: Objective) -> str:
     """Return the suffix under which the values of an objective are shown."""
-    return read_in(one.name, one.unit)
+    return read_in(objective.name, objective.unit)
 
 
-def head(one: Objective, measures: Measures) -> str:
-    """Return what an objective is called above its values, with the unit."""
-    sign = measures.unit(unit_of(one))
-    return f"{words(one.name)} [{sign}]" if sign else words(one.name)
+def head(objective: Objective, measures: Measures) -> str:
+    """Head of an objective's column, with the unit."""
+    sign = measures.unit(unit_of(objective))
+    return f"{words(objective.name)} [{sign}]" if sign else words(objective.name)
 
 
 def stages_of(design: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
     """Return the stages of a drive, or of the train of a servo axis."""
-    found: Sequence[Mapping[str, Any]] = (design.get("train") or design).get("stages", ())
-    return found
+    stages: Sequence[Mapping[str, Any]] = (design.get("train") or design).get("stages", ())
+    return stages
 
 
 def _gears(design: Mapping[str, Any], measures: Measures) -> Cell:

@@ -99,7 +99,7 @@ class Measures:
 
     @property
     def lengths(self) -> str:
-        """Return what a drawing's dimensions are in, as a word."""
+        """Unit of a drawing's dimensions, as a word."""
         return "inches" if self.unit("mm") == "in" else self.unit("mm")
 
     def of(self, value: float, suffix: str) -> float:
@@ -109,7 +109,7 @@ class Measures:
 
     @property
     def module(self) -> tuple[str, str, str]:
-        """Return what stands for a normal module: its name, its sign, its unit."""
+        """Name, sign and unit of what stands for a normal module."""
         inch = self.unit("mm") == "in"
         return ("diametral pitch", "P_nd", "1/in") if inch else ("module", "m_n", "mm")
 
@@ -126,8 +126,8 @@ class Measures:
         """Return a sentence with its metric quantities in these units: "3.2 mm" as "0.126 in"."""
         return text if self.name == "metric" else _METRIC.sub(self._converted, text)
 
-    def _converted(self, found: re.Match[str]) -> str:
-        text, unit = found.groups()
+    def _converted(self, match: re.Match[str]) -> str:
+        text, unit = match.groups()
         value, shown = float(text.replace(",", "")), "lb/in³"
         if unit in _DENSITIES:
             value *= self.of(1.0, "kg") / self.of(1e6, "mm3")

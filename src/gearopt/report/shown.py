@@ -1,6 +1,7 @@
 """Answers as they show themselves in Python: a few lines, a fragment for notebooks, pages, rows.
 
-`optimise.result.shown` asks for the functions here by their names.
+`optimise.result.shown` asks for the functions here by their names. Pages are imported where one is
+made: they take a tenth of a second that a line of text does not need.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,11 +22,16 @@ from gearopt.report.answer import WAYS, decided
 from gearopt.report.explained import of_influences
 from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, SYSTEMS, Measures, gap_percent
+from gearopt.report.pages import comparison as comparison_pages
+from gearopt.report.pages import front as front_pages
+from gearopt.report.pages import result as result_pages
+from gearopt.report.pages.frame import templates
 from gearopt.report.screen import harmless
 from gearopt.report.section import Table
 from gearopt.report.words import (
     EXACT,
     MODULE,
+    again,
     amount,
     edit,
     goal,
@@ -70,8 +76,8 @@ def _head(result: Result) -> str:
     """Return title, value and what is certain of it."""
     name, unit, value, _, _ = goal(result)
     known = value is not None and "achieved" not in result.report
-    found = f"{name} {amount(value, unit)}, " if known else ""
-    return f"{title(result)}: {found}{verdict(result)[0]}"
+    reached = f"{name} {amount(value, unit)}, " if known else ""
+    return f"{title(result)}: {reached}{verdict(result)[0]}"
 
 
 def _design(result: Result) -> list[str]:
@@ -122,15 +128,15 @@ def _values(part: Mapping[str, Any], goal: Any) -> list[str]:
     return [word.replace("_", " ") for word in words]
 
 
-def explained_lines(found: Explanation) -> str:
+def explained_lines(explanation: Explanation) -> str:
     """Return the answer, the limits that bind and the largest sensitivities, or the remedies."""
-    rows = [lines(found.result)]
-    if found.conflict:
-        rows.append(f"in conflict: {_names(found, found.conflict)}")
-    for remedy in found.remedies[:MAX_LISTED]:
+    rows = [lines(explanation.result)]
+    if explanation.conflict:
+        rows.append(f"in conflict: {_names(explanation, explanation.conflict)}")
+    for remedy in explanation.remedies[:MAX_LISTED]:
         rows.append(f"possible with {' and '.join(edit(asdict(c)) for c in remedy.changes)}")
-    rows += _reached(found)
-    slopes = {i.key: i.sensitivity for i in found.influences if i.sensitivity is not None}
+    rows += _reached(explanation)
+    slopes = {i.key: i.sensitivity for i in explanation.influences if i.sensitivity is not None}
     if slopes:
         largest = sorted(slopes, key=lambda key: -abs(slopes[key]))[:MAX_LISTED]
         words = ", ".join(f"{key} {slopes[key]:+.4g}" for key in largest)
@@ -138,93 +144,98 @@ def explained_lines(found: Explanation) -> str:
     return _joined(rows)
 
 
-def _names(found: Explanation, limits: Sequence[str]) -> str:
-    return ", ".join(limit_words(name, has_stages(found.result)) for name in limits)
+def _names(explanation: Explanation, limits: Sequence[str]) -> str:
+    return ", ".join(limit_words(name, has_stages(explanation.result)) for name in limits)
 
 
-def _reached(found: Explanation) -> list[str]:
-    names = _names(found, found.binding)
+def _reached(explanation: Explanation) -> list[str]:
+    names = _names(explanation, explanation.binding)
     return [f"limits reached: {names}"] if names else []
 
 
-def compared_lines(found: Comparison) -> str:
+def compared_lines(comparison: Comparison) -> str:
     """Return the verdict of every method, model by model."""
-    rows = [f"{found.title}: methods compared"]
-    for group in found.groups:
+    rows = [f"{comparison.title}: methods compared"]
+    for group in comparison.groups:
         rows.append(comparison_words.reference(group))
         rows += (f"{row.method}: {comparison_words.verdict(group, row)}" for row in group.rows)
     return _joined(rows)
 
 
 def fragment(result: Result) -> str:
-    """Return what the terminal shows of a result as HTML for a notebook."""
+    """Sections of a result for the terminal, as HTML for a notebook."""
     result = Result.from_dict(result.to_dict())
-    made = (make(result, METRIC) for make in pages_of_result(result).terminal)
-    blocks = [block for section in made if section is not None for block in section.terminal]
+    sections = (make(result, METRIC) for make in pages_of_result(result).terminal)
+    blocks = [block for section in sections if section is not None for block in section.terminal]
     first = [decided(result), *leading(result), *pages_of_result(result).warns(result)]
     return _html(_head(result), [*first, *blocks])
 
 
-def explained_fragment(found: Explanation) -> str:
+def explained_fragment(explanation: Explanation) -> str:
     """Return an explanation as HTML for a notebook: sensitivities, or the way out."""
-    if found.result.value is None:
-        return fragment(answered(found))
-    blocks = [*_reached(found), *of_influences(found.prices, found.result).terminal]
-    return _html(_head(found.result), blocks)
+    if explanation.result.value is None:
+        return fragment(answered(explanation))
+    blocks = [
+        *_reached(explanation),
+        *of_influences(explanation.prices, explanation.result).terminal,
+    ]
+    return _html(_head(explanation.result), blocks)
 
 
-def compared_fragment(found: Comparison) -> str:
+def compared_fragment(comparison: Comparison) -> str:
     """Return a comparison as HTML for a notebook: verdicts and numbers of every method."""
     blocks: list[Block] = []
-    for group in found.groups:
+    for group in comparison.groups:
         blocks += [comparison_words.reference(group)]
         blocks += [f"{r.method}: {comparison_words.verdict(group, r)}" for r in group.rows]
-        for field, name, budget in comparison_words.kinds(found):
-            heads = [f"{head} {unit}".strip() for head, unit, _ in comparison_words.columns(found)]
+        for field, name, budget in comparison_words.kinds(comparison):
+            heads = [
+                f"{head} {unit}".strip() for head, unit, _ in comparison_words.columns(comparison)
+            ]
             samples = ((row.method, getattr(row, field)) for row in group.rows)
-            rows = [(m, *comparison_words.cells(found, s)) for m, s in samples if s]
+            rows = [(m, *comparison_words.cells(comparison, s)) for m, s in samples if s]
             blocks += [f"{name}: {budget}", Table(name, ("method", *heads), rows)] if rows else []
-    return _html(f"{found.title}: methods compared", blocks)
+    return _html(f"{comparison.title}: methods compared", blocks)
 
 
-def front_lines(found: Front) -> str:
-    """Return what was found of a Pareto front, how sure it is, and the designs picked."""
-    rows = [f"{front.title(found)}: {front.verdict(found)[0]}"]
-    rows += [*front.decided(found), *front.picked(found)]
+def front_lines(pareto: Front) -> str:
+    """Size and certainty of a Pareto front, and the designs picked."""
+    rows = [f"{front.title(pareto)}: {front.verdict(pareto)[0]}"]
+    rows += [*front.decided(pareto), *front.picked(pareto)]
     return _joined(rows)
 
 
-def front_fragment(found: Front) -> str:
-    """Return what the terminal shows of a Pareto front as HTML for a notebook."""
-    found = Front.from_dict(found.to_dict())
-    blocks: list[Block] = [*front.decided(found)]
-    blocks += [front.table(found, METRIC, front.SHOWN)] if found.points else []
-    head = f"{front.title(found)}: {front.verdict(found)[0]}"
-    return _html(head, [*blocks, *front.picked(found)])
+def front_fragment(pareto: Front) -> str:
+    """Pareto front as the terminal has it, as HTML for a notebook."""
+    pareto = Front.from_dict(pareto.to_dict())
+    blocks: list[Block] = [*front.decided(pareto)]
+    blocks += [front.table(pareto, METRIC, front.SHOWN)] if pareto.points else []
+    head = f"{front.title(pareto)}: {front.verdict(pareto)[0]}"
+    return _html(head, [*blocks, *front.picked(pareto)])
 
 
-def front_page(found: Front, units: str) -> str:
+def front_page(pareto: Front, units: str) -> str:
     """Return the page of a Pareto front."""
-    from gearopt.report.pages.front import page
-
-    return page(found, measures=measures_of(units))
+    return front_pages.page(pareto, measures=measures_of(units))
 
 
-def answered(found: Explanation) -> Result:
+def answered(explanation: Explanation) -> Result:
     """Return the result of an impossible request with the conflict and the remedies in it."""
-    ways: dict[str, Any] = {"conflict": found.conflict, "message": found.message}
-    ways |= {"any_resolves": found.any_resolves, "unsure": found.unsure}
-    ways |= {"remedies": [asdict(remedy) for remedy in found.remedies]}
-    reasons = found.conflict or found.remedies or found.message != found.result.message
-    if found.result.status != "infeasible" or not reasons:  # the proof says why, once
-        return found.result
-    return replace(found.result, report=found.result.report | {"ways_out": ways})
+    ways: dict[str, Any] = {"conflict": explanation.conflict, "message": explanation.message}
+    ways |= {"any_resolves": explanation.any_resolves, "unsure": explanation.unsure}
+    ways |= {"remedies": [asdict(remedy) for remedy in explanation.remedies]}
+    reasons = (
+        explanation.conflict
+        or explanation.remedies
+        or explanation.message != explanation.result.message
+    )
+    if explanation.result.status != "infeasible" or not reasons:  # the proof says why, once
+        return explanation.result
+    return replace(explanation.result, report=explanation.result.report | {"ways_out": ways})
 
 
 def _html(head: str, blocks: Sequence[Block]) -> str:
     """Return a fragment of a page in the colours of where it stands; all text is escaped."""
-    from gearopt.report.pages.frame import templates
-
     parts: list[Any] = [b if isinstance(b, Table) else str(b) for b in blocks]
     return str(templates().get_template("notebook.html").render(head=head, blocks=parts))
 
@@ -238,36 +249,27 @@ def measures_of(units: str) -> Measures:
 
 def whole_page(result: Result, units: str) -> str:
     """Return the page of a result, as `gearopt report --html` writes it."""
-    from gearopt.report.pages.result import page
-    from gearopt.report.words import again
-
     measures = measures_of(units)
-    return page(result, again(result, "page.html", measures), measures)
+    return result_pages.page(result, again(result, "page.html", measures), measures)
 
 
-def compared_page(found: Comparison) -> str:
+def compared_page(comparison: Comparison) -> str:
     """Return the page of a comparison."""
-    from gearopt.report.pages.comparison import page
-
-    return page(found)
+    return comparison_pages.page(comparison)
 
 
 def table_names(result: Result, units: str) -> tuple[str, ...]:
     """Return names of the tables of a result, in the order of its page."""
-    from gearopt.report.pages.result import tables_by_name
-
-    return tuple(name for name, _ in tables_by_name(result, measures_of(units)))
+    return tuple(name for name, _ in result_pages.tables_by_name(result, measures_of(units)))
 
 
 def table_rows(result: Result, name: str, units: str) -> list[dict[str, Any]]:
     """Return a table of a result as rows {column: value}; ValueError names the tables there are."""
-    from gearopt.report.pages.result import tables_by_name
-
     known = []
-    for found, table in tables_by_name(result, measures_of(units)):
-        if found == name:
+    for stem, table in result_pages.tables_by_name(result, measures_of(units)):
+        if stem == name:
             return table.records
-        known.append(found)
+        known.append(stem)
     close = get_close_matches(str(name), known, n=1)
     meant = f" (did you mean {close[0]!r}?)" if close else ""
     raise ValueError(f"no table {name!r}{meant}; tables: {', '.join(known)}")

@@ -143,39 +143,44 @@ def _print(blocks: Sequence[str | Text | Table], console: Console) -> None:
         )
 
 
-def show_comparison(found: Comparison, console: Console) -> None:
+def show_comparison(comparison: Comparison, console: Console) -> None:
     """Print a comparison."""
-    console.print(Text.assemble((found.title, "bold"), ": methods compared"))
-    if found.message:
-        console.print(Text(found.message[0].upper() + found.message[1:] + ".", style="yellow"))
-    if len(found.groups) > 1:
+    console.print(Text.assemble((comparison.title, "bold"), ": methods compared"))
+    if comparison.message:
+        console.print(
+            Text(comparison.message[0].upper() + comparison.message[1:] + ".", style="yellow")
+        )
+    if len(comparison.groups) > 1:
         console.print(
             "Methods of different models answer different questions: compare within a model."
         )
-    for group in found.groups:
-        _group(found, group, console)
+    for group in comparison.groups:
+        _group(comparison, group, console)
     console.print()
-    for row in (row for group in found.groups for row in group.rows if not row.refused):
-        kind = f"{len(found.seeds)} seeds" if row.random else "deterministic, one run"
+    for row in (row for group in comparison.groups for row in group.rows if not row.refused):
+        kind = f"{len(comparison.seeds)} seeds" if row.random else "deterministic, one run"
+        settings = words.settings(comparison.settings[row.method])
         line = (
             f"{row.method}: {kind}; evaluation = {row.counts}; "
-            f"start-up {row.start_up_seconds:.2g} s; {words.settings(found.settings[row.method])}"
+            f"start-up {row.start_up_seconds:.2g} s; {settings}"
         )
         console.print(Text(line, style="dim"), no_wrap=True, overflow="ellipsis")
-    console.print(Text(f"{found.machine['cpus']} cores. {words.command(found)}", style="dim"))
+    console.print(
+        Text(f"{comparison.machine['cpus']} cores. {words.command(comparison)}", style="dim")
+    )
 
 
-def _group(found: Comparison, group: Group, console: Console) -> None:
+def _group(comparison: Comparison, group: Group, console: Console) -> None:
     console.print()
     console.print(Text(group.words or group.model, style="bold"))
     console.print(Text(words.reference(group)))
     for row in group.rows:
         console.print(Text(f"- {row.method}: {words.verdict(group, row)}"))
-    for field, name, budget in words.kinds(found):
-        heads = [f"{head}\n{unit}" for head, unit, _ in words.columns(found)]
+    for field, name, budget in words.kinds(comparison):
+        heads = [f"{head}\n{unit}" for head, unit, _ in words.columns(comparison)]
         samples = ((row.method, getattr(row, field)) for row in group.rows)
         rows = [
-            (method, *words.cells(found, sample))
+            (method, *words.cells(comparison, sample))
             for method, sample in samples
             if sample is not None
         ]
@@ -185,27 +190,27 @@ def _group(found: Comparison, group: Group, console: Console) -> None:
             table = Table(name, ("method", *heads), rows, wrap=1 + len(heads))
             console.print(grid(table, console.width))
     for row in group.rows:
-        if late := words.ended(found, row):
+        if late := words.ended(comparison, row):
             console.print(Text(f"Equal evaluations: {late}.", style="yellow"))
 
 
-def show_front(found: Front, console: Console, measures: Measures = METRIC) -> None:
+def show_front(pareto: Front, console: Console, measures: Measures = METRIC) -> None:
     """Print a Pareto front."""
-    said, colour = front.verdict(found)
-    console.print(Text.assemble((front.title(found), "bold"), ": ", (said, f"bold {colour}")))
-    for line in front.decided(found, measures):
+    said, colour = front.verdict(pareto)
+    console.print(Text.assemble((front.title(pareto), "bold"), ": ", (said, f"bold {colour}")))
+    for line in front.decided(pareto, measures):
         console.print(Text(line))
-    if found.points:
+    if pareto.points:
         console.print()
-        console.print(grid(front.table(found, measures, front.SHOWN), console.width))
-        hidden = len(found.points) - front.SHOWN
+        console.print(grid(front.table(pareto, measures, front.SHOWN), console.width))
+        hidden = len(pareto.points) - front.SHOWN
         if hidden > 0:
             console.print(Text("Some of the designs; --csv, --html and --json hold all.", "dim"))
-    for line in front.picked(found, measures):
+    for line in front.picked(pareto, measures):
         console.print()
         console.print(Text(line))
     console.print()
-    if found.status == "infeasible" and found.file and not found.options.get("most"):
-        console.print(Text(f"What to write instead: gearopt explain {found.file}\n"))
-    spent = effort(found.method, found.evaluations, found.seconds)
+    if pareto.status == "infeasible" and pareto.file and not pareto.options.get("most"):
+        console.print(Text(f"What to write instead: gearopt explain {pareto.file}\n"))
+    spent = effort(pareto.method, pareto.evaluations, pareto.seconds)
     console.print(Text(spent, style="dim"))

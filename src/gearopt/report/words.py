@@ -52,9 +52,9 @@ def _stem_words(stem: str) -> str:
     for end, words in (("_low", "minimum"), ("_high", "maximum")):
         if stem.endswith(end):
             return f"{words} {stem.removesuffix(end).replace('_', ' ')}"
-    own = stem.removesuffix("_iso")
-    words = known.get(own, own.replace("_", " "))
-    return words if own == stem else f"{words} by ISO 6336"
+    name = stem.removesuffix("_iso")
+    words = known.get(name, name.replace("_", " "))
+    return words if name == stem else f"{words} by ISO 6336"
 
 
 def grouped(names: Iterable[str], staged: bool = True) -> list[str]:
@@ -67,9 +67,9 @@ def grouped(names: Iterable[str], staged: bool = True) -> list[str]:
         stages.setdefault(stem, []).append(index)
     return [
         limit_words(stem)
-        if not all(own)
-        else f"{limit_words(stem)} of stage{'s' if len(own) > 1 else ''} {counted(own)}"
-        for stem, own in stages.items()
+        if not all(of_stem)
+        else f"{limit_words(stem)} of stage{'s' if len(of_stem) > 1 else ''} {counted(of_stem)}"
+        for stem, of_stem in stages.items()
     ]
 
 
@@ -140,7 +140,7 @@ def share(used: float) -> str:
 
 
 def effort(method: str, evaluations: int, seconds: float) -> str:
-    """Return what an answer took, in words."""
+    """Method, evaluations and seconds of an answer, in words."""
     return (
         f"Method {method}: {evaluations:,} evaluation{'s' * (evaluations != 1)}, {seconds:.3g} s."
     )
@@ -186,7 +186,7 @@ def of_gears_first(result: Result) -> bool:
 
 
 def verdict(result: Result) -> tuple[str, str]:
-    """Return what is achieved and how certain that is, and its colour."""
+    """Achievement and its certainty, and their colour."""
     words, colour = certainty(result)
     if achieved := result.report.get("achieved"):
         words = f"{achieved}; {words}"

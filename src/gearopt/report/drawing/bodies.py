@@ -39,9 +39,9 @@ def layout_of(result: Result) -> LayoutDesign | None:
     return drive_design(result.design).layout if result.design else None
 
 
-def box_corners(found: LayoutDesign) -> tuple[Corner, Corner]:
+def box_corners(layout: LayoutDesign) -> tuple[Corner, Corner]:
     """Return two corners of the box."""
-    box = found.box
+    box = layout.box
     y, z = box.left_mm, box.bottom_mm
     return (0.0, y, z), (box.length_mm, y + box.width_mm, z + box.height_mm)
 
@@ -52,11 +52,11 @@ def along(ends: tuple[Corner, Corner], axis: str) -> tuple[float, float]:
     return ends[0][k], ends[1][k]
 
 
-def motor(found: LayoutDesign) -> tuple[float, float, float] | None:
+def motor(layout: LayoutDesign) -> tuple[float, float, float] | None:
     """Return radius, start and end of the motor, which is drawn as long as it is wide."""
-    if found.motor is None:
+    if layout.motor is None:
         return None
-    return 0.5 * found.motor.diameter_mm, -found.motor.diameter_mm, 0.0
+    return 0.5 * layout.motor.diameter_mm, -layout.motor.diameter_mm, 0.0
 
 
 def sides(it: KeepOutDesign, axis: str) -> tuple[float, float]:
@@ -66,12 +66,12 @@ def sides(it: KeepOutDesign, axis: str) -> tuple[float, float]:
     return (it.left_mm, it.right_mm) if axis == "y" else (it.bottom_mm, it.top_mm)
 
 
-def keep_outs(found: LayoutDesign) -> list[KeepOutDesign]:
+def keep_outs(layout: LayoutDesign) -> list[KeepOutDesign]:
     """Return the keep-outs near the box, cut off where they reach far beyond it."""
-    low, high = _with_motor(found)
+    low, high = _with_motor(layout)
     room = AROUND * max(b - a for a, b in zip(low[1:], high[1:], strict=True))
     near = []
-    for it in found.obstacles:
+    for it in layout.obstacles:
         cut = replace(
             it,
             from_mm=max(it.from_mm, low[0] - room),
@@ -86,19 +86,19 @@ def keep_outs(found: LayoutDesign) -> list[KeepOutDesign]:
     return near
 
 
-def drawn_corners(found: LayoutDesign) -> tuple[Corner, Corner]:
+def drawn_corners(layout: LayoutDesign) -> tuple[Corner, Corner]:
     """Return two corners of all that is drawn."""
-    low, high = (list(corner) for corner in _with_motor(found))
-    for it in keep_outs(found):
+    low, high = (list(corner) for corner in _with_motor(layout))
+    for it in keep_outs(layout):
         for k, axis in enumerate("xyz"):
             start, end = sides(it, axis)
             low[k], high[k] = min(low[k], start), max(high[k], end)
     return (low[0], low[1], low[2]), (high[0], high[1], high[2])
 
 
-def _with_motor(found: LayoutDesign) -> tuple[Corner, Corner]:
-    low, high = box_corners(found)
-    if (place := motor(found)) is None:
+def _with_motor(layout: LayoutDesign) -> tuple[Corner, Corner]:
+    low, high = box_corners(layout)
+    if (place := motor(layout)) is None:
         return low, high
     r, start, end = place
     low = (min(low[0], start), min(low[1], -r), min(low[2], -r))
@@ -127,31 +127,31 @@ def meaning(gear: GearDesign, measures: Measures) -> str:
     )
 
 
-def gear_disc(found: Turning, gear: GearDesign) -> Disc:
+def gear_disc(train: Turning, gear: GearDesign) -> Disc:
     """Return the tip circle of a gear."""
-    shaft = next(s for s in found.shafts if s.shaft == gear.shaft)
+    shaft = next(s for s in train.shafts if s.shaft == gear.shaft)
     return Disc((shaft.y_mm, shaft.z_mm), 0.5 * gear.tip_diameter_mm, gear.from_mm, gear.to_mm)
 
 
-def disc(found: LayoutDesign, name: str, beside: KeepOutDesign | None = None) -> Disc | None:
+def disc(layout: LayoutDesign, name: str, beside: KeepOutDesign | None = None) -> Disc | None:
     """Return a gear (its tip circle), shaft, bearing or the motor by name; None for others.
 
     "shaft 2 with its gears" is the largest body there of those that a keep-out stands beside.
     """
-    if name == "motor" and (place := motor(found)) is not None:
+    if name == "motor" and (place := motor(layout)) is not None:
         return Disc((0.0, 0.0), *place)
     match = re.fullmatch(r"(?:bearing of )?shaft (\d+)( with its gears)?", name)
     number = int(match[1]) if match else None
-    for gear in found.gears:
+    for gear in layout.gears:
         number = gear.shaft if gear.name == name else number
-    shaft = next((s for s in found.shafts if s.shaft == number), None)
+    shaft = next((s for s in layout.shafts if s.shaft == number), None)
     if shaft is None:
         return None
     centre = shaft.y_mm, shaft.z_mm
     bodies: list[tuple[str, ShaftDesign | BearingDesign]] = [(f"shaft {number}", shaft)]
-    bodies += [(f"bearing of shaft {number}", b) for b in found.bearings if b.shaft == number]
+    bodies += [(f"bearing of shaft {number}", b) for b in layout.bearings if b.shaft == number]
     discs = [(label, Disc(centre, 0.5 * b.diameter_mm, b.from_mm, b.to_mm)) for label, b in bodies]
-    discs += [(g.name, gear_disc(found, g)) for g in found.gears if g.shaft == number]
+    discs += [(g.name, gear_disc(layout, g)) for g in layout.gears if g.shaft == number]
     if match and match[2]:
         meant = [body for _, body in discs if beside is None or _overlap(body, beside)]
     else:
@@ -163,14 +163,14 @@ def _overlap(a: Disc, b: KeepOutDesign) -> bool:
     return min(a.end, b.to_mm) > max(a.start, b.from_mm)
 
 
-def nearest(found: LayoutDesign, one: str, other: str) -> tuple[Corner, Corner] | None:
+def nearest(layout: LayoutDesign, text: str, other: str) -> tuple[Corner, Corner] | None:
     """Return the ends of the gap between two bodies, of one x; None where one is not found."""
-    boxes = {it.name: it for it in found.obstacles}
-    if one in boxes:
-        swapped = nearest(found, other, one) if other not in boxes else None
+    boxes = {it.name: it for it in layout.obstacles}
+    if text in boxes:
+        swapped = nearest(layout, other, text) if other not in boxes else None
         return None if swapped is None else (swapped[1], swapped[0])
     box = boxes.get(other)
-    a = disc(found, one, box)
+    a = disc(layout, text, box)
     if a is None:
         return None
     if box is not None:
@@ -178,7 +178,7 @@ def nearest(found: LayoutDesign, one: str, other: str) -> tuple[Corner, Corner] 
         z = min(max(a.centre[1], box.bottom_mm), box.top_mm)
         b: Disc | None = Disc((y, z), 0.0, box.from_mm, box.to_mm)
     else:
-        b = disc(found, other)
+        b = disc(layout, other)
     if b is None or (apart := math.dist(a.centre, b.centre)) < 1e-9:
         return None
     uy, uz = ((v - u) / apart for u, v in zip(a.centre, b.centre, strict=True))

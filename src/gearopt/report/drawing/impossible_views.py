@@ -22,8 +22,8 @@ def section(result: Result, measures: Measures) -> Section | None:
         return None
     ways: Mapping[str, Any] = result.report.get("ways_out") or {}
     drawn = [conflict(result, ways.get("conflict", ())), remedies(ways.get("remedies", ()))]
-    found = [drawing for drawing in drawn if drawing is not None]
-    return Section("Asked and possible", drawings=found) if found else None
+    drawings = [drawing for drawing in drawn if drawing is not None]
+    return Section("Asked and possible", drawings=drawings) if drawings else None
 
 
 def conflict(result: Result, known: Sequence[str]) -> Drawing | None:
@@ -31,19 +31,19 @@ def conflict(result: Result, known: Sequence[str]) -> Drawing | None:
 
     known: names of limits in conflict, where the proof names none.
     """
-    found: Mapping[str, float] = result.report.get("nearest") or {}
-    names = [n for n in result.proof.get("conflict") or known if n in found]
-    rows = sorted((name for name in names if found[name] > 0.0), key=_order)[:MAX_BARS]
-    if not rows or max(found[name] for name in rows) <= 1.0:
+    nearest: Mapping[str, float] = result.report.get("nearest") or {}
+    names = [n for n in result.proof.get("conflict") or known if n in nearest]
+    rows = sorted((name for name in names if nearest[name] > 0.0), key=_order)[:MAX_BARS]
+    if not rows or max(nearest[name] for name in rows) <= 1.0:
         return None
     words = [limit_words(name, has_stages(result)) for name in rows]
     left = 12.0 + max(2.0 * Place(0.0, 0.0).half_width(text) for text in words)
     tall = ABOVE + ROW * len(rows) + BELOW
     sheet = Sheet(Window(0.0, WIDE, 0.0, tall, (0.0, 0.0, 0.0, 0.0)), 1.0)
-    unit = (WIDE - left - RIGHT) / max(found[name] for name in rows)
+    unit = (WIDE - left - RIGHT) / max(nearest[name] for name in rows)
     for k, (name, text) in enumerate(zip(rows, words, strict=True)):
         y = tall - ABOVE - ROW * (k + 0.5)
-        used, half = found[name], 0.5 * BAR
+        used, half = nearest[name], 0.5 * BAR
         for start, end, style in ((0.0, min(1.0, used), "range"), (1.0, used, "excess")):
             if end > start:
                 corners = (left + unit * start, y - half), (left + unit * end, y + half)
@@ -70,10 +70,10 @@ def _order(name: str) -> tuple[str, str]:
     return index or "~", stem
 
 
-def remedies(found: Sequence[Mapping[str, Any]]) -> Drawing | None:
+def remedies(ways: Sequence[Mapping[str, Any]]) -> Drawing | None:
     """Draw how far each number that helps alone must move; None where there is none."""
     rows = []
-    for way in found:
+    for way in ways:
         change = way["changes"][0]
         factor = change["factor"]
         if len(way["changes"]) > 1 or not factor or not 1.0 < factor < math.inf:

@@ -39,65 +39,65 @@ Over = Callable[[Sheet], None]  # draws more over a view
 
 def section(result: Result, measures: Measures) -> Section | None:
     """Draw the views of a layout, all at one scale; None where there is no layout."""
-    if (found := layout_of(result)) is None:
+    if (layout := layout_of(result)) is None:
         return None
-    windows = [window_of(found, axis) for axis in ("", "z", "y")]
+    windows = [window_of(layout, axis) for axis in ("", "z", "y")]
     scale = min(window.scale(WIDE, HIGH) for window in windows)
     words = [
         f"Drawn to one scale; dimensions in {measures.lengths}. The axis of shaft 1, the input, "
-        f"is y = z = 0; shaft {len(found.shafts)} is the output. Dash-dotted circles are "
+        f"is y = z = 0; shaft {len(layout.shafts)} is the output. Dash-dotted circles are "
         "reference circles, solid ones tip circles; numbers in circles are shafts. The thin dashed "
         "line marks the wall clearance."
     ]
-    if found.obstacles:
+    if layout.obstacles:
         words.append("Hatched boxes are keep-outs; those that reach far out are cut off.")
-    if found.motor:
+    if layout.motor:
         words.append("No length of the motor was given: it is drawn as long as it is wide.")
     views = (
-        front_view(found, windows[0], scale, measures),
-        side_view(found, windows[1], scale, "z", measures),
-        side_view(found, windows[2], scale, "y", measures),
+        front_view(layout, windows[0], scale, measures),
+        side_view(layout, windows[1], scale, "z", measures),
+        side_view(layout, windows[2], scale, "y", measures),
     )
     return Section("Layout", words=words, drawings=views)
 
 
 def beside(designs: Mapping[str, LayoutDesign], measures: Measures) -> tuple[Drawing, ...]:
     """Draw the front views of layouts, all at one scale; designs: by what they are called."""
-    windows = {name: window_of(found, "") for name, found in designs.items()}
+    windows = {name: window_of(layout, "") for name, layout in designs.items()}
     scale = min(window.scale(BESIDE, HIGH) for window in windows.values())
     return tuple(
-        replace(front_view(found, windows[name], scale, measures), caption=f"{name.capitalize()}.")
-        for name, found in designs.items()
+        replace(front_view(layout, windows[name], scale, measures), caption=f"{name.capitalize()}.")
+        for name, layout in designs.items()
     )
 
 
-def window_of(found: LayoutDesign, axis: str) -> Window:
+def window_of(layout: LayoutDesign, axis: str) -> Window:
     """Return the window of the front view, or of the view with this upright axis."""
-    ends = drawn_corners(found)
+    ends = drawn_corners(layout)
     (bottom, top), (left, right) = along(ends, axis or "z"), along(ends, "x" if axis else "y")
     free = (20.0, 44.0, 48.0, 44.0) if axis else (52.0, 20.0, 48.0, 44.0)
     return Window(left, right, bottom, top, free)
 
 
-def walls(found: LayoutDesign, axis: str) -> tuple[float, float]:
+def walls(layout: LayoutDesign, axis: str) -> tuple[float, float]:
     """Return both ends of the box along an axis [mm]."""
-    return along(box_corners(found), axis)
+    return along(box_corners(layout), axis)
 
 
-def box_lines(sheet: Sheet, found: LayoutDesign, across: str, upright: str) -> None:
+def box_lines(sheet: Sheet, layout: LayoutDesign, across: str, upright: str) -> None:
     """Draw the box, and in the front view the wall clearance."""
-    (left, right), (bottom, top) = walls(found, across), walls(found, upright)
+    (left, right), (bottom, top) = walls(layout, across), walls(layout, upright)
     sheet.rectangle((left, bottom), (right, top), "box")
-    wall = found.clearances.wall_mm
+    wall = layout.clearances.wall_mm
     if wall and across == "y":
         sheet.rectangle((left + wall, bottom + wall), (right - wall, top - wall), "wall")
 
 
 def across_dimension(
-    sheet: Sheet, found: LayoutDesign, across: str, upright: str, measures: Measures
+    sheet: Sheet, layout: LayoutDesign, across: str, upright: str, measures: Measures
 ) -> None:
     """Draw the box's dimension across, below all that is drawn."""
-    (left, right), bottom = walls(found, across), walls(found, upright)[0]
+    (left, right), bottom = walls(layout, across), walls(layout, upright)[0]
     away = sheet.height - 18.0 - sheet.at(left, bottom)[1]
     sheet.dimension((left, bottom), (right, bottom), away, measures.length(right - left))
 
@@ -121,7 +121,7 @@ def keep_out(
 
 
 def front_view(
-    found: LayoutDesign,
+    layout: LayoutDesign,
     window: Window,
     scale: float,
     measures: Measures,
@@ -129,29 +129,29 @@ def front_view(
 ) -> Drawing:
     """Draw the view along the shafts, y to the right and z up; over: what is drawn over it."""
     sheet = Sheet(window, scale)
-    box_lines(sheet, found, "y", "z")
-    if place := motor(found):
+    box_lines(sheet, layout, "y", "z")
+    if place := motor(layout):
         sheet.circle(0.0, 0.0, place[0], "motor", title="motor")
-    for it in keep_outs(found):
+    for it in keep_outs(layout):
         keep_out(sheet, it, "y", "z")
-    places = {s.shaft: (s.y_mm, s.z_mm) for s in found.shafts}
-    gear_circles(sheet, found, places, lambda gear: meaning(gear, measures))
-    for shaft in found.shafts:
+    places = {s.shaft: (s.y_mm, s.z_mm) for s in layout.shafts}
+    gear_circles(sheet, layout, places, lambda gear: meaning(gear, measures))
+    for shaft in layout.shafts:
         y, z = places[shaft.shaft]
         size = f"{measures.length(shaft.diameter_mm)} {measures.unit('mm')}"
         title = f"shaft {shaft.shaft}: diameter {size}"
         sheet.circle(y, z, 0.5 * shaft.diameter_mm, "shaft", title=title)
         sheet.cross(y, z, 0.5 * shaft.diameter_mm)
-    _split(sheet, found, places)
-    across_dimension(sheet, found, "y", "z", measures)
-    left, (bottom, top) = walls(found, "y")[0], walls(found, "z")
+    _split(sheet, layout, places)
+    across_dimension(sheet, layout, "y", "z", measures)
+    left, (bottom, top) = walls(layout, "y")[0], walls(layout, "z")
     away = sheet.at(left, 0.0)[0] - 20.0
     sheet.dimension((left, bottom), (left, top), away, measures.length(top - bottom))
-    _centre_distances(sheet, found, places, measures)
-    _narrowest(sheet, found, measures)
+    _centre_distances(sheet, layout, places, measures)
+    _narrowest(sheet, layout, measures)
     for number, (y, z) in places.items():
         sheet.balloon(str(number), around(sheet.at(y, z), (26.0, 36.0, 50.0), 0.0))
-    gear_names(sheet, found)
+    gear_names(sheet, layout)
     if over is not None:
         over(sheet)
     caption = (
@@ -163,7 +163,7 @@ def front_view(
 
 def gear_circles(
     sheet: Sheet,
-    found: Turning,
+    train: Turning,
     places: Mapping[int, tuple[float, float]],
     title: Callable[[GearDesign], str],
 ) -> None:
@@ -171,7 +171,7 @@ def gear_circles(
 
     title: what a gear says where the pointer rests.
     """
-    gears = sorted(found.gears, key=lambda g: (g.from_mm, -g.tip_diameter_mm))
+    gears = sorted(train.gears, key=lambda g: (g.from_mm, -g.tip_diameter_mm))
     for gear in gears:
         y, z = places[gear.shaft]
         colour = series(gear.stage)
@@ -179,18 +179,18 @@ def gear_circles(
         sheet.circle(y, z, 0.5 * gear.reference_diameter_mm, "reference", colour)
 
 
-def gear_names(sheet: Sheet, found: Turning) -> None:
+def gear_names(sheet: Sheet, train: Turning) -> None:
     """Write the name of every gear, the largest first."""
-    for gear in sorted(found.gears, key=lambda g: -g.tip_diameter_mm):
-        _name(sheet, found, gear)
+    for gear in sorted(train.gears, key=lambda g: -g.tip_diameter_mm):
+        _name(sheet, train, gear)
 
 
-def _split(sheet: Sheet, found: LayoutDesign, places: Mapping[int, tuple[float, float]]) -> None:
+def _split(sheet: Sheet, layout: LayoutDesign, places: Mapping[int, tuple[float, float]]) -> None:
     """Draw the split line of the housing: through its shafts, level where there is one."""
-    on = [places[k] for k in found.split]
+    on = [places[k] for k in layout.split]
     if not on:
         return
-    left, right = walls(found, "y")
+    left, right = walls(layout, "y")
     (y0, z0), (y1, z1) = min(on), max(on)
     slope = (z1 - z0) / (y1 - y0) if y1 - y0 > 1e-9 else 0.0
     ends = [(y, z0 + slope * (y - y0)) for y in (left, right)]
@@ -202,13 +202,13 @@ def _split(sheet: Sheet, found: LayoutDesign, places: Mapping[int, tuple[float, 
 
 def _centre_distances(
     sheet: Sheet,
-    found: LayoutDesign,
+    layout: LayoutDesign,
     places: Mapping[int, tuple[float, float]],
     measures: Measures,
 ) -> None:
     """Draw the centre distance of every stage, along the line of centres."""
-    for stage in sorted({gear.stage for gear in found.gears}):
-        ends = [places[gear.shaft] for gear in found.gears if gear.stage == stage]
+    for stage in sorted({gear.stage for gear in layout.gears}):
+        ends = [places[gear.shaft] for gear in layout.gears if gear.stage == stage]
         if len(ends) == 2:
             text = f"a{stage} = {measures.length(math.dist(*ends))}"
             centre_distance(sheet, ends[0], ends[1], text)
@@ -230,10 +230,10 @@ def centre_distance(sheet: Sheet, a: Point, b: Point, text: str) -> None:
     sheet.label(text, spots, "size")
 
 
-def _narrowest(sheet: Sheet, found: LayoutDesign, measures: Measures) -> None:
+def _narrowest(sheet: Sheet, layout: LayoutDesign, measures: Measures) -> None:
     """Draw the smallest gap between two bodies, with its value."""
-    gap = next(iter(found.gaps), None)
-    if gap is None or (ends := nearest(found, *gap.between)) is None:
+    gap = next(iter(layout.gaps), None)
+    if gap is None or (ends := nearest(layout, *gap.between)) is None:
         return
     start, end = sheet.at(*ends[0][1:]), sheet.at(*ends[1][1:])
     sheet.arrows(start, end, "gap")
@@ -242,27 +242,27 @@ def _narrowest(sheet: Sheet, found: LayoutDesign, measures: Measures) -> None:
     sheet.label(text, around(middle, (44.0, 60.0, 80.0), 4.0), "gap")
 
 
-def _name(sheet: Sheet, found: Turning, gear: GearDesign) -> None:
+def _name(sheet: Sheet, train: Turning, gear: GearDesign) -> None:
     """Write the gear's name where it is alone inside it, else outside with a line to it."""
-    own, others = gear_disc(found, gear), [g for g in found.gears if g.name != gear.name]
-    discs = [gear_disc(found, g) for g in others]
+    own, others = gear_disc(train, gear), [g for g in train.gears if g.name != gear.name]
+    discs = [gear_disc(train, g) for g in others]
     centre, r = sheet.at(*own.centre), own.radius * sheet.scale
     half = Place(0, 0).half_width(gear.name)
     inside = around(centre, [share * r for share in (0.6, 0.75, 0.45) if share * r > 24.0])
     inside = [p for p in inside if math.dist((p.x, p.y), centre) + 0.8 * half < r]
-    shared = [sum(_within(sheet, p, one) for one in discs) for p in inside]
+    shared = [sum(_within(sheet, p, body) for body in discs) for p in inside]
     alone = [replace(p, cost=p.cost + 8.0 * n) for p, n in zip(inside, shared, strict=True)]
     outside = around(centre, (r + half + 6, r + half + 20, r + half + 40), r, 20.0)
     outside = [p for p in outside if abs(p.x - centre[0]) > 1.0]  # no leader on a centre line
     sheet.label(gear.name, alone + outside, "name", series(gear.stage))
 
 
-def _within(sheet: Sheet, spot: Place, one: Disc) -> bool:
-    return math.dist(sheet.at(*one.centre), (spot.x, spot.y)) < one.radius * sheet.scale + SIZE
+def _within(sheet: Sheet, spot: Place, body: Disc) -> bool:
+    return math.dist(sheet.at(*body.centre), (spot.x, spot.y)) < body.radius * sheet.scale + SIZE
 
 
 def side_view(
-    found: LayoutDesign,
+    layout: LayoutDesign,
     window: Window,
     scale: float,
     axis: str,
@@ -274,24 +274,24 @@ def side_view(
     over: what is drawn over it.
     """
     sheet = Sheet(window, scale)
-    box_lines(sheet, found, "x", axis)
-    for it in keep_outs(found):
+    box_lines(sheet, layout, "x", axis)
+    for it in keep_outs(layout):
         aside = any(
             start >= high or end <= low
-            for (start, end), (low, high) in ((sides(it, a), walls(found, a)) for a in ("x", axis))
+            for (start, end), (low, high) in ((sides(it, a), walls(layout, a)) for a in ("x", axis))
         )
         keep_out(sheet, it, "x", axis, hatched=aside)
-    _motor(sheet, found, measures)
+    _motor(sheet, layout, measures)
     above = axis == "y"
-    heights = {s.shaft: s.y_mm if above else s.z_mm for s in found.shafts}
-    far = sorted(found.shafts, key=lambda s: s.z_mm if above else s.y_mm, reverse=not above)
+    heights = {s.shaft: s.y_mm if above else s.z_mm for s in layout.shafts}
+    far = sorted(layout.shafts, key=lambda s: s.z_mm if above else s.y_mm, reverse=not above)
     for shaft in far:
-        _shaft(sheet, found, shaft, heights[shaft.shaft], measures)
-    across_dimension(sheet, found, "x", axis, measures)
-    top = walls(found, axis)[1]
-    face_widths(sheet, found, {gear.stage: top for gear in found.gears}, measures)
-    right = sheet.at(walls(found, "x")[1], 0.0)[0]
-    for shaft in found.shafts:
+        _shaft(sheet, layout, shaft, heights[shaft.shaft], measures)
+    across_dimension(sheet, layout, "x", axis, measures)
+    top = walls(layout, axis)[1]
+    face_widths(sheet, layout, {gear.stage: top for gear in layout.gears}, measures)
+    right = sheet.at(walls(layout, "x")[1], 0.0)[0]
+    for shaft in layout.shafts:
         x = sheet.at(shaft.to_mm, 0.0)[0]
         y = sheet.at(0.0, heights[shaft.shaft])[1]
         spots = [
@@ -300,7 +300,7 @@ def side_view(
             for dy in (0.0, -12.0, 12.0, -24.0, 24.0, -36.0, 36.0)
         ]
         sheet.balloon(str(shaft.shaft), spots)
-    for gear in sorted(found.gears, key=lambda g: -g.tip_diameter_mm):
+    for gear in sorted(layout.gears, key=lambda g: -g.tip_diameter_mm):
         side_name(sheet, gear, heights[gear.shaft], gear.name)
     if over is not None:
         over(sheet)
@@ -310,27 +310,27 @@ def side_view(
 
 
 def _shaft(
-    sheet: Sheet, found: LayoutDesign, shaft: ShaftDesign, height: float, measures: Measures
+    sheet: Sheet, layout: LayoutDesign, shaft: ShaftDesign, height: float, measures: Measures
 ) -> None:
     """Draw a shaft with what sits on it, as rectangles."""
     r = 0.5 * shaft.diameter_mm
     start, end = shaft.from_mm, shaft.to_mm
     sheet.rectangle((start, height - r), (end, height + r), "shaft")
-    for it in found.bearings:
+    for it in layout.bearings:
         if it.shaft == shaft.shaft:
             half = 0.5 * it.diameter_mm
             a, b = (it.from_mm, height - half), (it.to_mm, height + half)
             sheet.rectangle(a, b, "bearing", title=f"bearing of shaft {shaft.shaft}")
             sheet.line(a, b, "bearing")
             sheet.line((a[0], b[1]), (b[0], a[1]), "bearing")
-    gears_on(sheet, found, shaft, height, measures)
+    gears_on(sheet, layout, shaft, height, measures)
 
 
 def gears_on(
-    sheet: Sheet, found: Turning, shaft: ShaftDesign, height: float, measures: Measures
+    sheet: Sheet, train: Turning, shaft: ShaftDesign, height: float, measures: Measures
 ) -> None:
     """Draw the gears of a shaft as rectangles, and its centre line."""
-    for gear in found.gears:
+    for gear in train.gears:
         if gear.shaft == shaft.shaft:
             half = 0.5 * gear.tip_diameter_mm
             a, b = (gear.from_mm, height - half), (gear.to_mm, height + half)
@@ -342,8 +342,8 @@ def gears_on(
     sheet.line((shaft.from_mm - past, height), (shaft.to_mm + past, height), "axis")
 
 
-def _motor(sheet: Sheet, found: LayoutDesign, measures: Measures) -> None:
-    if (place := motor(found)) is None:
+def _motor(sheet: Sheet, layout: LayoutDesign, measures: Measures) -> None:
+    if (place := motor(layout)) is None:
         return
     r, start, end = place
     sheet.rectangle((start, -r), (end, r), "motor", title="motor", round_=6.0)
@@ -354,11 +354,11 @@ def _motor(sheet: Sheet, found: LayoutDesign, measures: Measures) -> None:
 
 
 def face_widths(
-    sheet: Sheet, found: Turning, tops: Mapping[int, float], measures: Measures
+    sheet: Sheet, train: Turning, tops: Mapping[int, float], measures: Measures
 ) -> None:
     """Draw face widths above all that is drawn; tops: where their lines begin, by stage [mm]."""
-    wheels = {g.stage: g for g in found.gears if g.member == "wheel"}
-    for slab in found.slabs:
+    wheels = {g.stage: g for g in train.gears if g.member == "wheel"}
+    for slab in train.slabs:
         for stage in slab:
             if stage not in wheels:
                 continue

@@ -31,8 +31,8 @@ def section(result: Result, measures: Measures) -> Section | None:
         return None
     stages = drive_design(result.design).stages
     drawn = [_mesh(stage.pair, k, len(stages)) for k, stage in enumerate(stages, 1)]
-    found = tuple(one for one in drawn if one is not None)
-    return Section("Teeth in mesh", words=(WORDS,), drawings=found) if found else None
+    meshes = tuple(drawing for drawing in drawn if drawing is not None)
+    return Section("Teeth in mesh", words=(WORDS,), drawings=meshes) if meshes else None
 
 
 def _mesh(pair: GearPair, stage: int, stages: int) -> Drawing | None:

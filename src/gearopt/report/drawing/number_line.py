@@ -116,9 +116,9 @@ def ticks(low: float, high: float) -> list[float]:
         return even_ticks(low, high)
     decades = [10.0**k for k in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
     marks = MARKS if len(decades) < FEW else (1.0,)
-    found = [m * d for d in decades for m in marks]
-    found = [v for v in found if low * (1.0 - 1e-9) <= v <= high * (1.0 + 1e-9)]
-    return found[:: math.ceil(len(found) / (2 * FEW))]
+    values = [m * d for d in decades for m in marks]
+    values = [v for v in values if low * (1.0 - 1e-9) <= v <= high * (1.0 + 1e-9)]
+    return values[:: math.ceil(len(values) / (2 * FEW))]
 
 
 def even_ticks(low: float, high: float) -> list[float]:

@@ -140,7 +140,7 @@ class Animation:
 
     @property
     def data(self) -> dict[str, Any]:
-        """Return what player.js reads: numbers once each as 32-bit floats, and who uses them."""
+        """Data of player.js: numbers once each as 32-bit floats, and who uses them."""
         tracks: dict[str, int] = {}
 
         def track(values: Any) -> int:

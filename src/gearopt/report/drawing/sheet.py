@@ -84,7 +84,7 @@ class Ink:
 
 def best(text: str, places: Sequence[Place], ink: Ink, reach: float = 0.58 * SIZE) -> Place:
     """Return the place of lowest cost for the text, which clears what is drawn by reach [px]."""
-    found, lowest = places[0], math.inf
+    cheapest, lowest = places[0], math.inf
     for place in places:
         inked = 0.0
         for x, y in place.spots(text):
@@ -92,9 +92,9 @@ def best(text: str, places: Sequence[Place], ink: Ink, reach: float = 0.58 * SIZ
             if place.cost + inked >= lowest:
                 break  # no letter costs less than nothing
         else:
-            found, lowest = place, place.cost + inked
-    ink.texts += ((x, y, reach) for x, y in found.spots(text))
-    return found
+            cheapest, lowest = place, place.cost + inked
+    ink.texts += ((x, y, reach) for x, y in cheapest.spots(text))
+    return cheapest
 
 
 def around(
@@ -107,7 +107,7 @@ def around(
 
     leader: a line leads to the centre, or to the circle of this radius, from places outside it.
     """
-    found = []
+    places = []
     for k, r in enumerate(radii):
         for step in range(24):
             turn = 2.0 * math.pi * step / 24 - 0.5 * math.pi
@@ -116,8 +116,8 @@ def around(
             to = None
             if leader is not None and r > leader:
                 to = (centre[0] + leader * ux, centre[1] + leader * uy)
-            found.append(Place(x, y, 0.0, cost + 4.0 * k, to))
-    return found
+            places.append(Place(x, y, 0.0, cost + 4.0 * k, to))
+    return places
 
 
 @dataclass(frozen=True)
@@ -384,7 +384,7 @@ class Row:
 
     @property
     def sheet(self) -> float:
-        """Return what an A4 sheet has room for [px]."""
+        """Width of an A4 sheet inside its margins [px]."""
         return SHEET
 
     @property

@@ -234,13 +234,13 @@ def line_trace(
 def edges(low: Point, high: Point) -> list[Point | None]:
     """Return the twelve edges of a box as lines."""
     (x0, y0, z0), (x1, y1, z1) = low, high
-    found: list[Point | None] = []
+    path: list[Point | None] = []
     for x in (x0, x1):
-        found += [(x, y0, z0), (x, y1, z0), (x, y1, z1), (x, y0, z1), (x, y0, z0), None]
+        path += [(x, y0, z0), (x, y1, z0), (x, y1, z1), (x, y0, z1), (x, y0, z0), None]
     for y in (y0, y1):
         for z in (z0, z1):
-            found += [(x0, y, z), (x1, y, z), None]
-    return found
+            path += [(x0, y, z), (x1, y, z), None]
+    return path
 
 
 def space(low: Point, high: Point, measures: Measures, height: int = 640) -> dict[str, Any]:

@@ -22,9 +22,9 @@ TOOTH_SPACING = 2.4  # px from tooth to tooth, below which teeth are not drawn
 TOUCH = 1e-6  # mm by which bodies that touch may overlap
 
 
-def dot(one: Spot, other: Spot) -> float:
+def dot(a: Spot, other: Spot) -> float:
     """Return the scalar product."""
-    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
+    return a[0] * other[0] + a[1] * other[1] + a[2] * other[2]
 
 
 @dataclass(frozen=True)
@@ -247,14 +247,14 @@ def still(
 
 def _rows(legend: Sequence[tuple[str, str]], width: float) -> list[tuple[float, int, str, str]]:
     """Return names with their places across [px] and rows, from the left."""
-    found, x, row = [], 12.0, 0
+    placed, x, row = [], 12.0, 0
     for text, colour in legend:
         half = Place(0.0, 0.0).half_width(text)
         if x + 2.0 * half > width and x > 12.0:
             x, row = 12.0, row + 1
-        found.append((x + half, row, text, colour))
+        placed.append((x + half, row, text, colour))
         x += 2.0 * half + 12.0
-    return found
+    return placed
 
 
 def outside(sheet: Sheet, room: tuple[Spot, Spot], seen: View, texts: Sequence[str]) -> None:

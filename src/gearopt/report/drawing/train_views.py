@@ -60,10 +60,10 @@ def section(result: Result, measures: Measures, hint: str = "") -> Section | Non
     drawn = views(result.design.get("stages", ()), measures)
     if not drawn or result.design.get("layout"):
         return None
-    name, sign, one = measures.module
+    name, sign, unit = measures.module
     webs = [circles(s, m) for s in result.design["stages"] for m in MEMBERS]
     inside = ", thin ones the insides of rims, hubs and bores" if any(webs) else ""
-    plural = f"modules {sign} in {one}" if one == "mm" else f"{name}es {sign} in {one}"
+    plural = f"modules {sign} in {unit}" if unit == "mm" else f"{name}es {sign} in {unit}"
     words = (
         "All shafts are drawn in one line: their places are not optimised, and the gaps between "
         f"the stages are only as wide as the labels need.{hint}",
@@ -81,23 +81,23 @@ def beside(
 ) -> tuple[Drawing, ...]:
     """Draw trains along their shafts, all at one scale; designs: stages by what they are called."""
     rows = {name: in_one_line(_picked(stages))[0] for name, stages in designs.items()}
-    ends = [_ends(found) for found in rows.values()]
+    ends = [_ends(train) for train in rows.values()]
     scale = (BESIDE - 2.0 * EDGE) / max(right - left for left, right in ends)
 
     def title(gear: GearDesign) -> str:
         return meaning(gear, measures)
 
     return tuple(
-        replace(along_shafts(found, scale, measures.length, title), caption=f"{name.capitalize()}.")
-        for name, found in rows.items()
+        replace(along_shafts(train, scale, measures.length, title), caption=f"{name.capitalize()}.")
+        for name, train in rows.items()
     )
 
 
 def _picked(stages: Sequence[Mapping[str, Any]]) -> Sequence[DrawnStage]:
-    """Return what is drawn of stages; KeyError where a size is not known."""
+    """Sizes of stages that are drawn; KeyError where one is not known."""
     picked = [{f.name: stage[f.name] for f in fields(DrawnStage)} for stage in stages]
-    found: Sequence[DrawnStage] = typed(tuple[DrawnStage, ...], picked, "stages")
-    return found
+    drawn: Sequence[DrawnStage] = typed(tuple[DrawnStage, ...], picked, "stages")
+    return drawn
 
 
 def is_drawn(stages: Sequence[Mapping[str, Any]]) -> bool:
@@ -110,19 +110,19 @@ def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Draw
     """Draw a train along its shafts and across them; nothing where a size is not known."""
     if not is_drawn(stages):
         return ()
-    found, scale = in_one_line(_picked(stages))
-    inner = {g.name: circles(stages[g.stage - 1], g.member) for g in found.gears}
-    front = along_shafts(found, scale, measures.length, lambda g: meaning(g, measures), inner)
-    return front, _side(found, scale, measures)
+    train, scale = in_one_line(_picked(stages))
+    inner = {g.name: circles(stages[g.stage - 1], g.member) for g in train.gears}
+    front = along_shafts(train, scale, measures.length, lambda g: meaning(g, measures), inner)
+    return front, _side(train, scale, measures)
 
 
 def circles(stage: Mapping[str, Any], member: str) -> list[float]:
     """Return the diameters [mm] inside the rim, of the hub and of the bore, of what a gear has."""
-    found = [stage.get(f"{member}_{name}_mm") for name in ("hub_diameter", "bore")]
+    diameters = [stage.get(f"{member}_{name}_mm") for name in ("hub_diameter", "bore")]
     if stage.get(f"{member}_web_thickness_mm") is not None:
         rim: float = stage[f"{member}_rim_thickness_mm"]
-        found = [stage[f"{member}_root_diameter_mm"] - 2.0 * rim, *found]
-    return [diameter for diameter in found if diameter is not None]
+        diameters = [stage[f"{member}_root_diameter_mm"] - 2.0 * rim, *diameters]
+    return [diameter for diameter in diameters if diameter is not None]
 
 
 def in_one_line(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
@@ -187,15 +187,15 @@ def _along(widths: Sequence[float], scale: float) -> tuple[float, list[float]]:
     return scale, [middle - 0.5 * b for middle, b in zip(middles, widths, strict=True)]
 
 
-def _ends(found: Bodies) -> tuple[float, float]:
+def _ends(train: Bodies) -> tuple[float, float]:
     """Return the ends of the row of gears, over tip circles [mm]."""
-    places = {s.shaft: s.y_mm for s in found.shafts}
-    rims = [(places[g.shaft], 0.5 * g.tip_diameter_mm) for g in found.gears]
+    places = {s.shaft: s.y_mm for s in train.shafts}
+    rims = [(places[g.shaft], 0.5 * g.tip_diameter_mm) for g in train.gears]
     return min(y - r for y, r in rims), max(y + r for y, r in rims)
 
 
 def along_shafts(
-    found: Bodies,
+    train: Bodies,
     scale: float,
     length: Callable[[float], str],
     title: Callable[[GearDesign], str],
@@ -206,24 +206,24 @@ def along_shafts(
     length: a length as it is written. title: what a gear says where the pointer rests. inner:
     diameters [mm] of circles inside the teeth, by the name of a gear.
     """
-    left, right = _ends(found)
-    high = max(0.5 * g.tip_diameter_mm for g in found.gears)
+    left, right = _ends(train)
+    high = max(0.5 * g.tip_diameter_mm for g in train.gears)
     if scale * high < LOW:
         high += NAMES / scale
-    axes = [s.y_mm for s in found.shafts]
+    axes = [s.y_mm for s in train.shafts]
     texts = [length(b - a) for a, b in pairwise(axes)]
     narrow = sum(
         scale * (b - a) < _room(text) for (a, b), text in zip(pairwise(axes), texts, strict=True)
     )
     below = CHAIN + min(narrow, ROWS) * ROW + 46.0
     sheet = Sheet(Window(left, right, -high, high, (EDGE, EDGE, below, 44.0)), scale)
-    places = {s.shaft: (s.y_mm, 0.0) for s in found.shafts}
-    gear_circles(sheet, found, places, title)
-    for gear in found.gears:
+    places = {s.shaft: (s.y_mm, 0.0) for s in train.shafts}
+    gear_circles(sheet, train, places, title)
+    for gear in train.gears:
         for diameter in (inner or {}).get(gear.name, ()):
             sheet.circle(*places[gear.shaft], 0.5 * diameter, "body", series(gear.stage))
     level = sheet.at(0.0, -high)[1] + CHAIN
-    for shaft in found.shafts:
+    for shaft in train.shafts:
         x = sheet.at(shaft.y_mm, 0.0)[0]
         sheet.line((shaft.y_mm, high + 16.0 / scale), (shaft.y_mm, -high), "axis")
         sheet.tick((x, level - CHAIN), (x, level + 5.0))
@@ -234,7 +234,7 @@ def along_shafts(
     sheet.dimension((left, -high), (right, -high), away, length(right - left))
     for (a, b), text in reversed(list(zip(pairwise(axes), texts, strict=True))):
         _distance(sheet, sheet.at(a, 0.0)[0], sheet.at(b, 0.0)[0], level, text)
-    gear_names(sheet, found)
+    gear_names(sheet, train)
     return sheet.drawing("front view", "Front view, along the shafts.")
 
 
@@ -258,31 +258,31 @@ def _room(text: str) -> float:
     return 2.0 * Place(0, 0).half_width(text) + 4.0
 
 
-def _side(found: Bodies, scale: float, measures: Measures) -> Drawing:
+def _side(train: Bodies, scale: float, measures: Measures) -> Drawing:
     """Draw the view across the shafts: gears as rectangles, with face width and module."""
-    (left, right), shafts = _ends(found), found.shafts
+    (left, right), shafts = _ends(train), train.shafts
     places = {s.shaft: s.y_mm for s in shafts}
-    long = sum(max(PITCH, scale * b + GAP) for b in _widths(found)) / scale
+    long = sum(max(PITCH, scale * b + GAP) for b in _widths(train)) / scale
     sheet = Sheet(Window(0.0, long, left, right, SIDE), scale)
     tops: dict[int, float] = {}
     for shaft in shafts:
-        gears_on(sheet, found, shaft, shaft.y_mm, measures)
-    for gear in found.gears:
+        gears_on(sheet, train, shaft, shaft.y_mm, measures)
+    for gear in train.gears:
         top = places[gear.shaft] + 0.5 * gear.tip_diameter_mm
         tops[gear.stage] = max(top, tops.get(gear.stage, top))
-    for gear in (g for g in found.gears if g.member == "wheel"):
+    for gear in (g for g in train.gears if g.member == "wheel"):
         x = sheet.at(0.5 * (gear.from_mm + gear.to_mm), 0.0)[0]
         module = measures.of_module(gear.normal_module_mm)
         sheet.label(f"{measures.module[1]} {number(module)}", [Place(x, LEVEL - MODULES)], "size")
-    face_widths(sheet, found, tops, measures)
+    face_widths(sheet, train, tops, measures)
     for shaft in shafts:
         x, y = sheet.at(shaft.to_mm, shaft.y_mm)
         spots = [Place(x + 20.0, y + dy, 0.0, abs(dy), (x, y)) for dy in (0.0, -14.0, 14.0)]
         sheet.balloon(str(shaft.shaft), spots)
-    for gear in sorted(found.gears, key=lambda g: -g.tip_diameter_mm):
+    for gear in sorted(train.gears, key=lambda g: -g.tip_diameter_mm):
         side_name(sheet, gear, places[gear.shaft], f"z {number(gear.teeth)}")
     return sheet.drawing("side view", "View across the shafts.")
 
 
-def _widths(found: Bodies) -> list[float]:
-    return [g.to_mm - g.from_mm for g in found.gears if g.member == "wheel"]
+def _widths(train: Bodies) -> list[float]:
+    return [g.to_mm - g.from_mm for g in train.gears if g.member == "wheel"]

@@ -16,8 +16,8 @@ from gearopt.scenes.compound import CompoundDesign
 
 
 def _design(result: Result) -> CompoundDesign:
-    found: CompoundDesign = typed(CompoundDesign, result.design, "design")
-    return found
+    train: CompoundDesign = typed(CompoundDesign, result.design, "design")
+    return train
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
@@ -30,7 +30,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
 
 
 def binding_limit(result: Result) -> str:
-    """Return what stands between the train and its ratio."""
+    """Obstacle between the train and its ratio."""
     if not result.design:
         return ""
     if not result.report.get("reach", {"within": True})["within"]:
@@ -44,11 +44,11 @@ def gears(result: Result, measures: Measures) -> Section | None:
     if not result.design:
         return None
     design = _design(result)
-    found, scale = in_one_line(
+    train, scale = in_one_line(
         [_stage(*z) for z in zip(design.driver_teeth, design.driven_teeth, strict=True)]
     )
-    named = tuple(replace(gear, name=f"z {gear.teeth}") for gear in found.gears)
-    drawing = along_shafts(replace(found, gears=named), scale, _modules, _title)
+    named = tuple(replace(gear, name=f"z {gear.teeth}") for gear in train.gears)
+    drawing = along_shafts(replace(train, gears=named), scale, _modules, _title)
     words = (
         "Drawn to scale as if both pairs had one normal module m, with spur gears and an addendum "
         "of m: centre distances and the length over tip circles are multiples of m. Solid lines "
@@ -84,15 +84,15 @@ def _title(gear: GearDesign) -> str:
 
 def reach(result: Result, measures: Measures) -> Section | None:
     """Draw the ratio asked beside those that two pairs reach; None where it is among them."""
-    found: dict[str, Any] = result.report.get("reach") or {}
-    if not found or found["within"]:
+    reached: dict[str, Any] = result.report.get("reach") or {}
+    if not reached or reached["within"]:
         return None
-    rows = [_span(found["teeth"], found["least_ratio"], found["most_ratio"])]
-    for wider in found["wider_teeth"]:
+    rows = [_span(reached["teeth"], reached["least_ratio"], reached["most_ratio"])]
+    for wider in reached["wider_teeth"]:
         most = (wider[1] / wider[0]) ** 2
         rows.append(_span(wider, 1.0 / most, most))
     caption = "Total ratios of two pairs, by the number of teeth allowed; the axis is logarithmic."
-    asked = Guide(found["ratio"], f"asked {found['ratio']:.6g}", "gap")
+    asked = Guide(reached["ratio"], f"asked {reached['ratio']:.6g}", "gap")
     drawing = number_line(rows, (asked,), "ratio asked and ratios in reach", caption)
     return Section("Out of reach", drawings=(drawing,))
 

@@ -56,8 +56,8 @@ def plans(result: Result, measures: Measures) -> Section | None:
 
 def _colours(cylinders: Sequence[CylinderDesign]) -> dict[float, str]:
     """Return one colour for every diameter, from the largest."""
-    found = sorted({c.diameter_mm for c in cylinders}, reverse=True)
-    return {d: series(k) for k, d in enumerate(found, 1)}
+    diameters = sorted({c.diameter_mm for c in cylinders}, reverse=True)
+    return {d: series(k) for k, d in enumerate(diameters, 1)}
 
 
 def _span(container: ContainerDesign) -> tuple[float, float, float, float]:
@@ -137,14 +137,19 @@ def binding_limit(result: Result) -> str:
     return f"{all_} {count} cylinders stand {where}; together they fill {share} of the container"
 
 
-def _at_wall(one: CylinderDesign, box: ContainerDesign, wall: float) -> bool:
+def _at_wall(cylinder: CylinderDesign, box: ContainerDesign, wall: float) -> bool:
     """Return whether a cylinder is as near to a wall as the clearance [mm] lets it."""
     left, right, front, back = _span(box)
-    r, near = 0.5 * one.diameter_mm, wall + WALL * max(box.sides)
+    r, near = 0.5 * cylinder.diameter_mm, wall + WALL * max(box.sides)
     if box.shape == "circle":
         middle = 0.5 * (left + right), 0.5 * (front + back)
-        return 0.5 * (right - left) - math.dist(middle, (one.x_mm, one.y_mm)) - r < near
-    free = (one.x_mm - left, right - one.x_mm, one.y_mm - front, back - one.y_mm)
+        return 0.5 * (right - left) - math.dist(middle, (cylinder.x_mm, cylinder.y_mm)) - r < near
+    free = (
+        cylinder.x_mm - left,
+        right - cylinder.x_mm,
+        cylinder.y_mm - front,
+        back - cylinder.y_mm,
+    )
     return min(free) - r < near
 
 
@@ -201,11 +206,11 @@ def _outline(container: ContainerDesign) -> list[Point | None]:
     ring = [
         (x + r * math.cos(k * math.pi / 36), y + r * math.sin(k * math.pi / 36)) for k in range(73)
     ]
-    found: list[Point | None] = [(u, v, 0.0) for u, v in ring]
-    found += [None, *[(u, v, height) for u, v in ring]]
+    corners: list[Point | None] = [(u, v, 0.0) for u, v in ring]
+    corners += [None, *[(u, v, height) for u, v in ring]]
     for u, v in ring[:72:18]:
-        found += [None, (u, v, 0.0), (u, v, height)]
-    return found
+        corners += [None, (u, v, 0.0), (u, v, height)]
+    return corners
 
 
 def places(result: Result, measures: Measures) -> Section | None:
@@ -225,10 +230,10 @@ def _cylinders(design: PackingDesign, measures: Measures) -> Table:
     """Return one row per cylinder, on the terminal to a micrometre."""
     keys = [f.name for f in fields(CylinderDesign)]
     rows = []
-    for one in design.cylinders:
-        row = [_cell(key, getattr(one, key), measures) for key in keys]
-        mark = " (fixed)" if one.fixed else ""
-        rows.append([Cell(one.name, one.name, short=one.name + mark), *row[1:]])
+    for cylinder in design.cylinders:
+        row = [_cell(key, getattr(cylinder, key), measures) for key in keys]
+        mark = " (fixed)" if cylinder.fixed else ""
+        rows.append([Cell(cylinder.name, cylinder.name, short=cylinder.name + mark), *row[1:]])
     heads = [heading(key, measures) for key in keys]
     return Table("cylinders", heads, rows, "cylinders", page_only=("fixed",), short={"name": ""})
 

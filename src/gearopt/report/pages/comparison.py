@@ -19,23 +19,23 @@ SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "x", "star", "
 ZERO = "0"  # tick of the floor
 
 
-def page(found: Comparison) -> str:
+def page(comparison: Comparison) -> str:
     """Return one self-contained HTML page."""
-    colour = colours([row.method for group in found.groups for row in group.rows])
-    rows = [row for group in found.groups for row in group.rows if not row.refused]
+    colour = colours([row.method for group in comparison.groups for row in group.rows])
+    rows = [row for group in comparison.groups for row in group.rows if not row.refused]
     samples = [s for row in rows for s in (row.equal_evaluations, row.equal_time) if s]
     clipped = sum(run.clipped for sample in samples for run in sample.runs)
     return render(
         "comparison.html",
-        f"{found.title}: methods compared",
-        _subtitle(found),
-        {"gearopt": found.gearopt, **found.versions},
-        words.command(found),
-        found=found,
-        blocks=[_block(found, group, colour) for group in found.groups],
-        columns=words.columns(found),
+        f"{comparison.title}: methods compared",
+        _subtitle(comparison),
+        {"gearopt": comparison.gearopt, **comparison.versions},
+        words.command(comparison),
+        comparison=comparison,
+        blocks=[_block(comparison, group, colour) for group in comparison.groups],
+        columns=words.columns(comparison),
         colours=colour,
-        methods=[(row, words.settings(found.settings[row.method])) for row in rows],
+        methods=[(row, words.settings(comparison.settings[row.method])) for row in rows],
         fairness=words.FAIRNESS,
         clipped=f" (it was so in {clipped} runs)" if clipped else "",
     )
@@ -47,12 +47,12 @@ HEADS = (
 )
 
 
-def tables(found: Comparison) -> dict[str, str]:
+def tables(comparison: Comparison) -> dict[str, str]:
     """Return the CSV of every run by the name of its file."""
     rows = [
         (*place, run.seed, run.status, *_of(group, run), 100.0 * run.gap if run.gap else run.gap)
         + (run.violation, run.evaluations, run.seconds)
-        for group in found.groups
+        for group in comparison.groups
         for row in group.rows
         for kind, sample in (("evaluations", row.equal_evaluations), ("time", row.equal_time))
         if sample is not None
@@ -78,20 +78,20 @@ def colours(methods: list[str]) -> dict[str, str]:
     return {name: f"--series-{k}" for name, k in taken.items()}
 
 
-def _subtitle(found: Comparison) -> str:
-    methods = ", ".join(row.method for group in found.groups for row in group.rows)
-    budget = found.budget
+def _subtitle(comparison: Comparison) -> str:
+    methods = ", ".join(row.method for group in comparison.groups for row in group.rows)
+    budget = comparison.budget
     return (
-        f"{methods}; {len(found.seeds)} seeds for random methods; "
+        f"{methods}; {len(comparison.seeds)} seeds for random methods; "
         f"{budget['evaluations']:,} evaluations or {budget['seconds']:g} s per run"
     )
 
 
-def _block(found: Comparison, group: Group, colour: dict[str, str]) -> dict[str, Any]:
-    """Return what the template shows of a group."""
+def _block(comparison: Comparison, group: Group, colour: dict[str, str]) -> dict[str, Any]:
+    """Values of a group for the template."""
     sides = []
     floor, worst, top = span(group)
-    for field, heading, budget in words.kinds(found):
+    for field, heading, budget in words.kinds(comparison):
         samples = {row.method: getattr(row, field) for row in group.rows if getattr(row, field)}
         if not samples:
             continue
@@ -100,8 +100,8 @@ def _block(found: Comparison, group: Group, colour: dict[str, str]) -> dict[str,
             figures = [anytime(samples, colour, floor, top, by_time=field == "equal_time")]
         if worst > SMALLEST:
             figures.append(final(samples, colour, floor, worst))
-        rows = [(method, words.cells(found, sample)) for method, sample in samples.items()]
-        late = [words.ended(found, row) for row in group.rows if field == "equal_evaluations"]
+        rows = [(method, words.cells(comparison, sample)) for method, sample in samples.items()]
+        late = [words.ended(comparison, row) for row in group.rows if field == "equal_evaluations"]
         side = {"heading": heading, "budget": budget, "rows": rows, "figures": figures}
         sides.append(side | {"ended": "; ".join(filter(None, late))})
     return {

@@ -49,35 +49,37 @@ def page(front: Front, html: str = "page.html", measures: Measures = METRIC) -> 
 def tables(front: Front, measures: Measures = METRIC) -> dict[str, str]:
     """Return the CSV of every table by the name of its file, such as `front.csv`."""
     each = [front_designs.numbers(p.design, measures) for p in front.points]
-    found = [
+    listed = [
         front_designs.designs(front, each, (), measures) if front.points else None,
         front_designs.beaten(front, measures),
         front_designs.impossible(front, measures),
         front_designs.growth(front),
     ]
-    return {f"{table.stem}.csv": table.csv() for table in found if table is not None}
+    return {f"{table.stem}.csv": table.csv() for table in listed if table is not None}
 
 
 def _picking(front: Front, each: Sequence[Numbers], measures: Measures) -> dict[str, Any]:
-    """Return what the template shows to pick from; nothing of a front without a design."""
+    """Plots and tables to pick a design from; none of a front without a design."""
     if not front.points:
         return {"table": None}
-    found = drawn(front, measures)
+    drawn_front = drawn(front, measures)
     names = front_designs.main(front, each, measures)
     lines = len(front.points) >= LINES
     beaten = front_designs.beaten(front, measures)
     return {
-        "trade": Section("Trade-off", figures=_figures(found), tables=[beaten] if beaten else ()),
-        "parallel": front_plots.parallel(front, found, each, names) if lines else None,
+        "trade": Section(
+            "Trade-off", figures=_figures(drawn_front), tables=[beaten] if beaten else ()
+        ),
+        "parallel": front_plots.parallel(front, drawn_front, each, names) if lines else None,
         "table": front_designs.designs(front, each, names, measures),
         "kept": set(told.chosen(front, told.SHOWN)),
         "told": front_designs.data(front, each, names, measures) | {"pair": _pair(front)},
     }
 
 
-def _figures(found: Drawn) -> list[Any]:
-    space = front_plots.space(found)
-    return [*front_plots.pairs(found), *([space] if space else [])]
+def _figures(front: Drawn) -> list[Any]:
+    space = front_plots.space(front)
+    return [*front_plots.pairs(front), *([space] if space else [])]
 
 
 def _pair(front: Front) -> list[int]:
@@ -91,10 +93,10 @@ def _summary(front: Front, measures: Measures) -> Section:
     """Return key figures, what was found and how sure it is, and the picks with their prices."""
     count = len(front.points)
     tiles = [Tile("designs", f"{count:,}", told.verdict(front)[0])] if count else []
-    for k, one in enumerate(front.objectives if count else ()):
+    for k, objective in enumerate(front.objectives if count else ()):
         values = [p.values[k] for p in front.points]
-        low, high = (measures.amount(v, unit_of(one)) for v in (min(values), max(values)))
-        tiles.append(Tile(words(one.name), low, f"to {high}" if high != low else ""))
+        low, high = (measures.amount(v, unit_of(objective)) for v in (min(values), max(values)))
+        tiles.append(Tile(words(objective.name), low, f"to {high}" if high != low else ""))
     lines = told.decided(front, measures)
     if front.status == "infeasible" and front.file:
         lines.append(f"Which limits are in conflict: gearopt explain {front.file}.")
@@ -112,9 +114,9 @@ def _summary(front: Front, measures: Measures) -> Section:
 def _drawn(front: Front, measures: Measures) -> list[Section]:
     """Return drawings of the picks and the ends of the front, all at one scale."""
     names = {place: ", ".join(own) for place, own in rules(front).items()}
-    for k, one in enumerate(front.objectives if front.points else ()):
+    for k, objective in enumerate(front.objectives if front.points else ()):
         values = [p.values[k] for p in front.points]
-        names.setdefault(values.index(min(values)), f"least {words(one.name)}")
+        names.setdefault(values.index(min(values)), f"least {words(objective.name)}")
     drawings = _views(front, names, measures)
     if not drawings:
         return []
@@ -128,11 +130,11 @@ def _drawn(front: Front, measures: Measures) -> list[Section]:
 def _views(front: Front, names: dict[int, str], measures: Measures) -> Sequence[Drawing]:
     """Return views along the shafts of some designs, by their places; none without gears."""
     called = {f"Design {place + 1}, {name}": place for place, name in sorted(names.items())}
-    found = {name: front.points[place].design for name, place in called.items()}
-    if found and all(design.get("layout") for design in found.values()):
-        layouts = {name: drive_design(design).layout for name, design in found.items()}
-        return layout_views.beside({n: one for n, one in layouts.items() if one}, measures)
-    stages = {name: stages_of(design) for name, design in found.items()}
+    designs = {name: front.points[place].design for name, place in called.items()}
+    if designs and all(design.get("layout") for design in designs.values()):
+        layouts = {name: drive_design(design).layout for name, design in designs.items()}
+        return layout_views.beside({n: layout for n, layout in layouts.items() if layout}, measures)
+    stages = {name: stages_of(design) for name, design in designs.items()}
     if not stages or not all(map(train_views.is_drawn, stages.values())):
         return ()
     return train_views.beside(stages, measures)

@@ -19,13 +19,13 @@ Numbers = dict[str, Cell]  # of a design, by what they are called
 
 def numbers(design: Mapping[str, Any], measures: Measures) -> Numbers:
     """Return every single number of a design, those of its stages first, by name and unit."""
-    found = {}
+    cells = {}
     stages = stages_of(design)
     for k, stage in enumerate(stages, 1):
         for key in (*(key for key in STAGE_ROWS if key in stage), *(_others(stage))):
             unit = STAGE_ROWS.get(key, parted(key))[1]
-            found[f"stage {k}: {_label(key, measures)}"] = _cell(stage[key], key, unit, measures)
-    return found | dict(_single(design, measures))
+            cells[f"stage {k}: {_label(key, measures)}"] = _cell(stage[key], key, unit, measures)
+    return cells | dict(_single(design, measures))
 
 
 def _others(stage: Mapping[str, Any]) -> Iterator[str]:
@@ -45,11 +45,11 @@ def _single(
         if isinstance(value, Mapping):
             yield from _single(value, measures, f"{name}: ")
         elif isinstance(value, list | tuple) and key != "stages":
-            for k, one in enumerate(value, 1):
-                if isinstance(one, Mapping):
-                    yield from _single(one, measures, f"{name} {one.get('name', k)}: ")
-                elif _is_number(one):
-                    yield f"{name} {k}", _cell(one, key, parted(key)[1], measures)
+            for k, item in enumerate(value, 1):
+                if isinstance(item, Mapping):
+                    yield from _single(item, measures, f"{name} {item.get('name', k)}: ")
+                elif _is_number(item):
+                    yield f"{name} {k}", _cell(item, key, parted(key)[1], measures)
         elif _is_number(value):
             yield name, _cell(value, key, parted(key)[1], measures)
 
@@ -81,17 +81,17 @@ def main(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]
         return staged[:AXES]
     columns = zip(*(p.values for p in front.points), strict=True)
     known = [
-        [measures.of(v, unit_of(one)) for v in column]
-        for column, one in zip(columns, front.objectives, strict=True)
+        [measures.of(v, unit_of(rating)) for v in column]
+        for column, rating in zip(columns, front.objectives, strict=True)
     ]
     names = _different(each, _names(front, each, measures))
-    return [n for n in names if [one[n].value for one in each] not in known][:FEW]
+    return [n for n in names if [rating[n].value for rating in each] not in known][:FEW]
 
 
 def _different(each: Sequence[Numbers], names: Sequence[str]) -> list[str]:
     """Return the names of numbers that all designs have and that are not the same in all."""
-    there = [n for n in names if all(n in one for one in each)]
-    return [n for n in there if _varies([one[n].value for one in each])]
+    there = [n for n in names if all(n in rating for rating in each)]
+    return [n for n in there if _varies([rating[n].value for rating in each])]
 
 
 def _varies(values: Sequence[Any]) -> bool:
@@ -109,18 +109,18 @@ def designs(
     each: numbers of every point; shown: names of those that the page shows, too, but for modules
     and teeth, which stand in one column.
     """
-    made = table(front, measures)
+    front_table = table(front, measures)
     names = _names(front, each, measures)
     limits = list(dict.fromkeys(name for p in front.points for name in p.limits))
     staged = front.scene is not None
-    heads = [*made.heads, "proven", *names, *(f"used: {_limit(n, staged)}" for n in limits)]
+    heads = [*front_table.heads, "proven", *names, *(f"used: {_limit(n, staged)}" for n in limits)]
     rows = [
-        [*row, p.proven, *(one.get(n) for n in names), *(p.limits.get(n) for n in limits)]
-        for row, p, one in zip(made.rows, front.points, each, strict=True)
+        [*row, p.proven, *(cells.get(n) for n in names), *(p.limits.get(n) for n in limits)]
+        for row, p, cells in zip(front_table.rows, front.points, each, strict=True)
     ]
     gears = any(stages_of(p.design) for p in front.points)
     kept = {n for n in shown if not gears or "teeth" not in n and measures.module[1] not in n}
-    hidden = [h for h in heads[len(made.heads) :] if h not in kept]
+    hidden = [h for h in heads[len(front_table.heads) :] if h not in kept]
     return Table("front", ("design", *heads[1:]), rows, csv_only=hidden)
 
 
@@ -128,31 +128,35 @@ def beaten(front: Front, measures: Measures) -> Table | None:
     """Return the values of designs that others beat, of which the page shows a plot."""
     if not front.beaten:
         return None
-    heads = [head(one, measures) for one in front.objectives]
+    heads = [head(objective, measures) for objective in front.objectives]
     rows = [_values(front, values, measures) for values in front.beaten]
     return Table("dominated designs", heads, rows, folded=True)
 
 
 def _values(front: Front, values: Sequence[float], measures: Measures) -> list[Cell]:
     pairs = zip(values, front.objectives, strict=True)
-    return [cell(v, unit_of(one), measures) for v, one in pairs]
+    return [cell(v, unit_of(objective), measures) for v, objective in pairs]
 
 
 def impossible(front: Front, measures: Measures) -> Table | None:
     """Return the limits on objectives under which there is no design; None where all had one."""
     if not front.impossible:
         return None
-    heads = [f"{head(one, measures)}, at most" for one in front.objectives]
+    heads = [f"{head(objective, measures)}, at most" for objective in front.objectives]
     rows = [
-        [k, *_most(front, one, measures), "proven impossible" if one.proven else "none found"]
-        for k, one in enumerate(front.impossible, 1)
+        [
+            k,
+            *_most(front, objective, measures),
+            "proven impossible" if objective.proven else "none found",
+        ]
+        for k, objective in enumerate(front.impossible, 1)
     ]
     return Table("limits without a design", ("", *heads, "result"), rows, texts=("result",))
 
 
-def _most(front: Front, one: Impossible, measures: Measures) -> list[Cell]:
-    found = ((one.limits.get(o.name), unit_of(o)) for o in front.objectives)
-    return [Cell(None, "any") if v is None else cell(v, unit, measures) for v, unit in found]
+def _most(front: Front, step: Impossible, measures: Measures) -> list[Cell]:
+    limits = ((step.limits.get(o.name), unit_of(o)) for o in front.objectives)
+    return [Cell(None, "any") if v is None else cell(v, unit, measures) for v, unit in limits]
 
 
 def growth(front: Front) -> Table | None:
@@ -168,25 +172,27 @@ def growth(front: Front) -> Table | None:
 def data(
     front: Front, each: Sequence[Numbers], shown: Sequence[str], measures: Measures
 ) -> dict[str, Any]:
-    """Return what the page tells of every design beside the pick: texts by row, and a sketch.
+    """Texts by row and a sketch of every design, shown beside the pick.
 
     shown: names of main numbers. parts: heads and first and last row of each table; in the one of
     limits shares are drawn as bars. values: of the objectives, in full, to sort by.
     """
-    heads = [head(one, measures) for one in front.objectives]
+    heads = [head(objective, measures) for objective in front.objectives]
     main = list(shown)
     names = [n for n in _names(front, each, measures) if n not in main]
-    alike = {n for n in names if all(n in one for one in each)} - {*_different(each, names)}
+    alike = {n for n in names if all(n in objective for objective in each)} - {
+        *_different(each, names)
+    }
     others = [n for n in names if len(each) == 1 or n not in alike]
     limits = list(dict.fromkeys(name for p in front.points for name in p.limits))
     points = [
         [
             *(c.text for c in _values(front, p.values, measures)),
-            *(one[n].text if n in one else "" for n in main),
+            *(objective[n].text if n in objective else "" for n in main),
             *(_used(p, n) for n in limits),
-            *(one[n].text if n in one else "" for n in others),
+            *(objective[n].text if n in objective else "" for n in others),
         ]
-        for p, one in zip(front.points, each, strict=True)
+        for p, objective in zip(front.points, each, strict=True)
     ]
     staged = front.scene is not None
     ends = [0, len(heads) + len(main)]
@@ -210,8 +216,12 @@ def data(
 
 def _names(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]:
     """Return the names of all numbers of designs that are no objective."""
-    known = {head(one, measures) for one in front.objectives}
-    return [name for name in dict.fromkeys(n for one in each for n in one) if name not in known]
+    known = {head(objective, measures) for objective in front.objectives}
+    return [
+        name
+        for name in dict.fromkeys(n for objective in each for n in objective)
+        if name not in known
+    ]
 
 
 def _share(used: float | None) -> float:
@@ -234,16 +244,16 @@ def sketch(design: Mapping[str, Any]) -> dict[str, Any] | None:
     gears: x, y, tip and reference radius, stage and teeth of each, in one line where they are not
     laid out; box: left, bottom, right, top. None where a size is not known.
     """
-    found: list[list[float]] = []
+    corners: list[list[float]] = []
     if placed := design.get("layout"):
         at = {s["shaft"]: (s["y_mm"], s["z_mm"]) for s in placed["shafts"]}
         for g in placed["gears"]:
             sizes = (0.5 * g["tip_diameter_mm"], 0.5 * g["reference_diameter_mm"])
-            found.append([*at[g["shaft"]], *sizes, g["stage"], g["teeth"]])
+            corners.append([*at[g["shaft"]], *sizes, g["stage"], g["teeth"]])
         box = placed["box"]
         x, y = box["left_mm"], box["bottom_mm"]
         ends = [x, y, x + box["width_mm"], y + box["height_mm"]]
-        return {"gears": _rounded(found), "box": _rounded([ends])[0]}
+        return {"gears": _rounded(corners), "box": _rounded([ends])[0]}
     start = 0.0
     for k, stage in enumerate(stages_of(design), 1):
         away = stage.get("centre_distance_mm")
@@ -252,9 +262,9 @@ def sketch(design: Mapping[str, Any]) -> dict[str, Any] | None:
             tip = stage.get(f"{member}_tip_diameter_mm", reference)
             if away is None or reference is None:
                 return None
-            found.append([x, 0.0, 0.5 * tip, 0.5 * reference, k, stage[f"{member}_teeth"]])
+            corners.append([x, 0.0, 0.5 * tip, 0.5 * reference, k, stage[f"{member}_teeth"]])
         start += away or 0.0
-    return {"gears": _rounded(found)} if found else None
+    return {"gears": _rounded(corners)} if corners else None
 
 
 def _rounded(rows: list[list[float]]) -> list[list[float]]:

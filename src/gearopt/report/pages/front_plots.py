@@ -54,21 +54,21 @@ class Drawn:
 
 
 def drawn(front: Front, measures: Measures) -> Drawn:
-    """Return what is drawn of a front that has points."""
-    units = [unit_of(one) for one in front.objectives]
+    """A front that has points, in the units that are shown."""
+    units = [unit_of(objective) for objective in front.objectives]
 
     def shown(values: Sequence[float]) -> tuple[float, ...]:
         return tuple(measures.of(v, unit) for v, unit in zip(values, units, strict=True))
 
     corners = [
         tuple(
-            None if (v := one.limits.get(o.name)) is None else measures.of(v, unit_of(o))
+            None if (v := objective.limits.get(o.name)) is None else measures.of(v, unit_of(o))
             for o in front.objectives
         )
-        for one in front.impossible
+        for objective in front.impossible
     ]
     return Drawn(
-        tuple(head(one, measures) for one in front.objectives),
+        tuple(head(objective, measures) for objective in front.objectives),
         [shown(p.values) for p in front.points],
         [shown(p) for p in near(front)],
         corners,
@@ -90,19 +90,19 @@ def near(front: Front) -> list[tuple[float, ...]]:
     return sorted(inside, key=far)[:MAX_BEATEN]
 
 
-def pairs(found: Drawn) -> list[Figure]:
+def pairs(front: Drawn) -> list[Figure]:
     """Plot every two objectives against each other."""
-    return [_pair(found, i, k) for i, k in combinations(range(len(found.heads)), 2)]
+    return [_pair(front, i, k) for i, k in combinations(range(len(front.heads)), 2)]
 
 
-def _pair(found: Drawn, i: int, k: int) -> Figure:
-    whole = len(found.heads) == 2
-    across, up = _wide(found, i), _wide(found, k)
-    traces = [_line(found)] if whole and len(found.points) > 1 else []
-    if found.beaten:
-        x, y = ([p[n] for p in found.beaten] for n in (i, k))
+def _pair(front: Drawn, i: int, k: int) -> Figure:
+    whole = len(front.heads) == 2
+    across, up = _wide(front, i), _wide(front, k)
+    traces = [_line(front)] if whole and len(front.points) > 1 else []
+    if front.beaten:
+        x, y = ([p[n] for p in front.beaten] for n in (i, k))
         traces.append(_marks("dominated", x, y, {"color": f"{GREY}/0.7", "size": 5}))
-    if (corners := _corners(found, i, k)) and whole:
+    if (corners := _corners(front, i, k)) and whole:
         x, y = [min(a, across[1]) for a, _ in corners], [min(b, up[1]) for _, b in corners]
         look = {
             "color": GREY,
@@ -112,34 +112,34 @@ def _pair(found: Drawn, i: int, k: int) -> Figure:
         }
         crosses = _marks("limits without a design", x, y, look)
         traces.append(crosses | {"cliponaxis": False})
-    traces += _designs(found, (i, k))
+    traces += _designs(front, (i, k))
     told = {"legend": {"orientation": "h", "x": 0, "y": 1.02, "yanchor": "bottom"}}
     plot = layout(
-        axis(found.heads[i], range=list(across)),
-        axis(found.heads[k], range=list(up)),
+        axis(front.heads[i], range=list(across)),
+        axis(front.heads[k], range=list(up)),
         460 if whole else 360,
         hovermode="closest",
         **told,
     )
-    caption = _caption(found, i, k)
-    return Figure(traces, plot, caption, scatter(found, i, k, (across, up), corners, caption))
+    caption = _caption(front, i, k)
+    return Figure(traces, plot, caption, scatter(front, i, k, (across, up), corners, caption))
 
 
-def _wide(found: Drawn, k: int) -> Span:
+def _wide(front: Drawn, k: int) -> Span:
     """Return the ends of an axis, with the limits that have no design if they are near."""
-    low, high = found.span(k)
+    low, high = front.span(k)
     reach = FARTHEST_SHOWN * (high - low)
-    known = [c[k] for c in found.corners]
+    known = [c[k] for c in front.corners]
     lowest = [v for v in known if v is not None and low - reach < v < low]
-    farther = [p[k] for p in found.beaten if p[k] > high]
+    farther = [p[k] for p in front.beaten if p[k] > high]
     room = AXIS_MARGIN * (high - low)
     return min([low, *(v - room for v in lowest)]), max([high, *(v + room for v in farther)])
 
 
-def _corners(found: Drawn, i: int, k: int) -> list[Span]:
+def _corners(front: Drawn, i: int, k: int) -> list[Span]:
     """Return limits of two objectives alone that leave no design; inf for any."""
     rows = []
-    for corner in found.corners:
+    for corner in front.corners:
         others = [v for n, v in enumerate(corner) if n not in (i, k)]
         if all(v is None for v in others):
             a, b = (float("inf") if corner[n] is None else float(corner[n] or 0.0) for n in (i, k))
@@ -147,29 +147,29 @@ def _corners(found: Drawn, i: int, k: int) -> list[Span]:
     return rows
 
 
-def _caption(found: Drawn, i: int, k: int) -> str:
-    names = [found.heads[n].split(" [")[0] for n in (i, k)]
+def _caption(front: Drawn, i: int, k: int) -> str:
+    names = [front.heads[n].split(" [")[0] for n in (i, k)]
     words = f"{names[0][0].upper()}{names[0][1:]} against {names[1]}."
-    if len(found.heads) > 2:
+    if len(front.heads) > 2:
         words += " A point that looks dominated here is better in the third objective."
-    elif len(found.points) > 1:
+    elif len(front.points) > 1:
         line = (
             "chords between points"
-            if found.curve
+            if front.curve
             else "the boundary of what these designs dominate"
         )
         words += f" Line: {line}."
-    if found.beaten:
+    if front.beaten:
         words += " Grey dots: dominated designs."
-    if found.corners and len(found.heads) == 2:
+    if front.corners and len(front.heads) == 2:
         words += " Grey crosses: limits that no design meets."
     return words
 
 
-def _line(found: Drawn) -> dict[str, Any]:
+def _line(front: Drawn) -> dict[str, Any]:
     """Draw chords of a curve, or the steps of single designs."""
-    shape = "linear" if found.curve else "hv"
-    trace = curve(found.column(0), found.column(1), "--series-1/0.45", 1.4, shape=shape)
+    shape = "linear" if front.curve else "hv"
+    trace = curve(front.column(0), front.column(1), "--series-1/0.45", 1.4, shape=shape)
     return trace | {"hoverinfo": "skip", "showlegend": False}
 
 
@@ -180,27 +180,27 @@ def _marks(
     return kind | {"marker": look, "hoverinfo": "skip"}
 
 
-def _designs(found: Drawn, at: tuple[int, ...]) -> list[dict[str, Any]]:
+def _designs(front: Drawn, at: tuple[int, ...]) -> list[dict[str, Any]]:
     """Draw the designs, those that rules pick, and an empty ring for the one that is clicked."""
     letters = "xyz"[: len(at)]
     space = len(at) == 3
     kind = {"type": "scatter3d" if space else "scatter"}
     told = "<br>".join(
-        f"{found.heads[n]} %{{{letter}:.5g}}" for letter, n in zip(letters, at, strict=True)
+        f"{front.heads[n]} %{{{letter}:.5g}}" for letter, n in zip(letters, at, strict=True)
     )
     hover = {"hovertemplate": f"design %{{customdata}}<br>{told}<extra></extra>"}
-    every = {letter: found.column(n) for letter, n in zip(letters, at, strict=True)}
-    count = len(found.points)
+    every = {letter: front.column(n) for letter, n in zip(letters, at, strict=True)}
+    count = len(front.points)
     marker: dict[str, Any] = {
         "color": "--series-1",
         "size": 4 if space else 8 if count < 100 else 6,
     }
-    some = sorted(found.picks)
+    some = sorted(front.picks)
     picked = {letter: [values[p] for p in some] for letter, values in every.items()}
     star: dict[str, Any] = {"color": "--series-2", "size": 7 if space else 14}
     star |= {"symbol": "diamond" if space else "star", "line": {"color": "--card", "width": 1}}
     ring = {"color": "--series-4", "size": 9 if space else 16, "symbol": "circle-open"}
-    named: dict[str, Any] = {"mode": "markers+text", "text": [found.picks[p] for p in some]}
+    named: dict[str, Any] = {"mode": "markers+text", "text": [front.picks[p] for p in some]}
     named |= {"textposition": "top right", "textfont": {"size": 12, "color": "--ink"}}
     return [
         kind | hover | every
@@ -214,9 +214,9 @@ def _designs(found: Drawn, at: tuple[int, ...]) -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
-def space(found: Drawn) -> Figure | None:
+def space(front: Drawn) -> Figure | None:
     """Plot three objectives in space; None where there are two."""
-    if len(found.heads) != 3:
+    if len(front.heads) != 3:
         return None
     plain = {
         "backgroundcolor": "--card",
@@ -226,27 +226,32 @@ def space(found: Drawn) -> Figure | None:
     names = ("xaxis", "yaxis", "zaxis")
     scene: dict[str, Any] = {
         name: plain | {"title": {"text": h}, "color": "--ink", "linecolor": "--axis"}
-        for name, h in zip(names, found.heads, strict=True)
+        for name, h in zip(names, front.heads, strict=True)
     }
     scene |= {"aspectmode": "cube", "camera": {"eye": {"x": 1.5, "y": 1.5, "z": 1.0}}}
     margin = {"l": 0, "r": 0, "t": 0, "b": 0}
-    traces = _designs(found, (0, 1, 2))
-    if found.beaten:
-        rows = dict(zip("xyz", map(list, zip(*found.beaten, strict=True)), strict=True))
+    traces = _designs(front, (0, 1, 2))
+    if front.beaten:
+        rows = dict(zip("xyz", map(list, zip(*front.beaten, strict=True)), strict=True))
         look = {"color": f"{GREY}/0.6", "size": 2.5}
         grey = {"type": "scatter3d", "mode": "markers", "name": "dominated"}
         traces.insert(0, grey | rows | {"marker": look, "hoverinfo": "skip"})
     legend = {"orientation": "h", "x": 0, "y": 1.0}
     plot = LOOK | {"height": 560, "margin": margin, "scene": scene, "legend": legend}
     caption = "The three objectives in space: drag to turn, click a point to see its design."
-    return Figure(traces, plot, caption, in_space(found))
+    return Figure(traces, plot, caption, in_space(front))
 
 
-def parallel(front: Front, found: Drawn, each: Sequence[Numbers], names: Sequence[str]) -> Figure:
+def parallel(
+    front: Front, drawn_front: Drawn, each: Sequence[Numbers], names: Sequence[str]
+) -> Figure:
     """Plot every design as a line across an axis for each objective and main number."""
-    columns = [list(zip(found.column(k), _texts(found, k), strict=True)) for k in _count(found)]
-    columns += [[(float(one[n].value), one[n].text) for one in each] for n in names]
-    heads = [*found.heads, *names]
+    columns = [
+        list(zip(drawn_front.column(k), _texts(drawn_front, k), strict=True))
+        for k in _count(drawn_front)
+    ]
+    columns += [[(float(rating[n].value), rating[n].text) for rating in each] for n in names]
+    heads = [*drawn_front.heads, *names]
     shares, ends = [], []
     for column in columns:
         low, high = min(column), max(column)
@@ -261,7 +266,7 @@ def parallel(front: Front, found: Drawn, each: Sequence[Numbers], names: Sequenc
     hover = {"hovertemplate": "design %{customdata}<extra></extra>"}
     own = {"customdata": [k for k in range(1, len(rows) + 1) for _ in steps], "meta": DESIGN}
     traces = [look | hover | own | at | {"name": "designs", "line": line}]
-    for place, words in sorted(found.picks.items()):
+    for place, words in sorted(drawn_front.picks.items()):
         row: dict[str, Any] = {"x": steps[:-1], "y": list(rows[place]), "hoverinfo": "skip"}
         traces.append(look | row | {"name": words, "line": {"color": "--series-2", "width": 2.6}})
     ring = {"x": [], "y": [], "meta": CHOSEN, "hoverinfo": "skip", "name": "shown beside"}
@@ -271,15 +276,17 @@ def parallel(front: Front, found: Drawn, each: Sequence[Numbers], names: Sequenc
         "the table below leave lines out here, too."
     )
     plot = _axes(heads, ends)
-    return Figure(traces, plot, caption, lines(heads, ends, rows, sorted(found.picks), caption))
+    return Figure(
+        traces, plot, caption, lines(heads, ends, rows, sorted(drawn_front.picks), caption)
+    )
 
 
-def _count(found: Drawn) -> range:
-    return range(len(found.heads))
+def _count(front: Drawn) -> range:
+    return range(len(front.heads))
 
 
-def _texts(found: Drawn, k: int) -> list[str]:
-    return [f"{v:,.5g}" for v in found.column(k)]
+def _texts(front: Drawn, k: int) -> list[str]:
+    return [f"{v:,.5g}" for v in front.column(k)]
 
 
 def _axes(heads: Sequence[str], ends: Sequence[tuple[str, str]]) -> dict[str, Any]:
@@ -330,7 +337,7 @@ def grown(front: Front) -> Figure | None:
 
 
 def scatter(
-    found: Drawn, i: int, k: int, ends: tuple[Span, Span], corners: Sequence[Span], caption: str
+    front: Drawn, i: int, k: int, ends: tuple[Span, Span], corners: Sequence[Span], caption: str
 ) -> Drawing:
     """Draw two objectives against each other as the plot does."""
     free = (LEFT, EDGE, BELOW, EDGE)
@@ -340,18 +347,18 @@ def scatter(
         (x0, x1), (y0, y1) = ends
         return WIDE * (x - x0) / (x1 - x0), HIGH * (y - y0) / (y1 - y0)
 
-    _frame(sheet, ends, (found.heads[i], found.heads[k]))
-    if len(found.heads) == 2 and len(found.points) > 1:
-        _chords(sheet, [sheet.at(*at(*values)) for values in found.points], found.curve)
-    for values in found.beaten:
+    _frame(sheet, ends, (front.heads[i], front.heads[k]))
+    if len(front.heads) == 2 and len(front.points) > 1:
+        _chords(sheet, [sheet.at(*at(*values)) for values in front.points], front.curve)
+    for values in front.beaten:
         sheet.circle(*at(values[i], values[k]), DOT, "beaten")
     for corner in corners:
         spot = (min(v, end[1]) for v, end in zip(corner, ends, strict=True))
         _cross(sheet, *at(*spot))
-    for values in found.points:
+    for values in front.points:
         sheet.circle(*at(values[i], values[k]), DOT, "design")
-    for place, words in sorted(found.picks.items()):
-        x, y = at(found.points[place][i], found.points[place][k])
+    for place, words in sorted(front.picks.items()):
+        x, y = at(front.points[place][i], front.points[place][k])
         sheet.circle(x, y, 2.0 * DOT, "picked", "--series-2")
         sheet.label(words, around(sheet.at(x, y), (22.0, 34.0, 48.0), 6.0), "name")
     return sheet.drawing(caption, caption)
@@ -387,9 +394,9 @@ def _cross(sheet: Sheet, x: float, y: float) -> None:
         sheet.line((x - 4.0, y - 4.0 * turn), (x + 4.0, y + 4.0 * turn), "without")
 
 
-def in_space(found: Drawn) -> Drawing:
+def in_space(front: Drawn) -> Drawing:
     """Draw three objectives in a cube, seen from where the view that turns begins."""
-    spans = [found.span(k) for k in range(3)]
+    spans = [front.span(k) for k in range(3)]
     seen, room = view(), ((0.0, 0.0, 0.0), (CUBE, CUBE, CUBE))
 
     def at(values: Sequence[float]) -> tuple[float, float]:
@@ -398,19 +405,19 @@ def in_space(found: Drawn) -> Drawing:
 
     ends = (0.0, CUBE)
     us, vs = zip(*(seen.at((x, y, z)) for x in ends for y in ends for z in ends), strict=True)
-    side = 2.0 * max(Place(0.0, 0.0).half_width(name) for name in found.heads) + EDGE
+    side = 2.0 * max(Place(0.0, 0.0).half_width(name) for name in front.heads) + EDGE
     window = Window(min(us), max(us), min(vs), max(vs), (side, side, BELOW, EDGE))
     sheet = Sheet(window, 1.0)
     for pair in (pair for some in edges(*room, seen) for pair in some):
         sheet.line(seen.at(pair[0]), seen.at(pair[1]), "far")
-    for style, rows in (("beaten", found.beaten), ("design", found.points)):
+    for style, rows in (("beaten", front.beaten), ("design", front.points)):
         for values in rows:
             sheet.circle(*at(values), DOT, style)
-    for place, words in sorted(found.picks.items()):
-        x, y = at(found.points[place])
+    for place, words in sorted(front.picks.items()):
+        x, y = at(front.points[place])
         sheet.circle(x, y, 2.0 * DOT, "picked", "--series-2")
         sheet.label(words, around(sheet.at(x, y), (22.0, 34.0, 48.0), 6.0), "name")
-    outside(sheet, room, seen, found.heads)
+    outside(sheet, room, seen, front.heads)
     caption = "The three objectives in space, in parallel projection."
     return sheet.drawing("front in space", caption)
 

@@ -13,28 +13,28 @@ from gearopt.scenes.reading.toml import short
 
 
 def sections(result: Result, measures: Measures = METRIC) -> list[Section]:
-    """Return what a result has to show, in the order of its page."""
+    """Sections of a result, in the order of its page."""
     return list(_each(result, measures))
 
 
 def _each(result: Result, measures: Measures) -> Iterator[Section]:
     result = Result.from_dict(result.to_dict())  # plain numbers, as a file of it has them
-    made = (section(result, measures) for section in pages_of_result(result).sections)
-    return (section for section in made if section is not None and section.heading)
+    shown = (section(result, measures) for section in pages_of_result(result).sections)
+    return (section for section in shown if section is not None and section.heading)
 
 
 def page(result: Result, command: str, measures: Measures = METRIC) -> str:
     """Return one self-contained HTML page; command: what makes it again."""
-    found = sections(result, measures)
+    shown = sections(result, measures)
     return render(
         "result.html",
         title(result),
         measures.words(opening(result)),
         {"gearopt": result.gearopt, **result.versions},
         command,
-        plots=any(section.figures for section in found),
-        moves=any(section.animations for section in found),
-        sections=found,
+        plots=any(section.figures for section in shown),
+        moves=any(section.animations for section in shown),
+        sections=shown,
         source=_source(result),
     )
 
@@ -56,7 +56,7 @@ def tables_by_name(result: Result, measures: Measures) -> Iterator[tuple[str, Ta
 
 
 def _source(result: Result) -> str | None:
-    """Say what file it is of, and what was changed in it."""
+    """The file it is of, and the changes in it."""
     if result.file is None:
         return None
     changes = result.options.get("changes", {})

@@ -62,20 +62,20 @@ OF_DRIVE = ("ratio", "ratio_error_percent", "gear_volume_mm3")
 
 def numbers(result: Result, measures: Measures) -> Section | None:
     """Return all tables of the design; of a layout what its stages and drawings do not show."""
-    if (found := rating_tables.design(result, measures)) is None:
+    if (whole := rating_tables.design(result, measures)) is None:
         return None
     if result.design.get("rating"):
-        made = [rating_tables.beside(table, result, measures) for table in found.tables]
-        found = replace(
-            found, tables=made, half=len(result.design["stages"]) <= rating_tables.ABREAST
+        rest = [rating_tables.beside(table, result, measures) for table in whole.tables]
+        whole = replace(
+            whole, tables=rest, half=len(result.design["stages"]) <= rating_tables.ABREAST
         )
     shown = [
         replace(t, csv_only=[heading(key, measures) for key in STAGED.get(t.name, ())])
         if t.name in STAGED
         else replace(t, folded=t.name in DRAWN)
-        for t in found.tables
+        for t in whole.tables
     ]
-    return replace(found, tables=sorted(shown, key=lambda t: t.folded))
+    return replace(whole, tables=sorted(shown, key=lambda t: t.folded))
 
 
 def clearances(result: Result) -> set[str]:
@@ -85,25 +85,25 @@ def clearances(result: Result) -> set[str]:
 
 
 def binding_limit(result: Result) -> str:
-    """Return what decides the box of a layout; nothing without one, where limits say it."""
-    if result.value is None or (found := layout_of(result)) is None:
+    """Gears and gaps that decide the box of a layout; nothing without one, where limits say it."""
+    if result.value is None or (layout := layout_of(result)) is None:
         return ""
     gaps = clearances(result)
     full = [n for n in gaps if result.limits.get(n, 0.0) >= 1.0 - REACHED]
-    walls, apart = _at_walls(found), any(part.name == "gears" for part in result.parts)
+    walls, apart = _at_walls(layout), any(part.name == "gears" for part in result.parts)
     first = "the gears were sized first" if apart else "gears and box were chosen at once"
     words = [first, *([f"{series_of(walls)} touch the wall clearance"] if walls else [])]
     words += [f"{series_of(list(map(limit_words, full)))} at the minimum clearance"] if full else []
     return "; ".join(words if apart else [*words, of_limits(result, gaps)])
 
 
-def _at_walls(found: LayoutDesign) -> list[str]:
+def _at_walls(layout: LayoutDesign) -> list[str]:
     """Return the gears that reach to the clearance of a wall, seen along the shafts."""
-    places, box, wall = {s.shaft: s for s in found.shafts}, found.box, found.clearances.wall_mm
+    places, box, wall = {s.shaft: s for s in layout.shafts}, layout.box, layout.clearances.wall_mm
     near = WALL * max(box.sides)
     sides = {"y": (box.left_mm, box.width_mm), "z": (box.bottom_mm, box.height_mm)}
     names = []
-    for gear in found.gears:
+    for gear in layout.gears:
         for axis_, (start, size) in sides.items():
             at, r = getattr(places[gear.shaft], f"{axis_}_mm"), 0.5 * gear.tip_diameter_mm
             free = min(at - r - start, start + size - at - r) - wall
@@ -114,24 +114,24 @@ def _at_walls(found: LayoutDesign) -> list[str]:
 
 def places(result: Result, measures: Measures) -> Section | None:
     """Return box, shafts and gaps; None where there is no layout."""
-    if result.value is None or (found := layout_of(result)) is None:
+    if result.value is None or (layout := layout_of(result)) is None:
         return None
     unit = measures.unit("mm")
-    sides = " x ".join(map(measures.length, found.box.sides))
+    sides = " x ".join(map(measures.length, layout.box.sides))
     rows = [
         [f"{words} [{unit}]", *(cell(v, "mm", measures) for v in values)]
         for words, values in (
-            ("y, right of the input", [s.y_mm for s in found.shafts]),
-            ("z, above the input", [s.z_mm for s in found.shafts]),
-            ("diameter", [s.diameter_mm for s in found.shafts]),
+            ("y, right of the input", [s.y_mm for s in layout.shafts]),
+            ("z, above the input", [s.z_mm for s in layout.shafts]),
+            ("diameter", [s.diameter_mm for s in layout.shafts]),
         )
     ]
-    table = Table("places of shafts", ["", *(f"shaft {s.shaft}" for s in found.shafts)], rows)
-    slabs = ", ".join(" and ".join(map(str, slab)) for slab in found.slabs)
+    table = Table("places of shafts", ["", *(f"shaft {s.shaft}" for s in layout.shafts)], rows)
+    slabs = ", ".join(" and ".join(map(str, slab)) for slab in layout.slabs)
     heads = ("gap", unit, f"minimum, {unit}")
     gaps = [
         [" to ".join(g.between), *(cell(v, "mm", measures) for v in (g.gap_mm, g.needed_mm))]
-        for g in found.gaps
+        for g in layout.gaps
     ]
     size = f"Box {sides} {unit} (width, height, length). Stages along the shafts: {slabs}."
     return Section("Layout", terminal=(size, table, Table("gaps", heads, gaps)))
@@ -165,7 +165,7 @@ def processes(result: Result, measures: Measures) -> Section | None:
     )
     shown: list[str | Table] = [table, *missing] if result.value is not None else []
     names = ["optimum" if best.method == "exact" else best.method, *heads[2:]]
-    trains = {name: one.design["stages"] for name, one in zip(names, designs, strict=True)}
+    trains = {name: design.design["stages"] for name, design in zip(names, designs, strict=True)}
     drawings = train_views.beside(trains, measures) if len(designs) > 1 else ()
     return Section(
         "Processes and optimum", (), (words, *missing), drawings, tables=(table,), terminal=shown
@@ -175,7 +175,7 @@ def processes(result: Result, measures: Measures) -> Section | None:
 def _stages(designs: Sequence[Result], measures: Measures) -> list[list[Any]]:
     rows: list[list[Any]] = []
     for k in range(len(designs[0].design["stages"])):
-        stages = [one.design["stages"][k] for one in designs]
+        stages = [design.design["stages"][k] for design in designs]
         gears = [
             (measures.of_module(s[MODULE]), s["pinion_teeth"], s["wheel_teeth"]) for s in stages
         ]
@@ -198,21 +198,21 @@ def _labels(stages: int, *labels: str) -> list[str]:
 def _totals(designs: Sequence[Result], bound: float | None, measures: Measures) -> list[list[Any]]:
     rows: list[list[Any]] = []
     for key in OF_DRIVE:
-        values = (cell(one.design[key], parted(key)[1], measures) for one in designs)
+        values = (cell(design.design[key], parted(key)[1], measures) for design in designs)
         rows.append([heading(key, measures), *values])
     name, unit = objective(designs[0])
     if name != "gear volume":
-        shown = (cell(one.value, unit, measures) for one in designs)
+        shown = (cell(design.value, unit, measures) for design in designs)
         rows.append([f"{name} [{measures.unit(unit)}]", *shown])
     if bound is not None and bound > 0.0:
-        over = (cell(_over(one, bound), "percent", measures) for one in designs)
+        over = (cell(_over(design, bound), "percent", measures) for design in designs)
         rows.append(["above the bound [%]", *over])
     return rows
 
 
-def _over(one: Result, bound: float) -> float | None:
+def _over(result: Result, bound: float) -> float | None:
     """Return by how much a design exceeds the bound [%]; None where it breaks a limit."""
-    return None if one.value is None else max(100.0 * (one.value / bound - 1.0), 0.0)
+    return None if result.value is None else max(100.0 * (result.value / bound - 1.0), 0.0)
 
 
 def _missing(part: Result) -> str:
@@ -225,10 +225,12 @@ def _missing(part: Result) -> str:
 def counts(result: Result, measures: Measures) -> Section | None:
     """Return every number of stages that was solved; None where the file gives one."""
     gears = (part for part in result.parts if part.name == "gears")
-    found = next((one for one in (result, *gears) if one.report.get("counts")), None)
-    if found is None:
+    counted = next(
+        (candidate for candidate in (result, *gears) if candidate.report.get("counts")), None
+    )
+    if counted is None:
         return None
-    rows, (name, unit) = found.report["counts"], objective(found)
+    rows, (name, unit) = counted.report["counts"], objective(counted)
     sign = f"\n[{measures.unit(unit)}]" if unit else ""
     most = max(len(row["ratios"]) for row in rows)
     heads: tuple[str, ...] = teeth_heads(measures)
@@ -237,7 +239,7 @@ def counts(result: Result, measures: Measures) -> Section | None:
     names = {head.replace("\n", " "): head for head in long}
     read = ("ratio of each stage", teeth_head(measures))
     heads = ("stages", "status", *names, *read, "seconds", *single)
-    cells = [[*_count(row, found, measures), *_each(row, most, measures)] for row in rows]
+    cells = [[*_count(row, counted, measures), *_each(row, most, measures)] for row in rows]
     table = Table(
         "numbers of stages",
         heads,
@@ -295,31 +297,31 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
         return []
     design = drive_design(result.design)
     torque = amount(design.output_torque_Nm, "Nm", measures)
-    found = [
+    figures = [
         ratio_tile(design.ratio, design.ratio_error_percent),
         Tile("output torque", torque),
     ]
     if objective(result)[0] != "mass":
-        found.append(Tile("mass of the gears", amount(design.mass_kg, "kg", measures)))
+        figures.append(Tile("mass of the gears", amount(design.mass_kg, "kg", measures)))
     if design.layout is not None:
         sides = " x ".join(measures.length(side, 1) for side in design.layout.box.sides)
         size = f"{sides} {measures.unit('mm')}"
-        found.append(Tile("box", size, "width, height, length"))
-    return [*found, *rating_words.tiles(result, measures)]
+        figures.append(Tile("box", size, "width, height, length"))
+    return [*figures, *rating_words.tiles(result, measures)]
 
 
 def sentences_on_parts(result: Result, measures: Measures) -> list[str]:
     """Compare with other optima: real-valued sizes, or gears first and then the layout."""
-    found = []
+    sentences = []
     if result.status == "infeasible" and "least_violation" in result.proof:
-        found.append("This holds even with real-valued teeth and modules.")
+        sentences.append("This holds even with real-valued teeth and modules.")
     for part in result.parts:
         alike = part.objective["name"] == result.objective["name"]
         if part.name in ("sizing", "apart") and alike and result.status == "optimal":
-            found += _other_way(result, part)
+            sentences += _other_way(result, part)
         if part.name == "sizing" and result.status == "limit" and result.value is None:
-            found += _instead(part, measures)
-    return found
+            sentences += _instead(part, measures)
+    return sentences
 
 
 def _other_way(result: Result, part: Result) -> list[str]:

@@ -41,16 +41,16 @@ def section(result: Result, measures: Measures) -> Section | None:
     if not data:
         return None
     near: NearestLayout = typed(NearestLayout, data, "nearest_layout")
-    found = near.layout
-    every = replace(found, obstacles=(*found.obstacles, *near.keep_outs))
+    layout = near.layout
+    every = replace(layout, obstacles=(*layout.obstacles, *near.keep_outs))
     front, side = (window_of(every, axis) for axis in ("", "z"))
     scale = min(front.scale(WIDE, HIGH), side.scale(WIDE, HIGH))
     views = (
-        front_view(found, front, scale, measures, partial(_front, near, measures)),
-        side_view(found, side, scale, "z", measures, partial(_side, near, measures)),
+        front_view(layout, front, scale, measures, partial(_front, near, measures)),
+        side_view(layout, side, scale, "z", measures, partial(_side, near, measures)),
     )
     first = result.report["ways_out"]["remedies"][0]["changes"]
-    hatched = "; hatched boxes are keep-outs" if found.obstacles else ""
+    hatched = "; hatched boxes are keep-outs" if layout.obstacles else ""
     words = (
         f"Drawn with {' and '.join(map(edit, first))}; dashed, in brown: what was asked. One "
         f"scale; dimensions in {measures.lengths}{hatched}.",
@@ -68,8 +68,8 @@ def _over(near: NearestLayout) -> tuple[float | None, ...]:
 
 def _front(near: NearestLayout, measures: Measures, sheet: Sheet) -> None:
     """Draw keep-outs, motor and sides of the box as they are asked, seen from front."""
-    found = near.layout
-    for it in keep_outs(replace(found, obstacles=near.keep_outs)):
+    layout = near.layout
+    for it in keep_outs(replace(layout, obstacles=near.keep_outs)):
         (y0, y1), (z0, z1) = sides(it, "y"), sides(it, "z")
         sheet.rectangle((y0, z0), (y1, z1), "asked", title=f"asked: keep-out {it.name}")
         x, y = sheet.at(0.5 * (y0 + y1), 0.5 * (z0 + z1))
@@ -82,7 +82,7 @@ def _front(near: NearestLayout, measures: Measures, sheet: Sheet) -> None:
     wide, tall, _ = _over(near)
     if wide is None and tall is None:
         return
-    (y0, y1), (z0, z1) = (walls(found, axis) for axis in "yz")
+    (y0, y1), (z0, z1) = (walls(layout, axis) for axis in "yz")
     y1 = y1 if wide is None else y0 + wide
     z1 = z1 if tall is None else z0 + tall
     sheet.rectangle((y0, z0), (y1, z1), "asked", title="asked: box")

@@ -56,65 +56,65 @@ ROUNDED = "Teeth are real numbers here: of each gear the nearest whole number is
 
 def section(result: Result, measures: Measures) -> Section | None:
     """Draw the gearbox in space; None where there is no layout."""
-    if (found := layout_of(result)) is None:
+    if (layout := layout_of(result)) is None:
         return None
-    seen = space(*drawn_corners(found), measures)
-    whole = all(gear.teeth == drawn_teeth(gear.teeth) for gear in found.gears)
-    words = CAPTION.format("the rack of ISO 53, profile A" if _standard(found) else OWN)
+    seen = space(*drawn_corners(layout), measures)
+    whole = all(gear.teeth == drawn_teeth(gear.teeth) for gear in layout.gears)
+    words = CAPTION.format("the rack of ISO 53, profile A" if _standard(layout) else OWN)
     words = words if whole else f"{words} {ROUNDED}"
-    figure = Figure(_traces(found, measures), seen, words, picture(found, measures))
+    figure = Figure(_traces(layout, measures), seen, words, picture(layout, measures))
     return Section("In three dimensions", figures=(figure,))
 
 
-def _standard(found: LayoutDesign) -> bool:
+def _standard(layout: LayoutDesign) -> bool:
     """Return whether all teeth are unshifted ones of ISO 53, profile A."""
-    gears = [gear.gear for gear in found.gears]
+    gears = [gear.gear for gear in layout.gears]
     return all(g.rack == ISO_53_A and g.profile_shift == g.tip_alteration == 0.0 for g in gears)
 
 
-def picture(found: LayoutDesign, measures: Measures) -> Drawing:
+def picture(layout: LayoutDesign, measures: Measures) -> Drawing:
     """Draw what the view in space begins with, its teeth in mesh, for print."""
-    places = {s.shaft: (s.y_mm, s.z_mm) for s in found.shafts}
-    bodies: list[Body] = [_picture_of(found, gear, places, measures) for gear in found.gears]
-    for it in found.bearings:
+    places = {s.shaft: (s.y_mm, s.z_mm) for s in layout.shafts}
+    bodies: list[Body] = [_picture_of(layout, gear, places, measures) for gear in layout.gears]
+    for it in layout.bearings:
         r, title = 0.5 * it.diameter_mm, f"bearing of shaft {it.shaft}"
         bodies.append(Rod(places[it.shaft], r, it.from_mm, it.to_mm, "metal", title=title))
-    for shaft in found.shafts:
+    for shaft in layout.shafts:
         r, title = 0.5 * shaft.diameter_mm, f"shaft {shaft.shaft}"
-        for start, end in _bare(found, shaft):
+        for start, end in _bare(layout, shaft):
             bodies.append(Rod(places[shaft.shaft], r, start, end, "metal", title=title))
-    if place := motor(found):
+    if place := motor(layout):
         bodies.append(Rod((0.0, 0.0), *place, "metal", title="motor"))
-    for out in keep_outs(found):
+    for out in keep_outs(layout):
         low, high = zip(*(sides(out, axis) for axis in "xyz"), strict=True)
         bodies.append(Block(low, high, "blocked", out.name))
-    legend = [(f"stage {k}", series(k)) for k in sorted({g.stage for g in found.gears})]
-    past = FLUSH * found.box.length_mm
-    ends = [((s.to_mm + past, s.y_mm, s.z_mm), str(s.shaft)) for s in found.shafts]
-    corners = box_corners(found)
+    legend = [(f"stage {k}", series(k)) for k in sorted({g.stage for g in layout.gears})]
+    past = FLUSH * layout.box.length_mm
+    ends = [((s.to_mm + past, s.y_mm, s.z_mm), str(s.shaft)) for s in layout.shafts]
+    corners = box_corners(layout)
     texts = Texts(sizes_of(corners, "xyz", measures), legend, ends)
     return still(bodies, corners, view(), texts, "the gearbox in space")
 
 
 def _picture_of(
-    found: LayoutDesign,
+    layout: LayoutDesign,
     gear: GearDesign,
     places: Mapping[int, tuple[float, float]],
     measures: Measures,
 ) -> Rod:
     """Return a gear with its teeth, as they are at its face on the side of the output."""
-    solid, r = _toothed(found, gear, places), 0.5 * gear.tip_diameter_mm
+    solid, r = _toothed(layout, gear, places), 0.5 * gear.tip_diameter_mm
     turn = solid.phase + twist(solid.gear) * (gear.to_mm - solid.middle)
     rim = tuple((angle + turn, at) for angle, at in outline(solid.gear, 2))
     words, colour = meaning(gear, measures), series(gear.stage)
     return Rod(solid.centre, r, gear.from_mm, gear.to_mm, "gear", colour, words, rim)
 
 
-def _bare(found: LayoutDesign, shaft: ShaftDesign) -> list[tuple[float, float]]:
+def _bare(layout: LayoutDesign, shaft: ShaftDesign) -> list[tuple[float, float]]:
     """Return the parts of a shaft between what sits on it."""
-    on = [(g.from_mm, g.to_mm) for g in found.gears if g.shaft == shaft.shaft]
-    on += [(b.from_mm, b.to_mm) for b in found.bearings if b.shaft == shaft.shaft]
-    past = FLUSH * found.box.length_mm
+    on = [(g.from_mm, g.to_mm) for g in layout.gears if g.shaft == shaft.shaft]
+    on += [(b.from_mm, b.to_mm) for b in layout.bearings if b.shaft == shaft.shaft]
+    past = FLUSH * layout.box.length_mm
     parts, start = [], shaft.from_mm - past
     for low, high in [*sorted(on), (shaft.to_mm + past, math.inf)]:
         if low > start:
@@ -123,28 +123,28 @@ def _bare(found: LayoutDesign, shaft: ShaftDesign) -> list[tuple[float, float]]:
     return parts
 
 
-def _traces(found: LayoutDesign, measures: Measures) -> list[dict[str, Any]]:
-    places = {s.shaft: (s.y_mm, s.z_mm) for s in found.shafts}
-    traces, unit = _gears(found, places, measures), measures.unit("mm")
-    for k, shaft in enumerate(found.shafts):
-        past = FLUSH * found.box.length_mm
+def _traces(layout: LayoutDesign, measures: Measures) -> list[dict[str, Any]]:
+    places = {s.shaft: (s.y_mm, s.z_mm) for s in layout.shafts}
+    traces, unit = _gears(layout, places, measures), measures.unit("mm")
+    for k, shaft in enumerate(layout.shafts):
+        past = FLUSH * layout.box.length_mm
         span = shaft.from_mm - past, shaft.to_mm + past
         mesh = rod(places[shaft.shaft], shaft.diameter_mm / 2, *span)
         words = f"shaft {shaft.shaft}: diameter {measures.length(shaft.diameter_mm)} {unit}"
         traces.append(mesh_trace(mesh, words, "--metal", "shafts", showlegend=k == 0))
-    bores = {s.shaft: s.diameter_mm / 2 for s in found.shafts}
-    for k, it in enumerate(found.bearings):
+    bores = {s.shaft: s.diameter_mm / 2 for s in layout.shafts}
+    for k, it in enumerate(layout.bearings):
         mesh = rod(places[it.shaft], it.diameter_mm / 2, it.from_mm, it.to_mm, bores[it.shaft])
         words = f"bearing of shaft {it.shaft}"
         traces.append(mesh_trace(mesh, words, "--soft", "bearings", showlegend=k == 0))
-    traces += _housing(found, measures)
-    return traces + _clearances(found, places)
+    traces += _housing(layout, measures)
+    return traces + _clearances(layout, places)
 
 
 def _gears(
-    found: LayoutDesign, places: Mapping[int, tuple[float, float]], measures: Measures
+    layout: LayoutDesign, places: Mapping[int, tuple[float, float]], measures: Measures
 ) -> list[dict[str, Any]]:
-    solids = [(gear, _toothed(found, gear, places)) for gear in found.gears]
+    solids = [(gear, _toothed(layout, gear, places)) for gear in layout.gears]
     for flank, step in DETAIL:
         meshes = [gear_mesh(solid, flank, step) for _, solid in solids]
         if sum(len(faces) for _, faces in meshes) <= MAX_TRIANGLES:
@@ -161,7 +161,7 @@ def _gears(
 
 
 def _toothed(
-    found: LayoutDesign, gear: GearDesign, places: Mapping[int, tuple[float, float]]
+    layout: LayoutDesign, gear: GearDesign, places: Mapping[int, tuple[float, float]]
 ) -> Toothed:
     """Return the gear turned so that it meshes with its mate.
 
@@ -169,16 +169,16 @@ def _toothed(
     The hands of a pair are opposite; those of the two gears on a shaft are equal, so that their
     axial forces are opposite, unless they are given.
     """
-    pair = {g.member: g for g in found.gears if g.stage == gear.stage}
+    pair = {g.member: g for g in layout.gears if g.stage == gear.stage}
     wheel = gear.member == "wheel"
     mate = pair.get("pinion" if wheel else "wheel", gear)
     here, there = places[gear.shaft], places[mate.shaft]
     phase = math.atan2(there[1] - here[1], there[0] - here[0])
     middle = sum(g.from_mm + g.to_mm for g in pair.values()) / (2.0 * len(pair))
     right = gear.hand == "right" if gear.hand else (gear.stage % 2 == 1) != wheel
-    made = gear.gear
+    teeth = gear.gear
     return Toothed(
-        replace(made, helix_angle=made.helix_angle if right else -made.helix_angle),
+        replace(teeth, helix_angle=teeth.helix_angle if right else -teeth.helix_angle),
         gear.from_mm,
         gear.to_mm,
         here,
@@ -187,16 +187,16 @@ def _toothed(
     )
 
 
-def _housing(found: LayoutDesign, measures: Measures) -> list[dict[str, Any]]:
+def _housing(layout: LayoutDesign, measures: Measures) -> list[dict[str, Any]]:
     """Draw walls as lines, the motor, keep-outs."""
-    box = found.box
-    low, high = box_corners(found)
+    box = layout.box
+    low, high = box_corners(layout)
     size = " x ".join(map(measures.length, box.sides))
     traces = [line_trace(edges(low, high), f"box {size} {measures.unit('mm')}", "--ink", 3.0)]
-    if place := motor(found):
+    if place := motor(layout):
         mesh = rod((0.0, 0.0), *place)
         traces.append(mesh_trace(mesh, "motor", "--axis", "motor", opacity=0.6, showlegend=True))
-    for k, it in enumerate(keep_outs(found)):
+    for k, it in enumerate(keep_outs(layout)):
         ends = (it.from_mm, it.left_mm, it.bottom_mm), (it.to_mm, it.right_mm, it.top_mm)
         look = {"opacity": 0.35, "showlegend": k == 0}
         traces.append(mesh_trace(block(*ends), escape(it.name), "--warn", "keep-outs", **look))
@@ -205,23 +205,23 @@ def _housing(found: LayoutDesign, measures: Measures) -> list[dict[str, Any]]:
 
 
 def _clearances(
-    found: LayoutDesign, places: Mapping[int, tuple[float, float]]
+    layout: LayoutDesign, places: Mapping[int, tuple[float, float]]
 ) -> list[dict[str, Any]]:
     """Draw clearances, the limit inside the walls and the smallest gap; hidden at first."""
-    room = found.clearances
+    room = layout.clearances
     hidden: dict[str, Any] = {"visible": "legendonly", "legendgroup": "clearances"}
     wall, axial = room.wall_mm, room.axial_mm
-    low, high = box_corners(found)
+    low, high = box_corners(layout)
     low = (low[0] + axial, low[1] + wall, low[2] + wall)
     high = (high[0] - axial, high[1] - wall, high[2] - wall)
     traces = [line_trace(edges(low, high), "clearances", "--accent", 2.0, **hidden)]
     hidden |= {"showlegend": False}
-    for gear in found.gears:
+    for gear in layout.gears:
         r = gear.tip_diameter_mm / 2 + room.gear_to_shaft_mm
         mesh: Mesh = rod(places[gear.shaft], r, gear.from_mm, gear.to_mm)
         look = hidden | {"opacity": 0.18, "hoverinfo": "skip", "hovertemplate": ""}
         traces.append(mesh_trace(mesh, "", "--accent", "clearances", **look))
-    for gap in found.gaps[:1]:
-        if (ends := nearest(found, *gap.between)) is not None:
+    for gap in layout.gaps[:1]:
+        if (ends := nearest(layout, *gap.between)) is not None:
             traces.append(line_trace(list(ends), "clearances", "--warn", 8.0, **hidden))
     return traces

@@ -40,66 +40,66 @@ ABREAST = {"AGMA": 3, "ISO 6336": 2}  # stages whose factors fit side by side on
 
 def gears(result: Result, measures: Measures) -> Section | None:
     """Return stresses, safety factors and lives of every gear; None without a rating."""
-    if (found := rating_of(result)) is None:
+    if (rating := rating_of(result)) is None:
         return None
-    rows = [[Cell(row[0], greek(row[0])), *row[1:]] for row in _gear_rows(found, measures)]
-    stresses = [it.head(measures) for it in _fields(found) if it.unit == "MPa"]
-    hidden = stresses if found.levels else []
-    heads = [_head(found, one, gear) for one, gear in _columns(found)]
+    rows = [[Cell(row[0], greek(row[0])), *row[1:]] for row in _gear_rows(rating, measures)]
+    stresses = [it.head(measures) for it in _fields(rating) if it.unit == "MPa"]
+    hidden = stresses if rating.levels else []
+    heads = [_head(rating, one, gear) for one, gear in _columns(rating)]
     table = Table("gears", ["", *heads], rows, csv_only=hidden, across=True)
-    half = single(found) and found.beside is None
-    shown = _told(result, found, measures)
-    return Section("Rating", words=_said(found), tables=(table,), half=half, terminal=shown)
+    half = single(rating) and rating.beside is None
+    shown = _told(result, rating, measures)
+    return Section("Rating", words=_said(rating), tables=(table,), half=half, terminal=shown)
 
 
-def _said(found: DriveRating) -> list[str]:
-    """Return what the standards are, and what safety factors and lives mean."""
+def _said(rating: DriveRating) -> list[str]:
+    """Standards, and meaning of safety factors and lives."""
     words = [
-        _standards(found),
+        _standards(rating),
         "S_F and S_H are permissible over actual stress; S_H squared is the safety factor of the "
         "load.",
     ]
-    if any(one.by == "ISO 6336" for one in found.each):
+    if any(one.by == "ISO 6336" for one in rating.each):
         words.append(LOAD_FACTORS)
-    if len(found.meshes) > 1:
-        words.append(f"Nearest to the safety factors asked for: {', '.join(nearest(found))}.")
-    if found.levels:
+    if len(rating.meshes) > 1:
+        words.append(f"Nearest to the safety factors asked for: {', '.join(nearest(rating))}.")
+    if rating.levels:
         words.append("Safety factors are those of all load levels together, by Miner's rule.")
-    lives = [(g.bending_life_cycles, g.contact_life_cycles) for _, g in _columns(found)]
+    lives = [(g.bending_life_cycles, g.contact_life_cycles) for _, g in _columns(rating)]
     if any(None in both for both in lives):
         words.append(f"Beyond: more than {LONGEST_LIFE}, where the life curves end.")
     return words
 
 
-def _standards(found: DriveRating) -> str:
-    return f"By {'; and by '.join(one.standard for one in found.each)}."
+def _standards(rating: DriveRating) -> str:
+    return f"By {'; and by '.join(one.standard for one in rating.each)}."
 
 
-def _columns(found: DriveRating) -> list[tuple[DriveRating, GearRating]]:
+def _columns(rating: DriveRating) -> list[tuple[DriveRating, GearRating]]:
     """Return every gear by every standard, those of one gear side by side."""
-    each = [[(one, gear) for gear in one.gears] for one in found.each]
+    each = [[(one, gear) for gear in one.gears] for one in rating.each]
     return [column for columns in zip(*each, strict=True) for column in columns]
 
 
-def _head(found: DriveRating, one: DriveRating, gear: GearRating) -> str:
+def _head(rating: DriveRating, one: DriveRating, gear: GearRating) -> str:
     """Return the name of a gear; of two standards with its own."""
-    own = name(found, gear)
-    return own if found.beside is None else f"{own}, {SHORT[one.by]}"
+    gear_name = name(rating, gear)
+    return gear_name if rating.beside is None else f"{gear_name}, {SHORT[one.by]}"
 
 
-def _fields(found: DriveRating) -> list[Listed]:
+def _fields(rating: DriveRating) -> list[Listed]:
     """Fields of a gear's rating, stresses with their symbols."""
-    return [replace(it, label=stress_words(found, it.key, it.label)) for it in listed(GearRating)]
+    return [replace(it, label=stress_words(rating, it.key, it.label)) for it in listed(GearRating)]
 
 
-def _gear_rows(found: DriveRating, measures: Measures) -> Iterator[list[Any]]:
+def _gear_rows(rating: DriveRating, measures: Measures) -> Iterator[list[Any]]:
     """Yield the rows of gears, and below every safety factor how much of it is used."""
     asked = {
-        "bending_safety": found.minimum_bending_safety,
-        "contact_safety": found.minimum_contact_safety,
+        "bending_safety": rating.minimum_bending_safety,
+        "contact_safety": rating.minimum_contact_safety,
     }
-    for it in _fields(found):
-        values = [getattr(gear, it.key) for _, gear in _columns(found)]
+    for it in _fields(rating):
+        values = [getattr(gear, it.key) for _, gear in _columns(rating)]
         head = it.head(measures)
         if it.key == "material":
             yield [head, *(Cell(s, s.replace(", ", "\n")) for s in values)]
@@ -107,15 +107,15 @@ def _gear_rows(found: DriveRating, measures: Measures) -> Iterator[list[Any]]:
             yield [head, *(_life(value, it.key, measures) for value in values)]
         elif not it.key.endswith("_damage"):
             yield [head, *(figure(value, it.key, measures) for value in values)]
-        elif found.levels:
+        elif rating.levels:
             yield [head, *map(_damage, values)]
         if it.key in asked:
             used = (_used(asked[it.key], value) for value in values)
             yield [f"utilisation, {it.label} {asked[it.key]:g} asked for [%]", *used]
 
 
-def _used(asked: float, own: float) -> Cell:
-    return percent(asked / own) if own > 0.0 else Cell(None, AT_ONCE, 1.0)
+def _used(asked: float, safety_factor: float) -> Cell:
+    return percent(asked / safety_factor) if safety_factor > 0.0 else Cell(None, AT_ONCE, 1.0)
 
 
 def _life(value: float | None, key: str, measures: Measures) -> Cell:
@@ -130,46 +130,46 @@ def _damage(value: float | None) -> Cell:
     return Cell(None, AT_ONCE) if value is None else Cell(value, rounded(value, DAMAGE_DIGITS))
 
 
-def _told(result: Result, found: DriveRating, measures: Measures) -> list[str | Table]:
-    """Return what the terminal shows of all gears; of an optimum first how it is rated."""
+def _told(result: Result, rating: DriveRating, measures: Measures) -> list[str | Table]:
+    """All gears for the terminal; of an optimum first how it is rated."""
     keys = [it.key for it in listed(GearRating) if it.key.endswith(("_MPa", "_safety"))]
-    sign, named = measures.unit("MPa"), found.beside is not None
+    sign, named = measures.unit("MPa"), rating.beside is not None
     strong = f"permissible\n{sign}"
     short = (f"bending\n{sign}", strong, "S_F", f"contact\n{sign}", strong, "S_H")
     rows = [
         [
-            name(found, gear),
+            name(rating, gear),
             *[SHORT[one.by]] * named,
             *(figure(getattr(gear, key), key, measures) for key in keys),
         ]
-        for one, gear in _columns(found)
+        for one, gear in _columns(rating)
     ]
     heads = ["gear", *["by"] * named, *keys]
     read = dict(zip(keys, short, strict=True))
     table = Table("gears", heads, rows, short=read, left=1 + named, wrap=9)
-    lives = of_standards(found, [life(one.life_h) for one in found.each])
-    asked = f"{';' if named else ','} {life(found.required_life_h)} asked for."
+    lives = of_standards(rating, [life(one.life_h) for one in rating.each])
+    asked = f"{';' if named else ','} {life(rating.required_life_h)} asked for."
     lasts = f"Life at safety factors of 1: {lives}{asked}"
-    if found.efficiency_percent is not None:
-        lasts += f" Efficiency of the meshes: {efficiency(found)}{unsure(found)}."
-    first = [] if result.name == RATING else [measures.words(told(found))]
-    end = unverified(found) if first else []
-    return [*first, table, "\n".join([lasts, _standards(found), *end])]
+    if rating.efficiency_percent is not None:
+        lasts += f" Efficiency of the meshes: {efficiency(rating)}{unsure(rating)}."
+    first = [] if result.name == RATING else [measures.words(told(rating))]
+    end = unverified(rating) if first else []
+    return [*first, table, "\n".join([lasts, _standards(rating), *end])]
 
 
 def levels(result: Result, measures: Measures) -> Section | None:
     """Return the load spectrum with the damage of every level; None without one."""
-    found = rating_of(result)
-    if found is None or not found.levels:
+    rating = rating_of(result)
+    if rating is None or not rating.levels:
         return None
-    named = found.beside is not None
-    heads = [it.head(measures) for it in _level_fields(found)]
+    named = rating.beside is not None
+    heads = [it.head(measures) for it in _level_fields(rating)]
     heads[ONCE:ONCE] = ["gear", *["by"] * named]
-    each = [[(one, level) for level in one.levels] for one in found.each]
+    each = [[(one, level) for level in one.levels] for one in rating.each]
     pairs = [pair for both in zip(*each, strict=True) for pair in both]
     rows = []
     for one, level in sorted(pairs, key=lambda pair: pair[1].level):
-        row, at = _level_row(found, level, measures, one is found), ONCE + 1
+        row, at = _level_row(rating, level, measures, one is rating), ONCE + 1
         rows.append([*row[:at], *[SHORT[one.by]] * named, *row[at:]])
     said = [
         "The damage of a level is its load cycles over those that the gear would bear at this "
@@ -178,93 +178,93 @@ def levels(result: Result, measures: Measures) -> Section | None:
     said += [
         f"Unverified by {one.by}: a published spectrum confirms the sum for contact, none for "
         "bending."
-        for one in found.each
+        for one in rating.each
         if any(name.startswith("load spectrum") for name in one.unverified)
     ]
     return Section("Load spectrum", words=said, tables=(Table("levels", heads, rows),))
 
 
-def _level_fields(found: DriveRating) -> list[Listed]:
+def _level_fields(rating: DriveRating) -> list[Listed]:
     """Fields of a load level; stresses by their symbols of AGMA, where it rates alone."""
-    alone = {one.by for one in found.each} == {"AGMA"}
+    alone = {one.by for one in rating.each} == {"AGMA"}
     symbols = {"bending_stress_MPa": "s_t", "contact_stress_MPa": "s_c"} if alone else {}
     return [replace(it, label=symbols.get(it.key, it.label)) for it in listed(LoadLevel)]
 
 
-def _level_row(found: DriveRating, level: LoadLevel, measures: Measures, first: bool) -> list[Any]:
+def _level_row(rating: DriveRating, level: LoadLevel, measures: Measures, first: bool) -> list[Any]:
     """A level of a gear; the page shows its load once, at the first gear and standard."""
     cells = [
         _damage(value) if it.key.endswith("damage") else it.cell(value, measures)
-        for it in _level_fields(found)
+        for it in _level_fields(rating)
         for value in [getattr(level, it.key)]
     ]
     load = cells[:ONCE]
-    if not first or name(found, level) != names(found)[0]:
+    if not first or name(rating, level) != names(rating)[0]:
         load = [replace(cell, text="") for cell in load]
-    return [*load, name(found, level), *cells[ONCE:]]
+    return [*load, name(rating, level), *cells[ONCE:]]
 
 
 def factors(result: Result, measures: Measures) -> Section | None:
     """Return every factor with its source; None without a rating."""
-    if (found := rating_of(result)) is None:
+    if (rating := rating_of(result)) is None:
         return None
-    tables = [_table(one, found.beside is not None, measures) for one in found.each]
+    tables = [_table(one, rating.beside is not None, measures) for one in rating.each]
     level = (
         " For a load spectrum the factors are those of the level with the largest stress."
-        if found.levels
+        if rating.levels
         else ""
     )
     words = [f"A single value applies to both gears.{level}"]
-    words += map(measures.words, unverified(found))
+    words += map(measures.words, unverified(rating))
     told: list[str | Table] = []
-    for one in found.each:
-        told += _factors_told(one, found.beside is not None, measures)
+    for one in rating.each:
+        told += _factors_told(one, rating.beside is not None, measures)
     told += words[1:]
     for table in tables:
         told += _remarks(table.rows)
     return Section("Factors", words=words, tables=tables, terminal=told)
 
 
-def _symbols(found: DriveRating) -> list[list[RatingFactor]]:
+def _symbols(rating: DriveRating) -> list[list[RatingFactor]]:
     """Return the factors of a standard, those of one symbol together."""
     symbols: dict[str, list[RatingFactor]] = {}
-    for factor in found.factors:
+    for factor in rating.factors:
         symbols.setdefault(factor.symbol, []).append(factor)
     return list(symbols.values())
 
 
-def _table(found: DriveRating, named: bool, measures: Measures) -> Table:
+def _table(rating: DriveRating, named: bool, measures: Measures) -> Table:
     """Return the factors of a standard, which is named beside another one."""
-    heads = ["symbol", "factor", "unit", *names(found), "unverified", "source", "remark"]
-    rows = [_factor_row(found, own, measures) for own in _symbols(found)]
+    heads = ["symbol", "factor", "unit", *names(rating), "unverified", "source", "remark"]
+    rows = [_factor_row(rating, own, measures) for own in _symbols(rating)]
     hidden = ["unit", "unverified"] + ([] if any(row[-1].value for row in rows) else ["remark"])
     return Table(
-        f"factors by {found.by}" if named else "factors",
+        f"factors by {rating.by}" if named else "factors",
         heads,
         rows,
-        caption=f"Factors by {found.by}" if named else "",
+        caption=f"Factors by {rating.by}" if named else "",
         csv_only=hidden,
         texts=("factor", "source", "remark"),
     )
 
 
 def _remarks(rows: Sequence[Sequence[Any]]) -> list[str]:
-    """Return what limits factors, for the terminal; what limits several once."""
+    """Remarks that limit factors, for the terminal; one for several factors once."""
     symbols: dict[str, list[str]] = {}
     for symbol, *_, remark in rows:
         if remark.value:
             symbols.setdefault(remark.text, []).append(greek(symbol.value))
-    lines = [f"{series_of(own)}: {remark}." for remark, own in symbols.items()]
+    lines = [f"{series_of(symbols_)}: {remark}." for remark, symbols_ in symbols.items()]
     return ["\n".join(lines)] if lines else []
 
 
-def _factor_row(found: DriveRating, own: Sequence[RatingFactor], measures: Measures) -> list[Any]:
+def _factor_row(rating: DriveRating, own: Sequence[RatingFactor], measures: Measures) -> list[Any]:
     """Return a factor of all stages: its values, where they are from, what limits them."""
     one = own[0]
     sign, symbol, remarks = (
         measures.unit(_unit(one)),
         greek(one.symbol),
-        measures.words(_by_stage(found, own, "remark")),
+        measures.words(_by_stage(rating, own, "remark")),
     )
     return [
         Cell(one.symbol, f"{symbol} [{sign}]" if sign else symbol),
@@ -272,7 +272,7 @@ def _factor_row(found: DriveRating, own: Sequence[RatingFactor], measures: Measu
         sign,
         *(value for factor in own for value in _values(factor, measures)),
         ", ".join(str(factor.stage) for factor in own if not factor.verified),
-        _by_stage(found, own, "source"),
+        _by_stage(rating, own, "source"),
         Cell(remarks, greek(remarks)),
     ]
 
@@ -282,7 +282,7 @@ def _unit(factor: RatingFactor) -> str:
     return SHOWN_UNITS.get(factor.symbol, factor.unit)
 
 
-def _by_stage(found: DriveRating, own: Sequence[RatingFactor], key: str) -> str:
+def _by_stage(rating: DriveRating, own: Sequence[RatingFactor], key: str) -> str:
     """Return words of a factor in every stage; sources, and what is the same, once."""
     stages: dict[str, list[str]] = {}
     for factor in own:
@@ -305,20 +305,20 @@ def _values(factor: RatingFactor, measures: Measures) -> list[Cell]:
     return [first, second]
 
 
-def _factors_told(found: DriveRating, named: bool, measures: Measures) -> list[Table]:
+def _factors_told(rating: DriveRating, named: bool, measures: Measures) -> list[Table]:
     """Return the factors as the terminal shows them, of so many stages as fit side by side."""
-    made, alone, abreast = [], len(found.meshes) == 1, ABREAST[found.by]
-    of = SHORT[found.by] if named else ""
-    for start in range(0, len(found.meshes), abreast):
-        heads = [of, *[""] * alone, *names(found)[2 * start : 2 * (start + abreast)], ""]
+    tables, alone, abreast = [], len(rating.meshes) == 1, ABREAST[rating.by]
+    of = SHORT[rating.by] if named else ""
+    for start in range(0, len(rating.meshes), abreast):
+        heads = [of, *[""] * alone, *names(rating)[2 * start : 2 * (start + abreast)], ""]
         rows = []
-        for own in _symbols(found):
+        for own in _symbols(rating):
             part = own[start : start + abreast]
-            symbol, what = _factor_row(found, part, measures)[:2]
+            symbol, what = _factor_row(rating, part, measures)[:2]
             values = [value for factor in part for value in _values(factor, measures)]
             rows.append([symbol, *[what] * alone, *values, _state(part)])
-        made.append(Table("factors", heads, rows, left=1 + alone, wrap=0))
-    return made
+        tables.append(Table("factors", heads, rows, left=1 + alone, wrap=0))
+    return tables
 
 
 def _state(own: Sequence[RatingFactor]) -> str:

@@ -23,15 +23,15 @@ IN_DESIGN = {  # keys of stages and totals that tables of a rating show
 ABREAST = 2  # stages whose teeth fit beside another table
 
 
-def single(found: DriveRating) -> bool:
+def single(rating: DriveRating) -> bool:
     """Return whether there is one stage, whose tables leave room beside them."""
-    return len(found.meshes) == 1
+    return len(rating.meshes) == 1
 
 
 def design(result: Result, measures: Measures) -> Section | None:
     """Return the tables of a design, without those of its rating; None without a design."""
-    own = {key: value for key, value in result.design.items() if key != "rating"}
-    return tables(replace(result, design=own), measures)
+    others = {key: value for key, value in result.design.items() if key != "rating"}
+    return tables(replace(result, design=others), measures)
 
 
 def beside(table: Table, result: Result, measures: Measures) -> Table:
@@ -48,14 +48,14 @@ def beside(table: Table, result: Result, measures: Measures) -> Table:
     return replace(table, csv_only=[heading(key, measures) for key in hidden])
 
 
-def names(found: DriveRating) -> list[str]:
+def names(rating: DriveRating) -> list[str]:
     """Return the names of all gears: of several stages with their stage."""
-    return [name(found, gear) for gear in found.gears]
+    return [name(rating, gear) for gear in rating.gears]
 
 
-def name(found: DriveRating, gear: Any) -> str:
+def name(rating: DriveRating, gear: Any) -> str:
     """Return the name of a gear of some table, with its stage where there are several."""
-    return gear.member if len(found.meshes) == 1 else f"{gear.member} {gear.stage}"
+    return gear.member if len(rating.meshes) == 1 else f"{gear.member} {gear.stage}"
 
 
 def figure(value: Any, key: str, measures: Measures) -> Any:
@@ -69,47 +69,47 @@ def figure(value: Any, key: str, measures: Measures) -> Any:
 
 def forces(result: Result, measures: Measures) -> Section | None:
     """Return contact and forces of every mesh, and what shafts carry; None without a rating."""
-    if (found := rating_of(result)) is None:
+    if (rating := rating_of(result)) is None:
         return None
-    heads = ["", *(f"stage {mesh.stage}" for mesh in found.meshes)]
-    rows = [*_least_rows(found, measures), *side_by_side(found.meshes, measures)]
+    heads = ["", *(f"stage {mesh.stage}" for mesh in rating.meshes)]
+    rows = [*_least_rows(rating, measures), *side_by_side(rating.meshes, measures)]
     meshes = Table("meshes", heads, rows, across=True)
-    heads = ["", *(f"shaft {shaft.shaft}" for shaft in found.shafts)]
-    *rows, (axial, *_) = side_by_side(found.shafts, measures)
-    rows.append([axial, *_end_words(found, measures)])
+    heads = ["", *(f"shaft {shaft.shaft}" for shaft in rating.shafts)]
+    *rows, (axial, *_) = side_by_side(rating.shafts, measures)
+    rows.append([axial, *_end_words(rating, measures)])
     shafts = Table("shafts", heads, rows, across=True)
-    level = ", at the load level of largest force" if found.levels else ""
+    level = ", at the load level of largest force" if rating.levels else ""
     words = [
         f"Forces of a mesh act at the working pitch circles{level}. Shafts transmit torques "
         "without losses. Rotations are seen from the input end, for an input that turns "
         "clockwise; positive axial forces point away from that end, and all reverse with the "
         "rotation of the input."
     ]
-    if found.efficiency_percent is not None:
+    if rating.efficiency_percent is not None:
         words.append(
             "Efficiencies are those of tooth friction alone, without bearings, seals and oil "
-            "churning" + ("." if found.efficiency_error_percent is None else f"; {FRICTION}.")
+            "churning" + ("." if rating.efficiency_error_percent is None else f"; {FRICTION}.")
         )
     stages = result.design["stages"]
-    told = "\n".join(f"{_mesh_words(found, stage, k, measures)}" for k, stage in enumerate(stages))
-    half = single(found)
+    told = "\n".join(f"{_mesh_words(rating, stage, k, measures)}" for k, stage in enumerate(stages))
+    half = single(rating)
     return Section(
         "Forces and contact", words=words, tables=(meshes, shafts), half=half, terminal=(told,)
     )
 
 
-def _least_rows(found: DriveRating, measures: Measures) -> Iterator[list[Any]]:
+def _least_rows(rating: DriveRating, measures: Measures) -> Iterator[list[Any]]:
     """Yield what governs every mesh and what it may transmit, by every standard."""
     for it in listed(MeshRating, "governing"):
-        for one in found.each:
-            of = "" if found.beside is None else f" by {one.by}"
+        for one in rating.each:
+            of = "" if rating.beside is None else f" by {one.by}"
             values = (figure(getattr(mesh, it.key), it.key, measures) for mesh in one.meshes)
             yield [replace(it, label=it.label + of).head(measures), *values]
 
 
-def _mesh_words(found: DriveRating, stage: Mapping[str, Any], k: int, measures: Measures) -> str:
+def _mesh_words(rating: DriveRating, stage: Mapping[str, Any], k: int, measures: Measures) -> str:
     """Return sizes, contact and forces of a stage (from 0) in a sentence."""
-    mesh, size = found.meshes[k], measures.amount
+    mesh, size = rating.meshes[k], measures.amount
     parts = [
         f"Stage {k + 1}: {module_words(stage[MODULE], measures)}",
         f"z {number(stage['pinion_teeth'])}/{number(stage['wheel_teeth'])}",
@@ -134,24 +134,24 @@ def _left(mesh: MeshRating) -> str:
 
 def teeth(result: Result, measures: Measures) -> Section | None:
     """Return the geometry of the teeth of every gear; None without a rating."""
-    if (found := rating_of(result)) is None:
+    if (rating := rating_of(result)) is None:
         return None
-    rows = side_by_side(found.teeth, measures)
-    table = Table("teeth", ["", *names(found)], rows, across=True)
+    rows = side_by_side(rating.teeth, measures)
+    table = Table("teeth", ["", *names(rating)], rows, across=True)
     words = [
         "Terms of ISO 21771; shifts in normal modules. The generating shift is that of the tool, "
         "with the allowance of the tooth thickness; contact with the mate ends at the active root "
         "diameter."
     ]
-    return Section("Teeth", words=words, tables=(table,), half=len(found.meshes) <= ABREAST)
+    return Section("Teeth", words=words, tables=(table,), half=len(rating.meshes) <= ABREAST)
 
 
-def _end_words(found: DriveRating, measures: Measures) -> list[Any]:
+def _end_words(rating: DriveRating, measures: Measures) -> list[Any]:
     """Return the axial forces of shafts, those of one gear by the name of its mesh's."""
-    cells = [cell(shaft.axial_force_N, "N", measures) for shaft in found.shafts]
-    for k, mesh in ((0, found.meshes[0]), (-1, found.meshes[-1])):
-        own = found.shafts[k].axial_force_N
-        if own and isclose(abs(own), mesh.axial_force_N, rel_tol=ROUNDING):
-            sign = "−" if own < 0.0 else ""
+    cells = [cell(shaft.axial_force_N, "N", measures) for shaft in rating.shafts]
+    for k, mesh in ((0, rating.meshes[0]), (-1, rating.meshes[-1])):
+        force = rating.shafts[k].axial_force_N
+        if force and isclose(abs(force), mesh.axial_force_N, rel_tol=ROUNDING):
+            sign = "−" if force < 0.0 else ""
             cells[k] = replace(cells[k], text=f"{sign}F_a of stage {mesh.stage}")
     return cells

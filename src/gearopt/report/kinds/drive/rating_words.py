@@ -54,126 +54,128 @@ SHOWN_UNITS = {  # units of factors that are shown in others: deviations of flan
 def rating_of(result: Result) -> DriveRating | None:
     """Return the rating that a design holds; None without one."""
     held = result.design.get("rating")
-    found: DriveRating | None = typed(DriveRating, held, "rating") if held else None
-    return found
+    rating: DriveRating | None = typed(DriveRating, held, "rating") if held else None
+    return rating
 
 
 def binding_limit(result: Result) -> str:
     """Return whether given gears are safe, and what governs."""
-    found = rating_of(result)
-    return _verdict(found) if found else ""
+    rating = rating_of(result)
+    return _verdict(rating) if rating else ""
 
 
 def figures(result: Result) -> str:
     """Return the least safety factor and the power capacity, as the end of a sentence."""
-    found = rating_of(result)
-    return _figures(found) if found else ""
+    rating = rating_of(result)
+    return _figures(rating) if rating else ""
 
 
 def warns(result: Result) -> list[str]:
     """Return that an optimum is not safe, which gears do not fit, and flaws."""
-    if (found := rating_of(result)) is None:
+    if (rating := rating_of(result)) is None:
         return list(result.report.get("misfits", ()))
-    unsafe = [] if found.safe_by_all or not result.objective else [sentence_of(found)]
-    return [*unsafe, *map(greek, (*found.misfits, *found.flaws))]
+    unsafe = [] if rating.safe_by_all or not result.objective else [sentence_of(rating)]
+    return [*unsafe, *map(greek, (*rating.misfits, *rating.flaws))]
 
 
-def sentence_of(found: DriveRating) -> str:
+def sentence_of(rating: DriveRating) -> str:
     """Return whether an optimum is safe, and what governs, in a sentence."""
-    return f"{'Safe' if found.safe_by_all else 'Not safe'} by its rating: {_verdict(found)}."
+    return f"{'Safe' if rating.safe_by_all else 'Not safe'} by its rating: {_verdict(rating)}."
 
 
-def told(found: DriveRating) -> str:
+def told(rating: DriveRating) -> str:
     """Return the rating of an optimum with its figures; what a warning said is not said again."""
-    first = sentence_of(found).rstrip(".") if found.safe_by_all else "Rating"
-    return f"{first}{_figures(found)}."
+    first = sentence_of(rating).rstrip(".") if rating.safe_by_all else "Rating"
+    return f"{first}{_figures(rating)}."
 
 
-def _verdict(found: DriveRating) -> str:
+def _verdict(rating: DriveRating) -> str:
     """Return whether the gears fit, what meets the safety factors asked for, and what governs."""
-    if found.misfits:
-        return f"the gears do not fit; as to strength, {_strength(found)}"
-    return _strength(found)
+    if rating.misfits:
+        return f"the gears do not fit; as to strength, {_strength(rating)}"
+    return _strength(rating)
 
 
-def _strength(found: DriveRating) -> str:
-    """Return what meets the safety factors that are asked for and what does not; what governs."""
-    if found.met_by_all:
-        return f"all safety factors are met{_by_both(found)}; {_governs(found)}"
-    short = [(one.by, _short(one)) for one in found.each if not one.met]
-    if found.beside is None:
+def _strength(rating: DriveRating) -> str:
+    """Gears that meet the safety factors asked for and gears that do not; the one that governs."""
+    if rating.met_by_all:
+        return f"all safety factors are met{_by_both(rating)}; {_governs(rating)}"
+    short = [(one.by, _short(one)) for one in rating.each if not one.met]
+    if rating.beside is None:
         return short[0][1]
     if len(short) == 2 and short[0][1] == short[1][1]:
         return f"by {short[0][0]} and by {short[1][0]}, {short[0][1]}"
     parts = [f"by {by}, {words}" for by, words in short]
-    good = "met" if found.misfits else "safe"
-    return "; ".join([*parts, *(f"{good} by {one.by} alone" for one in found.each if one.met)])
+    good = "met" if rating.misfits else "safe"
+    return "; ".join([*parts, *(f"{good} by {one.by} alone" for one in rating.each if one.met)])
 
 
-def _by_both(found: DriveRating) -> str:
-    return "" if found.beside is None else " by " + " and by ".join(o.by for o in found.each)
+def _by_both(rating: DriveRating) -> str:
+    return "" if rating.beside is None else " by " + " and by ".join(o.by for o in rating.each)
 
 
-def _governs(found: DriveRating) -> str:
-    """Return what governs by every standard; what is the same once."""
-    words = [f"{_governing(one)[0]} governs" for one in found.each]
+def _governs(rating: DriveRating) -> str:
+    """Governing gear and mode by every standard; equal ones once."""
+    words = [f"{_governing(one)[0]} governs" for one in rating.each]
     if len(set(words)) == 1:
         return f"{words[0]}{' both' * (len(words) > 1)}"
-    return of_standards(found, words)
+    return of_standards(rating, words)
 
 
-def _short(found: DriveRating) -> str:
+def _short(rating: DriveRating) -> str:
     """Return which safety factors of a standard fall short."""
-    words = _governing(found)[0]
-    short = sum((1.0 + FEASIBLE) * own < asked for _, own, asked in _all(found))
+    words = _governing(rating)[0]
+    short = sum(
+        (1.0 + FEASIBLE) * safety_factor < asked for _, safety_factor, asked in _all(rating)
+    )
     return (
         f"{words} falls short" if short < 2 else f"{short} safety factors fall short, {words} most"
     )
 
 
-def _figures(found: DriveRating) -> str:
+def _figures(rating: DriveRating) -> str:
     """Return least safety factor and power capacity by every standard, and what is asked for."""
-    least = [_governing(one)[1:] for one in found.each]
+    least = [_governing(one)[1:] for one in rating.each]
     values = [f"{symbol} {safety(own)}" for symbol, own, _ in least]
     asked = dict.fromkeys(f"{symbol} {asked:g}" for symbol, _, asked in least)
     wanted = f"{least[0][2]:g}" if len(asked) == 1 else " and ".join(asked)
-    capacities = [f"{safety(one.power_capacity_kW)} kW" for one in found.each]
-    power = rounded(required(found), SAFETY_DIGITS)
+    capacities = [f"{safety(one.power_capacity_kW)} kW" for one in rating.each]
+    power = rounded(required(rating), SAFETY_DIGITS)
     return (
-        f": {of_standards(found, values)}, {wanted} asked for; power capacity "
-        f"{of_standards(found, capacities)}, {power} kW asked for"
+        f": {of_standards(rating, values)}, {wanted} asked for; power capacity "
+        f"{of_standards(rating, capacities)}, {power} kW asked for"
     )
 
 
-def _all(found: DriveRating) -> list[tuple[str, float, float]]:
+def _all(rating: DriveRating) -> list[tuple[str, float, float]]:
     """Return every safety factor: of what, its value, what is asked for."""
-    asked = found.minimum_bending_safety, found.minimum_contact_safety
+    asked = rating.minimum_bending_safety, rating.minimum_contact_safety
     return [
-        (f"{mode} of the {gear_words(found, gear)}", own, least)
-        for gear in found.gears
+        (f"{mode} of the {gear_words(rating, gear)}", own, least)
+        for gear in rating.gears
         for mode, own, least in zip(
             MODES, (gear.bending_safety, gear.contact_safety), asked, strict=True
         )
     ]
 
 
-def _governing(found: DriveRating) -> tuple[str, str, float, float]:
-    """Return what governs: its words, symbol, safety factor and the one asked for."""
-    mesh = weakest(found)
+def _governing(rating: DriveRating) -> tuple[str, str, float, float]:
+    """Governing gear and mode in words, its symbol, safety factor and the one asked for."""
+    mesh = weakest(rating)
     mode, _, member = mesh.governs.partition(" of the ")
-    gear = next(g for g in found.gears if (g.stage, g.member) == (mesh.stage, member))
-    words = f"{mode} of the {gear_words(found, gear)}"
-    own, asked = next((own, asked) for name, own, asked in _all(found) if name == words)
+    gear = next(g for g in rating.gears if (g.stage, g.member) == (mesh.stage, member))
+    words = f"{mode} of the {gear_words(rating, gear)}"
+    own, asked = next((own, asked) for name, own, asked in _all(rating) if name == words)
     return words, MODES[mode], own, asked
 
 
-def nearest(found: DriveRating) -> list[str]:
+def nearest(rating: DriveRating) -> list[str]:
     """Return of every stage what comes nearest to the safety factors asked for, in words."""
     words = []
-    for mesh in found.meshes:
+    for mesh in rating.meshes:
         rows = [
             (own / asked, f"{mode} of the {gear.member}", one.by)
-            for one in found.each
+            for one in rating.each
             for gear in one.gears
             if gear.stage == mesh.stage
             for mode, own, asked in (
@@ -182,32 +184,32 @@ def nearest(found: DriveRating) -> list[str]:
             )
         ]
         _, what, by = min(rows)
-        of = f" by {by}" if found.beside is not None else ""
+        of = f" by {by}" if rating.beside is not None else ""
         words.append(f"in stage {mesh.stage} {what}{of}")
     return words
 
 
-def weakest(found: DriveRating) -> MeshRating:
+def weakest(rating: DriveRating) -> MeshRating:
     """Return the mesh that may transmit least."""
-    return min(found.meshes, key=lambda mesh: mesh.power_capacity_kW)
+    return min(rating.meshes, key=lambda mesh: mesh.power_capacity_kW)
 
 
-def gear_words(found: DriveRating, gear: GearRating) -> str:
+def gear_words(rating: DriveRating, gear: GearRating) -> str:
     """Return a gear in a sentence: of several stages with its own."""
-    return gear.member if len(found.meshes) == 1 else f"{gear.member} of stage {gear.stage}"
+    return gear.member if len(rating.meshes) == 1 else f"{gear.member} of stage {gear.stage}"
 
 
-def required(found: DriveRating) -> float:
+def required(rating: DriveRating) -> float:
     """Return the power [kW] that is asked for, the largest one of a load spectrum."""
-    first = found.shafts[0]
+    first = rating.shafts[0]
     duty = first.torque_Nm * first.speed_rpm * pi / 30.0 / 1000.0
-    return max((level.power_kW for level in found.levels), default=duty)
+    return max((level.power_kW for level in rating.levels), default=duty)
 
 
 def least_safeties(results: Sequence[Result]) -> list[list[str]]:
     """Return a row for S_F and S_H of every standard: its name, the least of every design."""
-    found = [rating_of(result) for result in results]
-    first = found[0]
+    ratings = [rating_of(result) for result in results]
+    first = ratings[0]
     if first is None:
         return []
     rows = []
@@ -217,7 +219,7 @@ def least_safeties(results: Sequence[Result]) -> list[list[str]]:
             key = f"{mode}_safety"
             least = [
                 "" if other is None else safety(min(getattr(g, key) for g in other.each[k].gears))
-                for other in found
+                for other in ratings
             ]
             rows.append([f"least {symbol}{by}", *least])
     return rows
@@ -230,52 +232,52 @@ def safety(factor: float) -> str:
     return text if near else rounded(factor, SAFETY_DIGITS, way=-1)
 
 
-def efficiency(found: DriveRating) -> str:
+def efficiency(rating: DriveRating) -> str:
     """Return the efficiency of all meshes, with the error of a computed friction."""
-    assert found.efficiency_percent is not None
-    error = found.efficiency_error_percent
+    assert rating.efficiency_percent is not None
+    error = rating.efficiency_error_percent
     about = "" if error is None else f" ± {rounded(error, 2)}"
-    return f"{rounded(found.efficiency_percent, 4)}{about} %"
+    return f"{rounded(rating.efficiency_percent, 4)}{about} %"
 
 
-def unsure(found: DriveRating) -> str:
+def unsure(rating: DriveRating) -> str:
     """Return that the error of an efficiency is unverified; nothing where friction is given."""
-    return "" if found.efficiency_error_percent is None else ", unverified"
+    return "" if rating.efficiency_error_percent is None else ", unverified"
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
     """Return least safety factors, power capacity, life and efficiency as key figures."""
-    if (found := rating_of(result)) is None:
+    if (rating := rating_of(result)) is None:
         return []
-    capacities = [measures.words(f"{safety(one.power_capacity_kW)} kW") for one in found.each]
-    asked = measures.words(f"{rounded(required(found), SAFETY_DIGITS)} kW")
-    lives = [life(one.life_h) for one in found.each]
+    capacities = [measures.words(f"{safety(one.power_capacity_kW)} kW") for one in rating.each]
+    asked = measures.words(f"{rounded(required(rating), SAFETY_DIGITS)} kW")
+    lives = [life(one.life_h) for one in rating.each]
     made = [
-        *(_safety_tile(one, "bending", found) for one in found.each),
-        *(_safety_tile(one, "contact", found) for one in found.each),
-        _tile(found, "power capacity", capacities, asked),
-        _tile(found, "life at S = 1", lives, life(found.required_life_h)),
+        *(_safety_tile(one, "bending", rating) for one in rating.each),
+        *(_safety_tile(one, "contact", rating) for one in rating.each),
+        _tile(rating, "power capacity", capacities, asked),
+        _tile(rating, "life at S = 1", lives, life(rating.required_life_h)),
     ]
-    if found.efficiency_percent is not None:
+    if rating.efficiency_percent is not None:
         remark = "tooth friction alone"
-        made.append(Tile("efficiency", efficiency(found), remark))
+        made.append(Tile("efficiency", efficiency(rating), remark))
     return made
 
 
-def _safety_tile(found: DriveRating, mode: str, whole: DriveRating) -> Tile:
+def _safety_tile(rating: DriveRating, mode: str, whole: DriveRating) -> Tile:
     """Return the least safety factor of a mode by one of the standards of the whole rating."""
-    key, asked = f"{mode}_safety", float(getattr(found, f"minimum_{mode}_safety"))
-    least = min(found.gears, key=lambda gear: float(getattr(gear, key)))
-    remark = f"{gear_words(found, least)}; {asked:g} asked for"
-    of = "" if whole.beside is None else f" by {found.by}"
+    key, asked = f"{mode}_safety", float(getattr(rating, f"minimum_{mode}_safety"))
+    least = min(rating.gears, key=lambda gear: float(getattr(gear, key)))
+    remark = f"{gear_words(rating, least)}; {asked:g} asked for"
+    of = "" if whole.beside is None else f" by {rating.by}"
     return Tile(f"least {MODES[mode]}, {mode}{of}", safety(getattr(least, key)), remark)
 
 
-def _tile(found: DriveRating, name: str, values: Sequence[str], asked: str) -> Tile:
+def _tile(rating: DriveRating, name: str, values: Sequence[str], asked: str) -> Tile:
     """Return a key figure: its value, or by each of two standards in the remark the second."""
-    if found.beside is None:
+    if rating.beside is None:
         return Tile(name, values[0], f"{asked} asked for")
-    first, second = found.each
+    first, second = rating.each
     remark = f"{values[1]} by {second.by}; {asked} asked for"
     return Tile(f"{name} by {first.by}", values[0], remark)
 
@@ -287,22 +289,22 @@ def life(hours: float | None) -> str:
     return f"{safety(hours)} h"
 
 
-def unverified(found: DriveRating) -> list[str]:
+def unverified(rating: DriveRating) -> list[str]:
     """Return a sentence with the symbols of unverified values, by every standard that has any."""
-    return [line for one in found.each for line in _unverified(one, found.beside is not None)]
+    return [line for one in rating.each for line in _unverified(one, rating.beside is not None)]
 
 
-def _unverified(found: DriveRating, named: bool) -> list[str]:
+def _unverified(rating: DriveRating, named: bool) -> list[str]:
     """Return the sentence of one standard, which is named."""
     stages: dict[str, list[str]] = {}
-    for name in found.unverified:
+    for name in rating.unverified:
         symbol, _, stage = name.partition(" of stage ")
         stages.setdefault(symbol, []).append(stage)
     if not stages:
         return []
-    several = len(found.meshes) > 1
+    several = len(rating.meshes) > 1
     names = [_of_stages(symbol, own if several else []) for symbol, own in stages.items()]
-    of = f" by {found.by}" if named else ""
+    of = f" by {rating.by}" if named else ""
     return [
         f"Unverified{of}, with a single source or no published value that confirms them: "
         f"{series_of(list(map(greek, names)))}."
@@ -310,8 +312,8 @@ def _unverified(found: DriveRating, named: bool) -> list[str]:
 
 
 def _of_stages(symbol: str, stages: Sequence[str]) -> str:
-    own = [stage for stage in stages if stage]
-    return f"{symbol} of stage{'s' * (len(own) > 1)} {counted(own)}" if own else symbol
+    text = [stage for stage in stages if stage]
+    return f"{symbol} of stage{'s' * (len(text) > 1)} {counted(text)}" if text else symbol
 
 
 def greek(text: str) -> str:
@@ -323,15 +325,15 @@ def _written(symbol: str) -> str:
     return WRITTEN.get(symbol) or _NAME.sub(lambda name: GREEK[name[0]], symbol)
 
 
-def stress_words(found: DriveRating, key: str, words: str) -> str:
-    """Return what a stress is called, with its symbol by every standard: "stress s_t, sigma_F"."""
-    symbols = [SYMBOLS[one.by][key] for one in found.each if key in SYMBOLS[one.by]]
+def stress_words(rating: DriveRating, key: str, words: str) -> str:
+    """Name of a stress with its symbol by every standard: "stress s_t, sigma_F"."""
+    symbols = [SYMBOLS[one.by][key] for one in rating.each if key in SYMBOLS[one.by]]
     return " ".join([words, ", ".join(symbols)]) if symbols else words
 
 
-def of_standards(found: DriveRating, values: list[str], joint: str = ", ") -> str:
+def of_standards(rating: DriveRating, values: list[str], joint: str = ", ") -> str:
     """Return values, one by each standard, as words; a value alone without its standard."""
     if len(values) == 1:
         return values[0]
-    pairs = zip(found.each, values, strict=True)
+    pairs = zip(rating.each, values, strict=True)
     return joint.join(f"{value} by {one.by}" for one, value in pairs)

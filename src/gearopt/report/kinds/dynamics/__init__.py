@@ -25,44 +25,44 @@ MEASURES = {"rms": "RMS", "peak_to_peak": "peak to peak"}
 
 def design_of(result: Result) -> DynamicsDesign | None:
     """Return the design of a result; None without one."""
-    found: DynamicsDesign | None = None
+    design: DynamicsDesign | None = None
     if result.design.get("equilibrium"):
-        found = typed(DynamicsDesign, result.design, "design")
-    return found
+        design = typed(DynamicsDesign, result.design, "design")
+    return design
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
     """Return load, response and stability as key figures."""
-    if (found := design_of(result)) is None:
+    if (design := design_of(result)) is None:
         return []
-    rest = found.equilibrium
-    made = [
+    rest = design.equilibrium
+    figures = [
         Tile("normal load", amount(rest.normal_load_N, "N", measures), "along the line of action")
     ]
-    if (chosen := found.chosen) is not None:
+    if (chosen := design.chosen) is not None:
         worst = amount(chosen.dense_maximum_mm, "um", measures)
-        made.append(Tile("largest over all speeds", worst, "on the dense grid"))
-    if (moved := found.response) is not None:
-        made.append(
+        figures.append(Tile("largest over all speeds", worst, "on the dense grid"))
+    if (moved := design.response) is not None:
+        figures.append(
             Tile(
                 "deformation, peak to peak",
                 amount(moved.peak_to_peak_mm, "um", measures),
                 f"by {moved.method}, error {moved.error:.1e}",
             )
         )
-    if found.stability is not None and found.stability.here is not None:
-        verdict = "unstable" if found.stability.here > 1.0 + UNSTABLE else "stable"
-        made.append(Tile("largest multiplier", number(found.stability.here), verdict))
+    if design.stability is not None and design.stability.here is not None:
+        verdict = "unstable" if design.stability.here > 1.0 + UNSTABLE else "stable"
+        figures.append(Tile("largest multiplier", number(design.stability.here), verdict))
     fastest = f"{rest.frequencies_Hz[-1]:,.0f} Hz"
-    return [*made, Tile("highest natural frequency", fastest, "at the mean stiffness")]
+    return [*figures, Tile("highest natural frequency", fastest, "at the mean stiffness")]
 
 
 def binding_limit(result: Result) -> str:
     """Return how far the mesh deforms."""
-    if (found := design_of(result)) is None or found.chosen is not None:
+    if (design := design_of(result)) is None or design.chosen is not None:
         return ""
-    rest = abs(found.equilibrium.deformation_mm)
-    moved = found.response
+    rest = abs(design.equilibrium.deformation_mm)
+    moved = design.response
     told = f"the mean load deforms the mesh by {1e3 * rest:.4g} µm"
     if moved is None:
         return told
@@ -72,15 +72,15 @@ def binding_limit(result: Result) -> str:
 
 
 def warns(result: Result) -> Sequence[str]:
-    """Return what is unstable, parts, or was not reached."""
-    found = design_of(result)
-    return found.warnings if found else ()
+    """Warnings: unstable motions, teeth that part, an accuracy not reached."""
+    design = design_of(result)
+    return design.warnings if design else ()
 
 
 def motion(result: Result, measures: Measures) -> Section | None:
     """Show the motion in time, its spectrum, and the axes that move."""
-    found = design_of(result)
-    if found is None or (moved := found.response) is None:
+    design = design_of(result)
+    if design is None or (moved := design.response) is None:
         return None
     rows: list[list[Any]] = [
         ["method", moved.method],
@@ -95,15 +95,15 @@ def motion(result: Result, measures: Measures) -> Section | None:
     moving = [plots.orbit(moved, measures)] if moved.axes_mm else []
     figures = [
         plots.response(moved, measures),
-        plots.spectrum(moved, found.mesh_frequency_Hz, measures),
+        plots.spectrum(moved, design.mesh_frequency_Hz, measures),
     ]
     return Section("Motion", animations=moving, figures=figures, tables=(table,), terminal=(table,))
 
 
 def stability(result: Result, measures: Measures) -> Section | None:
     """Show the map of stability, its bands and its tongues."""
-    found = design_of(result)
-    if found is None or (held := found.stability) is None:
+    design = design_of(result)
+    if design is None or (held := design.stability) is None:
         return None
     rows = [
         [
@@ -133,8 +133,8 @@ def stability(result: Result, measures: Measures) -> Section | None:
 
 def speeds(result: Result, measures: Measures) -> Section | None:
     """Show motions over speed: where they are largest, where there are two, and what they are."""
-    found = design_of(result)
-    if found is None or (held := found.speeds) is None:
+    design = design_of(result)
+    if design is None or (held := design.speeds) is None:
         return None
     figures = (plots.over_speed(held, measures), plots.waterfall(held, measures))
     words = (_worst(held, measures), *_two(held))
@@ -211,8 +211,8 @@ def _said(repeats: int, highest: float | None) -> str:
 
 def chosen(result: Result, measures: Measures) -> Section | None:
     """Show the design of least vibration beside the pair of the file."""
-    found = design_of(result)
-    if found is None or (best := found.chosen) is None:
+    gearing = design_of(result)
+    if gearing is None or (best := gearing.chosen) is None:
         return None
     micro = measures.unit("um")
     design = Table("design", ("", ""), names_and_values(best, measures))
@@ -230,9 +230,9 @@ def chosen(result: Result, measures: Measures) -> Section | None:
 
 def rest(result: Result, measures: Measures) -> Section | None:
     """Say how the pair rests under its load, and how it could swing."""
-    if (found := design_of(result)) is None:
+    if (design := design_of(result)) is None:
         return None
-    at = found.equilibrium
+    at = design.equilibrium
     rows = names_and_values(at, measures)
     state = Table("under load", ("", ""), rows, "At the mean stiffness, under the mean load.")
     modes = [

@@ -33,22 +33,22 @@ def line(
     return lines(x, y, series(colour), 1.8, dash, hover=hover, name=name, showlegend=named)
 
 
-def response(found: Response, measures: Measures) -> Figure:
+def response(motion: Response, measures: Measures) -> Figure:
     """Plot the deformation over time; the line at zero is where teeth part."""
-    micro = _micro(found.deformation_mm, measures)
+    micro = _micro(motion.deformation_mm, measures)
     plot = layout(
         axis("time [ms]"), axis(f"deformation δ [{measures.unit('um')}]"), HEIGHT, hovermode="x"
     )
     plot["shapes"] = [_across(0.0)]
     caption = "Deformation of the mesh, negative under compression; above the line teeth part."
-    follows = ORBIT if found.axes_mm else ""
-    return Figure([line(found.time_ms, micro)], plot, caption, follows=follows)
+    follows = ORBIT if motion.axes_mm else ""
+    return Figure([line(motion.time_ms, micro)], plot, caption, follows=follows)
 
 
-def spectrum(found: Response, mesh_frequency: float, measures: Measures) -> Figure:
+def spectrum(motion: Response, mesh_frequency: float, measures: Measures) -> Figure:
     """Plot the amplitudes of the second half over frequency, with the mesh frequency's orders."""
-    micro = _micro(found.amplitude_mm, measures)
-    high = found.frequency_Hz[-1]
+    micro = _micro(motion.amplitude_mm, measures)
+    high = motion.frequency_Hz[-1]
     plot = layout(
         axis("frequency [Hz]"),
         axis(f"amplitude [{measures.unit('um')}]", type="log", dtick=2, exponentformat="power"),
@@ -60,20 +60,20 @@ def spectrum(found: Response, mesh_frequency: float, measures: Measures) -> Figu
     caption = "Spectrum of the second half of the motion"
     caption += "; dotted: the mesh frequency and its multiples." if mesh_frequency else "."
     kept = [max(v, 1e-9) for v in micro]
-    return Figure([line(found.frequency_Hz, kept)], plot, caption)
+    return Figure([line(motion.frequency_Hz, kept)], plot, caption)
 
 
-def orbit(found: Response, measures: Measures) -> Animation:
+def orbit(motion: Response, measures: Measures) -> Animation:
     """Show the axes of both gears moving about their places at rest, much enlarged."""
-    x1, y1, x2, y2 = (np.asarray(c) for c in found.axes_mm)
-    time = np.asarray(found.time_ms)
+    x1, y1, x2, y2 = (np.asarray(c) for c in motion.axes_mm)
+    time = np.asarray(motion.time_ms)
     first = int((1.0 - LATER_PART) * (len(time) - 1))
     shown = np.unique(np.linspace(first, len(time) - 1, MOMENTS).astype(int))
     later = slice(first, len(time))
     views = []
     for k, (name, x, y) in enumerate((("pinion", x1, y1), ("wheel", x2, y2))):
         views.append(_view(name, x[later], y[later], x[shown], y[shown], 1 + 3 * k, measures))
-    delta = np.asarray(found.deformation_mm)[shown]
+    delta = np.asarray(motion.deformation_mm)[shown]
     unit = measures.unit("um")
     readings = [
         Reading("time", time[shown], "ms", 3),
@@ -125,28 +125,28 @@ def _round(length: float) -> float:
     return max(k * power for k in (1.0, 2.0, 5.0) if k * power <= length)
 
 
-def stability(found: Stability) -> Figure:
+def stability(chart: Stability) -> Figure:
     """Draw the map of unstable depths and mesh frequencies with the pair's own point."""
-    growth = np.asarray(found.growth)
+    growth = np.asarray(chart.growth)
     size = [[max(0.0, min(float(v) - 1.0, 1.0)) or None for v in row] for row in growth]
     share = [[None if v is None else 100.0 * v for v in row] for row in size]
     hover = "%{x:.4g} kHz, depth %{y:.3g}: +%{z:.3g} % a period"
     colours = [[0.0, "--series-2/0.35"], [1.0, "--series-2"]]
-    frequencies = [f / 1e3 for f in found.frequency_Hz]
-    traces = [heat(frequencies, found.depth, share, "growth [%]", hover, colorscale=colours)]
-    for tongue in found.tongues:
+    frequencies = [f / 1e3 for f in chart.frequency_Hz]
+    traces = [heat(frequencies, chart.depth, share, "growth [%]", hover, colorscale=colours)]
+    for tongue in chart.tongues:
         x = tongue.frequency_Hz / 1e3
-        half = x * tongue.half_width_percent / 100.0 * found.depth[-1] / found.own_depth
-        look = line([x - half, x, x + half], [found.depth[-1], 0.0, found.depth[-1]], "", 1, "dot")
+        half = x * tongue.half_width_percent / 100.0 * chart.depth[-1] / chart.own_depth
+        look = line([x - half, x, x + half], [chart.depth[-1], 0.0, chart.depth[-1]], "", 1, "dot")
         traces.append(look | {"hoverinfo": "skip", "opacity": 0.7})
-    if found.own_frequency_Hz > 0.0:
-        point = line([found.own_frequency_Hz / 1e3], [found.own_depth], "this pair")
+    if chart.own_frequency_Hz > 0.0:
+        point = line([chart.own_frequency_Hz / 1e3], [chart.own_depth], "this pair")
         point |= {"mode": "markers", "marker": {"color": "--ink", "size": 10, "symbol": "x"}}
         traces.append(point)
-    low, high = (found.frequency_Hz[k] / 1e3 for k in (0, -1))
+    low, high = (chart.frequency_Hz[k] / 1e3 for k in (0, -1))
     plot = layout(
         axis("mesh frequency [kHz]", range=[low, high]),
-        axis("depth of the stiffness wave", range=[0.0, found.depth[-1]]),
+        axis("depth of the stiffness wave", range=[0.0, chart.depth[-1]]),
         HEIGHT + 40,
     )
     caption = (
@@ -156,23 +156,23 @@ def stability(found: Stability) -> Figure:
     return Figure(traces, plot, caption)
 
 
-def over_speed(found: Speeds, measures: Measures) -> Figure:
+def over_speed(speeds: Speeds, measures: Measures) -> Figure:
     """Plot the RMS of the deformation over speed, rising and falling where they differ."""
-    ways = found.rms_mm, found.falling_rms_mm or found.rms_mm
+    ways = speeds.rms_mm, speeds.falling_rms_mm or speeds.rms_mm
     rising, falling = ([_shown(v, measures) for v in way] for way in ways)
     two = falling != rising
-    traces = [line(found.speed_rpm, rising, "speed rising" if two else "")]
+    traces = [line(speeds.speed_rpm, rising, "speed rising" if two else "")]
     if two:
-        traces.append(line(found.speed_rpm, falling, "speed falling", 2, "dash"))
-    told = [(rising, found.repeats), (falling, found.falling_repeats)]
+        traces.append(line(speeds.speed_rpm, falling, "speed falling", 2, "dash"))
+    told = [(rising, speeds.repeats), (falling, speeds.falling_repeats)]
     longer = {
         (n, v)
         for values, repeats in told[: 1 + two]
-        for n, v, r in zip(found.speed_rpm, values, repeats, strict=True)
+        for n, v, r in zip(speeds.speed_rpm, values, repeats, strict=True)
         if r != 1 and v is not None
     }
     if longer:
-        places = [[one[k] for one in sorted(longer)] for k in range(2)]
+        places = [[point[k] for point in sorted(longer)] for k in range(2)]
         marks = line(places[0], places[1], "several periods, or no repetition")
         look = {"color": "--ink", "size": 5, "symbol": "circle-open"}
         traces.append(marks | {"mode": "markers", "marker": look})
@@ -182,9 +182,9 @@ def over_speed(found: Speeds, measures: Measures) -> Figure:
         HEIGHT,
         hovermode="x",
     )
-    unstable = [g > 1.0 + UNSTABLE for g in found.growth]
-    half = 0.5 * (found.speed_rpm[1] - found.speed_rpm[0])
-    ends = bands(found.speed_rpm, unstable)
+    unstable = [g > 1.0 + UNSTABLE for g in speeds.growth]
+    half = 0.5 * (speeds.speed_rpm[1] - speeds.speed_rpm[0])
+    ends = bands(speeds.speed_rpm, unstable)
     plot["shapes"] = [band(low - half, high + half, series(2), opacity=0.12) for low, high in ends]
     if len(traces) > 1:
         plot["margin"] |= {"t": 44}
@@ -194,40 +194,42 @@ def over_speed(found: Speeds, measures: Measures) -> Figure:
     return Figure(traces, plot, caption)
 
 
-def waterfall(found: Speeds, measures: Measures) -> Figure:
+def waterfall(speeds: Speeds, measures: Measures) -> Figure:
     """Draw the orders of the mesh frequency over speed."""
-    values = [[_shown(v, measures) for v in row] for row in found.harmonics_mm]
+    values = [[_shown(v, measures) for v in row] for row in speeds.harmonics_mm]
     unit, orders = measures.unit("um"), range(1, len(values) + 1)
     logs = [[v and math.log10(max(v, 1e-4)) for v in row] for row in values]
     colours = [[0.0, QUIET], [1.0, LOUD]]
     hover, title = "%{x:.5g} rpm, order %{y}: %{customdata:.3g} " + unit, f"lg amplitude [{unit}]"
-    trace = heat(found.speed_rpm, orders, logs, title, hover, customdata=values, colorscale=colours)
+    trace = heat(
+        speeds.speed_rpm, orders, logs, title, hover, customdata=values, colorscale=colours
+    )
     plot = layout(
         axis("speed of the pinion [rpm]", tickformat=","),
         axis("order of the mesh frequency", dtick=1),
         HEIGHT,
     )
     caption = "Waterfall: amplitudes of the orders of the mesh frequency over speed"
-    caption += ", speed rising." if found.falling_rms_mm not in ((), found.rms_mm) else "."
+    caption += ", speed rising." if speeds.falling_rms_mm not in ((), speeds.rms_mm) else "."
     return Figure([trace], plot, caption)
 
 
-def before_and_after(found: Chosen, measure: str, measures: Measures) -> Figure:
+def before_and_after(best: Chosen, measure: str, measures: Measures) -> Figure:
     """Plot the measure that is minimised over all speeds, of the file's pair and of the best."""
-    after = _micro(found.dense_mm, measures)
+    after = _micro(best.dense_mm, measures)
     traces = [
         line(
-            found.dense_rpm,
-            [_shown(v, measures) for v in found.before_mm],
+            best.dense_rpm,
+            [_shown(v, measures) for v in best.before_mm],
             "the pair of the file",
             4,
             "dash",
         ),
-        line(found.dense_rpm, after, "least vibration", 1),
+        line(best.dense_rpm, after, "least vibration", 1),
     ]
-    traces = traces[set(found.before_mm) == {None} :]  # none where the run was stopped
-    judged = [float(np.interp(n, found.dense_rpm, after)) for n in found.speed_rpm]
-    marks = line(found.speed_rpm, judged, "speeds of the problem")
+    traces = traces[set(best.before_mm) == {None} :]  # none where the run was stopped
+    judged = [float(np.interp(n, best.dense_rpm, after)) for n in best.speed_rpm]
+    marks = line(best.speed_rpm, judged, "speeds of the problem")
     traces.append(marks | {"mode": "markers", "marker": {"color": series(1), "size": 6}})
     plot = layout(
         axis("speed of the pinion [rpm]", tickformat=","),

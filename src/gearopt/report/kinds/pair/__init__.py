@@ -26,26 +26,26 @@ STIFFNESS = "N_per_mm_um"  # of MPa
 def contact_of(result: Result) -> PairContact | None:
     """Return the contact that a design holds; None without one."""
     held = result.design.get("contact")
-    found: PairContact | None = typed(PairContact, held, "contact") if held else None
-    return found
+    pair_contact: PairContact | None = typed(PairContact, held, "contact") if held else None
+    return pair_contact
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
     """Return load on a tooth, transmission error and stiffness as key figures."""
-    if (found := contact_of(result)) is None:
+    if (pair_contact := contact_of(result)) is None:
         return []
     relief = relief_of(result)
     modified = pair_relief.tiles(relief, measures) if relief else []
-    own = _contact_tiles(found, of_duty(found), measures, relief is not None)
-    return [*modified, *own, *rating_words.tiles(result, measures)]
+    of_contact = _contact_tiles(pair_contact, of_duty(pair_contact), measures, relief is not None)
+    return [*modified, *of_contact, *rating_words.tiles(result, measures)]
 
 
 def _contact_tiles(
-    found: PairContact, load: ContactLoad, measures: Measures, relieved: bool
+    pair_contact: PairContact, load: ContactLoad, measures: Measures, relieved: bool
 ) -> list[Tile]:
     """Return the figures of contact without relief; relieved: those with it stand beside."""
     part = f"{share(load.largest_share)} % of the normal force"
-    iso = amount(found.iso_mesh_stiffness_MPa, STIFFNESS, measures)
+    iso = amount(pair_contact.iso_mesh_stiffness_MPa, STIFFNESS, measures)
     return [
         Tile("largest load on a tooth", amount(load.largest_tooth_force_N, "N", measures), part),
         Tile(
@@ -58,7 +58,11 @@ def _contact_tiles(
             amount(load.mean_mesh_stiffness_MPa, STIFFNESS, measures),
             f"c_γα of ISO 6336-1: {iso}",
         ),
-        Tile("contact ratio", number(found.contact_ratio), "of the flanks that undercut leaves"),
+        Tile(
+            "contact ratio",
+            number(pair_contact.contact_ratio),
+            "of the flanks that undercut leaves",
+        ),
     ]
 
 
@@ -66,9 +70,9 @@ def binding_limit(result: Result) -> str:
     """Return how much one tooth carries and how evenly the pair runs."""
     if relief := relief_of(result):
         return pair_relief.binding_limit(relief)
-    if (found := contact_of(result)) is None or result.value is not None:
+    if (pair_contact := contact_of(result)) is None or result.value is not None:
         return ""
-    load = of_duty(found)
+    load = of_duty(pair_contact)
     force = amount(load.largest_tooth_force_N, "N", METRIC)
     error = amount(load.peak_to_peak_mm, "um", METRIC)
     words = f"one tooth carries up to {force}; the transmission error varies by {error}"
@@ -77,24 +81,24 @@ def binding_limit(result: Result) -> str:
 
 
 def sentences_on_parts(result: Result, measures: Measures) -> list[str]:
-    """Return what whole teeth cost; nothing of a relief, whose part is the gears."""
+    """Cost of whole teeth; nothing of a relief, whose part is the gears."""
     return [] if relief_of(result) else drive.sentences_on_parts(result, measures)
 
 
 def warns(result: Result) -> Sequence[str]:
-    """Return what is unsafe by the rating, and what the models of contact do not cover."""
-    found = contact_of(result)
+    """Unsafe gears by the rating, and cases that the models of contact do not cover."""
+    pair_contact = contact_of(result)
     told = rating_words.warns(result)
-    return [*told, *(s for s in (found.validity if found else ()) if s not in told)]
+    return [*told, *(s for s in (pair_contact.validity if pair_contact else ()) if s not in told)]
 
 
 def contact(result: Result, measures: Measures) -> Section | None:
     """Say how the load passes from tooth to tooth, with tables; None without contact."""
-    if (found := contact_of(result)) is None:
+    if (pair_contact := contact_of(result)) is None:
         return None
-    tables = [table(found, measures) for table in TABLES]
+    tables = [table(pair_contact, measures) for table in TABLES]
     relieved = bool(result.design.get("relief"))
-    told = answers(found, pair_of(result), _frequency(result), relieved)
+    told = answers(pair_contact, pair_of(result), _frequency(result), relieved)
     words = list(map(measures.words, told))
     shown = [table for table in tables if not table.folded]
     return Section("Contact", words=words, tables=tables, terminal=("\n".join(words), *shown))
@@ -108,23 +112,23 @@ def _frequency(result: Result) -> float:
 
 
 def relief(result: Result, measures: Measures) -> Section | None:
-    """Say what to grind, and what it does at every load; None without relief."""
-    found, made = relief_of(result), contact_of(result)
-    if found is None or made is None:
+    """Relief to grind, and its effect at every load; None without relief."""
+    modified, pair_contact = relief_of(result), contact_of(result)
+    if modified is None or pair_contact is None:
         return None
     tables = [
-        pair_relief.grinding(found, measures),
-        pair_relief.after(made, found, measures),
-        pair_relief.rules(found, measures),
-        pair_relief.profile(made, found, measures),
-        travel(made, measures, found.at, "transmission error with relief"),
+        pair_relief.grinding(modified, measures),
+        pair_relief.after(pair_contact, modified, measures),
+        pair_relief.rules(modified, measures),
+        pair_relief.profile(pair_contact, modified, measures),
+        travel(pair_contact, measures, modified.at, "transmission error with relief"),
     ]
-    words = list(map(measures.words, pair_relief.answers(found)))
+    words = list(map(measures.words, pair_relief.answers(modified)))
     shown = [table for table in tables if not table.folded]
     told: tuple[str | Table, ...] = ("\n".join(words), *shown)
     if (pair := pair_of(result)) is None:
         return Section("Relief", words=words, tables=tables, terminal=told)
-    flanks = pair_relief.flanks(made, found, pair)
+    flanks = pair_relief.flanks(pair_contact, modified, pair)
     figures = [pair_relief.profile_plot(flank, measures) for flank in flanks]
     tables += [pair_relief.steps(flank, measures) for flank in flanks]
     return Section("Relief", words=words, figures=figures, tables=tables, terminal=told)
@@ -132,18 +136,18 @@ def relief(result: Result, measures: Measures) -> Section | None:
 
 def mesh(result: Result, measures: Measures) -> Section | None:
     """Show the teeth in mesh; None without contact or whole teeth."""
-    found, pair = contact_of(result), pair_of(result)
-    if found is None or pair is None:
+    pair_contact, pair = contact_of(result), pair_of(result)
+    if pair_contact is None or pair is None:
         return None
-    return moving(found, relief_of(result), pair, measures)
+    return moving(pair_contact, relief_of(result), pair, measures)
 
 
 def harmonics(result: Result, measures: Measures) -> Section | None:
     """Show the harmonics of the transmission error before and after; None without relief."""
-    found, made = contact_of(result), relief_of(result)
-    if found is None or made is None:
+    pair_contact, modified = contact_of(result), relief_of(result)
+    if pair_contact is None or modified is None:
         return None
-    return pair_relief.harmonics(found, made, measures)
+    return pair_relief.harmonics(pair_contact, modified, measures)
 
 
 def numbers(result: Result, measures: Measures) -> Section | None:

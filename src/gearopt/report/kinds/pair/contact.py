@@ -46,26 +46,26 @@ def pair_of(result: Result) -> GearPair | None:
     return pair if all(float(gear.teeth).is_integer() for gear in pair.gears) else None
 
 
-def carried(found: PairContact, load: ContactLoad) -> Carried:
-    """Return what the pairs of teeth carry at a load, as drawings and plots have it."""
-    travels = np.asarray(found.travel_mm) / found.base_pitch_mm
-    return Carried.of_columns(travels, found.position_mm, load.share, load.transmission_error_mm)
+def carried(contact: PairContact, load: ContactLoad) -> Carried:
+    """Shares of the pairs of teeth at a load, as drawings and plots have them."""
+    travels = np.asarray(contact.travel_mm) / contact.base_pitch_mm
+    return Carried.of_columns(travels, contact.position_mm, load.share, load.transmission_error_mm)
 
 
 def moving(
-    found: PairContact, relief: PairRelief | None, pair: GearPair, measures: Measures
+    contact: PairContact, relief: PairRelief | None, pair: GearPair, measures: Measures
 ) -> Section:
     """Show the pair in mesh at the torque of the duty, and every load over the path of contact.
 
     With a relief before and after it, side by side and in every plot.
     """
-    duty, path = of_duty(found), usable_path(pair)
-    shown = {"": carried(found, duty)}
+    duty, path = of_duty(contact), usable_path(pair)
+    shown = {"": carried(contact, duty)}
     if relief:
-        after = relief.at[found.loads.index(duty)]
-        shown = {"without relief": shown[""], "with relief": carried(found, after)}
+        after = relief.at[contact.loads.index(duty)]
+        shown = {"without relief": shown[""], "with relief": carried(contact, after)}
     at = f"At {100.0 * duty.load:g} % of the duty's torque. {CAPTION}"
-    figures = [*_of_loads(found, relief, pair, measures), _stiffness(found, pair, measures)]
+    figures = [*_of_loads(contact, relief, pair, measures), _stiffness(contact, pair, measures)]
     return Section(
         "Teeth in mesh",
         words=(f"Line of action and plots: {zone_words(path)}",),
@@ -75,11 +75,11 @@ def moving(
 
 
 def _of_loads(
-    found: PairContact, relief: PairRelief | None, pair: GearPair, measures: Measures
+    contact: PairContact, relief: PairRelief | None, pair: GearPair, measures: Measures
 ) -> list[Figure]:
     """Plot shares and transmission error at every load, before and after a relief."""
-    shown, path = carried(found, of_duty(found)), usable_path(pair)
-    shares, errors = _lines(found.loads, measures)
+    shown, path = carried(contact, of_duty(contact)), usable_path(pair)
+    shares, errors = _lines(contact.loads, measures)
     said = "by the load"
     if relief:
         before, after = (shares, errors), _lines(relief.at, measures)
@@ -115,19 +115,19 @@ def _pale(lines: Sequence[Line]) -> list[Line]:
     return [replace(line, name="", dash="dot", width=1.2) for line in lines]
 
 
-def _stiffness(found: PairContact, pair: GearPair, measures: Measures) -> Figure:
+def _stiffness(contact: PairContact, pair: GearPair, measures: Measures) -> Figure:
     """Plot the stiffness of one pair of teeth and of the mesh beside those of ISO 6336-1."""
-    duty, factor = of_duty(found), measures.of(1.0, STIFFNESS)
-    lines = [Line(factor * np.asarray(found.pair_stiffness_MPa), "one pair of teeth", 1)]
+    duty, factor = of_duty(contact), measures.of(1.0, STIFFNESS)
+    lines = [Line(factor * np.asarray(contact.pair_stiffness_MPa), "one pair of teeth", 1)]
     if duty.normal_force_N:
         error = float(pair.face_width) * np.asarray(duty.transmission_error_mm)
         lines.append(Line(factor * duty.normal_force_N / error, "mesh", 2))
     beside = [
-        ("c_γα of ISO 6336-1", factor * found.iso_mesh_stiffness_MPa),
-        ("c' of ISO 6336-1", factor * found.iso_single_stiffness_MPa),
+        ("c_γα of ISO 6336-1", factor * contact.iso_mesh_stiffness_MPa),
+        ("c' of ISO 6336-1", factor * contact.iso_single_stiffness_MPa),
     ]
     return over_path(
-        *(carried(found, duty), usable_path(pair), lines),
+        *(carried(contact, duty), usable_path(pair), lines),
         f"stiffness [{measures.unit(STIFFNESS)}]",
         f"Stiffness, normal force over face width and approach: of one pair of teeth, and of the "
         f"mesh at {100.0 * duty.load:g} % of the torque.",
@@ -174,14 +174,14 @@ def bodies(stage: StageDesign) -> tuple[Body, Body]:
     )
 
 
-def points(found: PairContact, measures: Measures) -> Table:
+def points(contact: PairContact, measures: Measures) -> Table:
     """Points where pairs of teeth come and go, and how stiff one pair is there."""
-    heads, rows = records(found.points, measures)
+    heads, rows = records(contact.points, measures)
     caption = (
         "Points of the path of contact; s on the line of action from the pitch point, positive "
         "towards the pinion's tip."
     )
-    if found.contact_ratio < 2.0:
+    if contact.contact_ratio < 2.0:
         caption += " Between LPSTC and HPSTC one pair of teeth carries the load."
     length, stiff = measures.unit("mm"), measures.unit(STIFFNESS)
     brief = f"d_1 [{length}]", f"d_2 [{length}]", "pinion roll [°]", f"pair [{stiff}]"
@@ -189,21 +189,21 @@ def points(found: PairContact, measures: Measures) -> Table:
     return Table("points of contact", heads, rows, caption, short=short, wrap=0)
 
 
-def loads(found: PairContact, measures: Measures) -> Table:
-    """Return what happens at every load, beside the stiffness by ISO 6336-1."""
+def loads(contact: PairContact, measures: Measures) -> Table:
+    """Forces, stresses and errors at every load, beside the stiffness by ISO 6336-1."""
 
     def row(head: str, unit: str, value: Callable[[ContactLoad], float | None]) -> list[Any]:
-        values = [value(one) for one in found.loads]
+        values = [value(load) for load in contact.loads]
         cells = [Cell("", "–") if v is None else cell(v, unit, measures) for v in values]
         return [f"{head} [{measures.unit(unit)}]", *cells]
 
-    waves = range(len(found.loads[0].harmonics_mm))
+    waves = range(len(contact.loads[0].harmonics_mm))
     rows = [
         row("normal force", "N", lambda o: o.normal_force_N),
         row("largest load on a tooth", "N", lambda o: o.largest_tooth_force_N),
         [
             "the same, % of the normal force",
-            *(Cell(100.0 * o.largest_share, share(o.largest_share)) for o in found.loads),
+            *(Cell(100.0 * o.largest_share, share(o.largest_share)) for o in contact.loads),
         ],
         row("largest contact stress", "MPa", lambda o: o.largest_contact_stress_MPa),
         row("transmission error, mean", "um", lambda o: o.mean_transmission_error_mm),
@@ -212,10 +212,10 @@ def loads(found: PairContact, measures: Measures) -> Table:
         row("mesh stiffness, mean", STIFFNESS, lambda o: _loaded(o, o.mean_mesh_stiffness_MPa)),
         row("mesh stiffness, least", STIFFNESS, lambda o: _loaded(o, o.least_mesh_stiffness_MPa)),
         row("mesh stiffness, most", STIFFNESS, lambda o: _loaded(o, o.most_mesh_stiffness_MPa)),
-        row("c_γα of ISO 6336-1", STIFFNESS, lambda o: found.iso_mesh_stiffness_MPa),
-        row("c' of ISO 6336-1, of one pair", STIFFNESS, lambda o: found.iso_single_stiffness_MPa),
+        row("c_γα of ISO 6336-1", STIFFNESS, lambda o: contact.iso_mesh_stiffness_MPa),
+        row("c' of ISO 6336-1, of one pair", STIFFNESS, lambda o: contact.iso_single_stiffness_MPa),
     ]
-    names = [f"{100.0 * one.load:g} %" for one in found.loads]
+    names = [f"{100.0 * load.load:g} %" for load in contact.loads]
     return Table(
         "loads",
         ["", *names],
@@ -225,26 +225,26 @@ def loads(found: PairContact, measures: Measures) -> Table:
     )
 
 
-def _harmonic(number: int, one: ContactLoad) -> float:
+def _harmonic(number: int, load: ContactLoad) -> float:
     """Return the amplitude of a harmonic of the transmission error, counted from 0."""
-    return one.harmonics_mm[number]
+    return load.harmonics_mm[number]
 
 
-def _loaded(one: ContactLoad, value: float) -> float | None:
+def _loaded(load: ContactLoad, value: float) -> float | None:
     """Return a mesh stiffness; None without load, of which there is none."""
-    return value if one.normal_force_N else None
+    return value if load.normal_force_N else None
 
 
-def path(found: PairContact, measures: Measures) -> Table:
+def path(contact: PairContact, measures: Measures) -> Table:
     """Positions on the path of contact, with the share and the contact stress at every load."""
     listed: Columns = [
-        ("s", found.position_mm, "mm"),
-        ("pinion diameter", found.pinion_diameter_mm, "mm"),
-        ("wheel diameter", found.wheel_diameter_mm, "mm"),
-        ("pinion roll angle", found.pinion_roll_angle_deg, "deg"),
-        ("stiffness of a pair", found.pair_stiffness_MPa, STIFFNESS),
+        ("s", contact.position_mm, "mm"),
+        ("pinion diameter", contact.pinion_diameter_mm, "mm"),
+        ("wheel diameter", contact.wheel_diameter_mm, "mm"),
+        ("pinion roll angle", contact.pinion_roll_angle_deg, "deg"),
+        ("stiffness of a pair", contact.pair_stiffness_MPa, STIFFNESS),
     ]
-    for load in found.loads:
+    for load in contact.loads:
         at = f"at {100.0 * load.load:g} %"
         listed.append((f"share of the load {at}", load.share, ""))
         listed.append((f"contact stress {at}", load.contact_stress_MPa, "MPa"))
@@ -252,14 +252,14 @@ def path(found: PairContact, measures: Measures) -> Table:
 
 
 def travel(
-    found: PairContact,
+    contact: PairContact,
     measures: Measures,
     loads: Sequence[ContactLoad] = (),
     name: str = "transmission error",
 ) -> Table:
     """Transmission error over one base pitch at every load; loads: those with relief."""
-    listed: Columns = [("travel", found.travel_mm, "mm")]
-    for load in loads or found.loads:
+    listed: Columns = [("travel", contact.travel_mm, "mm")]
+    for load in loads or contact.loads:
         head = f"transmission error at {100.0 * load.load:g} %"
         listed.append((head, load.transmission_error_mm, "um"))
     return columns(name, listed, measures)

@@ -74,7 +74,7 @@ def over_path(
 
 
 def zone_words(path: ContactPath) -> str:
-    """Say what the letters and the shading of `over_path` mean."""
+    """Meaning of the letters and the shading of `over_path`."""
     alone = "B to D, shaded: one pair of teeth carries alone"
     shaded = alone if path.transverse_ratio < 2.0 else "shaded: the fewest pairs of teeth carry"
     return f"A to E: path of contact; {shaded}; C: pitch point."

@@ -43,13 +43,13 @@ HEARD = (
 def relief_of(result: Result) -> PairRelief | None:
     """Return the relief that a design holds; None without one."""
     held = result.design.get("relief")
-    found: PairRelief | None = typed(PairRelief, held, "relief") if held else None
-    return found
+    relief: PairRelief | None = typed(PairRelief, held, "relief") if held else None
+    return relief
 
 
-def tiles(found: PairRelief, measures: Measures) -> list[Tile]:
+def tiles(relief: PairRelief, measures: Measures) -> list[Tile]:
     """Return both amounts as key figures."""
-    rows = (("pinion", found.pinion), ("wheel", found.wheel))
+    rows = (("pinion", relief.pinion), ("wheel", relief.wheel))
     return [
         Tile(
             f"relief of the {name}",
@@ -60,54 +60,54 @@ def tiles(found: PairRelief, measures: Measures) -> list[Tile]:
     ]
 
 
-def binding_limit(found: PairRelief) -> str:
-    """Return what the relief is and what it gains."""
-    first, second = (amount(f.amount_mm, "um", METRIC) for f in (found.pinion, found.wheel))
-    none, best = found.rows[0], found.rows[-1]
-    said = f"{_value(found, best.value)}{_strays(found)} instead of {_value(found, none.value)}"
-    at = f"{100.0 * found.loads[0]:g} % of the torque"
-    if len(found.loads) > 1:
-        at = f"the worst of {len(found.loads)} loads"
+def binding_limit(relief: PairRelief) -> str:
+    """Amounts of the relief and its gain."""
+    first, second = (amount(f.amount_mm, "um", METRIC) for f in (relief.pinion, relief.wheel))
+    none, best = relief.rows[0], relief.rows[-1]
+    said = f"{_value(relief, best.value)}{_strays(relief)} instead of {_value(relief, none.value)}"
+    at = f"{100.0 * relief.loads[0]:g} % of the torque"
+    if len(relief.loads) > 1:
+        at = f"the worst of {len(relief.loads)} loads"
     return (
-        f"{first} off the pinion's tips and {second} off the wheel's: {CRITERIA[found.minimise]} "
+        f"{first} off the pinion's tips and {second} off the wheel's: {CRITERIA[relief.minimise]} "
         f"{said} at {at}"
     )
 
 
-def _strays(found: PairRelief) -> str:
+def _strays(relief: PairRelief) -> str:
     """Return the largest peak-to-peak on more positions of the gears, where it is larger."""
-    if found.minimise != "peak_to_peak" or not _finer(found):
+    if relief.minimise != "peak_to_peak" or not _finer(relief):
         return ""
-    return f" ({amount(max(found.finer_mm), 'um', METRIC)} on ten times as many positions)"
+    return f" ({amount(max(relief.finer_mm), 'um', METRIC)} on ten times as many positions)"
 
 
-def _value(found: PairRelief, value: float) -> str:
-    if found.minimise in ("load_jump", "peak_load"):
+def _value(relief: PairRelief, value: float) -> str:
+    if relief.minimise in ("load_jump", "peak_load"):
         return f"{share(value)} %"
     return amount(value, "um", METRIC)
 
 
-def answers(found: PairRelief) -> list[str]:
-    """Return what to grind, and what happens at other loads than those it is made for."""
+def answers(relief: PairRelief) -> list[str]:
+    """Relief to grind, and its effect at other loads than those it is made for."""
     words = [
-        _flank("pinion", found.pinion),
-        _flank("wheel", found.wheel),
+        _flank("pinion", relief.pinion),
+        _flank("wheel", relief.wheel),
         "Only the sum of what is taken off both flanks where they touch counts: instead of the "
         "tips of one gear the roots of the other may be relieved, at the same points of contact. "
         "Crowning and end relief vary along the face width, which plane models do not see.",
     ]
-    if found.break_even is not None:
+    if relief.break_even is not None:
         words.append(
-            f"Below {100.0 * found.break_even:.3g} % of the torque the gears run more evenly "
+            f"Below {100.0 * relief.break_even:.3g} % of the torque the gears run more evenly "
             "without relief: a light load does not close the gaps that relief opens."
         )
-    words += _finer(found)
-    return [*words, _as_made(found.made)] if found.made else words
+    words += _finer(relief)
+    return [*words, _as_made(relief.made)] if relief.made else words
 
 
-def _finer(found: PairRelief) -> list[str]:
+def _finer(relief: PairRelief) -> list[str]:
     """Say how far the transmission error strays between the positions that were computed."""
-    known, finer = max(found.rows[-1].peak_to_peak_mm), max(found.finer_mm, default=0.0)
+    known, finer = max(relief.rows[-1].peak_to_peak_mm), max(relief.finer_mm, default=0.0)
     if finer <= SAME_PEAK_TO_PEAK * known:
         return []
     return [
@@ -146,9 +146,9 @@ def _flank(name: str, flank: FlankRelief) -> str:
     )
 
 
-def grinding(found: PairRelief, measures: Measures) -> Table:
+def grinding(relief: PairRelief, measures: Measures) -> Table:
     """Amounts, diameters and roll angles of both gears."""
-    both = found.pinion, found.wheel
+    both = relief.pinion, relief.wheel
     rows = [*side_by_side(both, measures), ["exponent", *(_power(f.exponent) for f in both)]]
     return Table("relief", ["", "pinion", "wheel"], rows, "What to grind.", across=True)
 
@@ -157,10 +157,10 @@ def _power(exponent: float | None) -> Cell:
     return Cell(exponent, "free" if exponent is None else f"{exponent:g}")
 
 
-def rules(found: PairRelief, measures: Measures) -> Table:
+def rules(relief: PairRelief, measures: Measures) -> Table:
     """Return the relief beside none and beside rules, each in a column."""
-    micro, rows = measures.unit("um"), found.rows
-    at = [f"at {100.0 * load:g} %" for load in found.loads]
+    micro, rows = measures.unit("um"), relief.rows
+    at = [f"at {100.0 * load:g} %" for load in relief.loads]
     lines: list[list[Any]] = [
         [f"pinion [{micro}]", *(cell(r.pinion_amount_mm, "um", measures) for r in rows)],
         [f"wheel [{micro}]", *(cell(r.wheel_amount_mm, "um", measures) for r in rows)],
@@ -180,35 +180,35 @@ def rules(found: PairRelief, measures: Measures) -> Table:
     return Table("relief and rules", ["", *(r.name for r in rows)], lines, caption, across=True)
 
 
-def after(contact: PairContact, found: PairRelief, measures: Measures) -> Table:
+def after(contact: PairContact, relief: PairRelief, measures: Measures) -> Table:
     """Return peak to peak, first harmonic and largest load at every load, before and after."""
     micro, force = measures.unit("um"), measures.unit("N")
     rows = []
-    for when, loads in (("without", contact.loads), ("with", found.at)):
+    for when, loads in (("without", contact.loads), ("with", relief.at)):
         told = {
-            f"peak to peak [{micro}]": [(one.peak_to_peak_mm, "um") for one in loads],
-            f"first harmonic [{micro}]": [(one.harmonics_mm[0], "um") for one in loads],
+            f"peak to peak [{micro}]": [(load.peak_to_peak_mm, "um") for load in loads],
+            f"first harmonic [{micro}]": [(load.harmonics_mm[0], "um") for load in loads],
             f"largest load on a tooth [{force}]": [(o.largest_tooth_force_N, "N") for o in loads],
         }
         for words, values in told.items():
             rows.append([f"{words}, {when}", *(cell(*value, measures) for value in values)])
-    names = [f"{100.0 * one.load:g} %" for one in found.at]
+    names = [f"{100.0 * load.load:g} %" for load in relief.at]
     caption = "Every load without relief, and with it."
     return Table("without and with relief", ["", *names], rows, caption, across=True)
 
 
-def profile(contact: PairContact, found: PairRelief, measures: Measures) -> Table:
+def profile(contact: PairContact, relief: PairRelief, measures: Measures) -> Table:
     """Modified profiles by position, diameter and roll angle."""
     listed: Columns = [
         ("s", contact.position_mm, "mm"),
         ("pinion diameter", contact.pinion_diameter_mm, "mm"),
         ("pinion roll angle", contact.pinion_roll_angle_deg, "deg"),
-        ("off the pinion", found.pinion_removed_mm, "um"),
+        ("off the pinion", relief.pinion_removed_mm, "um"),
         ("wheel diameter", contact.wheel_diameter_mm, "mm"),
         ("wheel roll angle", contact.wheel_roll_angle_deg, "deg"),
-        ("off the wheel", found.wheel_removed_mm, "um"),
+        ("off the wheel", relief.wheel_removed_mm, "um"),
     ]
-    for load in found.at:
+    for load in relief.at:
         listed.append((f"share of the load at {100.0 * load.load:g} %", load.share, ""))
     return columns("modified profile", listed, measures)
 
@@ -227,7 +227,7 @@ class Flank:
     listed: Sequence[float]
 
     def removed(self, roll: Any) -> Any:
-        """Return what is removed [mm] at roll angles [deg], 0 where there is no relief.
+        """Amounts removed [mm] at roll angles [deg], 0 where there is no relief.
 
         amount (1 - x/length)^exponent at x from the tip on the line of action, along which roll
         angles grow evenly; of a shape of its own between the points that are listed.
@@ -246,11 +246,11 @@ class Flank:
         return np.linspace(self.told.start_roll_angle_deg, self.told.tip_roll_angle_deg, count + 1)
 
 
-def flanks(found: PairContact, relief: PairRelief, pair: GearPair) -> list[Flank]:
+def flanks(contact: PairContact, relief: PairRelief, pair: GearPair) -> list[Flank]:
     """Return the flanks of both gears that are ground."""
     bases = (float(gear.base_diameter) for gear in pair.gears)
     told = (relief.pinion, relief.wheel)
-    rolls = (found.pinion_roll_angle_deg, found.wheel_roll_angle_deg)
+    rolls = (contact.pinion_roll_angle_deg, contact.wheel_roll_angle_deg)
     listed = (relief.pinion_removed_mm, relief.wheel_removed_mm)
     rows = zip(MEMBERS, told, bases, rolls, listed, strict=True)
     return [Flank(*row) for row in rows if row[1].amount_mm]
@@ -321,19 +321,19 @@ def profile_plot(flank: Flank, measures: Measures) -> Figure:
     return Figure([trace, above], plot, caption)
 
 
-def harmonics(found: PairContact, relief: PairRelief, measures: Measures) -> Section:
+def harmonics(contact: PairContact, relief: PairRelief, measures: Measures) -> Section:
     """Plot harmonics of the transmission error before and after at up to PANELS loads."""
-    rows = list(zip(found.loads, relief.at, strict=True))
+    rows = list(zip(contact.loads, relief.at, strict=True))
     if len(rows) > PANELS:
-        duty = found.loads.index(of_duty(found))
+        duty = contact.loads.index(of_duty(contact))
         rows = [rows[k] for k in sorted({0, duty, len(rows) - 1})]
-    figure = _bars(rows, found, relief, measures)
+    figure = _bars(rows, contact, relief, measures)
     return Section("Harmonics of the transmission error", words=(HEARD,), figures=(figure,))
 
 
 def _bars(
     rows: Sequence[tuple[ContactLoad, ContactLoad]],
-    found: PairContact,
+    contact: PairContact,
     relief: PairRelief,
     measures: Measures,
 ) -> Figure:
@@ -344,21 +344,21 @@ def _bars(
         name = "x" if k == 0 else f"x{k + 1}"
         start = k * (wide + GAP)
         order = list(range(1, len(before.harmonics_mm) + 1))
-        colour = series(found.loads.index(before) + 1)
+        colour = series(contact.loads.index(before) + 1)
         for said, one, paint in (("without", before, "--axis"), ("with", after, colour)):
             heights = [round(micro * v, 5) for v in one.harmonics_mm]
-            own = {"name": f"{said} relief", "xaxis": name, "marker": {"color": paint}}
-            traces.append(BARS | own | {"x": order, "y": heights})
+            look = {"name": f"{said} relief", "xaxis": name, "marker": {"color": paint}}
+            traces.append(BARS | look | {"x": order, "y": heights})
         axes[f"xaxis{name[1:]}"] = axis(
             "multiple of the mesh frequency",
             domain=[start, min(1.0, start + wide)],
             dtick=1,
             range=[0.4, len(order) + 0.6],
         )
-        made = ", made for it" if any(math.isclose(before.load, w) for w in relief.loads) else ""
+        suits = ", made for it" if any(math.isclose(before.load, w) for w in relief.loads) else ""
         place = {"x": start + 0.5 * wide, "xref": "paper", "xanchor": "center"}
         place |= {"y": 1.0, "yref": "paper", "yanchor": "bottom", "showarrow": False}
-        notes.append(place | {"text": f"at {100.0 * before.load:g} %{made}"})
+        notes.append(place | {"text": f"at {100.0 * before.load:g} %{suits}"})
     first = axes.pop("xaxis")
     up = axis(f"amplitude [{measures.unit('um')}]", rangemode="tozero")
     plot = layout(first, up, 320, annotations=notes, barmode="group", bargap=0.25, **axes)

@@ -87,14 +87,14 @@ def _solids(member: str, gear: Toothed, body: Body) -> list[Rod]:
     rim = tuple((angle + gear.phase, r) for angle, r in outline(gear.gear, 4))
     tip, (start, end) = 0.5 * float(gear.gear.tip_diameter), _shaft(gear.end)
     look = "gear", _colour(member), _words(member, gear)
-    found = [Rod(gear.centre, tip, gear.start, gear.end, *look, rim)]
+    rods = [Rod(gear.centre, tip, gear.start, gear.end, *look, rim)]
     face = gear.end
     if body.web_thickness is not None and body.rim_thickness is not None:
         inside = float(gear.gear.root_diameter) - 2.0 * body.rim_thickness
         for diameter in filter(None, (inside, body.hub_diameter)):
-            found.append(Rod(gear.centre, 0.5 * diameter, face, face + FLAT, *look))
+            rods.append(Rod(gear.centre, 0.5 * diameter, face, face + FLAT, *look))
             face += FLAT
     for ends in ((start, gear.start), (face, end)) if body.bore else ():
         r, title = 0.5 * (body.bore or 0.0), f"shaft of the {member}"
-        found.append(Rod(gear.centre, r, *ends, "metal", title=title))
-    return found
+        rods.append(Rod(gear.centre, r, *ends, "metal", title=title))
+    return rods

@@ -131,12 +131,12 @@ def _circles(sheet: Sheet, gear: Gear, window: Window, measures: Measures) -> No
 
 def _apart(wanted: Sequence[float], lowest: float) -> list[float]:
     """Return heights [px] from the top at least ROW apart, near those that are wanted."""
-    found: list[float] = []
+    values: list[float] = []
     for y in wanted:
-        found.append(max(y, found[-1] + ROW) if found else max(y, ROW))
-    for k in range(len(found) - 1, -1, -1):
-        found[k] = min(found[k], lowest - ROW * (len(found) - k))
-    return found
+        values.append(max(y, values[-1] + ROW) if values else max(y, ROW))
+    for k in range(len(values) - 1, -1, -1):
+        values[k] = min(values[k], lowest - ROW * (len(values) - k))
+    return values
 
 
 def _thickness(sheet: Sheet, gear: Gear, measures: Measures) -> None:

@@ -15,14 +15,14 @@ OVERSTATED = {"none": (22, 46), "ring torsion": (14, 24)}
 ALWAYS = {2: "two", 3: "three"}  # pairs, by the whole part of the contact ratio
 
 
-def of_duty(found: PairContact) -> ContactLoad:
-    """Return what happens at the torque of the duty, else at the largest load."""
-    loads = {one.load: one for one in found.loads}
+def of_duty(contact: PairContact) -> ContactLoad:
+    """Contact at the torque of the duty, else at the largest load."""
+    loads = {load.load: load for load in contact.loads}
     return loads.get(1.0) or loads[max(loads)]
 
 
 def answers(
-    found: PairContact,
+    contact: PairContact,
     pair: GearPair | None = None,
     frequency: float | None = None,
     relieved: bool = False,
@@ -32,13 +32,13 @@ def answers(
     pair: its gears, of whole teeth. frequency: of the mesh [Hz]. relieved: the gears have relief,
     which is told elsewhere; the contact told here is without it.
     """
-    load = of_duty(found)
-    even = _even(found, load, frequency)
+    load = of_duty(contact)
+    even = _even(contact, load, frequency)
     if pair is not None and (alike := graded(pair, load.peak_to_peak_mm)):
         even = f"{even} {alike}"
     first = ["The results below are those of the gears without relief."] if relieved else []
-    change = [] if relieved or not load.normal_force_N else [_changed(found)]
-    return [*first, _shared(found, load), even, *change, _stiff(found, load), _sure(found)]
+    change = [] if relieved or not load.normal_force_N else [_changed(contact)]
+    return [*first, _shared(contact, load), even, *change, _stiff(contact, load), _sure(contact)]
 
 
 def graded(pair: GearPair, error: float) -> str:
@@ -61,9 +61,9 @@ def graded(pair: GearPair, error: float) -> str:
     )
 
 
-def _changed(found: PairContact) -> str:
-    """Say what relief by rule would do."""
-    first, second = (rounded(1e3 * amount, 3) for amount in found.rule_relief_mm)
+def _changed(contact: PairContact) -> str:
+    """Relief by rule, and its effect."""
+    first, second = (rounded(1e3 * amount, 3) for amount in contact.rule_relief_mm)
     return (
         f"Tip relief of about {first} µm on the pinion and {second} µm on the wheel would "
         "let every pair of teeth enter and leave contact without load at the torque of [duty]. A "
@@ -71,7 +71,7 @@ def _changed(found: PairContact) -> str:
     )
 
 
-def _shared(found: PairContact, load: ContactLoad) -> str:
+def _shared(contact: PairContact, load: ContactLoad) -> str:
     """Say how much one pair of teeth carries and where."""
     first, last = load.share[0], load.share[-1]
     ends = (
@@ -79,24 +79,24 @@ def _shared(found: PairContact, load: ContactLoad) -> str:
     )
     if not load.normal_force_N:
         return "Without load no pair of teeth carries anything."
-    alone = 2.0 - found.contact_ratio
+    alone = 2.0 - contact.contact_ratio
     if alone <= NARROW:
-        least = ALWAYS.get(int(found.contact_ratio + NARROW), "several")
+        least = ALWAYS.get(int(contact.contact_ratio + NARROW), "several")
         most = f"at most {share(load.largest_share)} % of the load"
         return f"One pair of teeth carries {most}, as {least} pairs always touch; it {ends}."
-    length = rounded(alone * found.base_pitch_mm, 3)
+    length = rounded(alone * contact.base_pitch_mm, 3)
     return (
         f"One pair of teeth carries the whole load, {rounded(load.normal_force_N, 4)} N, over "
-        f"{length} mm of its path ({share(alone / found.contact_ratio)} %); a pair {ends}."
+        f"{length} mm of its path ({share(alone / contact.contact_ratio)} %); a pair {ends}."
     )
 
 
-def _even(found: PairContact, load: ContactLoad, frequency: float | None) -> str:
+def _even(contact: PairContact, load: ContactLoad, frequency: float | None) -> str:
     """Say how much the transmission error varies."""
     each = [
-        f"{rounded(1e3 * one.peak_to_peak_mm, 3)} µm at {100.0 * one.load:g} % of the torque"
-        for one in found.loads
-        if one.load
+        f"{rounded(1e3 * it.peak_to_peak_mm, 3)} µm at {100.0 * it.load:g} % of the torque"
+        for it in contact.loads
+        if it.load
     ]
     if not each:
         return "Without load the transmission error does not vary."
@@ -108,32 +108,32 @@ def _even(found: PairContact, load: ContactLoad, frequency: float | None) -> str
     )
 
 
-def _stiff(found: PairContact, load: ContactLoad) -> str:
+def _stiff(contact: PairContact, load: ContactLoad) -> str:
     """Say how the mesh stiffness compares with ISO 6336-1."""
     if not load.mean_mesh_stiffness_MPa:
         return "Without load there is no mesh stiffness."
-    off = 100.0 * (load.mean_mesh_stiffness_MPa / found.iso_mesh_stiffness_MPa - 1.0)
+    off = 100.0 * (load.mean_mesh_stiffness_MPa / contact.iso_mesh_stiffness_MPa - 1.0)
     return (
         f"The mean mesh stiffness is {rounded(abs(off), 2)} % {'above' if off > 0 else 'below'} "
         "c_γα of ISO 6336-1, which does not depend on the bores."
     )
 
 
-def _sure(found: PairContact) -> str:
+def _sure(contact: PairContact) -> str:
     """Say how wrong stiffness and transmission error may be."""
-    low, high = found.error_percent
+    low, high = contact.error_percent
     stiff = (
-        f"Accuracy: for 34 pairs of steel gears the stiffness by {found.level} was "
+        f"Accuracy: for 34 pairs of steel gears the stiffness by {contact.level} was "
         f"{_between(low, high)} that by finite elements"
     )
-    if found.coupling not in OVERSTATED:
+    if contact.coupling not in OVERSTATED:
         return (
             f"{stiff}. The error of the mean transmission error is about as large, that of its "
             "peak-to-peak value up to twice as large."
         )
-    least, most = OVERSTATED[found.coupling]
+    least, most = OVERSTATED[contact.coupling]
     name = {"none": "Without coupling of neighbouring teeth"}.get(
-        found.coupling, f"With neighbouring teeth coupled by {found.coupling}"
+        contact.coupling, f"With neighbouring teeth coupled by {contact.coupling}"
     )
     return (
         f"{stiff}. {name} the peak-to-peak transmission error of two of them was {least} to "

@@ -21,7 +21,7 @@ FULL_TORQUE = "motor_torque"  # used up wherever an acceleration is largest
 
 
 def binding_limit(result: Result) -> str:
-    """Return what decides beside the limits: a box, or the inertias of motor and load."""
+    """Reason beside the limits: a box, or the inertias of motor and load."""
     design = design_of(result)
     if _costs(result):
         return f"the box determines the {goal(result)[0]}: without it there is a better train"
@@ -42,55 +42,55 @@ def _costs(result: Result) -> bool:
     if result.status not in PROVEN or design_of(result).box is None or asked is None:
         return False
     best = [t for t in report_of(result).trains or () if t.best_of == asked.word]
-    own, there = goal(result)[2], getattr(best[0], asked.key) if best else None
-    return bool(own and there and abs(there - own) > OBJECTIVE_TIE * abs(own))
+    reached, there = goal(result)[2], getattr(best[0], asked.key) if best else None
+    return bool(reached and there and abs(there - reached) > OBJECTIVE_TIE * abs(reached))
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
     """Return key figures beside the objective."""
     design, name = design_of(result), goal(result)[0]
-    found = []
+    figures = []
     if design.ratio is not None:
-        found += _ratio(design.ratio, name, measures)
+        figures += _ratio(design.ratio, name, measures)
     if design.train is not None:
-        found += _train(design.train, name, measures)
+        figures += _train(design.train, name, measures)
     if (chain := design.stiffness) is not None:
         stiff, frequency = amount(chain.output_Nm_per_rad, "Nm_per_rad", measures), ""
         if chain.frequency_Hz is not None:
             frequency = f"{number(chain.frequency_Hz)} Hz, motor locked"
-        found.append(Tile("stiffness at the output", stiff, frequency))
+        figures.append(Tile("stiffness at the output", stiff, frequency))
     if (cost := design.allocation) is not None and name != "cost":
-        found.append(Tile("cost of tolerances", number(cost.cost)))
+        figures.append(Tile("cost of tolerances", number(cost.cost)))
     if (drawn := design.drawn) is not None:
         good = f"{100.0 * drawn.yield_share:.4g} %"
-        found.append(Tile("yield", good, f"of {drawn.count:,} Monte Carlo trains"))
-    return found
+        figures.append(Tile("yield", good, f"of {drawn.count:,} Monte Carlo trains"))
+    return figures
 
 
 def _ratio(ratio: RatioDesign, name: str, measures: Measures) -> list[Tile]:
-    """Return what the chosen train gives, unless that is the objective, and the best ratio."""
-    made, chosen = [], ratio.chosen
+    """Value of the chosen train, unless that is the objective, and the best ratio."""
+    figures, chosen = [], ratio.chosen
     if chosen is not None and not ratio.name.endswith(name):
         worse = f"{chosen.loss_percent:.3g} % worse than at the best ratio, no gears"
         value = amount(chosen.value, ratio.unit, measures)
-        made.append(Tile(f"{ratio.name} of the train", value, worse))
+        figures.append(Tile(f"{ratio.name} of the train", value, worse))
     without = "no gears" if chosen is not None else ""
-    return [*made, Tile("best total ratio", number(ratio.total_ratio), without)]
+    return [*figures, Tile("best total ratio", number(ratio.total_ratio), without)]
 
 
 def _train(train: TrainDesign, name: str, measures: Measures) -> list[Tile]:
     error, angle = train.ratio_error_percent, train.error_deg
     off = "" if error is None else f", {error_of(error)}"
     teeth = ", ".join(f"{s.pinion_teeth}/{s.wheel_teeth}" for s in train.stages)
-    made = [Tile("ratio of the train", number(train.ratio), f"{teeth}{off}")]
+    figures = [Tile("ratio of the train", number(train.ratio), f"{teeth}{off}")]
     if name != "error" and angle is not None:
-        made.append(Tile("error at the output", degrees(angle), arc_minutes(angle)))
+        figures.append(Tile("error at the output", degrees(angle), arc_minutes(angle)))
     if name != "inertia" and train.inertia_kg_m2 is not None:
         inertia = amount(train.inertia_kg_m2, "kg_m2", measures)
-        made.append(Tile("inertia at the motor", inertia))
+        figures.append(Tile("inertia at the motor", inertia))
     if name != "mass" and train.mass_kg is not None:
-        made.append(Tile("mass of the gears", amount(train.mass_kg, "kg", measures)))
-    return made
+        figures.append(Tile("mass of the gears", amount(train.mass_kg, "kg", measures)))
+    return figures
 
 
 def _answered(make: MakeSection) -> MakeSection:

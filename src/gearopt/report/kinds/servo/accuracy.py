@@ -45,13 +45,13 @@ RULES = {
 def errors(result: Result, measures: Measures) -> Section | None:
     """Show every source at its limit, one after the other; None where the file has none."""
     design = design_of(result)
-    found, limit = design.errors, error_limit(design, result.limits)
-    if not found:
+    sources, limit = design.errors, error_limit(design, result.limits)
+    if not sources:
         return None
-    total = sum(e.error_deg for e in found)
-    names = _names([e.source for e in found])
+    total = sum(e.error_deg for e in sources)
+    names = _names([e.source for e in sources])
     order = [f"total {degrees(total)}", *reversed(names)]  # from below
-    traces = _steps(found, names, measures)
+    traces = _steps(sources, names, measures)
     hover = f"total {degrees(total)}, {arc_minutes(total)}<extra></extra>"
     marker = {"color": "--series-8"}
     traces.append(bars([total], [order[0]], marker, hover, name="total", showlegend=False))
@@ -64,20 +64,20 @@ def errors(result: Result, measures: Measures) -> Section | None:
     caption = (
         "Each bar begins where the last one ends: the worst case, all at their limits at once."
     )
-    words, table = _error_words(total, limit), _error_table(found, total, measures)
+    words, table = _error_words(total, limit), _error_table(sources, total, measures)
     tables = (table, *_backlash_table(design.backlash, measures))
     return Section(
         "Where the error comes from",
-        words=[*words, *_by_kind(found, total)],
+        words=[*words, *_by_kind(sources, total)],
         figures=(Figure(traces, plot, caption),),
         tables=tables,
         terminal=(*tables, *words),
     )
 
 
-def _backlash_table(found: Sequence[MeshBacklash], measures: Measures) -> tuple[Table, ...]:
+def _backlash_table(backlashes: Sequence[MeshBacklash], measures: Measures) -> tuple[Table, ...]:
     """Return minimum and maximum backlash of every stage; nothing where the file asks for none."""
-    if not found:
+    if not backlashes:
         return ()
     unit = measures.unit("um")
 
@@ -89,13 +89,14 @@ def _backlash_table(found: Sequence[MeshBacklash], measures: Measures) -> tuple[
 
     heads = ("stage", f"minimum backlash [{unit}]", f"maximum [{unit}]", f"required [{unit}]")
     rows = [
-        [row.stage, cell(row.minimum_mm), cell(row.maximum_mm), cell(row.asked_mm)] for row in found
+        [row.stage, cell(row.minimum_mm), cell(row.maximum_mm), cell(row.asked_mm)]
+        for row in backlashes
     ]
     return (Table("backlash", heads, rows),)
 
 
 def _error_words(total: float, limit: float | None) -> list[str]:
-    """Say what all sources [deg] add up to where no limit shows it, and what is too much."""
+    """Sum of all sources [deg] where no limit shows it, and its excess over the limit."""
     if limit is None:
         return [f"All sources at their limits add up to {arc_minutes(total)} at the output."]
     if total <= limit * (1.0 + 1e-9):
@@ -103,7 +104,7 @@ def _error_words(total: float, limit: float | None) -> list[str]:
     return [f"All sources at their limits exceed the limit by {degrees(total - limit)}."]
 
 
-def _error_table(found: Sequence[ErrorSource], total: float, measures: Measures) -> Table:
+def _error_table(sources: Sequence[ErrorSource], total: float, measures: Measures) -> Table:
     """Return every source, and on the terminal their sum."""
     heads = ["source", "kind", "stage", f"tolerance [{measures.unit('um')}]"]
     short = {
@@ -120,7 +121,7 @@ def _error_table(found: Sequence[ErrorSource], total: float, measures: Measures)
         return [name, kind, *place, angle, arc, Cell(share, "", short=f"{share or 0.0:.1f}")]
 
     rows = []
-    for e in found:
+    for e in sources:
         size = measures.of(e.tolerance_mm, "um")
         place = Cell(e.stage, number(e.stage), short=f"stage {e.stage}")
         rows.append(row(e.source, e.kind, e.error_deg, place, Cell(size, f"{size:.2f}")))
@@ -135,40 +136,40 @@ def _names(sources: list[str]) -> list[str]:
 
 
 def _steps(
-    found: Sequence[ErrorSource], names: list[str], measures: Measures
+    sources: Sequence[ErrorSource], names: list[str], measures: Measures
 ) -> list[dict[str, Any]]:
     """Return a trace for every kind in every stage, so that the legend names it."""
-    starts = [sum(e.error_deg for e in found[:k]) for k in range(len(found))]
+    starts = [sum(e.error_deg for e in sources[:k]) for k in range(len(sources))]
     groups: dict[tuple[str, int], list[int]] = {}
-    for k, e in enumerate(found):
+    for k, e in enumerate(sources):
         groups.setdefault((e.kind, e.stage), []).append(k)
     return [
         bars(
-            [found[k].error_deg for k in rows],
+            [sources[k].error_deg for k in rows],
             [names[k] for k in rows],
             {"color": series(place)},
             TEXT,
             name=f"{escape(kind)}, stage {stage}",
             base=[starts[k] for k in rows],
-            text=[_told(found[k], measures) for k in rows],
+            text=[_told(sources[k], measures) for k in rows],
             textposition="none",
         )
         for place, ((kind, stage), rows) in enumerate(groups.items(), 1)
     ]
 
 
-def _told(one: ErrorSource, measures: Measures) -> str:
-    tolerance = f"{measures.of(one.tolerance_mm, 'um'):.4g} {measures.unit('um')}"
+def _told(source: ErrorSource, measures: Measures) -> str:
+    tolerance = f"{measures.of(source.tolerance_mm, 'um'):.4g} {measures.unit('um')}"
     return (
-        f"{escape(one.source)}: {degrees(one.error_deg)}, {arc_minutes(one.error_deg)}, "
+        f"{escape(source.source)}: {degrees(source.error_deg)}, {arc_minutes(source.error_deg)}, "
         f"tolerance {tolerance}"
     )
 
 
-def _by_kind(found: Sequence[ErrorSource], total: float) -> tuple[str, ...]:
+def _by_kind(sources: Sequence[ErrorSource], total: float) -> tuple[str, ...]:
     """Say how much each kind has of the sum."""
     sums: dict[str, float] = {}
-    for e in found:
+    for e in sources:
         sums[e.kind] = sums.get(e.kind, 0.0) + e.error_deg
     if len(sums) < 2 or not total:
         return ()
@@ -203,14 +204,14 @@ def tolerances(result: Result, measures: Measures) -> Section | None:
     return Section("Tolerances", words=[*words, ends], tables=(table,), terminal=terminal)
 
 
-def _cost_words(found: Allocation, error: float | None) -> list[str]:
+def _cost_words(allocation: Allocation, error: float | None) -> list[str]:
     """Say how the cost changes, and what the budgets are; error: of the train [deg]."""
-    change = 100.0 * (found.cost / found.old_cost - 1.0)
+    change = 100.0 * (allocation.cost / allocation.old_cost - 1.0)
     limits = (
         f"{_rule(b)}, limit equal to the error at the output"
         if error is not None and degrees(b.limit_deg) == degrees(error)
         else f"{_rule(b)} {degrees(b.limit_deg)}"
-        for b in found.budgets
+        for b in allocation.budgets
     )
     return [f"The cost changes by {change:+.1f} %. Budgets: {', '.join(limits)}."]
 
@@ -262,33 +263,33 @@ def _sums(rows: Sequence[ToleranceRow], measures: Measures) -> list[Any]:
 
 
 def drawn(result: Result, measures: Measures) -> Section | None:
-    """Show what drawn deviations make of the error; None without draws."""
+    """Errors of deviations drawn at random; None without draws."""
     design = design_of(result)
-    found = design.drawn
-    if found is None:
+    draws = design.drawn
+    if draws is None:
         return None
-    most = max(found.histogram.counts)
+    most = max(draws.histogram.counts)
     plot = layout(
         axis("error at the output [°]"),
         axis("Monte Carlo trains", range=[0, 1.08 * most]),
         380,
         bargap=0.0,
-        shapes=_interval(found),
+        shapes=_interval(draws),
     )
     caption = (
-        f"{found.count:,} Monte Carlo trains with every deviation at random within its tolerance "
-        f"(seed {found.seed}); the band is the interval of the quantile."
+        f"{draws.count:,} Monte Carlo trains with every deviation at random within its tolerance "
+        f"(seed {draws.seed}); the band is the interval of the quantile."
     )
-    worst = share(found.worst_case_deg / found.limit_deg)
+    worst = share(draws.worst_case_deg / draws.limit_deg)
     normal = (
-        f"Mean {degrees(found.mean_deg)}, standard deviation {degrees(found.sd_deg)}; all "
+        f"Mean {degrees(draws.mean_deg)}, standard deviation {degrees(draws.sd_deg)}; all "
         f"tolerances at their limits at once would be {worst} % of the limit."
     )
     budgets = () if design.allocation is None else design.allocation.budgets
-    said = any(budget.limit_deg == found.limit_deg for budget in budgets)
-    words, bins = _drawn_words(found, said), _bins(found.histogram)
+    said = any(budget.limit_deg == draws.limit_deg for budget in budgets)
+    words, bins = _drawn_words(draws, said), _bins(draws.histogram)
     heads = ("from [°]", "to [°]", "Monte Carlo trains")
-    traces = [_bars(bins, found.count), *_lines(found, 1.05 * most)]
+    traces = [_bars(bins, draws.count), *_lines(draws, 1.05 * most)]
     return Section(
         "Monte Carlo errors",
         words=[*words, normal],
@@ -299,29 +300,29 @@ def drawn(result: Result, measures: Measures) -> Section | None:
     )
 
 
-def _drawn_words(found: DrawnErrors, said: bool) -> list[str]:
-    """Say what yield and quantile are, with their intervals; said: the limit is known."""
-    sure = f"{100.0 * found.confidence:g} %"
-    low = f"{math.floor(1e6 * found.yield_low) / 1e4:.4f}"  # outwards, to hold what is said
-    high = f"{math.ceil(1e6 * found.yield_high) / 1e4:.4f}"
-    share, ends = f"{100.0 * found.probability:g} %", _ends(found)
-    limit = "" if said else f" of {degrees(found.limit_deg)}"
+def _drawn_words(draws: DrawnErrors, said: bool) -> list[str]:
+    """Yield and quantile with their intervals; said: the limit is known."""
+    sure = f"{100.0 * draws.confidence:g} %"
+    low = f"{math.floor(1e6 * draws.yield_low) / 1e4:.4f}"  # outwards, to hold what is said
+    high = f"{math.ceil(1e6 * draws.yield_high) / 1e4:.4f}"
+    share, ends = f"{100.0 * draws.probability:g} %", _ends(draws)
+    limit = "" if said else f" of {degrees(draws.limit_deg)}"
     words = [
-        f"{100.0 * found.yield_share:.4f} % of the Monte Carlo trains keep the limit{limit}; with "
+        f"{100.0 * draws.yield_share:.4f} % of the Monte Carlo trains keep the limit{limit}; with "
         f"{sure} confidence the yield lies between {low} and {high} %."
     ]
     between = " (too few draws for an interval with this confidence)"
     if ends:
         interval = f"between {' and '.join(map(degrees, ends))}"
         between = f" (this quantile lies {interval} with {sure} confidence)"
-    quantile = f"{share} of them have an error of at most {degrees(found.quantile_deg)}"
-    words.append(f"{quantile}{between}; the maximum is {degrees(found.largest_deg)}.")
+    quantile = f"{share} of them have an error of at most {degrees(draws.quantile_deg)}"
+    words.append(f"{quantile}{between}; the maximum is {degrees(draws.largest_deg)}.")
     return words
 
 
-def _ends(found: DrawnErrors) -> tuple[float, ...]:
+def _ends(draws: DrawnErrors) -> tuple[float, ...]:
     """Return the interval of the quantile; nothing where the draws were too few."""
-    low, high = found.quantile_low_deg, found.quantile_high_deg
+    low, high = draws.quantile_low_deg, draws.quantile_high_deg
     return () if low is None or high is None else (low, high)
 
 
@@ -340,12 +341,12 @@ def _bars(bins: list[tuple[float, float, int]], count: int) -> dict[str, Any]:
     return trace | {"text": texts, "textposition": "none", "showlegend": False}
 
 
-def _lines(found: DrawnErrors, top: float) -> list[dict[str, Any]]:
+def _lines(draws: DrawnErrors, top: float) -> list[dict[str, Any]]:
     """Return mean, quantile and limit as upright lines, with their values in the legend."""
     marks = (
-        ("mean", found.mean_deg, "--series-4", "dot"),
-        (f"{100.0 * found.probability:g} % quantile", found.quantile_deg, "--series-5", "solid"),
-        ("limit", found.limit_deg, "--warn", "dash"),
+        ("mean", draws.mean_deg, "--series-4", "dot"),
+        (f"{100.0 * draws.probability:g} % quantile", draws.quantile_deg, "--series-5", "solid"),
+        ("limit", draws.limit_deg, "--warn", "dash"),
     )
     named = [(f"{name} {degrees(at)}", at, colour, dash) for name, at, colour, dash in marks]
     return [
@@ -354,6 +355,6 @@ def _lines(found: DrawnErrors, top: float) -> list[dict[str, Any]]:
     ]
 
 
-def _interval(found: DrawnErrors) -> list[dict[str, Any]]:
+def _interval(draws: DrawnErrors) -> list[dict[str, Any]]:
     """Return the interval of the quantile as a band."""
-    return [band(ends[0], ends[1], "--series-5/0.2")] if (ends := _ends(found)) else []
+    return [band(ends[0], ends[1], "--series-5/0.2")] if (ends := _ends(draws)) else []

@@ -39,14 +39,14 @@ Disc = tuple[Point, float]
 def stiffness(result: Result, measures: Measures) -> Section | None:
     """Show springs in series, the softest first; None where the file asks for no stiffness."""
     design = design_of(result)
-    found = design.stiffness
-    if found is None:
+    chain = design.stiffness
+    if chain is None:
         return None
     tiles = []
-    if found.windup_deg is not None:
-        tiles.append(Tile("wind-up", degrees(found.windup_deg), arc_minutes(found.windup_deg)))
-    springs = sorted(found.springs, key=lambda s: s.compliance_share)
-    table, words = _springs(springs[::-1], measures), _stiffness_words(found, measures)
+    if chain.windup_deg is not None:
+        tiles.append(Tile("wind-up", degrees(chain.windup_deg), arc_minutes(chain.windup_deg)))
+    springs = sorted(chain.springs, key=lambda s: s.compliance_share)
+    table, words = _springs(springs[::-1], measures), _stiffness_words(chain, measures)
     return Section(
         "Stiffness",
         tiles,
@@ -102,13 +102,13 @@ def _springs(springs: Sequence[Spring], measures: Measures) -> Table:
     return Table("springs", heads, rows, short=short)
 
 
-def _stiffness_words(found: StiffnessDesign, measures: Measures) -> str:
+def _stiffness_words(chain: StiffnessDesign, measures: Measures) -> str:
     """Say output stiffness, frequency and wind-up."""
-    words = f"Seen at the output: {amount(found.output_Nm_per_rad, 'Nm_per_rad', measures)}"
-    if found.frequency_Hz is not None:
-        words += f"; the load swings at {number(found.frequency_Hz)} Hz, motor locked"
-    if found.windup_deg is not None:
-        words += f"; wind-up {degrees(found.windup_deg)} ({arc_minutes(found.windup_deg)})"
+    words = f"Seen at the output: {amount(chain.output_Nm_per_rad, 'Nm_per_rad', measures)}"
+    if chain.frequency_Hz is not None:
+        words += f"; the load swings at {number(chain.frequency_Hz)} Hz, motor locked"
+    if chain.windup_deg is not None:
+        words += f"; wind-up {degrees(chain.windup_deg)} ({arc_minutes(chain.windup_deg)})"
     return f"{words}."
 
 
@@ -127,59 +127,59 @@ class Axes:
 def box(result: Result, measures: Measures) -> Section | None:
     """Draw the train in its box, and say whether it fits; None where no box is asked for."""
     design = design_of(result)
-    found, train = design.box, design.train
-    if found is None:
+    fit, train = design.box, design.train
+    if fit is None:
         return None
     words = (
-        _box_words(found, measures),
+        _box_words(fit, measures),
         f"Drawn to scale, dimensions in {measures.lengths}. Heavy: the box inside; thin dashed: "
         "the room that the train needs, which may be anywhere in it. Numbers in circles are "
         "shafts: 1 motor, 2 middle, 3 output. The last wheel is in a plane with pinion 2: motor "
         "and wheel 1 may lie over it, but not over the output shaft with its hub.",
     )
     angles = (
-        f"from the output shaft to wheel 1 {degrees(found.output_angle_deg)}, from wheel 1 to the "
-        f"motor {degrees(found.motor_angle_deg)}"
+        f"from the output shaft to wheel 1 {degrees(fit.output_angle_deg)}, from wheel 1 to the "
+        f"motor {degrees(fit.motor_angle_deg)}"
     )
     terminal = Text.assemble(
-        (words[0], "" if found.fits else "yellow"),
+        (words[0], "" if fit.fits else "yellow"),
         f"\nAngles of the lines of centres, from the width: {angles}.",
     )
-    drawing = _drawing(found, train, measures)
+    drawing = _drawing(fit, train, measures)
     half = train is not None
     return Section("In the box", words=words, drawings=(drawing,), half=half, terminal=(terminal,))
 
 
-def _box_words(found: BoxDesign, measures: Measures) -> str:
+def _box_words(fit: BoxDesign, measures: Measures) -> str:
     """Say whether the train fits into its box, and what it needs."""
-    verb = "fits" if found.fits else "does not fit"
-    inner = _size(found.inner_width_mm, found.inner_height_mm, measures)
-    words = f"The train {verb}: it needs {needed_size(found, measures)}, the box is {inner} inside."
+    verb = "fits" if fit.fits else "does not fit"
+    inner = _size(fit.inner_width_mm, fit.inner_height_mm, measures)
+    words = f"The train {verb}: it needs {needed_size(fit, measures)}, the box is {inner} inside."
     over = [
         f"{measures.length(needed - inside)} {measures.unit('mm')} in {side}"
         for side, needed, inside in (
-            ("width", found.needed_width_mm, found.inner_width_mm),
-            ("height", found.needed_height_mm, found.inner_height_mm),
+            ("width", fit.needed_width_mm, fit.inner_width_mm),
+            ("height", fit.needed_height_mm, fit.inner_height_mm),
         )
-        if needed > inside and not found.fits  # a box that is met exactly fits
+        if needed > inside and not fit.fits  # a box that is met exactly fits
     ]
     return f"{words} Too large by {' and '.join(over)}." if over else words
 
 
-def needed_size(found: BoxDesign, measures: Measures) -> str:
+def needed_size(fit: BoxDesign, measures: Measures) -> str:
     """Return width x height of the room that the train needs."""
-    return _size(found.needed_width_mm, found.needed_height_mm, measures)
+    return _size(fit.needed_width_mm, fit.needed_height_mm, measures)
 
 
 def _size(width: float, height: float, measures: Measures) -> str:
     return f"{measures.length(width)} x {measures.length(height)} {measures.unit('mm')}"
 
 
-def axes(found: BoxDesign) -> Axes:
+def axes(fit: BoxDesign) -> Axes:
     """Return places of the shafts, and how far the train reaches to every side."""
-    motor, output = math.radians(found.motor_angle_deg), math.radians(found.output_angle_deg)
-    (a, b), (r1, r2, r4) = found.links_mm, found.radii_mm
-    half = math.radians(found.half_sweep_deg)
+    motor, output = math.radians(fit.motor_angle_deg), math.radians(fit.output_angle_deg)
+    (a, b), (r1, r2, r4) = fit.links_mm, fit.radii_mm
+    half = math.radians(fit.half_sweep_deg)
     middle = (b * math.cos(output), b * math.sin(output))
     first = (middle[0] + a * math.cos(motor), middle[1] + a * math.sin(motor))
     sides = []
@@ -188,15 +188,15 @@ def axes(found: BoxDesign) -> Axes:
         off = abs((output - turn + math.pi) % (2.0 * math.pi) - math.pi)
         swept = r4 if off <= half else r4 * math.cos(off - half)
         reach = [x * ux + y * uy + r for (x, y), r in ((middle, r2), (first, r1))]
-        sides.append(max(swept, found.hub_mm, *reach))
+        sides.append(max(swept, fit.hub_mm, *reach))
     right, top, left, bottom = sides
     return Axes(first, middle, -left, right, -bottom, top)
 
 
-def _drawing(found: BoxDesign, train: TrainDesign | None, measures: Measures) -> Drawing:
-    at = axes(found)
+def _drawing(fit: BoxDesign, train: TrainDesign | None, measures: Measures) -> Drawing:
+    at = axes(fit)
     x, y = 0.5 * (at.left + at.right), 0.5 * (at.bottom + at.top)
-    width, height = found.inner_width_mm, found.inner_height_mm
+    width, height = fit.inner_width_mm, fit.inner_height_mm
     inner = (x - width / 2, y - height / 2), (x + width / 2, y + height / 2)
     window = Window(
         min(at.left, inner[0][0]),
@@ -209,29 +209,29 @@ def _drawing(found: BoxDesign, train: TrainDesign | None, measures: Measures) ->
     sheet.rectangle(*inner, "box", title="box, inside")
     needed = (at.left, at.bottom), (at.right, at.top)
     sheet.rectangle(*needed, "wall", title="needed room")
-    _sector(sheet, found, train, measures)
-    wheel_1 = found.radii_mm[1]  # pinion 2 may be the larger one on its shaft
+    _sector(sheet, fit, train, measures)
+    wheel_1 = fit.radii_mm[1]  # pinion 2 may be the larger one on its shaft
     if train is not None:
         wheel_1 = 0.5 * train.stages[0].wheel_tip_diameter_mm
-    _discs(sheet, found, train, at, wheel_1, measures)
+    _discs(sheet, fit, train, at, wheel_1, measures)
     _sizes(sheet, inner, needed, measures)
-    a, b = found.links_mm
+    a, b = fit.links_mm
     centre_distance(sheet, at.motor, at.middle, f"a1 = {measures.length(a)}")
     centre_distance(sheet, at.middle, OUTPUT, f"a2 = {measures.length(b)}")
     for k, place in enumerate((at.motor, at.middle, OUTPUT), 1):
         sheet.balloon(str(k), around(sheet.at(*place), (26.0, 36.0, 50.0, 66.0), 0.0))
-    _name(sheet, "motor", at.motor, found.motor_mm, "")
-    _name(sheet, "hub", OUTPUT, found.hub_mm, "")
+    _name(sheet, "motor", at.motor, fit.motor_mm, "")
+    _name(sheet, "hub", OUTPUT, fit.hub_mm, "")
     _name(sheet, "wheel 1", at.middle, wheel_1, FIRST)
-    discs = [(at.motor, found.radii_mm[0]), (at.middle, found.radii_mm[1])]
-    _label_sector(sheet, found, discs)
-    caption = "Along the shafts" + ("; a mirror image fits as well." if found.fits else ".")
+    discs = [(at.motor, fit.radii_mm[0]), (at.middle, fit.radii_mm[1])]
+    _label_sector(sheet, fit, discs)
+    caption = "Along the shafts" + ("; a mirror image fits as well." if fit.fits else ".")
     return sheet.drawing("the train in its box", caption)
 
 
 def _discs(
     sheet: Sheet,
-    found: BoxDesign,
+    fit: BoxDesign,
     train: TrainDesign | None,
     at: Axes,
     wheel_1: float,
@@ -244,17 +244,17 @@ def _discs(
         sheet.circle(*place, radius, style, colour, title)
 
     circle(at.middle, wheel_1, "tip", "wheel 1", FIRST)
-    circle(at.motor, found.motor_mm, "motor", "motor")
-    if found.hub_mm > 0.0:
-        circle(OUTPUT, found.hub_mm, "shaft", "output shaft with hub")
+    circle(at.motor, fit.motor_mm, "motor", "motor")
+    if fit.hub_mm > 0.0:
+        circle(OUTPUT, fit.hub_mm, "shaft", "output shaft with hub")
     stages = () if train is None else train.stages
     marks = ((at.motor, FIRST), (at.middle, LAST))
     for stage, (place, colour) in zip(stages, marks, strict=False):
         tip = 0.5 * stage.pinion_tip_diameter_mm
         circle(place, tip, "tip", f"pinion, z {stage.pinion_teeth}, tip", colour)
-    if found.shaft_mm > 0.0:
-        circle(at.middle, found.shaft_mm, "shaft", "shaft between the stages")
-    radii = (*found.radii_mm[:2], found.hub_mm)
+    if fit.shaft_mm > 0.0:
+        circle(at.middle, fit.shaft_mm, "shaft", "shaft between the stages")
+    radii = (*fit.radii_mm[:2], fit.hub_mm)
     for place, radius in zip((at.motor, at.middle, OUTPUT), radii, strict=True):
         sheet.cross(*place, radius)
 
@@ -284,35 +284,35 @@ def _name(sheet: Sheet, name: str, at: Point, radius: float, colour: str) -> Non
     sheet.label(name, inside + outside, "name" if colour else "obstacle", colour)
 
 
-def _sector(sheet: Sheet, found: BoxDesign, train: TrainDesign | None, measures: Measures) -> None:
+def _sector(sheet: Sheet, fit: BoxDesign, train: TrainDesign | None, measures: Measures) -> None:
     """Draw the swept area, and the sector in the middle of its travel where its size is known."""
-    radius, half = found.radii_mm[2], found.half_sweep_deg
+    radius, half = fit.radii_mm[2], fit.half_sweep_deg
     size = f"radius {measures.length(radius)} {measures.unit('mm')}"
     label = f"swept area of the last wheel: {size}, ±{number(half)}°"
     style = "swept" if half < FULL else "tip"
-    sheet.slice(OUTPUT, radius, _ends(found, half), style, LAST, label)
+    sheet.slice(OUTPUT, radius, _ends(fit, half), style, LAST, label)
     if train is None:
         return
-    own, stage = min(FULL * train.sector, half), train.stages[-1]
-    label = f"wheel 2, z {stage.wheel_teeth}: {size}, sector of {number(2.0 * own)}°"
-    if own < FULL:
-        sheet.slice(OUTPUT, radius, _ends(found, own), "tip", LAST, label)
+    half_sector, stage = min(FULL * train.sector, half), train.stages[-1]
+    label = f"wheel 2, z {stage.wheel_teeth}: {size}, sector of {number(2.0 * half_sector)}°"
+    if half_sector < FULL:
+        sheet.slice(OUTPUT, radius, _ends(fit, half_sector), "tip", LAST, label)
     reference = 0.5 * stage.wheel_diameter_mm
-    sheet.slice(OUTPUT, reference, _ends(found, own), "reference", LAST, rim=True)
+    sheet.slice(OUTPUT, reference, _ends(fit, half_sector), "reference", LAST, rim=True)
 
 
-def _label_sector(sheet: Sheet, found: BoxDesign, discs: Sequence[Disc]) -> None:
+def _label_sector(sheet: Sheet, fit: BoxDesign, discs: Sequence[Disc]) -> None:
     """Name the last wheel and its sweep, where no disc (centre, radius) is."""
-    half = found.half_sweep_deg
-    sheet.label("wheel 2", _on_rays(sheet, found, 0.5 * min(half, 60.0), discs), "name", LAST)
+    half = fit.half_sweep_deg
+    sheet.label("wheel 2", _on_rays(sheet, fit, 0.5 * min(half, 60.0), discs), "name", LAST)
     if half < FULL:
-        rays = _on_rays(sheet, found, 0.85 * half, discs)
+        rays = _on_rays(sheet, fit, 0.85 * half, discs)
         sheet.label(f"sweep ±{number(half)}°", rays, "name", LAST)
 
 
 def _on_rays(sheet: Sheet, box: BoxDesign, off: float, discs: Sequence[Disc]) -> list[Place]:
     """Return places some degrees to either side of the mesh line, from the rim inwards."""
-    found = []
+    places = []
     for k, share in enumerate((0.8, 0.7, 0.6, 0.5, 0.42)):
         for side in (-1.0, 1.0):
             for more in (1.0, 0.8, 0.6):
@@ -320,11 +320,11 @@ def _on_rays(sheet: Sheet, box: BoxDesign, off: float, discs: Sequence[Disc]) ->
                 r = share * box.radii_mm[2]
                 spot = r * math.cos(turn), r * math.sin(turn)
                 inside = sum(math.dist(spot, centre) < size for centre, size in discs)
-                found.append(Place(*sheet.at(*spot), 0.0, 0.5 * k + 20.0 * inside))
-    return found
+                places.append(Place(*sheet.at(*spot), 0.0, 0.5 * k + 20.0 * inside))
+    return places
 
 
-def _ends(found: BoxDesign, half: float) -> tuple[float, float]:
+def _ends(fit: BoxDesign, half: float) -> tuple[float, float]:
     """Return angles [rad] so many degrees to either side of the mesh line."""
-    middle = found.output_angle_deg
+    middle = fit.output_angle_deg
     return math.radians(middle - half), math.radians(middle + half)

@@ -35,87 +35,89 @@ MARKS = (  # of what is judged beside the best ratio: colour and symbol
 
 def section(result: Result, measures: Measures) -> Section | None:
     """Show the curve of a duty, and what trains achieve; None where the file has none."""
-    found = design_of(result).ratio
-    if found is None:
+    ratio = design_of(result).ratio
+    if ratio is None:
         return None
-    curve, known = _curve(found, measures), found.best is not None
-    words = [_flat(found), *bound_words(report_of(result), found, measures)]
-    achieved = [_achieved(found, measures)] if known else []
-    motion = (SPEEDING if found.duty != "swing" else "") + (BRAKING if found.duty == "move" else "")
+    curve, known = _curve(ratio, measures), ratio.best is not None
+    words = [_flat(ratio), *bound_words(report_of(result), ratio, measures)]
+    achieved = [_achieved(ratio, measures)] if known else []
+    motion = (SPEEDING if ratio.duty != "swing" else "") + (BRAKING if ratio.duty == "move" else "")
     note = [NOTE + motion] if known else []
-    told = words if known else [*best_words(found, measures), *words]
+    told = words if known else [*best_words(ratio, measures), *words]
     return Section(
         "Total ratio",
         words=[*words, *note],
-        figures=(_figure(found, curve, measures),),
+        figures=(_figure(ratio, curve, measures),),
         tables=(*achieved, curve),
         terminal=("\n".join(told), *achieved, *note),
     )
 
 
-def best_words(found: RatioDesign, measures: Measures = METRIC) -> list[str]:
-    """Say what the best total ratio is, and what the given one loses."""
-    best = "Maximum" if found.duty == LARGEST else "Minimum"
-    without = ", if gears had no inertia" if found.chosen else ""
+def best_words(optimum: RatioDesign, measures: Measures = METRIC) -> list[str]:
+    """The best total ratio, and the loss of the given one."""
+    best = "Maximum" if optimum.duty == LARGEST else "Minimum"
+    without = ", if gears had no inertia" if optimum.chosen else ""
     words = [
-        f"{best} {found.name}: {amount(found.value, found.unit, measures)} at a total ratio "
-        f"of {number(found.total_ratio)}{without}."
+        f"{best} {optimum.name}: {amount(optimum.value, optimum.unit, measures)} at a total ratio "
+        f"of {number(optimum.total_ratio)}{without}."
     ]
-    if found.given:
-        ratio = number(found.given.total_ratio)
-        words.append(f"At the given ratio of {ratio} it is {_value(found.given, found, measures)}.")
+    if optimum.given:
+        ratio = number(optimum.given.total_ratio)
+        words.append(
+            f"At the given ratio of {ratio} it is {_value(optimum.given, optimum, measures)}."
+        )
     return words
 
 
-def bound_words(report: ServoReport, found: RatioDesign, measures: Measures) -> list[str]:
-    """Say what not even real-valued gears achieve; nothing where that is not known."""
-    bound = report.figures.get(f"real_valued_bound_{MOTIONS[found.duty].key}")
+def bound_words(report: ServoReport, ratio: RatioDesign, measures: Measures) -> list[str]:
+    """Bound that not even real-valued gears exceed; nothing where it is not known."""
+    bound = report.figures.get(f"real_valued_bound_{MOTIONS[ratio.duty].key}")
     if bound is None:
         return []
-    better, most = "more" if found.duty == LARGEST else "less", amount(bound, found.unit, measures)
-    reached = found.chosen and amount(found.chosen.value, found.unit, measures) == most
+    better, most = "more" if ratio.duty == LARGEST else "less", amount(bound, ratio.unit, measures)
+    reached = ratio.chosen and amount(ratio.chosen.value, ratio.unit, measures) == most
     than = "" if reached else f" than {most}"
     return [f"Not even real-valued teeth and modules within the limits give {better}{than}."]
 
 
-def _value(one: Achieved, found: RatioDesign, measures: Measures) -> str:
+def _value(achieved: Achieved, ratio: RatioDesign, measures: Measures) -> str:
     """Return a value with how far it is from the best."""
-    less = "less" if (found.duty == LARGEST) == (one.loss_percent >= 0.0) else "more"
-    value = amount(one.value, found.unit, measures)
-    return f"{value}, {abs(one.loss_percent):.3g} % {less}"
+    less = "less" if (ratio.duty == LARGEST) == (achieved.loss_percent >= 0.0) else "more"
+    value = amount(achieved.value, ratio.unit, measures)
+    return f"{value}, {abs(achieved.loss_percent):.3g} % {less}"
 
 
-def _achieved(found: RatioDesign, measures: Measures) -> Table:
-    """Return what the axis achieves, a column for every train and ratio."""
-    columns = {who: one for who in WHO if (one := getattr(found, who)) is not None}
+def _achieved(ratio: RatioDesign, measures: Measures) -> Table:
+    """Speeds, torques and inertias of the axis, a column for every train and ratio."""
+    columns = {who: train for who in WHO if (train := getattr(ratio, who)) is not None}
     trains = [*columns.values()]
-    value = f"{found.name} [{measures.unit(found.unit)}]" if found.unit else found.name
+    value = f"{ratio.name} [{measures.unit(ratio.unit)}]" if ratio.unit else ratio.name
     rows = [
-        ["total ratio", *(cell(one.total_ratio, "", measures) for one in trains)],
-        [value, *(cell(one.value, found.unit, measures) for one in trains)],
+        ["total ratio", *(cell(train.total_ratio, "", measures) for train in trains)],
+        [value, *(cell(train.value, ratio.unit, measures) for train in trains)],
         *side_by_side(trains, measures),
     ]
     short = {"": "\nmotor and load"} | {WHO[who].replace("\n", " "): WHO[who] for who in columns}
     return Table("motor and load", list(short), rows, short=short, across=True)
 
 
-def _curve(found: RatioDesign, measures: Measures) -> Table:
+def _curve(ratio: RatioDesign, measures: Measures) -> Table:
     """Return the value over the ratio, without gears and with the chosen train."""
-    unit = measures.unit(found.unit)
-    heads = ["total ratio", f"{found.name} [{unit}]"]
-    columns: list[Sequence[Any]] = [found.curve.total_ratio]
-    columns.append([measures.of(v, found.unit) for v in found.curve.value])
-    if less := found.curve.value_with_train:
+    unit = measures.unit(ratio.unit)
+    heads = ["total ratio", f"{ratio.name} [{unit}]"]
+    columns: list[Sequence[Any]] = [ratio.curve.total_ratio]
+    columns.append([measures.of(v, ratio.unit) for v in ratio.curve.value])
+    if less := ratio.curve.value_with_train:
         heads.append(f"{WITH_TRAIN} [{unit}]")
-        columns.append([None if v is None else measures.of(v, found.unit) for v in less])
+        columns.append([None if v is None else measures.of(v, ratio.unit) for v in less])
     return Table("ratio curve", heads, list(zip(*columns, strict=True)), folded=True)
 
 
-def _figure(found: RatioDesign, curve: Table, measures: Measures) -> Figure:
+def _figure(ratio: RatioDesign, curve: Table, measures: Measures) -> Figure:
     """Draw the curves, the best ratio, and what else is judged."""
     ratios, *values = (list(column) for column in zip(*curve.rows, strict=True))
-    unit = measures.unit(found.unit)
-    curves = [(found.name, "solid", "--series-1", False)]
+    unit = measures.unit(ratio.unit)
+    curves = [(ratio.name, "solid", "--series-1", False)]
     if len(values) > 1:
         curves = [
             ("no gears", "solid", "--series-1", True),
@@ -127,18 +129,18 @@ def _figure(found: RatioDesign, curve: Table, measures: Measures) -> Figure:
         | {"line": {"color": colour, "width": 2.2, "simplify": False, "dash": dash}}
         for (name, dash, colour, named), column in zip(curves, values, strict=True)
     ]
-    at = found.total_ratio, measures.of(found.value, found.unit)
+    at = ratio.total_ratio, measures.of(ratio.value, ratio.unit)
     traces.append(_mark("best", *at, unit, "--series-2", "star", 14))
     for who, colour, symbol in MARKS:
-        if (one := getattr(found, who)) is not None:
-            at = one.total_ratio, measures.of(one.value, found.unit)
+        if (achieved := getattr(ratio, who)) is not None:
+            at = achieved.total_ratio, measures.of(achieved.value, ratio.unit)
             traces.append(_mark(who.replace("_", " "), *at, unit, colour, symbol, 10))
     plot = layout(
         axis("total ratio", type="log", tickvals=_ticks(ratios), tickformat="~g"),
-        axis(f"{found.name} [{unit}]"),
+        axis(f"{ratio.name} [{unit}]"),
         360,
     )
-    caption = f"{found.name.capitalize()} over the total ratio, motor over load speed."
+    caption = f"{ratio.name.capitalize()} over the total ratio, motor over load speed."
     return Figure(traces, plot, caption)
 
 
@@ -158,13 +160,13 @@ def _ticks(ratios: list[float]) -> list[float]:
     return [mark for mark in marks if ratios[0] <= mark <= ratios[-1]]
 
 
-def _flat(found: RatioDesign) -> str:
+def _flat(ratio: RatioDesign) -> str:
     """Say between which ratios the value is within one per cent of the best."""
-    most = found.duty == LARGEST
-    limit = found.value / 1.01 if most else found.value * 1.01
-    pairs = zip(found.curve.total_ratio, found.curve.value, strict=True)
+    most = ratio.duty == LARGEST
+    limit = ratio.value / 1.01 if most else ratio.value * 1.01
+    pairs = zip(ratio.curve.total_ratio, ratio.curve.value, strict=True)
     near = [n for n, v in pairs if (v >= limit if most else v <= limit)]
     return (
         f"The optimum is flat: total ratios from {number(round(near[0], 1))} to "
-        f"{number(round(near[-1], 1))} are within 1 % of the best {found.name}."
+        f"{number(round(near[-1], 1))} are within 1 % of the best {ratio.name}."
     )

@@ -55,20 +55,20 @@ BEST = {  # symbol and colour of the best by a goal
 def section(result: Result, measures: Measures) -> Section | None:
     """Show the train's tables, drawn in one line where no box is asked for; None without one."""
     design = design_of(result)
-    found = design.train
-    if found is None:
+    train = design.train
+    if train is None:
         return None
-    plain = untyped(found)
+    plain = untyped(train)
     stages = plain.pop("stages")
     totals = []
     for key, value in plain.items():
         totals.append([heading(key, measures), cell(value, parted(key)[1], measures)])
-    words = [_sector(found.sector)] if found.sector < 1.0 else []
-    carried = _carried(found, measures)
+    words = [_sector(train.sector)] if train.sector < 1.0 else []
+    carried = _carried(train, measures)
     words += carried
-    if found.error_deg is not None:
+    if train.error_deg is not None:
         words.append("The error is the worst case of backlash and pitch at the output.")
-    if found.inertia_kg_m2 is not None:
+    if train.inertia_kg_m2 is not None:
         words.append("Inertia is referred to the motor shaft.")
     drawn = train_views.views(stages, measures) if design.box is None else ()
     if drawn:
@@ -164,14 +164,14 @@ def _given_rows(design: ServoDesign, report: ServoReport, measures: Measures) ->
     chosen, given, moved = design.train, report.given_train, _moved(design)
     if chosen is None or given is None or chosen.mass_kg is None:
         return []
-    own = train_figures(chosen, design.stiffness)
+    chosen_figures = train_figures(chosen, design.stiffness)
     other = train_figures(given, report.given_stiffness)
     rows = []
-    for key in own | other:
+    for key in chosen_figures | other:
         bound, unit = report.figures.get(f"real_valued_bound_{key}"), parted(key)[1]
-        shown = [cell(v, unit, measures) for v in (own.get(key), other.get(key))]
+        shown = [cell(v, unit, measures) for v in (chosen_figures.get(key), other.get(key))]
         if key in moved:  # the page has only the bound here
-            shown = [replace(one, text="", short=one.text) for one in shown]
+            shown = [replace(figure, text="", short=figure.text) for figure in shown]
         if bound is not None or key not in moved:
             rows.append([heading(key, measures), *shown, cell(bound, unit, measures)])
     return rows
@@ -183,7 +183,7 @@ def _moved(design: ServoDesign) -> Sequence[str]:
 
 
 def _known(train: ListedTrain) -> list[Goal]:
-    """Return what is known of a train."""
+    """Goals by which a train is known."""
     return [goal for goal in COMPARED if getattr(train, goal.key) is not None]
 
 
@@ -216,8 +216,8 @@ def stage_counts(result: Result, measures: Measures) -> Section | None:
 
 def by_inertia(result: Result, measures: Measures) -> Section | None:
     """Plot error over inertia, or over what the duty is judged by; else mass."""
-    found = _weighed(result)
-    return _front(result, measures, found[0], found[-1]) if found else None
+    goals = _weighed(result)
+    return _front(result, measures, goals[0], goals[-1]) if goals else None
 
 
 def by_mass(result: Result, measures: Measures) -> Section | None:
@@ -227,24 +227,24 @@ def by_mass(result: Result, measures: Measures) -> Section | None:
 
 
 def _weighed(result: Result) -> list[Goal]:
-    """Return what the trains are compared by; nothing where none are listed."""
-    found = report_of(result).trains
-    if not found:
+    """Goals by which the trains are compared; none where no trains are listed."""
+    trains = report_of(result).trains
+    if not trains:
         return []
-    goals = _known(found[0])
+    goals = _known(trains[0])
     return goals if not goals[0].motion else [g for g in goals if g.name != "inertia"]
 
 
 def _front(result: Result, measures: Measures, goal: Goal, other: Goal) -> Section:
     """Plot trains by two goals."""
     design, report = design_of(result), report_of(result)
-    found, ratio = report.trains or (), design.ratio
+    trains, ratio = report.trains or (), design.ratio
     key, high = goal.key, other.key
     groups: list[tuple[str, Sequence[ListedTrain], tuple[int, str, str]]] = []
-    if rest := [t for t in found if not t.best_of]:
+    if rest := [t for t in trains if not t.best_of]:
         groups.append(("other trains", rest, (8, "circle", "--series-1")))
     for name, (symbol, colour) in BEST.items():
-        if few := [t for t in found if t.best_of == name]:
+        if few := [t for t in trains if t.best_of == name]:
             end = "maximum" if name == LARGEST.word else "minimum"
             groups.append((f"{end} {name}", few, (12, symbol, colour)))
     for name, train, mark in (
@@ -256,7 +256,7 @@ def _front(result: Result, measures: Measures, goal: Goal, other: Goal) -> Secti
     groups = [g for g in groups if all(getattr(g[1][0], k) is not None for k in (key, high))]
     values = [measures.of(getattr(t, key), parted(key)[1]) for _, some, _ in groups for t in some]
     wide = max(values) > 10.0 * min(values)
-    across, up = (axis(_head(one, measures)) for one in (goal, other))
+    across, up = (axis(_head(it, measures)) for it in (goal, other))
     if wide:
         across |= {"type": "log", "dtick": "D2", "tickformat": "~g"}
     else:
@@ -265,8 +265,8 @@ def _front(result: Result, measures: Measures, goal: Goal, other: Goal) -> Secti
     limit = error_limit(known, result.limits) if other.name == "error" else None
     shapes = [] if limit is None else [limit_line("allowed", limit, "x", 1.6)]
     traces = [_points(*group, (key, high), measures) for group in groups]
-    figure = Figure(traces, layout(across, up, 400, shapes=shapes), _caption(result, found, goal))
-    tables = (_table(found, measures),) if goal.name != "mass" else ()
+    figure = Figure(traces, layout(across, up, 400, shapes=shapes), _caption(result, trains, goal))
+    tables = (_table(trains, measures),) if goal.name != "mass" else ()
     title = f"{other.word.capitalize()} and {goal.word}"
     return Section(title, figures=(figure,), tables=tables, half=True)
 
@@ -274,12 +274,12 @@ def _front(result: Result, measures: Measures, goal: Goal, other: Goal) -> Secti
 def _listed(train: TrainDesign, ratio: RatioDesign | None, who: str) -> ListedTrain:
     """Return the chosen or the given train as the list of trains has it."""
     assert train.inertia_kg_m2 is not None and train.mass_kg is not None
-    one = ratio and (ratio.chosen if who == "chosen" else ratio.given_train)
+    achieved = ratio and (ratio.chosen if who == "chosen" else ratio.given_train)
     judged: dict[str, Any] = (
-        {} if ratio is None or one is None else {MOTIONS[ratio.duty].key: one.value}
+        {} if ratio is None or achieved is None else {MOTIONS[ratio.duty].key: achieved.value}
     )
-    own = train.inertia_kg_m2, train.mass_kg, train.error_deg
-    return ListedTrain(train.stages, train.ratio, "", *own, **judged)
+    worth = train.inertia_kg_m2, train.mass_kg, train.error_deg
+    return ListedTrain(train.stages, train.ratio, "", *worth, **judged)
 
 
 def _table(trains: Sequence[ListedTrain], measures: Measures) -> Table:
@@ -309,7 +309,7 @@ def _head(goal: Goal, measures: Measures) -> str:
 
 
 def _caption(result: Result, trains: Sequence[ListedTrain], goal: Goal) -> str:
-    """Say what the points are."""
+    """Caption: the points, and whether one dominates another."""
     if goal.name == "mass":  # the second plot, of the same trains
         return "The same trains by mass."
     goals = _weighed(result)

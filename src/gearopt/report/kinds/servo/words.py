@@ -14,12 +14,12 @@ ARCMIN = 60.0  # a degree
 
 def design_of(result: Result) -> ServoDesign:
     """Return the design, typed."""
-    found: ServoDesign = typed(ServoDesign, result.design, "design")
-    return found
+    design: ServoDesign = typed(ServoDesign, result.design, "design")
+    return design
 
 
 def report_of(result: Result) -> ServoReport:
-    """Return what is reported beside the design, typed."""
+    """Report beside the design, typed."""
     return ServoReport.from_dict(result.report)
 
 

@@ -33,28 +33,28 @@ def design_of(result: Result) -> WaveDesign | None:
     """Return the gearing of a result; None without one."""
     if not result.design:
         return None
-    found: WaveDesign = typed(WaveDesign, result.design, "design")
-    return found
+    gearing: WaveDesign = typed(WaveDesign, result.design, "design")
+    return gearing
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
     """Return pressure, teeth that carry, clearance and size as key figures."""
-    if (found := design_of(result)) is None:
+    if (design := design_of(result)) is None:
         return []
-    equal = amount(found.equal_pressure_MPa, "MPa", measures)
-    touching = found.least_clearance_mm >= CUTTING
-    least = max(0.0, found.least_clearance_mm) if touching else found.least_clearance_mm
+    equal = amount(design.equal_pressure_MPa, "MPa", measures)
+    touching = design.least_clearance_mm >= CUTTING
+    least = max(0.0, design.least_clearance_mm) if touching else design.least_clearance_mm
     return [
         Tile(
             "largest pressure, shared loads",
-            amount(found.shared_pressure_MPa, "MPa", measures),
+            amount(design.shared_pressure_MPa, "MPa", measures),
             f"{equal} if conjugate pairs alone carried",
         ),
         Tile(
             "teeth that carry",
-            f"{found.carrying_teeth} per lobe",
-            f"equivalent to {number(found.effective_teeth)} equally loaded; "
-            f"{number(found.pairs_in_contact)} are conjugate",
+            f"{design.carrying_teeth} per lobe",
+            f"equivalent to {number(design.effective_teeth)} equally loaded; "
+            f"{number(design.pairs_in_contact)} are conjugate",
         ),
         Tile(
             "least clearance over the wave",
@@ -63,69 +63,69 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
         ),
         Tile(
             "outer diameter",
-            amount(found.outer_diameter_mm, "mm", measures),
-            f"module {amount(found.module_mm, 'mm', measures)}",
+            amount(design.outer_diameter_mm, "mm", measures),
+            f"module {amount(design.module_mm, 'mm', measures)}",
         ),
     ]
 
 
 def binding_limit(result: Result) -> str:
-    """Return what was reached: of a given gearing its loads, else its teeth and what decides."""
-    if (found := design_of(result)) is None:
+    """Loads of a given gearing; else the teeth and the limits that decide."""
+    if (design := design_of(result)) is None:
         return ""
-    if result.value is None and found.least_clearance_mm < CUTTING:
+    if result.value is None and design.least_clearance_mm < CUTTING:
         return ""
     if result.value is None:
-        pressure = amount(found.shared_pressure_MPa, "MPa", METRIC)
+        pressure = amount(design.shared_pressure_MPa, "MPa", METRIC)
         carry = "1 tooth of a lobe carries"
-        if found.carrying_teeth > 1:
-            carry = f"{found.carrying_teeth} teeth of a lobe carry"
+        if design.carrying_teeth > 1:
+            carry = f"{design.carrying_teeth} teeth of a lobe carry"
         return f"{carry}, at up to {pressure}"
     sizes = (
-        f"{found.flexspline_teeth} and {found.circular_spline_teeth} teeth of module "
-        f"{amount(found.module_mm, 'mm', METRIC)} carry {amount(found.torque_Nm, 'Nm', METRIC)} "
-        f"in {amount(found.outer_diameter_mm, 'mm', METRIC)}"
+        f"{design.flexspline_teeth} and {design.circular_spline_teeth} teeth of module "
+        f"{amount(design.module_mm, 'mm', METRIC)} carry {amount(design.torque_Nm, 'Nm', METRIC)} "
+        f"in {amount(design.outer_diameter_mm, 'mm', METRIC)}"
     )
-    ends = [end.name.replace("_", " ") for end in found.range_ends]
+    ends = [end.name.replace("_", " ") for end in design.range_ends]
     rest = f"; at ends of their ranges: {series_of(ends)}" if ends else ""
     return f"{sizes}; {of_limits(result)}{rest}"
 
 
 def warns(result: Result) -> Sequence[str]:
     """Return that teeth interfere, or that the cutter has a cusp."""
-    if (found := design_of(result)) is None:
+    if (design := design_of(result)) is None:
         return ()
     told = []
-    if found.least_clearance_mm < CUTTING:
+    if design.least_clearance_mm < CUTTING:
         told.append(
-            f"Interference: teeth overlap by {-1e3 * found.least_clearance_mm:.3g} µm, at "
-            f"{found.least_clearance_at_deg:.3g}° from the major axis: loads and pressures are "
+            f"Interference: teeth overlap by {-1e3 * design.least_clearance_mm:.3g} µm, at "
+            f"{design.least_clearance_at_deg:.3g}° from the major axis: loads and pressures are "
             "not valid."
         )
-    if found.cutter and not found.cutter.regular:
-        told.append(f"No such cutter: its edge would have a cusp. {_least(found.cutter)}")
+    if design.cutter and not design.cutter.regular:
+        told.append(f"No such cutter: its edge would have a cusp. {_least(design.cutter)}")
     return told
 
 
 def moving(result: Result, measures: Measures) -> Section | None:
     """Show the gearing running, and clearances and loads over the wave."""
-    if (found := design_of(result)) is None:
+    if (design := design_of(result)) is None:
         return None
-    loaded = max(found.load_N) > 0.0  # teeth absurdly stiff carry what is rounding of the torque
+    loaded = max(design.load_N) > 0.0  # teeth absurdly stiff carry what is rounding of the torque
     words = (
-        f"{number(found.pairs_in_contact)} pairs per lobe and flank are conjugate: their flanks "
+        f"{number(design.pairs_in_contact)} pairs per lobe and flank are conjugate: their flanks "
         "touch without load. Other pairs come close; elastic deformation brings them into contact.",
     )
     return Section(
         "Teeth in mesh",
         words=words,
-        animations=[running(found, RUNS, measures)] if loaded else [],
-        figures=[_clearances(found, measures), *([_loads(found, measures)] if loaded else [])],
+        animations=[running(design, RUNS, measures)] if loaded else [],
+        figures=[_clearances(design, measures), *([_loads(design, measures)] if loaded else [])],
         tables=[
-            *(tables.within(found, measures), tables.teeth(found, measures)),
-            *tables.over_wave(found, measures),
+            *(tables.within(design, measures), tables.teeth(design, measures)),
+            *tables.over_wave(design, measures),
         ],
-        terminal=(tables.teeth(found, measures),),
+        terminal=(tables.teeth(design, measures),),
     )
 
 
@@ -133,45 +133,45 @@ def _line(x: Sequence[float], y: Any, name: str, colour: int) -> dict[str, Any]:
     return lines(x, y, series(colour), name=name, hover="%{y:.4g}")
 
 
-def _clearances(found: WaveDesign, measures: Measures) -> Figure:
+def _clearances(gearing: WaveDesign, measures: Measures) -> Figure:
     """Plot the clearance of a tooth near the arc of contact."""
     factor, unit = measures.of(1.0, "um"), measures.unit("um")
     rows = [
         (a, factor * c)
-        for a, c in zip(found.wave_angle_deg, found.wave_clearance_mm, strict=True)
-        if -NEAR_DEG <= a <= max(NEAR_DEG, found.touching_deg[-1][1] + BEYOND_DEG)
+        for a, c in zip(gearing.wave_angle_deg, gearing.wave_clearance_mm, strict=True)
+        if -NEAR_DEG <= a <= max(NEAR_DEG, gearing.touching_deg[-1][1] + BEYOND_DEG)
     ]
     x, y = zip(*rows, strict=True)
     plot = layout(axis(ANGLE), axis(f"clearance [{unit}]"), hovermode="x")
-    plot["shapes"] = [band(*ends) for ends in found.touching_deg]
+    plot["shapes"] = [band(*ends) for ends in gearing.touching_deg]
     caption = "Least clearance of a tooth by its place on the wave; shaded: conjugate flanks touch."
     return Figure([_line(x, y, "clearance", 1)], plot, caption, follows=RUNS)
 
 
-def _loads(found: WaveDesign, measures: Measures) -> Figure:
+def _loads(gearing: WaveDesign, measures: Measures) -> Figure:
     """Plot load and pressure of a tooth on its way over the wave."""
     force = measures.of(1.0, "N")
-    load = [force * v for v in found.load_N]
+    load = [force * v for v in gearing.load_N]
     plot = layout(
         axis(ANGLE), axis(f"load [{measures.unit('N')}]", rangemode="tozero"), hovermode="x"
     )
-    carrying = [a for a, v in zip(found.load_angle_deg, found.load_N, strict=True) if v > 0.0]
+    carrying = [a for a, v in zip(gearing.load_angle_deg, gearing.load_N, strict=True) if v > 0.0]
     room = 0.3 * (carrying[-1] - carrying[0])
     plot["xaxis"] |= {"range": [carrying[0] - room, carrying[-1] + room]}
     caption = "Load of a tooth at the duty's torque on its way over the wave."
-    return Figure([_line(found.load_angle_deg, load, "load", 1)], plot, caption, follows=RUNS)
+    return Figure([_line(gearing.load_angle_deg, load, "load", 1)], plot, caption, follows=RUNS)
 
 
 def shift(result: Result, measures: Measures) -> Section | None:
     """Plot the pressure against the profile shift, as the search of the paper had it."""
-    found = design_of(result)
-    if found is None or len(found.shifts) < 2:
+    design = design_of(result)
+    if design is None or len(design.shifts) < 2:
         return None
-    factor, x = measures.of(1.0, "MPa"), [r.profile_shift for r in found.shifts]
+    factor, x = measures.of(1.0, "MPa"), [r.profile_shift for r in design.shifts]
     curves = [
-        _line(x, [factor * r.equal_MPa for r in found.shifts], "equal loads", 1),
-        _line(x, [factor * r.whole_MPa for r in found.shifts], "whole pairs", 2),
-        _line(x, [factor * r.shared_MPa for r in found.shifts], "shared loads", 4),
+        _line(x, [factor * r.equal_MPa for r in design.shifts], "equal loads", 1),
+        _line(x, [factor * r.whole_MPa for r in design.shifts], "whole pairs", 2),
+        _line(x, [factor * r.shared_MPa for r in design.shifts], "shared loads", 4),
     ]
     plot = layout(
         axis("profile shift, modules"),
@@ -179,34 +179,34 @@ def shift(result: Result, measures: Measures) -> Section | None:
         hovermode="x",
     )
     plot["margin"] |= {"t": 34}
-    plot["shapes"] = [upright(found.profile_shift, layer="above")]
+    plot["shapes"] = [upright(design.profile_shift, layer="above")]
     caption = "Pressure against profile shift, all else unchanged; dotted: this gearing."
     return Section(
         "Pressure against profile shift",
-        words=_ends_of_shift(found),
+        words=_ends_of_shift(design),
         figures=[Figure(curves, plot, caption)],
-        tables=[tables.shifts(found, measures)],
+        tables=[tables.shifts(design, measures)],
     )
 
 
-def _ends_of_shift(found: WaveDesign) -> list[str]:
-    """Return what ends a search over the profile shift."""
+def _ends_of_shift(gearing: WaveDesign) -> list[str]:
+    """Limits that end a search over the profile shift."""
     words = ["The pressure has no minimum over the profile shift: other limits end the search."]
-    if found.shift_of_one_pair is not None:
+    if gearing.shift_of_one_pair is not None:
         words.append(
-            f"One conjugate pair always touches up to a shift of {found.shift_of_one_pair:.3f}."
+            f"One conjugate pair always touches up to a shift of {gearing.shift_of_one_pair:.3f}."
         )
-    if found.largest_addendum is not None:
+    if gearing.largest_addendum is not None:
         words.append(
-            f"With an addendum above {found.largest_addendum:.3f} modules teeth would interfere."
+            f"With an addendum above {gearing.largest_addendum:.3f} modules teeth would interfere."
         )
     return words
 
 
 def cutter(result: Result, measures: Measures) -> Section | None:
     """Draw the cutter's edge on a grid, with straight and circular edges that may replace it."""
-    found = design_of(result)
-    if found is None or (tool := found.cutter) is None:
+    design = design_of(result)
+    if design is None or (tool := design.cutter) is None:
         return None
     if not tool.regular:
         words = (f"No such cutter: its edge would have a cusp. {_least(tool)}",)
@@ -216,7 +216,7 @@ def cutter(result: Result, measures: Measures) -> Section | None:
         f"{amount(tool.pitch_radius_mm, 'mm', measures)}: it is regular and generates the flank "
         f"to within {1e3 * tool.round_trip_mm:.0e} µm. {_least(tool)}",
     )
-    shown, pitch = result.report["cutter_drawing"], math.pi * found.module_mm
+    shown, pitch = result.report["cutter_drawing"], math.pi * design.module_mm
     scale = shown["scale"] or usual_scale(tool, pitch, shown["grid_mm"])
     edges = [tables.edges(tool, measures)] if tool.straight_deg else []
     return Section(
@@ -244,15 +244,15 @@ def _least(tool: CutterDesign) -> str:
 
 def numbers(result: Result, measures: Measures) -> Section | None:
     """Return the gearing in numbers, its flank, and other deflections."""
-    if (found := design_of(result)) is None:
+    if (design := design_of(result)) is None:
         return None
-    shown = tables.sizes(found, measures), tables.loads(found, measures)
-    others = [tables.deflections(found, measures)] if found.deflections else []
+    shown = tables.sizes(design, measures), tables.loads(design, measures)
+    others = [tables.deflections(design, measures)] if design.deflections else []
     return Section(
         "Sizes and flanks",
         tables=[
             *(*shown, *others),
-            *tables.points(found, measures),
+            *tables.points(design, measures),
         ],
         terminal=shown,
     )
@@ -260,14 +260,14 @@ def numbers(result: Result, measures: Measures) -> Section | None:
 
 def search(result: Result, measures: Measures) -> Section | None:
     """Return the rounds of a search; None without one."""
-    found = design_of(result)
-    if found is None or not found.rounds:
+    design = design_of(result)
+    if design is None or not design.rounds:
         return None
     words = (
         "Each round adds a limit where the flank of the last design cut the tip circle of the "
         "circular spline; then all positions of the wave are checked again.",
     )
-    return Section("Search", words=words, tables=[tables.rounds(found, measures)], half=True)
+    return Section("Search", words=words, tables=[tables.rounds(design, measures)], half=True)
 
 
 OWN = (moving, cutter, shift, numbers)

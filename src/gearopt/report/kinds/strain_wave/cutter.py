@@ -21,46 +21,46 @@ GRID_MULTIPLES = tuple(s * 10.0**k for k in range(12) for s in (1.0, 2.0, 5.0)) 
 
 
 def drawing(
-    found: CutterDesign, pitch: float, scale: float, grid: float, measures: Measures
+    tool: CutterDesign, pitch: float, scale: float, grid: float, measures: Measures
 ) -> Drawing:
     """Draw two teeth of a cutter at a scale on a grid [mm], with the straight edge instead.
 
     pitch [mm] of a rack. x is upwards, away from the blank; y to the right, 0 in the middle of a
     space for a tooth of the blank. On paper at full size the scale is true.
     """
-    edge, teeth = np.c_[found.x_mm, found.y_mm], _teeth(found, pitch)
+    edge, teeth = np.c_[tool.x_mm, tool.y_mm], _teeth(tool, pitch)
     ends, step = _frame(teeth, grid)
     sheet = Sheet(Window(*ends, FREE), scale * PX_PER_MM)
     _grid(sheet, ends, step, measures)
     for tooth in teeth:
         path = " L ".join(f"{u:.3f} {v:.3f}" for u, v in (sheet.at(*p) for p in tooth.tolist()))
         sheet.shape(f"M {path} Z", "tip", series(1), "tooth of the cutter")
-    if found.straight_deg:
-        _straight(sheet, found, SIDE_MARGIN * (ends[1] - ends[0]))
+    if tool.straight_deg:
+        _straight(sheet, tool, SIDE_MARGIN * (ends[1] - ends[0]))
     for v, u in edge[::5].tolist():
         sheet.circle(u, v, 2.0 / sheet.scale, "design")
-    name = f"pinion-type cutter of {found.teeth} teeth" if found.teeth else "rack"
+    name = f"pinion-type cutter of {tool.teeth} teeth" if tool.teeth else "rack"
     caption = (
         f"Active part of two teeth of a {name} at {scale:g}:1, grid {measures.length(step, 3)} "
         f"{measures.lengths}; every fifth point of the CSV is marked."
     )
-    if found.straight_deg:
-        caption += f" Dashed: the straight edge of least deviation, {found.straight_deg:.3f}°."
+    if tool.straight_deg:
+        caption += f" Dashed: the straight edge of least deviation, {tool.straight_deg:.3f}°."
     return replace(sheet.drawing("cutting edge", caption), true=True)
 
 
-def usual_scale(found: CutterDesign, pitch: float, grid: float) -> float:
+def usual_scale(tool: CutterDesign, pitch: float, grid: float) -> float:
     """Return the largest of 1, 2, 5, 10 ... to 5000 at which two teeth fit on a sheet of A4."""
-    (left, right, _, _), _ = _frame(_teeth(found, pitch), grid)
+    (left, right, _, _), _ = _frame(_teeth(tool, pitch), grid)
     room = (SHEET - FREE[0] - FREE[1]) / PX_PER_MM
     scales = (s * 10.0**k for k in range(4) for s in (1.0, 2.0, 5.0))
     return max((s for s in scales if s * (right - left) <= room), default=1.0)
 
 
-def _teeth(found: CutterDesign, pitch: float) -> list[Any]:
+def _teeth(tool: CutterDesign, pitch: float) -> list[Any]:
     """Return the outlines of two teeth: y across, x upwards."""
-    edge = np.c_[found.x_mm, found.y_mm]
-    tooth = np.vstack([edge, _mirrored(found, edge, pitch)[::-1]])
+    edge = np.c_[tool.x_mm, tool.y_mm]
+    tooth = np.vstack([edge, _mirrored(tool, edge, pitch)[::-1]])
     return [tooth[:, ::-1], (tooth * (1.0, -1.0))[:, ::-1]]
 
 
@@ -78,20 +78,20 @@ def _frame(teeth: list[Any], grid: float) -> tuple[Frame, float]:
     return (low[0], high[0], low[1], high[1]), step
 
 
-def _mirrored(found: CutterDesign, edge: Any, pitch: float) -> Any:
+def _mirrored(tool: CutterDesign, edge: Any, pitch: float) -> Any:
     """Return the edge on the other side of the cutter's tooth."""
-    if not found.teeth:
+    if not tool.teeth:
         return edge * (1.0, -1.0) + (0.0, pitch)
     z = edge[:, 0] + 1j * edge[:, 1]
-    axis = math.pi - math.pi / found.teeth
+    axis = math.pi - math.pi / tool.teeth
     other = np.conj(z) * np.exp(2j * axis)
     return np.c_[other.real, other.imag]
 
 
-def _straight(sheet: Sheet, found: CutterDesign, room: float) -> None:
+def _straight(sheet: Sheet, tool: CutterDesign, room: float) -> None:
     """Draw the straight edge of least deviation over the exact one."""
-    x, y = np.array(found.x_mm), np.array(found.y_mm)
-    slope = -math.tan(math.radians(found.straight_deg))
+    x, y = np.array(tool.x_mm), np.array(tool.y_mm)
+    slope = -math.tan(math.radians(tool.straight_deg))
     offset = 0.5 * float((y - slope * x).min() + (y - slope * x).max())
     first, last = float(x.min()) - room, float(x.max()) + room
     sheet.line((slope * first + offset, first), (slope * last + offset, last), "far")

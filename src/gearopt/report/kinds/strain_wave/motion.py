@@ -34,20 +34,20 @@ CAPTION = (
 )
 
 
-def running(found: WaveDesign, name: str, measures: Measures) -> Animation:
+def running(gearing: WaveDesign, name: str, measures: Measures) -> Animation:
     """Return the animation of a gearing: the whole, and the teeth at the top."""
-    made = drawn(found)
+    shape = drawn(gearing)
     turns = np.linspace(-0.5 * math.pi, 0.5 * math.pi, MOMENTS)
-    most = _round_up(measures.of(max(found.load_N), "N"))
-    views = [_whole(made, found, turns, measures), _close(made, found, turns, measures)]
-    first = np.degrees(_arcs(made.gearing, 0, turns))
-    low, high = max(found.touching_deg, key=np.ptp)
-    seen = np.where(np.abs(first) < max(found.wave_angle_deg), first, np.nan)
+    most = _round_up(measures.of(max(gearing.load_N), "N"))
+    views = [_whole(shape, gearing, turns, measures), _close(shape, gearing, turns, measures)]
+    first = np.degrees(_arcs(shape.gearing, 0, turns))
+    low, high = max(gearing.touching_deg, key=np.ptp)
+    seen = np.where(np.abs(first) < max(gearing.wave_angle_deg), first, np.nan)
     readings = [
         Reading("wave generator", np.degrees(turns), "°", 1),
-        Reading("output", -np.degrees(turns) / found.ratio, "°", 3),
+        Reading("output", -np.degrees(turns) / gearing.ratio, "°", 3),
         Reading("tooth at the top on the wave at", seen, "°", 2),
-        Reading("its load", measures.of(1.0, "N") * _load(found, first), measures.unit("N"), 0),
+        Reading("its load", measures.of(1.0, "N") * _load(gearing, first), measures.unit("N"), 0),
     ]
     return Animation(
         name,
@@ -80,22 +80,22 @@ class Drawn:
     space: Any
 
 
-def drawn(found: WaveDesign) -> Drawn:
+def drawn(design: WaveDesign) -> Drawn:
     """Return the gearing of a report, of teeth of any law."""
     gearing = StrainWave(
-        found.module_mm,
-        found.flexspline_teeth,
-        math.radians(found.pressure_angle_deg),
-        found.profile_shift,
-        found.addendum,
-        found.deflection,
-        found.rim_mm,
-        found.clearance,
-        found.wave_generator,
-        math.radians(found.wrap_angle_deg),
+        design.module_mm,
+        design.flexspline_teeth,
+        math.radians(design.pressure_angle_deg),
+        design.profile_shift,
+        design.addendum,
+        design.deflection,
+        design.rim_mm,
+        design.clearance,
+        design.wave_generator,
+        math.radians(design.wrap_angle_deg),
     )
-    tooth = np.c_[found.tooth_height_mm, found.tooth_half_mm]
-    space = np.c_[found.space_across_mm, found.space_out_mm]
+    tooth = np.c_[design.tooth_height_mm, design.tooth_half_mm]
+    space = np.c_[design.space_across_mm, design.space_out_mm]
     return Drawn(gearing, neutral_curve(gearing), tooth, space)
 
 
@@ -105,10 +105,10 @@ def _arcs(gearing: StrainWave, space: int, turns: Any) -> Any:
     return behind / gearing.teeth_ratio
 
 
-def _load(found: WaveDesign, degrees: Any) -> Any:
+def _load(gearing: WaveDesign, degrees: Any) -> Any:
     """Return the load [N] of a tooth at angles on the wave [degrees], of both lobes."""
-    own = (np.asarray(degrees) + 90.0) % 180.0 - 90.0
-    return np.interp(own, found.load_angle_deg, found.load_N, left=0.0, right=0.0)
+    angles = (np.asarray(degrees) + 90.0) % 180.0 - 90.0
+    return np.interp(angles, gearing.load_angle_deg, gearing.load_N, left=0.0, right=0.0)
 
 
 def _places(curve: NeutralCurve, arcs: Any, turns: Any) -> Any:
@@ -118,10 +118,10 @@ def _places(curve: NeutralCurve, arcs: Any, turns: Any) -> Any:
     return np.stack((at.x, at.y, turns + normal), axis=-1)
 
 
-def _tooth(made: Drawn, points: int) -> Any:
+def _tooth(shape: Drawn, points: int) -> Any:
     """Return the outline of a tooth of the flexspline about its foot, its axis upwards."""
-    rim = 0.5 * float(made.gearing.rim)
-    height, half = made.tooth[_evenly(len(made.tooth), points)].T
+    rim = 0.5 * float(shape.gearing.rim)
+    height, half = shape.tooth[_evenly(len(shape.tooth), points)].T
     side = np.c_[np.r_[rim, height], np.r_[half[0], half]]
     left = np.c_[-side[:, 1], side[:, 0]]
     return np.vstack([left, left[::-1] * (-1.0, 1.0)])
@@ -132,10 +132,10 @@ def _evenly(count: int, points: int) -> Any:
     return np.rint(np.linspace(0, count - 1, points)).astype(int)
 
 
-def _spaces(made: Drawn, numbers: Any, points: int) -> Any:
+def _spaces(shape: Drawn, numbers: Any, points: int) -> Any:
     """Return the outline of the circular spline's teeth along some spaces, upright."""
-    gearing = made.gearing
-    across, out = made.space[_evenly(len(made.space), points)].T
+    gearing = shape.gearing
+    across, out = shape.space[_evenly(len(shape.space), points)].T
     radius, half = np.hypot(across, out), np.arctan2(across, out)
     deep = np.r_[radius, float(gearing.root_radius)]
     wide = np.r_[half, half[-1]]
@@ -147,9 +147,9 @@ def _spaces(made: Drawn, numbers: Any, points: int) -> Any:
     return np.array(rows)
 
 
-def _ring(made: Drawn, offset: float, count: int) -> Any:
+def _ring(shape: Drawn, offset: float, count: int) -> Any:
     """Return the neutral curve, moved outwards along its normal [mm], upright at turn 0."""
-    place, normal = whole_curve(made.curve, np.linspace(-math.pi, math.pi, count)[:-1])
+    place, normal = whole_curve(shape.curve, np.linspace(-math.pi, math.pi, count)[:-1])
     x, y = place.x + offset * np.cos(normal), place.y + offset * np.sin(normal)
     return np.c_[-y, x]
 
@@ -158,70 +158,76 @@ def _turning(turns: Any) -> Any:
     return np.stack((0.0 * turns, 0.0 * turns, turns), axis=1)
 
 
-def _bodies(made: Drawn, found: WaveDesign, turns: Any, numbers: Any, points: int) -> list[Body]:
+def _bodies(shape: Drawn, gearing: WaveDesign, turns: Any, numbers: Any, points: int) -> list[Body]:
     """Return teeth of the flexspline, coloured by what they carry."""
-    outline = _tooth(made, points)
-    arcs = np.array([_arcs(made.gearing, k, turns) for k in numbers])
-    places, forces = _places(made.curve, arcs, turns), _load(found, np.degrees(arcs))
+    outline = _tooth(shape, points)
+    arcs = np.array([_arcs(shape.gearing, k, turns) for k in numbers])
+    places, forces = _places(shape.curve, arcs, turns), _load(gearing, np.degrees(arcs))
     return [
         Body(outline, place, "heat", title=TOOTH, values=force)
         for place, force in zip(places, forces, strict=True)
     ]
 
 
-def _rings(made: Drawn, turns: Any, count: int) -> list[Body]:
+def _rings(shape: Drawn, turns: Any, count: int) -> list[Body]:
     """Return the rim of the flexspline and the wave generator in it, which turn as one shape."""
-    rim = 0.5 * float(made.gearing.rim)
-    outer, inner = _ring(made, rim, count), _ring(made, -rim, count)
+    rim = 0.5 * float(shape.gearing.rim)
+    outer, inner = _ring(shape, rim, count), _ring(shape, -rim, count)
     bar = np.array([(0.0, inner[:, 1].min()), (0.0, inner[:, 1].max())])
-    own = _turning(turns)
+    places = _turning(turns)
     return [
-        Body(outer, own, "tip", series(COLOURS[0]), "rim of the flexspline"),
-        Body(inner, own, "tip", series(COLOURS[2]), "wave generator"),
-        Body(bar, own, "near", title="major axis of the wave generator", line=True),
+        Body(outer, places, "tip", series(COLOURS[0]), "rim of the flexspline"),
+        Body(inner, places, "tip", series(COLOURS[2]), "wave generator"),
+        Body(bar, places, "near", title="major axis of the wave generator", line=True),
     ]
 
 
-def _whole(made: Drawn, found: WaveDesign, turns: Any, measures: Measures) -> View:
-    gearing = made.gearing
-    reach = 0.5 * found.outer_diameter_mm
+def _whole(shape: Drawn, design: WaveDesign, turns: Any, measures: Measures) -> View:
+    gearing = shape.gearing
+    reach = 0.5 * design.outer_diameter_mm
     sheet = Sheet(Window(-reach, reach, -reach, reach, FREE), WIDE / (2.0 * reach))
     _spline(
-        sheet, made, range(int(gearing.circular_teeth)), 2 if found.law == INVOLUTE else 5, reach
+        sheet, shape, range(int(gearing.circular_teeth)), 2 if design.law == INVOLUTE else 5, reach
     )
-    own = _shown(found, measures)
-    teeth = _bodies(made, own, turns, range(int(gearing.teeth)), 2 if found.law == INVOLUTE else 4)
+    loaded = _shown(design, measures)
+    teeth = _bodies(
+        shape, loaded, turns, range(int(gearing.teeth)), 2 if design.law == INVOLUTE else 4
+    )
     words = f"The whole gearing, outer diameter {measures.length(2.0 * reach)} {measures.lengths}."
-    return View(sheet, "strain wave gearing", [*_rings(made, turns, RING[0]), *teeth], (), words)
+    return View(sheet, "strain wave gearing", [*_rings(shape, turns, RING[0]), *teeth], (), words)
 
 
-def _close(made: Drawn, found: WaveDesign, turns: Any, measures: Measures) -> View:
-    gearing, m = made.gearing, found.module_mm
+def _close(shape: Drawn, design: WaveDesign, turns: Any, measures: Measures) -> View:
+    gearing, m = shape.gearing, design.module_mm
     top = float(gearing.root_radius) + 0.4 * m
     half = (CLOSE_UP_TEETH - 0.3) * math.pi * m
     window = Window(-half, half, top - HIGH * m, top, FREE)
     sheet = Sheet(window, CLOSE / (2.0 * half))
-    points = 11 if found.law == INVOLUTE else 21
-    _spline(sheet, made, range(-CLOSE_UP_TEETH - 2, CLOSE_UP_TEETH + 3), points, 0.0)
+    points = 11 if design.law == INVOLUTE else 21
+    _spline(sheet, shape, range(-CLOSE_UP_TEETH - 2, CLOSE_UP_TEETH + 3), points, 0.0)
     teeth = _bodies(
-        made, _shown(found, measures), turns, range(-CLOSE_UP_TEETH - 2, CLOSE_UP_TEETH + 3), points
+        shape,
+        _shown(design, measures),
+        turns,
+        range(-CLOSE_UP_TEETH - 2, CLOSE_UP_TEETH + 3),
+        points,
     )
     words = (
         f"The teeth at the top: {measures.length(2.0 * half)} {measures.lengths} from side to side."
     )
-    bodies = [*_rings(made, turns, RING[1])[:2], *teeth]
+    bodies = [*_rings(shape, turns, RING[1])[:2], *teeth]
     return View(sheet, "teeth at the top", bodies, (), words)
 
 
-def _shown(found: WaveDesign, measures: Measures) -> WaveDesign:
+def _shown(gearing: WaveDesign, measures: Measures) -> WaveDesign:
     """Return the report with loads in the unit that is shown."""
     factor = measures.of(1.0, "N")
-    return replace(found, load_N=tuple(factor * v for v in found.load_N))
+    return replace(gearing, load_N=tuple(factor * v for v in gearing.load_N))
 
 
-def _spline(sheet: Sheet, made: Drawn, numbers: Any, points: int, reach: float) -> None:
+def _spline(sheet: Sheet, shape: Drawn, numbers: Any, points: int, reach: float) -> None:
     """Draw the circular spline at rest; reach [mm]: its outer radius, 0: beyond the view."""
-    inner = _spaces(made, numbers, points)
+    inner = _spaces(shape, numbers, points)
     path = " L ".join(f"{x:.2f} {y:.2f}" for x, y in (sheet.at(*p) for p in inner))
     title, colour = "circular spline", series(COLOURS[1])
     if reach:
@@ -230,7 +236,7 @@ def _spline(sheet: Sheet, made: Drawn, numbers: Any, points: int, reach: float) 
         back = f"a {size:.2f} {size:.2f} 0 1 1 {-2 * size:.2f} 0 Z"
         sheet.shape(f"{ring} {back} M {path} Z", "tip", colour, title)
         return
-    far = 2.0 * float(made.gearing.root_radius)
+    far = 2.0 * float(shape.gearing.root_radius)
     ends = [(inner[-1][0] * 1.2, far), (inner[0][0] * 1.2, far)]
     rest = " L ".join(f"{x:.2f} {y:.2f}" for x, y in (sheet.at(*p) for p in ends))
     sheet.shape(f"M {path} L {rest} Z", "tip", colour, title)
