@@ -57,20 +57,20 @@ EARLIEST = 1e-4  # s; the logarithmic axis begins here at the earliest
 
 
 def decided(result: Result) -> str:
-    """Return the first sentence: what decides the answer, with its figures."""
+    """The first sentence: what decides the answer, with its figures."""
     kind = pages_of_result(result)
     return sentence(lead(result, kind.binding_limit(result)) + kind.figures(result))
 
 
 def opening(result: Result) -> str:
-    """Return the status and what decides the answer, in one sentence."""
+    """The status and what decides the answer, in one sentence."""
     return sentence(
         f"{verdict(result)[0]}: {lead(result, pages_of_result(result).binding_limit(result))}"
     )
 
 
 def summary(result: Result, measures: Measures) -> Section | None:
-    """Return key figures and what must be known beside; None where there is nothing of both.
+    """Key figures and what must be known beside; None where there is nothing of both.
 
     On the terminal, which has no key figures, it ends with what is proven.
     """
@@ -85,7 +85,7 @@ def summary(result: Result, measures: Measures) -> Section | None:
 
 
 def _tiles(result: Result, measures: Measures) -> list[Tile]:
-    """Return the objective as a key figure, and its bound where that is another number."""
+    """The objective as a key figure, and its bound where that is another number."""
     name, unit, value, bound, side = goal(result)
     tiles = []
     if value is not None:
@@ -112,7 +112,7 @@ def _effort(result: Result) -> str:
 
 
 def limits(result: Result, measures: Measures) -> Section | None:
-    """Return the utilisation of every limit; None without limits."""
+    """The utilisation of every limit; None without limits."""
     if not result.limits or (result.value is None and not result.given):
         return None
     stages, rows = limit_rows(result.limits, has_stages(result))
@@ -163,7 +163,7 @@ def scope(result: Result) -> str:
 
 
 def _method(result: Result) -> list[str]:
-    """Return the proof in the method's words, and the limits that are in conflict."""
+    """The proof in the method's words, and the limits that are in conflict."""
     known, proof = result.bound is not None or result.status == "infeasible", result.proof
     lines = [proof["sentence"]] if known and "sentence" in proof else []
     if result.status == "infeasible" and proof.get("conflict") and "least_violation" in proof:
@@ -244,14 +244,14 @@ def _column(part: Result, measures: Measures) -> list[Any]:
 
 
 def _amount(value: float | None, unit: str, measures: Measures, way: int) -> Cell | str:
-    """Return a value in the unit that its column names."""
+    """A value in the unit that its column names."""
     if value is None:
         return ""
     return Cell(measures.of(value, unit), measures.number(value, unit, way))
 
 
 def _checks(result: Result) -> Table | None:
-    """Return the certificate, then what else the proof says; its sentence is not said again."""
+    """The certificate, then what else the proof says; its sentence is not said again."""
     rows: list[tuple[str, Any]] = [
         (f"{name}: {CHECKS.get(name, '')}", Cell(value, "" if value is None else f"{value:.2g}"))
         for name, value in result.certificate.items()
@@ -269,13 +269,13 @@ def _checks(result: Result) -> Table | None:
 
 
 def assumptions(result: Result | Front, measures: Measures) -> Section | None:
-    """Return the assumptions beside the file; None where the kind reports none."""
+    """The assumptions beside the file; None where the kind reports none."""
     words = list(map(measures.words, result.report.get("assumptions") or []))
     return Section("Assumptions and unverified data", words=words, half=True) if words else None
 
 
 def asked(result: Result, measures: Measures) -> Section | None:
-    """Return the file's tables as it has them; None where there was no file."""
+    """The file's tables as it has them; None where there was no file."""
     asked = {key: value for key, value in result.asked.items() if key not in ELSEWHERE}
     if not asked:
         return None
@@ -294,7 +294,7 @@ def _is_table(value: Any) -> bool:
 
 
 def _asked_table(key: str, value: Any) -> Table:
-    """Return a table of the file, one column per table where several have one name."""
+    """A table of the file, one column per table where several have one name."""
     several = isinstance(value, list)
     columns: Sequence[Mapping[str, Any]] = value if several else (value,)
     names = list(dict.fromkeys(name for column in columns for name in column))
@@ -305,7 +305,7 @@ def _asked_table(key: str, value: Any) -> Table:
 
 
 def _ends(value: Any) -> Any:
-    """Return a value as the file writes it."""
+    """A value as the file writes it."""
     if isinstance(value, list | Mapping):
         text = toml_text(value)
         return Cell(text, text)
@@ -338,7 +338,7 @@ def progress(result: Result, measures: Measures) -> Section | None:
 
 
 def _converted(step: dict[str, Any], unit: str, measures: Measures) -> dict[str, Any]:
-    """Return a step with its best value and bound in the unit that is shown."""
+    """A step with its best value and bound in the unit that is shown."""
     values = {k: measures.of(step[k], unit) for k in ("best", "bound") if step.get(k) is not None}
     return step | values
 
@@ -346,7 +346,7 @@ def _converted(step: dict[str, Any], unit: str, measures: Measures) -> dict[str,
 def _line(
     key: str, steps: list[dict[str, Any]], colour: str, unit: str, end: float
 ) -> dict[str, Any]:
-    """Return steps that hold to the end of the run."""
+    """Steps that hold to the end of the run."""
     last = [*steps, steps[-1] | {"seconds": end}]
     x, y = [max(EARLIEST, s["seconds"]) for s in last], [s[key] for s in last]
     marker = {"color": colour, "size": [6] * len(steps) + [0]}

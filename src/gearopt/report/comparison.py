@@ -37,12 +37,12 @@ assert (CATALOGUE_GAP, PROOF_GAP) == (1e-3, 1e-6)  # as the headings say
 
 
 def columns(comparison: Comparison) -> tuple[tuple[str, str, str], ...]:
-    """Return the columns of its tables: heading, unit, what it says."""
+    """The columns of its tables: heading, unit, what it says."""
     return (*COLUMNS, DISTANCE) if comparison.objectives else COLUMNS
 
 
 def cells(comparison: Comparison, sample: Sample) -> tuple[str, ...]:
-    """Return the row of a method, in the order of `columns`."""
+    """The row of a method, in the order of `columns`."""
     s = sample.summary
     row = (
         percent(s.median_gap),
@@ -58,7 +58,7 @@ def cells(comparison: Comparison, sample: Sample) -> tuple[str, ...]:
 
 
 def percent(gap: float | None) -> str:
-    """Return a gap in percent; "none" where there is no feasible point."""
+    """A gap in percent; "none" where there is no feasible point."""
     if gap is None:
         return "none"
     if gap <= NOTHING:
@@ -68,7 +68,7 @@ def percent(gap: float | None) -> str:
 
 
 def kinds(comparison: Comparison) -> tuple[tuple[str, str, str], ...]:
-    """Return field of a row, heading and budget of both comparisons."""
+    """Field of a row, heading and budget of both comparisons."""
     budget = comparison.budget
     return (
         ("equal_evaluations", "Equal evaluations", f"{budget['evaluations']:,} per run"),
@@ -108,7 +108,7 @@ def reference(group: Group) -> str:
 
 
 def unit_of(group: Group) -> str:
-    """Return the suffix under which the objective of a model is shown."""
+    """The suffix under which the objective of a model is shown."""
     return read_in(group.objective, group.unit)
 
 
@@ -121,14 +121,14 @@ def _own(group: Group) -> str:
 
 
 def _closed(group: Group) -> bool:
-    """Return whether the reference is the proven optimum."""
+    """Whether the reference is the proven optimum."""
     if not group.proven or group.best is None or group.reference is None:
         return False
     return excess(group.best, group.reference, group.scale) <= PROOF_GAP
 
 
 def _impossible(row: Row) -> bool:
-    """Return whether a method proved that there is no feasible point."""
+    """Whether a method proved that there is no feasible point."""
     samples = (row.equal_evaluations, row.equal_time)
     return any(run.status == "infeasible" for s in samples if s is not None for run in s.runs)
 
@@ -168,7 +168,7 @@ def verdict(group: Group, row: Row) -> str:
 
 
 def _why(sample: Sample) -> str:
-    """Return in brackets what the first run without a feasible point says, "" for nothing."""
+    """Message of the first run without a feasible point, in brackets; "" for none."""
     told = (r.message for r in sample.runs if r.objective is None and r.message)
     message = next(told, "").partition(". ")[0].rstrip(".")
     return f" ({message})" if message else ""
@@ -186,7 +186,7 @@ def ended(comparison: Comparison, row: Row) -> str:
 
 
 def settings(values: Mapping[str, Any]) -> str:
-    """Return the settings of a method on one line."""
+    """The settings of a method on one line."""
     return ", ".join(f"{name} {_setting(value)}" for name, value in values.items())
 
 
@@ -197,7 +197,7 @@ def _setting(value: Any) -> str:
 
 
 def command(comparison: Comparison) -> str:
-    """Return the command that repeats the comparison."""
+    """The command that repeats the comparison."""
     methods = [row.method for group in comparison.groups for row in group.rows]
     budget = comparison.budget
     if comparison.file is None or comparison.changes:

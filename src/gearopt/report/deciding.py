@@ -23,7 +23,7 @@ GIVEN = ("common_divisor",)  # rules that every design of the file is at the end
 
 
 def lead(result: Result, text: str = "") -> str:
-    """Return one sentence: what decides, is exceeded, or cannot be met together.
+    """One sentence: what decides, is exceeded, or cannot be met together.
 
     own: what the kind of result says of a design, instead of its limits.
     """
@@ -42,7 +42,7 @@ def _stopped(result: Result) -> str:
 
 
 def _impossible(result: Result) -> str:
-    """Return which limits exclude each other, else what the search says."""
+    """Limits that exclude each other, else the words of the search."""
     ways = result.report.get("ways_out") or {}
     names = ways.get("conflict") or result.proof.get("conflict") or ()
     if not names:
@@ -65,7 +65,7 @@ def _impossible(result: Result) -> str:
 
 
 def _some(names: Sequence[str], staged: bool) -> str:
-    """Return limits in words, the first families of them where there are many."""
+    """Limits in words, the first families of them where there are many."""
     families = list(dict.fromkeys(map(_stem, names)))
     shown = families if len(families) <= NAMED + 1 else families[:NAMED]
     words = grouped([name for name in names if _stem(name) in shown], staged)
@@ -74,7 +74,7 @@ def _some(names: Sequence[str], staged: bool) -> str:
 
 
 def _over(limits: Mapping[str, float], staged: bool) -> list[str]:
-    """Return the limits that are exceeded, and by how much."""
+    """The limits that are exceeded, and by how much."""
     worst = sorted((u, n) for n, u in limits.items() if u > 1.0 + REACHED)[::-1]
     sentences = [
         f"{limit_words(n, staged)} by {rounded(100.0 * (u - 1.0), 2)} %" for u, n in worst[:NAMED]
@@ -84,7 +84,7 @@ def _over(limits: Mapping[str, float], staged: bool) -> list[str]:
 
 
 def of_limits(result: Result, shown: Collection[str] = ()) -> str:
-    """Return which limits decide, else which is nearest; shown: limits that are not named here.
+    """Limits that decide, else the nearest one; shown: limits that are not named here.
 
     Of whole teeth and standard sizes, which come in steps, the limits that decide are those that
     their real-valued relaxation reaches; without one, as under ratings, those that are reached
@@ -110,12 +110,12 @@ def of_limits(result: Result, shown: Collection[str] = ()) -> str:
 
 
 def _is_end(name: str) -> bool:
-    """Return whether a limit is an end of a range, which a design may be anywhere in."""
+    """Whether a limit is an end of a range, which a design may be anywhere in."""
     return _stem(name).endswith(("_low", "_high"))
 
 
 def _whole(used: float) -> str:
-    """Return a part in whole per cent; 100 only where it is reached."""
+    """A part in whole per cent; 100 only where it is reached."""
     percent = round(100.0 * used)
     below = percent == 100 and used < 1.0 - REACHED
     return f"{math.floor(1000.0 * used) / 10.0:.1f}" if below else f"{percent:,}"
@@ -126,7 +126,7 @@ def _stem(name: str) -> str:
 
 
 def _decided(result: Result, names: list[str]) -> str:
-    """Return that limits determine the optimum, where that is certain; else that they bind."""
+    """Sentence that limits determine the optimum, where that is certain; else that they bind."""
     text = grouped(names, has_stages(result))
     if len(text) > NAMED:
         text = [*text[: NAMED - 1], f"{len(text) - NAMED + 1} other limits"]
@@ -137,7 +137,7 @@ def _decided(result: Result, names: list[str]) -> str:
 
 
 def _on(words: Sequence[str], count: int | None = None) -> str:
-    """Return "the limits on ..." of limits in words; count: of limits, where words group them."""
+    """Limits in words as "the limits on ..."; count: of limits, where words group them."""
     several = (len(words) if count is None else count) > 1
     return f"the limit{'s' * several} on {series_of(words)}"
 
@@ -152,7 +152,7 @@ def _goal(result: Result) -> str:
 
 
 def _nearest(limits: Mapping[str, float], alone: bool, staged: bool) -> list[str]:
-    """Return the limit that is nearest; alone: none is active."""
+    """The limit that is nearest; alone: none is active."""
     if not limits:
         return []
     name, used = max(limits.items(), key=lambda item: item[1])
@@ -163,7 +163,7 @@ def _nearest(limits: Mapping[str, float], alone: bool, staged: bool) -> list[str
 
 
 def _tolerance(result: Result) -> list[str]:
-    """Return how far the tolerance of a total ratio is used; nothing where it has none."""
+    """Use of the tolerance of a total ratio; nothing where it has none."""
     low, high = (result.limits.get(name) for name in ENDS)
     error, ratio = result.design.get("ratio_error_percent"), result.design.get("ratio")
     if low is None or high is None or error is None or ratio is None:

@@ -34,17 +34,17 @@ LISTED = {"between": ("from", "to")}  # lists of as many values: what each is ca
 
 
 def teeth_head(measures: Measures) -> str:
-    """Return the head of a column of modules and teeth, for reading."""
+    """The head of a column of modules and teeth, for reading."""
     return f"{measures.module[1]}, z1/z2"
 
 
 def teeth_heads(measures: Measures) -> tuple[str, str, str]:
-    """Return the heads of the same each in a column, in the CSV."""
+    """The heads of the same each in a column, in the CSV."""
     return measures.module[1], "z1", "z2"
 
 
 def tables(result: Result, measures: Measures) -> Section | None:
-    """Return all tables of the design, on the terminal stages and totals; None without one."""
+    """All tables of the design, on the terminal stages and totals; None without one."""
     design = dict(result.design)
     if not design:
         return None
@@ -61,7 +61,7 @@ def stage_table(
     measures: Measures,
     page_only: Collection[str] = PAGE_ONLY,
 ) -> Table:
-    """Return the stages side by side; page_only: keys of rows that only the page shows."""
+    """The stages side by side; page_only: keys of rows that only the page shows."""
     heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
     rows, hidden = [], []
     for key, (_, unit) in STAGE_ROWS.items():
@@ -82,7 +82,7 @@ def stage_table(
 
 
 def _own_teeth(key: str, stages: Sequence[Mapping[str, Any]]) -> bool:
-    """Return whether a key of the teeth, or the mate's, says more than its default or the file.
+    """Whether a key of the teeth, or the mate's, says more than its default or the file.
 
     Of blanks one that says anything.
     """
@@ -102,12 +102,12 @@ def stage_label(key: str, measures: Measures) -> str:
 
 
 def ratio_tile(ratio: float, error_percent: float) -> Tile:
-    """Return the total ratio and its error from the one that is asked for."""
+    """The total ratio and its error from the one that is asked for."""
     return Tile("total ratio", number(ratio), f"error {error_of(error_percent)}")
 
 
 def trains(result: Result, measures: Measures) -> Section | None:
-    """Return the best distinct trains in proven order; None where only one was asked for."""
+    """The best distinct trains in proven order; None where only one was asked for."""
     gears = (part for part in result.parts if part.name == "gears")
     best = next(
         (
@@ -175,7 +175,7 @@ def _train_row(
 
 
 def tables_of(name: str, group: Mapping[str, Any], measures: Measures) -> list[Table]:
-    """Return a table of the single values, then one for every list of records and every group.
+    """A table of the single values, then one for every list of records and every group.
 
     Several values of a key stand side by side.
     """
@@ -203,7 +203,7 @@ def records(
     rows: Sequence[Mapping[str, Any]],
     measures: Measures,
 ) -> Table:
-    """Return a row for every record, a column for every key."""
+    """A row for every record, a column for every key."""
     keys = list(dict.fromkeys(key for row in rows for key in row))
     heads = [h for key in keys for h in LISTED.get(key, (heading(key, measures),))]
     cells = [[c for key in keys for c in _cells(key, row.get(key), measures)] for row in rows]
@@ -211,7 +211,7 @@ def records(
 
 
 def _cells(key: str, value: Any, measures: Measures) -> list[Cell]:
-    """Return a value of a design in the unit that is shown, or each of several."""
+    """A value of a design in the unit that is shown, or each of several."""
     unit = parted(key, measures)[1]
     values = value if isinstance(value, list | tuple) else [value]
     if is_module(key):
@@ -220,5 +220,5 @@ def _cells(key: str, value: Any, measures: Measures) -> list[Cell]:
 
 
 def _joined(value: Any) -> Any:
-    """Return several numbers as words: those of stages in one plane."""
+    """Several numbers as words: those of stages in one plane."""
     return " and ".join(map(str, value)) if isinstance(value, list | tuple) else value

@@ -36,7 +36,7 @@ REMEDY_HEADS = (
 
 
 def sensitivities(result: Result, measures: Measures) -> Section | None:
-    """Return the sensitivities of the file's numbers; None if they are not asked for."""
+    """The sensitivities of the file's numbers; None if they are not asked for."""
     prices = result.report.get("prices")
     return of_influences(prices, result, measures) if prices and result.value is not None else None
 
@@ -44,7 +44,7 @@ def sensitivities(result: Result, measures: Measures) -> Section | None:
 def of_influences(
     prices: Mapping[str, Any], result: Result, measures: Measures = METRIC
 ) -> Section:
-    """Return the effect of every number on the objective, and what the columns mean.
+    """The effect of every number on the objective, and what the columns mean.
 
     prices: influences, message and basis, see `optimise.explaining.explanation`.
     """
@@ -72,14 +72,14 @@ def of_influences(
 
 
 def _sloped(prices: Mapping[str, Any]) -> bool:
-    """Return whether some number has a sensitivity, by multipliers or by solving again."""
+    """Whether some number has a sensitivity, by multipliers or by solving again."""
     return any(
         s is not None for i in prices["influences"] for s in (i["sensitivity"], *i["resolved"])
     )
 
 
 def _is_idle(influence: Mapping[str, Any]) -> bool:
-    """Return whether a number changes nothing: not by 1 %, to either side, nor when it is eased."""
+    """Whether a number changes nothing: not by 1 %, to either side, nor when it is eased."""
     slopes = [s for s in (influence["sensitivity"], *influence["resolved"]) if s is not None]
     known = bool(slopes) or influence["price"] is not None
     return known and all(abs(s) < FLAT for s in slopes) and abs(influence["price"] or 0.0) < NOTHING
@@ -122,17 +122,17 @@ def influence_words(prices: Mapping[str, Any], result: Result) -> list[str]:
 
 
 def clean(change: float) -> float:
-    """Return a change without the noise of solvers."""
+    """A change without the noise of solvers."""
     return 0.0 if abs(change) < NOTHING else change
 
 
 def alike(below: float, above: float) -> bool:
-    """Return whether sensitivities from both sides are shown as one."""
+    """Whether sensitivities from both sides are shown as one."""
     return abs(above - below) < ALIKE * max(1.0, abs(below), abs(above))
 
 
 def price(change: float | None) -> str:
-    """Return a relative change of the objective in words."""
+    """A relative change of the objective in words."""
     if change is None:
         return ""
     return "none" if abs(change) < NOTHING else f"{change:+.3%}"
@@ -145,7 +145,7 @@ def _percent(slope: float | None) -> str:
 
 
 def _sides(resolved: Sequence[float | None]) -> str:
-    """Return one number where both sides agree, both where a limit is about to bind."""
+    """One number where both sides agree, both where a limit is about to bind."""
     below, above = resolved
     if below is None or above is None:
         return _percent(above if below is None else below)
@@ -171,7 +171,7 @@ def remedies(result: Result, measures: Measures) -> Section | None:
 
 
 def remedy_words(report: Mapping[str, Any]) -> tuple[list[list[Any]], str]:
-    """Return rows of edits below REMEDY_HEADS, and how sure these are.
+    """Rows of edits below REMEDY_HEADS, and how sure these are.
 
     report: conflict, remedies and message, as `explain` and `solve` have them.
     """
@@ -215,12 +215,12 @@ def _less(ways: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _doubtful(way: Mapping[str, Any]) -> bool:
-    """Return whether it stayed undecided if less suffices."""
+    """Whether it stayed undecided if less suffices."""
     return bool(way["verified"].get("with_less") == "undecided")
 
 
 def _rows(way: Mapping[str, Any]) -> list[list[Any]]:
-    """Return a row for every edit of a remedy; a factor that all of them have stands once."""
+    """A row for every edit of a remedy; a factor that all of them have stands once."""
     alike = ", all alike" if way["kind"] == "even" else ", one stage"
     label = KINDS.get(way["kind"])
     if label is None:
@@ -244,12 +244,12 @@ def _rows(way: Mapping[str, Any]) -> list[list[Any]]:
 
 
 def _factor(factor: float | None) -> Cell | str:
-    """Return a factor; nothing where a number is shifted, or a switch is set."""
+    """A factor; nothing where a number is shifted, or a switch is set."""
     if factor is None or factor == 1.0 or math.isinf(factor):
         return ""
     return Cell(factor, rounded(factor, DIGITS))
 
 
 def _proven(bound: float | None, product: str) -> Cell | str:
-    """Return the smallest factor that may suffice, rounded down so that it stays true."""
+    """The smallest factor that may suffice, rounded down so that it stays true."""
     return "" if bound is None else Cell(bound, f"{product}{rounded(bound, DIGITS, way=-1)}")

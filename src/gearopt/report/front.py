@@ -23,13 +23,13 @@ DEFAULTS = {"seconds": SECONDS, "seed": 0}
 
 
 def title(front: Front) -> str:
-    """Return the name of a front: that of its file or problem, and its objectives."""
+    """The name of a front: that of its file or problem, and its objectives."""
     of = front.title or front.file or front.name
     return f"{of}: {' against '.join(words(name) for name in front.names)}"
 
 
 def verdict(front: Front) -> tuple[str, str]:
-    """Return how certain a front is, and the colour of that."""
+    """Certainty of a front, and its colour."""
     if not front.points and front.status != "infeasible":
         return "no design found, and no proof that there is none", "yellow"
     words, colour = VERDICTS[front.status]
@@ -38,13 +38,13 @@ def verdict(front: Front) -> tuple[str, str]:
 
 
 def words(name: str) -> str:
-    """Return the name of an objective as it is read, with the load in per cent that it is at."""
+    """The name of an objective as it is read, with the load in per cent that it is at."""
     name, _, load = name.replace("_", " ").partition(" at ")
     return f"{name} at {load.replace(' ', '.')} %" if load else name
 
 
 def decided(front: Front, measures: Measures = METRIC) -> list[str]:
-    """Return in sentences what was found, and how sure it is."""
+    """Size, ends and certainty of a front, in sentences."""
     sentences = [str(front.proof.get("sentence", ""))]
     count = len(front.points)
     if count:
@@ -83,7 +83,7 @@ def _span(front: Front, k: int, measures: Measures) -> str:
 
 
 def picked(front: Front, measures: Measures = METRIC) -> list[str]:
-    """Return for every design that a rule takes its reason, and what its neighbours cost."""
+    """Reason of every design that a rule takes, and cost of its neighbours."""
     by_place: dict[int, list[str]] = {}
     for pick in front.picks:
         by_place.setdefault(pick.place, []).append(f"{pick.rule} ({pick.reason})")
@@ -120,13 +120,13 @@ def _beside(front: Front, place: int) -> str:
 
 
 def _change(part: float) -> str:
-    """Return a relative change in per cent, to two digits."""
+    """A relative change in per cent, to two digits."""
     share = 100.0 * part
     return f"{share:+.2g} %" if abs(share) < 99.5 else f"{share:+,.0f} %"
 
 
 def table(front: Front, measures: Measures = METRIC, most: int | None = None) -> Table:
-    """Return the designs with their values, what is picked, and what they are made of.
+    """The designs with their values, what is picked, and what they are made of.
 
     most: rows; the picks and the ends are among them.
     """
@@ -151,7 +151,7 @@ def table(front: Front, measures: Measures = METRIC, most: int | None = None) ->
 
 
 def rules(front: Front) -> dict[int, list[str]]:
-    """Return the places that rules pick, each with their names."""
+    """The places that rules pick, each with their names."""
     names: dict[int, list[str]] = {}
     for pick in front.picks:
         names.setdefault(pick.place, []).append(pick.rule)
@@ -159,7 +159,7 @@ def rules(front: Front) -> dict[int, list[str]]:
 
 
 def chosen(front: Front, most: int | None) -> list[int]:
-    """Return the places of rows: all, or evenly spread ones with the ends and the picks."""
+    """The places of rows: all, or evenly spread ones with the ends and the picks."""
     count = len(front.points)
     if most is None or count <= most:
         return list(range(count))
@@ -168,7 +168,7 @@ def chosen(front: Front, most: int | None) -> list[int]:
 
 
 def unit_of(objective: Objective) -> str:
-    """Return the suffix under which the values of an objective are shown."""
+    """The suffix under which the values of an objective are shown."""
     return read_in(objective.name, objective.unit)
 
 
@@ -179,13 +179,13 @@ def head(objective: Objective, measures: Measures) -> str:
 
 
 def stages_of(design: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
-    """Return the stages of a drive, or of the train of a servo axis."""
+    """The stages of a drive, or of the train of a servo axis."""
     stages: Sequence[Mapping[str, Any]] = (design.get("train") or design).get("stages", ())
     return stages
 
 
 def _gears(design: Mapping[str, Any], measures: Measures) -> Cell:
-    """Return modules and teeth of the stages of a drive."""
+    """Modules and teeth of the stages of a drive."""
     rows = []
     for stage in stages_of(design):
         module = number(measures.of_module(stage[MODULE]))
@@ -195,7 +195,7 @@ def _gears(design: Mapping[str, Any], measures: Measures) -> Cell:
 
 
 def command(front: Front, measures: Measures = METRIC, html: str = "") -> str:
-    """Return the command that makes the front again; "" where it is Python's."""
+    """The command that makes the front again; "" where it is Python's."""
     options = front.options
     if front.file is None or options.get("changes"):
         return ""

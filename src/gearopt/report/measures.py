@@ -37,7 +37,7 @@ _ROUNDING = {-1: ROUND_FLOOR, 0: ROUND_HALF_EVEN, 1: ROUND_CEILING}
 
 @lru_cache(1 << 15)  # designs of a front have most of their numbers in common
 def rounded(value: float, digits: int, decimals: int | None = None, way: int = 0) -> str:
-    """Return a number with so many significant digits, integer digits never cut.
+    """A number with so many significant digits, integer digits never cut.
 
     decimals: at least so many of them. Without it a number that has fewer digits, as one of a
     catalogue, is written with these.
@@ -59,12 +59,12 @@ def rounded(value: float, digits: int, decimals: int | None = None, way: int = 0
 
 
 def error_of(percent: float) -> str:
-    """Return a relative error; of one as small as rounding, only that it is so small."""
+    """A relative error; of one as small as rounding, only that it is so small."""
     return f"{percent:+.3g} %" if abs(percent) >= 1e-9 else "below 1e-9 %" if percent else "0 %"
 
 
 def gap_percent(gap: float) -> str:
-    """Return a gap in per cent, never less than it is."""
+    """A gap in per cent, never less than it is."""
     if 0.0 < gap < NO_GAP:
         return f"below {100.0 * NO_GAP:.6f} %"
     text = rounded(100.0 * gap, 2, way=1)
@@ -72,7 +72,7 @@ def gap_percent(gap: float) -> str:
 
 
 def read_in(objective: str, unit: str) -> str:
-    """Return the suffix under which an objective is shown: lengths of micrometres as such.
+    """The suffix under which an objective is shown: lengths of micrometres as such.
 
     objective: its name, also of a worst case, or at one load as in "peak_to_peak_at_60".
     """
@@ -94,7 +94,7 @@ class Measures:
     scaled: Mapping[str, tuple[tuple[float, str, float], ...]] = field(default_factory=dict)
 
     def unit(self, suffix: str) -> str:
-        """Return the sign of a unit, `mm³` for mm3; an unknown suffix as it is."""
+        """The sign of a unit, `mm³` for mm3; an unknown suffix as it is."""
         return self.units.get(suffix, (suffix, 1.0))[0]
 
     @property
@@ -103,7 +103,7 @@ class Measures:
         return "inches" if self.unit("mm") == "in" else self.unit("mm")
 
     def of(self, value: float, suffix: str) -> float:
-        """Return a value of the result in the unit that is shown."""
+        """A value of the result in the unit that is shown."""
         factor = self.units.get(suffix, ("", 1.0))[1]
         return value if factor == 1.0 else value * factor
 
@@ -114,7 +114,7 @@ class Measures:
         return ("diametral pitch", "P_nd", "1/in") if inch else ("module", "m_n", "mm")
 
     def of_module(self, module: Any) -> Any:
-        """Return a normal module [mm] as it is shown: itself, or P_nd = 25.4/m_n [1/in].
+        """A normal module [mm] as it is shown: itself, or P_nd = 25.4/m_n [1/in].
 
         A pitch is rounded to 12 digits: 25.4/(25.4/12) is 12.
         """
@@ -123,7 +123,7 @@ class Measures:
         return float(f"{_INCH / module:.12g}")
 
     def words(self, text: str) -> str:
-        """Return a sentence with its metric quantities in these units: "3.2 mm" as "0.126 in"."""
+        """A sentence with its metric quantities in these units: "3.2 mm" as "0.126 in"."""
         return text if self.name == "metric" else _METRIC.sub(self._converted, text)
 
     def _converted(self, match: re.Match[str]) -> str:
@@ -138,11 +138,11 @@ class Measures:
         return f"{rounded(value, max(3, digits))} {shown}"
 
     def length(self, value: float, digits: int = 2) -> str:
-        """Return a length [mm] with so many decimals, for drawings."""
+        """A length [mm] with so many decimals, for drawings."""
         return f"{self.of(value, 'mm'):.{digits + self.digits}f}".replace("-0.00", "0.00")
 
     def number(self, value: float, suffix: str = "", way: int = 0) -> str:
-        """Return a value of the result in the unit that is shown, for reading.
+        """A value of the result in the unit that is shown, for reading.
 
         Lengths to a hundredth of a millimetre, parts in per cent to three digits, all else to
         five; a number that has fewer is shown exactly. way: as for `rounded`.
@@ -153,7 +153,7 @@ class Measures:
         return rounded(size, FEWEST["mm"], HUNDREDTHS + self.digits, way)
 
     def amount(self, value: float, suffix: str, way: int = 0) -> str:
-        """Return a value with its unit for sentences and key figures.
+        """A value with its unit for sentences and key figures.
 
         Volumes and areas have several units there; a length of fewer decimals is shown exactly.
         way: as for `rounded`, for a bound that must stay true.

@@ -29,7 +29,7 @@ class Figure:
 
     @property
     def space(self) -> bool:
-        """Return whether it is a view in space, which needs WebGL."""
+        """Whether it is a view in space, which needs WebGL."""
         return "scene" in self.layout
 
 
@@ -41,7 +41,7 @@ LOOK = {  # of any plot
 
 
 def axis(title: str, **more: Any) -> dict[str, Any]:
-    """Return a plot's axis in the page's look."""
+    """A plot's axis in the page's look."""
     look = {
         "title": {"text": title, "standoff": 10, "font": {"size": 13}},
         "gridcolor": "--grid",
@@ -57,7 +57,7 @@ def axis(title: str, **more: Any) -> dict[str, Any]:
 
 
 def layout(x: dict[str, Any], y: dict[str, Any], height: int = 360, **more: Any) -> dict[str, Any]:
-    """Return a plot's layout in the page's look."""
+    """A plot's layout in the page's look."""
     look = {
         "height": height,
         "margin": {"l": 8, "r": 12, "t": 8, "b": 8},

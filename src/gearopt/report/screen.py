@@ -10,7 +10,7 @@ JOINERS = "\u200c\u200d"  # between letters of some scripts, and within emoji
 
 
 def harmless(text: str) -> str:
-    """Return a text with a ? for every character that a terminal obeys or that hides others.
+    """A text with a ? for every character that a terminal obeys or that hides others.
 
     Those are controls (ESC and C1 among them) but for line ends and tabs, marks of the direction of
     writing, which can show a text in another order, and halves of characters.

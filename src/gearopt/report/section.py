@@ -70,43 +70,43 @@ class Table:
     across: bool = False
 
     def without(self, hidden: Collection[str]) -> tuple[list[str], list[list[Any]]]:
-        """Return heads and rows without the columns and rows of these names."""
+        """Heads and rows without the columns and rows of these names."""
         kept = [k for k, head in enumerate(self.heads) if head not in hidden]
         rows = [[row[k] for k in kept] for row in self.rows if _plain(row[0]) not in hidden]
         return [self.heads[k] for k in kept], rows
 
     @property
     def long(self) -> bool:
-        """Return whether it may not fit on a printed page."""
+        """Whether it may not fit on a printed page."""
         return len(self.rows) > LONG
 
     @property
     def stem(self) -> str:
-        """Return its name as that of a file: "gaps [mm]" as "gaps-mm"."""
+        """The name as that of a file: "gaps [mm]" as "gaps-mm"."""
         return re.sub(r"[^a-z0-9]+", "-", self.name.lower()).strip("-")
 
     @property
     def shown(self) -> tuple[list[str], list[list[Cell]]]:
-        """Return heads and cells as the page shows them."""
+        """Heads and cells as the page shows them."""
         heads, rows = self.without({*self.terminal_only, *self.csv_only})
         return heads, [[shown(value) for value in row] for row in rows]
 
     @property
     def told(self) -> tuple[list[str], list[list[Cell]]]:
-        """Return heads and cells as the terminal shows them."""
+        """Heads and cells as the terminal shows them."""
         heads, rows = self.without({*self.page_only, *self.csv_only})
         names = [self.short.get(head, head) for head in heads]
         return names, [[shown(value) for value in row] for row in rows]
 
     @property
     def values(self) -> tuple[list[str], list[list[Any]]]:
-        """Return heads and plain values in full precision, as the CSV has them."""
+        """Heads and plain values in full precision, as the CSV has them."""
         heads, rows = self.without({*self.terminal_only, *self.read_only})
         return heads, [[v.value if isinstance(v, Cell) else v for v in row] for row in rows]
 
     @property
     def records(self) -> list[dict[str, Any]]:
-        """Return a dict {column: value} for everything that the table lists.
+        """A dict {column: value} for everything that the table lists.
 
         A list of names and values is one record; a column without a head is called name.
         """
@@ -124,7 +124,7 @@ class Table:
         return [dict(zip(columns, row, strict=True)) for row in rows]
 
     def csv(self) -> str:
-        """Return heads and values in full precision, as RFC 4180 has it."""
+        """Heads and values in full precision, as RFC 4180 has it."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\r\n")
         heads, rows = self.values
@@ -135,7 +135,7 @@ class Table:
 
     @property
     def link(self) -> str:
-        """Return the CSV as an address that needs no network."""
+        """The CSV as an address that needs no network."""
         return "data:text/csv;charset=utf-8," + quote("\ufeff" + self.csv())  # for spreadsheets
 
 
@@ -172,12 +172,12 @@ class Section:
 
     @property
     def row(self) -> Row:
-        """Return the drawings as they stand side by side."""
+        """The drawings as they stand side by side."""
         return Row(self.drawings)
 
 
 def shown(value: Any) -> Cell:
-    """Return a value as it is read."""
+    """A value as it is read."""
     if isinstance(value, Cell):
         return value
     if value is None:
@@ -188,7 +188,7 @@ def shown(value: Any) -> Cell:
 
 
 def cell(value: Any, suffix: str, measures: Measures) -> Cell:
-    """Return a value of a result in the unit that is shown, with the digits that are read."""
+    """A value of a result in the unit that is shown, with the digits that are read."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return shown(value)
     if not suffix:
@@ -206,11 +206,11 @@ class Listed:
     form: str
 
     def head(self, measures: Measures) -> str:
-        """Return the label with the unit."""
+        """The label with the unit."""
         return f"{self.label} [{measures.unit(self.unit)}]" if self.unit else self.label
 
     def cell(self, value: Any, measures: Measures) -> Cell:
-        """Return a value of the field as it is read; a length has decimals by its unit."""
+        """A value of the field as it is read; a length has decimals by its unit."""
         if not self.form or value is None:
             return cell(value, self.unit, measures)
         if self.unit == "mm":
@@ -221,7 +221,7 @@ class Listed:
 
 @cache
 def listed(kind: type, table: str = "") -> tuple[Listed, ...]:
-    """Return the fields of a dataclass that a table lists, in their order."""
+    """The fields of a dataclass that a table lists, in their order."""
     return tuple(
         Listed(key, one.label, parted(key)[1] if one.unit is None else one.unit, one.form)
         for key, hint in get_type_hints(kind, include_extras=True).items()
@@ -237,7 +237,7 @@ def names_and_values(
     values: Mapping[str, Any] | None = None,
     labels: Mapping[str, str] | None = None,
 ) -> list[list[Any]]:
-    """Return a row for every field that a table lists and that is known.
+    """A row for every field that a table lists and that is known.
 
     values, labels: what is shown instead of some fields' own, by key.
     """
@@ -251,7 +251,7 @@ def names_and_values(
 
 
 def columns(design: Any, measures: Measures, name: str, **look: Any) -> Table:
-    """Return a table of fields that hold columns, whose table has this name."""
+    """A table of fields that hold columns, whose table has this name."""
     held = listed(design.__class__, name)
     cells = [[it.cell(v, measures) for v in getattr(design, it.key)] for it in held]
     heads = [it.head(measures) for it in held]
@@ -261,14 +261,14 @@ def columns(design: Any, measures: Measures, name: str, **look: Any) -> Table:
 def records(
     rows: Sequence[Any], measures: Measures, table: str = ""
 ) -> tuple[list[str], list[Any]]:
-    """Return heads, and a row for every record, of the fields that a table lists."""
+    """Heads, and a row for every record, of the fields that a table lists."""
     held = listed(rows[0].__class__, table) if rows else ()
     heads = [it.head(measures) for it in held]
     return heads, [[it.cell(getattr(row, it.key), measures) for it in held] for row in rows]
 
 
 def side_by_side(items: Sequence[Any], measures: Measures, table: str = "") -> list[list[Any]]:
-    """Return a row for every field that a table lists and some item has, a column for each item."""
+    """A row for every field that a table lists and some item has, a column for each item."""
     held = [
         (it, [getattr(item, it.key) for item in items]) for it in listed(items[0].__class__, table)
     ]
@@ -280,14 +280,14 @@ def side_by_side(items: Sequence[Any], measures: Measures, table: str = "") -> l
 
 
 def percent(used: float | None) -> Cell:
-    """Return a part of a whole in per cent, with its bar."""
+    """A part of a whole in per cent, with its bar."""
     if used is None:
         return Cell(None, "")
     return Cell(100.0 * used, share(used), min(1.0, max(0.0, used)))
 
 
 def _csv(value: Any) -> Any:
-    """Return a value as CSV holds it: before a text that a spreadsheet would compute stands a '."""
+    """A value as CSV holds it: before a text that a spreadsheet would compute stands a '."""
     text = _plain(value)
     if not isinstance(text, str) or NUMBER.fullmatch(text) or not FORMULA.match(text):
         return text
@@ -295,7 +295,7 @@ def _csv(value: Any) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """Return a value as CSV holds it; TypeError for several in one cell."""
+    """A value as CSV holds it; TypeError for several in one cell."""
     if isinstance(value, Cell):
         return _plain(value.value)
     if isinstance(value, list | tuple):

@@ -52,7 +52,7 @@ Block = str | Text | Table
 
 
 def lines(result: Result) -> str:
-    """Return status, value, bound and gap, and what is essential of the design, in a few lines."""
+    """Status, value, bound and gap, and what is essential of the design, in a few lines."""
     _, unit, value, bound, side = goal(result)
     rows = [_head(result), decided(result), *pages_of_result(result).warns(result)]
     if bound is not None and (value is None or (result.gap or 0.0) > EXACT):
@@ -68,12 +68,12 @@ def lines(result: Result) -> str:
 
 
 def _joined(rows: Sequence[str]) -> str:
-    """Return the lines of an answer, as a terminal may print them."""
+    """The lines of an answer, as a terminal may print them."""
     return "\n  ".join(harmless(cut(row, LINE_LENGTH)) for row in rows)
 
 
 def _head(result: Result) -> str:
-    """Return title, value and what is certain of it."""
+    """Title, value and what is certain of it."""
     name, unit, value, _, _ = goal(result)
     known = value is not None and "achieved" not in result.report
     reached = f"{name} {amount(value, unit)}, " if known else ""
@@ -81,7 +81,7 @@ def _head(result: Result) -> str:
 
 
 def _design(result: Result) -> list[str]:
-    """Return a line for every stage of gears, then the first numbers of a design."""
+    """A line for every stage of gears, then the first numbers of a design."""
     design, goal = result.design, result.objective.get("name")
     groups = [part for part in design.values() if isinstance(part, Mapping)]
     parts = sorted((design, *groups), key=lambda part: not part.get("stages"))
@@ -98,14 +98,14 @@ def _design(result: Result) -> list[str]:
 
 
 def _fitting(values: Sequence[str]) -> str:
-    """Return as many values as fit into a line, at least one."""
+    """As many values as fit into a line, at least one."""
     ends = list(accumulate(len(value) + 2 for value in values))
     fit = max(1, sum(end <= WIDTH for end in ends))
     return ", ".join([*values[:fit], *(["..."] if fit < len(values) else [])])
 
 
 def _own(design: Mapping[str, Any]) -> list[str]:
-    """Return `width_cm = 3.5` of the variables of a problem of one's own."""
+    """`width_cm = 3.5` of the variables of a problem of one's own."""
     return [
         f"{key} = {_list(v) if isinstance(v, list) else number(v)}" for key, v in design.items()
     ]
@@ -117,7 +117,7 @@ def _list(values: Sequence[Any]) -> str:
 
 
 def _values(part: Mapping[str, Any], goal: Any) -> list[str]:
-    """Return `width 76.57 mm` of the single numbers of a part of a design, but for its goal."""
+    """`width 76.57 mm` of the single numbers of a part of a design, but for its goal."""
     words = []
     for key, value in part.items():
         name, unit = parted(key)
@@ -129,7 +129,7 @@ def _values(part: Mapping[str, Any], goal: Any) -> list[str]:
 
 
 def explained_lines(explanation: Explanation) -> str:
-    """Return the answer, the limits that bind and the largest sensitivities, or the remedies."""
+    """The answer, the limits that bind and the largest sensitivities, or the remedies."""
     rows = [lines(explanation.result)]
     if explanation.conflict:
         rows.append(f"in conflict: {_names(explanation, explanation.conflict)}")
@@ -154,7 +154,7 @@ def _reached(explanation: Explanation) -> list[str]:
 
 
 def compared_lines(comparison: Comparison) -> str:
-    """Return the verdict of every method, model by model."""
+    """The verdict of every method, model by model."""
     rows = [f"{comparison.title}: methods compared"]
     for group in comparison.groups:
         rows.append(comparison_words.reference(group))
@@ -172,7 +172,7 @@ def fragment(result: Result) -> str:
 
 
 def explained_fragment(explanation: Explanation) -> str:
-    """Return an explanation as HTML for a notebook: sensitivities, or the way out."""
+    """An explanation as HTML for a notebook: sensitivities, or the way out."""
     if explanation.result.value is None:
         return fragment(answered(explanation))
     blocks = [
@@ -183,7 +183,7 @@ def explained_fragment(explanation: Explanation) -> str:
 
 
 def compared_fragment(comparison: Comparison) -> str:
-    """Return a comparison as HTML for a notebook: verdicts and numbers of every method."""
+    """A comparison as HTML for a notebook: verdicts and numbers of every method."""
     blocks: list[Block] = []
     for group in comparison.groups:
         blocks += [comparison_words.reference(group)]
@@ -215,12 +215,12 @@ def front_fragment(pareto: Front) -> str:
 
 
 def front_page(pareto: Front, units: str) -> str:
-    """Return the page of a Pareto front."""
+    """The page of a Pareto front."""
     return front_pages.page(pareto, measures=measures_of(units))
 
 
 def answered(explanation: Explanation) -> Result:
-    """Return the result of an impossible request with the conflict and the remedies in it."""
+    """The result of an impossible request with the conflict and the remedies in it."""
     ways: dict[str, Any] = {"conflict": explanation.conflict, "message": explanation.message}
     ways |= {"any_resolves": explanation.any_resolves, "unsure": explanation.unsure}
     ways |= {"remedies": [asdict(remedy) for remedy in explanation.remedies]}
@@ -235,36 +235,36 @@ def answered(explanation: Explanation) -> Result:
 
 
 def _html(head: str, blocks: Sequence[Block]) -> str:
-    """Return a fragment of a page in the colours of where it stands; all text is escaped."""
+    """A fragment of a page in the colours of where it stands; all text is escaped."""
     parts: list[Any] = [b if isinstance(b, Table) else str(b) for b in blocks]
     return str(templates().get_template("notebook.html").render(head=head, blocks=parts))
 
 
 def measures_of(units: str) -> Measures:
-    """Return the system of units of a name; ValueError names those there are."""
+    """The system of units of a name; ValueError names those there are."""
     if units not in SYSTEMS:
         raise ValueError(f"units={units!r}: write {' or '.join(map(repr, SYSTEMS))}")
     return SYSTEMS[units]
 
 
 def whole_page(result: Result, units: str) -> str:
-    """Return the page of a result, as `gearopt report --html` writes it."""
+    """The page of a result, as `gearopt report --html` writes it."""
     measures = measures_of(units)
     return result_pages.page(result, again(result, "page.html", measures), measures)
 
 
 def compared_page(comparison: Comparison) -> str:
-    """Return the page of a comparison."""
+    """The page of a comparison."""
     return comparison_pages.page(comparison)
 
 
 def table_names(result: Result, units: str) -> tuple[str, ...]:
-    """Return names of the tables of a result, in the order of its page."""
+    """Names of the tables of a result, in the order of its page."""
     return tuple(name for name, _ in result_pages.tables_by_name(result, measures_of(units)))
 
 
 def table_rows(result: Result, name: str, units: str) -> list[dict[str, Any]]:
-    """Return a table of a result as rows {column: value}; ValueError names the tables there are."""
+    """A table of a result as rows {column: value}; ValueError names the tables there are."""
     known = []
     for stem, table in result_pages.tables_by_name(result, measures_of(units)):
         if stem == name:

@@ -34,7 +34,7 @@ INDENT = "  "
 
 
 def grid(table: Table, width: int) -> Grid:
-    """Return a section's table for the terminal; without heads a list of names and values.
+    """A section's table for the terminal; without heads a list of names and values.
 
     width: columns of the terminal. Of a table of words in which the first column has too little
     room, its text stands above that of the second.
@@ -55,19 +55,19 @@ def grid(table: Table, width: int) -> Grid:
 
 
 def _narrow(table: Table, width: int) -> bool:
-    """Return whether a table's first column would have less than LABEL columns, and needs more."""
+    """Whether a table's first column would have less than LABEL columns, and needs more."""
     first, *others = (max(map(len, column)) for column in _columns(table))
     return width - sum(GAP + other for other in others) < min(first, LABEL)
 
 
 def _columns(table: Table) -> list[list[str]]:
-    """Return head and texts of every column."""
+    """Head and texts of every column."""
     heads, rows = table.told
     return [[head, *(row[k].text for row in rows)] for k, head in enumerate(heads)]
 
 
 def _stacked(table: Table, width: int) -> Grid:
-    """Return a table whose first column stands above the second one, which is never cut.
+    """A table whose first column stands above the second one, which is never cut.
 
     The second one breaks where the others, of which those on the left break, leave no room for it.
     A row that continues the one before, by a first cell that is indented, has one line.

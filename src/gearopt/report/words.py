@@ -34,7 +34,7 @@ DEFAULTS = {"seconds": SECONDS, "seed": 0, "top": TOP_ON_PAGE}
 
 
 def limit_words(name: str, staged: bool = True) -> str:
-    """Return `k_factor[2]` as "K-factor of stage 2"; not staged, of a user's problem, as [2]."""
+    """`k_factor[2]` as "K-factor of stage 2"; not staged, of a user's problem, as [2]."""
     stem, _, index = name.rstrip("]").partition("[")
     if not index:
         return _stem_words(stem)
@@ -42,12 +42,12 @@ def limit_words(name: str, staged: bool = True) -> str:
 
 
 def has_stages(result: Result) -> bool:
-    """Return whether the blocks of limits are of stages: not in a user's own problem."""
+    """Whether the blocks of limits are of stages: not in a user's own problem."""
     return result.scene is not None
 
 
 def _stem_words(stem: str) -> str:
-    """Return `k_factor` as "K-factor", `ratio_low` as "minimum ratio"."""
+    """`k_factor` as "K-factor", `ratio_low` as "minimum ratio"."""
     known = {limit.name: limit.label for law in laws() for limit in law.limits}
     for end, words in (("_low", "minimum"), ("_high", "maximum")):
         if stem.endswith(end):
@@ -58,7 +58,7 @@ def _stem_words(stem: str) -> str:
 
 
 def grouped(names: Iterable[str], staged: bool = True) -> list[str]:
-    """Return limits in words, those of several stages as one: "K-factor of stages 1 and 2"."""
+    """Limits in words, those of several stages as one: "K-factor of stages 1 and 2"."""
     if not staged:
         return [limit_words(name, staged) for name in sorted(names)]
     stages: dict[str, list[str]] = {}
@@ -74,45 +74,45 @@ def grouped(names: Iterable[str], staged: bool = True) -> list[str]:
 
 
 def counted(indices: Sequence[str]) -> str:
-    """Return indices as words, those without a break as "1 to 4"."""
+    """Indices as words, those without a break as "1 to 4"."""
     numbers = sorted(map(int, indices))
     whole = len(numbers) > 2 and numbers[-1] - numbers[0] == len(numbers) - 1
     return f"{numbers[0]} to {numbers[-1]}" if whole else series_of(list(map(str, numbers)))
 
 
 def series_of(words: Sequence[str]) -> str:
-    """Return several words as a list: "a, b and c"."""
+    """Several words as a list: "a, b and c"."""
     *first, last = words
     return f"{', '.join(first)} and {last}" if first else last
 
 
 def sentence(words: str) -> str:
-    """Return words with a capital and a full stop."""
+    """Words with a capital and a full stop."""
     return f"{words[0].upper()}{words[1:].rstrip('.')}." if words else ""
 
 
 def edit(change: Mapping[str, Any]) -> str:
-    """Return a change as it is written in the file."""
+    """A change as it is written in the file."""
     key, write = change["key"], change.get("short") or change["write"]
     return f"{key} = {write}" if write else f"remove {key}"
 
 
 @lru_cache(4096)
 def heading(key: str, measures: Measures = METRIC) -> str:
-    """Return `face_width_mm` as "face width [mm]"."""
+    """`face_width_mm` as "face width [mm]"."""
     stem, suffix = parted(key, measures)
     words = stem.replace("_", " ")
     return f"{words} [{measures.unit(suffix)}]" if suffix else words
 
 
 def is_module(key: str) -> bool:
-    """Return whether a key holds normal modules [mm], shown as diametral pitches in inches."""
+    """Whether a key holds normal modules [mm], shown as diametral pitches in inches."""
     return key.endswith(_MODULES)
 
 
 @lru_cache(4096)
 def parted(key: str, measures: Measures = METRIC) -> tuple[str, str]:
-    """Return name and unit of a key: `face_width_mm` is ("face_width", "mm")."""
+    """Name and unit of a key: `face_width_mm` is ("face_width", "mm")."""
     if is_module(key):
         name, _, unit = measures.module
         return f"{key.removesuffix(_MODULES)}{name} [{unit}]", ""
@@ -122,18 +122,18 @@ def parted(key: str, measures: Measures = METRIC) -> tuple[str, str]:
 
 
 def amount(value: Any, unit: str, measures: Measures = METRIC) -> str:
-    """Return a number of a result with its unit, for reading."""
+    """A number of a result with its unit, for reading."""
     return measures.amount(value, unit)
 
 
 def module_words(module: float, measures: Measures) -> str:
-    """Return a normal module [mm] as drawings name it: "m_n 2 mm", "P_nd 10 1/in"."""
+    """A normal module [mm] as drawings name it: "m_n 2 mm", "P_nd 10 1/in"."""
     _, sign, unit = measures.module
     return f"{sign} {measures.of_module(module):g} {unit}"
 
 
 def share(used: float) -> str:
-    """Return a part of a whole in per cent; 100.0 only where it is reached."""
+    """A part of a whole in per cent; 100.0 only where it is reached."""
     text = f"{100.0 * used:.1f}"
     below = text == "100.0" and used < 1.0 - REACHED
     return f"{math.floor(1e4 * used) / 100.0:.2f}" if below else text
@@ -147,14 +147,14 @@ def effort(method: str, evaluations: int, seconds: float) -> str:
 
 
 def number(value: Any) -> str:
-    """Return a number without a unit for reading: whole ones in full, others to five digits."""
+    """A number without a unit for reading: whole ones in full, others to five digits."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return str(value)
     return f"{value:,}" if isinstance(value, int) else rounded(value, DIGITS)
 
 
 def certainty(result: Result) -> tuple[str, str]:
-    """Return the status in words, and its colour."""
+    """The status in words, and its colour."""
     words, colour = VERDICTS[result.status]
     if result.status == "evaluated" and not result.feasible:
         words, colour = "evaluated, a limit is exceeded", "red"
@@ -181,7 +181,7 @@ def certainty(result: Result) -> tuple[str, str]:
 
 
 def of_gears_first(result: Result) -> bool:
-    """Return whether only gears sized first are proven impossible to lay out."""
+    """Whether only gears sized first are proven impossible to lay out."""
     return result.status == "infeasible" and "scope" in result.proof
 
 
@@ -196,7 +196,7 @@ def verdict(result: Result) -> tuple[str, str]:
 
 
 def unusable(result: Result) -> str:
-    """Return why an optimum cannot be used although it meets the limits of its search."""
+    """Reason why an optimum cannot be used although it meets the limits of its search."""
     rating = result.design.get("rating") or {}
     if result.report.get("misfits"):
         return "teeth interfere"
@@ -205,24 +205,24 @@ def unusable(result: Result) -> str:
 
 
 def leading(result: Result) -> list[str]:
-    """Return how far a request is out of reach, to be read before the numbers."""
+    """Distance of a request out of reach, to be read before the numbers."""
     reach = result.report.get("reach")
     return [result.message] if reach and not reach["within"] and result.message else []
 
 
 def title(result: Result) -> str:
-    """Return the name of a result: the title of its file, or the file's name."""
+    """The name of a result: the title of its file, or the file's name."""
     return str(result.asked.get("title") or result.file or result.scene or result.name)
 
 
 def objective(result: Result) -> tuple[str, str]:
-    """Return the name of the objective in words, and its unit as a key has it."""
+    """The name of the objective in words, and its unit as a key has it."""
     name, unit = (str(result.objective.get(key, "")) for key in ("name", "unit"))
     return name.replace("_", " "), read_in(name, unit)
 
 
 def goal(result: Result) -> tuple[str, str, float | None, float | None, str]:
-    """Return name, unit, value and bound of the objective, and on which side no design is.
+    """Name, unit, value and bound of the objective, and on which side no design is.
 
     Of an inverse that is minimised, what it maximises is shown.
     """
@@ -236,7 +236,7 @@ def goal(result: Result) -> tuple[str, str, float | None, float | None, str]:
 def limit_rows(
     limits: Mapping[str, float], staged: bool = True
 ) -> tuple[int, list[tuple[str, list[float | None]]]]:
-    """Return the number of stages; every limit with its use per stage, then of the whole."""
+    """The number of stages; every limit with its use per stage, then of the whole."""
     if not staged:
         return 0, [(limit_words(name, staged), [value]) for name, value in limits.items()]
     rows: dict[str, dict[int, float]] = {}
@@ -250,7 +250,7 @@ def limit_rows(
 
 
 def again(result: Result, html: str, measures: Measures) -> str:
-    """Return the command that makes a page again, without default options; "" if none.
+    """The command that makes a page again, without default options; "" if none.
 
     html: where it writes the page. A run from Python without a limit of time had more of it than
     any command. One that changed the tables of its file was Python's.

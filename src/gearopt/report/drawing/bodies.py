@@ -35,39 +35,39 @@ Turning = Bodies | LayoutDesign  # what has shafts and gears
 
 
 def layout_of(result: Result) -> LayoutDesign | None:
-    """Return the layout of a drive, None where its gears are not laid out."""
+    """The layout of a drive, None where its gears are not laid out."""
     return drive_design(result.design).layout if result.design else None
 
 
 def box_corners(layout: LayoutDesign) -> tuple[Corner, Corner]:
-    """Return two corners of the box."""
+    """Two corners of the box."""
     box = layout.box
     y, z = box.left_mm, box.bottom_mm
     return (0.0, y, z), (box.length_mm, y + box.width_mm, z + box.height_mm)
 
 
 def along(ends: tuple[Corner, Corner], axis: str) -> tuple[float, float]:
-    """Return the ends of two corners along x, y or z."""
+    """The ends of two corners along x, y or z."""
     k = "xyz".index(axis)
     return ends[0][k], ends[1][k]
 
 
 def motor(layout: LayoutDesign) -> tuple[float, float, float] | None:
-    """Return radius, start and end of the motor, which is drawn as long as it is wide."""
+    """Radius, start and end of the motor, which is drawn as long as it is wide."""
     if layout.motor is None:
         return None
     return 0.5 * layout.motor.diameter_mm, -layout.motor.diameter_mm, 0.0
 
 
 def sides(it: KeepOutDesign, axis: str) -> tuple[float, float]:
-    """Return both ends of a keep-out along x, y or z [mm]."""
+    """Both ends of a keep-out along x, y or z [mm]."""
     if axis == "x":
         return it.from_mm, it.to_mm
     return (it.left_mm, it.right_mm) if axis == "y" else (it.bottom_mm, it.top_mm)
 
 
 def keep_outs(layout: LayoutDesign) -> list[KeepOutDesign]:
-    """Return the keep-outs near the box, cut off where they reach far beyond it."""
+    """The keep-outs near the box, cut off where they reach far beyond it."""
     low, high = _with_motor(layout)
     room = AROUND * max(b - a for a, b in zip(low[1:], high[1:], strict=True))
     near = []
@@ -87,7 +87,7 @@ def keep_outs(layout: LayoutDesign) -> list[KeepOutDesign]:
 
 
 def drawn_corners(layout: LayoutDesign) -> tuple[Corner, Corner]:
-    """Return two corners of all that is drawn."""
+    """Two corners of all that is drawn."""
     low, high = (list(corner) for corner in _with_motor(layout))
     for it in keep_outs(layout):
         for k, axis in enumerate("xyz"):
@@ -128,13 +128,13 @@ def meaning(gear: GearDesign, measures: Measures) -> str:
 
 
 def gear_disc(train: Turning, gear: GearDesign) -> Disc:
-    """Return the tip circle of a gear."""
+    """The tip circle of a gear."""
     shaft = next(s for s in train.shafts if s.shaft == gear.shaft)
     return Disc((shaft.y_mm, shaft.z_mm), 0.5 * gear.tip_diameter_mm, gear.from_mm, gear.to_mm)
 
 
 def disc(layout: LayoutDesign, name: str, beside: KeepOutDesign | None = None) -> Disc | None:
-    """Return a gear (its tip circle), shaft, bearing or the motor by name; None for others.
+    """A gear (its tip circle), shaft, bearing or the motor by name; None for others.
 
     "shaft 2 with its gears" is the largest body there of those that a keep-out stands beside.
     """
@@ -164,7 +164,7 @@ def _overlap(a: Disc, b: KeepOutDesign) -> bool:
 
 
 def nearest(layout: LayoutDesign, text: str, other: str) -> tuple[Corner, Corner] | None:
-    """Return the ends of the gap between two bodies, of one x; None where one is not found."""
+    """The ends of the gap between two bodies, of one x; None where one is not found."""
     boxes = {it.name: it for it in layout.obstacles}
     if text in boxes:
         swapped = nearest(layout, other, text) if other not in boxes else None

@@ -65,7 +65,7 @@ def conflict(result: Result, known: Sequence[str]) -> Drawing | None:
 
 
 def _order(name: str) -> tuple[str, str]:
-    """Return the stage of a limit, then its name, to sort by; those of no stage come last."""
+    """The stage of a limit, then its name, to sort by; those of no stage come last."""
     stem, _, index = name.rstrip("]").partition("[")
     return index or "~", stem
 

@@ -72,7 +72,7 @@ def beside(designs: Mapping[str, LayoutDesign], measures: Measures) -> tuple[Dra
 
 
 def window_of(layout: LayoutDesign, axis: str) -> Window:
-    """Return the window of the front view, or of the view with this upright axis."""
+    """The window of the front view, or of the view with this upright axis."""
     ends = drawn_corners(layout)
     (bottom, top), (left, right) = along(ends, axis or "z"), along(ends, "x" if axis else "y")
     free = (20.0, 44.0, 48.0, 44.0) if axis else (52.0, 20.0, 48.0, 44.0)
@@ -80,7 +80,7 @@ def window_of(layout: LayoutDesign, axis: str) -> Window:
 
 
 def walls(layout: LayoutDesign, axis: str) -> tuple[float, float]:
-    """Return both ends of the box along an axis [mm]."""
+    """Both ends of the box along an axis [mm]."""
     return along(box_corners(layout), axis)
 
 

@@ -52,7 +52,7 @@ def _mesh(pair: GearPair, stage: int, stages: int) -> Drawing | None:
 
 
 def sheet_of(pair: GearPair, free: tuple[float, float, float, float], larger: float = 1.0) -> Sheet:
-    """Return an empty sheet about the pitch point, from root circle to root circle.
+    """An empty sheet about the pitch point, from root circle to root circle.
 
     free: px around it. larger: than one of WIDE x HIGH px.
     """
@@ -64,7 +64,7 @@ def sheet_of(pair: GearPair, free: tuple[float, float, float, float], larger: fl
 
 
 def axes(pair: GearPair) -> Point:
-    """Return y [mm] of both axes from the pitch point: the pinion's below it, the wheel's above."""
+    """Y [mm] of both axes from the pitch point: the pinion's below it, the wheel's above."""
     first, second = (0.5 * float(d) for d in pair.working_diameters)
     return -first, second
 
@@ -77,7 +77,7 @@ def pitch_circle(sheet: Sheet, at: float, module: float, colour: str) -> None:
 
 
 def sector(gear: Gear, at: float, turned: int = 0) -> list[Point]:
-    """Return the outline [mm] about its axis of the teeth that a sheet may show, and of the axis.
+    """The outline [mm] about its axis of the teeth that a sheet may show, and of the axis.
 
     at: y of the axis from the pitch point [mm], below 0 for the pinion. One flank passes the pitch
     point, at which the pinion drives to the right. turned: pitches that it turns to either side.
@@ -91,7 +91,7 @@ def sector(gear: Gear, at: float, turned: int = 0) -> list[Point]:
 
 
 def tooth(gear: Gear, at: float, number: int) -> list[Point]:
-    """Return the outline [mm] about its axis of one tooth, as `sector` has it, left to right.
+    """The outline [mm] about its axis of one tooth, as `sector` has it, left to right.
 
     number: 0 has the flank through the pitch point, 1 is the next one to the right, and so on.
     """
@@ -118,6 +118,6 @@ def action(sheet: Sheet, pair: GearPair, path: ContactPath) -> None:
 
 
 def on_action(pair: GearPair, position: float) -> Point:
-    """Return the point [mm] of the line of action at a position s [mm] from the pitch point."""
+    """The point [mm] of the line of action at a position s [mm] from the pitch point."""
     angle, s = float(pair.working_angle), float(position)
     return s * math.cos(angle), s * math.sin(angle)

@@ -48,7 +48,7 @@ class Scale:
     high: float
 
     def at(self, value: float) -> float:
-        """Return the place of a value [px]."""
+        """The place of a value [px]."""
         share = math.log(value / self.low) / math.log(self.high / self.low)
         return EDGE + (WIDE - 2.0 * EDGE) * share
 
@@ -99,7 +99,7 @@ def _row(sheet: Sheet, row: Span, level: float, scale: Scale) -> None:
 
 
 def _near(x: float, y: float, text: str) -> list[Place]:
-    """Return places for a text near a point [px], inside the drawing."""
+    """Places for a text near a point [px], inside the drawing."""
     half = Place(0.0, 0.0).half_width(text)
     shifts = (0.0, -half, half, -0.5 * half, 0.5 * half, -2.0 * half, 2.0 * half)
     return [_inside(x + dx, y, text, abs(dx) / 20.0) for dx in shifts]
@@ -111,7 +111,7 @@ def _inside(x: float, y: float, text: str, cost: float = 0.0) -> Place:
 
 
 def ticks(low: float, high: float) -> list[float]:
-    """Return round numbers from low to high, both above 0."""
+    """Round numbers from low to high, both above 0."""
     if high < NARROW * low:
         return even_ticks(low, high)
     decades = [10.0**k for k in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
@@ -122,7 +122,7 @@ def ticks(low: float, high: float) -> list[float]:
 
 
 def even_ticks(low: float, high: float) -> list[float]:
-    """Return round numbers from low to a higher number, evenly apart."""
+    """Round numbers from low to a higher number, evenly apart."""
     rough = (high - low) / FEW
     size = 10.0 ** math.floor(math.log10(rough))
     step = min((k * size for k in (*MARKS, 10.0)), key=lambda s: abs(s - rough))

@@ -51,7 +51,7 @@ class View:
 
     @property
     def bodies(self) -> tuple[Body, ...]:
-        """Return all bodies in the order in which they are drawn."""
+        """All bodies in the order in which they are drawn."""
         return (*self.behind, *self.front)
 
 
@@ -65,7 +65,7 @@ class Reading:
     decimals: int = 2
 
     def text(self, moment: int) -> str:
-        """Return the number at a moment with its unit, as player.js writes it."""
+        """The number at a moment with its unit, as player.js writes it."""
         value = float(np.asarray(self.values)[moment])
         return "–" if math.isnan(value) else f"{value:.{self.decimals}f} {self.unit}".rstrip()
 
@@ -80,7 +80,7 @@ class Scale:
     unit: str = ""
 
     def shares(self, values: Any) -> Any:
-        """Return values as shares of the scale, from 0 to 1; NaN stays."""
+        """Values as shares of the scale, from 0 to 1; NaN stays."""
         return np.clip((np.asarray(values, float) - self.low) / (self.high - self.low), 0.0, 1.0)
 
 
@@ -122,16 +122,16 @@ class Animation:
 
     @property
     def row(self) -> Row:
-        """Return the views at the moment of the still, side by side."""
+        """The views at the moment of the still, side by side."""
         return Row([self.drawing(view, self.still) for view in self.views])
 
     @property
     def told(self) -> list[tuple[str, str]]:
-        """Return names and texts of the readings at the moment of the still."""
+        """Names and texts of the readings at the moment of the still."""
         return [(reading.name, reading.text(self.still)) for reading in self.readings]
 
     def drawing(self, view: View, moment: int) -> Drawing:
-        """Return a view at a moment."""
+        """A view at a moment."""
         behind, front = (
             "\n".join(_svg(body, view.sheet, self.scale, moment) for body in bodies)
             for bodies in (view.behind, view.front)
@@ -168,14 +168,14 @@ class Animation:
 
 
 def _places(body: Body, sheet: Sheet) -> Any:
-    """Return x, y [px] and angle [deg, clockwise] of a body, (3,) or (N, 3)."""
+    """X, y [px] and angle [deg, clockwise] of a body, (3,) or (N, 3)."""
     places = np.asarray(body.places, float)
     at = np.array(sheet.at(0.0, 0.0)) + sheet.scale * places[..., :2] * (1.0, -1.0)
     return np.concatenate((at, -np.degrees(places[..., 2:])), axis=-1)
 
 
 def _outline(body: Body, sheet: Sheet) -> Any:
-    """Return the outline [px] about the body's origin, y downwards."""
+    """The outline [px] about the body's origin, y downwards."""
     return sheet.scale * np.asarray(body.outline, float) * (1.0, -1.0)
 
 
@@ -190,7 +190,7 @@ def _moved(body: Body, sheet: Sheet, scale: Scale | None) -> Iterator[tuple[str,
 
 
 def _svg(body: Body, sheet: Sheet, scale: Scale | None, moment: int) -> str:
-    """Return the SVG of a body at a moment; player.js changes what moves of it."""
+    """The SVG of a body at a moment; player.js changes what moves of it."""
     places, outline = _places(body, sheet), _outline(body, sheet)
     x, y, turn = places[moment] if places.ndim == 2 else places
     points = outline[moment] if outline.ndim == 3 else outline

@@ -42,11 +42,11 @@ class Place:
     leader: tuple[float, float] | None = None
 
     def half_width(self, text: str) -> float:
-        """Return half the width of the text [px]."""
+        """Half the width of the text [px]."""
         return 0.5 * LETTER * SIZE * len(text) + 2.0
 
     def spots(self, text: str) -> Iterator[tuple[float, float]]:
-        """Return points along the middle of the text and a little beyond, half a size apart."""
+        """Points along the middle of the text and a little beyond, half a size apart."""
         reach = max(0.0, self.half_width(text) - 0.2 * SIZE) if len(text) > 2 else 0.0
         turn = math.radians(self.angle)
         count = math.ceil(2.0 * reach / (0.5 * SIZE))
@@ -69,7 +69,7 @@ class Ink:
         self.cells.update((int(x // CELL), int(y // CELL)) for x, y in points)
 
     def cost(self, x: float, y: float, reach: float) -> float:
-        """Return the cost of a letter here: texts and the edge weigh far more than lines."""
+        """The cost of a letter here: texts and the edge weigh far more than lines."""
         column, row = int(x // CELL), int(y // CELL)
         lines = sum(
             self.cells.get((column + i, row + j), 0) for i in (-1, 0, 1) for j in (-1, 0, 1)
@@ -83,7 +83,7 @@ class Ink:
 
 
 def best(text: str, places: Sequence[Place], ink: Ink, reach: float = 0.58 * SIZE) -> Place:
-    """Return the place of lowest cost for the text, which clears what is drawn by reach [px]."""
+    """The place of lowest cost for the text, which clears what is drawn by reach [px]."""
     cheapest, lowest = places[0], math.inf
     for place in places:
         inked = 0.0
@@ -103,7 +103,7 @@ def around(
     leader: float | None = None,
     cost: float = 0.0,
 ) -> list[Place]:
-    """Return places on circles about a centre [px], nearest first.
+    """Places on circles about a centre [px], nearest first.
 
     leader: a line leads to the centre, or to the circle of this radius, from places outside it.
     """
@@ -146,7 +146,7 @@ class Window:
     free: tuple[float, float, float, float] = (24.0, 24.0, 24.0, 24.0)  # left, right, bottom, top
 
     def scale(self, width: float, height: float) -> float:
-        """Return the largest scale [px/mm] that fits into so many px."""
+        """The largest scale [px/mm] that fits into so many px."""
         left, right, bottom, top = self.free
         across = (width - left - right) / (self.right - self.left)
         return min(across, (height - bottom - top) / (self.top - self.bottom))
@@ -166,7 +166,7 @@ class Sheet:
         self._ink = Ink(self.width, self.height)
 
     def at(self, x: float, y: float) -> Point:
-        """Return a point [mm] in px, y downwards."""
+        """A point [mm] in px, y downwards."""
         return self._origin[0] + self.scale * x, self._origin[1] - self.scale * y
 
     def circle(
@@ -317,7 +317,7 @@ class Sheet:
     def drawing(
         self, name: str, caption: str, cut: bool = False, behind: str = "", front: str = ""
     ) -> Drawing:
-        """Return the drawing as SVG; cut: what reaches beyond its edges is not seen.
+        """The drawing as SVG; cut: what reaches beyond its edges is not seen.
 
         behind, front: SVG of bodies that move behind all marks, or in front of them.
         """
@@ -348,12 +348,12 @@ class Sheet:
 
 
 def _colour(name: str) -> str:
-    """Return the colour of a mark, which drawing.css knows as --c."""
+    """The colour of a mark, which drawing.css knows as --c."""
     return f' style="--c: var({name})"' if name else ""
 
 
 def _count(wanted: float, minimum: int) -> int:
-    """Return a number of points or lines; ValueError where a drawing has no room for so many."""
+    """A number of points or lines; ValueError where a drawing has no room for so many."""
     if not wanted <= MAX_POINTS:
         raise ValueError(f"a drawing of {wanted:.0e} points: a size is far from the others")
     return max(minimum, int(wanted))
@@ -367,7 +367,7 @@ def _along(start: Point, end: Point) -> Iterable[Point]:
 
 
 def series(k: int) -> str:
-    """Return the colour of the k-th of a series, from 1; after eight they begin again."""
+    """The colour of the k-th of a series, from 1; after eight they begin again."""
     return f"--series-{(k - 1) % COLOURS + 1}"
 
 
@@ -379,7 +379,7 @@ class Row:
 
     @property
     def widest(self) -> float:
-        """Return the width of the widest drawing [px]; all shrink with it, to keep one scale."""
+        """The width of the widest drawing [px]; all shrink with it, to keep one scale."""
         return max(drawing.width for drawing in self.drawings)
 
     @property
@@ -389,7 +389,7 @@ class Row:
 
     @property
     def printed(self) -> float:
-        """Return how much the drawings shrink in print so that all stand side by side, or two.
+        """Factor by which the drawings shrink in print so that all stand side by side, or two.
 
         They leave room on the sheet for other things, but their text stays legible.
         """
@@ -402,7 +402,7 @@ class Row:
 
 
 def packed(kind: str, values: Iterable[float]) -> dict[str, str]:
-    """Return numbers in base64, little-endian: f = 32-bit floats, I = unsigned integers."""
+    """Numbers in base64, little-endian: f = 32-bit floats, I = unsigned integers."""
     data = array(kind, values)
     if kind == "I" and max(data, default=0) < 2**16:
         data = array("H", data)

@@ -56,7 +56,7 @@ class Toothed:
 def gear_mesh(
     placed: Toothed, flank: int, step: float, inside: Sequence[tuple[float, float]] = ()
 ) -> Mesh:
-    """Return a helical gear with the teeth of its rack.
+    """A helical gear with the teeth of its rack.
 
     flank: points on a flank, as of `outline`. step: largest twist between two sections [rad].
     inside: rings (x, radius) [mm] that its body has below the teeth, from the end to the start
@@ -92,7 +92,7 @@ def gear_mesh(
 
 
 def rings_of(body: Body, gear: Gear, start: float, end: float) -> list[tuple[float, float]]:
-    """Return rings (x, radius) [mm] of a body from its end over bore or axis to its start.
+    """Rings (x, radius) [mm] of a body from its end over bore or axis to its start.
 
     A web lies in the middle of the face width; without a hub it reaches bore or axis.
     """
@@ -108,12 +108,12 @@ def rings_of(body: Body, gear: Gear, start: float, end: float) -> list[tuple[flo
 
 
 def twist(gear: Gear) -> float:
-    """Return the angle by which teeth turn along the axis [rad/mm]."""
+    """The angle by which teeth turn along the axis [rad/mm]."""
     return float(2.0 * math.tan(gear.helix_angle) / gear.reference_diameter)
 
 
 def outline(gear: Gear, flank: int) -> list[tuple[float, float]]:
-    """Return (angle, radius) once round the gear, a tooth in the middle of angle 0.
+    """(angle, radius) once round the gear, a tooth in the middle of angle 0.
 
     flank: points from root circle to tip circle, at least 2: of the fillet and the involute, with
     2 a straight flank from root to tip. Thinner by BACKLASH.
@@ -132,13 +132,13 @@ def outline(gear: Gear, flank: int) -> list[tuple[float, float]]:
 
 
 def _shares(flank: int) -> tuple[int, int]:
-    """Return points of the fillet and of the involute, which share one."""
+    """Points of the fillet and of the involute, which share one."""
     on_fillet = max(2, flank // 2)
     return on_fillet, max(2, flank + 1 - on_fillet)
 
 
 def _of_whole_teeth(gear: Gear, teeth: int) -> Gear:
-    """Return the gear with a whole number of teeth in the same circles."""
+    """The gear with a whole number of teeth in the same circles."""
     scale = gear.teeth / teeth
     rack = gear.rack
     heights = (rack.addendum, rack.dedendum, rack.tip_radius, rack.protuberance)
@@ -154,14 +154,14 @@ def _of_whole_teeth(gear: Gear, teeth: int) -> Gear:
 
 
 def drawn_teeth(teeth: float) -> int:
-    """Return the nearest whole number of teeth; ValueError for too few or too many."""
+    """The nearest whole number of teeth; ValueError for too few or too many."""
     if not 1 <= round(teeth) <= MOST_TEETH:
         raise ValueError(f"a gear of {teeth:g} teeth")
     return round(teeth)
 
 
 def _skin(around: int, sections: int) -> list[Face]:
-    """Return triangles between rings of points that follow each other."""
+    """Triangles between rings of points that follow each other."""
     faces = []
     for ring in range(sections - 1):
         a = ring * around
@@ -174,7 +174,7 @@ def _skin(around: int, sections: int) -> list[Face]:
 def rod(
     centre: tuple[float, float], radius: float, start: float, end: float, bore: float = 0.0
 ) -> Mesh:
-    """Return a cylinder along x, with a bore of a radius through it or none [mm]."""
+    """A cylinder along x, with a bore of a radius through it or none [mm]."""
     turns = [2.0 * math.pi * k / ROUND for k in range(ROUND)]
     y, z = centre
     rings = ((start, bore), (start, radius), (end, radius), (end, bore), (start, bore))
@@ -183,13 +183,13 @@ def rod(
 
 
 def upright(mesh: Mesh) -> Mesh:
-    """Return a body along x turned to stand along z: (x, y, z) becomes (y, z, x)."""
+    """A body along x turned to stand along z: (x, y, z) becomes (y, z, x)."""
     points, faces = mesh
     return [(y, z, x) for x, y, z in points], faces
 
 
 def block(low: Point, high: Point) -> Mesh:
-    """Return a box between two corners."""
+    """A box between two corners."""
     points = [
         (x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])
     ]
@@ -198,7 +198,7 @@ def block(low: Point, high: Point) -> Mesh:
 
 
 def mesh_trace(mesh: Mesh, name: str, colour: str, group: str, **more: Any) -> dict[str, Any]:
-    """Return a mesh for plotly, its numbers packed; shown and hidden with its group."""
+    """A mesh for plotly, its numbers packed; shown and hidden with its group."""
     points, faces = mesh
     axes = {axis: packed("f", [p[k] for p in points]) for k, axis in enumerate("xyz")}
     corners = {corner: packed("I", [f[k] for f in faces]) for k, corner in enumerate("ijk")}
@@ -218,7 +218,7 @@ def mesh_trace(mesh: Mesh, name: str, colour: str, group: str, **more: Any) -> d
 def line_trace(
     points: list[Point | None], name: str, colour: str, width: float, **more: Any
 ) -> dict[str, Any]:
-    """Return lines in space; None lifts the pen."""
+    """Lines in space; None lifts the pen."""
     axes = {axis: [None if p is None else p[k] for p in points] for k, axis in enumerate("xyz")}
     look = {
         "type": "scatter3d",
@@ -232,7 +232,7 @@ def line_trace(
 
 
 def edges(low: Point, high: Point) -> list[Point | None]:
-    """Return the twelve edges of a box as lines."""
+    """The twelve edges of a box as lines."""
     (x0, y0, z0), (x1, y1, z1) = low, high
     path: list[Point | None] = []
     for x in (x0, x1):
@@ -244,7 +244,7 @@ def edges(low: Point, high: Point) -> list[Point | None]:
 
 
 def space(low: Point, high: Point, measures: Measures, height: int = 640) -> dict[str, Any]:
-    """Return the layout of a plot in space, in the page's look, one scale on all axes.
+    """The layout of a plot in space, in the page's look, one scale on all axes.
 
     low, high: corners of all that is drawn, seen whole at first. Plotly measures where the eye is
     in the cube root of their volume.
@@ -275,7 +275,7 @@ def space(low: Point, high: Point, measures: Measures, height: int = 640) -> dic
 
 
 def _ticks(start: float, end: float, measures: Measures) -> dict[str, Any]:
-    """Return ticks of an axis in mm that are round in another unit."""
+    """Ticks of an axis in mm that are round in another unit."""
     unit = measures.of(1.0, "mm")
     if unit == 1.0:
         return {}

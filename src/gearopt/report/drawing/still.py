@@ -23,7 +23,7 @@ TOUCH = 1e-6  # mm by which bodies that touch may overlap
 
 
 def dot(a: Spot, other: Spot) -> float:
-    """Return the scalar product."""
+    """The scalar product."""
     return a[0] * other[0] + a[1] * other[1] + a[2] * other[2]
 
 
@@ -36,12 +36,12 @@ class View:
     eye: Spot
 
     def at(self, place: Spot) -> Point:
-        """Return a place as the picture has it [mm], upwards positive."""
+        """A place as the picture has it [mm], upwards positive."""
         return dot(self.right, place), dot(self.up, place)
 
 
 def view(axes: str = "xyz") -> View:
-    """Return the first view of `solid.EYE`; axes: which of x, y and z are a, b and c."""
+    """The first view of `solid.EYE`; axes: which of x, y and z are a, b and c."""
     size = math.hypot(*EYE)
     x, y, z = (v / size for v in EYE)
     flat = math.hypot(x, y)
@@ -66,12 +66,12 @@ class Rod:
 
     @property
     def corners(self) -> tuple[Spot, Spot]:
-        """Return two corners of the block around it."""
+        """Two corners of the block around it."""
         (b, c), r = self.centre, self.radius
         return (self.start, b - r, c - r), (self.end, b + r, c + r)
 
     def nearest(self, b: float, c: float) -> Point:
-        """Return the middle of its cross-section."""
+        """The middle of its cross-section."""
         return self.centre
 
 
@@ -86,21 +86,21 @@ class Block:
 
     @property
     def corners(self) -> tuple[Spot, Spot]:
-        """Return its two corners."""
+        """Its two corners."""
         return self.low, self.high
 
     @property
     def start(self) -> float:
-        """Return its first end along a."""
+        """Its first end along a."""
         return self.low[0]
 
     @property
     def end(self) -> float:
-        """Return its last end along a."""
+        """Its last end along a."""
         return self.high[0]
 
     def nearest(self, b: float, c: float) -> Point:
-        """Return the point of its cross-section that is nearest to (b, c)."""
+        """The point of its cross-section that is nearest to (b, c)."""
         (_, b0, c0), (_, b1, c1) = self.low, self.high
         return min(max(b, b0), b1), min(max(c, c0), c1)
 
@@ -118,7 +118,7 @@ class Texts:
 
 
 def sizes_of(room: tuple[Spot, Spot], names: str, measures: Measures) -> tuple[str, str, str]:
-    """Return the sizes of a box along a, b and c, with the names of these axes."""
+    """The sizes of a box along a, b and c, with the names of these axes."""
     unit = measures.unit("mm")
     a, b, c = (
         f"{name} {measures.length(high - low, 1)} {unit}"
@@ -128,7 +128,7 @@ def sizes_of(room: tuple[Spot, Spot], names: str, measures: Measures) -> tuple[s
 
 
 def hides(one: Body, other: Body, seen: View) -> bool:
-    """Return whether `one` may hide a part of `other`: it is on the eye's side of a plane between.
+    """Whether `one` may hide a part of `other`: it is on the eye's side of a plane between.
 
     Two bodies are apart along a, or across; where they are neither, their middles decide.
     """
@@ -147,7 +147,7 @@ def hides(one: Body, other: Body, seen: View) -> bool:
 
 
 def covers(rod: Rod, spot: Spot, seen: View) -> bool:
-    """Return whether a rod is between a place and the eye."""
+    """Whether a rod is between a place and the eye."""
     a, b, c = seen.eye
     first, last = sorted((end - spot[0]) / a for end in (rod.start, rod.end))
     first = max(first, TOUCH)
@@ -165,7 +165,7 @@ def _middle(body: Body) -> Spot:
 
 
 def in_order(bodies: Sequence[Body], seen: View) -> list[Body]:
-    """Return bodies such that each comes before those that hide it, the farthest first.
+    """Bodies such that each comes before those that hide it, the farthest first.
 
     Where bodies hide each other in a ring, the farthest of them comes first.
     """
@@ -246,7 +246,7 @@ def still(
 
 
 def _rows(legend: Sequence[tuple[str, str]], width: float) -> list[tuple[float, int, str, str]]:
-    """Return names with their places across [px] and rows, from the left."""
+    """Names with their places across [px] and rows, from the left."""
     placed, x, row = [], 12.0, 0
     for text, colour in legend:
         half = Place(0.0, 0.0).half_width(text)
@@ -281,7 +281,7 @@ def outside(sheet: Sheet, room: tuple[Spot, Spot], seen: View, texts: Sequence[s
 
 
 def edges(low: Spot, high: Spot, seen: View) -> tuple[list[tuple[Spot, Spot]], ...]:
-    """Return the edges of a box that meet its farthest corner, and the others."""
+    """The edges of a box that meet its farthest corner, and the others."""
     far = tuple(p if e > 0.0 else q for p, q, e in zip(low, high, seen.eye, strict=True))
     corners = _corners(low, high)
     pairs = [
@@ -306,7 +306,7 @@ def _rod(sheet: Sheet, rod: Rod, seen: View) -> None:
 
 
 def _round(sheet: Sheet, rod: Rod, ends: Point, seen: View) -> tuple[str, str]:
-    """Return side and near face of a cylinder as paths; ends: the near and the far one."""
+    """Side and near face of a cylinder as paths; ends: the near and the far one."""
     (x0, y0), (x1, y1) = (sheet.at(*seen.at((a, *rod.centre))) for a in ends)
     flat, r = math.hypot(seen.right[0], seen.up[0]), sheet.scale * rod.radius
     px, py = -seen.up[0] / flat * r, -seen.right[0] / flat * r  # along the long axis
@@ -325,7 +325,7 @@ def _round(sheet: Sheet, rod: Rod, ends: Point, seen: View) -> tuple[str, str]:
 
 
 def _toothed(sheet: Sheet, rod: Rod, ends: Point, seen: View) -> tuple[str, str]:
-    """Return flanks and lands that face the eye, and the near face, as paths.
+    """Flanks and lands that face the eye, and the near face, as paths.
 
     ends: the near and the far one. The angles of the outline rise.
     """
@@ -351,7 +351,7 @@ def _toothed(sheet: Sheet, rod: Rod, ends: Point, seen: View) -> tuple[str, str]
 
 
 def _steps(spots: Sequence[Point]) -> str:
-    """Return a closed path of short steps [0.1 px]."""
+    """A closed path of short steps [0.1 px]."""
     path, last = "", (0, 0)
     for k, (x, y) in enumerate(spots):
         at = round(10.0 * x), round(10.0 * y)

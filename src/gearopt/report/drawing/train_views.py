@@ -101,7 +101,7 @@ def _picked(stages: Sequence[Mapping[str, Any]]) -> Sequence[DrawnStage]:
 
 
 def is_drawn(stages: Sequence[Mapping[str, Any]]) -> bool:
-    """Return whether there are stages, and all sizes that are drawn of them."""
+    """Whether there are stages, and all sizes that are drawn of them."""
     keys = [f.name for f in fields(DrawnStage)]
     return bool(stages) and all(key in stage for stage in stages for key in keys)
 
@@ -117,7 +117,7 @@ def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Draw
 
 
 def circles(stage: Mapping[str, Any], member: str) -> list[float]:
-    """Return the diameters [mm] inside the rim, of the hub and of the bore, of what a gear has."""
+    """The diameters [mm] inside the rim, of the hub and of the bore, of what a gear has."""
     diameters = [stage.get(f"{member}_{name}_mm") for name in ("hub_diameter", "bore")]
     if stage.get(f"{member}_web_thickness_mm") is not None:
         rim: float = stage[f"{member}_rim_thickness_mm"]
@@ -126,7 +126,7 @@ def circles(stage: Mapping[str, Any], member: str) -> list[float]:
 
 
 def in_one_line(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
-    """Return shafts and gears with every shaft at z = 0; and the scale [px/mm].
+    """Shafts and gears with every shaft at z = 0; and the scale [px/mm].
 
     Diameters of shafts are 0: they are not known. ValueError for stages that cannot be drawn: more
     than MOST_STAGES, or of no finite size.
@@ -176,7 +176,7 @@ def in_one_line(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
 
 
 def _along(widths: Sequence[float], scale: float) -> tuple[float, list[float]]:
-    """Return where each stage begins along the shafts [mm], and a scale at which all fit."""
+    """Start of each stage along the shafts [mm], and a scale at which all fit."""
     while True:
         rooms = [max(PITCH, scale * b + GAP) for b in widths]
         if sum(rooms) <= WIDE - SIDE[0] - SIDE[1] or max(rooms) <= PITCH:  # no room to save
@@ -188,7 +188,7 @@ def _along(widths: Sequence[float], scale: float) -> tuple[float, list[float]]:
 
 
 def _ends(train: Bodies) -> tuple[float, float]:
-    """Return the ends of the row of gears, over tip circles [mm]."""
+    """The ends of the row of gears, over tip circles [mm]."""
     places = {s.shaft: s.y_mm for s in train.shafts}
     rims = [(places[g.shaft], 0.5 * g.tip_diameter_mm) for g in train.gears]
     return min(y - r for y, r in rims), max(y + r for y, r in rims)
@@ -254,7 +254,7 @@ def _distance(sheet: Sheet, start: float, end: float, level: float, text: str) -
 
 
 def _room(text: str) -> float:
-    """Return the length of a dimension line [px] that a text fits above."""
+    """The length of a dimension line [px] that a text fits above."""
     return 2.0 * Place(0, 0).half_width(text) + 4.0
 
 

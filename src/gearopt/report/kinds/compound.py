@@ -21,7 +21,7 @@ def _design(result: Result) -> CompoundDesign:
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
-    """Return the ratio as a key figure."""
+    """The ratio as a key figure."""
     if not result.design:
         return []
     design = _design(result)
@@ -59,7 +59,7 @@ def gears(result: Result, measures: Measures) -> Section | None:
 
 
 def _stage(driver: int, driven: int) -> DrawnStage:
-    """Return a pair of spur gears in modules; it has no face width."""
+    """A pair of spur gears in modules; it has no face width."""
     return DrawnStage(
         normal_module_mm=1.0,
         pinion_teeth=driver,

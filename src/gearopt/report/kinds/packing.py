@@ -55,13 +55,13 @@ def plans(result: Result, measures: Measures) -> Section | None:
 
 
 def _colours(cylinders: Sequence[CylinderDesign]) -> dict[float, str]:
-    """Return one colour for every diameter, from the largest."""
+    """One colour for every diameter, from the largest."""
     diameters = sorted({c.diameter_mm for c in cylinders}, reverse=True)
     return {d: series(k) for k, d in enumerate(diameters, 1)}
 
 
 def _span(container: ContainerDesign) -> tuple[float, float, float, float]:
-    """Return the ends of a container in x and y: left, right, front, back [mm]."""
+    """The ends of a container in x and y: left, right, front, back [mm]."""
     left, front = container.left_mm, container.front_mm
     width, depth = container.sides
     return left, left + width, front, front + depth
@@ -123,7 +123,7 @@ def _name(sheet: Sheet, it: CylinderDesign, colour: str) -> None:
 
 
 def binding_limit(result: Result) -> str:
-    """Return how full the container is, and how many cylinders stand at its walls."""
+    """Fill of the container, and number of cylinders at its walls, in words."""
     if not result.design:
         return ""
     design = packing_design(result.design)
@@ -138,7 +138,7 @@ def binding_limit(result: Result) -> str:
 
 
 def _at_wall(cylinder: CylinderDesign, box: ContainerDesign, wall: float) -> bool:
-    """Return whether a cylinder is as near to a wall as the clearance [mm] lets it."""
+    """Whether a cylinder is as near to a wall as the clearance [mm] lets it."""
     left, right, front, back = _span(box)
     r, near = 0.5 * cylinder.diameter_mm, wall + WALL * max(box.sides)
     if box.shape == "circle":
@@ -214,7 +214,7 @@ def _outline(container: ContainerDesign) -> list[Point | None]:
 
 
 def places(result: Result, measures: Measures) -> Section | None:
-    """Return container, layers and cylinders; on the terminal cylinders first."""
+    """Container, layers and cylinders; on the terminal cylinders first."""
     if not result.design:
         return None
     design = packing_design(result.design)
@@ -227,7 +227,7 @@ def places(result: Result, measures: Measures) -> Section | None:
 
 
 def _cylinders(design: PackingDesign, measures: Measures) -> Table:
-    """Return one row per cylinder, on the terminal to a micrometre."""
+    """One row per cylinder, on the terminal to a micrometre."""
     keys = [f.name for f in fields(CylinderDesign)]
     rows = []
     for cylinder in design.cylinders:
@@ -246,7 +246,7 @@ def _cell(key: str, value: float, measures: Measures) -> Cell:
 
 
 def _container(design: PackingDesign, sizes: Table, measures: Measures) -> Table:
-    """Return the container, its corner where that is not the origin, and its layers."""
+    """The container, its corner where that is not the origin, and its layers."""
     corner = [heading(key, measures) for key in ("left_mm", "front_mm")]
     at_origin = design.container.left_mm == 0.0 == design.container.front_mm
     rows = [

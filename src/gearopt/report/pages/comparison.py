@@ -20,7 +20,7 @@ ZERO = "0"  # tick of the floor
 
 
 def page(comparison: Comparison) -> str:
-    """Return one self-contained HTML page."""
+    """One self-contained HTML page."""
     colour = colours([row.method for group in comparison.groups for row in group.rows])
     rows = [row for group in comparison.groups for row in group.rows if not row.refused]
     samples = [s for row in rows for s in (row.equal_evaluations, row.equal_time) if s]
@@ -48,7 +48,7 @@ HEADS = (
 
 
 def tables(comparison: Comparison) -> dict[str, str]:
-    """Return the CSV of every run by the name of its file."""
+    """The CSV of every run by the name of its file."""
     rows = [
         (*place, run.seed, run.status, *_of(group, run), 100.0 * run.gap if run.gap else run.gap)
         + (run.violation, run.evaluations, run.seconds)
@@ -63,14 +63,14 @@ def tables(comparison: Comparison) -> dict[str, str]:
 
 
 def _of(group: Group, run: Run) -> tuple[float | None, float | None, str]:
-    """Return objective and bound of a run in the unit that is shown, and that unit."""
+    """Objective and bound of a run in the unit that is shown, and that unit."""
     unit = words.unit_of(group)
     value, bound = (None if v is None else METRIC.of(v, unit) for v in (run.objective, run.bound))
     return value, bound, METRIC.unit(unit)
 
 
 def colours(methods: list[str]) -> dict[str, str]:
-    """Return the colour of every method: of a known one its own, on every page, else a free one."""
+    """The colour of every method: of a known one its own, on every page, else a free one."""
     taken = {name: KNOWN.index(name) + 1 for name in methods if name in KNOWN}
     free = [k for k in range(COLOURS, 0, -1) if k not in taken.values()] or [COLOURS]
     others = (name for name in dict.fromkeys(methods) if name not in KNOWN)
@@ -113,7 +113,7 @@ def _block(comparison: Comparison, group: Group, colour: dict[str, str]) -> dict
 
 
 def span(group: Group) -> tuple[float, float, float]:
-    """Return the ends of the axes of gaps, the same for all plots of a group, relative.
+    """The ends of the axes of gaps, the same for all plots of a group, relative.
 
     Where a gap of zero is drawn: a decade below the smallest nonzero gap. The largest final gap.
     The top of the curves, whose beginnings may lie above the plot.
@@ -256,7 +256,7 @@ def _marked(floor: float) -> str:
 
 
 def _spent(values: Sequence[float], by_time: bool) -> dict[str, Any]:
-    """Return the logarithmic axis of what was spent."""
+    """The logarithmic axis of what was spent."""
     low = math.floor(math.log10(min(values, default=1.0)))
     high = max(low + 1.0, math.log10(max(values, default=10.0)))
     ticks = range(low, math.floor(high) + 1)
@@ -270,7 +270,7 @@ def _spent(values: Sequence[float], by_time: bool) -> dict[str, Any]:
 
 
 def _gaps(floor: float, top: float) -> dict[str, Any]:
-    """Return the logarithmic axis of gaps in percent, with its floor."""
+    """The logarithmic axis of gaps in percent, with its floor."""
     low, high = round(math.log10(100 * floor)), math.ceil(math.log10(100 * top) + 0.05)
     ticks = list(range(low, high + 1, max(1, (high - low) // 7)))
     words = [ZERO] + [f"{10.0**k:,g}" if -4 < k < 5 else f"10<sup>{k}</sup>" for k in ticks[1:]]

@@ -7,7 +7,7 @@ from typing import Any
 
 @cache
 def templates() -> Any:
-    """Return the jinja2 environment of our templates; all that is put into them is escaped."""
+    """The jinja2 environment of our templates; all that is put into them is escaped."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     return Environment(
@@ -29,7 +29,7 @@ def render(
     moves: bool = False,
     **content: Any,
 ) -> str:
-    """Return a page from a template that extends frame.html; all but our own files is escaped.
+    """A page from a template that extends frame.html; all but our own files is escaped.
 
     plots: the page has figures, which need plotly (4.8 MB) inside it. moves: it has animations.
     """

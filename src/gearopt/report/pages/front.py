@@ -25,7 +25,7 @@ LINES = 2  # designs at least, that are drawn as lines
 
 
 def page(front: Front, html: str = "page.html", measures: Measures = METRIC) -> str:
-    """Return one self-contained HTML page; html: where the command at its foot writes it."""
+    """One self-contained HTML page; html: where the command at its foot writes it."""
     data = front.to_dict()
     front = Front.from_dict(data)  # plain numbers, as a file of it has them
     each = [front_designs.numbers(p.design, measures) for p in front.points]
@@ -47,7 +47,7 @@ def page(front: Front, html: str = "page.html", measures: Measures = METRIC) -> 
 
 
 def tables(front: Front, measures: Measures = METRIC) -> dict[str, str]:
-    """Return the CSV of every table by the name of its file, such as `front.csv`."""
+    """The CSV of every table by the name of its file, such as `front.csv`."""
     each = [front_designs.numbers(p.design, measures) for p in front.points]
     listed = [
         front_designs.designs(front, each, (), measures) if front.points else None,
@@ -83,14 +83,14 @@ def _figures(front: Drawn) -> list[Any]:
 
 
 def _pair(front: Front) -> list[int]:
-    """Return the places of the pick and of the design that is shown beside it at first."""
+    """The places of the pick and of the design that is shown beside it at first."""
     picks = list(rules(front))
     ends = [k for k in (0, len(front.points) - 1) if k not in picks]
     return list(dict.fromkeys([*picks, *ends]))[:2]
 
 
 def _summary(front: Front, measures: Measures) -> Section:
-    """Return key figures, what was found and how sure it is, and the picks with their prices."""
+    """Key figures, what was found and how sure it is, and the picks with their prices."""
     count = len(front.points)
     tiles = [Tile("designs", f"{count:,}", told.verdict(front)[0])] if count else []
     for k, objective in enumerate(front.objectives if count else ()):
@@ -112,7 +112,7 @@ def _summary(front: Front, measures: Measures) -> Section:
 
 
 def _drawn(front: Front, measures: Measures) -> list[Section]:
-    """Return drawings of the picks and the ends of the front, all at one scale."""
+    """Drawings of the picks and the ends of the front, all at one scale."""
     names = {place: ", ".join(own) for place, own in rules(front).items()}
     for k, objective in enumerate(front.objectives if front.points else ()):
         values = [p.values[k] for p in front.points]
@@ -128,7 +128,7 @@ def _drawn(front: Front, measures: Measures) -> list[Section]:
 
 
 def _views(front: Front, names: dict[int, str], measures: Measures) -> Sequence[Drawing]:
-    """Return views along the shafts of some designs, by their places; none without gears."""
+    """Views along the shafts of some designs, by their places; none without gears."""
     called = {f"Design {place + 1}, {name}": place for place, name in sorted(names.items())}
     designs = {name: front.points[place].design for name, place in called.items()}
     if designs and all(design.get("layout") for design in designs.values()):
@@ -141,7 +141,7 @@ def _views(front: Front, names: dict[int, str], measures: Measures) -> Sequence[
 
 
 def _lost(front: Front, measures: Measures) -> Section | None:
-    """Return the limits under which there is no design; None where every one had some."""
+    """The limits under which there is no design; None where every one had some."""
     table = front_designs.impossible(front, measures)
     if table is None:
         return None
@@ -150,7 +150,7 @@ def _lost(front: Front, measures: Measures) -> Section | None:
 
 
 def _spent(front: Front) -> Section:
-    """Return how the front was found: proof, effort, and its growth where a method has steps."""
+    """Proof, effort, and growth of a front whose method has steps."""
     plot, table = front_plots.grown(front), front_designs.growth(front)
     seed = f", seed {front.seed}" if front.method in RANDOM else ""
     said = [effort(f"{front.method}{seed}", front.evaluations, front.seconds)]
@@ -161,7 +161,7 @@ def _spent(front: Front) -> Section:
 
 
 def _link(data: Mapping[str, Any]) -> str:
-    """Return a front as JSON, as an address that needs no network."""
+    """A front as JSON, as an address that needs no network."""
     text = json.dumps(data, separators=(",", ":"), allow_nan=False)
     return "data:application/json;base64," + base64.b64encode(text.encode()).decode()
 

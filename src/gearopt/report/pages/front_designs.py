@@ -18,7 +18,7 @@ Numbers = dict[str, Cell]  # of a design, by what they are called
 
 
 def numbers(design: Mapping[str, Any], measures: Measures) -> Numbers:
-    """Return every single number of a design, those of its stages first, by name and unit."""
+    """Every single number of a design, those of its stages first, by name and unit."""
     cells = {}
     stages = stages_of(design)
     for k, stage in enumerate(stages, 1):
@@ -65,7 +65,7 @@ def _cell(value: Any, key: str, unit: str, measures: Measures) -> Cell:
 
 
 def main(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]:
-    """Return the names of the numbers that tell designs apart, as many as stand side by side.
+    """The names of the numbers that tell designs apart, as many as stand side by side.
 
     each: numbers of every point. Of stages module, teeth and face width; where these are alike, and
     without stages, what varies.
@@ -89,7 +89,7 @@ def main(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]
 
 
 def _different(each: Sequence[Numbers], names: Sequence[str]) -> list[str]:
-    """Return the names of numbers that all designs have and that are not the same in all."""
+    """The names of numbers that all designs have and that are not the same in all."""
     there = [n for n in names if all(n in rating for rating in each)]
     return [n for n in there if _varies([rating[n].value for rating in each])]
 
@@ -104,7 +104,7 @@ def _varies(values: Sequence[Any]) -> bool:
 def designs(
     front: Front, each: Sequence[Numbers], shown: Sequence[str], measures: Measures
 ) -> Table:
-    """Return the table of all designs; its CSV holds every number and limit of them, too.
+    """The table of all designs; its CSV holds every number and limit of them, too.
 
     each: numbers of every point; shown: names of those that the page shows, too, but for modules
     and teeth, which stand in one column.
@@ -125,7 +125,7 @@ def designs(
 
 
 def beaten(front: Front, measures: Measures) -> Table | None:
-    """Return the values of designs that others beat, of which the page shows a plot."""
+    """The values of designs that others beat, of which the page shows a plot."""
     if not front.beaten:
         return None
     heads = [head(objective, measures) for objective in front.objectives]
@@ -139,7 +139,7 @@ def _values(front: Front, values: Sequence[float], measures: Measures) -> list[C
 
 
 def impossible(front: Front, measures: Measures) -> Table | None:
-    """Return the limits on objectives under which there is no design; None where all had one."""
+    """The limits on objectives under which there is no design; None where all had one."""
     if not front.impossible:
         return None
     heads = [f"{head(objective, measures)}, at most" for objective in front.objectives]
@@ -160,7 +160,7 @@ def _most(front: Front, step: Impossible, measures: Measures) -> list[Cell]:
 
 
 def growth(front: Front) -> Table | None:
-    """Return how the front grew; None where a method finds all of it at once."""
+    """Growth of the front; None where a method finds all of it at once."""
     if len(front.growth) < 2 or not front.hypervolume:
         return None
     rows = [
@@ -215,7 +215,7 @@ def data(
 
 
 def _names(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]:
-    """Return the names of all numbers of designs that are no objective."""
+    """The names of all numbers of designs that are no objective."""
     known = {head(objective, measures) for objective in front.objectives}
     return [
         name
@@ -229,17 +229,17 @@ def _share(used: float | None) -> float:
 
 
 def _limit(name: str, staged: bool) -> str:
-    """Return a limit in words; one of two indices is of no single stage."""
+    """A limit in words; one of two indices is of no single stage."""
     return limit_words(name, staged and "," not in name)
 
 
 def _used(point: FrontPoint, name: str) -> str:
-    """Return the use of a limit in per cent; what is far from it has none."""
+    """The use of a limit in per cent; what is far from it has none."""
     return f"{100.0 * max(0.0, point.limits[name]):.1f}" if name in point.limits else ""
 
 
 def sketch(design: Mapping[str, Any]) -> dict[str, Any] | None:
-    """Return the gears of a design along the shafts, and the box around them if there is one [mm].
+    """The gears of a design along the shafts, and the box around them if there is one [mm].
 
     gears: x, y, tip and reference radius, stage and teeth of each, in one line where they are not
     laid out; box: left, bottom, right, top. None where a size is not known.

@@ -43,11 +43,11 @@ class Drawn:
     curve: bool
 
     def column(self, k: int) -> list[float]:
-        """Return the values of an objective."""
+        """The values of an objective."""
         return [p[k] for p in self.points]
 
     def span(self, k: int) -> Span:
-        """Return the ends of an objective's axis."""
+        """The ends of an objective's axis."""
         low, high = min(self.column(k)), max(self.column(k))
         room = AXIS_MARGIN * (high - low) or 0.02 * abs(high) or 1.0
         return low - room, high + room
@@ -78,7 +78,7 @@ def drawn(front: Front, measures: Measures) -> Drawn:
 
 
 def near(front: Front) -> list[tuple[float, ...]]:
-    """Return the beaten designs that are drawn: within the plot, the nearest to its corner."""
+    """The beaten designs that are drawn: within the plot, the nearest to its corner."""
     columns = list(zip(*(p.values for p in front.points), strict=True))
     ends = [(min(c), (max(c) - min(c)) or 1.0) for c in columns]
 
@@ -126,7 +126,7 @@ def _pair(front: Drawn, i: int, k: int) -> Figure:
 
 
 def _wide(front: Drawn, k: int) -> Span:
-    """Return the ends of an axis, with the limits that have no design if they are near."""
+    """The ends of an axis, with the limits that have no design if they are near."""
     low, high = front.span(k)
     reach = FARTHEST_SHOWN * (high - low)
     known = [c[k] for c in front.corners]
@@ -137,7 +137,7 @@ def _wide(front: Drawn, k: int) -> Span:
 
 
 def _corners(front: Drawn, i: int, k: int) -> list[Span]:
-    """Return limits of two objectives alone that leave no design; inf for any."""
+    """Limits of two objectives alone that leave no design; inf for any."""
     rows = []
     for corner in front.corners:
         others = [v for n, v in enumerate(corner) if n not in (i, k)]
@@ -450,7 +450,7 @@ def lines(
 
 
 def _parts(name: str) -> list[str]:
-    """Return the lines of the name of an axis: "stage 1", "teeth z1"."""
+    """The lines of the name of an axis: "stage 1", "teeth z1"."""
     stage, _, rest = name.rpartition(": ")
     words, _, unit = rest.partition(" [")
     return [part for part in (stage, words, f"[{unit}" if unit else "") if part]

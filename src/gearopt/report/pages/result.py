@@ -24,7 +24,7 @@ def _each(result: Result, measures: Measures) -> Iterator[Section]:
 
 
 def page(result: Result, command: str, measures: Measures = METRIC) -> str:
-    """Return one self-contained HTML page; command: what makes it again."""
+    """One self-contained HTML page; command: what makes it again."""
     shown = sections(result, measures)
     return render(
         "result.html",
@@ -40,7 +40,7 @@ def page(result: Result, command: str, measures: Measures = METRIC) -> str:
 
 
 def tables(result: Result, measures: Measures = METRIC) -> dict[str, str]:
-    """Return the CSV of every table by the name of its file, such as `stages.csv`."""
+    """The CSV of every table by the name of its file, such as `stages.csv`."""
     return {f"{name}.csv": table.csv() for name, table in tables_by_name(result, measures)}
 
 

@@ -61,7 +61,7 @@ OF_DRIVE = ("ratio", "ratio_error_percent", "gear_volume_mm3")
 
 
 def numbers(result: Result, measures: Measures) -> Section | None:
-    """Return all tables of the design; of a layout what its stages and drawings do not show."""
+    """All tables of the design; of a layout what its stages and drawings do not show."""
     if (whole := rating_tables.design(result, measures)) is None:
         return None
     if result.design.get("rating"):
@@ -79,7 +79,7 @@ def numbers(result: Result, measures: Measures) -> Section | None:
 
 
 def clearances(result: Result) -> set[str]:
-    """Return the limits of a layout that its table of gaps shows in mm."""
+    """The limits of a layout that its table of gaps shows in mm."""
     gaps = result.design.get("layout", {}).get("gaps", ())
     return {" to ".join(gap["between"]).replace(" ", "_") for gap in gaps}
 
@@ -98,7 +98,7 @@ def binding_limit(result: Result) -> str:
 
 
 def _at_walls(layout: LayoutDesign) -> list[str]:
-    """Return the gears that reach to the clearance of a wall, seen along the shafts."""
+    """The gears that reach to the clearance of a wall, seen along the shafts."""
     places, box, wall = {s.shaft: s for s in layout.shafts}, layout.box, layout.clearances.wall_mm
     near = WALL * max(box.sides)
     sides = {"y": (box.left_mm, box.width_mm), "z": (box.bottom_mm, box.height_mm)}
@@ -113,7 +113,7 @@ def _at_walls(layout: LayoutDesign) -> list[str]:
 
 
 def places(result: Result, measures: Measures) -> Section | None:
-    """Return box, shafts and gaps; None where there is no layout."""
+    """Box, shafts and gaps; None where there is no layout."""
     if result.value is None or (layout := layout_of(result)) is None:
         return None
     unit = measures.unit("mm")
@@ -138,7 +138,7 @@ def places(result: Result, measures: Measures) -> Section | None:
 
 
 def processes(result: Result, measures: Measures) -> Section | None:
-    """Return the designs as columns; None where the file asks for no process.
+    """The designs as columns; None where the file asks for no process.
 
     The first column is the result itself, or the gears that its layout is of.
     """
@@ -211,7 +211,7 @@ def _totals(designs: Sequence[Result], bound: float | None, measures: Measures) 
 
 
 def _over(result: Result, bound: float) -> float | None:
-    """Return by how much a design exceeds the bound [%]; None where it breaks a limit."""
+    """Excess of a design over the bound [%]; None where it breaks a limit."""
     return None if result.value is None else max(100.0 * (result.value / bound - 1.0), 0.0)
 
 
@@ -223,7 +223,7 @@ def _missing(part: Result) -> str:
 
 
 def counts(result: Result, measures: Measures) -> Section | None:
-    """Return every number of stages that was solved; None where the file gives one."""
+    """Every number of stages that was solved; None where the file gives one."""
     gears = (part for part in result.parts if part.name == "gears")
     counted = next(
         (candidate for candidate in (result, *gears) if candidate.report.get("counts")), None
@@ -262,7 +262,7 @@ def counts(result: Result, measures: Measures) -> Section | None:
 
 
 def _count(row: Mapping[str, Any], best: Result, measures: Measures) -> list[Any]:
-    """Return number, status, objective and bound of a number of stages."""
+    """Number, status, objective and bound of a number of stages."""
     unit, value, bound, gap = objective(best)[1], row["objective"], row["bound"], row["gap"]
     more = None if value is None or not best.value else 100.0 * (value / best.value - 1.0)
     beyond = row["status"] == "limit" and None not in (bound, best.value) and bound > best.value
@@ -277,7 +277,7 @@ def _count(row: Mapping[str, Any], best: Result, measures: Measures) -> list[Any
 
 
 def _each(row: Mapping[str, Any], most: int, measures: Measures) -> list[Any]:
-    """Return ratios, gears and seconds of a number of stages; then each ratio and gear alone."""
+    """Ratios, gears and seconds of a number of stages; then each ratio and gear alone."""
     modules = map(measures.of_module, row["modules_mm"])
     gears = list(zip(row["ratios"], modules, row["teeth"], strict=True))
     teeth = "; ".join(f"{number(m)}, {number(a)}/{number(b)}" for _, m, (a, b) in gears)
@@ -292,7 +292,7 @@ def _each(row: Mapping[str, Any], most: int, measures: Measures) -> list[Any]:
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
-    """Return ratio, torque, mass and box as key figures."""
+    """Ratio, torque, mass and box as key figures."""
     if not result.design:
         return []
     design = drive_design(result.design)
@@ -334,7 +334,7 @@ def _other_way(result: Result, part: Result) -> list[str]:
 
 
 def percent_more(value: float, other: float) -> str:
-    """Return by how many per cent two values differ."""
+    """Difference of two values in per cent."""
     return rounded(abs(100.0 * (value / other - 1.0)), 3)
 
 

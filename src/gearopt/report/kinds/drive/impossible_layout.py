@@ -59,7 +59,7 @@ def section(result: Result, measures: Measures) -> Section | None:
 
 
 def _over(near: NearestLayout) -> tuple[float | None, ...]:
-    """Return the largest width, height and length that are asked, where they are exceeded."""
+    """The largest width, height and length that are asked, where they are exceeded."""
     return tuple(
         most if most is not None and there > most * (1.0 + REACHED) else None
         for most, there in zip(near.largest_mm, near.layout.box.sides, strict=True)

@@ -67,7 +67,7 @@ def section(result: Result, measures: Measures) -> Section | None:
 
 
 def _standard(layout: LayoutDesign) -> bool:
-    """Return whether all teeth are unshifted ones of ISO 53, profile A."""
+    """Whether all teeth are unshifted ones of ISO 53, profile A."""
     gears = [gear.gear for gear in layout.gears]
     return all(g.rack == ISO_53_A and g.profile_shift == g.tip_alteration == 0.0 for g in gears)
 
@@ -102,7 +102,7 @@ def _picture_of(
     places: Mapping[int, tuple[float, float]],
     measures: Measures,
 ) -> Rod:
-    """Return a gear with its teeth, as they are at its face on the side of the output."""
+    """A gear with its teeth, as they are at its face on the side of the output."""
     solid, r = _toothed(layout, gear, places), 0.5 * gear.tip_diameter_mm
     turn = solid.phase + twist(solid.gear) * (gear.to_mm - solid.middle)
     rim = tuple((angle + turn, at) for angle, at in outline(solid.gear, 2))
@@ -111,7 +111,7 @@ def _picture_of(
 
 
 def _bare(layout: LayoutDesign, shaft: ShaftDesign) -> list[tuple[float, float]]:
-    """Return the parts of a shaft between what sits on it."""
+    """The parts of a shaft between what sits on it."""
     on = [(g.from_mm, g.to_mm) for g in layout.gears if g.shaft == shaft.shaft]
     on += [(b.from_mm, b.to_mm) for b in layout.bearings if b.shaft == shaft.shaft]
     past = FLUSH * layout.box.length_mm
@@ -163,7 +163,7 @@ def _gears(
 def _toothed(
     layout: LayoutDesign, gear: GearDesign, places: Mapping[int, tuple[float, float]]
 ) -> Toothed:
-    """Return the gear turned so that it meshes with its mate.
+    """The gear turned so that it meshes with its mate.
 
     At the middle of the stage the pinion has a tooth on the line of centres and the wheel a gap.
     The hands of a pair are opposite; those of the two gears on a shaft are equal, so that their

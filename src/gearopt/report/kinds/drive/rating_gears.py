@@ -39,7 +39,7 @@ ABREAST = {"AGMA": 3, "ISO 6336": 2}  # stages whose factors fit side by side on
 
 
 def gears(result: Result, measures: Measures) -> Section | None:
-    """Return stresses, safety factors and lives of every gear; None without a rating."""
+    """Stresses, safety factors and lives of every gear; None without a rating."""
     if (rating := rating_of(result)) is None:
         return None
     rows = [[Cell(row[0], greek(row[0])), *row[1:]] for row in _gear_rows(rating, measures)]
@@ -76,13 +76,13 @@ def _standards(rating: DriveRating) -> str:
 
 
 def _columns(rating: DriveRating) -> list[tuple[DriveRating, GearRating]]:
-    """Return every gear by every standard, those of one gear side by side."""
+    """Every gear by every standard, those of one gear side by side."""
     each = [[(one, gear) for gear in one.gears] for one in rating.each]
     return [column for columns in zip(*each, strict=True) for column in columns]
 
 
 def _head(rating: DriveRating, one: DriveRating, gear: GearRating) -> str:
-    """Return the name of a gear; of two standards with its own."""
+    """The name of a gear; of two standards with its own."""
     gear_name = name(rating, gear)
     return gear_name if rating.beside is None else f"{gear_name}, {SHORT[one.by]}"
 
@@ -119,14 +119,14 @@ def _used(asked: float, safety_factor: float) -> Cell:
 
 
 def _life(value: float | None, key: str, measures: Measures) -> Cell:
-    """Return a life; None beyond the end of the curves, 0 before they begin."""
+    """A life; None beyond the end of the curves, 0 before they begin."""
     if not value:
         return Cell(value, "beyond" if value is None else AT_ONCE)
     return Cell(value, safety(value)) if key == "life_h" else cell(value, parted(key)[1], measures)
 
 
 def _damage(value: float | None) -> Cell:
-    """Return a part of Miner's sum; None where the tooth breaks or pits at once."""
+    """A part of Miner's sum; None where the tooth breaks or pits at once."""
     return Cell(None, AT_ONCE) if value is None else Cell(value, rounded(value, DAMAGE_DIGITS))
 
 
@@ -158,7 +158,7 @@ def _told(result: Result, rating: DriveRating, measures: Measures) -> list[str |
 
 
 def levels(result: Result, measures: Measures) -> Section | None:
-    """Return the load spectrum with the damage of every level; None without one."""
+    """The load spectrum with the damage of every level; None without one."""
     rating = rating_of(result)
     if rating is None or not rating.levels:
         return None
@@ -205,7 +205,7 @@ def _level_row(rating: DriveRating, level: LoadLevel, measures: Measures, first:
 
 
 def factors(result: Result, measures: Measures) -> Section | None:
-    """Return every factor with its source; None without a rating."""
+    """Every factor with its source; None without a rating."""
     if (rating := rating_of(result)) is None:
         return None
     tables = [_table(one, rating.beside is not None, measures) for one in rating.each]
@@ -226,7 +226,7 @@ def factors(result: Result, measures: Measures) -> Section | None:
 
 
 def _symbols(rating: DriveRating) -> list[list[RatingFactor]]:
-    """Return the factors of a standard, those of one symbol together."""
+    """The factors of a standard, those of one symbol together."""
     symbols: dict[str, list[RatingFactor]] = {}
     for factor in rating.factors:
         symbols.setdefault(factor.symbol, []).append(factor)
@@ -234,7 +234,7 @@ def _symbols(rating: DriveRating) -> list[list[RatingFactor]]:
 
 
 def _table(rating: DriveRating, named: bool, measures: Measures) -> Table:
-    """Return the factors of a standard, which is named beside another one."""
+    """The factors of a standard, which is named beside another one."""
     heads = ["symbol", "factor", "unit", *names(rating), "unverified", "source", "remark"]
     rows = [_factor_row(rating, own, measures) for own in _symbols(rating)]
     hidden = ["unit", "unverified"] + ([] if any(row[-1].value for row in rows) else ["remark"])
@@ -259,7 +259,7 @@ def _remarks(rows: Sequence[Sequence[Any]]) -> list[str]:
 
 
 def _factor_row(rating: DriveRating, own: Sequence[RatingFactor], measures: Measures) -> list[Any]:
-    """Return a factor of all stages: its values, where they are from, what limits them."""
+    """A factor of all stages: its values, where they are from, what limits them."""
     one = own[0]
     sign, symbol, remarks = (
         measures.unit(_unit(one)),
@@ -278,12 +278,12 @@ def _factor_row(rating: DriveRating, own: Sequence[RatingFactor], measures: Meas
 
 
 def _unit(factor: RatingFactor) -> str:
-    """Return the unit that a factor is shown in, as `Measures` calls it."""
+    """The unit that a factor is shown in, as `Measures` calls it."""
     return SHOWN_UNITS.get(factor.symbol, factor.unit)
 
 
 def _by_stage(rating: DriveRating, own: Sequence[RatingFactor], key: str) -> str:
-    """Return words of a factor in every stage; sources, and what is the same, once."""
+    """Words of a factor in every stage; sources, and what is the same, once."""
     stages: dict[str, list[str]] = {}
     for factor in own:
         stages.setdefault(getattr(factor, key), []).append(str(factor.stage))
@@ -293,7 +293,7 @@ def _by_stage(rating: DriveRating, own: Sequence[RatingFactor], key: str) -> str
 
 
 def _values(factor: RatingFactor, measures: Measures) -> list[Cell]:
-    """Return the values of pinion and wheel; of a factor of the mesh the page shows one."""
+    """The values of pinion and wheel; of a factor of the mesh the page shows one."""
     first = cell(factor.pinion, _unit(factor), measures)
     if not factor.verified:
         first = replace(first, text=f"{first.text}\nunverified", short=first.text)
@@ -306,7 +306,7 @@ def _values(factor: RatingFactor, measures: Measures) -> list[Cell]:
 
 
 def _factors_told(rating: DriveRating, named: bool, measures: Measures) -> list[Table]:
-    """Return the factors as the terminal shows them, of so many stages as fit side by side."""
+    """The factors as the terminal shows them, of so many stages as fit side by side."""
     tables, alone, abreast = [], len(rating.meshes) == 1, ABREAST[rating.by]
     of = SHORT[rating.by] if named else ""
     for start in range(0, len(rating.meshes), abreast):
@@ -322,7 +322,7 @@ def _factors_told(rating: DriveRating, named: bool, measures: Measures) -> list[
 
 
 def _state(own: Sequence[RatingFactor]) -> str:
-    """Return whether values of a factor are given or unverified."""
+    """Whether values of a factor are given or unverified."""
     unsure = not all(factor.verified for factor in own)
     given = all(factor.source == GIVEN for factor in own)
     return "unverified" if unsure else GIVEN if given else ""

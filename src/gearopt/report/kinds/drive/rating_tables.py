@@ -24,18 +24,18 @@ ABREAST = 2  # stages whose teeth fit beside another table
 
 
 def single(rating: DriveRating) -> bool:
-    """Return whether there is one stage, whose tables leave room beside them."""
+    """Whether there is one stage, whose tables leave room beside them."""
     return len(rating.meshes) == 1
 
 
 def design(result: Result, measures: Measures) -> Section | None:
-    """Return the tables of a design, without those of its rating; None without a design."""
+    """The tables of a design, without those of its rating; None without a design."""
     others = {key: value for key, value in result.design.items() if key != "rating"}
     return tables(replace(result, design=others), measures)
 
 
 def beside(table: Table, result: Result, measures: Measures) -> Table:
-    """Return stages or totals without what a rating, or the only stage, shows of them."""
+    """Stages or totals without what a rating, or the only stage, shows of them."""
     stages, hidden = result.design["stages"], set(IN_DESIGN)
     if table.name == "stages":
         return replace(table, csv_only=[stage_label(key, measures) for key in hidden])
@@ -49,17 +49,17 @@ def beside(table: Table, result: Result, measures: Measures) -> Table:
 
 
 def names(rating: DriveRating) -> list[str]:
-    """Return the names of all gears: of several stages with their stage."""
+    """The names of all gears: of several stages with their stage."""
     return [name(rating, gear) for gear in rating.gears]
 
 
 def name(rating: DriveRating, gear: Any) -> str:
-    """Return the name of a gear of some table, with its stage where there are several."""
+    """The name of a gear of some table, with its stage where there are several."""
     return gear.member if len(rating.meshes) == 1 else f"{gear.member} {gear.stage}"
 
 
 def figure(value: Any, key: str, measures: Measures) -> Any:
-    """Return a value as its sentence has it, of what is never rounded up."""
+    """A value as its sentence has it, of what is never rounded up."""
     unit = parted(key, measures)[1]
     if value is None or not key.endswith(("_safety", "capacity_kW")):
         return cell(value, unit, measures)
@@ -68,7 +68,7 @@ def figure(value: Any, key: str, measures: Measures) -> Any:
 
 
 def forces(result: Result, measures: Measures) -> Section | None:
-    """Return contact and forces of every mesh, and what shafts carry; None without a rating."""
+    """Contact and forces of every mesh, and what shafts carry; None without a rating."""
     if (rating := rating_of(result)) is None:
         return None
     heads = ["", *(f"stage {mesh.stage}" for mesh in rating.meshes)]
@@ -108,7 +108,7 @@ def _least_rows(rating: DriveRating, measures: Measures) -> Iterator[list[Any]]:
 
 
 def _mesh_words(rating: DriveRating, stage: Mapping[str, Any], k: int, measures: Measures) -> str:
-    """Return sizes, contact and forces of a stage (from 0) in a sentence."""
+    """Sizes, contact and forces of a stage (from 0) in a sentence."""
     mesh, size = rating.meshes[k], measures.amount
     parts = [
         f"Stage {k + 1}: {module_words(stage[MODULE], measures)}",
@@ -125,7 +125,7 @@ def _mesh_words(rating: DriveRating, stage: Mapping[str, Any], k: int, measures:
 
 
 def _left(mesh: MeshRating) -> str:
-    """Return how much of the transverse contact ratio undercut leaves, where it leaves less."""
+    """Part of the transverse contact ratio that undercut leaves, where it leaves less."""
     left, whole = mesh.usable_contact_ratio, mesh.transverse_contact_ratio
     return (
         "" if left is None else f" (undercut leaves {number(left)} of {number(whole)} transverse)"
@@ -133,7 +133,7 @@ def _left(mesh: MeshRating) -> str:
 
 
 def teeth(result: Result, measures: Measures) -> Section | None:
-    """Return the geometry of the teeth of every gear; None without a rating."""
+    """The geometry of the teeth of every gear; None without a rating."""
     if (rating := rating_of(result)) is None:
         return None
     rows = side_by_side(rating.teeth, measures)
@@ -147,7 +147,7 @@ def teeth(result: Result, measures: Measures) -> Section | None:
 
 
 def _end_words(rating: DriveRating, measures: Measures) -> list[Any]:
-    """Return the axial forces of shafts, those of one gear by the name of its mesh's."""
+    """The axial forces of shafts, those of one gear by the name of its mesh's."""
     cells = [cell(shaft.axial_force_N, "N", measures) for shaft in rating.shafts]
     for k, mesh in ((0, rating.meshes[0]), (-1, rating.meshes[-1])):
         force = rating.shafts[k].axial_force_N

@@ -52,26 +52,26 @@ SHOWN_UNITS = {  # units of factors that are shown in others: deviations of flan
 
 
 def rating_of(result: Result) -> DriveRating | None:
-    """Return the rating that a design holds; None without one."""
+    """The rating that a design holds; None without one."""
     held = result.design.get("rating")
     rating: DriveRating | None = typed(DriveRating, held, "rating") if held else None
     return rating
 
 
 def binding_limit(result: Result) -> str:
-    """Return whether given gears are safe, and what governs."""
+    """Whether given gears are safe, and what governs."""
     rating = rating_of(result)
     return _verdict(rating) if rating else ""
 
 
 def figures(result: Result) -> str:
-    """Return the least safety factor and the power capacity, as the end of a sentence."""
+    """The least safety factor and the power capacity, as the end of a sentence."""
     rating = rating_of(result)
     return _figures(rating) if rating else ""
 
 
 def warns(result: Result) -> list[str]:
-    """Return that an optimum is not safe, which gears do not fit, and flaws."""
+    """Warnings: an optimum that is not safe, gears that do not fit, flaws."""
     if (rating := rating_of(result)) is None:
         return list(result.report.get("misfits", ()))
     unsafe = [] if rating.safe_by_all or not result.objective else [sentence_of(rating)]
@@ -79,18 +79,18 @@ def warns(result: Result) -> list[str]:
 
 
 def sentence_of(rating: DriveRating) -> str:
-    """Return whether an optimum is safe, and what governs, in a sentence."""
+    """Whether an optimum is safe, and what governs, in a sentence."""
     return f"{'Safe' if rating.safe_by_all else 'Not safe'} by its rating: {_verdict(rating)}."
 
 
 def told(rating: DriveRating) -> str:
-    """Return the rating of an optimum with its figures; what a warning said is not said again."""
+    """The rating of an optimum with its figures; what a warning said is not said again."""
     first = sentence_of(rating).rstrip(".") if rating.safe_by_all else "Rating"
     return f"{first}{_figures(rating)}."
 
 
 def _verdict(rating: DriveRating) -> str:
-    """Return whether the gears fit, what meets the safety factors asked for, and what governs."""
+    """Whether the gears fit, what meets the safety factors asked for, and what governs."""
     if rating.misfits:
         return f"the gears do not fit; as to strength, {_strength(rating)}"
     return _strength(rating)
@@ -123,7 +123,7 @@ def _governs(rating: DriveRating) -> str:
 
 
 def _short(rating: DriveRating) -> str:
-    """Return which safety factors of a standard fall short."""
+    """Safety factors of a standard that fall short."""
     words = _governing(rating)[0]
     short = sum(
         (1.0 + FEASIBLE) * safety_factor < asked for _, safety_factor, asked in _all(rating)
@@ -134,7 +134,7 @@ def _short(rating: DriveRating) -> str:
 
 
 def _figures(rating: DriveRating) -> str:
-    """Return least safety factor and power capacity by every standard, and what is asked for."""
+    """Least safety factor and power capacity by every standard, and what is asked for."""
     least = [_governing(one)[1:] for one in rating.each]
     values = [f"{symbol} {safety(own)}" for symbol, own, _ in least]
     asked = dict.fromkeys(f"{symbol} {asked:g}" for symbol, _, asked in least)
@@ -148,7 +148,7 @@ def _figures(rating: DriveRating) -> str:
 
 
 def _all(rating: DriveRating) -> list[tuple[str, float, float]]:
-    """Return every safety factor: of what, its value, what is asked for."""
+    """Every safety factor: of what, its value, what is asked for."""
     asked = rating.minimum_bending_safety, rating.minimum_contact_safety
     return [
         (f"{mode} of the {gear_words(rating, gear)}", own, least)
@@ -170,7 +170,7 @@ def _governing(rating: DriveRating) -> tuple[str, str, float, float]:
 
 
 def nearest(rating: DriveRating) -> list[str]:
-    """Return of every stage what comes nearest to the safety factors asked for, in words."""
+    """The gear of every stage nearest to the safety factors asked for, in words."""
     words = []
     for mesh in rating.meshes:
         rows = [
@@ -190,24 +190,24 @@ def nearest(rating: DriveRating) -> list[str]:
 
 
 def weakest(rating: DriveRating) -> MeshRating:
-    """Return the mesh that may transmit least."""
+    """The mesh that may transmit least."""
     return min(rating.meshes, key=lambda mesh: mesh.power_capacity_kW)
 
 
 def gear_words(rating: DriveRating, gear: GearRating) -> str:
-    """Return a gear in a sentence: of several stages with its own."""
+    """A gear in a sentence: of several stages with its own."""
     return gear.member if len(rating.meshes) == 1 else f"{gear.member} of stage {gear.stage}"
 
 
 def required(rating: DriveRating) -> float:
-    """Return the power [kW] that is asked for, the largest one of a load spectrum."""
+    """The power [kW] that is asked for, the largest one of a load spectrum."""
     first = rating.shafts[0]
     duty = first.torque_Nm * first.speed_rpm * pi / 30.0 / 1000.0
     return max((level.power_kW for level in rating.levels), default=duty)
 
 
 def least_safeties(results: Sequence[Result]) -> list[list[str]]:
-    """Return a row for S_F and S_H of every standard: its name, the least of every design."""
+    """A row for S_F and S_H of every standard: its name, the least of every design."""
     ratings = [rating_of(result) for result in results]
     first = ratings[0]
     if first is None:
@@ -226,14 +226,14 @@ def least_safeties(results: Sequence[Result]) -> list[list[str]]:
 
 
 def safety(factor: float) -> str:
-    """Return a safety factor, capacity or life for reading: never larger than it is."""
+    """A safety factor, capacity or life for reading: never larger than it is."""
     text = rounded(factor, SAFETY_DIGITS)
     near = isclose(float(text.replace(",", "")), factor, rel_tol=ROUNDING)
     return text if near else rounded(factor, SAFETY_DIGITS, way=-1)
 
 
 def efficiency(rating: DriveRating) -> str:
-    """Return the efficiency of all meshes, with the error of a computed friction."""
+    """The efficiency of all meshes, with the error of a computed friction."""
     assert rating.efficiency_percent is not None
     error = rating.efficiency_error_percent
     about = "" if error is None else f" ± {rounded(error, 2)}"
@@ -241,12 +241,12 @@ def efficiency(rating: DriveRating) -> str:
 
 
 def unsure(rating: DriveRating) -> str:
-    """Return that the error of an efficiency is unverified; nothing where friction is given."""
+    """Remark that the error of an efficiency is unverified; nothing where friction is given."""
     return "" if rating.efficiency_error_percent is None else ", unverified"
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
-    """Return least safety factors, power capacity, life and efficiency as key figures."""
+    """Least safety factors, power capacity, life and efficiency as key figures."""
     if (rating := rating_of(result)) is None:
         return []
     capacities = [measures.words(f"{safety(one.power_capacity_kW)} kW") for one in rating.each]
@@ -265,7 +265,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
 
 
 def _safety_tile(rating: DriveRating, mode: str, whole: DriveRating) -> Tile:
-    """Return the least safety factor of a mode by one of the standards of the whole rating."""
+    """The least safety factor of a mode by one of the standards of the whole rating."""
     key, asked = f"{mode}_safety", float(getattr(rating, f"minimum_{mode}_safety"))
     least = min(rating.gears, key=lambda gear: float(getattr(gear, key)))
     remark = f"{gear_words(rating, least)}; {asked:g} asked for"
@@ -274,7 +274,7 @@ def _safety_tile(rating: DriveRating, mode: str, whole: DriveRating) -> Tile:
 
 
 def _tile(rating: DriveRating, name: str, values: Sequence[str], asked: str) -> Tile:
-    """Return a key figure: its value, or by each of two standards in the remark the second."""
+    """A key figure: its value, or by each of two standards in the remark the second."""
     if rating.beside is None:
         return Tile(name, values[0], f"{asked} asked for")
     first, second = rating.each
@@ -283,19 +283,19 @@ def _tile(rating: DriveRating, name: str, values: Sequence[str], asked: str) -> 
 
 
 def life(hours: float | None) -> str:
-    """Return a life for reading; None: beyond the end of the curves, 0: before they begin."""
+    """A life for reading; None: beyond the end of the curves, 0: before they begin."""
     if not hours:
         return f"beyond {LONGEST_LIFE}" if hours is None else AT_ONCE
     return f"{safety(hours)} h"
 
 
 def unverified(rating: DriveRating) -> list[str]:
-    """Return a sentence with the symbols of unverified values, by every standard that has any."""
+    """A sentence with the symbols of unverified values, by every standard that has any."""
     return [line for one in rating.each for line in _unverified(one, rating.beside is not None)]
 
 
 def _unverified(rating: DriveRating, named: bool) -> list[str]:
-    """Return the sentence of one standard, which is named."""
+    """The sentence of one standard, which is named."""
     stages: dict[str, list[str]] = {}
     for name in rating.unverified:
         symbol, _, stage = name.partition(" of stage ")
@@ -317,7 +317,7 @@ def _of_stages(symbol: str, stages: Sequence[str]) -> str:
 
 
 def greek(text: str) -> str:
-    """Return a text with its symbols as engineers write them: "K_Hbeta" as "K_Hβ"."""
+    """A text with its symbols as engineers write them: "K_Hbeta" as "K_Hβ"."""
     return _SYMBOL.sub(lambda found: _written(found[0]), text)
 
 
@@ -332,7 +332,7 @@ def stress_words(rating: DriveRating, key: str, words: str) -> str:
 
 
 def of_standards(rating: DriveRating, values: list[str], joint: str = ", ") -> str:
-    """Return values, one by each standard, as words; a value alone without its standard."""
+    """Values, one by each standard, as words; a value alone without its standard."""
     if len(values) == 1:
         return values[0]
     pairs = zip(rating.each, values, strict=True)

@@ -24,7 +24,7 @@ MEASURES = {"rms": "RMS", "peak_to_peak": "peak to peak"}
 
 
 def design_of(result: Result) -> DynamicsDesign | None:
-    """Return the design of a result; None without one."""
+    """The design of a result; None without one."""
     design: DynamicsDesign | None = None
     if result.design.get("equilibrium"):
         design = typed(DynamicsDesign, result.design, "design")
@@ -32,7 +32,7 @@ def design_of(result: Result) -> DynamicsDesign | None:
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
-    """Return load, response and stability as key figures."""
+    """Load, response and stability as key figures."""
     if (design := design_of(result)) is None:
         return []
     rest = design.equilibrium
@@ -58,7 +58,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
 
 
 def binding_limit(result: Result) -> str:
-    """Return how far the mesh deforms."""
+    """Deformation of the mesh, in words."""
     if (design := design_of(result)) is None or design.chosen is not None:
         return ""
     rest = abs(design.equilibrium.deformation_mm)
@@ -178,7 +178,7 @@ def _two(held: Speeds) -> list[str]:
 
 
 def _speeds(held: Speeds, measures: Measures) -> Table:
-    """Return every speed's motion as a table, of falling speeds beside the rising ones."""
+    """Every speed's motion as a table, of falling speeds beside the rising ones."""
     micro = measures.unit("um")
     heads = [f"RMS [{micro}]", f"peak to peak [{micro}]", f"largest [{micro}]", "motion"]
     rising = held.rms_mm, held.peak_to_peak_mm, held.highest_mm, held.repeats
@@ -201,7 +201,7 @@ def _speeds(held: Speeds, measures: Measures) -> Table:
 
 
 def _said(repeats: int, highest: float | None) -> str:
-    """Return in a few words what kind of motion there is."""
+    """Kind of motion in a few words."""
     if highest is None:
         return "unstable"
     if repeats != 1:

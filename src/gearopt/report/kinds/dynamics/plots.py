@@ -120,7 +120,7 @@ def _view(
 
 
 def _round(length: float) -> float:
-    """Return a round number of at most a length: 1, 2 or 5 times a power of ten."""
+    """A round number of at most a length: 1, 2 or 5 times a power of ten."""
     power = 10.0 ** math.floor(math.log10(length))
     return max(k * power for k in (1.0, 2.0, 5.0) if k * power <= length)
 

@@ -24,14 +24,14 @@ STIFFNESS = "N_per_mm_um"  # of MPa
 
 
 def contact_of(result: Result) -> PairContact | None:
-    """Return the contact that a design holds; None without one."""
+    """The contact that a design holds; None without one."""
     held = result.design.get("contact")
     pair_contact: PairContact | None = typed(PairContact, held, "contact") if held else None
     return pair_contact
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
-    """Return load on a tooth, transmission error and stiffness as key figures."""
+    """Load on a tooth, transmission error and stiffness as key figures."""
     if (pair_contact := contact_of(result)) is None:
         return []
     relief = relief_of(result)
@@ -43,7 +43,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
 def _contact_tiles(
     pair_contact: PairContact, load: ContactLoad, measures: Measures, relieved: bool
 ) -> list[Tile]:
-    """Return the figures of contact without relief; relieved: those with it stand beside."""
+    """The figures of contact without relief; relieved: those with it stand beside."""
     part = f"{share(load.largest_share)} % of the normal force"
     iso = amount(pair_contact.iso_mesh_stiffness_MPa, STIFFNESS, measures)
     return [
@@ -67,7 +67,7 @@ def _contact_tiles(
 
 
 def binding_limit(result: Result) -> str:
-    """Return how much one tooth carries and how evenly the pair runs."""
+    """Largest load of one tooth and evenness of the pair, in words."""
     if relief := relief_of(result):
         return pair_relief.binding_limit(relief)
     if (pair_contact := contact_of(result)) is None or result.value is not None:
@@ -105,7 +105,7 @@ def contact(result: Result, measures: Measures) -> Section | None:
 
 
 def _frequency(result: Result) -> float:
-    """Return the mesh frequency [Hz]: reference circles pass a pitch of pi times the module."""
+    """The mesh frequency [Hz]: reference circles pass a pitch of pi times the module."""
     stage = result.design["stages"][0]
     speed, module = stage["pitch_line_velocity_m_per_s"], stage["normal_module_mm"]
     return float(1e3 * speed / (math.pi * module))
@@ -151,7 +151,7 @@ def harmonics(result: Result, measures: Measures) -> Section | None:
 
 
 def numbers(result: Result, measures: Measures) -> Section | None:
-    """Return the tables of the gears, as a drive of one stage has them."""
+    """The tables of the gears, as a drive of one stage has them."""
     gears = {k: v for k, v in result.design.items() if k not in ("contact", "relief")}
     return drive.numbers(replace(result, design=gears), measures)
 

@@ -38,7 +38,7 @@ MakeTable = Callable[[PairContact, Measures], Table]
 
 
 def pair_of(result: Result) -> GearPair | None:
-    """Return the gears of a design; None without them or where their teeth are not whole."""
+    """The gears of a design; None without them or where their teeth are not whole."""
     stages = drive_design(result.design).stages if result.design.get("stages") else ()
     if not stages:
         return None
@@ -100,7 +100,7 @@ def _of_loads(
 
 
 def _lines(loads: Sequence[ContactLoad], measures: Measures) -> tuple[list[Line], list[Line]]:
-    """Return curves of shares and of transmission errors, one for each load."""
+    """Curves of shares and of transmission errors, one for each load."""
     micro = measures.of(1.0, "um")
     shares, errors = [], []
     for k, one in enumerate(loads):
@@ -111,7 +111,7 @@ def _lines(loads: Sequence[ContactLoad], measures: Measures) -> tuple[list[Line]
 
 
 def _pale(lines: Sequence[Line]) -> list[Line]:
-    """Return curves as they are shown behind those that matter."""
+    """Curves as they are shown behind those that matter."""
     return [replace(line, name="", dash="dot", width=1.2) for line in lines]
 
 
@@ -157,7 +157,7 @@ def in_space(result: Result, measures: Measures) -> Section | None:
 
 
 def bodies(stage: StageDesign) -> tuple[Body, Body]:
-    """Return the bodies of both gears below their teeth."""
+    """The bodies of both gears below their teeth."""
     return (
         Body(
             stage.pinion_rim_thickness_mm,
@@ -226,12 +226,12 @@ def loads(contact: PairContact, measures: Measures) -> Table:
 
 
 def _harmonic(number: int, load: ContactLoad) -> float:
-    """Return the amplitude of a harmonic of the transmission error, counted from 0."""
+    """The amplitude of a harmonic of the transmission error, counted from 0."""
     return load.harmonics_mm[number]
 
 
 def _loaded(load: ContactLoad, value: float) -> float | None:
-    """Return a mesh stiffness; None without load, of which there is none."""
+    """A mesh stiffness; None without load, of which there is none."""
     return value if load.normal_force_N else None
 
 

@@ -53,7 +53,7 @@ class Carried:
 
     @classmethod
     def of_columns(cls, travels: Any, positions: Any, shares: Any, error: Any) -> "Carried":
-        """Return it from columns in the order in which one pair meets them on its path.
+        """Shares and errors from columns in the order in which one pair meets them on its path.
 
         positions and shares (M,): those of pair 1 at all moments, then of pair 2, and so on; the
         last pair may leave the path before the last moment.
@@ -77,7 +77,7 @@ class Carried:
         return np.where(np.asarray(self.shares) > 0.0, self.positions, np.nan)
 
     def along(self, values: Any) -> Any:
-        """Return values (N, K) of pairs as columns (M,) that one pair meets on its path."""
+        """Values (N, K) of pairs as columns (M,) that one pair meets on its path."""
         return np.asarray(values).T[np.isfinite(self.positions.T)]
 
 
@@ -88,7 +88,7 @@ def in_mesh(
     measures: Measures,
     caption: str = CAPTION,
 ) -> Animation:
-    """Return the animation of a pair of whole teeth, of equal cycles side by side.
+    """The animation of a pair of whole teeth, of equal cycles side by side.
 
     shown: what the teeth carry, by what is different, such as "before" and "after".
     """
@@ -116,13 +116,13 @@ def in_mesh(
 
 
 def _place(carried: Carried, measures: Measures) -> Reading:
-    """Return where pair 1 is on the line of action."""
+    """Position of pair 1 on the line of action."""
     values = measures.of(1.0, "mm") * carried.positions[:, 0]
     return Reading("pair 1 at s", values, measures.unit("mm"), 2 + measures.digits)
 
 
 def _still(carried: Carried) -> int:
-    """Return a moment soon after a pair came into contact, when shares differ most."""
+    """A moment soon after a pair came into contact, when shares differ most."""
     most = carried.travels[np.isfinite(carried.positions).all(axis=1)]
     soon = most.min() + STILL_AT * np.ptp(most)
     return int(np.argmin(np.abs(carried.travels - soon)))
@@ -150,7 +150,7 @@ def _view(pair: GearPair, carried: Carried, words: str, larger: float) -> View:
 
 
 def _gear(pair: GearPair, k: int, carried: Carried) -> list[Body]:
-    """Return pinion (k = 0) or wheel, then its teeth that carry, which turn with it.
+    """Pinion (k = 0) or wheel, then its teeth that carry, which turn with it.
 
     It turns by s/r_b from where its pair 1 touches at the pitch point; s moves by p_b a cycle.
     """
@@ -166,6 +166,6 @@ def _gear(pair: GearPair, k: int, carried: Carried) -> list[Body]:
 
 
 def _dot(radius: float) -> list[tuple[float, float]]:
-    """Return a circle about the origin."""
+    """A circle about the origin."""
     turns = (2.0 * math.pi * k / CORNERS for k in range(CORNERS))
     return [(radius * math.cos(t), radius * math.sin(t)) for t in turns]

@@ -94,7 +94,7 @@ def _trace(line: Line, x: Any, carried: Carried) -> dict[str, Any]:
 def zones(
     path: ContactPath, measures: Measures
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
-    """Return shapes and names of the points of the path, and where the fewest pairs touch."""
+    """Shapes and names of the points of the path, and where the fewest pairs touch."""
     ratio, pitch = float(path.transverse_ratio), float(path.base_pitch)
     whole = int(ratio + NARROW)
     unit = measures.of(1.0, "mm")

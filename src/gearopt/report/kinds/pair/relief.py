@@ -41,14 +41,14 @@ HEARD = (
 
 
 def relief_of(result: Result) -> PairRelief | None:
-    """Return the relief that a design holds; None without one."""
+    """The relief that a design holds; None without one."""
     held = result.design.get("relief")
     relief: PairRelief | None = typed(PairRelief, held, "relief") if held else None
     return relief
 
 
 def tiles(relief: PairRelief, measures: Measures) -> list[Tile]:
-    """Return both amounts as key figures."""
+    """Both amounts as key figures."""
     rows = (("pinion", relief.pinion), ("wheel", relief.wheel))
     return [
         Tile(
@@ -75,7 +75,7 @@ def binding_limit(relief: PairRelief) -> str:
 
 
 def _strays(relief: PairRelief) -> str:
-    """Return the largest peak-to-peak on more positions of the gears, where it is larger."""
+    """The largest peak-to-peak on more positions of the gears, where it is larger."""
     if relief.minimise != "peak_to_peak" or not _finer(relief):
         return ""
     return f" ({amount(max(relief.finer_mm), 'um', METRIC)} on ten times as many positions)"
@@ -158,7 +158,7 @@ def _power(exponent: float | None) -> Cell:
 
 
 def rules(relief: PairRelief, measures: Measures) -> Table:
-    """Return the relief beside none and beside rules, each in a column."""
+    """The relief beside none and beside rules, each in a column."""
     micro, rows = measures.unit("um"), relief.rows
     at = [f"at {100.0 * load:g} %" for load in relief.loads]
     lines: list[list[Any]] = [
@@ -181,7 +181,7 @@ def rules(relief: PairRelief, measures: Measures) -> Table:
 
 
 def after(contact: PairContact, relief: PairRelief, measures: Measures) -> Table:
-    """Return peak to peak, first harmonic and largest load at every load, before and after."""
+    """Peak to peak, first harmonic and largest load at every load, before and after."""
     micro, force = measures.unit("um"), measures.unit("N")
     rows = []
     for when, loads in (("without", contact.loads), ("with", relief.at)):
@@ -242,12 +242,12 @@ class Flank:
         return told.amount_mm * np.maximum(share, 0.0) ** told.exponent
 
     def at(self, count: int) -> Any:
-        """Return roll angles [deg] from where the relief starts to the tip, in equal steps."""
+        """Roll angles [deg] from where the relief starts to the tip, in equal steps."""
         return np.linspace(self.told.start_roll_angle_deg, self.told.tip_roll_angle_deg, count + 1)
 
 
 def flanks(contact: PairContact, relief: PairRelief, pair: GearPair) -> list[Flank]:
-    """Return the flanks of both gears that are ground."""
+    """The flanks of both gears that are ground."""
     bases = (float(gear.base_diameter) for gear in pair.gears)
     told = (relief.pinion, relief.wheel)
     rolls = (contact.pinion_roll_angle_deg, contact.wheel_roll_angle_deg)
@@ -257,7 +257,7 @@ def flanks(contact: PairContact, relief: PairRelief, pair: GearPair) -> list[Fla
 
 
 def diameter_at(base: float, roll: Any) -> Any:
-    """Return diameters d_b sqrt(1 + xi^2) [mm] at roll angles xi [deg]; base diameter d_b [mm]."""
+    """Diameters d_b sqrt(1 + xi^2) [mm] at roll angles xi [deg]; base diameter d_b [mm]."""
     return base * np.hypot(1.0, np.radians(roll))
 
 
@@ -282,7 +282,7 @@ def steps(flank: Flank, measures: Measures) -> Table:
 
 
 def _length(value: float, measures: Measures) -> tuple[float, str]:
-    """Return a diameter as a measuring machine wants it: to a micrometre."""
+    """A diameter as a measuring machine wants it: to a micrometre."""
     return measures.of(value, "mm"), measures.length(value, 3)
 
 

@@ -61,12 +61,12 @@ def _colour(member: str) -> str:
 
 
 def _shaft(width: float) -> tuple[float, float]:
-    """Return the ends of a shaft [mm]."""
+    """The ends of a shaft [mm]."""
     return -PAST * width, (1.0 + PAST) * width
 
 
 def _flank(pair: GearPair, bodies: tuple[Body, Body]) -> int:
-    """Return points on a flank, the most that leave both gears together below POINTS."""
+    """Points on a flank, the most that leave both gears together below POINTS."""
     rings = [2 + len(rings_of(b, g, 0.0, 1.0)) for b, g in zip(bodies, pair.gears, strict=True)]
     sides = sum(2 * gear.teeth * n for gear, n in zip(pair.gears, rings, strict=True))
     return next((flank for flank in FLANKS if flank * sides < POINTS), FLANKS[-1])
@@ -83,7 +83,7 @@ def _words(member: str, gear: Toothed) -> str:
 
 
 def _solids(member: str, gear: Toothed, body: Body) -> list[Rod]:
-    """Return a gear and the ends of its shaft for the still; circles where rim and hub end."""
+    """A gear and the ends of its shaft for the still; circles where rim and hub end."""
     rim = tuple((angle + gear.phase, r) for angle, r in outline(gear.gear, 4))
     tip, (start, end) = 0.5 * float(gear.gear.tip_diameter), _shaft(gear.end)
     look = "gear", _colour(member), _words(member, gear)

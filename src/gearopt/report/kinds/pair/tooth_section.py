@@ -40,7 +40,7 @@ class Side:
     gear: Gear
 
     def at(self, radius: float) -> Point:
-        """Return the point of the flank at a radius [mm]."""
+        """The point of the flank at a radius [mm]."""
         half = float(half_angle(self.gear, radius))
         return radius * math.sin(half), radius * math.cos(half)
 
@@ -56,7 +56,7 @@ def sections(pair: GearPair, measures: Measures) -> tuple[Drawing, Drawing]:
 
 
 def outermost(path: ContactPath) -> tuple[float, float]:
-    """Return radii of curvature [mm] where one pair of teeth touches farthest out on either flank.
+    """Radii of curvature [mm] where one pair of teeth touches farthest out on either flank.
 
     HPSTC on the pinion and LPSTC on the wheel; the tips where two pairs or more always touch.
     """
@@ -66,7 +66,7 @@ def outermost(path: ContactPath) -> tuple[float, float]:
 
 
 def carries_alone(path: ContactPath) -> bool:
-    """Return whether one pair of teeth carries alone on a part of its path, not all of it."""
+    """Whether one pair of teeth carries alone on a part of its path, not all of it."""
     return bool(1.0 < path.transverse_ratio < 2.0)
 
 
@@ -130,7 +130,7 @@ def _circles(sheet: Sheet, gear: Gear, window: Window, measures: Measures) -> No
 
 
 def _apart(wanted: Sequence[float], lowest: float) -> list[float]:
-    """Return heights [px] from the top at least ROW apart, near those that are wanted."""
+    """Heights [px] from the top at least ROW apart, near those that are wanted."""
     values: list[float] = []
     for y in wanted:
         values.append(max(y, values[-1] + ROW) if values else max(y, ROW))

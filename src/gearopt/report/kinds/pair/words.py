@@ -27,7 +27,7 @@ def answers(
     frequency: float | None = None,
     relieved: bool = False,
 ) -> list[str]:
-    """Return how load passes, how even the motion is, what to change, how sure that all is.
+    """Passing of the load, evenness of the motion, a change to try, and how sure that all is.
 
     pair: its gears, of whole teeth. frequency: of the mesh [Hz]. relieved: the gears have relief,
     which is told elsewhere; the contact told here is without it.
@@ -42,7 +42,7 @@ def answers(
 
 
 def graded(pair: GearPair, error: float) -> str:
-    """Return how a peak-to-peak transmission error [mm] compares with accuracy; "" for none.
+    """Accuracy grade that a peak-to-peak transmission error [mm] compares with; "" for none.
 
     The form deviation of a profile doubles with two grades of ISO 1328-1 (1995).
     """
@@ -142,7 +142,7 @@ def _sure(contact: PairContact) -> str:
 
 
 def _between(low: float, high: float) -> str:
-    """Return two errors in per cent in words."""
+    """Two errors in per cent in words."""
     if low < 0.0 < high:
         return f"from {rounded(-low, 2)} % below to {rounded(high, 2)} % above"
     near, far = sorted((abs(low), abs(high)))

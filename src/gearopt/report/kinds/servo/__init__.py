@@ -34,7 +34,7 @@ def binding_limit(result: Result) -> str:
 
 
 def _costs(result: Result) -> bool:
-    """Return whether a train that leaves the box aside is better than the proven answer.
+    """Whether a train that leaves the box aside is better than the proven answer.
 
     The Pareto front keeps all limits but the box, and so has the best of these trains.
     """
@@ -47,7 +47,7 @@ def _costs(result: Result) -> bool:
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
-    """Return key figures beside the objective."""
+    """Key figures beside the objective."""
     design, name = design_of(result), goal(result)[0]
     figures = []
     if design.ratio is not None:
@@ -94,7 +94,7 @@ def _train(train: TrainDesign, name: str, measures: Measures) -> list[Tile]:
 
 
 def _answered(make: MakeSection) -> MakeSection:
-    """Return a section that is shown of an answer only."""
+    """A section that is shown of an answer only."""
 
     def made(result: Result, measures: Measures) -> Section | None:
         return None if result.value is None else make(result, measures)

@@ -76,7 +76,7 @@ def errors(result: Result, measures: Measures) -> Section | None:
 
 
 def _backlash_table(backlashes: Sequence[MeshBacklash], measures: Measures) -> tuple[Table, ...]:
-    """Return minimum and maximum backlash of every stage; nothing where the file asks for none."""
+    """Minimum and maximum backlash of every stage; nothing where the file asks for none."""
     if not backlashes:
         return ()
     unit = measures.unit("um")
@@ -105,7 +105,7 @@ def _error_words(total: float, limit: float | None) -> list[str]:
 
 
 def _error_table(sources: Sequence[ErrorSource], total: float, measures: Measures) -> Table:
-    """Return every source, and on the terminal their sum."""
+    """Every source, and on the terminal their sum."""
     heads = ["source", "kind", "stage", f"tolerance [{measures.unit('um')}]"]
     short = {
         "source": "error at the output",
@@ -131,14 +131,14 @@ def _error_table(sources: Sequence[ErrorSource], total: float, measures: Measure
 
 
 def _names(sources: list[str]) -> list[str]:
-    """Return names of bars: spaces without width tell equal ones apart, which a plot would add."""
+    """Names of bars: spaces without width tell equal ones apart, which a plot would add."""
     return [escape(name) + "\u200b" * sources[:k].count(name) for k, name in enumerate(sources)]
 
 
 def _steps(
     sources: Sequence[ErrorSource], names: list[str], measures: Measures
 ) -> list[dict[str, Any]]:
-    """Return a trace for every kind in every stage, so that the legend names it."""
+    """A trace for every kind in every stage, so that the legend names it."""
     starts = [sum(e.error_deg for e in sources[:k]) for k in range(len(sources))]
     groups: dict[tuple[str, int], list[int]] = {}
     for k, e in enumerate(sources):
@@ -237,7 +237,7 @@ def _row(row: ToleranceRow, total: float, highest: float, measures: Measures) ->
 
 
 def _end(row: ToleranceRow) -> str:
-    """Return whether a new tolerance is the minimum or the maximum allowed."""
+    """Whether a new tolerance is the minimum or the maximum allowed."""
     for name, end in (("min", row.lower_mm), ("max", row.upper_mm)):
         if end and abs(row.new_mm / end - 1.0) < ENDS:
             return name
@@ -245,13 +245,13 @@ def _end(row: ToleranceRow) -> str:
 
 
 def _cost(cost: float, highest: float) -> Cell:
-    """Return a cost with its bar; all bars of the table have one scale."""
+    """A cost with its bar; all bars of the table have one scale."""
     share = SHORT * max(0.0, cost) / highest if highest > 0.0 else None
     return Cell(cost, f"{cost:.3f}", share)
 
 
 def _sums(rows: Sequence[ToleranceRow], measures: Measures) -> list[Any]:
-    """Return the last row: sums of tolerances and costs."""
+    """The last row: sums of tolerances and costs."""
     old, new = (
         sum(measures.of(t, "um") for t in column)
         for column in ([r.old_mm for r in rows], [r.new_mm for r in rows])
@@ -321,13 +321,13 @@ def _drawn_words(draws: DrawnErrors, said: bool) -> list[str]:
 
 
 def _ends(draws: DrawnErrors) -> tuple[float, ...]:
-    """Return the interval of the quantile; nothing where the draws were too few."""
+    """The interval of the quantile; nothing where the draws were too few."""
     low, high = draws.quantile_low_deg, draws.quantile_high_deg
     return () if low is None or high is None else (low, high)
 
 
 def _bins(histogram: Histogram) -> list[tuple[float, float, int]]:
-    """Return between which errors how many trains were drawn."""
+    """Counts of drawn trains, each between two errors."""
     ends = pairwise(histogram.edges_deg)
     return [(a, b, n) for (a, b), n in zip(ends, histogram.counts, strict=True)]
 
@@ -342,7 +342,7 @@ def _bars(bins: list[tuple[float, float, int]], count: int) -> dict[str, Any]:
 
 
 def _lines(draws: DrawnErrors, top: float) -> list[dict[str, Any]]:
-    """Return mean, quantile and limit as upright lines, with their values in the legend."""
+    """Mean, quantile and limit as upright lines, with their values in the legend."""
     marks = (
         ("mean", draws.mean_deg, "--series-4", "dot"),
         (f"{100.0 * draws.probability:g} % quantile", draws.quantile_deg, "--series-5", "solid"),
@@ -356,5 +356,5 @@ def _lines(draws: DrawnErrors, top: float) -> list[dict[str, Any]]:
 
 
 def _interval(draws: DrawnErrors) -> list[dict[str, Any]]:
-    """Return the interval of the quantile as a band."""
+    """The interval of the quantile as a band."""
     return [band(ends[0], ends[1], "--series-5/0.2")] if (ends := _ends(draws)) else []

@@ -87,7 +87,7 @@ def _bars(springs: Sequence[Spring], measures: Measures) -> Figure:
 
 
 def _springs(springs: Sequence[Spring], measures: Measures) -> Table:
-    """Return the springs as a table."""
+    """The springs as a table."""
     unit = measures.unit("Nm_per_rad")
     heads = ["spring", "share, %", f"alone at the output [{unit}]"]
     short = {heads[1]: "share of compliance, %", heads[2]: f"alone [{unit}]"}
@@ -167,7 +167,7 @@ def _box_words(fit: BoxDesign, measures: Measures) -> str:
 
 
 def needed_size(fit: BoxDesign, measures: Measures) -> str:
-    """Return width x height of the room that the train needs."""
+    """Width x height of the room that the train needs."""
     return _size(fit.needed_width_mm, fit.needed_height_mm, measures)
 
 
@@ -176,7 +176,7 @@ def _size(width: float, height: float, measures: Measures) -> str:
 
 
 def axes(fit: BoxDesign) -> Axes:
-    """Return places of the shafts, and how far the train reaches to every side."""
+    """Places of the shafts, and how far the train reaches to every side."""
     motor, output = math.radians(fit.motor_angle_deg), math.radians(fit.output_angle_deg)
     (a, b), (r1, r2, r4) = fit.links_mm, fit.radii_mm
     half = math.radians(fit.half_sweep_deg)
@@ -311,7 +311,7 @@ def _label_sector(sheet: Sheet, fit: BoxDesign, discs: Sequence[Disc]) -> None:
 
 
 def _on_rays(sheet: Sheet, box: BoxDesign, off: float, discs: Sequence[Disc]) -> list[Place]:
-    """Return places some degrees to either side of the mesh line, from the rim inwards."""
+    """Places some degrees to either side of the mesh line, from the rim inwards."""
     places = []
     for k, share in enumerate((0.8, 0.7, 0.6, 0.5, 0.42)):
         for side in (-1.0, 1.0):
@@ -325,6 +325,6 @@ def _on_rays(sheet: Sheet, box: BoxDesign, off: float, discs: Sequence[Disc]) ->
 
 
 def _ends(fit: BoxDesign, half: float) -> tuple[float, float]:
-    """Return angles [rad] so many degrees to either side of the mesh line."""
+    """Angles [rad] so many degrees to either side of the mesh line."""
     middle = fit.output_angle_deg
     return math.radians(middle - half), math.radians(middle + half)

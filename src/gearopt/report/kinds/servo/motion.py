@@ -81,7 +81,7 @@ def bound_words(report: ServoReport, ratio: RatioDesign, measures: Measures) -> 
 
 
 def _value(achieved: Achieved, ratio: RatioDesign, measures: Measures) -> str:
-    """Return a value with how far it is from the best."""
+    """A value with how far it is from the best."""
     less = "less" if (ratio.duty == LARGEST) == (achieved.loss_percent >= 0.0) else "more"
     value = amount(achieved.value, ratio.unit, measures)
     return f"{value}, {abs(achieved.loss_percent):.3g} % {less}"
@@ -102,7 +102,7 @@ def _achieved(ratio: RatioDesign, measures: Measures) -> Table:
 
 
 def _curve(ratio: RatioDesign, measures: Measures) -> Table:
-    """Return the value over the ratio, without gears and with the chosen train."""
+    """The value over the ratio, without gears and with the chosen train."""
     unit = measures.unit(ratio.unit)
     heads = ["total ratio", f"{ratio.name} [{unit}]"]
     columns: list[Sequence[Any]] = [ratio.curve.total_ratio]
@@ -154,7 +154,7 @@ def _mark(
 
 
 def _ticks(ratios: list[float]) -> list[float]:
-    """Return 1, 2, 5, 10, ... within the curve."""
+    """1, 2, 5, 10, ... within the curve."""
     decades = (10.0**k for k in range(-6, 13))
     marks = [tick * decade for decade in decades for tick in TICKS]
     return [mark for mark in marks if ratios[0] <= mark <= ratios[-1]]

@@ -160,7 +160,7 @@ def compared_with_given(result: Result, measures: Measures) -> Section | None:
 
 
 def _given_rows(design: ServoDesign, report: ServoReport, measures: Measures) -> list[list[Any]]:
-    """Return a row for every figure; none where gears are given without being compared."""
+    """A row for every figure; none where gears are given without being compared."""
     chosen, given, moved = design.train, report.given_train, _moved(design)
     if chosen is None or given is None or chosen.mass_kg is None:
         return []
@@ -178,7 +178,7 @@ def _given_rows(design: ServoDesign, report: ServoReport, measures: Measures) ->
 
 
 def _moved(design: ServoDesign) -> Sequence[str]:
-    """Return the figures of a train that the table of motor and load shows."""
+    """The figures of a train that the table of motor and load shows."""
     return MOVED if design.ratio is not None and design.ratio.chosen is not None else ()
 
 
@@ -272,7 +272,7 @@ def _front(result: Result, measures: Measures, goal: Goal, other: Goal) -> Secti
 
 
 def _listed(train: TrainDesign, ratio: RatioDesign | None, who: str) -> ListedTrain:
-    """Return the chosen or the given train as the list of trains has it."""
+    """The chosen or the given train as the list of trains has it."""
     assert train.inertia_kg_m2 is not None and train.mass_kg is not None
     achieved = ratio and (ratio.chosen if who == "chosen" else ratio.given_train)
     judged: dict[str, Any] = (
@@ -283,7 +283,7 @@ def _listed(train: TrainDesign, ratio: RatioDesign | None, who: str) -> ListedTr
 
 
 def _table(trains: Sequence[ListedTrain], measures: Measures) -> Table:
-    """Return all points with their teeth and modules."""
+    """All points with their teeth and modules."""
     known = _known(trains[0])
     heads = [_head(goal, measures) for goal in known]
     module = "{} [{}]".format(*measures.module[::2])
@@ -304,7 +304,7 @@ def _gears(stage: Teeth, measures: Measures) -> tuple[float, int, int]:
 
 
 def _head(goal: Goal, measures: Measures) -> str:
-    """Return the head of a column, or the title of an axis."""
+    """The head of a column, or the title of an axis."""
     return f"{goal.title} [{measures.unit(parted(goal.key)[1])}]"
 
 
@@ -334,7 +334,7 @@ def _points(
     keys: tuple[str, str],
     measures: Measures,
 ) -> dict[str, Any]:
-    """Return trains as points; mark: size, symbol and colour; keys: across and up."""
+    """Trains as points; mark: size, symbol and colour; keys: across and up."""
     size, symbol, colour = mark
     x, y = ([measures.of(getattr(t, k), parted(k)[1]) for t in trains] for k in keys)
     edge = {"width": 2.6 if symbol.endswith("open") else 0}
@@ -343,7 +343,7 @@ def _points(
 
 
 def _told(train: ListedTrain, measures: Measures) -> str:
-    """Return a train in lines: teeth and modules, then what it is worth."""
+    """A train in lines: teeth and modules, then what it is worth."""
     lines = teeth_words(train.stages, measures).split("; ")
     for goal in _known(train):
         value, unit = getattr(train, goal.key), parted(goal.key)[1]

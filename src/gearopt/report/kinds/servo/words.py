@@ -13,7 +13,7 @@ ARCMIN = 60.0  # a degree
 
 
 def design_of(result: Result) -> ServoDesign:
-    """Return the design, typed."""
+    """The design, typed."""
     design: ServoDesign = typed(ServoDesign, result.design, "design")
     return design
 
@@ -24,17 +24,17 @@ def report_of(result: Result) -> ServoReport:
 
 
 def degrees(value: float) -> str:
-    """Return an angle [deg] for reading; the same in metric and inch."""
+    """An angle [deg] for reading; the same in metric and inch."""
     return f"{number(float(value))}°"
 
 
 def arc_minutes(value: float) -> str:
-    """Return an angle [deg] in minutes of arc."""
+    """An angle [deg] in minutes of arc."""
     return f"{number(ARCMIN * value)} arcmin"
 
 
 def teeth_words(stages: Sequence[Teeth], measures: Measures) -> str:
-    """Return teeth and modules of a train in a line."""
+    """Teeth and modules of a train in a line."""
     return "; ".join(
         f"{s.pinion_teeth}/{s.wheel_teeth}, {module_words(s.normal_module_mm, measures)}"
         for s in stages
@@ -42,7 +42,7 @@ def teeth_words(stages: Sequence[Teeth], measures: Measures) -> str:
 
 
 def error_limit(design: ServoDesign, limits: Mapping[str, float]) -> float | None:
-    """Return the largest error [deg] allowed: by a worst-case budget, else to the train."""
+    """The largest error [deg] allowed: by a worst-case budget, else to the train."""
     used = limits.get("error")
     for budget in () if design.allocation is None else design.allocation.budgets:
         if budget.rule == "worst_case":
@@ -52,7 +52,7 @@ def error_limit(design: ServoDesign, limits: Mapping[str, float]) -> float | Non
 
 
 def limit_line(name: str, limit: float, along: str, width: float) -> dict[str, Any]:
-    """Return the limit of an error [deg] as a line across a plot, along its axis x or y."""
+    """The limit of an error [deg] as a line across a plot, along its axis x or y."""
     across = {"x": "y", "y": "x"}[along]
     return {
         "type": "line",

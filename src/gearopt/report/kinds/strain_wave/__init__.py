@@ -30,7 +30,7 @@ BEYOND_DEG = 10.0  # and beyond the last contact
 
 
 def design_of(result: Result) -> WaveDesign | None:
-    """Return the gearing of a result; None without one."""
+    """The gearing of a result; None without one."""
     if not result.design:
         return None
     gearing: WaveDesign = typed(WaveDesign, result.design, "design")
@@ -38,7 +38,7 @@ def design_of(result: Result) -> WaveDesign | None:
 
 
 def tiles(result: Result, measures: Measures) -> list[Tile]:
-    """Return pressure, teeth that carry, clearance and size as key figures."""
+    """Pressure, teeth that carry, clearance and size as key figures."""
     if (design := design_of(result)) is None:
         return []
     equal = amount(design.equal_pressure_MPa, "MPa", measures)
@@ -92,7 +92,7 @@ def binding_limit(result: Result) -> str:
 
 
 def warns(result: Result) -> Sequence[str]:
-    """Return that teeth interfere, or that the cutter has a cusp."""
+    """Warnings: teeth that interfere, a cutter with a cusp."""
     if (design := design_of(result)) is None:
         return ()
     told = []
@@ -233,7 +233,7 @@ def _tool(tool: CutterDesign) -> str:
 
 
 def _least(tool: CutterDesign) -> str:
-    """Return how small a pinion-type cutter on the same pitch circle of the blank may be."""
+    """Smallest pinion-type cutter on the same pitch circle of the blank, in words."""
     if tool.least_teeth is None:
         return (
             "No pinion-type cutter of up to 60 teeth is regular on this pitch circle of the blank: "
@@ -243,7 +243,7 @@ def _least(tool: CutterDesign) -> str:
 
 
 def numbers(result: Result, measures: Measures) -> Section | None:
-    """Return the gearing in numbers, its flank, and other deflections."""
+    """The gearing in numbers, its flank, and other deflections."""
     if (design := design_of(result)) is None:
         return None
     shown = tables.sizes(design, measures), tables.loads(design, measures)
@@ -259,7 +259,7 @@ def numbers(result: Result, measures: Measures) -> Section | None:
 
 
 def search(result: Result, measures: Measures) -> Section | None:
-    """Return the rounds of a search; None without one."""
+    """The rounds of a search; None without one."""
     design = design_of(result)
     if design is None or not design.rounds:
         return None

@@ -50,7 +50,7 @@ def drawing(
 
 
 def usual_scale(tool: CutterDesign, pitch: float, grid: float) -> float:
-    """Return the largest of 1, 2, 5, 10 ... to 5000 at which two teeth fit on a sheet of A4."""
+    """The largest of 1, 2, 5, 10 ... to 5000 at which two teeth fit on a sheet of A4."""
     (left, right, _, _), _ = _frame(_teeth(tool, pitch), grid)
     room = (SHEET - FREE[0] - FREE[1]) / PX_PER_MM
     scales = (s * 10.0**k for k in range(4) for s in (1.0, 2.0, 5.0))
@@ -58,14 +58,14 @@ def usual_scale(tool: CutterDesign, pitch: float, grid: float) -> float:
 
 
 def _teeth(tool: CutterDesign, pitch: float) -> list[Any]:
-    """Return the outlines of two teeth: y across, x upwards."""
+    """The outlines of two teeth: y across, x upwards."""
     edge = np.c_[tool.x_mm, tool.y_mm]
     tooth = np.vstack([edge, _mirrored(tool, edge, pitch)[::-1]])
     return [tooth[:, ::-1], (tooth * (1.0, -1.0))[:, ::-1]]
 
 
 def _frame(teeth: list[Any], grid: float) -> tuple[Frame, float]:
-    """Return the ends of what is shown, left, right, bottom and top, on lines of a grid; its step.
+    """The ends of what is shown, left, right, bottom and top, on lines of a grid; its step.
 
     The step is the grid [mm], or a multiple of it where there would be more than LINES.
     """
@@ -79,7 +79,7 @@ def _frame(teeth: list[Any], grid: float) -> tuple[Frame, float]:
 
 
 def _mirrored(tool: CutterDesign, edge: Any, pitch: float) -> Any:
-    """Return the edge on the other side of the cutter's tooth."""
+    """The edge on the other side of the cutter's tooth."""
     if not tool.teeth:
         return edge * (1.0, -1.0) + (0.0, pitch)
     z = edge[:, 0] + 1j * edge[:, 1]

@@ -35,7 +35,7 @@ CAPTION = (
 
 
 def running(gearing: WaveDesign, name: str, measures: Measures) -> Animation:
-    """Return the animation of a gearing: the whole, and the teeth at the top."""
+    """The animation of a gearing: the whole, and the teeth at the top."""
     shape = drawn(gearing)
     turns = np.linspace(-0.5 * math.pi, 0.5 * math.pi, MOMENTS)
     most = _round_up(measures.of(max(gearing.load_N), "N"))
@@ -62,7 +62,7 @@ def running(gearing: WaveDesign, name: str, measures: Measures) -> Animation:
 
 
 def _round_up(value: float) -> float:
-    """Return a number of two digits that is not smaller."""
+    """A number of two digits that is not smaller."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 1)
     return math.ceil(value / unit) * unit
 
@@ -81,7 +81,7 @@ class Drawn:
 
 
 def drawn(design: WaveDesign) -> Drawn:
-    """Return the gearing of a report, of teeth of any law."""
+    """The gearing of a report, of teeth of any law."""
     gearing = StrainWave(
         design.module_mm,
         design.flexspline_teeth,
@@ -100,26 +100,26 @@ def drawn(design: WaveDesign) -> Drawn:
 
 
 def _arcs(gearing: StrainWave, space: int, turns: Any) -> Any:
-    """Return the angle phi [rad] of the tooth in a space as the wave turns."""
+    """The angle phi [rad] of the tooth in a space as the wave turns."""
     behind = 2.0 * math.pi * space / gearing.circular_teeth - turns
     return behind / gearing.teeth_ratio
 
 
 def _load(gearing: WaveDesign, degrees: Any) -> Any:
-    """Return the load [N] of a tooth at angles on the wave [degrees], of both lobes."""
+    """The load [N] of a tooth at angles on the wave [degrees], of both lobes."""
     angles = (np.asarray(degrees) + 90.0) % 180.0 - 90.0
     return np.interp(angles, gearing.load_angle_deg, gearing.load_N, left=0.0, right=0.0)
 
 
 def _places(curve: NeutralCurve, arcs: Any, turns: Any) -> Any:
-    """Return places (n, N, 3) of teeth, upright: x, y of the foot and the angle of the axis."""
+    """Places (n, N, 3) of teeth, upright: x, y of the foot and the angle of the axis."""
     place, normal = whole_curve(curve, arcs)
     at = place.turned(turns + UPRIGHT)
     return np.stack((at.x, at.y, turns + normal), axis=-1)
 
 
 def _tooth(shape: Drawn, points: int) -> Any:
-    """Return the outline of a tooth of the flexspline about its foot, its axis upwards."""
+    """The outline of a tooth of the flexspline about its foot, its axis upwards."""
     rim = 0.5 * float(shape.gearing.rim)
     height, half = shape.tooth[_evenly(len(shape.tooth), points)].T
     side = np.c_[np.r_[rim, height], np.r_[half[0], half]]
@@ -128,12 +128,12 @@ def _tooth(shape: Drawn, points: int) -> Any:
 
 
 def _evenly(count: int, points: int) -> Any:
-    """Return the numbers of some points of a column, both ends among them."""
+    """The numbers of some points of a column, both ends among them."""
     return np.rint(np.linspace(0, count - 1, points)).astype(int)
 
 
 def _spaces(shape: Drawn, numbers: Any, points: int) -> Any:
-    """Return the outline of the circular spline's teeth along some spaces, upright."""
+    """The outline of the circular spline's teeth along some spaces, upright."""
     gearing = shape.gearing
     across, out = shape.space[_evenly(len(shape.space), points)].T
     radius, half = np.hypot(across, out), np.arctan2(across, out)
@@ -148,7 +148,7 @@ def _spaces(shape: Drawn, numbers: Any, points: int) -> Any:
 
 
 def _ring(shape: Drawn, offset: float, count: int) -> Any:
-    """Return the neutral curve, moved outwards along its normal [mm], upright at turn 0."""
+    """The neutral curve, moved outwards along its normal [mm], upright at turn 0."""
     place, normal = whole_curve(shape.curve, np.linspace(-math.pi, math.pi, count)[:-1])
     x, y = place.x + offset * np.cos(normal), place.y + offset * np.sin(normal)
     return np.c_[-y, x]
@@ -159,7 +159,7 @@ def _turning(turns: Any) -> Any:
 
 
 def _bodies(shape: Drawn, gearing: WaveDesign, turns: Any, numbers: Any, points: int) -> list[Body]:
-    """Return teeth of the flexspline, coloured by what they carry."""
+    """Teeth of the flexspline, coloured by what they carry."""
     outline = _tooth(shape, points)
     arcs = np.array([_arcs(shape.gearing, k, turns) for k in numbers])
     places, forces = _places(shape.curve, arcs, turns), _load(gearing, np.degrees(arcs))
@@ -170,7 +170,7 @@ def _bodies(shape: Drawn, gearing: WaveDesign, turns: Any, numbers: Any, points:
 
 
 def _rings(shape: Drawn, turns: Any, count: int) -> list[Body]:
-    """Return the rim of the flexspline and the wave generator in it, which turn as one shape."""
+    """The rim of the flexspline and the wave generator in it, which turn as one shape."""
     rim = 0.5 * float(shape.gearing.rim)
     outer, inner = _ring(shape, rim, count), _ring(shape, -rim, count)
     bar = np.array([(0.0, inner[:, 1].min()), (0.0, inner[:, 1].max())])
@@ -220,7 +220,7 @@ def _close(shape: Drawn, design: WaveDesign, turns: Any, measures: Measures) -> 
 
 
 def _shown(gearing: WaveDesign, measures: Measures) -> WaveDesign:
-    """Return the report with loads in the unit that is shown."""
+    """The report with loads in the unit that is shown."""
     factor = measures.of(1.0, "N")
     return replace(gearing, load_N=tuple(factor * v for v in gearing.load_N))
 
