@@ -35,7 +35,7 @@ from gearopt.optimise.pareto.measures import (
     scaled,
     unbeaten,
 )
-from gearopt.optimise.pareto.posed import Limit, caps, moved, posed, scale
+from gearopt.optimise.pareto.posed import Limit, caps, moved, posed, violation_scale
 from gearopt.optimise.result import Event
 
 
@@ -165,12 +165,14 @@ def test_limits_of_objectives_are_quotients_or_differences():
     limited = posed(own, ["a"], {"b": Limit.of(2.0, 1.0)})
     batch = limited.batch(np.array([[3.0], [4.0]]))
     assert batch.G.ravel() == pytest.approx([1.0, 0.5]) and batch.F.ravel() == pytest.approx([3, 4])
-    assert scale(limited, "b") == 2.0 and caps(posed(own, ["a", "b"], {"b": Limit(2, 2)})) == {
-        "b": 2
-    }
+    assert violation_scale(limited, "b") == 2.0 and caps(
+        posed(own, ["a", "b"], {"b": Limit(2, 2)})
+    ) == {"b": 2}
     signed = moved(posed(own, ["a"], {"b": Limit.of(-2.0, 4.0)}), {"b": Limit(-1.0, 8.0)})
     assert signed.batch(np.array([[2.0]])).G.ravel() == pytest.approx([1.0 + (3.0 + 1.0) / 8.0])
-    assert scale(signed, "b") == 8.0 and batch.report["value_b"] == pytest.approx([2.0, 1.0])
+    assert violation_scale(signed, "b") == 8.0 and batch.report["value_b"] == pytest.approx(
+        [2.0, 1.0]
+    )
 
 
 def test_corners_below_which_a_point_may_lie():

@@ -17,9 +17,9 @@ from gearopt.optimise.scale import sizes
 from gearopt.optimise.tape import fold, walk
 from gearopt.optimise.terms import Array
 
-NEAR = 1e-6  # of the terms that are compared: they are equal
+TERM_TIE = 1e-6  # of the terms that are compared: they are equal
 NOISE = 1e-12  # of the objective: a smaller fall is rounding
-STEPS = (1e-6, 1e-4, 1e-2)  # of a variable's own scale, by which the objective is probed
+PROBE_STEPS = (1e-6, 1e-4, 1e-2)  # of a variable's own scale, by which the objective is probed
 
 
 @dataclass(frozen=True)
@@ -48,19 +48,20 @@ def kink(problem: Problem, x: Array, active: Any) -> str:
 def probed(problem: Problem, x: Array) -> tuple[str, bool]:
     """Return the variable along which the objective falls, and whether it rises along all others.
 
-    By STEPS to both sides of each variable, alone, that exceed no limit further; "": none falls.
+    By PROBE_STEPS to both sides of each variable, alone, that exceed no limit further; "": none falls.
     """
     lower, upper, _ = problem.bounds()
     own, count = np.diag(sizes(problem, x)), len(x)
     ways = np.vstack([own, -own])
-    points = np.clip(x + np.vstack([step * ways for step in STEPS]), lower, upper)
+    points = np.clip(x + np.vstack([step * ways for step in PROBE_STEPS]), lower, upper)
     batch = problem.batch(np.vstack([x, points]))
     excess = np.hstack([batch.G - 1.0, np.abs(batch.H - 1.0)])
     free = (excess[1:] <= np.maximum(excess[0], 0.0)).all(axis=1) & (points != x).any(axis=1)
     change = batch.F[1:, 0] - batch.F[0, 0]
     noise = NOISE * abs(batch.F[0, 0])
     less, more = (
-        np.reshape(free & side, (len(STEPS), -1)) for side in (change < -noise, change > noise)
+        np.reshape(free & side, (len(PROBE_STEPS), -1))
+        for side in (change < -noise, change > noise)
     )
     falling = np.flatnonzero(less.all(axis=0))
     name = str(problem.columns[falling[0] % count][1]) if len(falling) else ""
@@ -139,13 +140,13 @@ def _bends() -> dict[int, tuple[str, Near]]:
     import casadi as ca
 
     def zero(a: Any, size: Any) -> Any:
-        return np.abs(a) <= NEAR * size
+        return np.abs(a) <= TERM_TIE * size
 
     def equal(a: Any, b: Any, size: Any) -> Any:
-        return np.abs(a - b) <= NEAR * size
+        return np.abs(a - b) <= TERM_TIE * size
 
     def whole(a: Any, size: Any) -> Any:
-        return np.abs(a - np.round(a)) <= NEAR * np.maximum(size, 1.0)
+        return np.abs(a - np.round(a)) <= TERM_TIE * np.maximum(size, 1.0)
 
     compared = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE)
     return {

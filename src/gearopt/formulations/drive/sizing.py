@@ -18,7 +18,7 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing_text, teeth
-from gearopt.formulations.drive.rated.bound import Choice, bounding, box, solved
+from gearopt.formulations.drive.rated.bound import Choice, bounding, solved, stage_box
 from gearopt.formulations.drive.rated.cells import Searched, search
 from gearopt.formulations.drive.rated.designs import polished
 from gearopt.formulations.drive.train import Stage, Train, terms
@@ -281,7 +281,7 @@ def _claim(best: _Design | None, bound: float, clock: Clock) -> Outcome:
 
 def _all_bounded(train: Train) -> bool:
     """Return whether every standard has a bounding law, from whose optimum a search may start."""
-    boxes = [(stage, box(train, k, math.inf)) for k, stage in enumerate(train.stages)]
+    boxes = [(stage, stage_box(train, k, math.inf)) for k, stage in enumerate(train.stages)]
     return all(
         standard.floor(own, standard.choices(bool(stage.toothing.helix_angle))[0]) is not None
         for stage, own in boxes

@@ -24,7 +24,7 @@ from gearopt.physics.motion.linear import linear
 from gearopt.physics.motion.moving_pair import MovingPair
 
 ORDERS = 12  # of the mesh frequency, shown over speed
-BEYOND, WIDER, MOST_HARMONICS = 3.0, 4, 512  # harmonics of a motion in contact
+FASTEST_MODES, FOURIER_TIMES, MOST_HARMONICS = 3.0, 4, 512  # harmonics of a motion in contact
 GUESSED = 40  # of one that parts, at most: its state is made exact afterwards
 STEPS_PER_PERIOD = 12.0  # of RK8 in a period of the fastest mode: 1e-6 of a motion
 LOOKS, FINEST = 64, 16.0  # samples of a period of the mesh at least, and of the fastest mode
@@ -106,13 +106,13 @@ def in_contact(
 def enough(pair: MovingPair, level: str, frequency: float, harmonics: int) -> int:
     """Return how many harmonics of a mesh frequency [Hz] a motion of teeth in contact asks for.
 
-    A stiffness with kinks or jumps excites the fastest mode at any speed: harmonics to BEYOND times
-    that mode, at most MOST_HARMONICS. A Fourier series: WIDER times its own.
+    A stiffness with kinks or jumps excites the fastest mode at any speed: harmonics to FASTEST_MODES times
+    that mode, at most MOST_HARMONICS. A Fourier series: FOURIER_TIMES times its own.
     """
     if len(pair.wave.edges) == 1:
-        return max(harmonics, WIDER * len(pair.wave.cosines))
+        return max(harmonics, FOURIER_TIMES * len(pair.wave.cosines))
     top = 1.0 / fastest(replace(pair, mesh_frequency=0.0), level)
-    return max(harmonics, min(MOST_HARMONICS, math.ceil(BEYOND * top / frequency)))
+    return max(harmonics, min(MOST_HARMONICS, math.ceil(FASTEST_MODES * top / frequency)))
 
 
 def linear_motion(pair: MovingPair, level: str, contact: Contact) -> Motion:
@@ -163,7 +163,9 @@ def near(
             return None
         state = states(pair, level, made, SAMPLES * harmonics)[0]
     repeating = _repeating(pair, level, state, periods, clock)
-    found = None if repeating is None else _told(pair, level, repeating, periods, clock)
+    found = (
+        None if repeating is None else _periodic_response(pair, level, repeating, periods, clock)
+    )
     if found is None:
         return None
     size = max(found.delta.size, last.delta.size)
@@ -237,7 +239,7 @@ def settled(
         spent += CHUNK
         changes = [_change(passed / scale, p) for p in range(1, MOST_PERIODS + 1)]
     repeats = next((p for p, c in enumerate(changes, 1) if c <= REPEATED), 0)
-    found = _told(pair, level, passed[-1], repeats, clock)
+    found = _periodic_response(pair, level, passed[-1], repeats, clock)
     if found is not None and repeats == 1 and found.highest <= 0.0 and contact.holds:
         return linear_motion(pair, level, contact)
     return found
@@ -275,7 +277,9 @@ def _change(passed: Array, periods: int) -> float:
     return float(np.max(np.abs(later - before)) / size)
 
 
-def _told(pair: MovingPair, level: str, state: Array, repeats: int, clock: Clock) -> Motion | None:
+def _periodic_response(
+    pair: MovingPair, level: str, state: Array, repeats: int, clock: Clock
+) -> Motion | None:
     """Amplitudes, contact losses and multiplier of the motion from a state on, over its periods.
 
     None: the clock stopped.

@@ -30,7 +30,7 @@ class Goal:
     motion: str = ""
 
     @property
-    def word(self) -> str:
+    def label(self) -> str:
         """Label of the objective in lists of trains."""
         return self.name.removeprefix("inverse_").replace("_", " ")
 

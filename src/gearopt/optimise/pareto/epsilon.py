@@ -20,7 +20,7 @@ from gearopt.optimise.form import form
 from gearopt.optimise.pareto import evolution
 from gearopt.optimise.pareto.found import Found, Point, Skipped, Step, sifted
 from gearopt.optimise.pareto.gaps import (
-    CLOSE,
+    POINT_TIE,
     TRIALS,
     Gap,
     Tried,
@@ -30,7 +30,15 @@ from gearopt.optimise.pareto.gaps import (
     met,
     spread,
 )
-from gearopt.optimise.pareto.posed import LIMIT_PREFIX, Built, Limit, kept, posed, scale, valued
+from gearopt.optimise.pareto.posed import (
+    LIMIT_PREFIX,
+    Built,
+    Limit,
+    kept,
+    posed,
+    valued,
+    violation_scale,
+)
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Result, Watch
 from gearopt.optimise.solve import GAP
@@ -75,7 +83,7 @@ class Run:
 
     sample: points that evolution found, which steps start from; None: it was not asked, as all
     steps are proven. sure: the ends are proven. blur: what feasibility alone leaves open of an
-    objective, in parts of its range, where that is more than CLOSE.
+    objective, in parts of its range, where that is more than POINT_TIE.
     """
 
     problem: Problem | Conic
@@ -166,14 +174,14 @@ def _ends(run: Run, names: tuple[str, ...], caps: Caps) -> list[Point] | None:
         run.sure = run.sure and first.proven
         least.append(float(first.values[k]))
         ends.append(_end(run, names, k, caps, first, least[k] + SLACK * abs(least[k])))
-    near = CLOSE * np.ptp([p.values for p in ends], axis=0)
+    near = POINT_TIE * np.ptp([p.values for p in ends], axis=0)
     for k, at in enumerate(least):  # small differences of large values are told apart
         if SLACK * abs(at) > near[k]:
             most = at + max(float(near[k]), FEASIBLE * abs(at))
             ends[k] = _end(run, names, k, caps, ends[k], most)
     for at, width in zip(least, np.ptp([p.values for p in ends], axis=0), strict=False):
         blur = 2.0 * FEASIBLE * abs(at)
-        run.blur = max(run.blur, blur / width if blur > CLOSE * width > 0.0 else 0.0)
+        run.blur = max(run.blur, blur / width if blur > POINT_TIE * width > 0.0 else 0.0)
     if len(names) == len(run.names):
         values = np.array([p.values for p in ends])
         run.widths = dict(zip(run.names, np.ptp(values, axis=0).tolist(), strict=True))
@@ -274,12 +282,12 @@ class Line:
             gap = max(free, key=lambda g: g.area)
             at = met(gap.left, gap.right)[1] if gap.whole else 0.5
             shutting = self.run.discrete and not gap.whole and not gap.refused
-            shut = gap.top - 0.5 * CLOSE * self.ranges[1]
+            shut = gap.top - 0.5 * POINT_TIE * self.ranges[1]
             self.step(shut if shutting else gap.limit(min(max(float(at), CORNER), 1.0 - CORNER)))
 
     def step(self, most: float) -> None:
         """Add the point of least first objective below a limit of the second one, if it is new."""
-        run, near = self.run, CLOSE * self.ranges
+        run, near = self.run, POINT_TIE * self.ranges
         gap = next((g for g in self.open if g.floor < most < g.top), None)
         if gap is None or run.clock.over:
             return
@@ -363,7 +371,7 @@ def _attempt(run: Run, name: str, most: Caps, near: Array | None) -> tuple[Resul
     rows = [f"{LIMIT_PREFIX}_{n}" for n in run.names[1:]]
     priced = name == run.names[0] and not run.discrete
     if priced and all(row in result.multipliers for row in rows):
-        scales = [scale(at, n) for n in run.names[1:]]
+        scales = [violation_scale(at, n) for n in run.names[1:]]
         slopes = np.array([result.multipliers[r] / s for r, s in zip(rows, scales, strict=True)])
     proven = result.status == "optimal"
     if isinstance(at, Problem) and proven and run.limiting is None:
@@ -432,7 +440,7 @@ def concluded(run: Run, complete: bool = False) -> Found:
 def _sentence(run: Run, points: tuple[Point, ...], complete: bool) -> str:
     """Sentence on the proof of the points."""
     if complete and points:
-        return (STAIRS if not run.lines else SHUT).format(name=run.names[1], close=CLOSE)
+        return (STAIRS if not run.lines else SHUT).format(name=run.names[1], close=POINT_TIE)
     count = sum(p.proven for p in points)
     if not count:
         starts = len(run.sample or ())

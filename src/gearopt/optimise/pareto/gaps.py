@@ -15,7 +15,7 @@ from gearopt.optimise.pareto.found import Point
 from gearopt.optimise.pareto.measures import unbeaten
 from gearopt.optimise.terms import Array
 
-CLOSE = 1e-6  # of the range of an objective: designs that are nearer count as one
+POINT_TIE = 1e-6  # of the range of an objective: designs that are nearer count as one
 TRIALS = 3  # steps without a result after which a gap is left open
 SAMPLES = 65  # of a curve between two neighbours
 
@@ -78,7 +78,7 @@ def ranked(points: Sequence[Point]) -> list[Point]:
 
 def gaps(points: Sequence[Point], tried: Sequence[Tried], ranges: Array) -> list[Gap]:
     """Return the gaps of a front, some of them shut; ranges (2,): of the objectives."""
-    near_f, near_g = CLOSE * ranges[:2]
+    near_f, near_g = POINT_TIE * ranges[:2]
     line, every = ranked(points), []
     for left, right in zip(line, line[1:], strict=False):
         f, low, top = float(left.values[0]), float(left.values[1]), float(right.values[1])

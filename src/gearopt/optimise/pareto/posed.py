@@ -121,7 +121,7 @@ def moved(problem: Problem | Conic, limits: Mapping[str, Limit]) -> Problem | Co
     return found
 
 
-def scale(problem: Problem | Conic, name: str) -> float:
+def violation_scale(problem: Problem | Conic, name: str) -> float:
     """Scale of the violation of an objective's limit."""
     known = _numbers(problem)
     return known.get(f"{SCALE}_{name}", known[f"{LIMIT_PREFIX}_{name}"])

@@ -7,10 +7,10 @@ from gearopt.formulations.dynamics.orbit.climbing import JUDGE_MARGIN, begun, po
 from gearopt.formulations.dynamics.orbit.impossible import impossible, limited
 from gearopt.formulations.dynamics.orbit.least_vibration import (
     Exchanged,
-    chosen,
     exchange,
     least,
     methods,
+    response_over_speed,
 )
 from gearopt.formulations.dynamics.orbit.task import MICRO, VARIABLES, Task
 from gearopt.optimise.clock import Clock, in_part, of_others
@@ -79,7 +79,7 @@ def optimised(
     if result.value is None:
         return result, None, task
     values = tuple(float(v) for v in list(result.design.values())[: len(VARIABLES)])
-    best = chosen(task, values, before, made.rounds if made else (), clock)
+    best = response_over_speed(task, values, before, made.rounds if made else (), clock)
     return _judged(result, best, task), best, task
 
 

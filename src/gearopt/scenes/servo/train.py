@@ -219,7 +219,7 @@ def _neighbour(scene: Scene, gears: Pairs, first: float, best_of: str) -> Listed
     return ListedTrain(
         stages=tuple(Teeth(p.normal_module, p.pinion_teeth, p.wheel_teeth) for p in gears),
         ratio=train.ratio,
-        best_of=GOALS[best_of].word if best_of else "",
+        best_of=GOALS[best_of].label if best_of else "",
         inertia_kg_m2=train.inertia_kg_m2,
         mass_kg=train.mass_kg,
         error_deg=train.error_deg,

@@ -32,7 +32,7 @@ def bounding(train: Train, choice: Choice, most: float = math.inf) -> Problem | 
     """
     floors: list[list[Any]] = []
     for k, stage in enumerate(train.stages):
-        own = box(train, k, most)
+        own = stage_box(train, k, most)
         standards = stage.options[0].standards if stage.options else ()
         floors.append([s.floor(own, choice[k][j]) for j, s in enumerate(standards)])
     if any(row and all(floor is None for floor in row) for row in floors):
@@ -67,7 +67,7 @@ def _least(train: Train, k: int, pair: GearPair, density: Any, option: int, obje
     return least_share(train, k, pair, density, option, (pinion, wheel), objective)
 
 
-def box(train: Train, k: int, most: float) -> Box:
+def stage_box(train: Train, k: int, most: float) -> Box:
     """Bounds of a stage's sizes over all designs whose objective is at most a value."""
     stage, highest = train.stages[k], float(train.highest_ratio)
     numbers = SimpleNamespace(**train.numbers())

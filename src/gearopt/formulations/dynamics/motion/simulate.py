@@ -86,7 +86,7 @@ def simulate(
     intervals = timeline(pair, times)
     if pair.backlash is None and piecewise_linear(pair, level):
         exact = exact_motion(pair, level, intervals, state, clock)
-        return _told(times, exact, "exponential", EXACT, error, exact.rates, 0.0)
+        return _simulated(times, exact, "exponential", EXACT, error, exact.rates, 0.0)
     tried = _begun(pair, level, intervals, state, clock)
     spent, ended = sum(t.spent for t in tried), list[_Try]()
     while tried:
@@ -113,7 +113,7 @@ def simulate(
         best = min((*ended, *tried), key=lambda t: t.error)
     changed = _moved(best, intervals, state, clock)
     reached = max(best.error, float(changed.max(initial=0.0)))
-    found = _told(times, best.motion, best.method, reached, error, spent, best.longest)
+    found = _simulated(times, best.motion, best.method, reached, error, spent, best.longest)
     if found is None or len(changed) < len(best.motion.states):
         return found and replace(found, met=False)
     beyond = np.flatnonzero(changed > error)
@@ -151,7 +151,7 @@ def _begun(pair: MovingPair, level: str, times: Timeline, state: Array, clock: C
     return tried
 
 
-def _told(
+def _simulated(
     times: Array, motion: Marched, method: str, error: float, asked: float, spent: int, step: float
 ) -> Simulated | None:
     """Return a motion as far as it has come; None where that is less than SHORTEST outputs."""

@@ -82,13 +82,13 @@ def problem(
 
     powers, methods = ranges.exponents, dict[str, Callable[..., Any]]()
     if len(objectives) == 1 and all(n.startswith(PROVEN) for n in (*objectives, *most)):
-        methods = {"exact": search(mesh, powers, _goal(mesh, objectives[0], most))}
+        methods = {"exact": search(mesh, powers, _objective_and_limits(mesh, objectives[0], most))}
         if objectives == PROVEN[:1] and not most:
             methods["mpec"] = local(mesh, powers)
     return Problem("relief", variables(ranges), (), evaluate, methods=methods, vectorised=True)
 
 
-def _goal(mesh: Mesh, name: str, limits: dict[str, float]) -> Goal:
+def _objective_and_limits(mesh: Mesh, name: str, limits: dict[str, float]) -> Goal:
     """Objective of the search, and the limits [mm] that it keeps to."""
     loads = np.arange(1, len(mesh.loads) + 1)
 

@@ -41,7 +41,7 @@ def _costs(result: Result) -> bool:
     asked = GOALS.get(str(result.objective.get("name")))
     if result.status not in PROVEN or design_of(result).box is None or asked is None:
         return False
-    best = [t for t in report_of(result).trains or () if t.best_of == asked.word]
+    best = [t for t in report_of(result).trains or () if t.best_of == asked.label]
     reached, there = goal(result)[2], getattr(best[0], asked.key) if best else None
     return bool(reached and there and abs(there - reached) > OBJECTIVE_TIE * abs(reached))
 

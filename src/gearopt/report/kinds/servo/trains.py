@@ -48,7 +48,7 @@ BEST = {  # symbol and colour of the best by a goal
     "inertia": ("diamond", "--series-4"),
     "mass": ("square", "--series-3"),
     "error": ("triangle-up", "--series-5"),
-    **{goal.word: ("diamond", "--series-4") for goal in MOTIONS.values()},
+    **{goal.label: ("diamond", "--series-4") for goal in MOTIONS.values()},
 }
 
 
@@ -245,7 +245,7 @@ def _front(result: Result, measures: Measures, goal: Goal, other: Goal) -> Secti
         groups.append(("other trains", rest, (8, "circle", "--series-1")))
     for name, (symbol, colour) in BEST.items():
         if few := [t for t in trains if t.best_of == name]:
-            end = "maximum" if name == LARGEST.word else "minimum"
+            end = "maximum" if name == LARGEST.label else "minimum"
             groups.append((f"{end} {name}", few, (12, symbol, colour)))
     for name, train, mark in (
         ("chosen", design.train, (20, "circle-open", "--series-2")),
@@ -267,7 +267,7 @@ def _front(result: Result, measures: Measures, goal: Goal, other: Goal) -> Secti
     traces = [_points(*group, (key, high), measures) for group in groups]
     figure = Figure(traces, layout(across, up, 400, shapes=shapes), _caption(result, trains, goal))
     tables = (_table(trains, measures),) if goal.name != "mass" else ()
-    title = f"{other.word.capitalize()} and {goal.word}"
+    title = f"{other.label.capitalize()} and {goal.label}"
     return Section(title, figures=(figure,), tables=tables, half=True)
 
 
@@ -321,7 +321,7 @@ def _caption(result: Result, trains: Sequence[ListedTrain], goal: Goal) -> str:
     )
     which = f"{len(trains)} of the best trains"
     if not dominated:
-        *names, last = (goal.word for goal in goals)
+        *names, last = (goal.label for goal in goals)
         several = f"{', '.join(names)} and {last}"
         which = f"Pareto front of {len(trains)} trains: none dominates another in {several}"
     return f"{which}; point at one to see its teeth.".capitalize()
@@ -348,5 +348,5 @@ def _told(train: ListedTrain, measures: Measures) -> str:
     for goal in _known(train):
         value, unit = getattr(train, goal.key), parted(goal.key)[1]
         shown = degrees(value) if goal.name == "error" else amount(value, unit, measures)
-        lines.append(f"{goal.word} {shown}")
+        lines.append(f"{goal.label} {shown}")
     return "<br>".join(lines)

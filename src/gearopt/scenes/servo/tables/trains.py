@@ -31,7 +31,7 @@ TURN = units.parse("360 deg", "angle")
 DIGITS = 12  # of a number that is to be written
 TURNED = {"move": ("angle", 1), "swing": ("amplitude", 2)}  # key of the duty, times how often
 LENGTH = quantity("length", "6 mm")
-AIMS = {goal.word.replace(" ", "_"): goal for goal in GOALS.values()}  # by the word of a file
+AIMS = {goal.label.replace(" ", "_"): goal for goal in GOALS.values()}  # by the word of a file
 
 
 class Train(Table):
