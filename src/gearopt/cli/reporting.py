@@ -27,8 +27,8 @@ from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result, loads
-from gearopt.report.words import again
 from gearopt.report.measures import METRIC, SYSTEMS, Measures
+from gearopt.report.words import again
 from gearopt.scenes.reading.files import LARGEST_KEPT, first_bytes
 
 REASON_LENGTH = 200  # characters shown of what is wrong with a file

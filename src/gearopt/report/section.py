@@ -211,6 +211,8 @@ class Listed:
 
     def cell(self, value: Any, measures: Measures) -> Cell:
         """A value of the field as it is read; a length has decimals by its unit."""
+        if self.form == "share":
+            return percent(value)
         if not self.form or value is None:
             return cell(value, self.unit, measures)
         if self.unit == "mm":

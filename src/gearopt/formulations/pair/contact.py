@@ -54,16 +54,22 @@ class ContactLoad:
     """
 
     load: float
-    normal_force_N: float
-    largest_tooth_force_N: float
+    normal_force_N: Annotated[float, Shown("normal force", "forces")]
+    largest_tooth_force_N: Annotated[float, Shown("largest load on a tooth", "forces")]
     largest_share: float
-    largest_contact_stress_MPa: float
-    mean_transmission_error_mm: float
-    peak_to_peak_mm: float
+    largest_contact_stress_MPa: Annotated[float, Shown("largest contact stress", "motion")]
+    mean_transmission_error_mm: Annotated[float, Shown("transmission error, mean", "motion", "um")]
+    peak_to_peak_mm: Annotated[float, Shown("peak to peak", "motion", "um")]
     harmonics_mm: Columns
-    mean_mesh_stiffness_MPa: float
-    least_mesh_stiffness_MPa: float
-    most_mesh_stiffness_MPa: float
+    mean_mesh_stiffness_MPa: Annotated[
+        float, Shown("mesh stiffness, mean", "stiffness", "N_per_mm_um")
+    ]
+    least_mesh_stiffness_MPa: Annotated[
+        float, Shown("mesh stiffness, least", "stiffness", "N_per_mm_um")
+    ]
+    most_mesh_stiffness_MPa: Annotated[
+        float, Shown("mesh stiffness, most", "stiffness", "N_per_mm_um")
+    ]
     share: Columns
     contact_stress_MPa: Columns
     transmission_error_mm: Columns

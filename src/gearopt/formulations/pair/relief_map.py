@@ -50,8 +50,8 @@ class ReliefRow:
     """
 
     name: str
-    pinion_amount_mm: float
-    wheel_amount_mm: float
+    pinion_amount_mm: Annotated[float, Shown("pinion", unit="um")]
+    wheel_amount_mm: Annotated[float, Shown("wheel", unit="um")]
     value: float
     peak_to_peak_mm: Columns
     load_jump: Columns

@@ -201,19 +201,19 @@ class ErrorSource:
 class MeshBacklash:
     """Circumferential backlash of a stage with all deviations at their worst; None: none asked."""
 
-    stage: int
-    minimum_mm: float
-    maximum_mm: float
-    asked_mm: float | None
+    stage: Annotated[int, Shown("stage")]
+    minimum_mm: Annotated[float, Shown("minimum backlash", unit="um", form=".2f")]
+    maximum_mm: Annotated[float, Shown("maximum", unit="um", form=".2f")]
+    asked_mm: Annotated[float | None, Shown("required", unit="um", form=".2f")]
 
 
 @dataclass(frozen=True)
 class Spring:
     """A mesh or shaft of the train, its share of the compliance, its stiffness at the output."""
 
-    name: str
-    compliance_share: float
-    referred_Nm_per_rad: float
+    name: Annotated[str, Shown("spring")]
+    compliance_share: Annotated[float, Shown("share, %", form="share")]
+    referred_Nm_per_rad: Annotated[float, Shown("alone at the output")]
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -21,7 +19,7 @@ from gearopt.report.kinds.pair.path_plots import Line, over_path, zone_words
 from gearopt.report.kinds.pair.words import of_duty
 from gearopt.report.measures import Measures
 from gearopt.report.plots import Figure
-from gearopt.report.section import Cell, Section, Table, cell, records
+from gearopt.report.section import Cell, Section, Table, cell, records, side_by_side
 from gearopt.report.words import share
 
 MESH = "teeth in mesh"  # the animation that plots follow
@@ -191,48 +189,35 @@ def points(contact: PairContact, measures: Measures) -> Table:
 
 def loads(contact: PairContact, measures: Measures) -> Table:
     """Forces, stresses and errors at every load, beside the stiffness by ISO 6336-1."""
-
-    def row(head: str, unit: str, value: Callable[[ContactLoad], float | None]) -> list[Any]:
-        values = [value(load) for load in contact.loads]
-        cells = [Cell("", "–") if v is None else cell(v, unit, measures) for v in values]
-        return [f"{head} [{measures.unit(unit)}]", *cells]
-
-    waves = range(len(contact.loads[0].harmonics_mm))
+    each = contact.loads
+    shares = [Cell(100.0 * load.largest_share, share(load.largest_share)) for load in each]
+    micro, stiff = measures.unit("um"), measures.unit(STIFFNESS)
+    waves = zip(*(load.harmonics_mm for load in each), strict=True)
+    unloaded = Cell("", "–")  # there is no mesh stiffness
+    by_iso = {
+        "c_γα of ISO 6336-1": contact.iso_mesh_stiffness_MPa,
+        "c' of ISO 6336-1, of one pair": contact.iso_single_stiffness_MPa,
+    }
     rows = [
-        row("normal force", "N", lambda o: o.normal_force_N),
-        row("largest load on a tooth", "N", lambda o: o.largest_tooth_force_N),
-        [
-            "the same, % of the normal force",
-            *(Cell(100.0 * o.largest_share, share(o.largest_share)) for o in contact.loads),
-        ],
-        row("largest contact stress", "MPa", lambda o: o.largest_contact_stress_MPa),
-        row("transmission error, mean", "um", lambda o: o.mean_transmission_error_mm),
-        row("peak to peak", "um", lambda o: o.peak_to_peak_mm),
-        *(row(f"harmonic {k + 1}", "um", partial(_harmonic, k)) for k in waves),
-        row("mesh stiffness, mean", STIFFNESS, lambda o: _loaded(o, o.mean_mesh_stiffness_MPa)),
-        row("mesh stiffness, least", STIFFNESS, lambda o: _loaded(o, o.least_mesh_stiffness_MPa)),
-        row("mesh stiffness, most", STIFFNESS, lambda o: _loaded(o, o.most_mesh_stiffness_MPa)),
-        row("c_γα of ISO 6336-1", STIFFNESS, lambda o: contact.iso_mesh_stiffness_MPa),
-        row("c' of ISO 6336-1, of one pair", STIFFNESS, lambda o: contact.iso_single_stiffness_MPa),
+        *side_by_side(each, measures, "forces"),
+        ["the same, % of the normal force", *shares],
+        *side_by_side(each, measures, "motion"),
+        *(
+            [f"harmonic {k} [{micro}]", *(cell(v, "um", measures) for v in wave)]
+            for k, wave in enumerate(waves, 1)
+        ),
+        *(
+            [head, *(c if o.normal_force_N else unloaded for c, o in zip(cells, each, strict=True))]
+            for head, *cells in side_by_side(each, measures, "stiffness")
+        ),
+        *(
+            [f"{name} [{stiff}]", *[cell(value, STIFFNESS, measures)] * len(each)]
+            for name, value in by_iso.items()
+        ),
     ]
-    names = [f"{100.0 * load.load:g} %" for load in contact.loads]
-    return Table(
-        "loads",
-        ["", *names],
-        rows,
-        "Force, contact stress, transmission error and stiffness at each load.",
-        across=True,
-    )
-
-
-def _harmonic(number: int, load: ContactLoad) -> float:
-    """The amplitude of a harmonic of the transmission error, counted from 0."""
-    return load.harmonics_mm[number]
-
-
-def _loaded(load: ContactLoad, value: float) -> float | None:
-    """A mesh stiffness; None without load, of which there is none."""
-    return value if load.normal_force_N else None
+    names = [f"{100.0 * load.load:g} %" for load in each]
+    caption = "Force, contact stress, transmission error and stiffness at each load."
+    return Table("loads", ["", *names], rows, caption, across=True)
 
 
 def path(contact: PairContact, measures: Measures) -> Table:

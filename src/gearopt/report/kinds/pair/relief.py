@@ -162,8 +162,7 @@ def rules(relief: PairRelief, measures: Measures) -> Table:
     micro, rows = measures.unit("um"), relief.rows
     at = [f"at {100.0 * load:g} %" for load in relief.loads]
     lines: list[list[Any]] = [
-        [f"pinion [{micro}]", *(cell(r.pinion_amount_mm, "um", measures) for r in rows)],
-        [f"wheel [{micro}]", *(cell(r.wheel_amount_mm, "um", measures) for r in rows)],
+        *side_by_side(rows, measures),
         ["exponent", *(_power(r.exponent) for r in rows)],
     ]
     for k, name in enumerate(at):

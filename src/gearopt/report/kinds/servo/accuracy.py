@@ -12,7 +12,6 @@ from gearopt.formulations.servo.servo_design import (
     DrawnErrors,
     ErrorSource,
     Histogram,
-    MeshBacklash,
     ToleranceRow,
 )
 from gearopt.optimise.result import Result
@@ -27,7 +26,7 @@ from gearopt.report.kinds.servo.words import (
 )
 from gearopt.report.measures import Measures
 from gearopt.report.plots import TEXT, Figure, axis, band, bars, layout, lines
-from gearopt.report.section import Cell, Section, Table, percent
+from gearopt.report.section import Cell, Section, Table, percent, records
 from gearopt.report.words import number, share
 
 ROW = 23.0  # px of a source
@@ -64,8 +63,9 @@ def errors(result: Result, measures: Measures) -> Section | None:
     caption = (
         "Each bar begins where the last one ends: the worst case, all at their limits at once."
     )
+    backlash = [Table("backlash", *records(design.backlash, measures))] if design.backlash else []
     words, table = _error_words(total, limit), _error_table(sources, total, measures)
-    tables = (table, *_backlash_table(design.backlash, measures))
+    tables = (table, *backlash)
     return Section(
         "Where the error comes from",
         words=[*words, *_by_kind(sources, total)],
@@ -73,26 +73,6 @@ def errors(result: Result, measures: Measures) -> Section | None:
         tables=tables,
         terminal=(*tables, *words),
     )
-
-
-def _backlash_table(backlashes: Sequence[MeshBacklash], measures: Measures) -> tuple[Table, ...]:
-    """Minimum and maximum backlash of every stage; nothing where the file asks for none."""
-    if not backlashes:
-        return ()
-    unit = measures.unit("um")
-
-    def cell(length: float | None) -> Cell | str:
-        if length is None:
-            return ""
-        size = measures.of(length, "um")
-        return Cell(size, f"{size:.2f}")
-
-    heads = ("stage", f"minimum backlash [{unit}]", f"maximum [{unit}]", f"required [{unit}]")
-    rows = [
-        [row.stage, cell(row.minimum_mm), cell(row.maximum_mm), cell(row.asked_mm)]
-        for row in backlashes
-    ]
-    return (Table("backlash", heads, rows),)
 
 
 def _error_words(total: float, limit: float | None) -> list[str]:

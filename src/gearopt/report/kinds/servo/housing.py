@@ -23,7 +23,7 @@ from gearopt.report.drawing.sheet import Drawing, Place, Point, Sheet, Window, a
 from gearopt.report.kinds.servo.words import arc_minutes, degrees, design_of, report_of
 from gearopt.report.measures import Measures
 from gearopt.report.plots import Figure, axis, bars, layout
-from gearopt.report.section import Section, Table, Tile, cell, percent
+from gearopt.report.section import Section, Table, Tile, records
 from gearopt.report.words import amount, number
 
 ROW, REST = 44.0, 70.0  # px of a spring, and of the axis
@@ -88,17 +88,9 @@ def _bars(springs: Sequence[Spring], measures: Measures) -> Figure:
 
 def _springs(springs: Sequence[Spring], measures: Measures) -> Table:
     """The springs as a table."""
-    unit = measures.unit("Nm_per_rad")
-    heads = ["spring", "share, %", f"alone at the output [{unit}]"]
-    short = {heads[1]: "share of compliance, %", heads[2]: f"alone [{unit}]"}
-    rows = [
-        [
-            s.name,
-            percent(s.compliance_share),
-            cell(s.referred_Nm_per_rad, "Nm_per_rad", measures),
-        ]
-        for s in springs
-    ]
+    heads, rows = records(springs, measures)
+    alone = f"alone [{measures.unit('Nm_per_rad')}]"
+    short = {heads[1]: "share of compliance, %", heads[2]: alone}
     return Table("springs", heads, rows, short=short)
 
 
