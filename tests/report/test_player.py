@@ -107,7 +107,7 @@ def test_numbers_that_do_not_belong_together_are_refused(change):
 
 
 def test_readings_have_their_decimals_and_unit():
-    texts = [animation(still=k).told[0][1] for k in range(4)]
+    texts = [animation(still=k).read_out[0][1] for k in range(4)]
     assert texts == ["0.1 kN", "2.3 kN", "–", "1.0 kN"]
     assert Reading("pairs", [2.0], decimals=0).text(0) == "2"
 

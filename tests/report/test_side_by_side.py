@@ -58,8 +58,8 @@ def test_every_design_is_a_column(three):
 
 def test_terminal_and_page_show_the_same_cells(three):
     table = processes(three, METRIC).tables[0]
-    heads, rows = table.shown
-    assert (heads, rows) == table.told and heads == ["", "process one", "process two"]
+    heads, rows = table.on_page
+    assert (heads, rows) == table.on_terminal and heads == ["", "process one", "process two"]
     assert len(rows) == 3 * 4 + 4  # the optimum is in the tables of the design
     lines = [" ".join(line.split()) for line in printed(three).splitlines()]
     for row in rows:

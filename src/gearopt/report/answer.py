@@ -80,8 +80,8 @@ def summary(result: Result, measures: Measures) -> Section | None:
     certain = [*bound_words(result, measures), *proof(result, measures), _effort(result)]
     ends = "\n".join([*certain[:-1], *_notes(result), certain[-1]])
     shown, said = tiles or words or warned, list(map(measures.words, words))
-    told = (measures.words(ends),)
-    return Section("Result" if shown else "", tiles, said, terminal=told, notes=warned)
+    on_terminal = (measures.words(ends),)
+    return Section("Result" if shown else "", tiles, said, terminal=on_terminal, notes=warned)
 
 
 def _tiles(result: Result, measures: Measures) -> list[Tile]:
@@ -208,8 +208,8 @@ def proven(result: Result, measures: Measures) -> Section:
     heads = ("", *(PARTS.get(part.name, part.name.replace("_", " ")) for part in parts))
     columns = [_column(part, measures) for part in parts]
     rows = [[n, *row] for n, *row in zip(ROWS, *columns, strict=True) if any(c != "" for c in row)]
-    told = ("value", "bound")  # key figures, or in the design
-    tables = [Table("proof", heads, rows, csv_only=told, across=True)]
+    hidden = ("value", "bound")  # key figures, or in the design
+    tables = [Table("proof", heads, rows, csv_only=hidden, across=True)]
     if checks := _checks(result):
         tables.append(checks)
     words = [meaning(result), *map(measures.words, proof(result, measures))]

@@ -169,8 +169,8 @@ def verdict(group: Group, row: Row) -> str:
 
 def _why(sample: Sample) -> str:
     """Message of the first run without a feasible point, in brackets; "" for none."""
-    told = (r.message for r in sample.runs if r.objective is None and r.message)
-    message = next(told, "").partition(". ")[0].rstrip(".")
+    messages = (r.message for r in sample.runs if r.objective is None and r.message)
+    message = next(messages, "").partition(". ")[0].rstrip(".")
     return f" ({message})" if message else ""
 
 

@@ -86,13 +86,13 @@ class Table:
         return re.sub(r"[^a-z0-9]+", "-", self.name.lower()).strip("-")
 
     @property
-    def shown(self) -> tuple[list[str], list[list[Cell]]]:
+    def on_page(self) -> tuple[list[str], list[list[Cell]]]:
         """Heads and cells as the page shows them."""
         heads, rows = self.without({*self.terminal_only, *self.csv_only})
         return heads, [[shown(value) for value in row] for row in rows]
 
     @property
-    def told(self) -> tuple[list[str], list[list[Cell]]]:
+    def on_terminal(self) -> tuple[list[str], list[list[Cell]]]:
         """Heads and cells as the terminal shows them."""
         heads, rows = self.without({*self.page_only, *self.csv_only})
         names = [self.short.get(head, head) for head in heads]

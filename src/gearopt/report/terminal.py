@@ -39,7 +39,7 @@ def grid(table: Table, width: int) -> Grid:
     width: columns of the terminal. Of a table of words in which the first column has too little
     room, its text stands above that of the second.
     """
-    heads, rows = table.told
+    heads, rows = table.on_terminal
     if table.words and _narrow(table, width):
         return _stacked(table, width)
     if any(heads):
@@ -62,7 +62,7 @@ def _narrow(table: Table, width: int) -> bool:
 
 def _columns(table: Table) -> list[list[str]]:
     """Head and texts of every column."""
-    heads, rows = table.told
+    heads, rows = table.on_terminal
     return [[head, *(row[k].text for row in rows)] for k, head in enumerate(heads)]
 
 
@@ -72,7 +72,7 @@ def _stacked(table: Table, width: int) -> Grid:
     The second one breaks where the others, of which those on the left break, leave no room for it.
     A row that continues the one before, by a first cell that is indented, has one line.
     """
-    (first, second, *heads), rows = table.told
+    (first, second, *heads), rows = table.on_terminal
     _, widest, *others = _columns(table)
     room = width - len(INDENT) - max(map(len, widest))
     for k, column in enumerate(others, 2):

@@ -155,8 +155,8 @@ def test_teeth_are_coloured_by_what_they_carry(moving):
     jump = np.flatnonzero(np.diff(given.travels) == 0.0)
     assert len(jump) == 1 and two[jump[0]] and not two[jump[0] + 1]
     assert two[made.still]
-    assert dict(made.told)["share of pair 2"] == "70.0 %"
-    assert dict(made.told)["transmission error"] == "5.00 µm"
+    assert dict(made.read_out)["share of pair 2"] == "70.0 %"
+    assert dict(made.read_out)["transmission error"] == "5.00 µm"
 
 
 def test_before_and_after_stand_side_by_side_on_one_clock():
@@ -164,9 +164,9 @@ def test_before_and_after_stand_side_by_side_on_one_clock():
     given = carried(pair)
     made = in_mesh(pair, "mesh", {"before": given, "after": given}, INCH)
     assert [d.caption for d in made.row.drawings] == ["Before", "After"]
-    names = [name for name, _ in made.told]
+    names = [name for name, _ in made.read_out]
     assert names[0] == "pair 1 at s" and "after: share of pair 2" in names
-    assert dict(made.told)["before: transmission error"] == "0.1969 mil"
+    assert dict(made.read_out)["before: transmission error"] == "0.1969 mil"
     place = made.readings[0].text(0)
     assert place == f"{-7.7700 / 25.4:.3f} in"
     assert len(made.data["bodies"]) == 2 * 8

@@ -50,7 +50,7 @@ def test_before_and_after_are_side_by_side_and_in_every_plot(relieved):
     assert after[0] < 0.2 * before[0] and after[-1] < 0.2 * before[-1]
     ends = [np.ptp(trace["y"]) for trace in errors.data]
     assert ends[1] == pytest.approx(4.99, abs=0.02) and ends[4] < ends[1]
-    readings = dict(moves.told)
+    readings = dict(moves.read_out)
     totals = [
         sum(float(readings[f"{words}: share of pair {k}"].rstrip(" %")) for k in (1, 2))
         for words in ("without relief", "with relief")
@@ -87,7 +87,7 @@ def test_what_is_ground_is_told_by_roll_angle_and_diameter(relieved):
     assert rows[5][2] == pytest.approx(12.0 / 4.0)  # a parabola half way
     _, rows = wheel.values
     assert rows[-1][0] == pytest.approx(156.0) and rows[5][2] == pytest.approx(10.0 / 4.0)
-    texts = [cell.text for cell in pinion.shown[1][-1]]
+    texts = [cell.text for cell in pinion.on_page[1][-1]]
     assert texts == ["81.000", f"{math.degrees(tip):.3f}", "12.00"]
     assert pinion.csv().splitlines()[0] == "diameter [mm],roll angle [°],removed [µm]"
 
@@ -99,7 +99,7 @@ def test_in_inches_every_number_to_grind_is_in_inches(relieved):
     assert rows["tip diameter [in]"] == pytest.approx([81.0 / 25.4, 156.0 / 25.4])
     starts = [relief.pinion.start_diameter_mm / 25.4, relief.wheel.start_diameter_mm / 25.4]
     assert rows["starts at diameter [in]"] == pytest.approx(starts)
-    last = steps(flanks(*relieved, PAIR)[0], INCH).shown[1][-1]
+    last = steps(flanks(*relieved, PAIR)[0], INCH).on_page[1][-1]
     assert [cell.text for cell in last][::2] == ["3.1890", "0.4724"]  # in, mil
 
 
@@ -136,14 +136,14 @@ def test_a_shape_of_its_own_is_told_by_its_points(relieved):
         rolls = other.at(40)
         assert one.removed(rolls) == pytest.approx(other.removed(rolls), abs=6e-5)
         assert "convex" in profile_plot(one, METRIC).caption
-        assert steps(one, METRIC).values[1][-1][2] == pytest.approx(1e3 * one.told.amount_mm)
+        assert steps(one, METRIC).values[1][-1][2] == pytest.approx(1e3 * one.relief.amount_mm)
 
 
 def test_what_is_removed_agrees_with_the_columns_of_the_path(relieved):
     found, relief = relieved
     for flank, gear in zip(flanks(found, relief, PAIR), PAIR.gears, strict=True):
         assert flank.removed(flank.rolls) == pytest.approx(flank.listed, abs=1e-9)
-        assert diameter_at(flank.base, flank.told.tip_roll_angle_deg) == pytest.approx(
+        assert diameter_at(flank.base, flank.relief.tip_roll_angle_deg) == pytest.approx(
             float(gear.tip_diameter)
         )
 

@@ -86,7 +86,7 @@ def test_the_chosen_train_is_told_on_terminal_and_page(ranged):
     number = f"{ranged.design['ratio']['chosen']['value']:.5g}"
     value = f"{number} rad/s²"
     section = {s.heading: s for s in sections(ranged)}["Total ratio"]
-    _, rows = section.tables[0].told
+    _, rows = section.tables[0].on_terminal
     cells = {row[0].text: [cell.text for cell in row[1:]] for row in rows}
     assert number in cells["load acceleration [rad/s²]"] and "48" in cells["total ratio"]
     assert "7.5342" in cells["inertia of the train [g cm²]"] and number in shown(ranged)

@@ -126,7 +126,7 @@ class Animation:
         return Row([self.drawing(view, self.still) for view in self.views])
 
     @property
-    def told(self) -> list[tuple[str, str]]:
+    def read_out(self) -> list[tuple[str, str]]:
         """Names and texts of the readings at the moment of the still."""
         return [(reading.name, reading.text(self.still)) for reading in self.readings]
 

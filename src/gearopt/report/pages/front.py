@@ -8,7 +8,7 @@ from typing import Any
 from gearopt.formulations.drive.design import drive_design
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.pareto.pareto import RANDOM
-from gearopt.report import front as told
+from gearopt.report import front as front_words
 from gearopt.report.answer import assumptions
 from gearopt.report.drawing import layout_views, train_views
 from gearopt.report.drawing.sheet import Drawing
@@ -32,10 +32,10 @@ def page(front: Front, html: str = "page.html", measures: Measures = METRIC) -> 
     sections = _lost(front, measures), _spent(front), assumptions(front, measures)
     return render(
         "front.html",
-        told.title(front),
-        measures.words(sentence(told.verdict(front)[0])),
+        front_words.title(front),
+        measures.words(sentence(front_words.verdict(front)[0])),
         {"gearopt": front.gearopt, **front.versions},
-        told.command(front, measures, html),
+        front_words.command(front, measures, html),
         plots=bool(front.points),
         count=len(front.points),
         first=[_summary(front, measures), *_drawn(front, measures)],
@@ -72,7 +72,7 @@ def _picking(front: Front, each: Sequence[Numbers], measures: Measures) -> dict[
         ),
         "parallel": front_plots.parallel(front, drawn_front, each, names) if lines else None,
         "table": front_designs.designs(front, each, names, measures),
-        "kept": set(told.chosen(front, told.SHOWN)),
+        "kept": set(front_words.chosen(front, front_words.SHOWN)),
         "told": front_designs.data(front, each, names, measures) | {"pair": _pair(front)},
     }
 
@@ -92,12 +92,12 @@ def _pair(front: Front) -> list[int]:
 def _summary(front: Front, measures: Measures) -> Section:
     """Key figures, what was found and how sure it is, and the picks with their prices."""
     count = len(front.points)
-    tiles = [Tile("designs", f"{count:,}", told.verdict(front)[0])] if count else []
+    tiles = [Tile("designs", f"{count:,}", front_words.verdict(front)[0])] if count else []
     for k, objective in enumerate(front.objectives if count else ()):
         values = [p.values[k] for p in front.points]
         low, high = (measures.amount(v, unit_of(objective)) for v in (min(values), max(values)))
         tiles.append(Tile(words(objective.name), low, f"to {high}" if high != low else ""))
-    lines = told.decided(front, measures)
+    lines = front_words.decided(front, measures)
     if front.status == "infeasible" and front.file:
         lines.append(f"Which limits are in conflict: gearopt explain {front.file}.")
     limited = [
@@ -107,7 +107,7 @@ def _summary(front: Front, measures: Measures) -> Section:
     ]
     if limited:
         lines.append(f"Asked for: {', '.join(limited)}.")
-    shown = map(measures.words, [*lines, *told.picked(front, measures)])
+    shown = map(measures.words, [*lines, *front_words.picked(front, measures)])
     return Section("Result", tiles, list(shown))
 
 

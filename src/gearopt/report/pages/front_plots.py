@@ -113,13 +113,13 @@ def _pair(front: Drawn, i: int, k: int) -> Figure:
         crosses = _marks("limits without a design", x, y, look)
         traces.append(crosses | {"cliponaxis": False})
     traces += _designs(front, (i, k))
-    told = {"legend": {"orientation": "h", "x": 0, "y": 1.02, "yanchor": "bottom"}}
+    legend = {"legend": {"orientation": "h", "x": 0, "y": 1.02, "yanchor": "bottom"}}
     plot = layout(
         axis(front.heads[i], range=list(across)),
         axis(front.heads[k], range=list(up)),
         460 if whole else 360,
         hovermode="closest",
-        **told,
+        **legend,
     )
     caption = _caption(front, i, k)
     return Figure(traces, plot, caption, scatter(front, i, k, (across, up), corners, caption))

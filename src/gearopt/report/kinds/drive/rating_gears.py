@@ -17,10 +17,10 @@ from gearopt.report.kinds.drive.rating_words import (
     life,
     nearest,
     of_standards,
+    rated_sentence,
     rating_of,
     safety,
     stress_words,
-    told,
     unsure,
     unverified,
 )
@@ -48,7 +48,7 @@ def gears(result: Result, measures: Measures) -> Section | None:
     heads = [_head(rating, one, gear) for one, gear in _columns(rating)]
     table = Table("gears", ["", *heads], rows, csv_only=hidden, across=True)
     half = single(rating) and rating.beside is None
-    shown = _told(result, rating, measures)
+    shown = _on_terminal(result, rating, measures)
     return Section("Rating", words=_said(rating), tables=(table,), half=half, terminal=shown)
 
 
@@ -130,7 +130,7 @@ def _damage(value: float | None) -> Cell:
     return Cell(None, AT_ONCE) if value is None else Cell(value, rounded(value, DAMAGE_DIGITS))
 
 
-def _told(result: Result, rating: DriveRating, measures: Measures) -> list[str | Table]:
+def _on_terminal(result: Result, rating: DriveRating, measures: Measures) -> list[str | Table]:
     """All gears for the terminal; of an optimum first how it is rated."""
     keys = [it.key for it in listed(GearRating) if it.key.endswith(("_MPa", "_safety"))]
     sign, named = measures.unit("MPa"), rating.beside is not None
@@ -152,7 +152,7 @@ def _told(result: Result, rating: DriveRating, measures: Measures) -> list[str |
     lasts = f"Life at safety factors of 1: {lives}{asked}"
     if rating.efficiency_percent is not None:
         lasts += f" Efficiency of the meshes: {efficiency(rating)}{unsure(rating)}."
-    first = [] if result.name == RATING else [measures.words(told(rating))]
+    first = [] if result.name == RATING else [measures.words(rated_sentence(rating))]
     end = unverified(rating) if first else []
     return [*first, table, "\n".join([lasts, _standards(rating), *end])]
 
@@ -216,13 +216,13 @@ def factors(result: Result, measures: Measures) -> Section | None:
     )
     words = [f"A single value applies to both gears.{level}"]
     words += map(measures.words, unverified(rating))
-    told: list[str | Table] = []
+    blocks: list[str | Table] = []
     for one in rating.each:
-        told += _factors_told(one, rating.beside is not None, measures)
-    told += words[1:]
+        blocks += _factors_on_terminal(one, rating.beside is not None, measures)
+    blocks += words[1:]
     for table in tables:
-        told += _remarks(table.rows)
-    return Section("Factors", words=words, tables=tables, terminal=told)
+        blocks += _remarks(table.rows)
+    return Section("Factors", words=words, tables=tables, terminal=blocks)
 
 
 def _symbols(rating: DriveRating) -> list[list[RatingFactor]]:
@@ -305,7 +305,7 @@ def _values(factor: RatingFactor, measures: Measures) -> list[Cell]:
     return [first, second]
 
 
-def _factors_told(rating: DriveRating, named: bool, measures: Measures) -> list[Table]:
+def _factors_on_terminal(rating: DriveRating, named: bool, measures: Measures) -> list[Table]:
     """The factors as the terminal shows them, of so many stages as fit side by side."""
     tables, alone, abreast = [], len(rating.meshes) == 1, ABREAST[rating.by]
     of = SHORT[rating.by] if named else ""

@@ -91,10 +91,12 @@ def forces(result: Result, measures: Measures) -> Section | None:
             "churning" + ("." if rating.efficiency_error_percent is None else f"; {FRICTION}.")
         )
     stages = result.design["stages"]
-    told = "\n".join(f"{_mesh_words(rating, stage, k, measures)}" for k, stage in enumerate(stages))
+    sentences = "\n".join(
+        f"{_mesh_words(rating, stage, k, measures)}" for k, stage in enumerate(stages)
+    )
     half = single(rating)
     return Section(
-        "Forces and contact", words=words, tables=(meshes, shafts), half=half, terminal=(told,)
+        "Forces and contact", words=words, tables=(meshes, shafts), half=half, terminal=(sentences,)
     )
 
 

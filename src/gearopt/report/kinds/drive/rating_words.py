@@ -83,7 +83,7 @@ def sentence_of(rating: DriveRating) -> str:
     return f"{'Safe' if rating.safe_by_all else 'Not safe'} by its rating: {_verdict(rating)}."
 
 
-def told(rating: DriveRating) -> str:
+def rated_sentence(rating: DriveRating) -> str:
     """The rating of an optimum with its figures; what a warning said is not said again."""
     first = sentence_of(rating).rstrip(".") if rating.safe_by_all else "Rating"
     return f"{first}{_figures(rating)}."

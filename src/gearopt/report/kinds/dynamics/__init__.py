@@ -63,12 +63,11 @@ def binding_limit(result: Result) -> str:
         return ""
     rest = abs(design.equilibrium.deformation_mm)
     moved = design.response
-    told = f"the mean load deforms the mesh by {1e3 * rest:.4g} µm"
+    at_rest = f"the mean load deforms the mesh by {1e3 * rest:.4g} µm"
     if moved is None:
-        return told
-    return (
-        f"{told}; in motion the deformation varies by {rounded(1e3 * moved.peak_to_peak_mm, 4)} µm"
-    )
+        return at_rest
+    varies = f"{rounded(1e3 * moved.peak_to_peak_mm, 4)} µm"
+    return f"{at_rest}; in motion the deformation varies by {varies}"
 
 
 def warns(result: Result) -> Sequence[str]:

@@ -164,10 +164,10 @@ def over_speed(speeds: Speeds, measures: Measures) -> Figure:
     traces = [line(speeds.speed_rpm, rising, "speed rising" if two else "")]
     if two:
         traces.append(line(speeds.speed_rpm, falling, "speed falling", 2, "dash"))
-    told = [(rising, speeds.repeats), (falling, speeds.falling_repeats)]
+    curves = [(rising, speeds.repeats), (falling, speeds.falling_repeats)]
     longer = {
         (n, v)
-        for values, repeats in told[: 1 + two]
+        for values, repeats in curves[: 1 + two]
         for n, v, r in zip(speeds.speed_rpm, values, repeats, strict=True)
         if r != 1 and v is not None
     }

@@ -88,8 +88,11 @@ def sentences_on_parts(result: Result, measures: Measures) -> list[str]:
 def warns(result: Result) -> Sequence[str]:
     """Unsafe gears by the rating, and cases that the models of contact do not cover."""
     pair_contact = contact_of(result)
-    told = rating_words.warns(result)
-    return [*told, *(s for s in (pair_contact.validity if pair_contact else ()) if s not in told)]
+    warnings = rating_words.warns(result)
+    return [
+        *warnings,
+        *(s for s in (pair_contact.validity if pair_contact else ()) if s not in warnings),
+    ]
 
 
 def contact(result: Result, measures: Measures) -> Section | None:
@@ -98,8 +101,8 @@ def contact(result: Result, measures: Measures) -> Section | None:
         return None
     tables = [table(pair_contact, measures) for table in TABLES]
     relieved = bool(result.design.get("relief"))
-    told = answers(pair_contact, pair_of(result), _frequency(result), relieved)
-    words = list(map(measures.words, told))
+    sentences = answers(pair_contact, pair_of(result), _frequency(result), relieved)
+    words = list(map(measures.words, sentences))
     shown = [table for table in tables if not table.folded]
     return Section("Contact", words=words, tables=tables, terminal=("\n".join(words), *shown))
 
@@ -125,13 +128,13 @@ def relief(result: Result, measures: Measures) -> Section | None:
     ]
     words = list(map(measures.words, pair_relief.answers(modified)))
     shown = [table for table in tables if not table.folded]
-    told: tuple[str | Table, ...] = ("\n".join(words), *shown)
+    blocks: tuple[str | Table, ...] = ("\n".join(words), *shown)
     if (pair := pair_of(result)) is None:
-        return Section("Relief", words=words, tables=tables, terminal=told)
+        return Section("Relief", words=words, tables=tables, terminal=blocks)
     flanks = pair_relief.flanks(pair_contact, modified, pair)
     figures = [pair_relief.profile_plot(flank, measures) for flank in flanks]
     tables += [pair_relief.steps(flank, measures) for flank in flanks]
-    return Section("Relief", words=words, figures=figures, tables=tables, terminal=told)
+    return Section("Relief", words=words, figures=figures, tables=tables, terminal=blocks)
 
 
 def mesh(result: Result, measures: Measures) -> Section | None:

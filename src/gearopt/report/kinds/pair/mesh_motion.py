@@ -101,8 +101,8 @@ def in_mesh(
         for k, share in enumerate(carried.percent.T, 1):
             readings.append(Reading(f"{of}share of pair {k}", share, "%", 1))
         error = np.array([measures.of(e, "um") for e in carried.error])
-        told = f"{of}transmission error", error, measures.unit("um"), 2 + 2 * measures.digits
-        readings.append(Reading(*told))
+        unit, decimals = measures.unit("um"), 2 + 2 * measures.digits
+        readings.append(Reading(f"{of}transmission error", error, unit, decimals))
     return Animation(
         name,
         views,

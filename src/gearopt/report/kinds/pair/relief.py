@@ -184,12 +184,12 @@ def after(contact: PairContact, relief: PairRelief, measures: Measures) -> Table
     micro, force = measures.unit("um"), measures.unit("N")
     rows = []
     for when, loads in (("without", contact.loads), ("with", relief.at)):
-        told = {
+        figures = {
             f"peak to peak [{micro}]": [(load.peak_to_peak_mm, "um") for load in loads],
             f"first harmonic [{micro}]": [(load.harmonics_mm[0], "um") for load in loads],
             f"largest load on a tooth [{force}]": [(o.largest_tooth_force_N, "N") for o in loads],
         }
-        for words, values in told.items():
+        for words, values in figures.items():
             rows.append([f"{words}, {when}", *(cell(*value, measures) for value in values)])
     names = [f"{100.0 * load.load:g} %" for load in relief.at]
     caption = "Every load without relief, and with it."
@@ -220,7 +220,7 @@ class Flank:
     """
 
     member: str
-    told: FlankRelief
+    relief: FlankRelief
     base: float
     rolls: Sequence[float]
     listed: Sequence[float]
@@ -231,27 +231,29 @@ class Flank:
         amount (1 - x/length)^exponent at x from the tip on the line of action, along which roll
         angles grow evenly; of a shape of its own between the points that are listed.
         """
-        told = self.told
-        if told.exponent is None:
+        relief = self.relief
+        if relief.exponent is None:
             order = np.argsort(self.rolls)
             return np.interp(roll, np.asarray(self.rolls)[order], np.asarray(self.listed)[order])
-        share = (np.asarray(roll) - told.start_roll_angle_deg) / (
-            told.tip_roll_angle_deg - told.start_roll_angle_deg
+        share = (np.asarray(roll) - relief.start_roll_angle_deg) / (
+            relief.tip_roll_angle_deg - relief.start_roll_angle_deg
         )
-        return told.amount_mm * np.maximum(share, 0.0) ** told.exponent
+        return relief.amount_mm * np.maximum(share, 0.0) ** relief.exponent
 
     def at(self, count: int) -> Any:
         """Roll angles [deg] from where the relief starts to the tip, in equal steps."""
-        return np.linspace(self.told.start_roll_angle_deg, self.told.tip_roll_angle_deg, count + 1)
+        return np.linspace(
+            self.relief.start_roll_angle_deg, self.relief.tip_roll_angle_deg, count + 1
+        )
 
 
 def flanks(contact: PairContact, relief: PairRelief, pair: GearPair) -> list[Flank]:
     """The flanks of both gears that are ground."""
     bases = (float(gear.base_diameter) for gear in pair.gears)
-    told = (relief.pinion, relief.wheel)
+    reliefs = (relief.pinion, relief.wheel)
     rolls = (contact.pinion_roll_angle_deg, contact.wheel_roll_angle_deg)
     listed = (relief.pinion_removed_mm, relief.wheel_removed_mm)
-    rows = zip(MEMBERS, told, bases, rolls, listed, strict=True)
+    rows = zip(MEMBERS, reliefs, bases, rolls, listed, strict=True)
     return [Flank(*row) for row in rows if row[1].amount_mm]
 
 
@@ -287,7 +289,7 @@ def _length(value: float, measures: Measures) -> tuple[float, str]:
 
 def profile_plot(flank: Flank, measures: Measures) -> Figure:
     """Plot what is removed from a flank against its roll angle, with diameters above."""
-    start, tip = flank.told.start_roll_angle_deg, flank.told.tip_roll_angle_deg
+    start, tip = flank.relief.start_roll_angle_deg, flank.relief.tip_roll_angle_deg
     member, low = flank.member, start - 0.35 * (tip - start)
     rolls = np.concatenate(([low], flank.at(PLOT_STEPS)))
     off = measures.of(1.0, "um") * flank.removed(rolls)
@@ -314,7 +316,7 @@ def profile_plot(flank: Flank, measures: Measures) -> Figure:
             showgrid=False,
         ),
     )
-    power = flank.told.exponent
+    power = flank.relief.exponent
     shape = {1.0: "growing linearly", None: "a free, convex shape"}.get(power, f"exponent {power}")
     caption = f"What is removed from the flanks of the {member}, normal to them: {shape}."
     return Figure([trace, above], plot, caption)

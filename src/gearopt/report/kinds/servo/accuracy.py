@@ -131,14 +131,14 @@ def _steps(
             TEXT,
             name=f"{escape(kind)}, stage {stage}",
             base=[starts[k] for k in rows],
-            text=[_told(sources[k], measures) for k in rows],
+            text=[_hover_text(sources[k], measures) for k in rows],
             textposition="none",
         )
         for place, ((kind, stage), rows) in enumerate(groups.items(), 1)
     ]
 
 
-def _told(source: ErrorSource, measures: Measures) -> str:
+def _hover_text(source: ErrorSource, measures: Measures) -> str:
     tolerance = f"{measures.of(source.tolerance_mm, 'um'):.4g} {measures.unit('um')}"
     return (
         f"{escape(source.source)}: {degrees(source.error_deg)}, {arc_minutes(source.error_deg)}, "

@@ -60,7 +60,7 @@ def stiffness(result: Result, measures: Measures) -> Section | None:
 def _bars(springs: Sequence[Spring], measures: Measures) -> Figure:
     """Draw the share of every spring."""
     shares = [100.0 * s.compliance_share for s in springs]
-    told = [
+    labels = [
         f"{escape(s.name)}: {share:.2f} %, alone "
         f"{amount(s.referred_Nm_per_rad, 'Nm_per_rad', measures)} at the output"
         for s, share in zip(springs, shares, strict=True)
@@ -70,7 +70,7 @@ def _bars(springs: Sequence[Spring], measures: Measures) -> Figure:
         [escape(s.name) for s in springs],
         {"color": "--series-1"},
         "%{customdata}<extra></extra>",
-        customdata=told,
+        customdata=labels,
         text=[f"{share:.1f} %" for share in shares],
         textposition="outside",
         cliponaxis=False,

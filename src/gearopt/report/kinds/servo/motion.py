@@ -43,13 +43,13 @@ def section(result: Result, measures: Measures) -> Section | None:
     achieved = [_achieved(ratio, measures)] if known else []
     motion = (SPEEDING if ratio.duty != "swing" else "") + (BRAKING if ratio.duty == "move" else "")
     note = [NOTE + motion] if known else []
-    told = words if known else [*best_words(ratio, measures), *words]
+    sentences = words if known else [*best_words(ratio, measures), *words]
     return Section(
         "Total ratio",
         words=[*words, *note],
         figures=(_figure(ratio, curve, measures),),
         tables=(*achieved, curve),
-        terminal=("\n".join(told), *achieved, *note),
+        terminal=("\n".join(sentences), *achieved, *note),
     )
 
 

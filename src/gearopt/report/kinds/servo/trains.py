@@ -339,10 +339,10 @@ def _points(
     x, y = ([measures.of(getattr(t, k), parted(k)[1]) for t in trains] for k in keys)
     edge = {"width": 2.6 if symbol.endswith("open") else 0}
     marker = {"color": colour, "size": size, "symbol": symbol, "line": edge}
-    return points(x, y, name, marker, TEXT, text=[_told(t, measures) for t in trains])
+    return points(x, y, name, marker, TEXT, text=[_hover_text(t, measures) for t in trains])
 
 
-def _told(train: ListedTrain, measures: Measures) -> str:
+def _hover_text(train: ListedTrain, measures: Measures) -> str:
     """A train in lines: teeth and modules, then what it is worth."""
     lines = teeth_words(train.stages, measures).split("; ")
     for goal in _known(train):

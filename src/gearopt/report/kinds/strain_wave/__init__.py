@@ -95,16 +95,16 @@ def warns(result: Result) -> Sequence[str]:
     """Warnings: teeth that interfere, a cutter with a cusp."""
     if (design := design_of(result)) is None:
         return ()
-    told = []
+    warnings = []
     if design.least_clearance_mm < CUTTING:
-        told.append(
+        warnings.append(
             f"Interference: teeth overlap by {-1e3 * design.least_clearance_mm:.3g} µm, at "
             f"{design.least_clearance_at_deg:.3g}° from the major axis: loads and pressures are "
             "not valid."
         )
     if design.cutter and not design.cutter.regular:
-        told.append(f"No such cutter: its edge would have a cusp. {_least(design.cutter)}")
-    return told
+        warnings.append(f"No such cutter: its edge would have a cusp. {_least(design.cutter)}")
+    return warnings
 
 
 def moving(result: Result, measures: Measures) -> Section | None:
