@@ -8,15 +8,16 @@ import pytest
 import gearopt
 from gearopt.errors import SceneError, SolveError
 from gearopt.formulations.strain_wave.demand import equal_pressure, loads_at, pressures
-from gearopt.formulations.strain_wave.exchange import RangeEnd, design_of
+from gearopt.formulations.strain_wave.exchange import Exchanged, RangeEnd, design_of
 from gearopt.formulations.strain_wave.report import Deflected, WaveDesign, used
+from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.typed import typed
 from gearopt.report.kinds.strain_wave.tables import loads
 from gearopt.report.measures import METRIC
 from gearopt.scenes import strain_wave
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.strain_wave import KIND, compared, explain, objectives, posed, several
+from gearopt.scenes.strain_wave import KIND, compared, explain, objectives, posed, remedies, several
 from gearopt.scenes.strain_wave import KIND as WAVES
 from gearopt.scenes.strain_wave.notes import assumptions, notes, range_notes
 from gearopt.scenes.strain_wave.remedies import costs
@@ -357,3 +358,12 @@ def test_what_time_is_short_for_is_named(monkeypatch):
     )
     page = found.to_html()
     assert "Pressure against profile shift" not in page and "other deflections</" not in page
+
+
+def test_sensitivities_that_time_is_short_for_are_left_out(monkeypatch):
+    scene = gearopt.load("problems/strain_wave_from_duty.toml")
+    found = Result("strain wave gearing", "stationary", "exchange", {})
+    nothing = Exchanged(found, Outcome(None), None, None)
+    monkeypatch.setattr(remedies, "exchange", lambda *_: nothing)
+    known = explain(scene, Ask(), found)
+    assert known.result is found and not known.influences and "no time" in known.message

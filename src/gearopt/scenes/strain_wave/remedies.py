@@ -8,6 +8,7 @@ from gearopt.formulations.strain_wave.design import problem
 from gearopt.formulations.strain_wave.exchange import Exchanged, exchange
 from gearopt.formulations.strain_wave.impossible import nearest
 from gearopt.optimise.clock import Clock
+from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
@@ -30,6 +31,7 @@ LIMITS = (  # but for those that only keep the flank regular
     *("outer_radius", "interference", "ratcheting", "rim_fatigue", "pairs", "base_circle"),
     *("minor_axis", "flexspline_land", "flexspline_space", "spline_land"),
 )
+NO_TIME = "no time is left for sensitivities"
 NOTHING = 1e-6  # MPa: a multiplier below it is rounding
 
 
@@ -60,7 +62,8 @@ def influences(scene: Scene, result: Result, clock: Clock, gap: float) -> Explan
     """Return what every number of a file does to its pressure, by multipliers and solving again."""
     found = exchange(scene.demand(), scene.start(), clock, gap)
     x = found.outcome.x
-    assert x is not None and found.result.value is not None
+    if x is None or found.result.value is None:
+        return Explanation(result, (), (), binding(result), (), NO_TIME, clock.seconds)
 
     def solved(other: Scene) -> float | None:
         again = exchange(other.demand(), other.start(), Clock(clock.left, clock.watch), gap)
