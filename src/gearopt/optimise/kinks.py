@@ -48,7 +48,7 @@ def kink(problem: Problem, x: Array, active: Any) -> str:
 def probed(problem: Problem, x: Array) -> tuple[str, bool]:
     """Return the variable along which the objective falls, and whether it rises along all others.
 
-    By PROBE_STEPS to both sides of each variable, alone, that exceed no limit further; "": none falls.
+    By PROBE_STEPS to both sides of each variable, alone, that exceed no limit further; "": none.
     """
     lower, upper, _ = problem.bounds()
     own, count = np.diag(sizes(problem, x)), len(x)

@@ -1,7 +1,7 @@
 """Global search for the least vibration: screened designs, local optima from the best of them.
 
 Between the speeds that are judged resonances may hide; the exchange looks for them on a dense grid,
-adds the worst, and solves again. `response_over_speed` is the design as a result holds it, over a dense grid.
+adds the worst, and solves again. `response_over_speed` is the design as a result holds it.
 """
 
 import math

@@ -6,10 +6,9 @@ every choice of its numbers. Boxes are taken by the smallest product they hold, 
 single choice that is possible is the minimum.
 """
 
-import heapq
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -17,6 +16,7 @@ from typing import Any
 from gearopt.formulations.drive import sizing, sizing_text
 from gearopt.formulations.drive.teeth import best_pairs
 from gearopt.formulations.drive.train import Train
+from gearopt.optimise.best_first import best_first
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.handles import Handle, handles
 from gearopt.optimise.explaining.repair import FARTHEST, PRODUCT_TIE, least_factors
@@ -67,24 +67,28 @@ def smallest_together(
     choices = _choices(case, movables, most)
     if not choices:
         return None
-    sure, order, train = True, itertools.count(), case.scene.train()
-    whole: Box = tuple((0, len(c.values) - 1) for c in choices)
+    sure, asked, train = True, 0, case.scene.train()
     best: Box | None = None
-    heap = [(1.0, next(order), whole)]
-    for _ in range(QUESTIONS):
-        if not heap or heap[0][0] >= most:
-            return None if best is None else (_moves(choices, best), sure)
-        _, _, box = heapq.heappop(heap)
-        one = all(i == j for i, j in box)
-        found = _met(case, _within(train, choices, box), choices, box)
-        sure = sure and found is not None
-        if isinstance(found, tuple) and _product(choices, found) < most:
-            best, most = found, _product(choices, found)
-        if found is not False and not one:
+
+    def branch(_: float, box: Box) -> Iterator[tuple[float, Box]]:
+        nonlocal sure, asked, best, most
+        single = all(i == j for i, j in box)
+        met = _met(case, _within(train, choices, box), choices, box)
+        asked, sure = asked + 1, sure and met is not None
+        if isinstance(met, tuple) and _product(choices, met) < most:
+            best, most = met, _product(choices, met)
+        if met is not False and not single:
             for part in _parts(choices, box):
                 if (product := _product(choices, part)) < most:
-                    heapq.heappush(heap, (product, next(order), part))
-    return None if best is None else (_moves(choices, best), False)
+                    yield product, part
+
+    whole: Box = tuple((0, len(c.values) - 1) for c in choices)
+    left = best_first(
+        [(1.0, whole)], lambda product, _: asked < QUESTIONS and product < most, branch
+    )
+    if best is None:
+        return None
+    return _moves(choices, best), sure and left.least >= most
 
 
 def _met(case: Case, train: Train, choices: list[Choice], box: Box) -> Box | bool | None:
