@@ -3,8 +3,9 @@
 All that `import gearopt` offers is to be found here, imported or defined.
 """
 
+import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from types import NoneType
 from typing import Any
@@ -12,7 +13,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError  # noqa: F401
-from gearopt.optimise.clock import Clock, of_others, whole
+from gearopt.optimise.clock import Clock, of_others, tell_known, whole
 from gearopt.optimise.comparing.compare import compare as compare_methods
 from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.comparing.fronts import compare_fronts
@@ -28,7 +29,7 @@ from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch, plain  # noqa: F401
 from gearopt.optimise.solve import GAP, evaluate  # noqa: F401
 from gearopt.optimise.terms import Param, Repeat, Terms, Var  # noqa: F401
-from gearopt.scenes.explaining.default import explanation, of_report
+from gearopt.scenes.explaining.default import explanation, without_design
 from gearopt.scenes.explaining.shorter import shorter
 from gearopt.scenes.kind import Kind
 from gearopt.scenes.reading.ask import Ask
@@ -68,6 +69,7 @@ def solve(
     top: int = 1,
     prices: bool | float = False,
     start: Mapping[str, Any] | None = None,
+    remedies: bool = True,
 ) -> Result:
     """Return the certified answer to a problem file, its tables or scene, or a problem of your own.
 
@@ -78,12 +80,14 @@ def solve(
     (drives with a [teeth] table). prices: report["prices"] holds the sensitivities to every number
     of the file, as `explain` does; a number: in so many times the seconds of the answer, at most,
     and 2 s. start: of a Problem, values by name of the variable from which
-    ipopt, multistart and annealing begin instead of the guess. SceneError for a wrong file or
-    change, SolveError where the method does not fit, or an option changes nothing, ValueError for
-    an option of another sort. Of several threads one solves at a time; its budget begins then.
+    ipopt, multistart and annealing begin instead of the guess. remedies: of an impossible file
+    report["ways_out"] holds what to write instead; False: its proof alone. SceneError for a wrong
+    file or change, SolveError where the method does not fit, or an option changes nothing,
+    ValueError for an option of another sort. Of several threads one solves at a time; its budget
+    begins then.
     """
     check(method=method, budget=budget, seed=seed, watch=watch, gap=gap, top=top, prices=prices)
-    check(start=start)
+    check(start=start, remedies=remedies)
     budget, watch = replace(budget or Budget(), gap=gap or 0.0), whole(watch)
     asked = {"method": method, "seconds": budget.seconds, "evaluations": budget.evaluations}
     asked |= {"gap": gap, "seed": seed, "top": top, "prices": prices}
@@ -100,16 +104,14 @@ def solve(
         if top > 1:
             raise SolveError(f"top={top} changes nothing here: {why}; leave it out")
         asked["top"] = None
+    begun = time.perf_counter()
     result = kind.solve(scene, ask)
     if prices and result.value is not None and result.status != "evaluated":
         left = ask.for_prices(prices, result.seconds)
         found = explanation(kind, scene, left, result)
         result = replace(result, report=result.report | {"prices": found.prices})
-    if (ways := result.report.get("ways_out")) and result.status == "infeasible":
-        left = replace(ask, budget=budget.less(result.seconds))
-        short = _shortened(of_report(result).remedies, what, changes, kind, left)
-        ways = ways | {"remedies": [asdict(remedy) for remedy in short]}
-        result = replace(result, report=result.report | {"ways_out": ways})
+    if remedies and without_design(result):
+        result = _with_remedies(result, what, changes, scene, kind, ask, begun)
     if inputs := inputs_of(scene):
         result = replace(result, report=result.report | {"inputs": inputs})
     return _named(result, **names | {"options": asked | names["options"]})
@@ -183,6 +185,29 @@ def _shortened(
         return answer.value is not None and answer.feasible
 
     return shorter(found, clock, works)
+
+
+def _with_remedies(
+    result: Result,
+    what: File,
+    changes: Changes,
+    scene: BaseModel,
+    kind: Kind[Any],
+    ask: Ask,
+    begun: float,
+) -> Result:
+    """An impossible result with what to write instead, which the watcher is told of first."""
+    if kind.remedies is None or not kind.remedied(scene):
+        return result
+    tell_known(ask.watch, result)
+    clock = Clock(ask.budget, of_others(ask.watch), begun)
+    ways = kind.remedies(scene, clock, result, True)
+    if ways is None:
+        return result
+    left = replace(ask, budget=clock.left)
+    ways = replace(ways, remedies=_shortened(ways.remedies, what, changes, kind, left))
+    report = {**result.report, **ways.drawn, "ways_out": ways.told}
+    return replace(result, report=report, seconds=clock.seconds)
 
 
 def idle_options(what: File, method: str | None) -> dict[str, str]:

@@ -93,7 +93,9 @@ def test_what_is_proven_is_told_before_remedies_are_sought(capsys):
             assert watch(Event(1.0, 20, known=replace(known, proof=proof)))
     said = " ".join(capsys.readouterr().err.split())
     assert said.count("Impossible, proven: the limits on unit load of stages 1 and 2") == 1
-    assert said.endswith("Looking for changes with which a design exists; Ctrl-C ends it.")
+    assert said.endswith(
+        "Looking for changes with which a design exists (at most 59 s); Ctrl-C ends it."
+    )
 
 
 def test_sensitivities_of_a_page_take_no_longer_than_its_answer():

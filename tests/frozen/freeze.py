@@ -29,7 +29,7 @@ if "--explain" in sys.argv:  # budgets count CPU seconds: a busy machine changes
 import gearopt
 from gearopt.errors import GearoptError
 from gearopt.report import shown
-from gearopt.scenes.explaining.default import explain
+from gearopt.scenes.explaining.default import explanation
 from gearopt.scenes.explaining.numbers import content
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import examples
@@ -212,7 +212,7 @@ def explained(what, changes, seconds):
     """What is kept of an explanation: conflict, remedies, CPU seconds, remedies that hold."""
     begun, budget = time.process_time(), gearopt.Budget(seconds=seconds)
     if isinstance(what, Bars):
-        explanation = explain(KIND, what, Ask(budget=budget))
+        explanation = explanation(KIND, what, Ask(budget=budget))
     else:
         explanation = gearopt.explain(what, changes, budget=budget)
     cpu = time.process_time() - begun

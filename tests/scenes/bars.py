@@ -61,4 +61,9 @@ def bars(own, method=""):
     return Model(Problem("bars", (n, d), parameters, evaluate, methods={"exact": exact}))
 
 
-KIND = SimpleNamespace(posed=bars, solve=lambda own, ask: solve_problem(bars(own).problem))
+KIND = SimpleNamespace(
+    remedies=None,
+    influences=None,
+    posed=bars,
+    solve=lambda own, ask: solve_problem(bars(own).problem),
+)

@@ -215,4 +215,4 @@ def test_the_progress_of_a_layout_is_on_one_clock():
         assert a["seconds"] <= b["seconds"] and a["evaluations"] <= b["evaluations"]
     assert steps[0]["seconds"] >= result.parts[0].seconds
     assert steps[0]["evaluations"] >= result.parts[0].evaluations
-    assert steps[-1]["seconds"] == result.seconds and steps[-1]["best"] == result.value
+    assert steps[-1]["seconds"] <= result.seconds and steps[-1]["best"] == result.value

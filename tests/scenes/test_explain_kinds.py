@@ -15,7 +15,7 @@ import gearopt
 from gearopt import SolveError
 from gearopt.optimise.explaining.handles import each_word, handles
 from gearopt.scenes.explaining import default
-from gearopt.scenes.explaining.default import explain
+from gearopt.scenes.explaining.default import explanation
 from gearopt.scenes.explaining.influences import STEP
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import kind_named, kind_of, read
@@ -180,7 +180,7 @@ FILE = {
 
 def test_a_further_kind_is_explained_by_its_model_and_its_keys():
     """6 bars are needed where 4 are allowed: each number alone, tried by reading and solving."""
-    found = explain(KIND, Bars.model_validate(FILE), Ask())
+    found = explanation(KIND, Bars.model_validate(FILE), Ask())
     assert found.result.status == "infeasible"
     needed = 1.5  # 10000 * 1.5/100 = 150 = n d^2, and 4 * 25 = 100
     factors = {r.changes[0].key: r.changes[0].factor for r in found.remedies}
@@ -203,7 +203,7 @@ def test_a_further_kind_is_explained_by_its_model_and_its_keys():
 def test_a_further_kind_tells_slopes_of_its_whole_numbers():
     """n d^2 = pull safety/stress, whatever n."""
     own = {"bar": FILE["bar"] | {"most": 8, "safety": Decimal("1.4")}}
-    found = explain(KIND, Bars.model_validate(own), Ask())
+    found = explanation(KIND, Bars.model_validate(own), Ask())
     slopes = {i.key: (i.sensitivity, *i.resolved) for i in found.influences}
     assert slopes["bar.safety"] == pytest.approx((1.0, 1.0, 1.0), rel=1e-3)
     assert slopes["bar.stress"] == pytest.approx((-1.0, -1.0, -1.0), rel=1e-3)
@@ -215,7 +215,7 @@ def test_a_further_kind_tells_slopes_of_its_whole_numbers():
 def test_a_mixed_kind_says_where_other_whole_numbers_are_needed():
     """5 bars of up to 5.29151 mm carry 140.0004 mm2 and no more."""
     near = FILE["bar"] | {"most": 8, "safety": Decimal("1.4"), "diameter": "5.29151 mm"}
-    found = explain(KIND, Bars.model_validate({"bar": near}), Ask())
+    found = explanation(KIND, Bars.model_validate({"bar": near}), Ask())
     low, high = re.search(r"bar.safety from ([\d.]+) to ([\d.]+)", found.message).groups()
     assert float(high) == pytest.approx(5 * 5.29151**2 / 100, rel=1e-7)
     assert float(low) == pytest.approx(1.4 * (1.0 - STEP))

@@ -14,6 +14,7 @@ import gearopt.scenes
 from gearopt.cli import app
 from gearopt.errors import SceneError
 from gearopt.scenes import compound
+from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.load import load, read
 from gearopt.scenes.reading.schema import json_schema
 
@@ -125,7 +126,7 @@ def test_an_input_that_is_wrong_itself_says_where(folder):
 def test_an_input_whose_solving_finds_no_design_is_told(folder, monkeypatch):
     path = checking(folder, "trains/train.toml")
     none = gearopt.Result("compound", "limit", "exact", {"name": "error"}, message="out of time")
-    kind = replace(compound.KIND, solve=lambda scene, ask: none)
+    kind = replace(compound.KIND, steps=one_step(lambda scene, ask, known: none))
     monkeypatch.setattr(compound, "KIND", kind)
     words = r"it has none \(limit: out of time\)\. See what `gearopt solve trains/train.toml` says"
     with pytest.raises(SceneError, match=words):

@@ -40,23 +40,22 @@ def watching(seconds: float, quiet: bool, measures: Measures = METRIC) -> Iterat
             nonlocal said
             if event.known is not None and not said:
                 said = True
-                _tell(event.known)
+                _tell(event.known, seconds - event.seconds)
             return watch(event)
 
         yield telling
 
 
-def _tell(known: Result) -> None:
-    """Print what is proven while its remedies are sought, on stderr."""
+def _tell(known: Result, seconds: float) -> None:
+    """Print what is proven while its remedies are sought, for so many seconds, on stderr."""
     from gearopt.report.answer import opening
 
     screen = Console(stderr=True, highlight=False)
     of_stages = replace(known, scene=known.scene or known.name)
     screen.print(Text(opening(of_stages)))
-    screen.print(
-        Text("Looking for changes with which a design exists; Ctrl-C ends it."),
-        style="dim",
-    )
+    most = f" (at most {max(seconds, 1.0):.0f} s)" if seconds < LONGEST_SECONDS else ""
+    words = f"Looking for changes with which a design exists{most}; Ctrl-C ends it."
+    screen.print(Text(words), style="dim")
 
 
 @contextmanager

@@ -31,6 +31,7 @@ SORTS: dict[str, tuple[Callable[[Any], bool], str]] = {  # of options: what each
     "gap": (lambda v: is_number(v) and v >= 0, "a number of at least 0, such as gap=0.01 for 1 %"),
     "top": (lambda v: _whole(v, 1), "a whole number of at least 1"),
     "prices": (lambda v: isinstance(v, bool | float) and v >= 0.0, "True, False or a share"),
+    "remedies": (lambda v: isinstance(v, bool), "True or False"),
     "seeds": (lambda v: _whole(v, 1), "a whole number of at least 1: so many seeds, from 0"),
     "evaluations": (lambda v: _whole(v, 1), "a whole number of at least 1"),
     "seconds": (lambda v: is_number(v) and v > 0, "a number above 0"),

@@ -13,7 +13,7 @@ from typing import Any
 from rich.text import Text
 
 from gearopt.optimise.comparing.comparison import Comparison
-from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
 from gearopt.report import comparison as comparison_words
@@ -221,17 +221,13 @@ def front_page(pareto: Front, units: str) -> str:
 
 def answered(explanation: Explanation) -> Result:
     """The result of an impossible request with the conflict and the remedies in it."""
-    ways: dict[str, Any] = {"conflict": explanation.conflict, "message": explanation.message}
-    ways |= {"any_resolves": explanation.any_resolves, "unsure": explanation.unsure}
-    ways |= {"remedies": [asdict(remedy) for remedy in explanation.remedies]}
-    reasons = (
-        explanation.conflict
-        or explanation.remedies
-        or explanation.message != explanation.result.message
-    )
-    if explanation.result.status != "infeasible" or not reasons:  # the proof says why, once
-        return explanation.result
-    return replace(explanation.result, report=explanation.result.report | {"ways_out": ways})
+    result, message = explanation.result, explanation.message
+    known = explanation.conflict, explanation.remedies
+    proven = result.status == "infeasible" and message != result.message
+    if not (any(known) or proven):  # the proof says why, once
+        return result
+    ways = Remedies(*known, message, explanation.any_resolves, explanation.unsure)
+    return replace(result, report=result.report | {"ways_out": ways.told})
 
 
 def _html(head: str, blocks: Sequence[Block]) -> str:

@@ -7,18 +7,18 @@ field that is missing or misspelt fails when the kind is imported.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic
 
 from pydantic import BaseModel
 
 from gearopt.errors import SolveError
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.runs import Model
-from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.pareto.several import Several
 from gearopt.optimise.result import Result
+from gearopt.scenes.plan import S, Step, carried_out
 from gearopt.scenes.reading.ask import Ask
-
-S = TypeVar("S", bound=BaseModel)  # the scene of a kind
 
 
 @dataclass(frozen=True)
@@ -87,10 +87,13 @@ NO_TRADES: Trades[Any] = Trades()
 class Kind(Generic[S]):
     """A kind of problem file.
 
-    scene: the tables of a file. examples: by name, the first that of the kind itself. solve: the
-    answer to a file. posed: the problem that a method solves, for comparisons. compared: the
+    scene: the tables of a file. examples: by name, the first that of the kind itself. steps: how a
+    file is answered. posed: the problem that a method solves, for comparisons. compared: the
     methods of a comparison that names none. methods: those that the kind has beside the back ends.
-    explain: sensitivities or remedies, from the answer where it is known; None: by solving changed
+    remedies: what to write instead of an impossible file, from its result, which says why; soon:
+    beside an answer, where what takes long is left out; None: none are known soon. remedied:
+    whether a file has them; others, and those of a kind without: by solving changed files.
+    influences: what every number does to an answer, in what time is left; None: by solving changed
     files. assumptions: sentences on what every answer to the file takes for granted. trades: its
     fronts. rate: the rating of given gears. idle: the options of `solve` that change nothing, each
     with the reason.
@@ -98,17 +101,23 @@ class Kind(Generic[S]):
 
     scene: type[S]
     examples: Mapping[str, Example]
-    solve: Callable[[S, Ask], Result]
+    steps: Callable[[S, Ask], Sequence[Step[S]]]
     posed: Callable[[S, str], Model] = _nothing_posed
     compared: Callable[[S], tuple[str, ...]] = _nothing_compared
     methods: tuple[str, ...] = ()
-    explain: Callable[[S, Ask, Result | None], Explanation] | None = None
+    remedies: Callable[[S, Clock, Result, bool], Remedies | None] | None = None
+    remedied: Callable[[S], bool] = lambda scene: True
+    influences: Callable[[S, Ask, Result], Explanation] | None = None
     assumptions: Callable[[S], list[str]] = _no_assumptions
     trades: Trades[S] = NO_TRADES
     rate: Callable[[S, Ask], Result] | None = None
     idle: Callable[[S, str | None], dict[str, str]] = _no_next_best
 
+    def solve(self, scene: S, ask: Ask) -> Result:
+        """Answer to a file, without remedies where it is impossible."""
+        return carried_out(self.steps(scene, ask), scene, ask)
+
     @property
     def example(self) -> Example:
-        """Return the example of the kind itself."""
+        """The example of the kind itself."""
         return next(iter(self.examples.values()))

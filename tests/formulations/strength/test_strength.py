@@ -32,6 +32,7 @@ from gearopt.physics.stiffness import lewis_form_factor
 from gearopt.scenes import drive as drives
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.drive import Limits, StageTable, limited_by
+from gearopt.scenes.explaining.default import explanation
 from gearopt.scenes.reading.ask import Ask
 
 F = Fraction
@@ -285,7 +286,7 @@ def scene(**limits):
 
 
 def test_explain_knows_the_limits_of_a_law_from_its_declaration():
-    found = drives.explain(scene(), Ask())
+    found = explanation(drives.KIND, scene(), Ask())
     own = {i.key: i for i in found.influences}["limits.pressure"]
     assert found.result.status == "optimal" and "pressure[1]" in found.binding
     assert own.sensitivity == pytest.approx(-1.0, abs=1e-7)  # V ~ T/s
@@ -295,7 +296,7 @@ def test_explain_knows_the_limits_of_a_law_from_its_declaration():
 
 @pytest.mark.slow
 def test_a_conflict_and_remedies_of_a_law():
-    found = drives.explain(scene(wheel_diameter="200 mm"), Ask())
+    found = explanation(drives.KIND, scene(wheel_diameter="200 mm"), Ask())
     assert found.result.status == "infeasible"
     assert {"pressure[1]", "pressure[2]", "wheel_diameter[1]"} <= set(found.conflict)
     (way,) = (r for r in found.remedies if r.what == "pressure" and r.kind == "even")

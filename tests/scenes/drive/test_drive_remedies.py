@@ -13,6 +13,7 @@ from gearopt.report.explained import remedy_words
 from gearopt.scenes import drive
 from gearopt.scenes.drive.explaining.choices import nearest_ratio
 from gearopt.scenes.drive.explaining.tried import Case
+from gearopt.scenes.explaining.default import explanation
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
 
@@ -86,7 +87,7 @@ SHORT_LIST = drive_file(
 
 
 def explained(text, seconds=100.0):
-    return drive.explain(read(text.encode())[1], Ask(budget=Budget(seconds=seconds)))
+    return explanation(drive.KIND, read(text.encode())[1], Ask(budget=Budget(seconds=seconds)))
 
 
 @pytest.mark.slow

@@ -17,7 +17,7 @@ from gearopt.formulations.strength.lewis import LEWIS
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.solve import run, solve
 from gearopt.physics.gears import MODULES, GearPair
-from gearopt.scenes.explaining.default import explain
+from gearopt.scenes.explaining.default import explanation
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, number, quantity, whole
 from gearopt.scenes.reading.lists import span
@@ -78,7 +78,12 @@ def kind(**given):
     def posed(own, method=""):
         return model(own, method, **given)
 
-    return SimpleNamespace(posed=posed, solve=lambda own, ask: solve(posed(own).problem))
+    return SimpleNamespace(
+        remedies=None,
+        influences=None,
+        posed=posed,
+        solve=lambda own, ask: solve(posed(own).problem),
+    )
 
 
 FILE = {
@@ -93,7 +98,7 @@ FILE = {
 
 def explained(own_kind, **changes):
     content = {"pair": FILE | changes}
-    return content, explain(own_kind, Pairs.model_validate(content), Ask())
+    return content, explanation(own_kind, Pairs.model_validate(content), Ask())
 
 
 def test_sensitivities_and_steps_are_those_of_files_solved_again():

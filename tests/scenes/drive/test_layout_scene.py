@@ -169,15 +169,14 @@ def test_a_shaft_through_a_wheel_is_told_with_cures_that_work():
 
 def test_a_search_and_the_ways_out_of_it_share_a_budget(monkeypatch):
     given = []
-    none = Remedies(), None
+    none = Remedies()
     monkeypatch.setattr(
         "gearopt.scenes.drive.explaining.box_remedies.remedies",
-        lambda *asked: given.append(asked[-1].budget) or none,
+        lambda *asked: given.append(asked[-1].left) or none,
     )
     tight = scene(with_layout(largest_height='"415 mm"', largest_width='"600 mm"'))
     result = gearopt.solve(tight, budget=gearopt.Budget(50.0))
-    spent = result.seconds + result.parts[0].seconds
-    assert given[0].seconds == pytest.approx(50.0 - spent, rel=1e-12)
+    assert 0.0 < given[0].seconds <= 50.0 - result.parts[0].seconds
 
 
 def test_an_impossible_height_names_the_least_one():
@@ -370,7 +369,7 @@ def small():
 def test_the_drive_is_read_once_for_all_its_boxes(small, monkeypatch):
     """A search over gears and box makes hundreds of boxes of one drive."""
     from gearopt.optimise.clock import Clock
-    from gearopt.scenes.drive.box.other_gears import _fits
+    from gearopt.scenes.drive.explaining.other_gears import _fits
 
     read, train = [], type(small).train
     monkeypatch.setattr(type(small), "train", lambda one: read.append(1) or train(one))
@@ -380,12 +379,13 @@ def test_the_drive_is_read_once_for_all_its_boxes(small, monkeypatch):
 
 @pytest.mark.slow
 def test_together_stopped_at_once_gives_the_gears_chosen_first(small):
-    from gearopt.scenes.drive import bare, solve
-    from gearopt.scenes.drive.box.at_once import at_once
+    from gearopt.scenes.drive.layout import at_once
+    from gearopt.scenes.drive.sizing import sized
+    from gearopt.scenes.drive.without import without
     from gearopt.scenes.reading.ask import Ask
 
-    sized = solve(bare(small), Ask())
-    result = at_once(small, Ask(budget=gearopt.Budget(seconds=0.0)), sized)
+    gears = sized(without(small, "layout"), Ask())
+    result = at_once(small, Ask(budget=gearopt.Budget(seconds=0.0)), gears)
     whole = gearopt.solve(small)
     assert result.status == "limit" and result.value is not None
     assert whole.status == "optimal" and whole.value <= result.value
@@ -394,13 +394,14 @@ def test_together_stopped_at_once_gives_the_gears_chosen_first(small):
 
 def test_a_stop_is_heard_while_the_gears_chosen_first_are_laid_out(small):
     """And their box, which is not the answer's, is not told as the best one so far."""
-    from gearopt.scenes.drive import bare, solve
-    from gearopt.scenes.drive.box.at_once import at_once
+    from gearopt.scenes.drive.layout import at_once
+    from gearopt.scenes.drive.sizing import sized
+    from gearopt.scenes.drive.without import without
     from gearopt.scenes.reading.ask import Ask
 
     seen = []
-    sized = solve(bare(small), Ask())
-    result = at_once(small, Ask(watch=lambda event: bool(seen.append(event))), sized)
+    gears = sized(without(small, "layout"), Ask())
+    result = at_once(small, Ask(watch=lambda event: bool(seen.append(event))), gears)
     assert result.parts[0].status == "limit" and seen[0].best is None
     assert "real-valued" not in [part.name for part in result.parts]  # a start is no answer
 
@@ -408,13 +409,9 @@ def test_a_stop_is_heard_while_the_gears_chosen_first_are_laid_out(small):
 @pytest.mark.slow
 def test_every_answer_makes_a_page(small, tmp_path):
     """Also of gears and box at once, and of what is impossible; numbers of numpy never reach it."""
-    from dataclasses import replace
-
     from gearopt.report.pages.result import page
-    from gearopt.scenes.drive import solve
-    from gearopt.scenes.reading.ask import Ask
 
-    html = page(replace(solve(small, Ask()), scene="drive"), "gearopt solve")
+    html = page(gearopt.solve(small), "gearopt solve")
     assert "Front view" in html and "clearances" in html
 
 

@@ -362,10 +362,10 @@ def test_without_its_rating_a_sized_drive_is_the_same(solved):
 
 
 def test_numbers_of_a_rating_size_nothing_and_are_not_explained():
-    from gearopt.scenes.drive import unrated
+    from gearopt.scenes.drive.without import without
 
     scene = gearopt.load(PROBLEMS / "sized_and_rated.toml")
-    keys = {n.key for n in numbers(unrated(scene))}
+    keys = {n.key for n in numbers(without(scene, "rating"))}
     assert "duty.power" in keys and "gears.helix_angle" in keys
     assert not any("rating" in key or "treatment" in key or "load" in key for key in keys)
 

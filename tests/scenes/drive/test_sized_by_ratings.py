@@ -10,7 +10,7 @@ from campaigns import few
 import gearopt
 from gearopt.errors import SceneError, SolveError
 from gearopt.optimise.result import Budget
-from gearopt.scenes.drive.rating import cut_short
+from gearopt.scenes.drive import sizing
 from gearopt.scenes.reading.load import examples
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
@@ -384,8 +384,8 @@ def test_a_minimum_face_width_is_eased():
 
 def test_a_search_that_is_cut_short_has_the_bound_of_real_valued_sizes(monkeypatch):
     """No whole teeth in no time: the bound is that of real-valued sizes, which are a part."""
-    monkeypatch.setattr(cut_short, "SHARE", 0.999)
-    found = gearopt.solve(PROBLEMS / "elevator_by_both.toml", budget=Budget(0.4))
+    monkeypatch.setattr(sizing, "BOUND_SHARE", 0.9999)
+    found = gearopt.solve(PROBLEMS / "elevator_by_both.toml", budget=Budget(2.0))
     (real,) = found.parts
     assert found.status == "limit" and real.name == "sizing"
     assert 0.0 < found.bound == real.bound < 67020184.0

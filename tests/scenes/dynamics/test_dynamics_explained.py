@@ -29,13 +29,13 @@ def test_a_motion_is_told_to_the_digits_that_were_asked(tmp_path):
 def test_a_proof_tells_the_time_that_its_remedies_took(tmp_path, monkeypatch):
     """Else what is left of a budget is spent again, on files that are solved in full."""
     module = import_module("gearopt.scenes.dynamics.steps")
-    ways_out = module._ways_out
+    alone = module.each_alone
 
     def slow(*given):
         time.sleep(0.3)
-        return ways_out(*given)
+        return alone(*given)
 
-    monkeypatch.setattr(module, "_ways_out", slow)
+    monkeypatch.setattr(module, "each_alone", slow)
     path = tmp_path / "light.toml"
     text = (PROBLEMS / "least_vibration.toml").read_text()
     path.write_text(text.replace('mass = "2 kg"', 'mass = "0.5 kg"'))

@@ -9,6 +9,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.solve import evaluate
 from gearopt.optimise.terms import Terms, Var
 from gearopt.scenes.kind import Example, Kind
+from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.fields import Table, number, words
 from gearopt.scenes.reading.inputs import Input, result_of
 
@@ -38,7 +39,7 @@ class Scene(Table):
     check: Check
 
 
-def solve(scene, ask):
+def solve(scene, ask, known):
     """Nothing is minimised: the utilisation of one limit."""
     asked = scene.check
     train = asked.train.result(ask)
@@ -52,4 +53,4 @@ def solve(scene, ask):
     return replace(result, objective=result.objective | {"unit": ""})
 
 
-KIND = Kind(scene=Scene, examples={"checked": Example("a check", TEXT)}, solve=solve)
+KIND = Kind(scene=Scene, examples={"checked": Example("a check", TEXT)}, steps=one_step(solve))

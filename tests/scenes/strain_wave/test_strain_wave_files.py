@@ -15,9 +15,10 @@ from gearopt.optimise.typed import typed
 from gearopt.report.kinds.strain_wave.tables import loads
 from gearopt.report.measures import METRIC
 from gearopt.scenes import strain_wave
+from gearopt.scenes.explaining.default import explanation
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.strain_wave import KIND, compared, explain, objectives, posed, remedies, several
+from gearopt.scenes.strain_wave import KIND, compared, objectives, posed, remedies, several
 from gearopt.scenes.strain_wave import KIND as WAVES
 from gearopt.scenes.strain_wave.notes import assumptions, notes, range_notes
 from gearopt.scenes.strain_wave.remedies import costs
@@ -278,7 +279,7 @@ def test_methods_that_are_not_there_are_refused():
 
 def test_explain_of_given_gears_names_what_decides(solved):
     told = replace(solved("strain_wave_base"), limits={"pairs": 1.0, "ratcheting": 0.5})
-    found = explain(scene(EXAMPLE), Ask(), told)
+    found = explanation(KIND, scene(EXAMPLE), Ask(), told)
     assert found.binding == ("pairs",) and not found.influences
     assert "the gearing is given" in found.message
 
@@ -293,7 +294,7 @@ def test_what_limits_cost_is_told_in_their_units():
 @pytest.mark.slow
 def test_explain_of_a_duty_follows_the_laws_of_similar_gearings():
     """Hertz's pressure of similar gearings goes with (T/D^3)^(1/2), whatever the limits are."""
-    found = explain(scene(FROM_DUTY.replace("[cutter]\n", "")), Ask())
+    found = explanation(KIND, scene(FROM_DUTY.replace("[cutter]\n", "")), Ask())
     by = {i.key: i for i in found.influences}
     assert set(found.binding) == {"outer_radius", "interference"}
     for key, power in (("duty.torque", 0.5), ("duty.outer_diameter", -1.5)):
@@ -323,7 +324,7 @@ def test_an_impossible_duty_is_told_what_would_do(torque, diameter, status, conf
     less, wider = ways["remedies"]
     assert less["what"] == "duty.torque" and wider["what"] == "duty.outer_diameter"
     assert less["factor"] ** (1.0 / 3.0) == pytest.approx(wider["factor"], rel=2e-3)
-    assert explain(own, Ask(), found).remedies[1].factor == wider["factor"]
+    assert explanation(KIND, own, Ask(), found).remedies[1].factor == wider["factor"]
 
 
 @pytest.mark.slow

@@ -1,7 +1,8 @@
 """What `explain` answers: remedies for an impossible request, influences on a possible one."""
 
 import tomllib
-from dataclasses import asdict, dataclass, field
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
 from gearopt.optimise.result import Result, as_dict, as_json, shown
@@ -64,7 +65,8 @@ class Remedies:
 
     conflict: names of limits in conflict; message: what is missing. any_resolves: whether it was
     found that any one of these limits, dropped alone, makes a design possible. unsure: limits of
-    the conflict of which it is not known whether it takes them.
+    the conflict of which it is not known whether it takes them. untried: no remedy was looked for.
+    drawn: what a page shows beside them, by keys of a report.
     """
 
     conflict: tuple[str, ...] = ()
@@ -72,6 +74,17 @@ class Remedies:
     message: str = ""
     any_resolves: bool = False
     unsure: tuple[str, ...] = ()
+    untried: bool = False
+    drawn: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """What a report holds of them."""
+        told = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "drawn"}
+        told["remedies"] = [asdict(remedy) for remedy in self.remedies]
+        if not self.untried:
+            del told["untried"]
+        return told
 
 
 @dataclass(frozen=True)

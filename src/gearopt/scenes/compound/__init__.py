@@ -19,6 +19,7 @@ from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.kind import Kind, Trades, examples_in
+from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.ask import Ask, unseeded
 from gearopt.scenes.reading.fields import Table, choice, speed_ratio, whole, words
 from gearopt.scenes.reading.lists import span
@@ -69,7 +70,7 @@ class CompoundDesign:
     ratio_error_percent: float
 
 
-def solve(scene: Scene, ask: Ask) -> Result:
+def nearest(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Return the teeth whose ratio is nearest; `report` and message name the ratio achieved."""
     result, outcome = run(
         posed(scene, "").problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap
@@ -194,7 +195,7 @@ ABOUT = {  # files in examples, that of the kind first
 KIND = Kind(
     scene=Scene,
     examples=examples_in(__file__, ABOUT),
-    solve=solve,
+    steps=one_step(nearest),
     posed=posed,
     compared=compared,
     methods=METHODS,

@@ -135,7 +135,7 @@ def _known(counts: Sequence[Count]) -> float:
 def _best(counts: Sequence[Count], ask: Ask, clock: Clock) -> Result:
     """Return the best of all counts, with the bound of all."""
     found = least([c.found for c in counts], ask.gap)
-    report = _report(found, counts) | {"counts": [_row(c) for c in counts]}
+    report = found.report | {"counts": [_row(c) for c in counts]}
     if trains := _trains(counts, ask.top):
         report["trains"] = trains
     return replace(
@@ -146,18 +146,6 @@ def _best(counts: Sequence[Count], ask: Ask, clock: Clock) -> Result:
         seconds=clock.seconds,
         evaluations=sum(c.found.evaluations for c in counts),
     )
-
-
-def _report(found: Result, counts: Sequence[Count]) -> dict[str, Any]:
-    """Return the report of the best count; of impossible boxes that of the one that needs least."""
-    known = [c.found.report for c in counts if "ways_out" in c.found.report]
-    if found.status != "infeasible" or not known:
-        return found.report
-    return min(known, key=_least_factor)
-
-
-def _least_factor(report: Mapping[str, Any]) -> float:
-    return min((r["factor"] for r in report["ways_out"]["remedies"]), default=math.inf)
 
 
 def _row(count: Count) -> dict[str, Any]:

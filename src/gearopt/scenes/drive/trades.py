@@ -15,8 +15,10 @@ from gearopt.optimise.pareto.pareto import EPSILON, EXACT
 from gearopt.optimise.pareto.several import Several
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
-from gearopt.scenes.drive.box import sides
+from gearopt.scenes.drive import sides
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.sizing import sized
+from gearopt.scenes.drive.without import without
 from gearopt.scenes.reading.ask import Ask
 
 
@@ -67,11 +69,9 @@ def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
                 f"{', '.join(boxed)} of the box and objectives of the gears are no front together: "
                 "the gears are sized first, and laid out then"
             )
-        from gearopt.scenes.drive import bare, solve
-
-        sized = solve(bare(scene), Ask())
-        held = scene.held(len(sized.design["stages"])) if sized.value is not None else scene
-        return sides.several(held, names, sized)
+        gears = sized(without(scene, "layout"), Ask())
+        held = scene.held(len(gears.design["stages"])) if gears.value is not None else scene
+        return sides.several(held, names, gears)
     if scene.several:
         each = [several(scene.held(count), names, method) for count in scene.counts]
         curves = any(one.limiting is not None and not one.limiting.whole for one in each)

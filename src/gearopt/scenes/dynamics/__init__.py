@@ -23,12 +23,14 @@ from gearopt.scenes.dynamics.steps import (
     BEST,
     beside,
     optimised,
+    remedies,
     resolvable,
     told,
     whole_problem,
 )
-from gearopt.scenes.explaining.default import explained, of_report
+from gearopt.scenes.explaining.default import explained
 from gearopt.scenes.kind import Kind, examples_in
+from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.ask import Ask, without_method
 
 METHODS = ("screened",)  # its own
@@ -40,7 +42,7 @@ ONCE = (
 NOTHING = "the file has no table [optimise], so that nothing is chosen"
 
 
-def solve(scene: Scene, ask: Ask) -> Result:
+def motion(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Return what the file asks of its pair, or of the pair of least vibration with [optimise]."""
     clock = Clock(ask.budget, ask.watch)
     wave, assumed = of_teeth(scene, ask) if scene.mesh.pair else (wave_of(scene.mesh), [])
@@ -90,20 +92,17 @@ def _least(scene: Scene, ask: Ask, before: MovingPair, clock: Clock) -> Result:
     return replace(result, design=untyped(replace(design, warnings=said)), report=report)
 
 
-def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
-    """Return what every number does to the answer, and what makes an impossible file possible.
+def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
+    """What every number does to the answer.
 
     Numbers are solved again from the answer, over its speeds, where teeth stay in contact.
     """
-    result = result or solve(scene, ask.half)
-    if "ways_out" in result.report:
-        return of_report(result)
     clock = Clock(ask.budget, of_others(ask.watch))
     if scene.optimise is not None and not resolvable(scene, result):
         return Explanation(result, (), (), binding(result), (), ONCE, clock.seconds)
 
     def answer(other: Scene) -> Result:
-        return solve(other, replace(ask, budget=clock.left, watch=clock.watch))
+        return motion(other, replace(ask, budget=clock.left, watch=clock.watch), None)
 
     return explained(scene, result, clock, answer, lambda other: beside(scene, other, result))
 
@@ -228,11 +227,13 @@ ABOUT = {  # files in examples, that of the kind first
 KIND = Kind(
     scene=Scene,
     examples=examples_in(__file__, ABOUT),
-    solve=solve,
+    steps=one_step(motion),
     posed=posed,
     compared=compared,
     methods=METHODS,
-    explain=explain,
+    remedies=remedies,
+    remedied=lambda scene: scene.optimise is not None,
+    influences=influences,
     assumptions=assumptions,
     idle=idle,
 )

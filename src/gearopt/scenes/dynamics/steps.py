@@ -1,6 +1,6 @@
 """The table [optimise]: the search, what proves it impossible, and what is said of the best."""
 
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 from gearopt.formulations.dynamics.design import Chosen
 from gearopt.formulations.dynamics.orbit.climbing import JUDGE_MARGIN, begun, posed
@@ -20,7 +20,7 @@ from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.solve import run
 from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.scenes.dynamics.scene import Scene
-from gearopt.scenes.explaining.default import remedies
+from gearopt.scenes.explaining.default import remedies as each_alone
 from gearopt.scenes.explaining.possible import Verdict, of_status
 from gearopt.scenes.reading.ask import Ask
 
@@ -73,9 +73,6 @@ def optimised(
     else:
         result, _ = run(whole_problem(task), ask.method, clock.left, ask.seed, in_mm, ask.gap)
     result = replace(result, name="dynamics", seconds=clock.seconds)
-    if result.status == "infeasible":
-        ways = {"ways_out": asdict(_ways_out(scene, task, clock))}
-        return replace(result, report=result.report | ways, seconds=clock.seconds), None, task
     if result.value is None:
         return result, None, task
     values = tuple(float(v) for v in list(result.design.values())[: len(VARIABLES)])
@@ -151,10 +148,10 @@ def told(best: Chosen, result: Result, periods: int) -> list[str]:
     return found
 
 
-def _ways_out(scene: Scene, task: Task, clock: Clock) -> Remedies:
-    """Return each number of the file that alone makes it possible."""
+def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies:
+    """Each number of the file that alone makes it possible."""
     left = Clock(clock.left, of_others(clock.watch))
-    return remedies(scene, limited(task), left, possible)
+    return each_alone(scene, limited(scene.task), left, possible)
 
 
 def possible(scene: Scene, clock: Clock) -> Verdict:

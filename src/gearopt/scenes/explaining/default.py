@@ -1,19 +1,18 @@
-"""`explain` of a kind that has none of its own: by its `solve`, and by its `model`'s problem."""
+"""Explanations of all kinds; of one without its own: by solving changed files as it poses them."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.optimise.clock import Clock, of_others
+from gearopt.optimise.clock import Clock, of_others, tell_known
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import (
-    Change,
     Explanation,
     Influence,
     Remedies,
-    Remedy,
 )
 from gearopt.optimise.explaining.handles import Handle, handles
 from gearopt.optimise.explaining.repair import CERTAIN, any_resolves, conflict
@@ -27,7 +26,8 @@ from gearopt.scenes.explaining.influences import Basis, Solved, influences, step
 from gearopt.scenes.explaining.moves import DUTY, LIMIT, Move
 from gearopt.scenes.explaining.numbers import Number, numbers, one_at
 from gearopt.scenes.explaining.possible import Possible, Verdict, of_status
-from gearopt.scenes.kind import Kind, S
+from gearopt.scenes.kind import Kind
+from gearopt.scenes.plan import S
 from gearopt.scenes.reading.ask import Ask
 
 BASIS = (
@@ -42,17 +42,33 @@ UNPROVEN = "numbers are not solved again, because the answer is not proven optim
 
 
 def explanation(kind: Kind[S], scene: S, ask: Ask, result: Result | None = None) -> Explanation:
-    """Return the explanation of a kind itself, else the one by solving changed files."""
-    if kind.explain is None:
-        return explain(kind, scene, ask, result)
-    return kind.explain(scene, ask, result)
+    """Remedies of an impossible file, with its conflict; else what every number does to an answer.
 
-
-def explain(kind: Kind[S], scene: S, ask: Ask, result: Result | None = None) -> Explanation:
-    """Return what every number of a file does to its answer, or which would make it possible.
-
-    result: the answer, where it is known.
+    result: the answer, where it is known; half of the time is for it otherwise.
     """
+    clock = Clock(ask.budget, of_others(ask.watch))
+    result = result or kind.solve(scene, ask.half)
+    if kind.remedies is not None and kind.remedied(scene) and without_design(result):
+        tell_known(ask.watch, result)
+        if (ways := kind.remedies(scene, clock, result, False)) is not None:
+            return _impossible_with(ways, result, clock)
+    left = replace(ask, budget=clock.left)
+    return (kind.influences or partial(by_solving, kind))(scene, left, result)
+
+
+def _impossible_with(ways: Remedies, result: Result, clock: Clock) -> Explanation:
+    shown = replace(result, report={**result.report, **ways.drawn})
+    known = ways.conflict, ways.remedies, (), (), ways.message
+    return Explanation(shown, *known, clock.seconds, "", ways.any_resolves, ways.unsure)
+
+
+def without_design(result: Result) -> bool:
+    """Whether no design meets the limits, or none was found and how near one came is told."""
+    return result.status == "infeasible" or bool("nearest" in result.report and not result.design)
+
+
+def by_solving(kind: Kind[S], scene: S, ask: Ask, result: Result) -> Explanation:
+    """What every number of a file does to its answer, or which would make it possible."""
     clock = Clock(ask.budget, of_others(ask.watch))
 
     def answer(other: S) -> Result:
@@ -61,21 +77,7 @@ def explain(kind: Kind[S], scene: S, ask: Ask, result: Result | None = None) -> 
     def posed(other: S) -> Problem | Conic:
         return kind.posed(other, "").problem
 
-    return explained(scene, result or kind.solve(scene, ask.half), clock, answer, posed)
-
-
-def of_report(result: Result) -> Explanation:
-    """Return the explanation that an impossible result brings along as `ways_out`."""
-    ways: dict[str, Any] = result.report.get("ways_out", {})
-    found = tuple(
-        Remedy(**{**r, "changes": tuple(Change(**c) for c in r["changes"])})
-        for r in ways.get("remedies", ())
-    )
-    names, words = tuple(ways.get("conflict", ())), ways.get("message", "")
-    sure = ways.get("any_resolves", False)
-    doubts = tuple(ways.get("unsure", ()))
-    told = (result, names, found, (), (), words, result.seconds)
-    return Explanation(*told, any_resolves=sure, unsure=doubts)
+    return explained(scene, result, clock, answer, posed)
 
 
 def explained(
@@ -130,8 +132,8 @@ def _impossible(
     def possible(other: Any, within: Clock) -> Verdict:
         return of_status(answer(other).status)
 
-    found = remedies(scene, problem, clock, possible)
-    return Explanation(result, **vars(found), seconds=clock.seconds)
+    ways = remedies(scene, problem, clock, possible)
+    return _impossible_with(ways, result, clock)
 
 
 def remedies(scene: Any, problem: Problem, clock: Clock, possible: Possible[Any]) -> Remedies:

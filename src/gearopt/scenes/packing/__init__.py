@@ -8,7 +8,7 @@ import math
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
@@ -38,6 +38,7 @@ from gearopt.optimise.typed import untyped
 from gearopt.scenes.explaining.default import at_point, eases, of_design
 from gearopt.scenes.explaining.numbers import rounded
 from gearopt.scenes.kind import Kind, examples_in
+from gearopt.scenes.plan import Step, carried_out
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, choice, quantity, refuse, whole, words
 from gearopt.scenes.reading.lists import pair
@@ -295,44 +296,49 @@ def assumptions(scene: Scene) -> list[str]:
     return [f"{size}; they may touch each other and walls."]
 
 
-def solve(scene: Scene, ask: Ask) -> Result:
-    """Pack the cylinders; a method that brings no bound is held against the same one."""
+def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
+    """Packing by a method, then the bound of a packing that brings none."""
+    return Step(packed), Step(bounded)
+
+
+def packed(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """Cylinders packed by the method that is asked for."""
     plan = scene.plan()
     problem = _problem(plan, ask.method)
-    watch = in_part(ask.watch, plan.unit())
     if ask.method in (None, *problem.methods):
         ready(ask.watch)
+    watch = in_part(ask.watch, plan.unit())
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": plan.unit()})
     if result.value is None or outcome.x is None:
         return result
-    if result.bound is None:
-        result = _bounded(plan, result, replace(ask, watch=watch))
-    report = {"assumptions": assumptions(scene)}
-    if result.status != "optimal":
+    design = describe(plan, packing_text.places(plan, problem, outcome.x))
+    return replace(result, design=untyped(design))
+
+
+def bounded(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """Packing with the computed bound of its plan, in the time left, or BOUND_SECONDS."""
+    assert known is not None
+    report: dict[str, Any] = {"assumptions": assumptions(scene)}
+    if known.bound is None:
+        plan, left = scene.plan(), ask.budget.seconds
+        clock = Clock(Budget(), in_part(ask.watch, plan.unit()))
+        clock.evaluations, clock.best = known.evaluations, known.value or math.inf
+        floor = bound(plan, lateness(clock, None if left is None else max(left, BOUND_SECONDS)))
+        relaxation = replace(known, objective={"value": None}, bound=floor.value)
+        relaxation = replace(relaxation, status="feasible", proof=packing.proof(floor))
+        known = reconcile(known, relaxation, ask.gap)
+    if known.status != "optimal":
         report["notes"] = [UNPROVEN]
-    found = packing_text.places(plan, problem, outcome.x)
-    return replace(result, design=untyped(describe(plan, found)), report=report)
+    return replace(known, report=report)
 
 
-def _bounded(plan: Plan, result: Result, ask: Ask) -> Result:
-    """Return a result with the computed bound of its plan, in the time left, or BOUND_SECONDS."""
-    left = ask.budget.less(result.seconds).seconds
-    clock = Clock(Budget(), ask.watch)
-    clock.evaluations, clock.best = result.evaluations, result.value or math.inf
-    floor = bound(plan, lateness(clock, None if left is None else max(left, BOUND_SECONDS)))
-    relaxation = replace(result, objective={"value": None}, bound=floor.value)
-    relaxation = replace(relaxation, status="feasible", proof=packing.proof(floor))
-    return reconcile(result, relaxation, ask.gap)
-
-
-def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
-    """Return the sensitivity of the packing to every number, with its layers and contacts held.
+def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
+    """Sensitivity of the packing to every number, with its layers and contacts held.
 
     Solved again from the packing itself, which is followed; whole numbers are packed again.
     """
     clock = Clock(ask.budget, of_others(ask.watch))
-    result = result or solve(scene, ask.half)
     if result.value is None:
         return Explanation(result, message="no packing was found in time", seconds=clock.seconds)
     found = places(packing_design(result.design))
@@ -344,8 +350,9 @@ def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation
     def packed(other: Scene) -> float | None:
         if result.status not in CERTAIN:  # a difference to what is not the best means nothing
             return None
-        new = solve(other, replace(ask, budget=clock.left, watch=clock.watch))
-        return new.value if new.status in CERTAIN else None
+        asked = replace(ask, budget=clock.left, watch=clock.watch)
+        again = carried_out(steps(other, asked), other, asked)
+        return again.value if again.status in CERTAIN else None
 
     def followed(other: Scene) -> float | None:
         return solve_within(clock, posed(other), "ipopt").value
@@ -379,10 +386,10 @@ ABOUT = {  # files in examples, that of the kind first
 KIND = Kind(
     scene=Scene,
     examples=examples_in(__file__, ABOUT),
-    solve=solve,
+    steps=steps,
     posed=posed,
     compared=compared,
     methods=METHODS,
-    explain=explain,
+    influences=influences,
     assumptions=assumptions,
 )

@@ -9,14 +9,15 @@ from gearopt.formulations.pair.contact import PairMesh
 from gearopt.formulations.pair.relief import parametric
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.runs import Model
-from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.pareto.several import Several
 from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
 from gearopt.scenes import drive
+from gearopt.scenes.drive.explaining import why as of_drive
 from gearopt.scenes.drive.rating import rated
 from gearopt.scenes.drive.tables.blanks import body_flaws
-from gearopt.scenes.explaining.default import explain as explain_scene
+from gearopt.scenes.explaining.default import by_solving
 from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.pair import relief as relief_part
 from gearopt.scenes.pair.contact import contact_of, mesh_of
@@ -24,31 +25,26 @@ from gearopt.scenes.pair.notes import contact_assumptions
 from gearopt.scenes.pair.relief import relieved
 from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.scene import Scene
+from gearopt.scenes.plan import Step
 from gearopt.scenes.reading.ask import Ask, unseeded, without_method
 
 METHODS = ("exact", "mpec")  # its own
 NOTHING = "the gears are given, so that nothing is chosen"
 
 
-def solve(scene: Scene, ask: Ask) -> Result:
-    """Size the pair where it is not given, by its rating; compute its contact; then its relief.
+def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
+    """Gears, given or sized by their rating; their contact; their relief.
 
     With a table [relief] that is what the answer is about, and a sized pair is its part "gears".
     """
-    clock = Clock(ask.budget, ask.watch)
-    gears = _gears(scene, ask if scene.relief is None else replace(ask, method=None, top=1))
-    if not gears.design:
-        return gears
-    made, found = _with_contact(scene, gears)
-    if scene.relief is not None:
-        left = replace(ask, budget=clock.left)
-        found = _with_relief(scene, made, found, left)
-    return replace(found, seconds=clock.seconds)
+    gears = Step(sized_or_given, own=scene.relief is None)
+    relief = () if scene.relief is None else (Step(with_relief),)
+    return (gears, Step(with_contact), *relief)
 
 
-def _gears(scene: Scene, ask: Ask) -> Result:
-    """Return the gears, given or sized, and rated where the file asks for it."""
-    return _evaluated(scene, ask) if scene.given else drive.solve(scene.drive, ask)
+def sized_or_given(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """Gears, given or sized, and rated where the file asks for it."""
+    return _evaluated(scene, ask) if scene.given else drive.KIND.solve(scene.drive, ask)
 
 
 def _mesh(scene: Scene, result: Result) -> tuple[DriveDesign, PairMesh]:
@@ -58,29 +54,31 @@ def _mesh(scene: Scene, result: Result) -> tuple[DriveDesign, PairMesh]:
     return design, mesh_of(scene, stage.pair, (stage.pinion_material, stage.wheel_material))
 
 
-def _with_contact(scene: Scene, result: Result) -> tuple[PairMesh, Result]:
-    """Return the pair in mesh, and the result with its contact."""
-    design, made = _mesh(scene, result)
+def with_contact(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """Gears with their contact."""
+    assert known is not None
+    design, made = _mesh(scene, known)
     stage = design.stages[0]
     contact = contact_of(scene, made, (stage.pinion_material, stage.wheel_material))
     told = [
-        *result.report.get("assumptions", []),
+        *known.report.get("assumptions", []),
         *contact_assumptions(scene, contact, made.elastic.pair),
     ]
-    return made, replace(
-        result,
-        name="rating" if result.name == "rating" else "pair",
+    return replace(
+        known,
+        name="rating" if known.name == "rating" else "pair",
         design=untyped(replace(design, contact=contact)),
-        report=result.report | {"assumptions": told},
+        report=known.report | {"assumptions": told},
     )
 
 
-def _with_relief(scene: Scene, made: PairMesh, gears: Result, ask: Ask) -> Result:
-    """Return the relief with the gears that it is of, a part where they were sized or rated.
+def with_relief(scene: Scene, ask: Ask, gears: Result | None) -> Result:
+    """The relief with the gears that it is of, a part where they were sized or rated.
 
     Limits of gears that are given are those of their part: no relief changes them.
     """
-    found, relief = relieved(scene, made, ask)
+    assert gears is not None
+    found, relief = relieved(scene, _mesh(scene, gears)[1], ask)
     sized = gears.value is not None
     told = sized or bool(gears.limits)
     parts = (replace(gears, name="gears", design={}, report={}),) if told else ()
@@ -124,11 +122,16 @@ def _evaluated(scene: Scene, ask: Ask) -> Result:
     return replace(found, seconds=clock.seconds)
 
 
-def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
-    """Return what every number of the file does to the relief, else to the size of the pair."""
+def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies | None:
+    """What to write instead where no gears meet the limits of the rating."""
+    return of_drive.remedies(scene.drive, clock, result, soon)
+
+
+def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
+    """What every number of the file does to the relief, else to the size of the pair."""
     if scene.relief is not None:
-        return explain_scene(KIND, scene, ask, result)
-    return drive.explain(_to_size(scene).drive, ask, result)
+        return by_solving(KIND, scene, ask, result)
+    return of_drive.influences(_to_size(scene).drive, ask, result)
 
 
 def idle(scene: Scene, method: str | None) -> dict[str, str]:
@@ -185,7 +188,7 @@ def _mesh_of_gears(scene: Scene) -> PairMesh:
     """Return the gears in mesh, sized where they are not given; SolveError where there are none."""
     if scene.given:
         return mesh_of(scene, scene.given_pair)
-    sized = drive.solve(scene.drive, Ask())
+    sized = drive.KIND.solve(scene.drive, Ask())
     if sized.value is None:
         raise SolveError("no pair of gears meets the limits, so that there is none to relieve")
     return _mesh(scene, sized)[1]
@@ -205,11 +208,13 @@ ABOUT = {  # files in examples, that of the kind first
 KIND = Kind(
     scene=Scene,
     examples=examples_in(__file__, ABOUT),
-    solve=solve,
+    steps=steps,
     posed=posed,
     compared=compared,
     methods=METHODS,
-    explain=explain,
+    remedies=remedies,
+    remedied=lambda scene: scene.relief is None,
+    influences=influences,
     trades=Trades(objectives, several),
     idle=idle,
 )

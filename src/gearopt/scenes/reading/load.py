@@ -28,7 +28,7 @@ from gearopt.scenes.reading.near import near
 from gearopt.scenes.reading.toml import cut, dotted, short
 
 FORMAT = 1
-SHARED = {"reading", "explaining", "kind", "parts"}  # of `gearopt.scenes`, what is no kind
+SHARED = {"reading", "explaining", "kind", "parts", "plan"}  # of `gearopt.scenes`, what is no kind
 HEAD = ("gearopt", "kind")  # keys of every file
 FORMATS = {  # beginnings of files of other formats
     r"\s*<(\?xml[\s\S]*?>\s*(<!--[\s\S]*?-->\s*)*<)?model\b": "a REXS model (XML)",

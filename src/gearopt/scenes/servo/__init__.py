@@ -5,7 +5,7 @@ box, the tolerances that its accuracy asks for. Each is a certified result; the 
 asks for of train, ratio and tolerances is the answer, the others are its parts.
 """
 
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import SolveError
@@ -26,11 +26,12 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import disc_mass
-from gearopt.scenes.explaining.default import explained, of_report
+from gearopt.scenes.explaining.default import explained
 from gearopt.scenes.kind import Kind, Trades, examples_in
+from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.ask import Ask, unseeded
 from gearopt.scenes.servo.notes import assumptions, notes
-from gearopt.scenes.servo.remedies import remedies
+from gearopt.scenes.servo.remedies import remedies as of_train
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tolerances import by_every_rule, named, old, tolerance_part
 from gearopt.scenes.servo.tolerances import problem as tolerance_problem
@@ -53,8 +54,8 @@ METHODS = ("exact", "enumeration")  # its own
 COUNTS = {"combinations": "trains_looked_at", "feasible_trains": "feasible_trains"}
 
 
-def solve(scene: Scene, ask: Ask) -> Result:
-    """Solve every part of the file; the answer is the train, else the ratio, else the tolerances.
+def axis(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """Every part of the file; the answer is the train, else the ratio, else the tolerances.
 
     A method that is asked for is that of the answer; parts are solved by their own.
     """
@@ -74,7 +75,6 @@ def solve(scene: Scene, ask: Ask) -> Result:
     if said := notes(scene, found.results, found.design, found.report):
         texts["notes"] = said
     if answer.status == "infeasible" and scene.train is not None:
-        texts["ways_out"] = asdict(_ways_out(scene, clock, answer))
         if violated := nearest(scene.servo_train(), clock):
             texts["nearest"] = violated
     return replace(
@@ -86,12 +86,15 @@ def solve(scene: Scene, ask: Ask) -> Result:
     )
 
 
-def _ways_out(scene: Scene, clock: Clock, answer: Result) -> Remedies:
-    """Return the remedies; a changed file that is not decided does not cost the answer."""
+def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies:
+    """What to write instead of a train that is impossible.
+
+    A changed file that is not decided does not cost the conflict.
+    """
     try:
-        return remedies(scene, clock, answer.message)
+        return of_train(scene, clock, result.message)
     except SolveError as reason:
-        conflict = tuple(answer.proof.get("conflict", ()))
+        conflict = tuple(result.proof.get("conflict", ()))
         return Remedies(conflict, message=f"no remedy is known: {reason}")
 
 
@@ -163,15 +166,12 @@ def _key_figures(scene: Scene, found: Found) -> ServoReport:
     return ServoReport(given_train=train, given_stiffness=stiffness, figures=figures)
 
 
-def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
-    """Return what every number does to the answer; what would make an impossible one possible."""
+def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
+    """What every number does to the answer."""
     clock = Clock(ask.budget, of_others(ask.watch))
-    result = result or solve(scene, ask.half)
-    if "ways_out" in result.report:
-        return of_report(result)
 
     def answer(other: Scene) -> Result:
-        return solve(other, replace(ask, budget=clock.left, watch=clock.watch))
+        return axis(other, replace(ask, budget=clock.left, watch=clock.watch), None)
 
     found = explained(scene, result, clock, answer, lambda other: _posed(other, boxed=True)[0])
     if scene.train is None and scene.duty is None:
@@ -219,11 +219,13 @@ ABOUT = {  # files in examples, that of the kind first
 KIND = Kind(
     scene=Scene,
     examples=examples_in(__file__, ABOUT),
-    solve=solve,
+    steps=one_step(axis),
     posed=posed,
     compared=compared,
     methods=METHODS,
-    explain=explain,
+    remedies=remedies,
+    remedied=lambda scene: scene.train is not None,
+    influences=influences,
     assumptions=assumptions,
     trades=Trades(objectives, several),
     idle=idle,

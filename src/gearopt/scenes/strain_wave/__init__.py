@@ -1,7 +1,7 @@
 """kind = "strain_wave": a strain wave gearing (harmonic drive), given or chosen."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import partial
 from types import MappingProxyType
 from typing import Any
@@ -43,11 +43,11 @@ from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.physics.strain_wave.conjugate import Flank
-from gearopt.scenes.explaining.default import of_report
 from gearopt.scenes.kind import Kind, Trades, examples_in
+from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.ask import Ask, unseeded, without_method
 from gearopt.scenes.strain_wave.notes import assumptions, notes, range_notes
-from gearopt.scenes.strain_wave.remedies import influences, ways_out
+from gearopt.scenes.strain_wave.remedies import of_pressure, remedies
 from gearopt.scenes.strain_wave.scene import Scene
 
 METHODS = ("exchange",)  # its own
@@ -67,15 +67,15 @@ HIDDEN = (
 )
 
 
-def solve(scene: Scene, ask: Ask) -> Result:
+def gearing(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Choose what the file leaves open, without interference; describe the gearing."""
     if not scene.limited:
         return _evaluated(scene, ask)
     if ask.method in SAMPLERS:
         return _sampled(scene, ask)
     if ask.method not in (None, *METHODS):
-        known = ", ".join((*METHODS, *SAMPLERS))
-        raise SolveError(f"no method {ask.method!r} for a strain wave gearing: {known}")
+        names = ", ".join((*METHODS, *SAMPLERS))
+        raise SolveError(f"no method {ask.method!r} for a strain wave gearing: {names}")
     clock = Clock(ask.budget, ask.watch)
     found = exchange(scene.demand(), scene.start(), clock, ask.gap)
     result = replace(found.result, seconds=clock.seconds, evaluations=clock.evaluations)
@@ -96,17 +96,14 @@ def solve(scene: Scene, ask: Ask) -> Result:
 
 
 def _without_design(scene: Scene, found: Exchanged, result: Result, clock: Clock) -> Result:
-    """Return why nothing was found: what is asked and what is there, and what would do."""
+    """Why nothing was found: what is asked, and how near the nearest design comes to it."""
     if found.nearest is None:
         flankless = result.status == "failed" and not clock.over
         return replace(result, message=NO_FLANK) if flankless else result
-    short = NEAREST.format("; ".join(told(scene.demand(), found.nearest)))
-    ways = ways_out(scene, found, clock)
-    if result.status == "infeasible":  # the message is the proof
-        ways = replace(ways, message=f"{short} {ways.message}".strip())
-    else:
-        result = replace(result, message=short)
-    report = {"nearest": dict(found.nearest.used), "ways_out": asdict(ways)}
+    reached = NEAREST.format("; ".join(told(scene.demand(), found.nearest)))
+    if result.status != "infeasible":  # else the message is the proof
+        result = replace(result, message=reached)
+    report = {"nearest": dict(found.nearest.used), "reached": reached}
     return replace(result, report=report, seconds=clock.seconds)
 
 
@@ -227,16 +224,13 @@ def idle(scene: Scene, method: str | None) -> dict[str, str]:
     return found | ({} if method in SAMPLERS else unseeded(method))
 
 
-def explain(scene: Scene, ask: Ask, result: Result | None = None) -> Explanation:
-    """Return what every number does to the pressure, or what would make a file possible."""
-    clock = Clock(ask.budget, of_others(ask.watch))
-    found = result or solve(scene, ask.half)
-    if "ways_out" in found.report:
-        return of_report(found)
-    if scene.limited and found.status == "stationary":
-        return influences(scene, found, clock, ask.gap)
+def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
+    """What every number does to the pressure of a design that was chosen."""
+    if scene.limited and result.status == "stationary":
+        clock = Clock(ask.budget, of_others(ask.watch))
+        return of_pressure(scene, result, clock, ask.gap)
     message = UNPROVEN if scene.limited else NOTHING
-    return Explanation(found, (), (), binding(found), (), message, found.seconds)
+    return Explanation(result, (), (), binding(result), (), message, result.seconds)
 
 
 def compared(scene: Scene) -> tuple[str, ...]:
@@ -296,11 +290,12 @@ ABOUT = {  # files in examples, that of the kind first
 KIND = Kind(
     scene=Scene,
     examples=examples_in(__file__, ABOUT),
-    solve=solve,
+    steps=one_step(gearing),
     posed=posed,
     compared=compared,
     methods=METHODS,
-    explain=explain,
+    remedies=remedies,
+    influences=influences,
     assumptions=assumptions,
     trades=Trades(objectives, several),
     idle=idle,

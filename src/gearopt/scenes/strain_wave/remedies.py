@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from gearopt.formulations.strain_wave.demand import GAP_UNIT
 from gearopt.formulations.strain_wave.design import problem
-from gearopt.formulations.strain_wave.exchange import Exchanged, exchange
+from gearopt.formulations.strain_wave.exchange import exchange
 from gearopt.formulations.strain_wave.impossible import nearest
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import binding
@@ -46,19 +46,23 @@ def clear(scene: Scene, clock: Clock) -> Verdict:
     return Verdict(exchange(scene.demand(), scene.start(), clock).clear or None)
 
 
-def ways_out(scene: Scene, found: Exchanged, clock: Clock) -> Remedies:
-    """Return the limits in conflict, and torque and outer diameter moved alone until they do."""
-    assert found.nearest is not None
-    used = found.nearest.used
+def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies:
+    """Limits in conflict, and torque and outer diameter moved alone until a design exists.
+
+    result: with `nearest`, what the nearest design uses of every limit, and `reached` in words.
+    """
+    used = result.report.get("nearest", {})
     over = sorted((n for n, u in used.items() if u > 1.0), key=lambda n: -used[n])
-    names = tuple(found.result.proof.get("conflict", over))
-    asked = Questions(scene, possible, clock, clear, excess=found.nearest.excess)
-    tried = singles(asked, (Group((move,)) for move in MOVES))
-    late = "the budget ended before all remedies were tried"
-    return Remedies(names, with_least(tried, False), late if clock.over else "")
+    names = tuple(result.proof.get("conflict", over))
+    excess = max(used.values()) - 1.0 if used else None
+    asked = Questions(scene, possible, clock, clear, excess=excess)
+    known = with_least(singles(asked, (Group((move,)) for move in MOVES)), False)
+    late = "the budget ended before all remedies were tried" if clock.over else ""
+    reached = result.report.get("reached", "") if result.status == "infeasible" else ""
+    return Remedies(names, known, f"{reached} {late}".strip())
 
 
-def influences(scene: Scene, result: Result, clock: Clock, gap: float) -> Explanation:
+def of_pressure(scene: Scene, result: Result, clock: Clock, gap: float) -> Explanation:
     """Return what every number of a file does to its pressure, by multipliers and solving again."""
     found = exchange(scene.demand(), scene.start(), clock, gap)
     x = found.outcome.x

@@ -7,22 +7,26 @@ from itertools import combinations
 from typing import Any
 
 from gearopt.formulations.drive import layout
+from gearopt.formulations.drive.design import drive_design
 from gearopt.formulations.drive.layout.faults import faults, possible
 from gearopt.formulations.drive.layout.gearbox import Gearbox
-from gearopt.optimise.clock import Clock, of_others
+from gearopt.formulations.drive.layout.layout_text import placed, read
+from gearopt.formulations.drive.layout.slabs import arrangements
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import STEP
 from gearopt.optimise.explaining.explanation import Change, Explanation, Remedies, Remedy
 from gearopt.optimise.explaining.repair import CERTAIN
 from gearopt.optimise.result import Result
-from gearopt.optimise.solve import solve
+from gearopt.optimise.solve import run, solve
+from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
-from gearopt.scenes.drive.box.lay_out import others_may_fit, pairs_of
-from gearopt.scenes.drive.box.other_gears import other_gears
 from gearopt.scenes.drive.explaining.box_edits import Edit, edits, limits_of, switches
+from gearopt.scenes.drive.explaining.other_gears import other_gears
+from gearopt.scenes.drive.layout import others_may_fit
+from gearopt.scenes.drive.layout_design import described, keep_out_design, pairs_of
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.influences import Basis, influences, smooth
 from gearopt.scenes.explaining.numbers import allowed, numbers
-from gearopt.scenes.reading.ask import Ask
 from gearopt.units import Quantity
 
 SECONDS = 2.0  # at most, for one question whether a layout is possible
@@ -106,12 +110,15 @@ class Questions:
         return None
 
 
-def remedies(scene: Scene, pairs: tuple[GearPair, ...], ask: Ask) -> tuple[Remedies, Scene | None]:
-    """Return each change that alone lets these gears be laid out; else pairs of changes.
+def remedies(scene: Scene, gears: Result, clock: Clock) -> Remedies:
+    """Each change that alone lets these gears be laid out; else pairs of changes.
 
-    Beside them the file with the first of them; None without any.
+    drawn: a layout of the file with the first of them.
     """
-    clock = Clock(ask.budget, of_others(ask.watch))
+    begun = clock.seconds
+    layout.ready(clock.watch)
+    clock.start += clock.seconds - begun  # compiling takes no time of the remedies
+    pairs = pairs_of(scene, gears)
     asked = Questions(pairs, clock)
     single, choices = edits(scene, pairs), switches(scene)
     chosen = [c for m in choices if (c := _chosen(scene, m, asked)) is not None]
@@ -135,7 +142,31 @@ def remedies(scene: Scene, pairs: tuple[GearPair, ...], ask: Ask) -> tuple[Remed
     more, unknown = other_gears(scene, pairs, known, clock)
     first = GEARS_FIRST if known and others_may_fit(scene, pairs) else ""
     words = "; ".join(filter(None, (message, first, unknown)))
-    return _of_gears(scene, known, more, words), changed
+    ways = _of_gears(scene, known, more, words)
+    drawn = None if changed is None else _nearest(scene, changed, gears, clock)
+    return ways if drawn is None else replace(ways, drawn={"nearest_layout": drawn})
+
+
+def _nearest(scene: Scene, changed: Scene, sized: Result, clock: Clock) -> dict[str, Any] | None:
+    """A layout of a changed file, and what of the file as it is differs, for a drawing.
+
+    None where none is found in SECONDS.
+    """
+    pairs = pairs_of(scene, sized)
+    asked, box = scene.gearbox(pairs), changed.gearbox(pairs)
+    budget = replace(clock.left, seconds=clock.within(SECONDS))
+    result, outcome = run(layout.problem(box, None), None, budget, watch=clock.watch)
+    if result.value is None or outcome.x is None:
+        return None
+    angles, order = read(arrangements(box), outcome.x)
+    found = placed(box, order, angles)
+    gone = [keep_out_design(k, found) for k in asked.keep_outs if k not in box.keep_outs]
+    return {
+        "layout": untyped(described(box, order, angles, drive_design(sized.design))),
+        "keep_outs": [untyped(k) for k in gone],
+        "motor_mm": 2.0 * asked.motor if asked.motor != box.motor else None,
+        "largest_mm": [None if math.isinf(v) else v for v in asked.largest],
+    }
 
 
 def _of_gears(

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from gearopt.optimise.clock import Clock
@@ -65,13 +65,12 @@ class _Found:
         return eased(self.number.value, at, self.way)
 
 
-def conflict_soon(scene: Scene, clock: Clock) -> dict[str, Any]:
-    """Return `ways_out` of an impossible drive, its conflict alone; empty: not found soon."""
+def conflict_soon(scene: Scene, clock: Clock) -> Remedies | None:
+    """Conflict of an impossible drive alone; None where it is not found soon."""
     known = conflict(Case(scene, Clock(Budget(clock.within(CONFLICT_SECONDS)), clock.watch)))
     if not known.proven:
-        return {}
-    found = Remedies(known.names, any_resolves=known.any_resolves)
-    return {**asdict(found), "untried": True}
+        return None
+    return Remedies(known.names, any_resolves=known.any_resolves, untried=True)
 
 
 def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Remedies:

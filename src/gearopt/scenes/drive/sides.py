@@ -17,7 +17,7 @@ from gearopt.optimise.pareto.front import Objective
 from gearopt.optimise.pareto.several import Several, impossible
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.typed import untyped
-from gearopt.scenes.drive.box.lay_out import described, handed, pairs_of
+from gearopt.scenes.drive.layout_design import described, handed, pairs_of
 from gearopt.scenes.drive.scene import Scene
 
 

@@ -1,1 +1,0 @@
-"""A drive's box: its gears laid out, described, and what to change where that is impossible."""

@@ -1,0 +1,91 @@
+"""What to write instead of an impossible drive, and what every number does to a possible one."""
+
+import math
+from dataclasses import replace
+
+from gearopt.optimise.clock import Clock, of_others
+from gearopt.optimise.explaining.explanation import Explanation, Remedies
+from gearopt.optimise.result import Result
+from gearopt.optimise.solve import GAP
+from gearopt.scenes.drive.explaining import box_remedies
+from gearopt.scenes.drive.explaining.counts import remedies_of_counts
+from gearopt.scenes.drive.explaining.influences import explained
+from gearopt.scenes.drive.explaining.rated import conflict_soon
+from gearopt.scenes.drive.explaining.rated import remedies as of_rated
+from gearopt.scenes.drive.layout import APART, at_once_of_count, gears_of
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.sizing import of_count, sized
+from gearopt.scenes.drive.without import without
+from gearopt.scenes.reading.ask import Ask
+
+ANY_DESIGN_GAP = 1e9  # gap of a design that need not be the best
+
+
+def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies | None:
+    """What to write instead: of the box where the gears are possible, else of the gears.
+
+    soon: of a drive that ratings limit the conflict alone, where it is found soon.
+    """
+    if scene.layout is not None and scene.layout.together and scene.several:
+        return _of_boxes(without(scene, "processes"), clock)
+    gears = gears_of(result)
+    if gears is None and any(part.name == APART for part in result.parts):
+        return Remedies()
+    if gears is not None:
+        return _of_box(without(scene, "processes"), clock, gears)
+    if scene.by_ratings:
+        bare = without(scene, "layout")
+        if soon:
+            return conflict_soon(bare, clock)
+        return of_rated(bare, clock, lambda other: _status(other, clock))
+    solid = without(scene, "webs")
+    return remedies_of_counts(solid, without(solid, "layout", "processes"), clock)
+
+
+def _of_box(scene: Scene, clock: Clock, gears: Result) -> Remedies:
+    """Remedies of a box for these gears."""
+    held = scene.held(len(gears.design["stages"]))
+    return box_remedies.remedies(held, gears, clock)
+
+
+def _of_boxes(scene: Scene, clock: Clock) -> Remedies:
+    """Remedies of the number of stages that needs least to have a box."""
+    known = []
+    for count in scene.counts:
+        held = scene.held(count)
+        result = at_once_of_count(held, Ask(budget=clock.left, watch=clock.watch))
+        if gears := gears_of(result):
+            known.append(_of_box(held, clock, gears))
+    if not known:
+        solid = without(scene, "webs")
+        return remedies_of_counts(solid, without(solid, "layout"), clock)
+    return min(known, key=lambda ways: min((r.factor for r in ways.remedies), default=math.inf))
+
+
+def _status(scene: Scene, clock: Clock) -> str:
+    """Whether a drive that ratings limit is possible, in what is left of the time."""
+    ask = Ask(budget=replace(clock.left, gap=ANY_DESIGN_GAP), watch=clock.watch)
+    result = sized(scene, ask)
+    return result.status if result.value is None else "feasible"
+
+
+def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
+    """What every number of the file does to a design; the number of stages is held."""
+    scene = without(scene, "processes", *(() if scene.by_ratings else ("rating",)))
+    clock = Clock(ask.budget, of_others(ask.watch))
+    if result.value is None:
+        return Explanation(result, message="no design was found in time", seconds=clock.seconds)
+    if scene.several:
+        count = len(result.design["stages"])
+        held = influences(scene.held(count), ask, result)
+        words = f"the number of stages is held at {count}"
+        return replace(held, message="; ".join(filter(None, (held.message, words))))
+    if scene.layout is not None:
+        return box_remedies.explained(scene, result, clock)
+
+    def answer(other: Scene) -> Result:
+        """The drive of another file, one train, searched to the end."""
+        budget = replace(clock.left, gap=0.0)
+        return of_count(other, replace(ask, budget=budget, watch=clock.watch, gap=GAP, top=1))
+
+    return explained(scene, result, clock, answer)

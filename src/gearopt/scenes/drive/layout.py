@@ -1,0 +1,317 @@
+"""Steps of the layout of a drive: of gears sized first, or gears and box at once."""
+
+import math
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from gearopt.errors import SolveError
+from gearopt.formulations.drive import layout, sizing, sizing_text, teeth, together
+from gearopt.formulations.drive.design import drive_design, gears_first
+from gearopt.formulations.drive.layout.exact import GAP
+from gearopt.formulations.drive.layout.faults import faults, of_any_gears
+from gearopt.formulations.drive.layout.gearbox import Gearbox
+from gearopt.formulations.drive.layout.layout_text import read
+from gearopt.formulations.drive.layout.slabs import Arrangement, Slabs, arrange, arrangements
+from gearopt.formulations.drive.together.continuous import angles_of, continuous
+from gearopt.formulations.drive.train import Train
+from gearopt.optimise.clock import Clock, following, in_part
+from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import Outcome, Result
+from gearopt.optimise.solve import limits, run
+from gearopt.optimise.typed import untyped
+from gearopt.physics.gears import GearPair
+from gearopt.scenes.drive.counts import best_count
+from gearopt.scenes.drive.layout_design import (
+    described,
+    distances_used,
+    handed,
+    pairs_of,
+    reached,
+)
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.sizing import of_count, real_valued
+from gearopt.scenes.drive.without import without
+from gearopt.scenes.reading.ask import Ask
+
+REAL_VALUED = "real-valued"  # the part with real-valued sizes
+REAL = ("ipopt", "multistart")  # methods that take real-valued teeth
+APART = "apart"  # the part of gears that are laid out after they are sized
+UNFIT = "These gears cannot be arranged with these clearances and positions."
+
+Start = tuple[Slabs, tuple[GearPair, ...], tuple[float, ...]]
+
+
+def lay_out(scene: Scene, ask: Ask, gears: Result | None) -> Result:
+    """Layout of a sized drive; the sizing is kept as its part `gears`."""
+    assert gears is not None
+    return _laid_out(_with_gears(scene, gears), ask, gears)
+
+
+def at_once(scene: Scene, ask: Ask, gears: Result | None) -> Result:
+    """Smallest box over gears and places; parts: gears sized first; real-valued."""
+    assert gears is not None
+    return _at_once(_with_gears(scene, gears), ask, gears)
+
+
+def of_best_count(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """Smallest box over gears and places, with the best number of stages."""
+    return best_count(scene, ask, real_valued, at_once_of_count)
+
+
+def at_once_of_count(scene: Scene, ask: Ask, ideal: Result | None = None) -> Result:
+    """Gears and box at once of a drive with one number of stages; ideal: in real-valued sizes."""
+    gears = of_count(without(scene, "layout"), replace(ask, method=None), ideal)
+    if gears.value is None:  # a bound of the gears is none of the box
+        return replace(gears, bound=None)
+    left = replace(ask, budget=ask.budget.less(gears.seconds))
+    return _at_once(without(scene, "processes"), left, gears)
+
+
+def _with_gears(scene: Scene, gears: Result) -> Scene:
+    """The drive that is laid out: with the number of stages of its gears."""
+    return without(scene.held(len(gears.design["stages"])), "processes")
+
+
+def gears_of(result: Result) -> Result | None:
+    """Gears of an impossible layout; None where it has none, or their layout is possible."""
+    for part in result.parts:
+        if part.name == "gears" and part.design:
+            return part
+        if part.name == APART and part.status == "infeasible":
+            return gears_of(part)
+    return None
+
+
+def _laid_out(scene: Scene, ask: Ask, sized: Result) -> Result:
+    box = scene.gearbox(pairs_of(scene, sized))
+    orders = arrangements(box)
+    parts = (replace(sized, name="gears"),)
+    if wrong := faults(box):
+        proof = {"method": "closed form", "conflict": []}
+        objective = {"name": str(scene.layout and scene.layout.minimise), "value": None}
+        result = replace(sized, method="data check", objective=objective, bound=None, gap=None)
+        result = replace(result, status="infeasible", proof=proof, certificate={}, limits={})
+        return _impossible(scene, sized, replace(result, parts=parts), wrong)
+    problem = layout.problem(box, ask.method)
+    watch, events = following(in_part(ask.watch, box.unit))
+    gap = ask.gap if ask.budget.gap else GAP
+    result, outcome = run(problem, ask.method, ask.budget, ask.seed, watch, gap)
+    result = replace(result, objective=result.objective | {"unit": box.unit}, parts=parts)
+    if result.status == "infeasible":
+        return _impossible(scene, sized, result, [UNFIT])
+    if result.value is None or outcome.x is None:
+        return replace(result, name="drive")
+    return _with_layout(scene, result, events, sized, box, *read(orders, outcome.x))
+
+
+def _impossible(scene: Scene, sized: Result, result: Result, notes: list[str]) -> Result:
+    """Proof that sized gears cannot be laid out, in words."""
+    message = " ".join(notes)
+    if others_may_fit(scene, pairs_of(scene, sized)):
+        result = replace(result, proof=result.proof | _scope(sized))
+        assert scene.layout is not None
+        if not scene.layout.together:
+            least = str(sized.objective["name"]).replace("_", " ")
+            message = f"These gears, sized first for least {least}, do not fit: {message}"
+    return replace(result, design={}, message=message, report={"notes": notes})
+
+
+def _with_layout(
+    scene: Scene,
+    result: Result,
+    events: list[dict[str, Any]],
+    sized: Result,
+    box: Gearbox,
+    angles: tuple[float, ...],
+    order: Arrangement,
+) -> Result:
+    """A result with its gears and layout in the words of a drawing."""
+    gears = drive_design(sized.design)
+    found = handed(described(box, order, angles, gears), scene)
+    if any(part.name == "gears" for part in result.parts) and not scene.given:
+        result = _of_gears_first(scene, result, sized)
+    before = sum(p.seconds for p in result.parts), sum(p.evaluations for p in result.parts)
+    seconds, spent = before[0] + result.seconds, before[1] + result.evaluations
+    last = {"seconds": seconds, "evaluations": spent, "best": result.value, "bound": result.bound}
+    steps = [
+        e | {"seconds": before[0] + e["seconds"], "evaluations": before[1] + e["evaluations"]}
+        for e in events
+    ]
+    return replace(
+        result,
+        name="drive",
+        design=untyped(replace(gears, layout=found)),
+        limits=sized.limits | distances_used(found) | _sides_used(result),
+        report={
+            "progress": [*steps, last],
+            "notes": [*sized.report.get("notes", []), *reached(box, found)],
+        },
+        evaluations=spent,
+        seconds=seconds,
+    )
+
+
+def _scope(sized: Result) -> dict[str, str]:
+    """Return the scope of whatever is proven of a layout of gears that were sized before it."""
+    return {"scope": gears_first(str(sized.objective["name"]))}
+
+
+def _of_gears_first(scene: Scene, result: Result, sized: Result) -> Result:
+    """Return a layout whose message says that it is one of gears that were sized before it."""
+    words = f"the box is that of {_scope(sized)['scope']}"
+    if scene.teeth is not None:
+        words += ": with together = true in [layout] gears and box are optimised together"
+    message = "; ".join(filter(None, (result.message, words)))
+    return replace(result, proof=result.proof | _scope(sized), message=message)
+
+
+def _sides_used(result: Result) -> dict[str, float]:
+    return {n: v for n, v in result.limits.items() if n.startswith("largest_")}
+
+
+def others_may_fit(scene: Scene, pairs: tuple[GearPair, ...]) -> bool:
+    """Return whether a fault of gears says nothing of others: they were sized first."""
+    return not scene.given and not of_any_gears(scene.gearbox(pairs))
+
+
+def _at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
+    clock = Clock(ask.budget)
+    together.ready(ask.watch)
+    apart = replace(_laid_out(scene, replace(ask, method=None), sized), name=APART)
+    if apart.status == "infeasible" and not others_may_fit(scene, pairs_of(scene, sized)):
+        return replace(apart, name="drive")
+    real = ask.method in REAL
+    model = _posed_at_once(scene, ask.method or "exact", apart)
+    watch, events = following(in_part(ask.watch, model.unit))
+    asked = clock.left
+    gap = ask.gap if ask.budget.gap or real else together.GAP
+    result, outcome = run(model.problem, ask.method, asked, ask.seed, watch, gap)
+    parts = (replace(apart, report={}),)
+    result = replace(result, objective=result.objective | {"unit": model.unit}, parts=parts)
+    if result.value is None or outcome.x is None:
+        spent = sum(p.seconds for p in parts)
+        return replace(result, name="drive", seconds=result.seconds + spent, **_why(result, apart))
+    if isinstance(model.problem, Problem) and real:
+        return _real(scene, result, outcome, sized, model.problem, _start(scene, apart)[0], events)
+    train = scene.train()
+    make = partial(scene.gearbox, train=train)
+    box, angles, order = together.laid_out(train, make, outcome.x)
+    own, pairs = teeth.problem(train), together.pairs(train, outcome.x)
+    point = outcome.x[: sum(v.size for v in own.variables)]
+    chosen = together.options(train, outcome.x)
+    gears = replace(sized, design=untyped(scene.design(pairs, chosen)), limits=limits(own, point))
+    found = _with_layout(scene, result, events, replace(gears, report={}), box, angles, order)
+    if scene.by_ratings:
+        return found
+    left = replace(ask, budget=asked.less(result.seconds))
+    smooth = _from(scene, (order.slabs, pairs, angles), left)
+    return replace(found, parts=(*found.parts, *smooth))
+
+
+def _why(result: Result, apart: Result) -> dict[str, Any]:
+    """Message where there is no design: that of the gears sized first."""
+    if result.status != "infeasible":
+        return {}
+    message = apart.message or "none was found for these in time"
+    words = f"No gears within the limits can be arranged. Of the gears sized first: {message}"
+    return {"message": words, "report": {"notes": [words]}}
+
+
+def posed(scene: Scene, method: str, sized: Result) -> Model:
+    """Problem of a method for a layout; SolveError where the gears cannot be laid out."""
+    assert scene.layout is not None
+    if sized.value is None:
+        raise SolveError("there are no gears to lay out: gearopt explain shows why")
+    if scene.layout.together:
+        return _posed_at_once(scene, method, _laid_out(scene, Ask(), sized))
+    box = scene.gearbox(pairs_of(scene, sized))
+    if wrong := faults(box):
+        raise SolveError(" ".join(wrong))
+    layout.ready()  # what is compared is machine code
+    words = "Layout by four sides" if method in layout.GRADIENT else "Layout by link angles"
+    return Model(layout.problem(box, method), f"{words}, of gears that were chosen first", box.unit)
+
+
+def _posed_at_once(scene: Scene, method: str, apart: Result) -> Model:
+    """Return the problem that a method gets; apart: the layout of gears sized first, a start."""
+    assert scene.layout is not None
+    train = scene.train()
+    make = partial(scene.gearbox, train=train)
+    unit = make(pairs_of(scene, apart.parts[0])).unit
+    if method == "exact":
+        import numpy as np
+
+        known = None
+        if apart.value is not None:
+            slabs, pairs, angles = _start(scene, apart)
+            made = pairs, _options(train, apart)
+            known = (made, arrange(make(pairs), slabs), np.array(angles))
+        problem = together.problem(train, make, known)
+        return Model(problem, "Gears and box at once", unit)
+    if method not in REAL:
+        raise SolveError(f"together = true is for exact and {' and '.join(REAL)}, not for {method}")
+    if scene.by_ratings:
+        raise SolveError(f"{method} takes no gears and box at once that ratings limit; exact does")
+    if apart.value is None:
+        raise SolveError(f"{method} needs a start: {apart.message}")
+    slabs, pairs, angles = _start(scene, apart)
+    smooth = continuous(train, make, slabs, (pairs, angles))
+    return Model(smooth, "Gears and box at once, real-valued teeth", unit)
+
+
+def _start(scene: Scene, apart: Result) -> Start:
+    """Return slabs, gear pairs and angles of a layout."""
+    found = drive_design(apart.design).layout
+    assert found is not None
+    slabs = tuple(tuple(s - 1 for s in slab) for slab in found.slabs)
+    return slabs, pairs_of(scene, apart), tuple(math.radians(t) for t in found.link_angles_deg)
+
+
+def _options(train: Train, found: Result) -> tuple[int, ...]:
+    """Return the option of every stage of a design, from 0, by its materials."""
+    stages = drive_design(found.design).stages
+    names = [(stage.pinion_material, stage.wheel_material) for stage in stages]
+    known = [
+        [option.materials for option in stage.options] or [n]
+        for stage, n in zip(train.stages, names, strict=True)
+    ]
+    return tuple(own.index(n) for own, n in zip(known, names, strict=True))
+
+
+def _from(scene: Scene, start: Start, ask: Ask) -> tuple[Result, ...]:
+    """Return the real-valued part, started from an exact answer; none unless Ipopt improves it."""
+    slabs, pairs, angles = start
+    train = scene.train()
+    make = partial(scene.gearbox, train=train)
+    problem = continuous(train, make, slabs, (pairs, angles))
+    unit = make(pairs).unit
+    watch = in_part(ask.watch, unit, REAL_VALUED)
+    result, _ = run(problem, "ipopt", ask.budget, watch=watch)
+    if result.value is None or result.status == "limit":  # a start is no answer
+        return ()
+    return (replace(result, name=REAL_VALUED, objective=result.objective | {"unit": unit}),)
+
+
+def _real(
+    scene: Scene,
+    result: Result,
+    outcome: Outcome,
+    sized: Result,
+    problem: Problem,
+    slabs: Slabs,
+    events: list[dict[str, Any]],
+) -> Result:
+    """Return a result with real-valued teeth in the words of a drawing."""
+    assert outcome.x is not None
+    train = scene.train()
+    own = sizing.problem(train)
+    point = outcome.x[: sum(v.size for v in own.variables)]
+    pairs = sizing_text.pairs(train, point)
+    gears = replace(
+        sized, design=untyped(scene.design(pairs)), limits=limits(own, point), report={}
+    )
+    box = scene.gearbox(pairs)
+    angles = angles_of(problem, outcome.x)
+    return _with_layout(scene, result, events, gears, box, angles, arrange(box, slabs))

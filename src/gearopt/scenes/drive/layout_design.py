@@ -1,0 +1,189 @@
+"""The layout of a drive in the words of a drawing: box, shafts, gears, gaps, keep-outs."""
+
+import math
+from dataclasses import replace
+
+from gearopt.formulations.drive.design import DriveDesign, drive_design
+from gearopt.formulations.drive.layout.gearbox import Gearbox, KeepOut
+from gearopt.formulations.drive.layout.layout_design import (
+    BearingDesign,
+    BoxDesign,
+    ClearanceDesign,
+    GapDesign,
+    GearDesign,
+    KeepOutDesign,
+    LayoutDesign,
+    MotorDesign,
+    ShaftDesign,
+    gear_sizes,
+)
+from gearopt.formulations.drive.layout.layout_text import Placed, placed
+from gearopt.formulations.drive.layout.slabs import Arrangement
+from gearopt.optimise.result import Result
+from gearopt.physics.gears import GearPair
+from gearopt.physics.shaft_forces import OTHER, hands
+from gearopt.scenes.drive.scene import Scene
+
+
+def pairs_of(scene: Scene, sized: Result) -> tuple[GearPair, ...]:
+    """Return the gear pairs of a sized drive."""
+    train = scene.train()
+    return tuple(
+        train.pair(k, s.normal_module_mm, s.pinion_teeth, s.wheel_teeth, s.face_width_mm)
+        for k, s in enumerate(drive_design(sized.design).stages)
+    )
+
+
+def described(
+    box: Gearbox, one: Arrangement, angles: tuple[float, ...], sized: DriveDesign
+) -> LayoutDesign:
+    """Describe the layout of a sized drive as a result holds it."""
+    found = placed(box, one, angles)
+    shafts = [body for own in one.bodies for body in own if body.name.startswith("shaft")]
+    return LayoutDesign(
+        box=_box(found),
+        shafts=tuple(
+            ShaftDesign(
+                shaft=k,
+                y_mm=y,
+                z_mm=z,
+                diameter_mm=2 * body.radius,
+                from_mm=body.x[0],
+                to_mm=body.x[1],
+            )
+            for k, ((y, z), body) in enumerate(zip(found.axes, shafts, strict=True), 1)
+        ),
+        gears=_gears(box, one, sized),
+        bearings=tuple(
+            BearingDesign(shaft=k, diameter_mm=2 * body.radius, from_mm=body.x[0], to_mm=body.x[1])
+            for k, own in enumerate(one.bodies, 1)
+            for body in own
+            if body.name.startswith("bearing")
+        ),
+        link_angles_deg=tuple(math.degrees(t) for t in angles),
+        slabs=tuple(tuple(s + 1 for s in slab) for slab in one.slabs),
+        gaps=_gaps(box, one, found),
+        clearances=_clearances(box),
+        obstacles=tuple(keep_out_design(k, found) for k in box.keep_outs),
+        motor=MotorDesign(diameter_mm=2 * box.motor) if box.motor else None,
+        split=tuple(k + 1 for k in box.level),
+    )
+
+
+def handed(found: LayoutDesign, scene: Scene) -> LayoutDesign:
+    """Return a layout with the hands of its helices, where the file gives one."""
+    given = [stage.pinion_hand for stage in scene.stage]
+    if not any(given):
+        return found
+    of_stage = [{"pinion": hand, "wheel": OTHER[hand]} for hand in hands(given)]
+    gears = [replace(gear, hand=of_stage[gear.stage - 1][gear.member]) for gear in found.gears]
+    return replace(found, gears=tuple(gears))
+
+
+def distances_used(found: LayoutDesign) -> dict[str, float]:
+    """Return, of every two axes that must keep apart, the part of their distance that is needed."""
+    return {
+        " to ".join(gap.between).replace(" ", "_"): 1.0 - (gap.gap_mm - gap.needed_mm) / gap.axes_mm
+        for gap in found.gaps
+    }
+
+
+def reached(box: Gearbox, found: LayoutDesign) -> list[str]:
+    """Return notes on keep-outs that the box itself reaches into."""
+    left, bottom = found.box.left_mm, found.box.bottom_mm
+    right, top = left + found.box.width_mm, bottom + found.box.height_mm
+    deep = {
+        k.name: min(right - k.y[0], k.y[1] - left, top - k.z[0], k.z[1] - bottom)
+        for k in box.keep_outs
+    }
+    return [
+        f"The box itself reaches {d:.1f} mm into {name}: gears, shafts and bearings are kept out "
+        "of it, walls are not (a larger shaft_clearance keeps them out too)."
+        for name, d in deep.items()
+        if d > 0.05
+    ]
+
+
+def _box(found: Placed) -> BoxDesign:
+    width, height, length = found.width, found.height, found.length
+    return BoxDesign(
+        width_mm=width,
+        height_mm=height,
+        length_mm=length,
+        left_mm=found.left,
+        bottom_mm=found.bottom,
+        volume_mm3=width * height * length,
+        plan_area_mm2=width * length,
+        face_area_mm2=width * height,
+    )
+
+
+def _gears(box: Gearbox, one: Arrangement, sized: DriveDesign) -> tuple[GearDesign, ...]:
+    gears = []
+    for k, own in enumerate(one.bodies, 1):
+        for body in (b for b in own if b.gear):
+            member, stage = body.name.split()[0], sized.stages[body.stage]
+            wheel, pair = member == "wheel", box.pairs[body.stage]
+            gear = pair.wheel if wheel else pair.pinion
+            gears.append(
+                GearDesign(
+                    name=body.name,
+                    stage=body.stage + 1,
+                    member=member,
+                    shaft=k,
+                    teeth=stage.wheel_teeth if wheel else stage.pinion_teeth,
+                    from_mm=body.x[0],
+                    to_mm=body.x[1],
+                    **gear_sizes(gear),
+                )
+            )
+    return tuple(gears)
+
+
+def _gaps(box: Gearbox, one: Arrangement, found: Placed) -> tuple[GapDesign, ...]:
+    """Return clear distances of bodies that must keep apart, the tightest first."""
+    gaps = []
+    for (i, j), need in one.needs.items():
+        (ya, za), (yb, zb) = found.axes[i], found.axes[j]
+        there = math.hypot(yb - ya, zb - za)
+        gap = there - (need.distance - need.clearance)
+        gaps.append(
+            GapDesign(between=need.between, gap_mm=gap, needed_mm=need.clearance, axes_mm=there)
+        )
+    for k, keep in enumerate(box.keep_outs):
+        for i, (y, z) in enumerate(found.axes):
+            if (needed := float(one.keep_apart[k, i])) > 0.0:
+                dy = max(keep.y[0] - y, y - keep.y[1], 0.0)
+                dz = max(keep.z[0] - z, z - keep.z[1], 0.0)
+                gaps.append(
+                    GapDesign(
+                        between=(f"shaft {i + 1} with its gears", keep.name),
+                        gap_mm=math.hypot(dy, dz) - needed + box.clearances.shafts,
+                        needed_mm=box.clearances.shafts,
+                        axes_mm=math.hypot(dy, dz),
+                    )
+                )
+    return tuple(sorted(gaps, key=lambda g: float(g.gap_mm) - float(g.needed_mm)))
+
+
+def _clearances(box: Gearbox) -> ClearanceDesign:
+    found = box.clearances
+    return ClearanceDesign(
+        gear_to_gear_mm=found.gears,
+        gear_to_shaft_mm=found.shafts,
+        wall_mm=found.wall,
+        axial_mm=found.axial,
+    )
+
+
+def keep_out_design(keep: KeepOut, found: Placed) -> KeepOutDesign:
+    """A keep-out, cut off a little beyond the box."""
+    return KeepOutDesign(
+        name=keep.name,
+        left_mm=keep.y[0],
+        right_mm=keep.y[1],
+        bottom_mm=keep.z[0],
+        top_mm=keep.z[1],
+        from_mm=max(keep.x[0], -0.1 * found.length),
+        to_mm=min(keep.x[1], 1.1 * found.length),
+    )
