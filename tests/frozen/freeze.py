@@ -212,13 +212,13 @@ def explained(what, changes, seconds):
     """What is kept of an explanation: conflict, remedies, CPU seconds, remedies that hold."""
     begun, budget = time.process_time(), gearopt.Budget(seconds=seconds)
     if isinstance(what, Bars):
-        explanation = explanation(KIND, what, Ask(budget=budget))
+        known = explanation(KIND, what, Ask(budget=budget))
     else:
-        explanation = gearopt.explain(what, changes, budget=budget)
+        known = gearopt.explain(what, changes, budget=budget)
     cpu = time.process_time() - begun
-    plain = explanation.to_dict()
+    plain = known.to_dict()
     plain["result"] = plain["result"] and {"status": plain["result"]["status"]}
-    again = [holds(what, changes, remedy) for remedy in explanation.remedies]
+    again = [holds(what, changes, remedy) for remedy in known.remedies]
     return plain | {"cpu": cpu, "holds": again}
 
 

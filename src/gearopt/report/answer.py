@@ -268,6 +268,14 @@ def _checks(result: Result) -> Table | None:
     return Table("checks", ("", ""), rows, csv_only=spoken, folded=len(spoken) == len(rows))
 
 
+def assumed(result: Result) -> list[str]:
+    """Where the assumptions of a result are listed, as one sentence; none where it has none."""
+    count = len(result.report.get("assumptions", ()))
+    if count == 1:
+        return ["1 assumption; --html and --json tell it."]
+    return [f"{count} assumptions; --html and --json list them."] if count else []
+
+
 def assumptions(result: Result | Front, measures: Measures) -> Section | None:
     """The assumptions beside the file; None where the kind reports none."""
     words = list(map(measures.words, result.report.get("assumptions") or []))

@@ -18,7 +18,7 @@ from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
 from gearopt.report import comparison as comparison_words
 from gearopt.report import front
-from gearopt.report.answer import WAYS, decided
+from gearopt.report.answer import WAYS, assumed, decided
 from gearopt.report.explained import of_influences
 from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, SYSTEMS, Measures, gap_percent
@@ -168,7 +168,7 @@ def fragment(result: Result) -> str:
     sections = (make(result, METRIC) for make in pages_of_result(result).terminal)
     blocks = [block for section in sections if section is not None for block in section.terminal]
     first = [decided(result), *leading(result), *pages_of_result(result).warns(result)]
-    return _html(_head(result), [*first, *blocks])
+    return _html(_head(result), [*first, *blocks, *assumed(result)])
 
 
 def explained_fragment(explanation: Explanation) -> str:

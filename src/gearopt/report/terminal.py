@@ -13,7 +13,7 @@ from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
 from gearopt.report import comparison as words
 from gearopt.report import front
-from gearopt.report.answer import decided
+from gearopt.report.answer import assumed, decided
 from gearopt.report.explained import of_influences
 from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, Measures
@@ -110,13 +110,8 @@ def show(result: Result, console: Console, measures: Measures = METRIC) -> None:
     for make in pages_of_result(result).terminal:
         if (section := make(result, measures)) is not None:
             _print(section.terminal, console)
-    if count := len(result.report.get("assumptions", ())):
-        words = (
-            "1 assumption; --html and --json tell it."
-            if count == 1
-            else (f"{count} assumptions; --html and --json list them.")
-        )
-        console.print(Text(words, style="dim"))
+    for sentence in assumed(result):
+        console.print(Text(sentence, style="dim"))
 
 
 def show_explanation(

@@ -3,6 +3,7 @@
 import copy
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from campaigns import few
@@ -384,8 +385,9 @@ def test_a_minimum_face_width_is_eased():
 
 def test_a_search_that_is_cut_short_has_the_bound_of_real_valued_sizes(monkeypatch):
     """No whole teeth in no time: the bound is that of real-valued sizes, which are a part."""
-    monkeypatch.setattr(sizing, "BOUND_SHARE", 0.9999)
-    found = gearopt.solve(PROBLEMS / "elevator_by_both.toml", budget=Budget(2.0))
+    monkeypatch.setattr(sizing, "BOUND_SHARE", 0.999)
+    monkeypatch.setattr(sizing, "Clock", lambda budget: SimpleNamespace(over=False))
+    found = gearopt.solve(PROBLEMS / "elevator_by_both.toml", budget=Budget(0.4))
     (real,) = found.parts
     assert found.status == "limit" and real.name == "sizing"
     assert 0.0 < found.bound == real.bound < 67020184.0
