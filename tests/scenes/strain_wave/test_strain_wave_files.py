@@ -18,7 +18,7 @@ from gearopt.scenes import strain_wave
 from gearopt.scenes.explaining.default import explanation
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.strain_wave import KIND, compared, objectives, posed, remedies, several
+from gearopt.scenes.strain_wave import KIND, compared, objectives, posed, several
 from gearopt.scenes.strain_wave import KIND as WAVES
 from gearopt.scenes.strain_wave.notes import assumptions, notes, range_notes
 from gearopt.scenes.strain_wave.remedies import costs
@@ -365,6 +365,6 @@ def test_sensitivities_that_time_is_short_for_are_left_out(monkeypatch):
     scene = gearopt.load("problems/strain_wave_from_duty.toml")
     found = Result("strain wave gearing", "stationary", "exchange", {})
     nothing = Exchanged(found, Outcome(None), None, None)
-    monkeypatch.setattr(remedies, "exchange", lambda *_: nothing)
+    monkeypatch.setattr("gearopt.scenes.strain_wave.remedies.exchange", lambda *_: nothing)
     known = explain(scene, Ask(), found)
     assert known.result is found and not known.influences and "no time" in known.message
