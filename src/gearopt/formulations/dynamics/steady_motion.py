@@ -107,7 +107,8 @@ def enough(pair: MovingPair, level: str, frequency: float, harmonics: int) -> in
     """Return how many harmonics of a mesh frequency [Hz] a motion of teeth in contact asks for.
 
     A stiffness with kinks or jumps excites the fastest mode at any speed: harmonics to
-    FASTEST_MODES times that mode, at most MOST_HARMONICS. A Fourier series: FOURIER_TIMES times its own.
+    FASTEST_MODES times that mode, at most MOST_HARMONICS. A Fourier series: FOURIER_TIMES times
+    its own.
     """
     if len(pair.wave.edges) == 1:
         return max(harmonics, FOURIER_TIMES * len(pair.wave.cosines))
