@@ -1,6 +1,7 @@
 """Files of strain wave gearings: what is given, chosen, refused, assumed."""
 
 import math
+import sys
 from dataclasses import replace
 
 import pytest
@@ -21,7 +22,7 @@ from gearopt.scenes.reading.load import read
 from gearopt.scenes.strain_wave import KIND, compared, objectives, posed, several
 from gearopt.scenes.strain_wave import KIND as WAVES
 from gearopt.scenes.strain_wave.notes import assumptions, notes, range_notes
-from gearopt.scenes.strain_wave.remedies import costs
+from gearopt.scenes.strain_wave.remedies import costs, of_pressure
 
 FROM_DUTY = WAVES.examples["strain-wave-from-duty"].text
 
@@ -365,6 +366,6 @@ def test_sensitivities_that_time_is_short_for_are_left_out(monkeypatch):
     scene = gearopt.load("problems/strain_wave_from_duty.toml")
     found = Result("strain wave gearing", "stationary", "exchange", {})
     nothing = Exchanged(found, Outcome(None), None, None)
-    monkeypatch.setattr("gearopt.scenes.strain_wave.remedies.exchange", lambda *_: nothing)
-    known = explain(scene, Ask(), found)
+    monkeypatch.setattr(sys.modules[of_pressure.__module__], "exchange", lambda *_: nothing)
+    known = explanation(KIND, scene, Ask(), found)
     assert known.result is found and not known.influences and "no time" in known.message
