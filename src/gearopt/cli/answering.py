@@ -111,7 +111,7 @@ def solve(
 
 
 def _advice(result: Result, file: Path) -> list[str]:
-    """Return what to run for remedies of an impossible file, where the answer has none."""
+    """Command to run for remedies of an impossible file, where the answer has none."""
     ways = result.report.get("ways_out") or {}
     if result.status != "infeasible" or ways and not ways.get("untried"):
         return []

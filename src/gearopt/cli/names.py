@@ -104,7 +104,7 @@ def method_words(incomplete: str) -> list[tuple[str, str]]:
 
 
 def method_lists(incomplete: str) -> list[str]:
-    """Return what is typed of a list of methods, with every name that its last may be."""
+    """A list of methods as it is typed, with every name that its last may be."""
     head, comma, last = incomplete.rpartition(",")
     return [f"{head}{comma}{name}" for name, _ in method_words(last)]
 

@@ -202,7 +202,7 @@ def _make(folder: Path) -> None:
 
 
 def _read(file: Path) -> Kept:
-    """Return what was kept from its file; GearoptError for anything else."""
+    """Result, comparison or front that a file keeps; GearoptError for anything else."""
     try:
         text = first_bytes(file, LARGEST_KEPT)
         if len(text) > LARGEST_KEPT:

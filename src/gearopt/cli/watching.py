@@ -73,58 +73,91 @@ def following(
     On a terminal a line of what was reached last and of the seconds spent moves after half a
     second, whether or not the run has anything to report. limit: seconds that it may take.
     """
-    stopped, last, ended = False, None, threading.Event()
+    last: Any = None
     screen = Screen(stderr=True, highlight=False)
-    line = _Line(limit)
-    status = screen.status(line) if screen.is_terminal and not quiet else None
-    begin = threading.Timer(PATIENCE, status.start) if status is not None else None
+    shown = screen.is_terminal and not quiet
+
+    def ending() -> str | None:
+        return None if last is None else words(last)
+
+    with (
+        _interruptible(shown, ending, lambda: last is not None and kept(last)) as runs,
+        _line(screen, shown, limit) as line,
+        _told_news(screen, quiet),
+    ):
+
+        def watch(progress: Any) -> bool:
+            nonlocal last
+            last = progress
+            if line is not None and line.due():
+                line.words = words(progress)
+            return runs()
+
+        yield watch
+
+
+@contextmanager
+def _interruptible(
+    hides_cursor: bool, ending: Callable[[], str | None], worth_keeping: Callable[[], bool]
+) -> Iterator[Callable[[], bool]]:
+    """Yield whether Ctrl-C has not come; the process ends where a run does not heed it in time."""
+    stopped, ended = False, threading.Event()
+    cursor = SHOW_CURSOR if hides_cursor else b""
 
     def stop(number: int, frame: Any) -> None:
         nonlocal stopped
         if stopped:
-            os.write(2, b"" if status is None else SHOW_CURSOR)
+            os.write(2, cursor)
             signal.signal(signal.SIGINT, before)
             signal.raise_signal(signal.SIGINT)
         stopped = True
         threading.Thread(target=leave, daemon=True).start()
 
     def leave() -> None:
-        if ended.wait(GRACE):
+        if ended.wait(GRACE) or (worth_keeping() and ended.wait(KEEPING - GRACE)):
             return
-        if last is not None and kept(last) and ended.wait(KEEPING - GRACE):
-            return
-        said = "" if last is None else f" ({words(last)})"
-        os.write(2, b"" if status is None else SHOW_CURSOR)
+        said = "" if (words := ending()) is None else f" ({words})"
+        os.write(2, cursor)
         os.write(2, f"gearopt: interrupted{said}\n".encode())
         os._exit(130)
 
     before = signal.signal(signal.SIGINT, stop)
-    news = _News(screen)
-    if not quiet:
-        logger = logging.getLogger("gearopt.kernels")
-        logger.addHandler(news)
-        logger.setLevel(logging.INFO)
-
-    def watch(progress: Any) -> bool:
-        nonlocal last
-        last = progress
-        if status is not None and line.due():
-            line.words = words(progress)
-        return not stopped
-
     try:
-        if begin is not None:
-            begin.start()
-        yield watch
+        yield lambda: not stopped
     finally:
         ended.set()
-        if begin is not None:
-            begin.cancel()
-            begin.join()
-        logging.getLogger("gearopt.kernels").removeHandler(news)
-        if status is not None:
-            status.stop()
         signal.signal(signal.SIGINT, before)
+
+
+@contextmanager
+def _line(screen: Screen, shown: bool, limit: float) -> Iterator["_Line | None"]:
+    """Yield the line that a terminal shows of long work; None where none is shown."""
+    if not shown:
+        yield None
+        return
+    line = _Line(limit)
+    status = screen.status(line)
+    begin = threading.Timer(PATIENCE, status.start)
+    begin.start()
+    try:
+        yield line
+    finally:
+        begin.cancel()
+        begin.join()
+        status.stop()
+
+
+@contextmanager
+def _told_news(screen: Screen, quiet: bool) -> Iterator[None]:
+    """Print what kernels log meanwhile."""
+    logger, news = logging.getLogger("gearopt.kernels"), _News(screen)
+    if not quiet:
+        logger.addHandler(news)
+        logger.setLevel(logging.INFO)
+    try:
+        yield
+    finally:
+        logger.removeHandler(news)
 
 
 @contextmanager

@@ -202,5 +202,5 @@ def kind_called(name: str) -> str | None:
 
 
 def called(kind: str, name: str) -> str | None:
-    """Return what a key with another name is called here, and where; None of any other name."""
+    """Name here of a key that others call otherwise, and its table; None of any other name."""
     return looked_up(CALLED.get(kind, {}), name)

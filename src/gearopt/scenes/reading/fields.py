@@ -127,8 +127,7 @@ def quantity(
     signed: it may be below zero as well (a place).
     """
     bound = units.parse(limit, dimension) if limit else None
-    names = ", ".join(units.UNITS[dimension])
-    usual, size = units.parse(example, dimension).unit, units.parse(example, dimension).value
+    names, usual = ", ".join(units.UNITS[dimension]), units.parse(example, dimension)
 
     def fault(found: Quantity) -> str:
         if not signed and (found.number < 0 or (found.number == 0 and not zero)):
@@ -139,24 +138,7 @@ def quantity(
         return f"is above {limit}" if above else ""
 
     def likely(digits: str) -> str:
-        """Return the unit that a number without one may have: the example's, if not far from it."""
-        apart = {}
-        for unit in (usual, *units.UNITS[dimension]):
-            try:
-                value = abs(units.parse(f"{digits} {unit}", dimension).value)
-                apart[unit] = abs(math.log(value / size))
-            except (ValueError, ArithmeticError):  # no number, or zero
-                return usual
-        near = apart[usual] < math.log(FAR_OFF)
-        return usual if near else min(apart, key=lambda unit: apart[unit])
-
-    def likely_thousands(text: str) -> bool:
-        """Whether a decimal point leaves far less than is usual, as in a life of 20.000 h."""
-        try:
-            found = units.parse(text, dimension).value if dimension in GROUPED else size
-        except ValueError:
-            return False
-        return 0.0 < found <= size / FAR_OFF and 1000.0 * found < FAR_OFF * size
+        return _likely_unit(digits, usual)
 
     def usable(text: str) -> str | None:
         try:
@@ -172,7 +154,7 @@ def quantity(
             raise refuse(f"is a bare number: {dimension} needs a unit ({names})", right)
         if not isinstance(value, str):
             raise refuse(f"is not a text with a number and a unit of {dimension} ({names})")
-        if two := thousands(value, likely_thousands):
+        if two := thousands(value, lambda text: _likely_thousands(text, usual)):
             sign = "comma" if "," in value else "point"
             rule = f"has a {sign}, which may separate thousands or decimals"
             raise refuse(rule, f'Write "{two[0]}" or "{two[1]}"', action="tell")
@@ -189,6 +171,30 @@ def quantity(
     number = sign + r"([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?"
     schema = {"type": "string", "pattern": rf"^\s*{number}\s*({alternatives})\s*$"}
     return Reads(read, example, schema)
+
+
+def _likely_unit(digits: str, usual: Quantity) -> str:
+    """Unit that a number without one may have: that of the usual quantity, if not far from it."""
+    apart = {}
+    for unit in (usual.unit, *units.UNITS[usual.dimension]):
+        try:
+            value = abs(units.parse(f"{digits} {unit}", usual.dimension).value)
+            apart[unit] = abs(math.log(value / usual.value))
+        except (ValueError, ArithmeticError):  # no number, or zero
+            return usual.unit
+    near = apart[usual.unit] < math.log(FAR_OFF)
+    return usual.unit if near else min(apart, key=lambda unit: apart[unit])
+
+
+def _likely_thousands(text: str, usual: Quantity) -> bool:
+    """Whether a decimal point leaves far less than is usual, as in a life of 20.000 h."""
+    if usual.dimension not in GROUPED:
+        return False
+    try:
+        found = units.parse(text, usual.dimension).value
+    except ValueError:
+        return False
+    return 0.0 < found <= usual.value / FAR_OFF and 1000.0 * found < FAR_OFF * usual.value
 
 
 def number(

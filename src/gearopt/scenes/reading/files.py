@@ -13,7 +13,7 @@ NO_WAIT = getattr(os, "O_NONBLOCK", 0)  # to open a pipe into which nobody write
 
 
 def first_bytes(path: str | Path, most: int) -> bytes:
-    """Return what a file holds, of one that holds more than `most` bytes the first `most` + 1.
+    """Bytes of a file, of one that holds more than `most` bytes the first `most` + 1.
 
     Pipes and devices count as files. OSError where it cannot be read, or where nothing is written
     into a named pipe for PIPE_SECONDS; ValueError where the name is none.

@@ -33,7 +33,7 @@ def _reciprocal(value: Any) -> bool:
 
 
 def _number(value: Any, as_written: bool) -> Any:
-    """Return what an end of a range is compared by: its size, or the number as it is written."""
+    """Size of an end of a range, or the number as it is written: by it ends are compared."""
     if not isinstance(value, Quantity):
         return value
     return value.number if as_written else value.value

@@ -127,7 +127,7 @@ def load(
 
 
 def _bytes(path: str | Path) -> bytes:
-    """Return what a file holds, one byte beyond the limit at most; SceneError says why not."""
+    """Bytes of a file, one beyond the limit at most; SceneError says why not."""
     file = str(path)
     try:
         return first_bytes(path, LARGEST_FILE)
@@ -150,7 +150,7 @@ def _from_python(tables: Mapping[str, Any], name: str) -> dict[str, Any]:
 
 
 def _asked(content: dict[str, Any]) -> dict[str, Any]:
-    """Return what a file asks for, as JSON holds it, without the user's own tables."""
+    """Tables of a file, as JSON holds them, without the user's own."""
     return {k: bare(v) for k, v in content.items() if not k.startswith("x-")}
 
 

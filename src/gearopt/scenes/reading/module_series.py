@@ -48,7 +48,7 @@ def series_of(found: tuple[Quantity, ...]) -> str:
 
 
 def unverified(found: tuple[Quantity, ...]) -> list[str]:
-    """Return what a reader should know of a series: which source it has."""
+    """Sentences on a series: which source it has."""
     name = series_of(found)
     words = f"The diametral pitches of {name} are those of textbooks (unverified by a standard)."
     return [words] if name in DIAMETRAL_PITCHES else []

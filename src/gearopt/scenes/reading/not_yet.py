@@ -197,5 +197,5 @@ NEAREST["pair"] = NEAREST["drive"] | {
 
 
 def nearest(kind: str, name: str) -> str | None:
-    """Return what stands nearest to a key that a kind does not have; None of any other name."""
+    """Nearest key to one that a kind does not have; None of any other name."""
     return looked_up({way: names for names, way in NEAREST.get(kind, {}).items()}, name)
