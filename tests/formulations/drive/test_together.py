@@ -291,6 +291,7 @@ def test_a_train_whose_layouts_are_not_exhausted_leaves_the_search_unproven(monk
         assert search._below(work, box, order, 0.3) == below
     monkeypatch.setattr("gearopt.formulations.drive.layout.exact.DEEP", 3)
     fresh = search.Search(train, work.make, Clock(), 0)
+    assert search._below(fresh, box, order, 0.3)  # any layout is better than none
     assert not search.lay(fresh, (pairs, (0, 0)), 0.003) and not fresh.clock.stopped
 
 
@@ -313,6 +314,68 @@ def test_tables_of_the_rest_hold_ratios_at_the_edges_of_their_cells():
     for edge, z2 in zip(held.edge[1:], (42, 45), strict=True):  # tip radii of modules 2 to 6
         assert edge[[0, -1]] == pytest.approx([z2 + 2.0, 3.0 * z2 + 6.0])
         assert edge[0] < z2 + 2.0
+
+
+def test_tables_of_the_rest_are_the_same_in_slices_of_any_size(monkeypatch):
+    train = elevator()
+    few = (replace(s, pinion_teeth=(20, 21), modules=(F(2), F(3))) for s in train.stages)
+    train = replace(train, stages=tuple(few))
+    drive, _ = numbers(train, frame(train, (10.0, 17.5, 30.0)))
+    drive = drive._replace(delta=drive.log_high / 6.0)
+    whole, asked = rest(drive, lambda: True), []
+    monkeypatch.setattr(tables, "SLICE", 1)
+    sliced = rest(drive, lambda: asked.append(0) or True)
+    assert all(np.array_equal(a, b) for a, b in zip(whole, sliced, strict=True))
+    assert np.isfinite(whole.least[1]).any() and len(asked) == int(drive.log_high / drive.delta) + 2
+    assert rest(drive, lambda: False) is None
+
+
+def test_passes_raise_the_bound_and_never_lower_it(monkeypatch):
+    values = iter((10.0, 7.0, 6.5))
+
+    def prove(work, *_):
+        work.clock.best, work.best = next(values), "a design"
+        return True
+
+    work = SimpleNamespace(drive=None)
+    stubs = {"prove": prove, "prepare": lambda *_: work, "_first": lambda _: True}
+    stubs |= {"numbers": lambda *_: (None, None), "slabs_of": lambda _: ()}
+    for name, stub in (stubs | {"_outcome": lambda own, *_: own.clock.bound}).items():
+        monkeypatch.setattr(together, name, stub)
+    own = search.Search(elevator(), None, Clock(Budget(gap=0.03)), 0)
+    own.clock.bound = 0.0
+    assert together._searched(own, None) == pytest.approx(0.7 * 10.0)
+    assert next(values, None) is None
+
+
+@pytest.mark.parametrize(
+    ("stopped", "possible", "infeasible"),
+    [(False, False, True), (False, True, False), (True, False, False)],
+)
+def test_only_an_exhausted_search_without_a_design_is_infeasible(stopped, possible, infeasible):
+    own = search.Search(elevator(), None, Clock(), 0)
+    own.clock.stopped = stopped
+    outcome = together._outcome(own, (), possible)
+    assert outcome.x is None and outcome.infeasible is infeasible
+    assert outcome.finished is not stopped and bool(outcome.message) is stopped
+
+
+def test_a_pass_without_anything_below_its_cut_is_finished():
+    own, work = SimpleNamespace(value=0.0), SimpleNamespace(drive=SimpleNamespace(kind=np.ones(2)))
+    assert search.prove(own, work, 0.1) is True
+
+
+def test_modules_that_no_width_below_the_cut_leaves_are_dropped():
+    train = elevator()
+    drive, _ = numbers(train, frame(train, (10.0, 17.5, 30.0)))
+    count = drive.z1.size
+    widths = np.full((count, drive.modules.shape[1]), np.inf)
+    widths[0, [2, 4]] = widths[1, 3] = 1.0
+    rows = {"row": np.arange(count + 1), "cell": np.zeros(count, np.int64), "step": 9.0}
+    kept = search.shortened(drive._replace(bisected=widths, **rows), math.inf)
+    assert kept.bisected.shape[1] == kept.modules.shape[1] == 5
+    assert (kept.first[0], kept.last[0]) == (2, 4) and (kept.first[1], kept.last[1]) == (3, 3)
+    assert not kept.last[2:].any() and kept.most_steps.shape[0] in (1, 5)
 
 
 def test_other_pairs_are_refused():
