@@ -215,7 +215,7 @@ def of_design(
         return stepped(scene, number, way, value, basis.solved, solved)
 
     found = tuple(map(_sure, influences(scene, basis, clock, wanted, easing, near=near)))
-    late = f"stopped after {len(found)} of {len(wanted)} numbers" if clock.over else note
+    late = f"time ended after {len(found)} of {len(wanted)} sensitivities" if clock.over else note
     if ranges:
         late = "; ".join(filter(None, (late, f"the same design is best with {', '.join(ranges)}")))
     words = HELD if held else f",{BASIS}"

@@ -61,7 +61,7 @@ def _contact_tiles(
         Tile(
             "contact ratio",
             number(pair_contact.contact_ratio),
-            "of the flanks that undercut leaves",
+            "without flanks lost to undercut",
         ),
     ]
 

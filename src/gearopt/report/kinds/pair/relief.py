@@ -94,7 +94,7 @@ def answers(relief: PairRelief) -> list[str]:
         _flank("wheel", relief.wheel),
         "Only the sum of what is taken off both flanks where they touch counts: instead of the "
         "tips of one gear the roots of the other may be relieved, at the same points of contact. "
-        "Crowning and end relief vary along the face width, which plane models do not see.",
+        "Crowning and end relief vary along the face width, which a plane model cannot show.",
     ]
     if relief.break_even is not None:
         words.append(
@@ -171,10 +171,10 @@ def rules(relief: PairRelief, measures: Measures) -> Table:
     for k, name in enumerate(at):
         lines.append([f"load jump {name} [%]", *(percent(r.load_jump[k]) for r in rows)])
     caption = (
-        "Without relief, by rules, and as found here. Rules remove at the tips a deflection at the "
-        "torque of the duty: that of Hwang and others (the paper's) the whole deflection of the "
-        "pair that enters or leaves contact, the corrected rule that of the pairs that stay. "
-        "Load jump: the share of the load with which a pair enters or leaves contact."
+        "Without relief, by two rules, and as found here (this). At the torque of the duty the "
+        "paper's rule (Hwang and others) takes the full deflection of the pair that enters or "
+        "leaves contact as relief of the tips, the corrected rule the deflection of the pairs that "
+        "stay in contact. Load jump: share of the load with which a pair enters or leaves contact."
     )
     return Table("relief and rules", ["", *(r.name for r in rows)], lines, caption, across=True)
 

@@ -73,7 +73,7 @@ def explained(
             lambda number: _smooth(spelt, number),
         )
     )
-    late = f"stopped after {len(found)} of {len(wanted)} numbers" if clock.over else ""
+    late = f"time ended after {len(found)} of {len(wanted)} sensitivities" if clock.over else ""
     if not whole:
         late = late or "relaxing a limit is not tried, because the answer is not proven optimal"
     return Explanation(
