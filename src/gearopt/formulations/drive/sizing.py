@@ -95,12 +95,12 @@ def smooth_problem(train: Train, choice: Choice) -> Problem:
             for j, standard in enumerate(_standards(train.stages[k])):
                 suffix = standard.suffix
                 own = {n: each(getattr(x, n + suffix))[k] for n in standard.unknowns}
-                made = standard.smooth(pair, torque, speed, choice[k][j], own)
-                for i, (mode, actual) in enumerate(zip(MODES, made.safeties, strict=True)):
+                smooth_form = standard.smooth(pair, torque, speed, choice[k][j], own)
+                for i, (mode, actual) in enumerate(zip(MODES, smooth_form.safeties, strict=True)):
                     rows[mode + suffix] = safety[i // 2] / (actual * p.trim[8 * k + 4 * j + i])
-                rows |= {n + suffix: v for n, v in made.limits.items()}
+                rows |= {n + suffix: v for n, v in smooth_form.limits.items()}
                 for part in extra:
-                    found = getattr(made, part).items()
+                    found = getattr(smooth_form, part).items()
                     extra[part] |= {f"{n}{suffix}[{k + 1}]": v for n, v in found}
             return rows
 

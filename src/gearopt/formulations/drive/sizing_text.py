@@ -80,13 +80,13 @@ def movable(train: Train) -> Problem:
     numbers = tuple(replace(q, role=_role(train, q.name, "given")) for q in own.parameters)
 
     def evaluate(x: Any, p: Any) -> Terms:
-        found = own.evaluate(x, p)
+        terms = own.evaluate(x, p)
         teeth = zip(wheels, each(x.wheel_teeth) if wheels else (), strict=True)
         rows = {
             f"wheel_teeth[{k + 1}]": each(x.pinion_teeth)[k] * each(x.ratio)[k] / z
             for k, z in teeth
         }
-        return Terms({"module": each(x.module)[0]}, found.limits, equal={**found.equal, **rows})
+        return Terms({"module": each(x.module)[0]}, terms.limits, equal={**terms.equal, **rows})
 
     columns = _with_wheels(train) if wheels else own.variables
     return Problem("sizing", columns, numbers, evaluate)

@@ -198,8 +198,8 @@ def _repeating(
 
 def _passed(pair: MovingPair, level: str, state: Array, periods: int, clock: Clock) -> Array:
     """Return the state after periods of the mesh; NaN where the clock stopped."""
-    made = _marched(pair, level, np.array([0.0, periods]) / pair.mesh_frequency, state, clock)
-    return np.asarray(made.states[1] if len(made.states) > 1 else np.full(state.size, math.nan))
+    motion = _marched(pair, level, np.array([0.0, periods]) / pair.mesh_frequency, state, clock)
+    return np.asarray(motion.states[1] if len(motion.states) > 1 else np.full(state.size, math.nan))
 
 
 def _marched(pair: MovingPair, level: str, times: Array, state: Array, clock: Clock) -> Marched:
@@ -231,12 +231,12 @@ def settled(
     most, spent, changes = _patience(pair, level, contact.growth), 0, [math.inf]
     while min(changes) > SETTLED and spent < (LONGER if min(changes) < NEARLY else 1) * most:
         times = np.arange(CHUNK + 1) / pair.mesh_frequency
-        made = _marched(pair, level, times, passed[-1], clock)
-        if len(made.states) <= CHUNK or not clock.tell():
+        motion = _marched(pair, level, times, passed[-1], clock)
+        if len(motion.states) <= CHUNK or not clock.tell():
             return None
-        if not np.max(np.abs(made.states / scale)) < ENDLESS * room:
-            return _growing(linear_motion(pair, level, contact), made.jammed is not None)
-        passed = np.concatenate([passed[-CHUNK:], made.states[1:]])
+        if not np.max(np.abs(motion.states / scale)) < ENDLESS * room:
+            return _growing(linear_motion(pair, level, contact), motion.jammed is not None)
+        passed = np.concatenate([passed[-CHUNK:], motion.states[1:]])
         spent += CHUNK
         changes = [_change(passed / scale, p) for p in range(1, MOST_PERIODS + 1)]
     repeats = next((p for p, c in enumerate(changes, 1) if c <= REPEATED), 0)
@@ -289,10 +289,10 @@ def _periodic_response(
     finer = math.ceil(FINEST / (LOOKS * frequency * fastest(pair, level)))
     looks = LOOKS * finer
     times = np.arange(periods * looks + 1) / (looks * frequency)
-    made = _marched(pair, level, times, state, clock)
-    if len(made.states) < len(times):
+    motion = _marched(pair, level, times, state, clock)
+    if len(motion.states) < len(times):
         return None
-    delta = made.delta[:-1]
+    delta = motion.delta[:-1]
     for shorter in range(1, periods if repeats else 1):
         apart = delta[shorter * looks :] - delta[: -shorter * looks]
         if np.max(np.abs(apart)) <= REPEATED * np.max(np.abs(delta)):
@@ -305,8 +305,8 @@ def _periodic_response(
         highest=float(delta.max()),
         amplitudes=_amplitudes(series),
         repeats=repeats,
-        jams=made.jammed is not None,
-        state=made.states[-1],
+        jams=motion.jammed is not None,
+        state=motion.states[-1],
         delta=delta[: (repeats or KEPT) * looks : finer],
         series=series,
     )

@@ -285,8 +285,8 @@ def text(choice: Choice, base: Problem) -> Callable[[Any, Any], Terms]:
     """
 
     def evaluate(x: Any, p: Any) -> Terms:
-        found = base.evaluate(x, p)
-        limits = dict(found.limits)
+        terms = base.evaluate(x, p)
+        limits = dict(terms.limits)
         if choice.springs is not None and choice.springs.minimum is not None:
             made = pairs((*x.pinion_teeth, *x.wheel_teeth, *x.module), choice.train.face_width)
             limits["stiffness"] = choice.springs.minimum / choice.springs.output_stiffness(made)
@@ -294,8 +294,8 @@ def text(choice: Choice, base: Problem) -> Callable[[Any, Any], Terms]:
             none = 0.0 * x.module[0]  # of the shape of a population
             scale = there if there > 0.0 else asked  # required over actual, where gears have any
             limits[f"minimum_backlash[{stage}]"] = 1.0 + (asked - there) / scale + none
-        goals = {name: GOALS[name].factor * value for name, value in found.minimise.items()}
-        return replace(found, minimise=goals, limits=limits)
+        goals = {name: GOALS[name].factor * value for name, value in terms.minimise.items()}
+        return replace(terms, minimise=goals, limits=limits)
 
     return evaluate
 

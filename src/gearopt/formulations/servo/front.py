@@ -71,9 +71,9 @@ def _end(choice: Choice, goal: str, clock: Clock) -> Outcome:
     if (bound := binding(choice.backlash)) is not None:
         return bound
     one = train_problem(replace(choice, goal=goal))
-    found: Outcome = one.methods["exact"](one, clock.left, 0, clock.inner(values=False))
-    clock.evaluations += found.evaluations
-    return found
+    outcome: Outcome = one.methods["exact"](one, clock.left, 0, clock.inner(values=False))
+    clock.evaluations += outcome.evaluations
+    return outcome
 
 
 def _outcome(choice: Choice, points: Array, clock: Clock) -> Outcome:

@@ -125,9 +125,9 @@ def limited(demand: Demand, start: Any, name: str, most: Mapping[str, float]) ->
     own = problem(demand, start, (PRESSURE, VOLUME), WHOLE)
 
     def evaluate(x: Any, p: Any) -> Terms:
-        found = own.evaluate(x, p)
-        caps = {f"most_{n}": found.minimise[n] / value for n, value in most.items()}
-        return Terms({name: found.minimise[name]}, {**found.limits, **caps})
+        terms = own.evaluate(x, p)
+        caps = {f"most_{n}": terms.minimise[n] / value for n, value in most.items()}
+        return Terms({name: terms.minimise[name]}, {**terms.limits, **caps})
 
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Solve by exchange; the seed changes nothing."""

@@ -64,10 +64,10 @@ class Agma:
         operations = [load.of(self.operation, torque, speed) for load in self.loads]
         made = self.steels, self._practice(pair), self.given
         if len(operations) == 1:
-            found = rate_rows(pair, operations[0], *made)
+            ratings = rate_rows(pair, operations[0], *made)
         else:
-            found = spectrum_rows(pair, operations, *made)
-        return (*found.bending, *found.contact)
+            ratings = spectrum_rows(pair, operations, *made)
+        return (*ratings.bending, *ratings.contact)
 
     def choices(self, helical: bool) -> tuple[str, ...]:
         """Return the regimes of which one is fixed beforehand in the smooth form."""

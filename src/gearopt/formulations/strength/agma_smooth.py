@@ -37,8 +37,8 @@ def smooth(
     angles = unknown[UNKNOWNS[0]], unknown[UNKNOWNS[1]]
     spread = unknown[UNKNOWNS[2]]
     case = standard.case(pair, torque, speed, {"K_m": spread})
-    made = smooth_factors(pair, regime, angles, case.practice.load)
-    rows = zip(("pinion_tangency", "wheel_tangency"), made.tangencies, strict=True)
+    smooth_form = smooth_factors(pair, regime, angles, case.practice.load)
+    rows = zip(("pinion_tangency", "wheel_tangency"), smooth_form.tangencies, strict=True)
     limits, gain = {}, 1.0
     if regime == "low":
         limits["overlap_ratio_high"] = pair.overlap_ratio
@@ -49,7 +49,7 @@ def smooth(
         limits["overlap_ratio_high"] = pair.overlap_ratio / (whole + 1.0)
         gain = _sharing_gain(pair, whole, branch[1])
     return Smooth(
-        safeties(case, made.pitting * gain, tuple(j * gain for j in made.bending)),
+        safeties(case, smooth_form.pitting * gain, tuple(j * gain for j in smooth_form.bending)),
         limits,
         _distributions(case.practice, pair, spread),
         {name: 1.0 + slack for name, slack in rows},

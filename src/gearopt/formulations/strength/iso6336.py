@@ -100,10 +100,10 @@ class Iso6336:
         operations = [load.of(self.operation, torque, speed) for load in self.loads]
         made = self.materials, self._practice(pair), self.given
         if len(operations) == 1:
-            found = rate_rows(pair, operations[0], *made)
+            ratings = rate_rows(pair, operations[0], *made)
         else:
-            found = spectrum_rows(pair, operations, *made)
-        return (*found.bending, *found.contact)
+            ratings = spectrum_rows(pair, operations, *made)
+        return (*ratings.bending, *ratings.contact)
 
     @property
     def unknowns(self) -> dict[str, tuple[float, float, bool]]:

@@ -71,9 +71,9 @@ def weighed(problem: Problem, weights: Array) -> Problem:
     one = posed(problem, names, {})
 
     def evaluate(x: Any, p: Any) -> Terms:
-        found = one.evaluate(x, p)
-        total = sum(w * found.minimise[n] for w, n in zip(weights.tolist(), names, strict=True))
-        return replace(found, minimise={SUM: total})
+        terms = one.evaluate(x, p)
+        total = sum(w * terms.minimise[n] for w, n in zip(weights.tolist(), names, strict=True))
+        return replace(terms, minimise={SUM: total})
 
     assert isinstance(one, Problem)
     return replace(one, evaluate=evaluate, methods={})

@@ -68,10 +68,10 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
         excess[accept] = new_excess[accept]
         sweep += 1
     message = "" if best is not None else "no feasible point was visited"
-    found = Outcome(best, not own.stopped, evaluations=own.evaluations, message=message)
+    outcome = Outcome(best, not own.stopped, evaluations=own.evaluations, message=message)
     energy = _energy(value, excess, PENALTY * HARDER, scale, positive)
     order = np.argsort(np.nan_to_num(energy, nan=np.inf), kind="stable")
-    return polish.polished(last, found, space.points(unit[order])) if not own.refused else found
+    return polish.polished(last, outcome, space.points(unit[order])) if not own.refused else outcome
 
 
 def _moved(rng: np.random.Generator, space: Box, unit: Array, step: float) -> Array:

@@ -42,8 +42,8 @@ def rate_rows(
     practice, given = practice or Practice(), given or {}
     geometry = _geometry(pair, practice, given)
     case = Case(pair, operation, steels, practice, given)
-    made = safeties(case, geometry.pitting, geometry.bending)
-    return Ratings((made[0], made[1]), (made[2], made[3]), geometry.refusal)
+    safety = safeties(case, geometry.pitting, geometry.bending)
+    return Ratings((safety[0], safety[1]), (safety[2], safety[3]), geometry.refusal)
 
 
 def _geometry(pair: GearPair, practice: Practice, given: Mapping[str, Any]) -> GeometryFactors:
@@ -95,8 +95,8 @@ def spectrum_rows(
     practice, given = practice or Practice(), given or {}
     geometry = _geometry(pair, practice, given)
     cases = [Case(pair, one, steels, practice, given) for one in operations]
-    made = spectrum_safeties(cases, geometry.pitting, geometry.bending)
-    return Ratings((made[0], made[1]), (made[2], made[3]), geometry.refusal)
+    safety = spectrum_safeties(cases, geometry.pitting, geometry.bending)
+    return Ratings((safety[0], safety[1]), (safety[2], safety[3]), geometry.refusal)
 
 
 def spectrum_safeties(

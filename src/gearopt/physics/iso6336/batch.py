@@ -74,11 +74,11 @@ def range_of(case: Case) -> str:
 
     Between the main resonance and the supercritical range the nearer one.
     """
-    found = quantities(case)
-    line = case.load * found["K_A"] * found["K_gamma"] / case.pair.face_width
-    if found["N"] <= lower_limit(line):
+    values = quantities(case)
+    line = case.load * values["K_A"] * values["K_gamma"] / case.pair.face_width
+    if values["N"] <= lower_limit(line):
         return RANGES[0]
-    return RANGES[1] if found["N"] < 0.5 * (MAIN + SUPER) else RANGES[2]
+    return RANGES[1] if values["N"] < 0.5 * (MAIN + SUPER) else RANGES[2]
 
 
 def smooth_safeties(
@@ -97,9 +97,9 @@ def smooth_safeties(
     if within not in RANGES:
         raise ValueError(f"no range {within!r}; known: {', '.join(RANGES)}")
     check(replace(practice, backup=(None, None)))  # whose ratios may be no numbers here
-    found = quantities(Case(pair, operation, materials, practice, given or {}, within))
+    values = quantities(Case(pair, operation, materials, practice, given or {}, within))
     (b1, b2), (c1, c2) = (
-        [a / b for a, b in zip(found[strong], found[stress], strict=True)]
+        [a / b for a, b in zip(values[strong], values[stress], strict=True)]
         for strong, stress in (("sigma_FG", "sigma_F"), ("sigma_HG", "sigma_H"))
     )
     return b1, b2, c1, c2

@@ -102,7 +102,7 @@ def solved(clock: Clock, made: Problem) -> Result:
     before, left = clock.evaluations, clock.left
     most = ITERATIONS if left.evaluations is None else min(ITERATIONS, left.evaluations)
     own = Budget(left.seconds, most)
-    found = solve(made, "ipopt", own, watch=clock.inner(values=False))
-    clock.evaluations = before + found.evaluations
+    result = solve(made, "ipopt", own, watch=clock.inner(values=False))
+    clock.evaluations = before + result.evaluations
     clock.tell()
-    return found
+    return result

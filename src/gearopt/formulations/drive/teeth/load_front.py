@@ -38,10 +38,10 @@ def problem(train: Train, names: tuple[str, ...]) -> Problem:
     base, limited = teeth.problem(replace(train, objective=own[0], others=own[1:])), _loads(train)
 
     def evaluate(x: Any, p: Any) -> Terms:
-        found = base.evaluate(x, p)
-        loads = [v for name, v in found.limits.items() if name.partition("[")[0] in limited]
-        worth = {**found.minimise, UTILISATION: _largest(loads)}
-        return replace(found, minimise={name: worth[name] for name in names})
+        terms = base.evaluate(x, p)
+        loads = [v for name, v in terms.limits.items() if name.partition("[")[0] in limited]
+        worth = {**terms.minimise, UTILISATION: _largest(loads)}
+        return replace(terms, minimise={name: worth[name] for name in names})
 
     return replace(base, evaluate=evaluate, methods={}, relaxed=None)
 
@@ -75,8 +75,8 @@ def limited(train: Train, name: str, most: Mapping[str, float]) -> Problem:
     used, largest = min(1.0, most.get(UTILISATION, 1.0)), most.get(train.objective, math.inf)
 
     def evaluate(x: Any, p: Any) -> Terms:
-        found = own.evaluate(x, p)
-        return replace(found, minimise={name: found.minimise[name]})
+        terms = own.evaluate(x, p)
+        return replace(terms, minimise={name: terms.minimise[name]})
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Find the best train, or halve the range of utilisations; the seed changes nothing."""
@@ -99,11 +99,11 @@ def _best(
 ) -> Outcome:
     """Return the best train of a utilisation; none where its objective exceeds the largest."""
     one = teeth.problem(replace(carrying(train, used), others=()))
-    found: Outcome = one.methods["exact"](one, budget, 0, watch)
-    if found.x is None or own.batch(found.x[None]).F[0, 0] <= largest * (1.0 + TIE):
-        return found
+    outcome: Outcome = one.methods["exact"](one, budget, 0, watch)
+    if outcome.x is None or own.batch(outcome.x[None]).F[0, 0] <= largest * (1.0 + TIE):
+        return outcome
     return replace(
-        found, x=None, bound=None, infeasible=found.finished, message=OBJECTIVE_TOO_LARGE
+        outcome, x=None, bound=None, infeasible=outcome.finished, message=OBJECTIVE_TOO_LARGE
     )
 
 

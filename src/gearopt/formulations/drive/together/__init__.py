@@ -192,7 +192,7 @@ def text(
         return _terms(there, arrange(there, slabs), point[count : count + links])
 
     def evaluate(x: Any, p: Any) -> Terms:
-        found = sized.evaluate(x, p)
+        terms = sized.evaluate(x, p)
         columns = [v for var in variables for v in each(getattr(x, var.name))]
         points = np.atleast_2d(np.array(np.broadcast_arrays(*columns), float).T)
         rows = [one(point) for point in points]
@@ -204,9 +204,9 @@ def text(
 
         return Terms(
             block(0),
-            {**found.limits, **block(1)},
-            equal={**found.equal, **block(2)},
-            report=dict(found.minimise),
+            {**terms.limits, **block(1)},
+            equal={**terms.equal, **block(2)},
+            report=dict(terms.minimise),
         )
 
     return Problem("together", variables, (), evaluate, methods=methods, vectorised=True)

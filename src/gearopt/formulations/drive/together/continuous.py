@@ -54,7 +54,7 @@ def continuous(
     variables = _variables(sized, box, slabs, start[1], round_it)
 
     def evaluate(x: Any, p: Any) -> Terms:
-        found = sized.evaluate(x, p)
+        terms = sized.evaluate(x, p)
         there = make(sizing_text.text_pairs(train, x, p))
         y, z = placed_by([pair.centre_distance for pair in there.pairs], each(x.angle))
         rows = _walls(there, order.bodies, (y, z), x)
@@ -77,9 +77,9 @@ def continuous(
             rows |= {f"{n}_below": v / x.longest for n, v in edges.items()}
         return Terms(
             {there.objective: _objective(there, edges, x)},
-            {**found.limits, **limits},
+            {**terms.limits, **limits},
             rows,
-            {**found.equal, **equal},
+            {**terms.equal, **equal},
         )
 
     return Problem("together", variables, sized.parameters, evaluate)

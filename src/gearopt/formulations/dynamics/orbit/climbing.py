@@ -100,9 +100,9 @@ def measure(task: Task, point: Array, speeds_rpm: Array, clock: Clock) -> Array:
 
 
 def _ipopt(problem: Problem, start: Array, clock: Clock) -> tuple[float, Outcome] | None:
-    found = ipopt.run(problem, clock.left, 0, clock.inner(False), start=start)
-    value = _value(problem, found)
-    return None if value is None else (value, found)
+    outcome = ipopt.run(problem, clock.left, 0, clock.inner(False), start=start)
+    value = _value(problem, outcome)
+    return None if value is None else (value, outcome)
 
 
 def _value(problem: Problem, found: Outcome) -> float | None:
@@ -205,9 +205,9 @@ def _as_it_is(task: Task, problem: Problem, point: Array, clock: Clock) -> Climb
 
 def _with_its_motions(task: Task, problem: Problem, point: Array) -> Climbed | None:
     """Return a design as it is, where it is within the limits of the problem."""
-    found = Outcome(orbit_text.start(task, problem, point), evaluations=1)
-    value = _value(problem, found)
-    return None if value is None else Climbed(problem, found, value, value)
+    outcome = Outcome(orbit_text.start(task, problem, point), evaluations=1)
+    value = _value(problem, outcome)
+    return None if value is None else Climbed(problem, outcome, value, value)
 
 
 def known_growth(task: Task, point: Array, clock: Clock) -> float:

@@ -284,13 +284,13 @@ class Program:
         rows, right = (np.concatenate(part) for part in parts)
         bounds = np.stack([np.zeros_like(self.upper), self.upper], axis=1)
         options = {"bounds": bounds, "method": "highs-ds", "options": TOLERANCES}
-        found = linprog(self.cost, rows, right, **options)
-        if found.x is None:  # no bound is known, and nothing is removed
+        solution = linprog(self.cost, rows, right, **options)
+        if solution.x is None:  # no bound is known, and nothing is removed
             return 0.0, np.zeros(len(self.cost))
-        prices = np.minimum(found.ineqlin.marginals, 0.0)
+        prices = np.minimum(solution.ineqlin.marginals, 0.0)
         left = self.cost - prices @ rows
         bound = float(prices @ right + np.minimum(left, 0.0) @ self.upper)
-        return bound - ROUNDING, found.x
+        return bound - ROUNDING, solution.x
 
 
 @dataclass(frozen=True)

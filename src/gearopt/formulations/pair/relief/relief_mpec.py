@@ -165,8 +165,8 @@ def _followed(posed: Problem, x: Array, clock: Clock) -> Array:
         most = MAX_ITERATIONS if left is None else min(MAX_ITERATIONS, left)
         budget = Budget(clock.left.seconds, most)
         here = posed.at(tau=tau, smoothing=smoothing)
-        found = ipopt.run(here, budget, 0, clock.inner(values=False), start=x)
-        x = x if found.x is None else found.x
+        outcome = ipopt.run(here, budget, 0, clock.inner(values=False), start=x)
+        x = x if outcome.x is None else outcome.x
         if clock.over:
             break
     return x
