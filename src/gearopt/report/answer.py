@@ -45,7 +45,7 @@ ROWS = (
     *("method", "proof", "evaluations", "seconds"),
 )
 WAYS = {"below": -1, "above": 1}  # in which a bound is rounded, by the side without designs
-SHOWN = ("method", "arithmetic", "sentence")  # of a proof, elsewhere
+SHOWN_ELSEWHERE = ("method", "arithmetic", "sentence")  # of a proof, elsewhere
 CHECKS = {  # of a certificate: what each number is
     "feasibility": "largest violation of a limit",
     "stationarity": "largest gradient left in the Lagrangian, relative",
@@ -258,7 +258,7 @@ def _checks(result: Result) -> Table | None:
     ]
     spoken = []
     for key, value in result.proof.items():
-        if key not in SHOWN and not isinstance(value, Mapping | list):
+        if key not in SHOWN_ELSEWHERE and not isinstance(value, Mapping | list):
             text = f"{value:.3g}" if isinstance(value, float) else number(value)
             rows.append((key.replace("_", " "), Cell(value, text)))
             if text in str(result.proof.get("sentence", "")):

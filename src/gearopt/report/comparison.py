@@ -17,7 +17,7 @@ from gearopt.optimise.scale import is_known
 from gearopt.report.measures import read_in
 from gearopt.report.words import amount
 
-NOTHING = 1e-12  # a gap below it is rounding
+GAP_ROUNDING = 1e-12  # a gap below it is rounding
 COLUMNS = (  # of a table: heading, unit, what it says
     ("median gap", "%", "Median over the seeds of the gap to the reference"),
     ("worst gap", "%", "Gap of the worst seed"),
@@ -61,7 +61,7 @@ def percent(gap: float | None) -> str:
     """A gap in percent; "none" where there is no feasible point."""
     if gap is None:
         return "none"
-    if gap <= NOTHING:
+    if gap <= GAP_ROUNDING:
         return "0"
     value = 100.0 * gap
     return f"{value:,.0f}" if value >= 100 else f"{value:.2g}" if value < 10 else f"{value:.3g}"

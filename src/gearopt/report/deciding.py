@@ -18,7 +18,7 @@ from gearopt.report.words import (
 PROVEN = ("optimal", "stationary")  # where a limit that is reached decides
 NAMED_FROM = 0.95  # of a limit; one used so far is named
 NAMED = 3  # limits that a sentence names, where more are reached it counts them
-ENDS = ("ratio_low", "ratio_high")  # limits of one range
+RATIO_ENDS = ("ratio_low", "ratio_high")  # limits of one range
 GIVEN = ("common_divisor",)  # rules that every design of the file is at the end of
 
 
@@ -50,7 +50,7 @@ def _impossible(result: Result) -> str:
     unsure = [name for name in ways.get("unsure") or () if name in names]
     names = [name for name in names if name not in unsure]
     together = _on(grouped(names, has_stages(result)), len(names))
-    ratio = {*ENDS} & ({*(result.proof.get("conflict") or ())} - {*names})
+    ratio = {*RATIO_ENDS} & ({*(result.proof.get("conflict") or ())} - {*names})
     held = " at the ratio asked" if ratio else ""
     if unsure:
         with_ = f"cannot be met together with {_some(unsure, has_stages(result))}"
@@ -90,7 +90,7 @@ def of_limits(result: Result, shown: Collection[str] = ()) -> str:
     their real-valued relaxation reaches; without one, as under ratings, those that are reached
     may decide or not.
     """
-    left_out = {*GIVEN, *ENDS, *shown}
+    left_out = {*GIVEN, *RATIO_ENDS, *shown}
     text = {n: u for n, u in result.limits.items() if _stem(n) not in left_out}
     reached = [n for n, u in text.items() if u >= 1.0 - REACHED]
     relaxed = next((part.limits for part in result.parts if part.name == "sizing"), {})
@@ -164,7 +164,7 @@ def _nearest(limits: Mapping[str, float], alone: bool, staged: bool) -> list[str
 
 def _tolerance(result: Result) -> list[str]:
     """Use of the tolerance of a total ratio; nothing where it has none."""
-    low, high = (result.limits.get(name) for name in ENDS)
+    low, high = (result.limits.get(name) for name in RATIO_ENDS)
     error, ratio = result.design.get("ratio_error_percent"), result.design.get("ratio")
     if low is None or high is None or error is None or ratio is None:
         return []

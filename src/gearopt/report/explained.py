@@ -11,7 +11,7 @@ from gearopt.report.words import edit, grouped, objective, sentence, series_of
 
 ALIKE = 0.02  # of sensitivities from both sides shown as one; relative to those above 1
 FLAT = 0.5e-4  # sensitivity that would be shown as 0.0000
-NOTHING = 1e-9  # relative: no change
+NO_CHANGE = 1e-9  # relative: no change
 BOTH = ("number in the file", "value")
 TERMINAL_ONLY = ("sensitivity, %", "re-solved", "effect")
 PAGE_ONLY = ("effect, %", "sensitivity, % per %")
@@ -82,7 +82,9 @@ def _is_idle(influence: Mapping[str, Any]) -> bool:
     """Whether a number changes nothing: not by 1 %, to either side, nor when it is eased."""
     slopes = [s for s in (influence["sensitivity"], *influence["resolved"]) if s is not None]
     known = bool(slopes) or influence["price"] is not None
-    return known and all(abs(s) < FLAT for s in slopes) and abs(influence["price"] or 0.0) < NOTHING
+    return (
+        known and all(abs(s) < FLAT for s in slopes) and abs(influence["price"] or 0.0) < NO_CHANGE
+    )
 
 
 def _row(influence: Mapping[str, Any]) -> list[Any]:
@@ -123,7 +125,7 @@ def influence_words(prices: Mapping[str, Any], result: Result) -> list[str]:
 
 def clean(change: float) -> float:
     """A change without the noise of solvers."""
-    return 0.0 if abs(change) < NOTHING else change
+    return 0.0 if abs(change) < NO_CHANGE else change
 
 
 def alike(below: float, above: float) -> bool:
@@ -135,7 +137,7 @@ def price(change: float | None) -> str:
     """A relative change of the objective in words."""
     if change is None:
         return ""
-    return "none" if abs(change) < NOTHING else f"{change:+.3%}"
+    return "none" if abs(change) < NO_CHANGE else f"{change:+.3%}"
 
 
 def _percent(slope: float | None) -> str:

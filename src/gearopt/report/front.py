@@ -10,7 +10,7 @@ from gearopt.report.measures import METRIC, Measures, read_in
 from gearopt.report.section import Cell, Table, cell
 from gearopt.report.words import MODULE, SECONDS, number
 
-SHOWN = 24  # rows on the terminal; the page and the CSV hold all
+ROWS_ON_TERMINAL = 24  # rows on the terminal; the page and the CSV hold all
 VERDICTS = {
     "complete": ("complete Pareto front, proven", "green"),
     "proven": ("every point proven", "green"),
@@ -18,7 +18,7 @@ VERDICTS = {
     "infeasible": ("impossible, proven", "red"),
     "limit": ("stopped early", "yellow"),
 }
-COARSE = 0.1  # of the ranges of the objectives: an error at which a pick is told with care
+COARSE_ERROR = 0.1  # of the ranges of the objectives: an error at which a pick is told with care
 DEFAULTS = {"seconds": SECONDS, "seed": 0}
 
 
@@ -62,7 +62,7 @@ def decided(front: Front, measures: Measures = METRIC) -> list[str]:
     if front.error is not None:
         part = f"{100.0 * front.error:.2g} % of the ranges of its objectives"
         sentences.append(f"The true front lies within {part} of the line through these points.")
-        if front.error > COARSE:
+        if front.error > COARSE_ERROR:
             sentences.append("A better pick may lie between them.")
     if front.impossible:
         count, proven = len(front.impossible), sum(step.proven for step in front.impossible)

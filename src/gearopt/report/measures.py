@@ -23,7 +23,7 @@ _HORSEPOWER = float(UNITS["power"]["hp"][0])  # N mm/s
 DIGITS = 5  # significant digits of a number for reading
 FEWEST = {"percent": 3, "mm": 3, "um": 4}  # the same of some units; of a length in mm, at least
 HUNDREDTHS = 2  # decimals of a length in mm
-NOTHING = 5e-7  # mm; a smaller length is rounding
+LENGTH_ROUNDING = 5e-7  # mm; a smaller length is rounding
 SMALL, LARGE = 1e-5, 1e15  # numbers below and from there are written with a power of ten
 EXACT = 1e-12  # relative; a number so near to a shorter one is that one
 IN_MICROMETRES = (
@@ -149,7 +149,7 @@ class Measures:
         """
         if suffix != "mm":
             return rounded(self.of(value, suffix), FEWEST.get(suffix, DIGITS), way=way)
-        size = 0.0 if abs(value) < NOTHING else self.of(value, suffix)
+        size = 0.0 if abs(value) < LENGTH_ROUNDING else self.of(value, suffix)
         return rounded(size, FEWEST["mm"], HUNDREDTHS + self.digits, way)
 
     def amount(self, value: float, suffix: str, way: int = 0) -> str:

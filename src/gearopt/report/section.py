@@ -24,7 +24,7 @@ from gearopt.report.words import number, parted, share
 # What spreadsheets take for formulas (wide signs in East Asian ones), unless it is a number.
 FORMULA = re.compile(r"\s*[=+\-@\uff1d\uff0b\uff0d\uff20]|[\t\r\n]")
 NUMBER = re.compile(r"[+-]?[0-9]*\.?[0-9]+([eE][+-]?[0-9]+)?")
-LONG = 24  # rows; a longer table may break between rows when it is printed
+LONG_TABLE = 24  # rows; a longer table may break between rows when it is printed
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Table:
     @property
     def long(self) -> bool:
         """Whether it may not fit on a printed page."""
-        return len(self.rows) > LONG
+        return len(self.rows) > LONG_TABLE
 
     @property
     def stem(self) -> str:

@@ -209,7 +209,7 @@ def front_fragment(pareto: Front) -> str:
     """Pareto front as the terminal has it, as HTML for a notebook."""
     pareto = Front.from_dict(pareto.to_dict())
     blocks: list[Block] = [*front.decided(pareto)]
-    blocks += [front.table(pareto, METRIC, front.SHOWN)] if pareto.points else []
+    blocks += [front.table(pareto, METRIC, front.ROWS_ON_TERMINAL)] if pareto.points else []
     head = f"{front.title(pareto)}: {front.verdict(pareto)[0]}"
     return _html(head, [*blocks, *front.picked(pareto)])
 

@@ -29,7 +29,7 @@ from gearopt.report.words import (
 )
 
 LABEL = 20  # columns of the terminal that the first column of a table of words has at least
-GAP = 2  # columns of the terminal between those of a table
+COLUMN_GAP = 2  # columns of the terminal between those of a table
 INDENT = "  "
 
 
@@ -57,7 +57,7 @@ def grid(table: Table, width: int) -> Grid:
 def _narrow(table: Table, width: int) -> bool:
     """Whether a table's first column would have less than LABEL columns, and needs more."""
     first, *others = (max(map(len, column)) for column in _columns(table))
-    return width - sum(GAP + other for other in others) < min(first, LABEL)
+    return width - sum(COLUMN_GAP + other for other in others) < min(first, LABEL)
 
 
 def _columns(table: Table) -> list[list[str]]:
@@ -77,7 +77,7 @@ def _stacked(table: Table, width: int) -> Grid:
     room = width - len(INDENT) - max(map(len, widest))
     for k, column in enumerate(others, 2):
         pieces = " ".join(column).split() if k < table.left else column
-        room -= GAP + max(map(len, pieces))
+        room -= COLUMN_GAP + max(map(len, pieces))
     shown = Grid(box=None, header_style="bold", pad_edge=False)
     both = f"{escape(first)}\n{INDENT}{escape(second)}"
     shown.add_column(both, no_wrap=room >= 0, overflow="fold")
@@ -197,8 +197,8 @@ def show_front(pareto: Front, console: Console, measures: Measures = METRIC) -> 
         console.print(Text(line))
     if pareto.points:
         console.print()
-        console.print(grid(front.table(pareto, measures, front.SHOWN), console.width))
-        hidden = len(pareto.points) - front.SHOWN
+        console.print(grid(front.table(pareto, measures, front.ROWS_ON_TERMINAL), console.width))
+        hidden = len(pareto.points) - front.ROWS_ON_TERMINAL
         if hidden > 0:
             console.print(Text("Some of the designs; --csv, --html and --json hold all.", "dim"))
     for line in front.picked(pareto, measures):

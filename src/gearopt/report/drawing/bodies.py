@@ -18,7 +18,7 @@ from gearopt.report.measures import Measures
 from gearopt.report.words import module_words
 
 Corner = tuple[float, float, float]  # x, y, z
-AROUND = 0.12  # of the box's larger side: keep-outs are drawn so far beyond box and motor
+KEEP_OUT_REACH = 0.12  # of the box's larger side: keep-outs are drawn so far beyond box and motor
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def sides(it: KeepOutDesign, axis: str) -> tuple[float, float]:
 def keep_outs(layout: LayoutDesign) -> list[KeepOutDesign]:
     """The keep-outs near the box, cut off where they reach far beyond it."""
     low, high = _with_motor(layout)
-    room = AROUND * max(b - a for a, b in zip(low[1:], high[1:], strict=True))
+    room = KEEP_OUT_REACH * max(b - a for a, b in zip(low[1:], high[1:], strict=True))
     near = []
     for it in layout.obstacles:
         cut = replace(

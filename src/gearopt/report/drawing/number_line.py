@@ -9,11 +9,11 @@ from gearopt.report.drawing.sheet import Drawing, Place, Sheet, Window
 WIDE = 640.0  # px of the drawing
 EDGE = 34.0  # px left and right of the line
 ROW, BAR = 58.0, 11.0  # px: from a row to the next, and of a bar
-BARE = 40.0  # px from a row without texts below it to the next
+BARE_ROW = 40.0  # px from a row without texts below it to the next
 ABOVE, BELOW = 34.0, 36.0  # px: for the texts of guides, and for the axis
 LEAST_SPREAD = 1.02  # of the largest value to the smallest, where they are alike
 MARKS, FEW = (1.0, 2.0, 5.0), 6  # ticks of a decade; about so many of them
-NARROW = 4.0  # of the largest to the smallest value: below it ticks are evenly apart
+EVEN_TICKS_BELOW = 4.0  # of the largest to the smallest value: below it ticks are evenly apart
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def number_line(
     low, high = min(values), max(values)
     if high < low * LEAST_SPREAD:
         low, high = low / LEAST_SPREAD, high * LEAST_SPREAD
-    pitch = ROW if any(any(row.texts) for row in rows) else BARE
+    pitch = ROW if any(any(row.texts) for row in rows) else BARE_ROW
     scale, tall = Scale(low, high), ABOVE + pitch * len(rows) + BELOW
     sheet = Sheet(Window(0.0, WIDE, 0.0, tall, (0.0, 0.0, 0.0, 0.0)), 1.0)
     level = tall - BELOW + 8.0
@@ -112,7 +112,7 @@ def _inside(x: float, y: float, text: str, cost: float = 0.0) -> Place:
 
 def ticks(low: float, high: float) -> list[float]:
     """Round numbers from low to high, both above 0."""
-    if high < NARROW * low:
+    if high < EVEN_TICKS_BELOW * low:
         return even_ticks(low, high)
     decades = [10.0**k for k in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
     marks = MARKS if len(decades) < FEW else (1.0,)

@@ -21,11 +21,11 @@ Face = tuple[int, int, int]
 Mesh = tuple[list[Point], list[Face]]
 
 BACKLASH = 0.03  # of a pitch, so that flanks in mesh are seen apart
-MOST_TEETH, MOST_POINTS = 10_000, 2_000_000  # of a gear that is drawn
+MAX_TEETH, MAX_MESH_POINTS = 10_000, 2_000_000  # of a gear that is drawn
 ROUND = 48  # sides of a cylinder
 TICKS = 5  # of an axis, about
 EYE = (0.55, -0.75, 0.37)  # direction of the first view: from the output end, the left, above
-AWAY = 1.28  # diagonals between the eye and the middle, so that all is inside the picture
+EYE_DISTANCE = 1.28  # diagonals between the eye and the middle, so that all is inside the picture
 TURN = "Drag to rotate, scroll to zoom, click a name in the legend to hide or show it."
 LIGHT = {
     "ambient": 0.6,
@@ -66,7 +66,7 @@ def gear_mesh(
     rim = outline(gear, flank)
     rate = twist(gear)
     sections = 1 + max(1, math.ceil(abs(rate) * (end - start) / step))
-    if sections * len(rim) > MOST_POINTS:
+    if sections * len(rim) > MAX_MESH_POINTS:
         raise ValueError(f"a gear of {gear.teeth:g} teeth that is drawn in {sections:.0e} sections")
     points: list[Point] = []
     y, z = placed.centre
@@ -155,7 +155,7 @@ def _of_whole_teeth(gear: Gear, teeth: int) -> Gear:
 
 def drawn_teeth(teeth: float) -> int:
     """The nearest whole number of teeth; ValueError for too few or too many."""
-    if not 1 <= round(teeth) <= MOST_TEETH:
+    if not 1 <= round(teeth) <= MAX_TEETH:
         raise ValueError(f"a gear of {teeth:g} teeth")
     return round(teeth)
 
@@ -250,7 +250,7 @@ def space(low: Point, high: Point, measures: Measures, height: int = 640) -> dic
     in the cube root of their volume.
     """
     size = [b - a for a, b in zip(low, high, strict=True)]
-    away = AWAY * math.hypot(*size) / math.prod(size) ** (1 / 3)
+    away = EYE_DISTANCE * math.hypot(*size) / math.prod(size) ** (1 / 3)
     eye = {axis: away * share for axis, share in zip("xyz", EYE, strict=True)}
     ax = {
         "showbackground": False,

@@ -15,8 +15,11 @@ from gearopt.report.measures import Measures
 Spot = tuple[float, float, float]
 WIDE, HIGH = 600.0, 400.0  # largest still [px]
 SIDE, BELOW, ABOVE = 24.0, 30.0, 28.0  # px around it, for texts
-NARROW, ROW = 300.0, 16.0  # px: smallest width, for names above; from one row of them to the next
-OUT = 6.0  # px from an edge to its size
+MIN_WIDTH, ROW = (
+    300.0,
+    16.0,
+)  # px: smallest width, for names above; from one row of them to the next
+SIZE_OFFSET = 6.0  # px from an edge to its size
 RIM = 0.9  # of the farthest edge's distance from the middle: as far out sizes may be written
 TOOTH_SPACING = 2.4  # px from tooth to tooth, below which teeth are not drawn
 TOUCH = 1e-6  # mm by which bodies that touch may overlap
@@ -222,7 +225,7 @@ def still(
     wide, tall = max(us) - min(us), max(vs) - min(vs)
     right = SIDE + max(2.0 * Place(0.0, 0.0).half_width(text) for text in texts.sizes)
     scale = min((WIDE - SIDE - right) / wide, (HIGH - BELOW - ABOVE) / tall)
-    left = max(SIDE, NARROW - scale * wide - right)
+    left = max(SIDE, MIN_WIDTH - scale * wide - right)
     names = _rows(texts.legend, left + scale * wide + right)
     free = left, right, BELOW, ABOVE + ROW * max((row for _, row, *_ in names), default=0)
     sheet = Sheet(Window(min(us), max(us), min(vs), max(vs), free), scale)
@@ -272,7 +275,7 @@ def outside(sheet: Sheet, room: tuple[Spot, Spot], seen: View, texts: Sequence[s
             x, y, long = 0.5 * (x1 + x2), 0.5 * (y1 + y2), math.dist((x1, y1), (x2, y2))
             nx, ny = (y1 - y2) / long, (x2 - x1) / long  # across the edge
             sign = math.copysign(1.0, nx * (x - x0) + ny * (y - y0))
-            reach = OUT + half * abs(nx) + 0.5 * SIZE * abs(ny)
+            reach = SIZE_OFFSET + half * abs(nx) + 0.5 * SIZE * abs(ny)
             off = abs(nx * (x - x0) + ny * (y - y0))
             spot = Place(x + sign * reach * nx, y + sign * reach * ny)
             places.append((off, spot))

@@ -28,13 +28,13 @@ WIDE = 640.0  # widest drawing [px], as those of a layout
 BESIDE = 340.0  # px of the longest of several trains: three stand beside each other
 EDGE = 20.0  # px kept free left and right of the front view
 PITCH = 76.0  # px from stage to stage along the shafts, at least: its face width and module fit
-GAP = 16.0  # px between the gears of two stages, at least
+STAGE_GAP = 16.0  # px between the gears of two stages, at least
 ROWS, ROW = 3, 15.0  # of centre distances that do not fit above their line; px between them
 LOW, NAMES = 100.0, 46.0  # px: circles of radii below the one leave names the other above, below
 CHAIN = 30.0  # px from the lowest circle to the dimensions of the centre distances
 MODULES = 26.0  # px from the face widths up to the modules: two lines that keep apart
 SIDE = (24.0, 44.0, 24.0, 60.0)  # px kept free around the side view
-MOST_STAGES = 100  # in one line; a drive has six at most
+MAX_STAGES = 100  # in one line; a drive has six at most
 
 
 @dataclass(frozen=True)
@@ -129,9 +129,9 @@ def in_one_line(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
     """Shafts and gears with every shaft at z = 0; and the scale [px/mm].
 
     Diameters of shafts are 0: they are not known. ValueError for stages that cannot be drawn: more
-    than MOST_STAGES, or of no finite size.
+    than MAX_STAGES, or of no finite size.
     """
-    if len(stages) > MOST_STAGES:
+    if len(stages) > MAX_STAGES:
         raise ValueError(f"{len(stages):,} stages cannot be drawn")
     axes = [0.0]
     for stage in stages:
@@ -178,7 +178,7 @@ def in_one_line(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
 def _along(widths: Sequence[float], scale: float) -> tuple[float, list[float]]:
     """Start of each stage along the shafts [mm], and a scale at which all fit."""
     while True:
-        rooms = [max(PITCH, scale * b + GAP) for b in widths]
+        rooms = [max(PITCH, scale * b + STAGE_GAP) for b in widths]
         if sum(rooms) <= WIDE - SIDE[0] - SIDE[1] or max(rooms) <= PITCH:  # no room to save
             break
         scale *= 0.98
@@ -262,7 +262,7 @@ def _side(train: Bodies, scale: float, measures: Measures) -> Drawing:
     """Draw the view across the shafts: gears as rectangles, with face width and module."""
     (left, right), shafts = _ends(train), train.shafts
     places = {s.shaft: s.y_mm for s in shafts}
-    long = sum(max(PITCH, scale * b + GAP) for b in _widths(train)) / scale
+    long = sum(max(PITCH, scale * b + STAGE_GAP) for b in _widths(train)) / scale
     sheet = Sheet(Window(0.0, long, left, right, SIDE), scale)
     tops: dict[int, float] = {}
     for shaft in shafts:

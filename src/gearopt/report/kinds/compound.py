@@ -103,7 +103,7 @@ def _span(teeth: list[int], low: float, high: float) -> Span:
 
 PAGES = replace(
     generic.PAGES,
-    sections=(*generic.FIRST, reach, gears, *generic.PAGES.sections[len(generic.FIRST) + 1 :]),
+    sections=(*generic.OPENING, reach, gears, *generic.PAGES.sections[len(generic.OPENING) + 1 :]),
     tiles=tiles,
     binding_limit=binding_limit,
 )

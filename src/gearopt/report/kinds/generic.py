@@ -10,12 +10,12 @@ from gearopt.report.drawing.train_views import section as gears_in_one_line
 from gearopt.report.explained import remedies, sensitivities
 from gearopt.report.kinds import Pages
 
-FIRST = (summary, remedies, impossible)
-ASKED = (asked, limits, sensitivities)
-LAST = (progress, proven, assumptions)
-TOLD = (sensitivities, remedies, summary)  # on the terminal, after the design
+OPENING = (summary, remedies, impossible)
+REQUEST = (asked, limits, sensitivities)
+CLOSING = (progress, proven, assumptions)
+AFTER_DESIGN = (sensitivities, remedies, summary)  # on the terminal, after the design
 
 PAGES = Pages(
-    sections=(*FIRST, gears_in_one_line, tables, *ASKED, *LAST),
-    terminal=(tables, limits, *TOLD),
+    sections=(*OPENING, gears_in_one_line, tables, *REQUEST, *CLOSING),
+    terminal=(tables, limits, *AFTER_DESIGN),
 )

@@ -27,14 +27,14 @@ from gearopt.report.drawing.solid import (
 )
 from gearopt.report.drawing.still import Rod, Texts, sizes_of, still, view
 from gearopt.report.kinds import Pages
-from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
+from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
 from gearopt.report.measures import Measures
 from gearopt.report.plots import Figure
 from gearopt.report.section import Cell, Section, Table, shown
 from gearopt.report.words import heading, number, parted
 from gearopt.units import parse
 
-WALL = 1e-6  # of the container: a cylinder so near to the clearance is at it
+WALL_TOLERANCE = 1e-6  # of the container: a cylinder so near to the clearance is at it
 WIDE, HIGH = 640.0, 560.0  # largest drawing [px]
 
 
@@ -140,7 +140,7 @@ def binding_limit(result: Result) -> str:
 def _at_wall(cylinder: CylinderDesign, box: ContainerDesign, wall: float) -> bool:
     """Whether a cylinder is as near to a wall as the clearance [mm] lets it."""
     left, right, front, back = _span(box)
-    r, near = 0.5 * cylinder.diameter_mm, wall + WALL * max(box.sides)
+    r, near = 0.5 * cylinder.diameter_mm, wall + WALL_TOLERANCE * max(box.sides)
     if box.shape == "circle":
         middle = 0.5 * (left + right), 0.5 * (front + back)
         return 0.5 * (right - left) - math.dist(middle, (cylinder.x_mm, cylinder.y_mm)) - r < near
@@ -262,7 +262,7 @@ def _container(design: PackingDesign, sizes: Table, measures: Measures) -> Table
 
 
 PAGES = Pages(
-    sections=(*FIRST, plans, solid, places, *ASKED, *LAST),
-    terminal=(places, *TOLD),
+    sections=(*OPENING, plans, solid, places, *REQUEST, *CLOSING),
+    terminal=(places, *AFTER_DESIGN),
     binding_limit=binding_limit,
 )

@@ -21,7 +21,7 @@ from gearopt.report.pages.front_plots import Drawn, drawn
 from gearopt.report.section import Section, Tile
 from gearopt.report.words import effort, sentence
 
-LINES = 2  # designs at least, that are drawn as lines
+MIN_LINES = 2  # designs at least, that are drawn as lines
 
 
 def page(front: Front, html: str = "page.html", measures: Measures = METRIC) -> str:
@@ -64,7 +64,7 @@ def _picking(front: Front, each: Sequence[Numbers], measures: Measures) -> dict[
         return {"table": None}
     drawn_front = drawn(front, measures)
     names = front_designs.main(front, each, measures)
-    lines = len(front.points) >= LINES
+    lines = len(front.points) >= MIN_LINES
     beaten = front_designs.beaten(front, measures)
     return {
         "trade": Section(
@@ -72,7 +72,7 @@ def _picking(front: Front, each: Sequence[Numbers], measures: Measures) -> dict[
         ),
         "parallel": front_plots.parallel(front, drawn_front, each, names) if lines else None,
         "table": front_designs.designs(front, each, names, measures),
-        "kept": set(front_words.chosen(front, front_words.SHOWN)),
+        "kept": set(front_words.chosen(front, front_words.ROWS_ON_TERMINAL)),
         "told": front_designs.data(front, each, names, measures) | {"pair": _pair(front)},
     }
 

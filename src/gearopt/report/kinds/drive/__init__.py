@@ -25,7 +25,7 @@ from gearopt.report.kinds.drive import (
     rating_tables,
     rating_words,
 )
-from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
+from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
 from gearopt.report.measures import Measures, gap_percent, rounded
 from gearopt.report.section import Cell, Section, Table, Tile, cell
 from gearopt.report.words import (
@@ -44,7 +44,7 @@ from gearopt.report.words import (
 )
 
 DRAWN = ("layout", "bearings", "clearances", "motor")  # tables of a layout
-WALL = 1e-6  # of the box: a gear so near to a wall's clearance is at it
+WALL_TOLERANCE = 1e-6  # of the box: a gear so near to a wall's clearance is at it
 STAGED = {  # tables of a layout: keys that the table of stages or the box shows
     "shafts": ("from_mm", "to_mm"),
     "gears": (
@@ -100,7 +100,7 @@ def binding_limit(result: Result) -> str:
 def _at_walls(layout: LayoutDesign) -> list[str]:
     """The gears that reach to the clearance of a wall, seen along the shafts."""
     places, box, wall = {s.shaft: s for s in layout.shafts}, layout.box, layout.clearances.wall_mm
-    near = WALL * max(box.sides)
+    near = WALL_TOLERANCE * max(box.sides)
     sides = {"y": (box.left_mm, box.width_mm), "z": (box.bottom_mm, box.height_mm)}
     names = []
     for gear in layout.gears:
@@ -371,16 +371,16 @@ PAGES_OF_GIVEN = Pages(
 )
 PAGES = Pages(
     sections=(
-        *FIRST,
+        *OPENING,
         impossible_layout.section,
         *DRAWINGS,
         numbers,
         *RATINGS,
         processes,
         counts,
-        *ASKED,
+        *REQUEST,
         trains,
-        *LAST,
+        *CLOSING,
     ),
     terminal=(
         rating_tables.design,
@@ -390,7 +390,7 @@ PAGES = Pages(
         rating_gears.gears,
         trains,
         processes,
-        *TOLD,
+        *AFTER_DESIGN,
     ),
     tiles=tiles,
     sentences_on_parts=sentences_on_parts,

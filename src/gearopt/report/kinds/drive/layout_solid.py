@@ -50,7 +50,7 @@ CAPTION = (
     "shafts leave around each gear, the limit inside the walls, and the smallest gap."
 )
 
-OWN = "their own racks, with the profile shifts of the design"
+OWN_RACKS = "their own racks, with the profile shifts of the design"
 ROUNDED = "Teeth are real numbers here: of each gear the nearest whole number is drawn."
 
 
@@ -60,7 +60,7 @@ def section(result: Result, measures: Measures) -> Section | None:
         return None
     seen = space(*drawn_corners(layout), measures)
     whole = all(gear.teeth == drawn_teeth(gear.teeth) for gear in layout.gears)
-    words = CAPTION.format("the rack of ISO 53, profile A" if _standard(layout) else OWN)
+    words = CAPTION.format("the rack of ISO 53, profile A" if _standard(layout) else OWN_RACKS)
     words = words if whole else f"{words} {ROUNDED}"
     figure = Figure(_traces(layout, measures), seen, words, picture(layout, measures))
     return Section("In three dimensions", figures=(figure,))

@@ -10,8 +10,8 @@ from gearopt.report.kinds.drive.rating_tables import figure, name, names, single
 from gearopt.report.kinds.drive.rating_words import (
     AT_ONCE,
     LONGEST_LIFE,
-    SHORT,
     SHOWN_UNITS,
+    STANDARD_HEADS,
     efficiency,
     greek,
     life,
@@ -84,7 +84,7 @@ def _columns(rating: DriveRating) -> list[tuple[DriveRating, GearRating]]:
 def _head(rating: DriveRating, one: DriveRating, gear: GearRating) -> str:
     """The name of a gear; of two standards with its own."""
     gear_name = name(rating, gear)
-    return gear_name if rating.beside is None else f"{gear_name}, {SHORT[one.by]}"
+    return gear_name if rating.beside is None else f"{gear_name}, {STANDARD_HEADS[one.by]}"
 
 
 def _fields(rating: DriveRating) -> list[Listed]:
@@ -139,7 +139,7 @@ def _on_terminal(result: Result, rating: DriveRating, measures: Measures) -> lis
     rows = [
         [
             name(rating, gear),
-            *[SHORT[one.by]] * named,
+            *[STANDARD_HEADS[one.by]] * named,
             *(figure(getattr(gear, key), key, measures) for key in keys),
         ]
         for one, gear in _columns(rating)
@@ -170,7 +170,7 @@ def levels(result: Result, measures: Measures) -> Section | None:
     rows = []
     for one, level in sorted(pairs, key=lambda pair: pair[1].level):
         row, at = _level_row(rating, level, measures, one is rating), ONCE + 1
-        rows.append([*row[:at], *[SHORT[one.by]] * named, *row[at:]])
+        rows.append([*row[:at], *[STANDARD_HEADS[one.by]] * named, *row[at:]])
     said = [
         "The damage of a level is its load cycles over those that the gear would bear at this "
         "level alone; the gear fails where the sum of the damages (Miner's sum) reaches 1."
@@ -308,7 +308,7 @@ def _values(factor: RatingFactor, measures: Measures) -> list[Cell]:
 def _factors_on_terminal(rating: DriveRating, named: bool, measures: Measures) -> list[Table]:
     """The factors as the terminal shows them, of so many stages as fit side by side."""
     tables, alone, abreast = [], len(rating.meshes) == 1, ABREAST[rating.by]
-    of = SHORT[rating.by] if named else ""
+    of = STANDARD_HEADS[rating.by] if named else ""
     for start in range(0, len(rating.meshes), abreast):
         heads = [of, *[""] * alone, *names(rating)[2 * start : 2 * (start + abreast)], ""]
         rows = []

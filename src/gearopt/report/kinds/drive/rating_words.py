@@ -21,7 +21,7 @@ FRICTION = (  # `mesh_loss.FRICTION_ERROR`
 LONGEST_LIFE = f"{life_curves.LONGEST_LIFE:g} cycles".replace("e+", "e")
 AT_ONCE = "fails at once"
 MODES = {"bending": "S_F", "contact": "S_H"}
-SHORT = {"AGMA": "AGMA", "ISO 6336": "ISO"}  # a standard in a column's head
+STANDARD_HEADS = {"AGMA": "AGMA", "ISO 6336": "ISO"}  # a standard in a column's head
 SYMBOLS = {  # of stresses, by standard
     "AGMA": {
         "bending_stress_MPa": "s_t",

@@ -14,12 +14,14 @@ from gearopt.report.answer import assumptions, limits, progress, summary
 from gearopt.report.explained import remedies, sensitivities
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.dynamics import plots
-from gearopt.report.kinds.generic import FIRST
+from gearopt.report.kinds.generic import OPENING
 from gearopt.report.measures import Measures, rounded
 from gearopt.report.section import Section, Table, Tile, cell, names_and_values, percent
 from gearopt.report.words import amount, number
 
-TWO = 0.02  # of an RMS by which rising and falling speeds differ where there are two motions
+TWO_MOTIONS = (
+    0.02  # of an RMS by which rising and falling speeds differ where there are two motions
+)
 MEASURES = {"rms": "RMS", "peak_to_peak": "peak to peak"}
 
 
@@ -166,7 +168,7 @@ def _two(held: Speeds) -> list[str]:
     """Say where speed that rises and speed that falls lead to two motions."""
     falling = held.falling_rms_mm or held.rms_mm
     pairs = [(a or 0.0, b or 0.0) for a, b in zip(held.rms_mm, falling, strict=True)]
-    where = [min(pair) > 0.0 and np.ptp(pair) > TWO * max(pair) for pair in pairs]
+    where = [min(pair) > 0.0 and np.ptp(pair) > TWO_MOTIONS * max(pair) for pair in pairs]
     if not any(where):
         return []
     most = max(max(pair) / min(pair) for pair, two in zip(pairs, where, strict=True) if two)
@@ -245,7 +247,7 @@ def rest(result: Result, measures: Measures) -> Section | None:
 
 SECTIONS = (chosen, motion, speeds, stability, rest)
 PAGES = Pages(
-    sections=(*FIRST, *SECTIONS, limits, sensitivities, progress, assumptions),
+    sections=(*OPENING, *SECTIONS, limits, sensitivities, progress, assumptions),
     terminal=(rest, stability, motion, speeds, chosen, limits, sensitivities, remedies, summary),
     tiles=tiles,
     binding_limit=binding_limit,

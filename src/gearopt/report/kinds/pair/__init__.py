@@ -11,7 +11,7 @@ from gearopt.report.answer import asked, assumptions, limits, summary
 from gearopt.report.drawing import mesh_view, train_views
 from gearopt.report.kinds import Pages, drive
 from gearopt.report.kinds.drive import rating_words
-from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
+from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
 from gearopt.report.kinds.pair import relief as pair_relief
 from gearopt.report.kinds.pair.contact import TABLES, in_space, moving, pair_of, teeth, travel
 from gearopt.report.kinds.pair.relief import relief_of
@@ -171,15 +171,15 @@ PAGES_OF_GIVEN = Pages(
 )
 PAGES = Pages(
     sections=(
-        *FIRST,
+        *OPENING,
         *CONTACT,
         *DRAWINGS,
         numbers,
         *RATINGS,
-        *ASKED,
-        *LAST,
+        *REQUEST,
+        *CLOSING,
     ),
-    terminal=(numbers, limits, *drive.PAGES_OF_GIVEN.terminal, contact, relief, *TOLD),
+    terminal=(numbers, limits, *drive.PAGES_OF_GIVEN.terminal, contact, relief, *AFTER_DESIGN),
     tiles=tiles,
     binding_limit=binding_limit,
     sentences_on_parts=sentences_on_parts,

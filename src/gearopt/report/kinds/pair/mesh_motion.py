@@ -24,7 +24,7 @@ from gearopt.report.measures import Measures
 
 STILL_AT = 0.15  # of the time in which most pairs touch: the moment of the still
 SECONDS = 6.0  # of one base pitch at normal speed
-FREE = (8.0, 8.0, 8.0, 8.0)  # px around a view
+MARGINS = (8.0, 8.0, 8.0, 8.0)  # px around a view
 DOT = 4.0  # px: radius of a point of contact
 CORNERS = 16  # of its outline
 ALONE, BESIDE = 1.25, 0.98  # times as large: one view alone; one of two that fit on a sheet
@@ -130,7 +130,7 @@ def _still(carried: Carried) -> int:
 
 def _view(pair: GearPair, carried: Carried, words: str, larger: float) -> View:
     """Draw gears and teeth behind the line of action, and points of contact in front of it."""
-    sheet = sheet_of(pair, FREE, larger)
+    sheet = sheet_of(pair, MARGINS, larger)
     behind = [body for k in range(2) for body in _gear(pair, k, carried)]
     for k, at in enumerate(axes(pair)):
         pitch_circle(sheet, at, pair.normal_module, series(COLOURS[k]))

@@ -32,9 +32,9 @@ TABLE_STEPS = 10  # of the table from where a relief starts to the tip
 PLOT_STEPS = 60  # of its plot
 TICKS = 6  # diameters above a plot
 PANELS = 4  # loads whose harmonics stand side by side, at most
-GAP = 0.04  # between them, of the width
+PANEL_GAP = 0.04  # between them, of the width
 BARS = {"type": "bar", "hovertemplate": "%{y:.3f}", "showlegend": False}
-HEARD = (
+HARMONICS_WORDS = (
     "Amplitudes of the transmission error at the mesh frequency and its multiples: grey without "
     "relief, coloured with it."
 )
@@ -329,7 +329,9 @@ def harmonics(contact: PairContact, relief: PairRelief, measures: Measures) -> S
         duty = contact.loads.index(of_duty(contact))
         rows = [rows[k] for k in sorted({0, duty, len(rows) - 1})]
     figure = _bars(rows, contact, relief, measures)
-    return Section("Harmonics of the transmission error", words=(HEARD,), figures=(figure,))
+    return Section(
+        "Harmonics of the transmission error", words=(HARMONICS_WORDS,), figures=(figure,)
+    )
 
 
 def _bars(
@@ -339,11 +341,11 @@ def _bars(
     measures: Measures,
 ) -> Figure:
     """Plot one panel of bars a load, all with one scale."""
-    wide = (1.0 - GAP * (len(rows) - 1)) / len(rows)
+    wide = (1.0 - PANEL_GAP * (len(rows) - 1)) / len(rows)
     micro, traces, axes, notes = measures.of(1.0, "um"), [], {}, []
     for k, (before, after) in enumerate(rows):
         name = "x" if k == 0 else f"x{k + 1}"
-        start = k * (wide + GAP)
+        start = k * (wide + PANEL_GAP)
         order = list(range(1, len(before.harmonics_mm) + 1))
         colour = series(contact.loads.index(before) + 1)
         for said, one, paint in (("without", before, "--axis"), ("with", after, colour)):

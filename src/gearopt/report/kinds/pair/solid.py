@@ -22,7 +22,7 @@ from gearopt.report.plots import Figure
 
 POINTS = 20_000  # of both gears together, about half a megabyte of a page
 FLANKS = (12, 10, 8, 6, 4, 3, 2)  # points on a flank
-PAST = 0.25  # face widths that a shaft is seen beyond its gear
+SHAFT_BEYOND = 0.25  # face widths that a shaft is seen beyond its gear
 FLAT = 1e-3  # mm: thickness of a circle on a face in the still
 COLOURS = (1, 4)  # of pinion and wheel, in the series
 CAPTION = (
@@ -62,7 +62,7 @@ def _colour(member: str) -> str:
 
 def _shaft(width: float) -> tuple[float, float]:
     """The ends of a shaft [mm]."""
-    return -PAST * width, (1.0 + PAST) * width
+    return -SHAFT_BEYOND * width, (1.0 + SHAFT_BEYOND) * width
 
 
 def _flank(pair: GearPair, bodies: tuple[Body, Body]) -> int:

@@ -25,7 +25,7 @@ SIDE, BELOW, ABOVE = (
     1.3,
     0.75,
 )  # normal modules: beside the tooth, below its root, above its tip
-FREE = (14.0, 104.0, 10.0, 10.0)  # px around it; names of circles stand on the right
+MARGINS = (14.0, 104.0, 10.0, 10.0)  # px around it; names of circles stand on the right
 FILLET, FLANK = 24, 30  # points of a tooth's side
 ROW = 1.35 * SIZE  # px from a name to the next
 REACH = 70.0  # px of the load line outside the tooth
@@ -73,7 +73,7 @@ def carries_alone(path: ContactPath) -> bool:
 def _drawing(pair: GearPair, path: ContactPath, k: int, measures: Measures) -> Drawing:
     gear, m, member = pair.gears[k], float(pair.normal_module), MEMBERS[k]
     root, tip = 0.5 * float(gear.root_diameter), 0.5 * float(gear.tip_diameter)
-    window = Window(-SIDE * m, SIDE * m, root - BELOW * m, tip + ABOVE * m, FREE)
+    window = Window(-SIDE * m, SIDE * m, root - BELOW * m, tip + ABOVE * m, MARGINS)
     sheet = Sheet(window, WIDE / (2.0 * SIDE * m))
     _outline(sheet, gear, window, series(COLOURS[k]), member)
     _circles(sheet, gear, window, measures)
@@ -122,7 +122,7 @@ def _circles(sheet: Sheet, gear: Gear, window: Window, measures: Measures) -> No
             sheet.slice((0.0, 0.0), r, ends, style, rim=True)
             named.append((sheet.at(*end), f"{name} {measures.length(diameter)}"))
     named.sort(key=lambda row: row[0][1])
-    rows = _apart([y for (_, y), _ in named], sheet.height - FREE[2])
+    rows = _apart([y for (_, y), _ in named], sheet.height - MARGINS[2])
     for ((x, y), text), row in zip(named, rows, strict=True):
         start = x + 16.0
         sheet.tick((x, y), (start, row))

@@ -6,7 +6,7 @@ from gearopt.report import answer, explained
 from gearopt.report.deciding import PROVEN
 from gearopt.report.drawing import impossible_views
 from gearopt.report.kinds import MakeSection, Pages
-from gearopt.report.kinds.generic import ASKED, LAST, TOLD
+from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, REQUEST
 from gearopt.report.kinds.servo import accuracy as axis_accuracy
 from gearopt.report.kinds.servo import housing as axis_housing
 from gearopt.report.kinds.servo import motion as axis_motion
@@ -119,8 +119,8 @@ PAGES = Pages(
         axis_accuracy.tolerances,
         axis_accuracy.drawn,
         axis_housing.stiffness,
-        *ASKED,
-        *LAST,
+        *REQUEST,
+        *CLOSING,
     ),
     terminal=(
         _answered(axis_motion.section),
@@ -134,7 +134,7 @@ PAGES = Pages(
         _answered(axis_housing.stiffness),
         _answered(axis_housing.box),
         answer.limits,
-        *TOLD,
+        *AFTER_DESIGN,
     ),
     tiles=tiles,
     binding_limit=binding_limit,

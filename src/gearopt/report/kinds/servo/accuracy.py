@@ -30,10 +30,10 @@ from gearopt.report.section import Cell, Section, Table, percent, records
 from gearopt.report.words import number, share
 
 ROW = 23.0  # px of a source
-REST = 120.0  # px of legend and axis
+LEGEND_AND_AXIS = 120.0  # px of legend and axis
 AXIS_MARGIN = 1.04  # of the longest bar
-ENDS = 1e-6  # relative: a tolerance as near to an end of its range stands at it
-SHORT = 0.999  # of a cell: a full bar would mark a limit that is reached
+END_TOLERANCE = 1e-6  # relative: a tolerance as near to an end of its range stands at it
+LONGEST_BAR = 0.999  # of a cell: a full bar would mark a limit that is reached
 RULES = {
     "worst_case": "worst case",
     "rss": "root sum of squares",
@@ -58,7 +58,7 @@ def errors(result: Result, measures: Measures) -> Section | None:
     across = axis("error at the output [°]", range=[0.0, AXIS_MARGIN * max(total, limit or 0.0)])
     up = axis("", type="category", categoryorder="array", categoryarray=order, ticks="")
     up["showgrid"] = False
-    high = round(REST + ROW * len(order))
+    high = round(LEGEND_AND_AXIS + ROW * len(order))
     plot = layout(across, up, high, barmode="overlay", bargap=0.25, shapes=shapes)
     caption = (
         "Each bar begins where the last one ends: the worst case, all at their limits at once."
@@ -219,14 +219,14 @@ def _row(row: ToleranceRow, total: float, highest: float, measures: Measures) ->
 def _end(row: ToleranceRow) -> str:
     """Whether a new tolerance is the minimum or the maximum allowed."""
     for name, end in (("min", row.lower_mm), ("max", row.upper_mm)):
-        if end and abs(row.new_mm / end - 1.0) < ENDS:
+        if end and abs(row.new_mm / end - 1.0) < END_TOLERANCE:
             return name
     return ""
 
 
 def _cost(cost: float, highest: float) -> Cell:
     """A cost with its bar; all bars of the table have one scale."""
-    share = SHORT * max(0.0, cost) / highest if highest > 0.0 else None
+    share = LONGEST_BAR * max(0.0, cost) / highest if highest > 0.0 else None
     return Cell(cost, f"{cost:.3f}", share)
 
 

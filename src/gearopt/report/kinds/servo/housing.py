@@ -26,11 +26,11 @@ from gearopt.report.plots import Figure, axis, bars, layout
 from gearopt.report.section import Section, Table, Tile, records
 from gearopt.report.words import amount, number
 
-ROW, REST = 44.0, 70.0  # px of a spring, and of the axis
+ROW, AXIS_HEIGHT = 44.0, 70.0  # px of a spring, and of the axis
 WIDE, HIGH = 640.0, 760.0  # largest drawing [px]
-FREE = (56.0, 56.0, 52.0, 52.0)  # px around it, for dimensions
-FIRST, LAST = "--series-1", "--series-2"  # colours of both stages
-FULL = 180.0  # deg to either side of the mesh line
+MARGINS = (56.0, 56.0, 52.0, 52.0)  # px around it, for dimensions
+COLOUR_1, COLOUR_2 = "--series-1", "--series-2"  # colours of both stages
+FULL_SWEEP = 180.0  # deg to either side of the mesh line
 OUTPUT = (0.0, 0.0)  # where the output shaft is drawn
 
 Disc = tuple[Point, float]
@@ -78,7 +78,7 @@ def _bars(springs: Sequence[Spring], measures: Measures) -> Figure:
     plot = layout(
         axis("share of the compliance [%]", range=[0.0, 1.18 * max(shares)]),
         axis("", ticks=""),
-        round(REST + ROW * len(springs)),
+        round(AXIS_HEIGHT + ROW * len(springs)),
         bargap=0.35,
         showlegend=False,
     )
@@ -195,7 +195,7 @@ def _drawing(fit: BoxDesign, train: TrainDesign | None, measures: Measures) -> D
         max(at.right, inner[1][0]),
         min(at.bottom, inner[0][1]),
         max(at.top, inner[1][1]),
-        FREE,
+        MARGINS,
     )
     sheet = Sheet(window, window.scale(WIDE, HIGH))
     sheet.rectangle(*inner, "box", title="box, inside")
@@ -214,7 +214,7 @@ def _drawing(fit: BoxDesign, train: TrainDesign | None, measures: Measures) -> D
         sheet.balloon(str(k), around(sheet.at(*place), (26.0, 36.0, 50.0, 66.0), 0.0))
     _name(sheet, "motor", at.motor, fit.motor_mm, "")
     _name(sheet, "hub", OUTPUT, fit.hub_mm, "")
-    _name(sheet, "wheel 1", at.middle, wheel_1, FIRST)
+    _name(sheet, "wheel 1", at.middle, wheel_1, COLOUR_1)
     discs = [(at.motor, fit.radii_mm[0]), (at.middle, fit.radii_mm[1])]
     _label_sector(sheet, fit, discs)
     caption = "Along the shafts" + ("; a mirror image fits as well." if fit.fits else ".")
@@ -235,12 +235,12 @@ def _discs(
         title = f"{label}: radius {measures.length(radius)} {measures.unit('mm')}"
         sheet.circle(*place, radius, style, colour, title)
 
-    circle(at.middle, wheel_1, "tip", "wheel 1", FIRST)
+    circle(at.middle, wheel_1, "tip", "wheel 1", COLOUR_1)
     circle(at.motor, fit.motor_mm, "motor", "motor")
     if fit.hub_mm > 0.0:
         circle(OUTPUT, fit.hub_mm, "shaft", "output shaft with hub")
     stages = () if train is None else train.stages
-    marks = ((at.motor, FIRST), (at.middle, LAST))
+    marks = ((at.motor, COLOUR_1), (at.middle, COLOUR_2))
     for stage, (place, colour) in zip(stages, marks, strict=False):
         tip = 0.5 * stage.pinion_tip_diameter_mm
         circle(place, tip, "tip", f"pinion, z {stage.pinion_teeth}, tip", colour)
@@ -281,25 +281,25 @@ def _sector(sheet: Sheet, fit: BoxDesign, train: TrainDesign | None, measures: M
     radius, half = fit.radii_mm[2], fit.half_sweep_deg
     size = f"radius {measures.length(radius)} {measures.unit('mm')}"
     label = f"swept area of the last wheel: {size}, ±{number(half)}°"
-    style = "swept" if half < FULL else "tip"
-    sheet.slice(OUTPUT, radius, _ends(fit, half), style, LAST, label)
+    style = "swept" if half < FULL_SWEEP else "tip"
+    sheet.slice(OUTPUT, radius, _ends(fit, half), style, COLOUR_2, label)
     if train is None:
         return
-    half_sector, stage = min(FULL * train.sector, half), train.stages[-1]
+    half_sector, stage = min(FULL_SWEEP * train.sector, half), train.stages[-1]
     label = f"wheel 2, z {stage.wheel_teeth}: {size}, sector of {number(2.0 * half_sector)}°"
-    if half_sector < FULL:
-        sheet.slice(OUTPUT, radius, _ends(fit, half_sector), "tip", LAST, label)
+    if half_sector < FULL_SWEEP:
+        sheet.slice(OUTPUT, radius, _ends(fit, half_sector), "tip", COLOUR_2, label)
     reference = 0.5 * stage.wheel_diameter_mm
-    sheet.slice(OUTPUT, reference, _ends(fit, half_sector), "reference", LAST, rim=True)
+    sheet.slice(OUTPUT, reference, _ends(fit, half_sector), "reference", COLOUR_2, rim=True)
 
 
 def _label_sector(sheet: Sheet, fit: BoxDesign, discs: Sequence[Disc]) -> None:
     """Name the last wheel and its sweep, where no disc (centre, radius) is."""
     half = fit.half_sweep_deg
-    sheet.label("wheel 2", _on_rays(sheet, fit, 0.5 * min(half, 60.0), discs), "name", LAST)
-    if half < FULL:
+    sheet.label("wheel 2", _on_rays(sheet, fit, 0.5 * min(half, 60.0), discs), "name", COLOUR_2)
+    if half < FULL_SWEEP:
         rays = _on_rays(sheet, fit, 0.85 * half, discs)
-        sheet.label(f"sweep ±{number(half)}°", rays, "name", LAST)
+        sheet.label(f"sweep ±{number(half)}°", rays, "name", COLOUR_2)
 
 
 def _on_rays(sheet: Sheet, box: BoxDesign, off: float, discs: Sequence[Disc]) -> list[Place]:

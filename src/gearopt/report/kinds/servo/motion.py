@@ -11,8 +11,8 @@ from gearopt.report.plots import Figure, axis, layout, lines, points
 from gearopt.report.section import Section, Table, cell, side_by_side
 from gearopt.report.words import amount, number
 
-LARGEST = "acceleration"  # the duty whose value is made largest
-WHO = {  # field of a `RatioDesign`: the head of its column, in two lines on the terminal
+MAXIMISED = "acceleration"  # the duty whose value is made largest
+COLUMNS = {  # field of a `RatioDesign`: the head of its column, in two lines on the terminal
     "best": "best ratio,\nno gears",
     "best_with_train": "best ratio,\nsame inertia",
     "chosen": "chosen\ntrain",
@@ -55,7 +55,7 @@ def section(result: Result, measures: Measures) -> Section | None:
 
 def best_words(optimum: RatioDesign, measures: Measures = METRIC) -> list[str]:
     """The best total ratio, and the loss of the given one."""
-    best = "Maximum" if optimum.duty == LARGEST else "Minimum"
+    best = "Maximum" if optimum.duty == MAXIMISED else "Minimum"
     without = ", if gears had no inertia" if optimum.chosen else ""
     words = [
         f"{best} {optimum.name}: {amount(optimum.value, optimum.unit, measures)} at a total ratio "
@@ -74,7 +74,10 @@ def bound_words(report: ServoReport, ratio: RatioDesign, measures: Measures) -> 
     bound = report.figures.get(f"real_valued_bound_{MOTIONS[ratio.duty].key}")
     if bound is None:
         return []
-    better, most = "more" if ratio.duty == LARGEST else "less", amount(bound, ratio.unit, measures)
+    better, most = (
+        "more" if ratio.duty == MAXIMISED else "less",
+        amount(bound, ratio.unit, measures),
+    )
     reached = ratio.chosen and amount(ratio.chosen.value, ratio.unit, measures) == most
     than = "" if reached else f" than {most}"
     return [f"Not even real-valued teeth and modules within the limits give {better}{than}."]
@@ -82,14 +85,14 @@ def bound_words(report: ServoReport, ratio: RatioDesign, measures: Measures) -> 
 
 def _value(achieved: Achieved, ratio: RatioDesign, measures: Measures) -> str:
     """A value with how far it is from the best."""
-    less = "less" if (ratio.duty == LARGEST) == (achieved.loss_percent >= 0.0) else "more"
+    less = "less" if (ratio.duty == MAXIMISED) == (achieved.loss_percent >= 0.0) else "more"
     value = amount(achieved.value, ratio.unit, measures)
     return f"{value}, {abs(achieved.loss_percent):.3g} % {less}"
 
 
 def _achieved(ratio: RatioDesign, measures: Measures) -> Table:
     """Speeds, torques and inertias of the axis, a column for every train and ratio."""
-    columns = {who: train for who in WHO if (train := getattr(ratio, who)) is not None}
+    columns = {who: train for who in COLUMNS if (train := getattr(ratio, who)) is not None}
     trains = [*columns.values()]
     value = f"{ratio.name} [{measures.unit(ratio.unit)}]" if ratio.unit else ratio.name
     rows = [
@@ -97,7 +100,9 @@ def _achieved(ratio: RatioDesign, measures: Measures) -> Table:
         [value, *(cell(train.value, ratio.unit, measures) for train in trains)],
         *side_by_side(trains, measures),
     ]
-    short = {"": "\nmotor and load"} | {WHO[who].replace("\n", " "): WHO[who] for who in columns}
+    short = {"": "\nmotor and load"} | {
+        COLUMNS[who].replace("\n", " "): COLUMNS[who] for who in columns
+    }
     return Table("motor and load", list(short), rows, short=short, across=True)
 
 
@@ -162,7 +167,7 @@ def _ticks(ratios: list[float]) -> list[float]:
 
 def _flat(ratio: RatioDesign) -> str:
     """Say between which ratios the value is within one per cent of the best."""
-    most = ratio.duty == LARGEST
+    most = ratio.duty == MAXIMISED
     limit = ratio.value / 1.01 if most else ratio.value * 1.01
     pairs = zip(ratio.curve.total_ratio, ratio.curve.value, strict=True)
     near = [n for n, v in pairs if (v >= limit if most else v <= limit)]

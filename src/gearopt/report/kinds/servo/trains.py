@@ -34,17 +34,17 @@ from gearopt.report.plots import TEXT, Figure, axis, layout, points
 from gearopt.report.section import Section, Table, cell
 from gearopt.report.words import amount, heading, parted
 
-BARE = (
+BARE_TRAINS = (
     "For comparison, trains of the same total ratio by number of stages, without any other limit: "
     "equal pinions, all gears solid discs of one face width. Inertia at the motor and mass are "
     "multiples of one pinion's."
 )
-COMPARED = (*MOTIONS.values(), *(GOALS[name] for name in OBJECTIVES))  # the duty first
-LARGEST = GOALS["inverse_acceleration"]  # whose value is maximised
-MOVED = ("ratio", "inertia_kg_m2")  # of a train: in the table of motor and load, too
-SAME = 1e-9  # relative: torques that are equal
-STAGE = ("normal_module_mm", "pinion_teeth", "wheel_teeth")
-BEST = {  # symbol and colour of the best by a goal
+COMPARED_GOALS = (*MOTIONS.values(), *(GOALS[name] for name in OBJECTIVES))  # the duty first
+MAXIMISED = GOALS["inverse_acceleration"]  # whose value is maximised
+IN_RATIO_TABLE = ("ratio", "inertia_kg_m2")  # of a train: in the table of motor and load, too
+TORQUE_TIE = 1e-9  # relative: torques that are equal
+STAGE_KEYS = ("normal_module_mm", "pinion_teeth", "wheel_teeth")
+MARKS_OF_BEST = {  # symbol and colour of the best by a goal
     "inertia": ("diamond", "--series-4"),
     "mass": ("square", "--series-3"),
     "error": ("triangle-up", "--series-5"),
@@ -95,7 +95,7 @@ def _carried(train: TrainDesign, measures: Measures) -> list[str]:
         return [f"{moved} on the last wheel; the teeth carry this torque."]
     asked = _torque(train.output_torque_Nm, measures)
     through = [
-        stage.pinion_torque_Nm * ratio > train.output_torque_Nm * (1.0 + SAME)
+        stage.pinion_torque_Nm * ratio > train.output_torque_Nm * (1.0 + TORQUE_TIE)
         for stage, ratio in zip(train.stages, (train.ratio, train.stages[1].ratio), strict=True)
         if stage.pinion_torque_Nm is not None
     ]
@@ -137,7 +137,7 @@ def best(result: Result, measures: Measures) -> Section | None:
 
 
 def _teeth(stages: Sequence[Teeth]) -> list[tuple[Any, ...]]:
-    return [tuple(getattr(s, key) for key in STAGE) for s in stages]
+    return [tuple(getattr(s, key) for key in STAGE_KEYS) for s in stages]
 
 
 def compared_with_given(result: Result, measures: Measures) -> Section | None:
@@ -179,12 +179,12 @@ def _given_rows(design: ServoDesign, report: ServoReport, measures: Measures) ->
 
 def _moved(design: ServoDesign) -> Sequence[str]:
     """The figures of a train that the table of motor and load shows."""
-    return MOVED if design.ratio is not None and design.ratio.chosen is not None else ()
+    return IN_RATIO_TABLE if design.ratio is not None and design.ratio.chosen is not None else ()
 
 
 def _known(train: ListedTrain) -> list[Goal]:
     """Goals by which a train is known."""
-    return [goal for goal in COMPARED if getattr(train, goal.key) is not None]
+    return [goal for goal in COMPARED_GOALS if getattr(train, goal.key) is not None]
 
 
 def stage_counts(result: Result, measures: Measures) -> Section | None:
@@ -208,9 +208,9 @@ def stage_counts(result: Result, measures: Measures) -> Section | None:
     heads = ("stages", "minimum inertia", "at ratios", "minimum mass", *single)
     table = Table("stage counts", heads, rows, csv_only=single, read_only=("at ratios",))
     half = bool(_given_rows(design, report, measures))
-    words = (BARE,)
+    words = (BARE_TRAINS,)
     return Section(
-        "Number of stages", words=words, tables=(table,), half=half, terminal=(table, BARE)
+        "Number of stages", words=words, tables=(table,), half=half, terminal=(table, BARE_TRAINS)
     )
 
 
@@ -243,9 +243,9 @@ def _front(result: Result, measures: Measures, goal: Goal, other: Goal) -> Secti
     groups: list[tuple[str, Sequence[ListedTrain], tuple[int, str, str]]] = []
     if rest := [t for t in trains if not t.best_of]:
         groups.append(("other trains", rest, (8, "circle", "--series-1")))
-    for name, (symbol, colour) in BEST.items():
+    for name, (symbol, colour) in MARKS_OF_BEST.items():
         if few := [t for t in trains if t.best_of == name]:
-            end = "maximum" if name == LARGEST.label else "minimum"
+            end = "maximum" if name == MAXIMISED.label else "minimum"
             groups.append((f"{end} {name}", few, (12, symbol, colour)))
     for name, train, mark in (
         ("chosen", design.train, (20, "circle-open", "--series-2")),
@@ -314,7 +314,7 @@ def _caption(result: Result, trains: Sequence[ListedTrain], goal: Goal) -> str:
         return "The same trains by mass."
     goals = _weighed(result)
     worth = [
-        tuple((-1.0 if g is LARGEST else 1.0) * getattr(t, g.key) for g in goals) for t in trains
+        tuple((-1.0 if g is MAXIMISED else 1.0) * getattr(t, g.key) for g in goals) for t in trains
     ]
     dominated = any(
         a != b and all(x <= y for x, y in zip(a, b, strict=True)) for a in worth for b in worth

@@ -14,7 +14,7 @@ from gearopt.report.answer import asked, assumptions, limits, summary
 from gearopt.report.deciding import of_limits
 from gearopt.report.drawing.sheet import series
 from gearopt.report.kinds import Pages
-from gearopt.report.kinds.generic import ASKED, FIRST, LAST, TOLD
+from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
 from gearopt.report.kinds.strain_wave import tables
 from gearopt.report.kinds.strain_wave.cutter import drawing, usual_scale
 from gearopt.report.kinds.strain_wave.motion import running
@@ -270,9 +270,9 @@ def search(result: Result, measures: Measures) -> Section | None:
     return Section("Search", words=words, tables=[tables.rounds(design, measures)], half=True)
 
 
-OWN = (moving, cutter, shift, numbers)
+OWN_SECTIONS = (moving, cutter, shift, numbers)
 PAGES_OF_GIVEN = Pages(
-    sections=(summary, *OWN, limits, asked, assumptions),
+    sections=(summary, *OWN_SECTIONS, limits, asked, assumptions),
     terminal=(numbers, moving, cutter, limits, summary),
     tiles=tiles,
     binding_limit=binding_limit,
@@ -281,7 +281,7 @@ PAGES_OF_GIVEN = Pages(
 )
 PAGES = replace(
     PAGES_OF_GIVEN,
-    sections=(*FIRST, *OWN, *ASKED, search, *LAST),
-    terminal=(numbers, moving, cutter, limits, *TOLD),
+    sections=(*OPENING, *OWN_SECTIONS, *REQUEST, search, *CLOSING),
+    terminal=(numbers, moving, cutter, limits, *AFTER_DESIGN),
     pages_of_given=PAGES_OF_GIVEN,
 )

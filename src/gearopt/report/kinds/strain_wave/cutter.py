@@ -12,11 +12,20 @@ from gearopt.report.measures import Measures
 
 Frame = tuple[float, float, float, float]
 PX_PER_MM = 96.0 / 25.4  # of a screen and of paper as browsers print it
-FREE = (46.0, 16.0, 34.0, 16.0)  # px around the edge
-LINES = 60  # of the grid across and upwards at most: coarser ones are taken beyond
+MARGINS = (46.0, 16.0, 34.0, 16.0)  # px around the edge
+MAX_LINES = 60  # of the grid across and upwards at most: coarser ones are taken beyond
 SIDE_MARGIN = 0.06  # of the width of two teeth, that is free beside them
-EVERY = (1, 2, 4, 10, 20, 40, 100, 200)  # lines of the grid from one with a number to the next
-APART = 60.0  # px between numbers at least
+LINES_PER_NUMBER = (
+    1,
+    2,
+    4,
+    10,
+    20,
+    40,
+    100,
+    200,
+)  # lines of the grid from one with a number to the next
+NUMBER_SPACING = 60.0  # px between numbers at least
 GRID_MULTIPLES = tuple(s * 10.0**k for k in range(12) for s in (1.0, 2.0, 5.0))  # times the grid
 
 
@@ -30,7 +39,7 @@ def drawing(
     """
     edge, teeth = np.c_[tool.x_mm, tool.y_mm], _teeth(tool, pitch)
     ends, step = _frame(teeth, grid)
-    sheet = Sheet(Window(*ends, FREE), scale * PX_PER_MM)
+    sheet = Sheet(Window(*ends, MARGINS), scale * PX_PER_MM)
     _grid(sheet, ends, step, measures)
     for tooth in teeth:
         path = " L ".join(f"{u:.3f} {v:.3f}" for u, v in (sheet.at(*p) for p in tooth.tolist()))
@@ -52,7 +61,7 @@ def drawing(
 def usual_scale(tool: CutterDesign, pitch: float, grid: float) -> float:
     """The largest of 1, 2, 5, 10 ... to 5000 at which two teeth fit on a sheet of A4."""
     (left, right, _, _), _ = _frame(_teeth(tool, pitch), grid)
-    room = (SHEET - FREE[0] - FREE[1]) / PX_PER_MM
+    room = (SHEET - MARGINS[0] - MARGINS[1]) / PX_PER_MM
     scales = (s * 10.0**k for k in range(4) for s in (1.0, 2.0, 5.0))
     return max((s for s in scales if s * (right - left) <= room), default=1.0)
 
@@ -67,12 +76,12 @@ def _teeth(tool: CutterDesign, pitch: float) -> list[Any]:
 def _frame(teeth: list[Any], grid: float) -> tuple[Frame, float]:
     """The ends of what is shown, left, right, bottom and top, on lines of a grid; its step.
 
-    The step is the grid [mm], or a multiple of it where there would be more than LINES.
+    The step is the grid [mm], or a multiple of it where there would be more than MAX_LINES.
     """
     x, y = np.vstack(teeth).T
     room = SIDE_MARGIN * float(np.ptp(x))
     span = max(np.ptp(x), np.ptp(y)) + 2 * room
-    step = next((s * grid for s in GRID_MULTIPLES if span < LINES * s * grid), span)
+    step = next((s * grid for s in GRID_MULTIPLES if span < MAX_LINES * s * grid), span)
     low = [float(np.floor((v.min() - room) / step) * step) for v in (x, y)]
     high = [float(np.ceil((v.max() + room) / step) * step) for v in (x, y)]
     return (low[0], high[0], low[1], high[1]), step
@@ -102,7 +111,10 @@ def _grid(sheet: Sheet, ends: Frame, step: float, measures: Measures) -> None:
     left, right, bottom, top = ends
     across = np.arange(round(left / step), round(right / step) + 1) * step
     up = np.arange(round(bottom / step), round(top / step) + 1) * step
-    every = next((n for n in EVERY if n * sheet.scale * step >= APART), EVERY[-1])
+    every = next(
+        (n for n in LINES_PER_NUMBER if n * sheet.scale * step >= NUMBER_SPACING),
+        LINES_PER_NUMBER[-1],
+    )
     for v in map(float, across):
         named = round(v / step) % every == 0
         sheet.line((v, bottom), (v, top), "extension" if named else "grid")

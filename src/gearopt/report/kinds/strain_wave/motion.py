@@ -22,7 +22,7 @@ MOMENTS = 145  # of it: every 1.25 degrees
 WIDE, CLOSE = 420.0, 640.0  # px of the whole and of the close-up
 CLOSE_UP_TEETH = 3  # teeth on either side of the close-up's middle
 HIGH = 5.2  # modules that the close-up is high
-FREE = (8.0, 8.0, 8.0, 8.0)  # px around a view
+MARGINS = (8.0, 8.0, 8.0, 8.0)  # px around a view
 COLOURS = (1, 4, 6)  # of flexspline, circular spline and wave generator, in the series
 UPRIGHT = 0.5 * math.pi  # the axis of the gearing's frame is drawn upwards
 TOOTH = "tooth of the flexspline"
@@ -185,7 +185,7 @@ def _rings(shape: Drawn, turns: Any, count: int) -> list[Body]:
 def _whole(shape: Drawn, design: WaveDesign, turns: Any, measures: Measures) -> View:
     gearing = shape.gearing
     reach = 0.5 * design.outer_diameter_mm
-    sheet = Sheet(Window(-reach, reach, -reach, reach, FREE), WIDE / (2.0 * reach))
+    sheet = Sheet(Window(-reach, reach, -reach, reach, MARGINS), WIDE / (2.0 * reach))
     _spline(
         sheet, shape, range(int(gearing.circular_teeth)), 2 if design.law == INVOLUTE else 5, reach
     )
@@ -201,7 +201,7 @@ def _close(shape: Drawn, design: WaveDesign, turns: Any, measures: Measures) -> 
     gearing, m = shape.gearing, design.module_mm
     top = float(gearing.root_radius) + 0.4 * m
     half = (CLOSE_UP_TEETH - 0.3) * math.pi * m
-    window = Window(-half, half, top - HIGH * m, top, FREE)
+    window = Window(-half, half, top - HIGH * m, top, MARGINS)
     sheet = Sheet(window, CLOSE / (2.0 * half))
     points = 11 if design.law == INVOLUTE else 21
     _spline(sheet, shape, range(-CLOSE_UP_TEETH - 2, CLOSE_UP_TEETH + 3), points, 0.0)
