@@ -1,4 +1,4 @@
-"""What multipliers prove: a lower bound, or that nothing is feasible; and those of a point.
+"""Proofs by multipliers: a lower bound, or that nothing is feasible; and those of a point.
 
 With l >= 0 and any v the Lagrangian of a convex form is convex, so on the box it is at least its
 value at a point plus the minimum of its linear part; that of a strictly convex quadratic program is

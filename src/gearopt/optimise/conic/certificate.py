@@ -89,7 +89,7 @@ def _shadow_prices(problem: Conic, leaves: tuple[Leaf, ...], binding: Any) -> di
 
 
 def _bound(problem: Conic, outcome: Outcome, value: float) -> tuple[float, float, float, str]:
-    """Return the minimum cost of all leaves, what it lost (see `Proof`), and what is unbounded."""
+    """Minimum cost of all leaves, its rounding loss (see `Proof`), and the unbounded variable."""
     data = canonical(problem)
     if not covers(data, outcome.leaves):
         return -math.inf, 0.0, 0.0, ""

@@ -1,4 +1,4 @@
-"""What multipliers of the canonical rows prove: a lower bound, or that nothing is feasible.
+"""Proofs by multipliers of the canonical rows: a lower bound, or that nothing is feasible.
 
 With y in the dual cone, y.(b - A x) >= 0 for every feasible x. Hence cost(x) is at least
 cost(x) + y.(A x - b), a convex function, which on a box is at least its value at any point plus the
@@ -126,7 +126,7 @@ def _rest(row: Any, terms: Array, total: Array, infinite: Any, bad: float) -> Ar
 
 
 def _tighten(better: np.ufunc, bound: Array, column: Any, found: Array, out: float) -> None:
-    """Improve bounds in place by what was found, rounded outwards; NaN improves nothing."""
+    """Improve bounds in place by new ones, rounded outwards; NaN improves nothing."""
     found = np.where(np.isnan(found), out * np.inf, found + out * EPSILON * np.abs(found))
     better.at(bound, column, found)
 
@@ -177,7 +177,7 @@ class Leaf:
 
 @dataclass(frozen=True)
 class Proof:
-    """What multipliers prove on a box.
+    """Proof by multipliers on a box.
 
     least: no feasible point of the box has a lower cost. charge, slack: what it lost to the
     gradient that is left and to rows off their limit, in units of the cost. weights (m,): the

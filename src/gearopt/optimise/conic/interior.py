@@ -33,7 +33,7 @@ class Scale:
 
 @dataclass(frozen=True)
 class Scaled:
-    """What Clarabel takes: P, q, A, b and sizes of the cones; bound rows stand after `nonneg`.
+    """Data of Clarabel: P, q, A, b and sizes of the cones; bound rows stand after `nonneg`.
 
     back (m, rows): multipliers of its rows to those of the scaled canonical rows. ends: column,
     sign and factor of every bound row.

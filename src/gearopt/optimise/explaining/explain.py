@@ -1,4 +1,4 @@
-"""`explain`: what would make a problem possible, or what its answer owes to each input."""
+"""`explain`: changes that make a problem possible, or the parts of its inputs in its answer."""
 
 import math
 from collections.abc import Callable, Iterator

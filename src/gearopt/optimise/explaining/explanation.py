@@ -1,4 +1,4 @@
-"""What `explain` answers: remedies for an impossible request, influences on a possible one."""
+"""Answers of `explain`: remedies for an impossible request, influences on a possible one."""
 
 import tomllib
 from collections.abc import Mapping
@@ -26,7 +26,7 @@ class Change:
 
     @property
     def value(self) -> Any:
-        """Return what one would write, as a value of Python; None for what is removed."""
+        """Value to write, as a value of Python; None for a key that is removed."""
         text = self.short or self.write
         return tomllib.loads(f"value = {text}")["value"] if text else None
 
@@ -55,13 +55,13 @@ class Remedy:
 
     @property
     def edits(self) -> dict[str, Any]:
-        """Return the edits as `solve` takes them: {key: value}, None for what is removed."""
+        """Edits as `solve` takes them: {key: value}, None for a key that is removed."""
         return {c.key: c.value for c in self.changes}
 
 
 @dataclass(frozen=True)
 class Remedies:
-    """What is reported of an impossible request.
+    """Report of an impossible request: its conflict and its remedies.
 
     conflict: names of limits in conflict; message: what is missing. any_resolves: whether it was
     found that any one of these limits, dropped alone, makes a design possible. unsure: limits of
@@ -79,7 +79,7 @@ class Remedies:
 
     @property
     def told(self) -> dict[str, Any]:
-        """What a report holds of them."""
+        """The part of it that a report holds."""
         told = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "drawn"}
         told["remedies"] = [asdict(remedy) for remedy in self.remedies]
         if not self.untried:
@@ -89,7 +89,7 @@ class Remedies:
 
 @dataclass(frozen=True)
 class Influence:
-    """What one input does to the objective.
+    """Effect of one input on the objective.
 
     sensitivity: d ln objective / d ln input by multipliers; resolved: the same by re-solving with
     the input a little smaller and larger (None: no design there). Where the two sides of `resolved`
@@ -107,7 +107,7 @@ class Influence:
 
 @dataclass(frozen=True)
 class Explanation:
-    """Why an answer is what it is.
+    """Reasons of an answer.
 
     result: the answer itself. conflict: limits in conflict, each needed for it.
     remedies: proven ones, smallest first; `edits` of each are changes for `solve`. binding: limits
@@ -128,7 +128,7 @@ class Explanation:
 
     @property
     def prices(self) -> dict[str, Any]:
-        """Return influences, and what to say of them, as the report of a result holds them."""
+        """Influences, and the remarks on them, as the report of a result holds them."""
         influences = [asdict(i) for i in self.influences]
         return {"influences": influences, "message": self.message, "basis": self.basis}
 

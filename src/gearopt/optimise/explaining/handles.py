@@ -1,4 +1,4 @@
-"""What of a problem its user may relax: parameters that are limits, bounds, and else rows.
+"""Relaxable parts of a problem: parameters that are limits, bounds, and else rows.
 
 A limit is relaxed where the user wrote it: in its parameter (so that a safety factor that enters
 squared is answered by the number to write), in a bound of a variable, and only where neither exists

@@ -1,4 +1,4 @@
-"""What an optimum owes to each input: d ln objective / d ln input, from multipliers.
+"""Sensitivities of an optimum: d ln objective / d ln input, from multipliers.
 
 By the envelope theorem the derivative of the optimal value with respect to a parameter is the
 partial derivative of the Lagrangian, and with respect to a bound that holds a variable it is the
