@@ -225,10 +225,10 @@ class Listed:
 def listed(kind: type, table: str = "") -> tuple[Listed, ...]:
     """The fields of a dataclass that a table lists, in their order."""
     return tuple(
-        Listed(key, one.label, parted(key)[1] if one.unit is None else one.unit, one.form)
+        Listed(key, said.label, parted(key)[1] if said.unit is None else said.unit, said.form)
         for key, hint in get_type_hints(kind, include_extras=True).items()
-        for one in getattr(hint, "__metadata__", ())
-        if isinstance(one, Shown) and one.table == table
+        for said in getattr(hint, "__metadata__", ())
+        if isinstance(said, Shown) and said.table == table
     )
 
 

@@ -45,7 +45,7 @@ def gears(result: Result, measures: Measures) -> Section | None:
     rows = [[Cell(row[0], greek(row[0])), *row[1:]] for row in _gear_rows(rating, measures)]
     stresses = [it.head(measures) for it in _fields(rating) if it.unit == "MPa"]
     hidden = stresses if rating.levels else []
-    heads = [_head(rating, one, gear) for one, gear in _columns(rating)]
+    heads = [_head(rating, rated, gear) for rated, gear in _columns(rating)]
     table = Table("gears", ["", *heads], rows, csv_only=hidden, across=True)
     half = single(rating) and rating.beside is None
     shown = _on_terminal(result, rating, measures)
@@ -59,7 +59,7 @@ def _said(rating: DriveRating) -> list[str]:
         "S_F and S_H are permissible over actual stress; S_H squared is the safety factor of the "
         "load.",
     ]
-    if any(one.by == "ISO 6336" for one in rating.each):
+    if any(rated.by == "ISO 6336" for rated in rating.each):
         words.append(LOAD_FACTORS)
     if len(rating.meshes) > 1:
         words.append(f"Nearest to the safety factors asked for: {', '.join(nearest(rating))}.")
@@ -72,19 +72,19 @@ def _said(rating: DriveRating) -> list[str]:
 
 
 def _standards(rating: DriveRating) -> str:
-    return f"By {'; and by '.join(one.standard for one in rating.each)}."
+    return f"By {'; and by '.join(rated.standard for rated in rating.each)}."
 
 
 def _columns(rating: DriveRating) -> list[tuple[DriveRating, GearRating]]:
     """Every gear by every standard, those of one gear side by side."""
-    each = [[(one, gear) for gear in one.gears] for one in rating.each]
+    each = [[(rated, gear) for gear in rated.gears] for rated in rating.each]
     return [column for columns in zip(*each, strict=True) for column in columns]
 
 
-def _head(rating: DriveRating, one: DriveRating, gear: GearRating) -> str:
+def _head(rating: DriveRating, rated: DriveRating, gear: GearRating) -> str:
     """The name of a gear; of two standards with its own."""
     gear_name = name(rating, gear)
-    return gear_name if rating.beside is None else f"{gear_name}, {STANDARD_HEADS[one.by]}"
+    return gear_name if rating.beside is None else f"{gear_name}, {STANDARD_HEADS[rated.by]}"
 
 
 def _fields(rating: DriveRating) -> list[Listed]:
@@ -139,15 +139,15 @@ def _on_terminal(result: Result, rating: DriveRating, measures: Measures) -> lis
     rows = [
         [
             name(rating, gear),
-            *[STANDARD_HEADS[one.by]] * named,
+            *[STANDARD_HEADS[rated.by]] * named,
             *(figure(getattr(gear, key), key, measures) for key in keys),
         ]
-        for one, gear in _columns(rating)
+        for rated, gear in _columns(rating)
     ]
     heads = ["gear", *["by"] * named, *keys]
     read = dict(zip(keys, short, strict=True))
     table = Table("gears", heads, rows, short=read, left=1 + named, wrap=9)
-    lives = of_standards(rating, [life(one.life_h) for one in rating.each])
+    lives = of_standards(rating, [life(rated.life_h) for rated in rating.each])
     asked = f"{';' if named else ','} {life(rating.required_life_h)} asked for."
     lasts = f"Life at safety factors of 1: {lives}{asked}"
     if rating.efficiency_percent is not None:
@@ -165,28 +165,28 @@ def levels(result: Result, measures: Measures) -> Section | None:
     named = rating.beside is not None
     heads = [it.head(measures) for it in _level_fields(rating)]
     heads[ONCE:ONCE] = ["gear", *["by"] * named]
-    each = [[(one, level) for level in one.levels] for one in rating.each]
+    each = [[(rated, level) for level in rated.levels] for rated in rating.each]
     pairs = [pair for both in zip(*each, strict=True) for pair in both]
     rows = []
-    for one, level in sorted(pairs, key=lambda pair: pair[1].level):
-        row, at = _level_row(rating, level, measures, one is rating), ONCE + 1
-        rows.append([*row[:at], *[STANDARD_HEADS[one.by]] * named, *row[at:]])
+    for rated, level in sorted(pairs, key=lambda pair: pair[1].level):
+        row, at = _level_row(rating, level, measures, rated is rating), ONCE + 1
+        rows.append([*row[:at], *[STANDARD_HEADS[rated.by]] * named, *row[at:]])
     said = [
         "The damage of a level is its load cycles over those that the gear would bear at this "
         "level alone; the gear fails where the sum of the damages (Miner's sum) reaches 1."
     ]
     said += [
-        f"Unverified by {one.by}: a published spectrum confirms the sum for contact, none for "
+        f"Unverified by {rated.by}: a published spectrum confirms the sum for contact, none for "
         "bending."
-        for one in rating.each
-        if any(name.startswith("load spectrum") for name in one.unverified)
+        for rated in rating.each
+        if any(name.startswith("load spectrum") for name in rated.unverified)
     ]
     return Section("Load spectrum", words=said, tables=(Table("levels", heads, rows),))
 
 
 def _level_fields(rating: DriveRating) -> list[Listed]:
     """Fields of a load level; stresses by their symbols of AGMA, where it rates alone."""
-    alone = {one.by for one in rating.each} == {"AGMA"}
+    alone = {rated.by for rated in rating.each} == {"AGMA"}
     symbols = {"bending_stress_MPa": "s_t", "contact_stress_MPa": "s_c"} if alone else {}
     return [replace(it, label=symbols.get(it.key, it.label)) for it in listed(LoadLevel)]
 
@@ -208,7 +208,7 @@ def factors(result: Result, measures: Measures) -> Section | None:
     """Every factor with its source; None without a rating."""
     if (rating := rating_of(result)) is None:
         return None
-    tables = [_table(one, rating.beside is not None, measures) for one in rating.each]
+    tables = [_table(rated, rating.beside is not None, measures) for rated in rating.each]
     level = (
         " For a load spectrum the factors are those of the level with the largest stress."
         if rating.levels
@@ -217,8 +217,8 @@ def factors(result: Result, measures: Measures) -> Section | None:
     words = [f"A single value applies to both gears.{level}"]
     words += map(measures.words, unverified(rating))
     blocks: list[str | Table] = []
-    for one in rating.each:
-        blocks += _factors_on_terminal(one, rating.beside is not None, measures)
+    for rated in rating.each:
+        blocks += _factors_on_terminal(rated, rating.beside is not None, measures)
     blocks += words[1:]
     for table in tables:
         blocks += _remarks(table.rows)
@@ -236,7 +236,7 @@ def _symbols(rating: DriveRating) -> list[list[RatingFactor]]:
 def _table(rating: DriveRating, named: bool, measures: Measures) -> Table:
     """The factors of a standard, which is named beside another one."""
     heads = ["symbol", "factor", "unit", *names(rating), "unverified", "source", "remark"]
-    rows = [_factor_row(rating, own, measures) for own in _symbols(rating)]
+    rows = [_factor_row(rating, group, measures) for group in _symbols(rating)]
     hidden = ["unit", "unverified"] + ([] if any(row[-1].value for row in rows) else ["remark"])
     return Table(
         f"factors by {rating.by}" if named else "factors",
@@ -254,25 +254,27 @@ def _remarks(rows: Sequence[Sequence[Any]]) -> list[str]:
     for symbol, *_, remark in rows:
         if remark.value:
             symbols.setdefault(remark.text, []).append(greek(symbol.value))
-    lines = [f"{series_of(symbols_)}: {remark}." for remark, symbols_ in symbols.items()]
+    lines = [f"{series_of(these)}: {remark}." for remark, these in symbols.items()]
     return ["\n".join(lines)] if lines else []
 
 
-def _factor_row(rating: DriveRating, own: Sequence[RatingFactor], measures: Measures) -> list[Any]:
+def _factor_row(
+    rating: DriveRating, group: Sequence[RatingFactor], measures: Measures
+) -> list[Any]:
     """A factor of all stages: its values, where they are from, what limits them."""
-    one = own[0]
+    first = group[0]
     sign, symbol, remarks = (
-        measures.unit(_unit(one)),
-        greek(one.symbol),
-        measures.words(_by_stage(rating, own, "remark")),
+        measures.unit(_unit(first)),
+        greek(first.symbol),
+        measures.words(_by_stage(rating, group, "remark")),
     )
     return [
-        Cell(one.symbol, f"{symbol} [{sign}]" if sign else symbol),
-        Cell(one.name, greek(one.name)),
+        Cell(first.symbol, f"{symbol} [{sign}]" if sign else symbol),
+        Cell(first.name, greek(first.name)),
         sign,
-        *(value for factor in own for value in _values(factor, measures)),
-        ", ".join(str(factor.stage) for factor in own if not factor.verified),
-        _by_stage(rating, own, "source"),
+        *(value for factor in group for value in _values(factor, measures)),
+        ", ".join(str(factor.stage) for factor in group if not factor.verified),
+        _by_stage(rating, group, "source"),
         Cell(remarks, greek(remarks)),
     ]
 
@@ -282,10 +284,10 @@ def _unit(factor: RatingFactor) -> str:
     return SHOWN_UNITS.get(factor.symbol, factor.unit)
 
 
-def _by_stage(rating: DriveRating, own: Sequence[RatingFactor], key: str) -> str:
+def _by_stage(rating: DriveRating, group: Sequence[RatingFactor], key: str) -> str:
     """Words of a factor in every stage; sources, and what is the same, once."""
     stages: dict[str, list[str]] = {}
-    for factor in own:
+    for factor in group:
         stages.setdefault(getattr(factor, key), []).append(str(factor.stage))
     if len(stages) == 1 or key == "source" and GIVEN not in stages:
         return "; ".join(dict.fromkeys(part for words in stages for part in words.split("; ")))
@@ -312,8 +314,8 @@ def _factors_on_terminal(rating: DriveRating, named: bool, measures: Measures) -
     for start in range(0, len(rating.meshes), abreast):
         heads = [of, *[""] * alone, *names(rating)[2 * start : 2 * (start + abreast)], ""]
         rows = []
-        for own in _symbols(rating):
-            part = own[start : start + abreast]
+        for group in _symbols(rating):
+            part = group[start : start + abreast]
             symbol, what = _factor_row(rating, part, measures)[:2]
             values = [value for factor in part for value in _values(factor, measures)]
             rows.append([symbol, *[what] * alone, *values, _state(part)])
@@ -321,8 +323,8 @@ def _factors_on_terminal(rating: DriveRating, named: bool, measures: Measures) -
     return tables
 
 
-def _state(own: Sequence[RatingFactor]) -> str:
+def _state(group: Sequence[RatingFactor]) -> str:
     """Whether values of a factor are given or unverified."""
-    unsure = not all(factor.verified for factor in own)
-    given = all(factor.source == GIVEN for factor in own)
+    unsure = not all(factor.verified for factor in group)
+    given = all(factor.source == GIVEN for factor in group)
     return "unverified" if unsure else GIVEN if given else ""

@@ -103,9 +103,9 @@ def forces(result: Result, measures: Measures) -> Section | None:
 def _least_rows(rating: DriveRating, measures: Measures) -> Iterator[list[Any]]:
     """Yield what governs every mesh and what it may transmit, by every standard."""
     for it in listed(MeshRating, "governing"):
-        for one in rating.each:
-            of = "" if rating.beside is None else f" by {one.by}"
-            values = (figure(getattr(mesh, it.key), it.key, measures) for mesh in one.meshes)
+        for rated in rating.each:
+            of = "" if rating.beside is None else f" by {rated.by}"
+            values = (figure(getattr(mesh, it.key), it.key, measures) for mesh in rated.meshes)
             yield [replace(it, label=it.label + of).head(measures), *values]
 
 

@@ -100,14 +100,16 @@ def _strength(rating: DriveRating) -> str:
     """Gears that meet the safety factors asked for and gears that do not; the one that governs."""
     if rating.met_by_all:
         return f"all safety factors are met{_by_both(rating)}; {_governs(rating)}"
-    short = [(one.by, _short(one)) for one in rating.each if not one.met]
+    short = [(rated.by, _short(rated)) for rated in rating.each if not rated.met]
     if rating.beside is None:
         return short[0][1]
     if len(short) == 2 and short[0][1] == short[1][1]:
         return f"by {short[0][0]} and by {short[1][0]}, {short[0][1]}"
     parts = [f"by {by}, {words}" for by, words in short]
     good = "met" if rating.misfits else "safe"
-    return "; ".join([*parts, *(f"{good} by {one.by} alone" for one in rating.each if one.met)])
+    return "; ".join(
+        [*parts, *(f"{good} by {rated.by} alone" for rated in rating.each if rated.met)]
+    )
 
 
 def _by_both(rating: DriveRating) -> str:
@@ -116,7 +118,7 @@ def _by_both(rating: DriveRating) -> str:
 
 def _governs(rating: DriveRating) -> str:
     """Governing gear and mode by every standard; equal ones once."""
-    words = [f"{_governing(one)[0]} governs" for one in rating.each]
+    words = [f"{_governing(rated)[0]} governs" for rated in rating.each]
     if len(set(words)) == 1:
         return f"{words[0]}{' both' * (len(words) > 1)}"
     return of_standards(rating, words)
@@ -135,11 +137,11 @@ def _short(rating: DriveRating) -> str:
 
 def _figures(rating: DriveRating) -> str:
     """Least safety factor and power capacity by every standard, and what is asked for."""
-    least = [_governing(one)[1:] for one in rating.each]
-    values = [f"{symbol} {safety(own)}" for symbol, own, _ in least]
+    least = [_governing(rated)[1:] for rated in rating.each]
+    values = [f"{symbol} {safety(reached)}" for symbol, reached, _ in least]
     asked = dict.fromkeys(f"{symbol} {asked:g}" for symbol, _, asked in least)
     wanted = f"{least[0][2]:g}" if len(asked) == 1 else " and ".join(asked)
-    capacities = [f"{safety(one.power_capacity_kW)} kW" for one in rating.each]
+    capacities = [f"{safety(rated.power_capacity_kW)} kW" for rated in rating.each]
     power = rounded(required(rating), SAFETY_DIGITS)
     return (
         f": {of_standards(rating, values)}, {wanted} asked for; power capacity "
@@ -151,9 +153,9 @@ def _all(rating: DriveRating) -> list[tuple[str, float, float]]:
     """Every safety factor: of what, its value, what is asked for."""
     asked = rating.minimum_bending_safety, rating.minimum_contact_safety
     return [
-        (f"{mode} of the {gear_words(rating, gear)}", own, least)
+        (f"{mode} of the {gear_words(rating, gear)}", reached, least)
         for gear in rating.gears
-        for mode, own, least in zip(
+        for mode, reached, least in zip(
             MODES, (gear.bending_safety, gear.contact_safety), asked, strict=True
         )
     ]
@@ -165,8 +167,10 @@ def _governing(rating: DriveRating) -> tuple[str, str, float, float]:
     mode, _, member = mesh.governs.partition(" of the ")
     gear = next(g for g in rating.gears if (g.stage, g.member) == (mesh.stage, member))
     words = f"{mode} of the {gear_words(rating, gear)}"
-    own, asked = next((own, asked) for name, own, asked in _all(rating) if name == words)
-    return words, MODES[mode], own, asked
+    reached, asked = next(
+        (reached, asked) for name, reached, asked in _all(rating) if name == words
+    )
+    return words, MODES[mode], reached, asked
 
 
 def nearest(rating: DriveRating) -> list[str]:
@@ -174,13 +178,13 @@ def nearest(rating: DriveRating) -> list[str]:
     words = []
     for mesh in rating.meshes:
         rows = [
-            (own / asked, f"{mode} of the {gear.member}", one.by)
-            for one in rating.each
-            for gear in one.gears
+            (reached / asked, f"{mode} of the {gear.member}", rated.by)
+            for rated in rating.each
+            for gear in rated.gears
             if gear.stage == mesh.stage
-            for mode, own, asked in (
-                ("bending", gear.bending_safety, one.minimum_bending_safety),
-                ("contact", gear.contact_safety, one.minimum_contact_safety),
+            for mode, reached, asked in (
+                ("bending", gear.bending_safety, rated.minimum_bending_safety),
+                ("contact", gear.contact_safety, rated.minimum_contact_safety),
             )
         ]
         _, what, by = min(rows)
@@ -213,8 +217,8 @@ def least_safeties(results: Sequence[Result]) -> list[list[str]]:
     if first is None:
         return []
     rows = []
-    for k, one in enumerate(first.each):
-        by = f", {one.by}" if first.beside else ""
+    for k, rated in enumerate(first.each):
+        by = f", {rated.by}" if first.beside else ""
         for mode, symbol in MODES.items():
             key = f"{mode}_safety"
             least = [
@@ -249,12 +253,12 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     """Least safety factors, power capacity, life and efficiency as key figures."""
     if (rating := rating_of(result)) is None:
         return []
-    capacities = [measures.words(f"{safety(one.power_capacity_kW)} kW") for one in rating.each]
+    capacities = [measures.words(f"{safety(rated.power_capacity_kW)} kW") for rated in rating.each]
     asked = measures.words(f"{rounded(required(rating), SAFETY_DIGITS)} kW")
-    lives = [life(one.life_h) for one in rating.each]
+    lives = [life(rated.life_h) for rated in rating.each]
     made = [
-        *(_safety_tile(one, "bending", rating) for one in rating.each),
-        *(_safety_tile(one, "contact", rating) for one in rating.each),
+        *(_safety_tile(rated, "bending", rating) for rated in rating.each),
+        *(_safety_tile(rated, "contact", rating) for rated in rating.each),
         _tile(rating, "power capacity", capacities, asked),
         _tile(rating, "life at S = 1", lives, life(rating.required_life_h)),
     ]
@@ -291,7 +295,7 @@ def life(hours: float | None) -> str:
 
 def unverified(rating: DriveRating) -> list[str]:
     """A sentence with the symbols of unverified values, by every standard that has any."""
-    return [line for one in rating.each for line in _unverified(one, rating.beside is not None)]
+    return [line for rated in rating.each for line in _unverified(rated, rating.beside is not None)]
 
 
 def _unverified(rating: DriveRating, named: bool) -> list[str]:
@@ -303,7 +307,9 @@ def _unverified(rating: DriveRating, named: bool) -> list[str]:
     if not stages:
         return []
     several = len(rating.meshes) > 1
-    names = [_of_stages(symbol, own if several else []) for symbol, own in stages.items()]
+    names = [
+        _of_stages(symbol, of_symbol if several else []) for symbol, of_symbol in stages.items()
+    ]
     of = f" by {rating.by}" if named else ""
     return [
         f"Unverified{of}, with a single source or no published value that confirms them: "
@@ -327,7 +333,7 @@ def _written(symbol: str) -> str:
 
 def stress_words(rating: DriveRating, key: str, words: str) -> str:
     """Name of a stress with its symbol by every standard: "stress s_t, sigma_F"."""
-    symbols = [SYMBOLS[one.by][key] for one in rating.each if key in SYMBOLS[one.by]]
+    symbols = [SYMBOLS[rated.by][key] for rated in rating.each if key in SYMBOLS[rated.by]]
     return " ".join([words, ", ".join(symbols)]) if symbols else words
 
 
@@ -336,4 +342,4 @@ def of_standards(rating: DriveRating, values: list[str], joint: str = ", ") -> s
     if len(values) == 1:
         return values[0]
     pairs = zip(rating.each, values, strict=True)
-    return joint.join(f"{value} by {one.by}" for one, value in pairs)
+    return joint.join(f"{value} by {rated.by}" for rated, value in pairs)

@@ -101,10 +101,10 @@ def _lines(loads: Sequence[ContactLoad], measures: Measures) -> tuple[list[Line]
     """Curves of shares and of transmission errors, one for each load."""
     micro = measures.of(1.0, "um")
     shares, errors = [], []
-    for k, one in enumerate(loads):
-        look = f"at {100.0 * one.load:g} %", k + 1, DASHES[k % len(DASHES)]
-        shares.append(Line(100.0 * np.asarray(one.share), *look))
-        errors.append(Line(micro * np.asarray(one.transmission_error_mm), *look))
+    for k, load in enumerate(loads):
+        look = f"at {100.0 * load.load:g} %", k + 1, DASHES[k % len(DASHES)]
+        shares.append(Line(100.0 * np.asarray(load.share), *look))
+        errors.append(Line(micro * np.asarray(load.transmission_error_mm), *look))
     return shares, errors
 
 

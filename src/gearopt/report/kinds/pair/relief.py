@@ -348,8 +348,8 @@ def _bars(
         start = k * (wide + PANEL_GAP)
         order = list(range(1, len(before.harmonics_mm) + 1))
         colour = series(contact.loads.index(before) + 1)
-        for said, one, paint in (("without", before, "--axis"), ("with", after, colour)):
-            heights = [round(micro * v, 5) for v in one.harmonics_mm]
+        for said, load, paint in (("without", before, "--axis"), ("with", after, colour)):
+            heights = [round(micro * v, 5) for v in load.harmonics_mm]
             look = {"name": f"{said} relief", "xaxis": name, "marker": {"color": paint}}
             traces.append(BARS | look | {"x": order, "y": heights})
         axes[f"xaxis{name[1:]}"] = axis(
