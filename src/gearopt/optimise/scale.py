@@ -127,11 +127,13 @@ def measured(
 
     enough: a gap relative to |value| up to it needs no scale.
     """
-    found = gap(value, bound)
-    if 0.0 <= found <= enough or 0.0 < bound <= value:
-        return found, {}
+    relative = gap(value, bound)
+    if 0.0 <= relative <= enough or 0.0 < bound <= value:
+        return relative, {}
     scale = zero_scale(problem, x)
-    return (found, {}) if is_known(value, scale) else (gap(value, bound, scale), {"scale": scale})
+    return (
+        (relative, {}) if is_known(value, scale) else (gap(value, bound, scale), {"scale": scale})
+    )
 
 
 RUNAWAY = 1e9  # a variable without a bound that moves this factor from its guess is held by nothing

@@ -193,8 +193,8 @@ def _by_ipopt(train: Train, exact: Problem, begin: list[Array], clock: Clock) ->
     """Return designs from given starts."""
     designs = []
     for choice in choices(train):
-        made = smooth_problem(train, choice)
-        found = [_design(train, exact, choice, one, clock, made) for one in begin]
+        smooth_text = smooth_problem(train, choice)
+        found = [_design(train, exact, choice, one, clock, smooth_text) for one in begin]
         designs += [design for design in found if design is not None]
     designs.sort(key=lambda design: design.value)
     return designs + [_refined(train, exact, design, clock) for design in designs[:1]]
@@ -421,10 +421,10 @@ def whole(train: Train, clock: Clock) -> list[Array]:
         )
     near = replace(train, stages=tuple(stages))
     answer = solve(teeth.problem(near), budget=Budget(clock.within(SECONDS)))
-    found = point_of_result(teeth.problem(near), answer)
-    if found is None:
+    point = point_of_result(teeth.problem(near), answer)
+    if point is None:
         return []
-    return [point_of(train, teeth.pairs(near, found))]
+    return [point_of(train, teeth.pairs(near, point))]
 
 
 def point_of_result(made: Problem, found: Result) -> Array | None:

@@ -110,31 +110,31 @@ def response(
     less time; None where there is none as yet.
     """
     start, times = resting(pair, level), np.linspace(0.0, *span)
-    made = simulate(pair, level, times, error, start if from_load else 0.0 * start, clock)
-    if made is None:
+    simulated = simulate(pair, level, times, error, start if from_load else 0.0 * start, clock)
+    if simulated is None:
         return None
-    times, delta = made.times, made.motion.delta
+    times, delta = simulated.times, simulated.motion.delta
     later = len(times) // 2
     steady = delta[later:] - delta[later:].mean()
     lines, amplitude = _spectrum(steady, times[1] - times[0])
     digits = max(7, 2 - math.floor(math.log10(error)))  # more than the error that is asked
     return Response(
-        method=made.method,
-        error=made.error,
+        method=simulated.method,
+        error=simulated.error,
         error_asked=error,
-        met=made.met,
-        steps=made.motion.steps,
-        separations=(made.motion.events + 1) // 2,
+        met=simulated.met,
+        steps=simulated.motion.steps,
+        separations=(simulated.motion.events + 1) // 2,
         rms_mm=float(steady.std()),
         peak_to_peak_mm=float(np.ptp(delta[later:])),
         highest_mm=float(delta.max()),
         time_ms=columns(MILLI * times, 15),
         deformation_mm=columns(delta, digits),
-        axes_mm=tuple(columns(c, digits) for c in _axes(pair, level, made.motion.states)),
+        axes_mm=tuple(columns(c, digits) for c in _axes(pair, level, simulated.motion.states)),
         frequency_Hz=columns(lines),
         amplitude_mm=columns(amplitude, 5),
-        jammed_ms=None if made.motion.jammed is None else MILLI * made.motion.jammed,
-        steady_ms=MILLI * made.steady if made.steady < math.inf else None,
+        jammed_ms=None if simulated.motion.jammed is None else MILLI * simulated.motion.jammed,
+        steady_ms=MILLI * simulated.steady if simulated.steady < math.inf else None,
     )
 
 

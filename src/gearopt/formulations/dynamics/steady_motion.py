@@ -121,7 +121,7 @@ def linear_motion(pair: MovingPair, level: str, contact: Contact) -> Motion:
     series = contact.series
     count = LOOKS * (2 * len(series.harmonics) // LOOKS + 1)
     passed = states(pair, level, series, count)
-    found = Motion(
+    motion = Motion(
         series.rms,
         *series.extremes,
         _amplitudes(series),
@@ -131,7 +131,7 @@ def linear_motion(pair: MovingPair, level: str, contact: Contact) -> Motion:
         series.delta(count)[:: count // LOOKS],
         series,
     )
-    return found if contact.growth <= 1.0 + UNSTABLE else _growing(found, jams=False)
+    return motion if contact.growth <= 1.0 + UNSTABLE else _growing(motion, jams=False)
 
 
 def _growing(motion: Motion, jams: bool) -> Motion:

@@ -148,8 +148,8 @@ class PairMesh:
 
         compliance = _interpolated(exact, elastic.path) if model.cost > DEAR else exact
         forces = tuple(load * force for load in loads)
-        made = Mesh.of(cycle(elastic.path, steps), compliance, coupling, forces)
-        return cls(elastic, level, compliance, force, tuple(loads), made)
+        mesh = Mesh.of(cycle(elastic.path, steps), compliance, coupling, forces)
+        return cls(elastic, level, compliance, force, tuple(loads), mesh)
 
     def of_loads(self, loads: Sequence[float]) -> Mesh:
         """Return the mesh at other loads, relative to that of the duty."""
@@ -246,9 +246,9 @@ def _points(made: PairMesh) -> list[ContactPoint]:
 
 def at_loads(made: PairMesh, separations: Array) -> tuple[ContactLoad, ...]:
     """Contact at every load; separations (p, n) [mm] by relief, infinite if absent."""
-    found = made.mesh.sharing(separations)
+    shared = made.mesh.sharing(separations)
     return tuple(
-        _loaded(made, k, found.forces[k], found.approach[k]) for k in range(len(made.loads))
+        _loaded(made, k, shared.forces[k], shared.approach[k]) for k in range(len(made.loads))
     )
 
 

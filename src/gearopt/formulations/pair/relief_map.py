@@ -292,16 +292,16 @@ def _row(
     made: PairMesh, name: str, removed: Removed, minimise: str, loads: Sequence[float]
 ) -> ReliefRow:
     mesh = made.of_loads(loads)
-    found = mesh.criteria(removed.separations(mesh))
+    measures = mesh.criteria(removed.separations(mesh))
     pinion, wheel = removed.amounts(mesh)
     return ReliefRow(
         name=name,
         pinion_amount_mm=pinion,
         wheel_amount_mm=wheel,
         exponent=removed.exponent,
-        value=float(objective(found, minimise)),
-        peak_to_peak_mm=column(found.peak_to_peak),
-        load_jump=column(found.load_jump),
+        value=float(objective(measures, minimise)),
+        peak_to_peak_mm=column(measures.peak_to_peak),
+        load_jump=column(measures.load_jump),
     )
 
 
@@ -317,16 +317,16 @@ def as_made(
 
     None where the watcher ended it before anything was known.
     """
-    found = worst(mesh, nominal, tolerance, budget, watch)
-    if found is None:
+    worst_case = worst(mesh, nominal, tolerance, budget, watch)
+    if worst_case is None:
         return None
     values = drawn(mesh, nominal, tolerance, DRAWN, seed)
-    point = [float(v) for v in found.point]
+    point = [float(v) for v in worst_case.point]
     return MadeRelief(
         amount_tolerance_mm=tolerance.amount,
         length_tolerance_mm=tolerance.length,
-        worst_mm=found.value,
-        bound_mm=found.bound,
+        worst_mm=worst_case.value,
+        bound_mm=worst_case.bound,
         worst_amounts_mm=(point[0], point[1]),
         worst_lengths_mm=(point[2], point[3]),
         drawn=DRAWN,

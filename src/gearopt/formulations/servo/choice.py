@@ -232,10 +232,10 @@ class Choice:
 
     def keeps(self, point: Array) -> bool:
         """Return whether a train is stiff enough and fits."""
-        made = pairs(point, self.train.face_width)
-        if self.room is None or not self.stiff(made):
-            return self.stiff(made)
-        return servo_box.first_that_fits([servo_box.of_train(made, self.room)]) is not None
+        gears = pairs(point, self.train.face_width)
+        if self.room is None or not self.stiff(gears):
+            return self.stiff(gears)
+        return servo_box.first_that_fits([servo_box.of_train(gears, self.room)]) is not None
 
     @property
     def kept(self) -> Kept:

@@ -120,8 +120,8 @@ def tip_leaves(demand: Demand, start: Any) -> tuple[Passage, ...]:
 
     There teeth come nearest but for their contact; of a start without a flank it is a guess.
     """
-    made = flank(demand.gearing(dict(zip(FREE, map(float, start), strict=True))))
-    known = least_gaps(made, FIRST_DEG, 2) if made.complete.all() else []
+    meshing = flank(demand.gearing(dict(zip(FREE, map(float, start), strict=True))))
+    known = least_gaps(meshing, FIRST_DEG, 2) if meshing.complete.all() else []
     angles = [one.angle for one in known if one.passing and one.point == 1.0 and one.angle > 0.0]
     return (Passage(COUNT - 1, True, angles[0] if angles else 1.0),)
 

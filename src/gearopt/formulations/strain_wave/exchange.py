@@ -124,11 +124,11 @@ def _searched(
                 return last
             return Exchanged(result, outcome, posed, None, rounds=tuple(rounds))
         numbers = outcome.x[: len(FREE)]
-        made = design_of(demand, numbers)
-        least = least_gaps(made, STEP_DEG)
+        gearing = design_of(demand, numbers)
+        least = least_gaps(gearing, STEP_DEG)
         rounds.append(Round(result.value, len(passages), least[0].gap, outcome.evaluations))
         last = Exchanged(
-            result, outcome, posed, made, least[0].gap, tuple(rounds), passages=passages
+            result, outcome, posed, gearing, least[0].gap, tuple(rounds), passages=passages
         )
         new = _cutting(least, passages)
         if not new or len(rounds) == ROUNDS or not clock.tell():

@@ -278,9 +278,9 @@ def used(demand: Demand, made: Flank) -> dict[str, float]:
     """
     angle = np.linspace(made.contacts.motion.angle[0], made.contacts.motion.angle[-1], COUNT)
     at = [contact(made.gearing, motion(made.gearing, made.curve, p)) for p in angle]
-    found = limits(demand, made.gearing, made.curve, at)
+    rows = limits(demand, made.gearing, made.curve, at)
     least = interference(made, STEP_DEG)
-    flat = {k: float(max(v) if isinstance(v, tuple) else v) for k, v in found.items()}
+    flat = {k: float(max(v) if isinstance(v, tuple) else v) for k, v in rows.items()}
     if least.gap < CUTTING:
         flat["interference"] = 1.0 - least.gap / float(made.gearing.module)
     return {k: v for k, v in flat.items() if k not in GUARDS or v > 1.0}
@@ -437,8 +437,8 @@ def _shifts(gearing: StrainWave, duty: Duty) -> tuple[ShiftRow, ...]:
 
 def _deflected(made: Flank, by: float) -> Deflected:
     deflection = float(made.gearing.deflection) + by
-    found = interference(stretched(made, deflection), STEP_DEG)
-    return Deflected(deflection=deflection, least_clearance_mm=gap_of(found.gap))
+    least = interference(stretched(made, deflection), STEP_DEG)
+    return Deflected(deflection=deflection, least_clearance_mm=gap_of(least.gap))
 
 
 def gap_of(value: float) -> float:

@@ -95,15 +95,15 @@ def _assessed(
     curve = neutral_curve(wide)
     first, last = tangents(wide)
     angles = angle_at(wide, curve, first + (last - first) * np.linspace(0.0, 1.0, COUNT))
-    found = contact(wide, motion(wide, curve, angles))
-    known = (np.isfinite(found.gap_curvature) & (found.tangent > 0.0)).all(axis=1)
+    touching = contact(wide, motion(wide, curve, angles))
+    known = (np.isfinite(touching.gap_curvature) & (touching.tangent > 0.0)).all(axis=1)
     thin = demand.gearing(dict(zip(FREE, (r[:, 0] for r in rows), strict=True)))
     line = NeutralCurve(
         curve.radius[:, 0], curve.wave, curve.first[:, 0], curve.second[:, 0], curve.wrap
     )
     each = [contact(thin, motion(thin, line, angles[:, k])) for k in range(COUNT)]
     used = limits(demand, thin, line, each)
-    made = Flank(wide, curve, found, known)
+    made = Flank(wide, curve, touching, known)
     gap = clearances(made, poses(look.step, look.reach), look.points).min(axis=1)
     used["interference"] = 1.0 - (gap + look.rounding) / GAP_UNIT
     used = {name: _limited(v, known) for name, v in used.items()}
@@ -132,14 +132,14 @@ def limited(demand: Demand, start: Any, name: str, most: Mapping[str, float]) ->
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Solve by exchange; the seed changes nothing."""
         clock = Clock(budget, watch)
-        made = exchange(demand, start, clock, minimise=name, most=most)
-        if made.result.status == "infeasible":
-            return Outcome(None, infeasible=True, proof=made.result.proof)
-        if not made.clear or made.outcome.x is None:
-            text = "teeth interfere" if made.design else made.result.message
+        exchanged = exchange(demand, start, clock, minimise=name, most=most)
+        if exchanged.result.status == "infeasible":
+            return Outcome(None, infeasible=True, proof=exchanged.result.proof)
+        if not exchanged.clear or exchanged.outcome.x is None:
+            text = "teeth interfere" if exchanged.design else exchanged.result.message
             return Outcome(None, not clock.over, evaluations=clock.evaluations, message=text)
-        x = made.outcome.x[: len(FREE)]
-        stationary = made.result.status == "stationary"
+        x = exchanged.outcome.x[: len(FREE)]
+        stationary = exchanged.result.status == "stationary"
         return Outcome(x, evaluations=clock.evaluations, stationary=stationary)
 
     return replace(own, evaluate=evaluate, methods={"exchange": run})

@@ -36,18 +36,18 @@ def shift_curve(gearing: StrainWave, duty: Duty, shifts: Iterable[float]) -> lis
     """Return the points of all shifts that have a conjugate flank."""
     found = []
     for x in shifts:
-        made = flank(replace(gearing, profile_shift=float(x)), POINTS)
-        if not bool(np.all(made.complete)) or not (made.contacts.gap_curvature > 0.0).all():
+        meshing = flank(replace(gearing, profile_shift=float(x)), POINTS)
+        if not bool(np.all(meshing.complete)) or not (meshing.contacts.gap_curvature > 0.0).all():
             continue
         found.append(
             ShiftPoint(
                 float(x),
-                float(made.pairs_in_contact),
-                float(1.0 / made.contacts.gap_curvature.max()),
-                equal_pressure(duty, made),
-                equal_pressure(duty, made, whole=True),
-                shared_pressure(duty, made),
-                interference(made, STEP_DEG).gap,
+                float(meshing.pairs_in_contact),
+                float(1.0 / meshing.contacts.gap_curvature.max()),
+                equal_pressure(duty, meshing),
+                equal_pressure(duty, meshing, whole=True),
+                shared_pressure(duty, meshing),
+                interference(meshing, STEP_DEG).gap,
             )
         )
     return found
@@ -60,8 +60,8 @@ def last_shift_of_one_pair(gearing: StrainWave, most: float = 3.0) -> float | No
     """
 
     def enough(x: float) -> bool:
-        made = flank(replace(gearing, profile_shift=x), 3)
-        return bool(made.pairs_in_contact >= 1.0)
+        meshing = flank(replace(gearing, profile_shift=x), 3)
+        return bool(meshing.pairs_in_contact >= 1.0)
 
     return _last(enough, 0.0, most)
 
@@ -70,8 +70,8 @@ def largest_addendum(gearing: StrainWave, low: float = 0.3, high: float = 1.0) -
     """Return the largest addendum h_a in modules without interference over the whole wave."""
 
     def free(addendum: float) -> bool:
-        made: Flank = flank(replace(gearing, addendum=addendum), 41)
-        return bool(np.all(made.complete)) and not interferes(made, STEP_DEG, 11)
+        meshing: Flank = flank(replace(gearing, addendum=addendum), 41)
+        return bool(np.all(meshing.complete)) and not interferes(meshing, STEP_DEG, 11)
 
     return _last(free, low, high)
 

@@ -184,7 +184,7 @@ def _ipopt(
     unit = following.scale = unit_at(problem, shape, y0)
     levels = np.array(_split(problem, shape).start(y0, problem.parameter_values())).ravel()
     free = np.full(len(levels), np.inf)
-    found = solver(
+    solution = solver(
         x0=np.concatenate([y0 / unit.variables, levels]),
         p=np.concatenate([problem.parameter_values(), unit.variables, [unit.objective]]),
         lbx=np.concatenate([low / unit.variables, -free]),
@@ -192,9 +192,9 @@ def _ipopt(
         lbg=np.concatenate([np.full(m_g, -np.inf), np.zeros(m_h), -free]),
         ubg=0.0,
     )
-    lam = np.array(found["lam_g"]).ravel() * unit.objective
+    lam = np.array(solution["lam_g"]).ravel() * unit.objective
     status = str(solver.stats()["return_status"])
-    point = np.array(found["x"]).ravel()[: len(y0)] * unit.variables
+    point = np.array(solution["x"]).ravel()[: len(y0)] * unit.variables
     return _Point(point, lam[:m_g], lam[m_g : m_g + m_h], status)
 
 
@@ -241,7 +241,7 @@ def _least_violation(
     unit = unit_at(problem, shape, start).variables
     start_levels = np.array(parts.start(start, problem.parameter_values())).ravel()
     free = np.full(len(start_levels), np.inf)
-    found = solver(
+    solution = solver(
         x0=np.concatenate([start / unit, start_levels, [1.0]]),
         p=np.concatenate([problem.parameter_values(), unit]),
         lbx=np.concatenate([low / unit, -free, [-1.0]]),
@@ -249,7 +249,7 @@ def _least_violation(
         lbg=-np.inf,
         ubg=0.0,
     )
-    z = np.array(found["x"]).ravel()
-    lam = np.array(found["lam_g"]).ravel()
+    z = np.array(solution["x"]).ravel()
+    lam = np.array(solution["lam_g"]).ravel()
     lam_h = lam[m_g : m_g + m_h] - lam[m_g + m_h : m_g + 2 * m_h]
     return _Point(z[:size] * unit, lam[:m_g], lam_h, point.status), float(z[-1])

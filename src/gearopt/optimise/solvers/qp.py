@@ -164,7 +164,7 @@ def _solved(
     own, bent = program.own, curved.diagonal > 0.0
     cost = max(np.abs(program.linear * own).max(), (curved.diagonal * own**2).max()) or 1.0
     unit = np.where(bent, np.sqrt(cost / np.where(bent, curved.diagonal, 1.0)), own)
-    found = solver(
+    solution = solver(
         h=program.hessian / cost * np.outer(unit, unit),
         g=program.linear / cost * unit,
         a=program.rows[given] * unit,
@@ -174,10 +174,10 @@ def _solved(
         ubx=program.high / unit,
     )
     stats = solver.stats()
-    x = np.clip(np.array(found["x"]).ravel() * unit, program.low, program.high)
+    x = np.clip(np.array(solution["x"]).ravel() * unit, program.low, program.high)
     status = "" if stats["success"] else str(stats["return_status"])
     lam = np.zeros(len(program.maximum))
-    lam[given] = np.array(found["lam_a"]).ravel() * cost
+    lam[given] = np.array(solution["lam_a"]).ravel() * cost
     return x, lam, status
 
 

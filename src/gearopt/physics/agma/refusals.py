@@ -112,8 +112,8 @@ def _no_involute(gear: Gear) -> Any:
 
 def single_factors(pair: GearPair, load: str = "highest single") -> GeometryFactors:
     """I and J of one pair of floats; ValueError names the rule that refuses them."""
-    found = geometry_factors(pair, load)
-    if found.refusal:
-        name = REFUSALS[int(found.refusal)]
+    geometry = geometry_factors(pair, load)
+    if geometry.refusal:
+        name = REFUSALS[int(geometry.refusal)]
         raise ValueError(f"{name}: {SENTENCES[name]}")
-    return found
+    return geometry

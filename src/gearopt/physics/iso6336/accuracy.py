@@ -142,8 +142,8 @@ def helix_slope(
         return helix_slope_1995(diameter, face_width, grade)
     if edition == "1995":
         return _slopes_1995(grade)[_place(diameter, DIAMETERS), _place(face_width, WIDTHS)]
-    found = tolerances.helix_slope_tolerance(diameter, face_width, grade)
-    return found if smooth else tolerances.rounded_tolerance(found)
+    tolerance = tolerances.helix_slope_tolerance(diameter, face_width, grade)
+    return tolerance if smooth else tolerances.rounded_tolerance(tolerance)
 
 
 def _of_gear(gear: Any, grade: Any, edition: str, smooth: bool) -> tuple[Any, Any, Any]:

@@ -391,7 +391,7 @@ def strength_of(case: Case, found: Found, contact_: bool) -> Any:
     """
     names = CONTACT_STRENGTH if contact_ else BENDING_STRENGTH
     given = {k: v for k, v in case.given.items() if k not in ("Z_NT", "Y_NT")}
-    made = dict(found)
+    by_name = dict(found)
     for name in names:
-        made[name] = given[name] if name in given else LAWS[name](case, found)
-    return _permissible(names)(case, made)
+        by_name[name] = given[name] if name in given else LAWS[name](case, found)
+    return _permissible(names)(case, by_name)

@@ -125,16 +125,16 @@ def modes(system: Linear, stiffness: float) -> Modes:
 
 def mesh_shares(system: Linear, stiffness: float) -> Array:
     """Return kappa = k (w' phi)^2/omega^2 of each mode, (n,): its strain energy in the mesh."""
-    found = modes(system, stiffness)
-    along = system.direction @ found.shapes
-    return np.asarray(stiffness * along**2 / found.frequencies**2)
+    natural = modes(system, stiffness)
+    along = system.direction @ natural.shapes
+    return np.asarray(stiffness * along**2 / natural.frequencies**2)
 
 
 def with_modal_damping(system: Linear, stiffness: float, ratio: float) -> Linear:
     """Return the system with every mode at a mesh stiffness damped by a ratio zeta more."""
-    found = modes(system, stiffness)
-    inverse = system.mass[:, None] * found.shapes  # M Phi, as Phi' M Phi = 1
-    more = inverse @ np.diag(2.0 * ratio * found.frequencies) @ inverse.T
+    natural = modes(system, stiffness)
+    inverse = system.mass[:, None] * natural.shapes  # M Phi, as Phi' M Phi = 1
+    more = inverse @ np.diag(2.0 * ratio * natural.frequencies) @ inverse.T
     return replace(system, damping=system.damping + more)
 
 

@@ -115,12 +115,12 @@ def angle_at(gearing: StrainWave, curve: NeutralCurve, tangent: Any) -> Any:
     The main branch is where t rises with p, beyond its minimum in SEARCH. tangent (..., n); numbers
     of the gearing are floats or arrays (..., 1). NaN where there is none.
     """
-    found = contact(gearing, motion(gearing, curve, SEARCH)).tangent
-    known = np.where(np.isfinite(found), found, np.inf)
+    tangents = contact(gearing, motion(gearing, curve, SEARCH)).tangent
+    known = np.where(np.isfinite(tangents), tangents, np.inf)
     lowest = known.argmin(axis=-1)[..., None]
     rising = np.arange(len(SEARCH)) >= lowest
     off = np.abs(
-        np.where(rising & np.isfinite(found), found, np.inf)[..., None, :]
+        np.where(rising & np.isfinite(tangents), tangents, np.inf)[..., None, :]
         - np.asarray(tangent)[..., :, None]
     )
     angle = SEARCH[off.argmin(axis=-1)]
@@ -143,9 +143,9 @@ def flank(gearing: StrainWave, count: int = 201) -> Flank:
     arc = angle_at(gearing, curve, ends)
     share = np.linspace(0.0, 1.0, count)
     angle = arc[..., :1] + (arc[..., 1:] - arc[..., :1]) * share
-    found = contact(gearing, motion(gearing, curve, angle))
-    complete = (np.isfinite(found.gap_curvature) & (found.tangent > 0.0)).all(axis=-1)
-    return Flank(gearing, curve, found, complete)
+    touching = contact(gearing, motion(gearing, curve, angle))
+    complete = (np.isfinite(touching.gap_curvature) & (touching.tangent > 0.0)).all(axis=-1)
+    return Flank(gearing, curve, touching, complete)
 
 
 def existence(gearing: StrainWave, count: int = 7201) -> list[tuple[float, float]]:

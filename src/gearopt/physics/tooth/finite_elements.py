@@ -88,9 +88,9 @@ class Body:
 @lru_cache(maxsize=4)
 def body(member: ElasticGear, fineness: Fineness) -> Body:
     """Return the factorised gear; ImportError as in `factorised`."""
-    made = gear_mesh(member.gear, member.bore, fineness)
-    basis, solve = factorised(member, made)
-    flanks = {place: _flank(basis, line) for place, line in made.flanks.items()}
+    elements = gear_mesh(member.gear, member.bore, fineness)
+    basis, solve = factorised(member, elements)
+    flanks = {place: _flank(basis, line) for place, line in elements.flanks.items()}
     return Body(member, solve, flanks, int(basis.N))
 
 
@@ -238,5 +238,5 @@ def coupling(elastic: ElasticPair) -> float:
     unit = half_width(elastic, 0.0, 1.0)
     force = (HALF_CONTACT * float(elastic.pair.normal_module) / unit) ** 2
     first = 0.5 * (path.start + path.lowest_single)
-    found = _matrix(elastic, np.array([first, first + path.base_pitch]), force)
-    return float(0.5 * (found[0, 1] + found[1, 0]))
+    compliances = _matrix(elastic, np.array([first, first + path.base_pitch]), force)
+    return float(0.5 * (compliances[0, 1] + compliances[1, 0]))

@@ -144,10 +144,10 @@ def _of(values: Array, m: Any) -> Any:
 
 def largest(shape: Chain, width: Any, height: Any, length: Any) -> dict[str, Any]:
     """Return the sides [mm] of a box over their limits, where there are any."""
-    found = dict(zip(("width", "height", "length"), (width, height, length), strict=True))
+    by_name = dict(zip(("width", "height", "length"), (width, height, length), strict=True))
     return {
         f"largest_{name}": side / float(maximum)
-        for (name, side), maximum in zip(found.items(), shape.most, strict=True)
+        for (name, side), maximum in zip(by_name.items(), shape.most, strict=True)
         if math.isfinite(maximum)
     }
 

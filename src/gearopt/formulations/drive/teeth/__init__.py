@@ -106,8 +106,8 @@ def pairs(train: Train, x: Array) -> tuple[GearPair, ...]:
 
 def options(train: Train, x: Array) -> tuple[int, ...]:
     """Return the option of every stage at a point of `problem`, counted from 0."""
-    made = namespace(_variables(train), [float(v) for v in x])
-    return tuple(round(option) for option in _options(train, made)) or (0,) * len(train.stages)
+    variables = namespace(_variables(train), [float(v) for v in x])
+    return tuple(round(option) for option in _options(train, variables)) or (0,) * len(train.stages)
 
 
 def _options(train: Train, x: Any) -> list[Any]:

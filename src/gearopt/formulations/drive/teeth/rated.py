@@ -309,15 +309,15 @@ class RatedTable(Table):
 
     def _worth(self, pair: GearPair, width: Array, option: int) -> Array:
         """Share of pairs of these face widths [mm] in the objective."""
-        made = share(self.train, self.position, pair.of_width(width), option=option)
-        return np.asarray(made)
+        shares = share(self.train, self.position, pair.of_width(width), option=option)
+        return np.asarray(shares)
 
     def _floor(self, pair: GearPair, width: Array, option: int) -> Array:
         """Return a lower bound of `_worth` that larger modules do not fall below."""
         fewest = pair.pinion_teeth, pair.wheel_teeth
         one = pair.of_width(width)
-        made = least_share(self.train, self.position, one, option=option, fewest=fewest)
-        return np.asarray(made)
+        shares = least_share(self.train, self.position, one, option=option, fewest=fewest)
+        return np.asarray(shares)
 
     def _improve(
         self, best: Found, rows: Index, pair: Index, module: Index, option: int, width: Array

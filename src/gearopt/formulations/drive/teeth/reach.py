@@ -91,8 +91,8 @@ def narrowed(train: Train) -> Train:
     stages = []
     for k, stage in enumerate(train.stages):
         low, _ = stage.pinion_teeth
-        found = spans(train, k, first_cut(train))
-        pairs = np.cumsum([stop - start + 1 for _, start, stop in found])
+        ranges = spans(train, k, first_cut(train))
+        pairs = np.cumsum([stop - start + 1 for _, start, stop in ranges])
         few = int(np.searchsorted(pairs, PAIRS_AT_ONCE, side="right"))
         stages.append(replace(stage, pinion_teeth=(low, low + max(few - 1, 0))))
     return replace(train, stages=tuple(stages))

@@ -409,8 +409,8 @@ def possible(
 
     shelf: as of `search`.
     """
-    found = any_train(train, seconds, watch, shelf)
-    return found if found is None else bool(found)
+    teeth = any_train(train, seconds, watch, shelf)
+    return teeth if teeth is None else bool(teeth)
 
 
 def any_train(

@@ -27,10 +27,10 @@ def table(
     tick: called several times a second; what it raises ends the work. others: tables that may have
     these tooth pairs, too.
     """
-    made = columns(train, position, cut, tick)
+    rows = columns(train, position, cut, tick)
     if not train.stages[position].options:
-        return Table(*made)
-    return replace(RatedTable(*made), others=tuple(others), tick=tick)
+        return Table(*rows)
+    return replace(RatedTable(*rows), others=tuple(others), tick=tick)
 
 
 def stage_tables(

@@ -82,10 +82,10 @@ def climb(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbed |
     """Return the local optimum that a design (5,) leads to; None where none was found."""
     if task.backlash is not None:
         return _parting(task, problem, point, clock)
-    found = _contact(task, problem, point, clock)
-    if found is None or task.most_growth is None:
-        return found
-    return _steadied(task, problem, found, clock) or _as_it_is(task, problem, point, clock)
+    in_contact = _contact(task, problem, point, clock)
+    if in_contact is None or task.most_growth is None:
+        return in_contact
+    return _steadied(task, problem, in_contact, clock) or _as_it_is(task, problem, point, clock)
 
 
 def measure(task: Task, point: Array, speeds_rpm: Array, clock: Clock) -> Array:

@@ -31,9 +31,9 @@ def least_limits(task: Task) -> dict[str, float]:
     low, high = task.box()
     corner = [high[0], np.clip(MIDDLE, low[1], high[1]), low[2], low[3], low[4]]
     given = SimpleNamespace(**dict(zip(VARIABLES, corner, strict=True)))
-    found = limits(task, given, SimpleNamespace(**{p.name: p.value for p in parameters(task)}))
-    ramp = max(found["ramp_of_two_pairs"], found["ramp_of_one_pair"])
-    return {"mass": found["mass"], "displacement": found["displacement"], "ramp": ramp}
+    rows = limits(task, given, SimpleNamespace(**{p.name: p.value for p in parameters(task)}))
+    ramp = max(rows["ramp_of_two_pairs"], rows["ramp_of_one_pair"])
+    return {"mass": rows["mass"], "displacement": rows["displacement"], "ramp": ramp}
 
 
 def impossible(task: Task) -> Outcome | None:

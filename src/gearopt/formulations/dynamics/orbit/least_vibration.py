@@ -211,7 +211,7 @@ def response_over_speed(
     """
     point, speeds = np.array(values, float), dense(task)
     kb, ratio, ramp, width, rim = (float(v) for v in point)
-    made = orbit_parts(task, kb, ratio, width, rim)
+    built = orbit_parts(task, kb, ratio, width, rim)
     found, highest, repeats = _motions(task, point, speeds)
     coarse = np.linspace(speeds[0], speeds[-1], SPEEDS_BEFORE)
     grown = known_growth(task, point, clock)
@@ -222,7 +222,7 @@ def response_over_speed(
         ramp=ramp,
         face_width_mm=width,
         rim=rim,
-        mass_kg=1e3 * float(made.masses[0] + made.masses[1]),
+        mass_kg=1e3 * float(built.masses[0] + built.masses[1]),
         displacement_mm=task.load / kb,
         harmonics=task.harmonics,
         speed_rpm=parts.columns(task.speeds_rpm),

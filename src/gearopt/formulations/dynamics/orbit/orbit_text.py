@@ -59,9 +59,9 @@ def parameters(task: Task) -> tuple[Param, ...]:
 
 def limits(task: Task, x: Any, p: Any) -> dict[str, Any]:
     """Return the limits of a design: mass, displacement, and ramps that fit their contacts."""
-    made = parts(task, x.bearing_stiffness, x.contact_ratio, x.face_width, x.rim)
+    built = parts(task, x.bearing_stiffness, x.contact_ratio, x.face_width, x.rim)
     return {
-        "mass": (made.masses[0] + made.masses[1]) / p.most_mass,
+        "mass": (built.masses[0] + built.masses[1]) / p.most_mass,
         "displacement": task.load / x.bearing_stiffness / p.most_displacement,
         "ramp_of_two_pairs": 1.0 + (x.ramp - (x.contact_ratio - 1.0)),
         "ramp_of_one_pair": 1.0 + (x.ramp - (2.0 - x.contact_ratio)),
@@ -82,11 +82,11 @@ def problem(task: Task, methods: dict[str, Any] | None = None) -> Problem:
         return Terms({task.measure: getattr(x, task.measure)}, limits(task, x, p), cuts)
 
     def balance(x: Any, p: Any, row: Any) -> Terms:
-        made = parts(task, x.bearing_stiffness, x.contact_ratio, x.face_width, x.rim)
-        mean, cosines, sines = forces(task, x, made, row.omega)
+        built = parts(task, x.bearing_stiffness, x.contact_ratio, x.face_width, x.rim)
+        mean, cosines, sines = forces(task, x, built, row.omega)
         equal = {"load": -mean / MICRO / task.load}
         for h in range(1, count + 1):
-            real, imaginary = receptance(x, made, h * row.omega)
+            real, imaginary = receptance(x, built, h * row.omega)
             a, b = real * MICRO, imaginary * MICRO
             nc, ns = cosines[h - 1] / MICRO, sines[h - 1] / MICRO
             equal[f"cosine_{h}"] = 1.0 + (x.cosines[h - 1] - a * nc - b * ns)
@@ -199,11 +199,11 @@ def reduced(task: Task) -> Problem:
     def evaluate(x: Any, p: Any) -> Terms:
         points = np.stack([np.atleast_1d(getattr(x, name)) for name in VARIABLES], axis=-1)
         value, highest = measured(task, series(task, points, speeds, task.harmonics))
-        found = limits(task, x, p)
+        rows = limits(task, x, p)
         if task.margin is not None:
             top = highest.max(axis=1)
-            found["separation"] = 1.0 + (_as(x, top) + task.margin * MICRO) / 10.0
-        return Terms({task.measure: _as(x, value.max(axis=1))}, found)
+            rows["separation"] = 1.0 + (_as(x, top) + task.margin * MICRO) / 10.0
+        return Terms({task.measure: _as(x, value.max(axis=1))}, rows)
 
     return Problem("orbit", shared(task), parameters(task), evaluate, vectorised=True)
 

@@ -48,8 +48,8 @@ def middle(task: Task) -> Array:
 def rate(task: Task) -> float:
     """Return (k/m_e)^(1/2) [rad/s] in the middle of the ranges: the unit of the problem's time."""
     kb, ratio, _, width, rim = middle(task)
-    made = parts(task, kb, ratio, width, rim)
-    return math.sqrt(made.mean / made.mesh_mass)
+    built = parts(task, kb, ratio, width, rim)
+    return math.sqrt(built.mean / built.mesh_mass)
 
 
 def squeezed(task: Task) -> float:
@@ -107,10 +107,10 @@ def problem(task: Task, methods: dict[str, Any] | None = None) -> Problem:
         return Terms({task.measure: getattr(x, task.measure)}, limits(task, x, p))
 
     def motion(x: Any, p: Any, row: Any) -> Terms:
-        made = parts(task, x.bearing_stiffness, x.contact_ratio, x.face_width, x.rim)
+        built = parts(task, x.bearing_stiffness, x.contact_ratio, x.face_width, x.rim)
         found = collocated(
-            moving(task, x.bearing_stiffness, made, p.width),
-            pieces(task, x.contact_ratio, x.ramp, made.single),
+            moving(task, x.bearing_stiffness, built, p.width),
+            pieces(task, x.contact_ratio, x.ramp, built.single),
             POINTS,
             x,
             Timing(row.period, rate(task)),
@@ -163,9 +163,9 @@ def judged(task: Task, x: Any, found: Collocated) -> dict[str, Any]:
 def start(task: Task, whole: Problem, point: Array, motions: Sequence[Motion]) -> Array:
     """Return the point of the whole problem of a design (5,) and its motions, one a speed."""
     kb, ratio, ramp, width, rim = (float(v) for v in point)
-    made = parts(task, kb, ratio, width, rim)
-    cut = pieces(task, ratio, ramp, made.single)
-    law = moving(task, kb, made, float(np.ravel(whole.parameters[-1].value)[0]))
+    built = parts(task, kb, ratio, width, rim)
+    cut = pieces(task, ratio, ramp, built.single)
+    law = moving(task, kb, built, float(np.ravel(whole.parameters[-1].value)[0]))
     pairs = [pair_of(task, point, speed) for speed in task.speeds_rpm]
     rows = [_row(task, *each, cut, law) for each in zip(pairs, motions, strict=True)]
     low, high, _ = whole.bounds()

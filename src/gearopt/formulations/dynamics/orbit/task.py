@@ -111,25 +111,25 @@ def cosine(single: Any, contact_ratio: Any, ramp: Any, order: int) -> Any:
 def series(task: Task, points: Array, speeds_rpm: Array, harmonics: int) -> Array:
     """Return delta_-H to delta_H [mm] of designs (N, 5) at speeds (K,) [rpm], (N, K, 2 H + 1)."""
     kb, ratio, ramp, width, rim = points.T[:, :, None]
-    made = parts(task, kb, ratio, width, rim)
+    built = parts(task, kb, ratio, width, rim)
     order = np.arange(-harmonics, harmonics + 1)
-    waves = [cosine(made.single, ratio, ramp, n) / 2.0 for n in range(1, 2 * harmonics + 1)]
+    waves = [cosine(built.single, ratio, ramp, n) / 2.0 for n in range(1, 2 * harmonics + 1)]
     half = np.concatenate(waves, axis=1)
-    both = np.concatenate([half[:, ::-1], made.mean, half], axis=1)
+    both = np.concatenate([half[:, ::-1], built.mean, half], axis=1)
     mesh = both[:, order[:, None] - order[None, :] + 2 * harmonics][:, None].astype(complex)
     omega = order * (2.0 * math.pi * task.teeth / 60.0 * np.asarray(speeds_rpm))[:, None]
     rows = np.arange(order.size)
     mesh = np.repeat(mesh, len(omega), axis=1)
-    mesh[:, :, rows, rows] += 1j * omega * made.mesh_damping[:, :, None]
+    mesh[:, :, rows, rows] += 1j * omega * built.mesh_damping[:, :, None]
     with np.errstate(divide="ignore"):
-        answer = 1.0 / (omega**2 * made.mesh_mass[:, :, None]) + 0j
-    for m, c in zip(made.masses, made.bearing_damping, strict=True):
+        answer = 1.0 / (omega**2 * built.mesh_mass[:, :, None]) + 0j
+    for m, c in zip(built.masses, built.bearing_damping, strict=True):
         k, m, c = kb[:, :, None], m[:, :, None], c[:, :, None]
         answer = answer - 1.0 / (k - omega**2 * m + 1j * omega * c)
     matrix = np.eye(order.size) - np.where(order == 0, 0.0, answer)[..., None] * mesh
-    matrix[:, :, harmonics] = mesh[:, :, harmonics] / made.mean[:, :, None]
+    matrix[:, :, harmonics] = mesh[:, :, harmonics] / built.mean[:, :, None]
     right = np.zeros((*matrix.shape[:3], 1), complex)
-    right[:, :, harmonics, 0] = -task.load / made.mean
+    right[:, :, harmonics, 0] = -task.load / built.mean
     return np.asarray(np.linalg.solve(matrix, right)[..., 0])
 
 
@@ -165,27 +165,27 @@ def worst(task: Task, point: Array, speeds_rpm: Array, harmonics: int) -> Array:
 def pair_of(task: Task, point: Sequence[float] | Array, speed_rpm: float) -> MovingPair:
     """Return a design as a pair on the line of action, to simulate it and for its multipliers."""
     kb, ratio, ramp, width, rim = (float(v) for v in point)
-    made = parts(task, kb, ratio, width, rim)
+    built = parts(task, kb, ratio, width, rim)
     rotors = [
         Rotor(rb, float(m), float(0.5 * m * r**2), (kb, kb), (float(c), float(c)), torque)
         for rb, m, r, c, torque in zip(
             task.base_radii,
-            made.masses,
+            built.masses,
             task.radii,
-            made.bearing_damping,
+            built.bearing_damping,
             (task.torque, task.torque * task.base_radii[1] / task.base_radii[0]),
             strict=True,
         )
     ]
     fits = min(ramp, ratio - 1.0, 2.0 - ratio)  # limits are met to 1e-8
-    wave = of_contact_ratio(float(made.single), ratio, fits)
+    wave = of_contact_ratio(float(built.single), ratio, fits)
     return MovingPair(
         rotors[0],
         rotors[1],
         task.pressure_angle,
         wave,
         task.teeth * speed_rpm / 60.0,
-        damping=damping_of(task.mesh_damping, wave.mean, float(made.mesh_mass)),
+        damping=damping_of(task.mesh_damping, wave.mean, float(built.mesh_mass)),
         backlash=task.backlash,
         kinematics="tangent",
     )

@@ -123,10 +123,10 @@ def free_problem(mesh: Mesh, shape: Shape | None = None) -> Problem:
     def evaluate(x: Any, p: Any) -> Terms:
         removed = np.stack([np.asarray(v, float) for v in x.removed], axis=-1)
         apart = profile.separations(removed)
-        found = mesh.sharing(apart)
+        shared = mesh.sharing(apart)
         defines: dict[str, Any] = {"shape": tuple(np.moveaxis(1.0 + removed @ kept.T, -1, 0))}
         if profile.shape.complete:
-            gaps = np.where(np.isinf(found.gaps), 0.0, found.gaps)
+            gaps = np.where(np.isinf(shared.gaps), 0.0, shared.gaps)
             defines["open"] = 1.0 + gaps.max(axis=(-3, -2, -1)) / UNIT
         return Terms({"peak_to_peak": mesh.criteria(apart).peak_to_peak.max(axis=-1)}, {}, defines)
 

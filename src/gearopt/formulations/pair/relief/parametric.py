@@ -74,10 +74,10 @@ def problem(
     most = limits or {}
 
     def evaluate(x: Any, p: Any) -> Terms:
-        found = mesh.criteria(mesh.separations(*reliefs(x.amount, x.length, ranges)))
+        measures = mesh.criteria(mesh.separations(*reliefs(x.amount, x.length, ranges)))
         return Terms(
-            {name: objective(found, name) for name in objectives},
-            {name: objective(found, name) / bound for name, bound in most.items()},
+            {name: objective(measures, name) for name in objectives},
+            {name: objective(measures, name) / bound for name, bound in most.items()},
         )
 
     powers, methods = ranges.exponents, dict[str, Callable[..., Any]]()

@@ -144,10 +144,10 @@ def _starts(mesh: Mesh, low: Array, high: Array, seed: int) -> Iterator[Array]:
 def _point(mesh: Mesh, posed: Problem, start: Array, exponents: tuple[float, float]) -> Array:
     """Return the point of the whole problem where the load is shared exactly."""
     reliefs = (Relief(start[k], start[2 + k], exponents[k]) for k in range(2))
-    found = mesh.sharing(mesh.separations(*reliefs))
+    shared = mesh.sharing(mesh.separations(*reliefs))
     loads = np.array(mesh.loads)[:, None]
-    delta = MICRO * (found.approach - mesh.coupling * loads)
-    shares = found.forces / np.maximum(loads, 1e-300)[..., None]
+    delta = MICRO * (shared.approach - mesh.coupling * loads)
+    shares = shared.forces / np.maximum(loads, 1e-300)[..., None]
     peak = np.ptp(delta, axis=1).max()
     parts = [start * np.array([MICRO, MICRO, 1.0, 1.0]), delta.min(axis=1), np.array([peak])]
     there = mesh.cycle.present

@@ -62,8 +62,8 @@ class Numbers:
         """Return a bound of a box [um], a point (a1, b1, a2, b2) of it, and its measures [um]."""
         point, measures = np.empty(4), np.empty(weights.shape)
         given = self.stiffness, self.tips, self.exponents, self.loads, self.waves, weights
-        found = kernel(KERNEL).bound(*given, low, high, aim, point, measures)
-        return found - ROUNDING, point, measures
+        lower = kernel(KERNEL).bound(*given, low, high, aim, point, measures)
+        return lower - ROUNDING, point, measures
 
     def variables(self, point: Array) -> Array:
         """Return the variables (amounts 1, 2, lengths 1, 2) [mm] of a point (a1, b1, a2, b2)."""

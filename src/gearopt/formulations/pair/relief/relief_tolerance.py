@@ -78,30 +78,30 @@ def worst(
     """
     x = _numbers(nominal)
     ends = [tolerance.moved(x, sign) for sign in (-1.0, 1.0)]
-    made = numbers(mesh, ends[0], ends[1], _powers(nominal))
+    data = numbers(mesh, ends[0], ends[1], _powers(nominal))
     entries = (kernel(KERNEL).ceiling,)
-    if not compiled(lambda: _ceiling(made, made.low, made.high), entries, watch):
+    if not compiled(lambda: _ceiling(data, data.low, data.high), entries, watch):
         return None
     clock = Clock(budget or Budget(gap=GAP), watch)
-    bound, point, value = _ceiling(made, made.low, made.high)
+    bound, point, value = _ceiling(data, data.low, data.high)
     gap = max(clock.budget.gap, ROUNDING)
 
     def branch(least: float, box: Box) -> Iterator[tuple[float, Box]]:
         nonlocal point, value
-        for half in halves(made, *box):
-            bound, at, there = _ceiling(made, *half)
+        for half in halves(data, *box):
+            bound, at, there = _ceiling(data, *half)
             clock.evaluations += 1
             if there > value:
                 value, point = there, at
             yield max(-bound, least), half
 
     left = best_first(
-        [(-bound, (made.low, made.high))],
+        [(-bound, (data.low, data.high))],
         lambda least, _: -least > value * (1.0 + gap) and clock.tell(),
         branch,
     )
     bound = max(value, -left.least)
-    return Worst(value / MICRO, bound / MICRO, made.variables(point), clock.evaluations)
+    return Worst(value / MICRO, bound / MICRO, data.variables(point), clock.evaluations)
 
 
 def _numbers(nominal: tuple[Relief, Relief]) -> Array:
@@ -135,8 +135,8 @@ def drawn(
 def _values(mesh: Mesh, points: Array, exponents: tuple[float, float]) -> Array:
     ranges = Ranges((0.0, 0.0), (1.0, 1.0), exponents)
     columns = np.moveaxis(points, -1, 0)
-    made = mesh.separations(*reliefs(columns[:2], columns[2:], ranges))
-    return np.asarray(mesh.criteria(made).peak_to_peak.max(axis=-1))
+    apart = mesh.separations(*reliefs(columns[:2], columns[2:], ranges))
+    return np.asarray(mesh.criteria(apart).peak_to_peak.max(axis=-1))
 
 
 def robust_problem(mesh: Mesh, ranges: Ranges, tolerance: Tolerance) -> Problem:

@@ -139,8 +139,8 @@ def _exact(drive: Drive, load_speed: float) -> Outcome:
         return impossible(reason)
 
     def inverse(n: float) -> float:
-        found = law_of(drive, load_speed, n)
-        return 1.0 / found if found > 0.0 else math.inf
+        law = law_of(drive, load_speed, n)
+        return 1.0 / law if law > 0.0 else math.inf
 
     bound = convex_bound(inverse, ratio, low, high, min(1.0, best / unopposed(drive, ratio)))
     return Outcome(np.array([ratio, best]), bound=bound, proof=proof(), evaluations=6)

@@ -191,9 +191,9 @@ def feasible(
 
 def trains(train: ServoTrain, error: float) -> Array:
     """Return all feasible trains with an error [rad] up to `error`, the minimum first."""
-    found = _listed(*posed(train, "error"), -math.inf, error, 0, unchecked)
-    assert found is not None
-    return found[problem(train, "error").batch(found).F[:, 0].argsort(kind="stable")]
+    listed = _listed(*posed(train, "error"), -math.inf, error, 0, unchecked)
+    assert listed is not None
+    return listed[problem(train, "error").batch(listed).F[:, 0].argsort(kind="stable")]
 
 
 def _listed(

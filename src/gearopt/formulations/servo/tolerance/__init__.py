@@ -146,13 +146,13 @@ def _exact(stack: Stack) -> Any:
 
 def _proven(stack: Stack, clock: Clock) -> Outcome:
     """Return the cheapest tolerances with the bound of their multipliers."""
-    found = closed_form(stack)
-    t, lam = found or roots(stack, clock)
+    optimum = closed_form(stack)
+    t, lam = optimum or roots(stack, clock)
     proof = {
-        "method": "closed form" if found else "dual",
+        "method": "closed form" if optimum else "dual",
         "arithmetic": "double, with a rounding allowance",
         "multipliers": dict(zip([b.label for b in stack.budgets], lam.tolist(), strict=True)),
-        "sentence": CLOSED_FORM if found else DUAL,
+        "sentence": CLOSED_FORM if optimum else DUAL,
     }
     return Outcome(t, bound=lower_bound(stack, lam, t), proof=proof, evaluations=1)
 

@@ -160,14 +160,14 @@ def _front(choice: Choice) -> Any:
 def _picked(choice: Choice, clock: Clock) -> tuple["Picked", Outcome | None]:
     """Grades that the program keeps; and the outcome where there are none, or it was stopped."""
     rows, limit, _ = _numbers(choice)
-    found = picked(*rows, limit, clock)
-    if not found.finished:
+    picks = picked(*rows, limit, clock)
+    if not picks.finished:
         finest = np.array([min(range(len(w)), key=w.__getitem__) for w in choice.weights])
         words = "stopped by the budget: the finest grades"
-        return found, Outcome(finest + 1.0, False, evaluations=clock.evaluations, message=words)
-    if not found.count:
-        return found, _impossible(choice, _proof(choice, found, clock), limit)
-    return found, None
+        return picks, Outcome(finest + 1.0, False, evaluations=clock.evaluations, message=words)
+    if not picks.count:
+        return picks, _impossible(choice, _proof(choice, picks, clock), limit)
+    return picks, None
 
 
 def _proof(choice: Choice, found: "Picked", clock: Clock) -> dict[str, Any]:
