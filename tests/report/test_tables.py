@@ -4,6 +4,8 @@ import csv
 import io
 import math
 import re
+from dataclasses import dataclass
+from typing import Annotated
 from urllib.parse import unquote
 
 import layout_cases as cases
@@ -13,10 +15,19 @@ from page_reader import Reader
 from rich.console import Console
 
 import gearopt
+from gearopt.optimise.typed import Shown
 from gearopt.report import answer
 from gearopt.report.measures import INCH, METRIC, SYSTEMS
 from gearopt.report.pages.result import page, sections, tables
-from gearopt.report.section import Table, cell, percent, shown
+from gearopt.report.section import (
+    Table,
+    cell,
+    names_and_values,
+    percent,
+    records,
+    shown,
+    side_by_side,
+)
 from gearopt.report.terminal import grid, show
 from gearopt.report.words import heading, objective, parted
 
@@ -252,3 +263,28 @@ SAID = {  # a sentence in mm, and in inches as pint has them
 def test_sentences_are_converted(text):
     """5782370.7/25.4^3 = 352.86191, 120 MPa = 17404.5 psi, 1.5 N m = 13.276 lbf in."""
     assert INCH.words(text) == SAID[text] and METRIC.words(text) == text
+
+
+@dataclass(frozen=True)
+class Held:
+    """A design of which one table lists lengths, another a share; one field stands in none."""
+
+    width_mm: Annotated[float, Shown("width", "sizes", form=".3f")] = 1.23456
+    error_mm: Annotated[float, Shown("error", "sizes", "um")] = 0.0012
+    other_mm: float = 2.0
+    gap_mm: Annotated[float | None, Shown("gap", "sizes")] = None
+    used: Annotated[float, Shown("used, %", "limits", form="share")] = 0.5
+
+
+def test_a_table_is_the_fields_that_name_it():
+    rows = names_and_values(Held(), METRIC, "sizes", values={"error_mm": 0.002})
+    assert [(label, cell.text) for label, cell in rows] == [
+        *(("width [mm]", "1.235"), ("error [µm]", "2"))
+    ]
+    ((_, width), *_) = names_and_values(Held(), INCH, "sizes")
+    assert width.text == "0.0486" and width.value == pytest.approx(1.23456 / 25.4)
+    both = side_by_side([Held(), Held(gap_mm=3.0)], METRIC, "sizes")
+    assert [row[0] for row in both] == ["width [mm]", "error [µm]", "gap [mm]"]
+    assert [cell.text for cell in both[2][1:]] == ["", "3.00"]
+    heads, ((share,),) = records([Held()], METRIC, "limits")
+    assert heads == ["used, %"] and (share.text, share.share) == ("50.0", 0.5)
