@@ -62,6 +62,8 @@ def bars(own, method=""):
 
 
 KIND = SimpleNamespace(
+    possible=None,
+    moves=None,
     remedies=None,
     influences=None,
     posed=bars,

@@ -4,7 +4,7 @@ The package of a kind ends with `KIND = Kind(...)`; all that kinds share asks it
 field that is missing or misspelt fails when the kind is imported.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic
@@ -17,6 +17,8 @@ from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.pareto.several import Several
 from gearopt.optimise.result import Result
+from gearopt.scenes.explaining.moves import Move
+from gearopt.scenes.explaining.possible import Possible
 from gearopt.scenes.plan import S, Step, carried_out
 from gearopt.scenes.reading.ask import Ask
 
@@ -90,6 +92,8 @@ class Kind(Generic[S]):
     scene: the tables of a file. examples: by name, the first that of the kind itself. steps: how a
     file is answered. posed: the problem that a method solves, for comparisons. compared: the
     methods of a comparison that names none. methods: those that the kind has beside the back ends.
+    possible: whether a changed file has a design, for remedies; None: by solving it. moves: the
+    numbers that a remedy may move; None: those of its relaxed form.
     remedies: what to write instead of an impossible file, from its result, which says why; soon:
     beside an answer, where what takes long is left out; None: none are known soon. remedied:
     whether a file has them; others, and those of a kind without: by solving changed files.
@@ -105,6 +109,8 @@ class Kind(Generic[S]):
     posed: Callable[[S, str], Model] = _nothing_posed
     compared: Callable[[S], tuple[str, ...]] = _nothing_compared
     methods: tuple[str, ...] = ()
+    possible: Possible[S] | None = None
+    moves: Callable[[S], Iterable[Move]] | None = None
     remedies: Callable[[S, Clock, Result, bool], Remedies | None] | None = None
     remedied: Callable[[S], bool] = lambda scene: True
     influences: Callable[[S, Ask, Result], Explanation] | None = None

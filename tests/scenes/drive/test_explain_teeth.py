@@ -79,6 +79,8 @@ def kind(**given):
         return model(own, method, **given)
 
     return SimpleNamespace(
+        possible=None,
+        moves=None,
         remedies=None,
         influences=None,
         posed=posed,

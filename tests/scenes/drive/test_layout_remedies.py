@@ -20,7 +20,7 @@ from gearopt.optimise.result import Budget
 from gearopt.report.explained import remedy_words
 from gearopt.scenes.drive import Scene
 from gearopt.scenes.drive.explaining import box_remedies as ways
-from gearopt.scenes.drive.explaining.box_edits import LARGER, SMALLER
+from gearopt.scenes.drive.explaining.box_moves import LARGER, SMALLER
 from gearopt.scenes.drive.explaining.box_remedies import BRIEF
 from gearopt.scenes.drive.without import without
 
@@ -195,7 +195,7 @@ def test_the_smallest_size_known_to_fit_is_told_where_less_stays_undecided(monke
     rows, last = remedy_words(ways)
     assert ("smallest found", "keep_out[1].y") in {(r[0], r[1].split(" ")[0]) for r in rows}
     assert "whether less suffices is not known" in last and "none with" not in last
-    assert BRIEF in asked
+    assert any(0.9 * BRIEF < seconds <= BRIEF for seconds in asked)
 
 
 def test_where_nothing_is_decided_no_change_is_called_impossible(monkeypatch):

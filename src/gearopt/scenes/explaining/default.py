@@ -1,6 +1,6 @@
 """Explanations of all kinds; of one without its own: by solving changed files as it poses them."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -25,7 +25,7 @@ from gearopt.scenes.explaining.engine import Group, Questions, singles, with_lea
 from gearopt.scenes.explaining.influences import Basis, Solved, influences, stepped
 from gearopt.scenes.explaining.moves import DUTY, LIMIT, Move
 from gearopt.scenes.explaining.numbers import Number, numbers, one_at
-from gearopt.scenes.explaining.possible import Possible, Verdict, of_status
+from gearopt.scenes.explaining.possible import Possible, possible_by_solving
 from gearopt.scenes.kind import Kind
 from gearopt.scenes.plan import S
 from gearopt.scenes.reading.ask import Ask
@@ -77,7 +77,7 @@ def by_solving(kind: Kind[S], scene: S, ask: Ask, result: Result) -> Explanation
     def posed(other: S) -> Problem | Conic:
         return kind.posed(other, "").problem
 
-    return explained(scene, result, clock, answer, posed)
+    return explained(scene, result, clock, answer, posed, kind.possible, kind.moves)
 
 
 def explained(
@@ -86,10 +86,17 @@ def explained(
     clock: Clock,
     answer: Callable[[Any], Result],
     posed: Callable[[Any], Problem | Conic],
+    possible: Possible[Any] | None = None,
+    moves: Callable[[Any], Iterable[Move]] | None = None,
 ) -> Explanation:
-    """Return the explanation of a result; answer(scene) solves a file, posed(scene) states it."""
+    """Explanation of a result; answer(scene) solves a file, posed(scene) states it.
+
+    possible: whether a changed file has a design, where a kind knows more than by solving it;
+    moves: the numbers that may move, where it knows more than the problem's handles.
+    """
     if result.status == "infeasible":
-        return _impossible(scene, result, clock, answer, posed(scene))
+        able = possible or possible_by_solving(answer)
+        return _impossible(scene, result, clock, able, posed(scene), moves)
     if result.value is None:
         return Explanation(result, message="no design was found in time", seconds=clock.seconds)
 
@@ -122,29 +129,33 @@ def _impossible(
     scene: Any,
     result: Result,
     clock: Clock,
-    answer: Callable[[Any], Result],
+    possible: Possible[Any],
     problem: Problem | Conic,
+    moves: Callable[[Any], Iterable[Move]] | None,
 ) -> Explanation:
     if isinstance(problem, Conic):
         names = tuple(result.proof.get("conflict", ()))
         return Explanation(result, names, message=result.message, seconds=clock.seconds)
-
-    def possible(other: Any, within: Clock) -> Verdict:
-        return of_status(answer(other).status)
-
-    ways = remedies(scene, problem, clock, possible)
+    ways = remedies(scene, problem, clock, possible, moves)
     return _impossible_with(ways, result, clock)
 
 
-def remedies(scene: Any, problem: Problem, clock: Clock, possible: Possible[Any]) -> Remedies:
+def remedies(
+    scene: Any,
+    problem: Problem,
+    clock: Clock,
+    possible: Possible[Any],
+    moves: Callable[[Any], Iterable[Move]] | None = None,
+) -> Remedies:
     """Return the conflict of an impossible file, and each number that alone makes it possible.
 
     problem: what is solved for the file; its handles, or those of its `relaxed` form, say by their
-    keys which numbers are limits or given, and which way is easier. possible: of a changed file.
+    keys which numbers are limits or given, and which way is easier. possible: of a changed file;
+    moves: the numbers that may move, by default those of the handles.
     """
     relaxed, problem = problem.relaxed is not None, problem.relaxed or problem
     known = _handles(problem)
-    groups = (Group((move,)) for move in _moves(scene, known))
+    groups = (Group((m,)) for m in (moves(scene) if moves else _moves(scene, known)))
     ways = with_least(singles(Questions(scene, possible, clock), groups), not clock.over)
     blamed = _conflict(problem, known, clock)
     late = "the budget ended before all remedies were tried" if clock.over else ""

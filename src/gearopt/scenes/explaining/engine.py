@@ -17,18 +17,20 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Remedy
 from gearopt.optimise.explaining.handles import REACH
 from gearopt.optimise.explaining.repair import DOUBTS, FACTOR_TOLERANCE, SLACK_TRIED
-from gearopt.optimise.result import Budget
 from gearopt.scenes.explaining.moves import DUTY, Edited, Move, Moves, edited, less, shorter
 from gearopt.scenes.explaining.possible import UNKNOWN, WORDS, Possible, Verdict
+from gearopt.scenes.reading.toml import dotted
 
 ROUGH = 1.02  # ratio of a refused to an allowed factor up to which every number is known first
 FACTORS_TRIED = (1e6, 1e3, 16.0, 4.0, 2.0, 1.3, 1.1)  # the first that is decided counts
+SHARE_OF_TIME = 0.4  # at most, of the time that is left, to make numbers sharper in given seconds
 SECANTS = 24
 NO_PROGRESS = 1e-2  # of that logarithm: what falls by less in a step does not fall
 LOG_TOLERANCE = 2e-5  # of the logarithm of a utilisation that counts as 1
 ROOM = (1.0, 1.001, 1.01)  # times a factor that was found by an excess, until a design is found
 CLOSER = (1.00005, 1.000005, 1.0 + 1e-7)  # the same in turn, where a little less suffices
 JOINT = "least"  # kind of a remedy whose numbers do not move alike: each of them is needed
+EACH = (JOINT, "pair")
 DIGITS = (3, 4)  # significant digits of what one would write, tried in turn
 
 
@@ -59,7 +61,9 @@ class Questions:
     as it is written, where that takes longer. clock: of all questions; seconds: of one, at most.
     excess: that of the file itself, where it is known. lower_bounds: whether a factor that is
     proven too small is told as a bound. far: the factor, beyond a floor, up to which is tried.
-    apply: makes the file with numbers moved.
+    apply: makes the file with numbers moved. halving: seconds of a question while a change is
+    halved, and once one stayed open, of which so many doubts may; ladder: factors tried where the
+    farthest stays open. open: keys of numbers of which no factor was decided.
     """
 
     scene: Any
@@ -70,7 +74,11 @@ class Questions:
     excess: float | None = None
     lower_bounds: bool = False
     far: float = REACH
+    halving: tuple[float, float] = (math.inf, math.inf)
+    doubts: int = DOUBTS
+    ladder: tuple[float, ...] = FACTORS_TRIED
     apply: Callable[[Any, Moves], Edited | None] = edited
+    open: list[str] = field(default_factory=list)
     answers: dict[tuple[Any, ...], Verdict] = field(default_factory=dict)
 
     def edited(self, moves: Moves) -> Edited | None:
@@ -80,11 +88,13 @@ class Questions:
     def verdict(self, moves: Moves) -> Verdict | None:
         """Return whether the file with numbers moved is possible; None: its rules refuse it."""
         there = self.edited(moves)
-        if there is None:
-            return None
+        return None if there is None else self.verdict_of(there)
+
+    def verdict_of(self, there: Edited, seconds: float = math.inf) -> Verdict:
+        """Return whether a changed file is possible, which is asked once; in seconds, at most."""
         key = tuple((change.key, change.write) for change in there.changes)
         if key not in self.answers:
-            verdict = self.ask(there.scene, self.possible)
+            verdict = self.ask(there.scene, self.possible, seconds)
             if self.clock.over:
                 return verdict
             self.answers[key] = verdict
@@ -99,13 +109,13 @@ class Questions:
         """Return the questions whose moves stand beside others, which are as they are."""
         return replace(self, apply=lambda scene, moves: self.apply(scene, (*moves, *fixed)))
 
-    def ask(self, scene: Any, possible: Possible[Any]) -> Verdict:
+    def ask(self, scene: Any, possible: Possible[Any], seconds: float = math.inf) -> Verdict:
         """Return the answer to one question; unknown where time is up or nothing decides it."""
         if self.clock.over:
             return UNKNOWN
-        clock = self.clock
-        if math.isfinite(self.seconds):
-            budget = replace(clock.left, seconds=clock.within(self.seconds))
+        clock, seconds = self.clock, min(seconds, self.seconds)
+        if math.isfinite(seconds):
+            budget = replace(clock.left, seconds=clock.within(seconds))
             clock = Clock(budget, clock.watch)
         try:
             return possible(scene, clock)
@@ -144,7 +154,7 @@ def within(clock: Clock, seconds: float, share: float = 1.0) -> Clock:
     """Return a clock of so many seconds, or of a share of what is left if that is less."""
     left = clock.left.seconds
     own = seconds if left is None else min(seconds, share * left)
-    return Clock(replace(clock.left, seconds=own) if math.isfinite(own) else Budget(), clock.watch)
+    return Clock(replace(clock.left, seconds=own if math.isfinite(own) else None), clock.watch)
 
 
 def smallest(asked: Questions, moves: Moves, bound: float | None = None) -> Known | None:
@@ -214,7 +224,8 @@ def _bracketed(asked: Questions, moves: Moves) -> Known | None:
     Other numbers are tried from near on.
     """
     far = min(asked.far, max(move.far / factor for move, factor in moves))
-    tried = [far, *(f for f in FACTORS_TRIED if f < far)]
+    far = _allowed(asked, moves, far)
+    tried = [far, *(f for f in asked.ladder if f < far)]
     if not all(move.far_first for move, _ in moves):
         low = 1.0
         for factor in tried[::-1]:
@@ -230,7 +241,20 @@ def _bracketed(asked: Questions, moves: Moves) -> Known | None:
             return known if verdict.answer else None
         if asked.clock.over:
             break
+    asked.open.append(" and ".join(dotted(move.path) for move, _ in moves))
     return None
+
+
+def _allowed(asked: Questions, moves: Moves, far: float) -> float:
+    """Return the largest factor up to one with which the rules of the file hold, nearly."""
+    low, high = 1.0, far
+    if asked.edited(grown(moves, far)) is not None:
+        return far
+    while high > low * FACTOR_TOLERANCE:
+        middle = _between(low, high)
+        refused = asked.edited(grown(moves, middle)) is None
+        low, high = (low, middle) if refused else (middle, high)
+    return low
 
 
 def narrow(asked: Questions, known: Known, close: float, clock: Clock | None = None) -> None:
@@ -238,20 +262,20 @@ def narrow(asked: Questions, known: Known, close: float, clock: Clock | None = N
 
     What stays undecided is not known to suffice. clock: of this search, beside that of all.
     """
-    doubts = 0
-    while known.high > known.low * close and doubts < DOUBTS:
+    doubts, ends = 0, [asked.edited(known.at(end)) for end in (known.low, known.high)]
+    while known.high > known.low * close and doubts < asked.doubts:
         if asked.clock.over or clock is not None and clock.over:
             return
         middle = _between(known.low, known.high)
-        there, ends = asked.edited(known.at(middle)), map(asked.edited, map(known.at, _ends(known)))
+        there = asked.edited(known.at(middle))
         if there is not None and any(_same(there, end) for end in ends):
             return  # of whole numbers
-        verdict = asked.verdict(known.at(middle)) or UNKNOWN
+        verdict = UNKNOWN if there is None else asked.verdict_of(there, asked.halving[doubts > 0])
         doubts += verdict.answer is None
         if verdict.answer:
-            known.high = middle
+            known.high, ends[1] = middle, there
         else:
-            known.low, known.sure = middle, verdict.answer is False
+            known.low, known.sure, ends[0] = middle, verdict.answer is False, there
 
 
 def _between(low: float, high: float) -> float:
@@ -261,35 +285,34 @@ def _between(low: float, high: float) -> float:
     return math.exp(math.sqrt(max(near, least) * far) if far > 4.0 * least else 0.5 * (near + far))
 
 
-def _ends(known: Known) -> tuple[float, float]:
-    return known.low, known.high
-
-
 def _same(one: Edited, other: Edited | None) -> bool:
     return other is not None and [c.write for c in one.changes] == [c.write for c in other.changes]
 
 
-def as_remedy(
-    asked: Questions, known: Known, kind: str, what: str = "", sharp: Clock | None = None
-) -> Remedy | None:
-    """Return moves as edits that were tried as they are written; None where no design is known.
+def as_remedy(asked: Questions, known: Known, kind: str) -> Remedy | None:
+    """Return moves as edits that were tried as they are written; None where no design is known."""
+    tried = _tried(asked, known, kind)
+    return None if tried is None else _shortened(asked, *tried)
 
-    sharp: a clock of the question whether less suffices, too.
-    """
+
+def _tried(
+    asked: Questions, known: Known, kind: str, what: str = "", sharp: Clock | None = None
+) -> tuple[Remedy, Edited] | None:
+    """Return a remedy and its edits, exactly; sharp: a clock of whether less suffices, too."""
     there = _written(asked, known)
     if there is None:
         return None
     word, closer = _less(asked, known, there, kind, sharp), list(CLOSER)
-    while word == "feasible" and kind != JOINT and closer:
+    while word == "feasible" and kind not in EACH and closer:
         narrow(asked, known, closer[0], sharp)
         there, closer = _written(asked, known) or there, closer[1:]
         word = _less(asked, known, there, kind, sharp)
     factors = [change.factor for change in there.changes]
-    factor = math.prod(factors) if kind == JOINT else max(factors)
+    factor = math.prod(factors) if kind in EACH else max(factors)
     names = dict.fromkeys(move.words for move, _ in known.moves)
-    verified = {"with": "feasible", "with_less": word}
-    changes = _shortened(asked, there).changes
-    return Remedy(kind, what or ", ".join(names), changes, factor, known.bound, verified)
+    verified = {"with": "feasible"} | ({"with_less": word} if word else {})
+    what = what or ", ".join(names)
+    return Remedy(kind, what, there.changes, factor, known.bound, verified), there
 
 
 def _written(asked: Questions, known: Known) -> Edited | None:
@@ -308,9 +331,10 @@ def _less(asked: Questions, known: Known, there: Edited, kind: str, sharp: Clock
         return "infeasible" if known.sure else "undecided"
     if known.excess or sharp is not None and sharp.over:
         return "undecided"
-    each = range(len(there.places)) if kind == JOINT else (None,)
+    moved = [k for k, move in enumerate(there.places) if move.switch is None]
+    each = moved if kind in EACH else [None]
     words = {WORDS[_possible(asked, less(asked.scene, there, SLACK_TRIED, k))] for k in each}
-    return words.pop() if len(words) == 1 else "mixed"
+    return "mixed" if len(words) > 1 else next(iter(words), "")
 
 
 def least(asked: Questions, moves: Moves) -> Known | None:
@@ -353,31 +377,35 @@ def _possible(asked: Questions, scene: Any) -> bool | None:
     return None if scene is None else asked.ask(scene, asked.sure or asked.possible).answer
 
 
-def _shortened(asked: Questions, there: Edited) -> Edited:
-    """Return the edits with `short`: as one would write them, where a design exists so, too."""
+def _shortened(asked: Questions, remedy: Remedy, there: Edited) -> Remedy:
+    """Return a remedy with `short`: as one would write it, where a design exists so, too."""
+    judge = asked.possible if asked.excess is None else asked.sure or asked.possible
     for digits in DIGITS:
         short = shorter(asked.scene, there, digits)
-        if short is not None and _possible(asked, short.scene):
-            return short
-    return there
+        if short is not None and asked.ask(short.scene, judge).answer:
+            return replace(remedy, changes=short.changes)
+    return remedy
 
 
-def singles(asked: Questions, groups: Iterable[Group], sharp: Clock | None = None) -> list[Remedy]:
+def singles(asked: Questions, groups: Iterable[Group], seconds: float = math.inf) -> list[Remedy]:
     """Return the groups of numbers that suffice by one factor: first roughly, then sharper.
 
-    sharp: a clock of what makes them sharper.
+    seconds: at most, to make them sharper.
     """
     rough = [(g, k) for g in groups if (k := smallest(asked, g.moves, g.bound)) is not None]
-    found = []
+    found, sharp = (
+        [],
+        within(asked.clock, seconds, SHARE_OF_TIME if math.isfinite(seconds) else 1.0),
+    )
     for group, known in rough:
         narrow(asked, known, FACTOR_TOLERANCE, sharp)
         if asked.lower_bounds and known.sure and known.low > 1.0 and known.bound is None:
             known.bound = known.low
         kind = "even" if len(group.numbers) > 1 else "alone"
         kind = "less" if all(move.role == DUTY for move in group.numbers) else kind
-        made = as_remedy(asked, known, kind, group.what, sharp)
-        found += [] if made is None else [made]
-    return found
+        tried = _tried(asked, known, kind, group.what, sharp)
+        found += [] if tried is None else [tried]
+    return [_shortened(asked, *tried) for tried in found]
 
 
 def with_least(found: Sequence[Remedy], complete: bool) -> tuple[Remedy, ...]:

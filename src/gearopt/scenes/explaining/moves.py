@@ -38,7 +38,8 @@ class Move:
     utilisations go with, about. handles: what of a relaxed form it moves. inherits(scene, path):
     what holds there; write(now, factor, move): what to write; back(now, before, part): the same a
     little less; text(value, path): what a file holds; factor(before, after): how far it moved.
-    listed: its values are of a list, so that none is rounded.
+    listed: its values are of a list, so that none is rounded. switch: of what is set, not moved:
+    its key, what stands there, and what to write.
     """
 
     path: Path
@@ -55,6 +56,7 @@ class Move:
     back: Callable[[Any, Any, float], Any] = taken_back
     text: Callable[[Any, Path], Any] = written
     listed: bool = False
+    switch: tuple[str, str, str] | None = None
     factor: Callable[[Any, Any], float] = apart
 
     def to_values(self, now: Any, values: Sequence[Any]) -> "Move":
@@ -85,13 +87,13 @@ def edited(scene: Any, moves: Moves) -> Edited | None:
 
     A number that others inherit moves before them.
     """
-    new, places = scene, dict[Path, Move]()
+    new, places = scene, dict[tuple[Any, ...], Move]()
     for move, factor in moves:
         value = move.write(move.inherits(new, move.path), factor, move)
-        if value is None:
+        if value is None and move.switch is None:
             return None
         new = put(new, move.path, value)
-        places.setdefault(move.path, move)
+        places.setdefault((move.path, move.switch), move)
     if not allowed(new):
         return None
     return changed(scene, new, tuple(places.values()))
@@ -101,6 +103,9 @@ def changed(scene: Any, new: Any, places: Sequence[Move]) -> Edited:
     """Return the edits that lead from a scene to another, which differs at some places."""
     changes = []
     for move in places:
+        if move.switch is not None:
+            changes.append(Change(*move.switch, 1.0))
+            continue
         was, now = (move.inherits(one, move.path) for one in (scene, new))
         old, write = (toml_text(move.text(value, move.path)) for value in (was, now))
         changes.append(Change(dotted(move.path), old, write, move.factor(was, now)))
@@ -114,7 +119,7 @@ def less(scene: Any, there: Edited, part: float, only: int | None = None) -> Any
     """
     new = there.scene
     for k, move in enumerate(there.places):
-        if only is None or k == only:
+        if move.switch is None and (only is None or k == only):
             before, now = (move.inherits(one, move.path) for one in (scene, new))
             new = put(new, move.path, move.back(now, before, part))
     return new if allowed(new) else None
@@ -127,6 +132,9 @@ def shorter(scene: Any, there: Edited, digits: int) -> Edited | None:
     """
     new, changes = there.scene, []
     for move, change in zip(there.places, there.changes, strict=True):
+        if move.switch is not None:
+            changes.append(change)
+            continue
         before, now = (move.inherits(one, move.path) for one in (scene, there.scene))
         value = now if move.listed else _short(before, now, move.way, digits)
         text = toml_text(move.text(value, move.path))

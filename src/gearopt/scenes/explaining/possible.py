@@ -1,10 +1,12 @@
 """Whether a changed file has a design: what a kind answers to the search for remedies."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import THERE
+from gearopt.optimise.result import Result
 
 S = TypeVar("S", contravariant=True)
 WORDS = {True: "feasible", False: "infeasible", None: "undecided"}
@@ -35,3 +37,8 @@ class Possible(Protocol[S]):
 def of_status(status: str) -> Verdict:
     """Verdict of the status of a file that was solved."""
     return Verdict(True if status in THERE else (False if status == "infeasible" else None))
+
+
+def possible_by_solving(answer: Callable[[Any], Result]) -> Possible[Any]:
+    """Answers by solving each changed file: answer(scene)."""
+    return lambda scene, clock: of_status(answer(scene).status)

@@ -27,10 +27,13 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import disc_mass
 from gearopt.scenes.explaining.default import explained
+from gearopt.scenes.explaining.possible import Verdict, of_status
 from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.ask import Ask, unseeded
 from gearopt.scenes.servo.notes import assumptions, notes
+from gearopt.scenes.servo.reach import some_train
+from gearopt.scenes.servo.remedies import moves
 from gearopt.scenes.servo.remedies import remedies as of_train
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tolerances import by_every_rule, named, old, tolerance_part
@@ -166,6 +169,13 @@ def _key_figures(scene: Scene, found: Found) -> ServoReport:
     return ServoReport(given_train=train, given_stiffness=stiffness, figures=figures)
 
 
+def possible(scene: Scene, clock: Clock) -> Verdict:
+    """Whether a file has a train that meets all limits; without one, an answer."""
+    if scene.train is not None:
+        return Verdict(some_train(scene, clock) is not None)
+    return of_status(KIND.solve(scene, Ask(budget=clock.left, watch=clock.watch)).status)
+
+
 def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
     """What every number does to the answer."""
     clock = Clock(ask.budget, of_others(ask.watch))
@@ -223,6 +233,8 @@ KIND = Kind(
     posed=posed,
     compared=compared,
     methods=METHODS,
+    possible=possible,
+    moves=moves,
     remedies=remedies,
     remedied=lambda scene: scene.train is not None,
     influences=influences,

@@ -47,7 +47,7 @@ from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.ask import Ask, unseeded, without_method
 from gearopt.scenes.strain_wave.notes import assumptions, notes, range_notes
-from gearopt.scenes.strain_wave.remedies import of_pressure, remedies
+from gearopt.scenes.strain_wave.remedies import MOVES, of_pressure, possible, remedies
 from gearopt.scenes.strain_wave.scene import Scene
 
 METHODS = ("exchange",)  # its own
@@ -294,6 +294,8 @@ KIND = Kind(
     posed=posed,
     compared=compared,
     methods=METHODS,
+    possible=possible,
+    moves=lambda scene: MOVES,
     remedies=remedies,
     influences=influences,
     assumptions=assumptions,

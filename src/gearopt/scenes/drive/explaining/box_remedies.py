@@ -1,7 +1,7 @@
 """Remedies of an impossible layout, each of them tried; sensitivities of a possible one."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
 from typing import Any
@@ -14,100 +14,62 @@ from gearopt.formulations.drive.layout.layout_text import placed, read
 from gearopt.formulations.drive.layout.slabs import arrangements
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import STEP
-from gearopt.optimise.explaining.explanation import Change, Explanation, Remedies, Remedy
-from gearopt.optimise.explaining.repair import CERTAIN
+from gearopt.optimise.explaining.explanation import Explanation, Remedies, Remedy
+from gearopt.optimise.explaining.repair import CERTAIN, FACTOR_TOLERANCE
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
-from gearopt.scenes.drive.explaining.box_edits import Edit, edits, limits_of, switches
+from gearopt.scenes.drive.explaining.box_moves import (
+    SET,
+    BoxMove,
+    box_moves,
+    limits_of,
+    switches,
+)
 from gearopt.scenes.drive.explaining.other_gears import other_gears
 from gearopt.scenes.drive.layout import others_may_fit
 from gearopt.scenes.drive.layout_design import described, keep_out_design, pairs_of
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.explaining.engine import Known, Questions, as_remedy, least, narrow, smallest
 from gearopt.scenes.explaining.influences import Basis, influences, smooth
-from gearopt.scenes.explaining.numbers import allowed, numbers
+from gearopt.scenes.explaining.moves import Move
+from gearopt.scenes.explaining.numbers import numbers
+from gearopt.scenes.explaining.possible import Verdict
 from gearopt.units import Quantity
 
 SECONDS = 2.0  # at most, for one question whether a layout is possible
 HALF = 0.5  # the same while a size is halved: what fits is found in less, mostly
 BRIEF = 0.2  # and beyond a size that stayed undecided
-ROUGH_HALVINGS = 8  # halvings of the common size of two moves, by which pairs are compared
 PAIRS = 6  # that are worked out
-HALVINGS = 20  # of the size within which the file's own rules hold
+HALVINGS = 20  # questions of a change that may stay open
 SENSITIVITY_GAP = 0.01  # gap of the proof behind a sensitivity: the polished layout is far closer
 SIZE_TIE = 1e-7  # relative, of boxes that are equal
 GEARS_FIRST = "smallest changes are those for the gears sized first: others may need less"
 TABLES = ("layout", "place", "keep_out")
-
-Pair = tuple[Edit, Edit]
+Pair = tuple[BoxMove, BoxMove]
 Found = tuple[float, Remedy, Scene]  # how much is changed, and the file with it
-Asks = Callable[[float, float], bool | None]  # size and seconds: whether a layout is possible
 
 
-class Questions:
-    """Asks whether changed files can be laid out, within one clock.
+def questions(scene: Scene, pairs: tuple[GearPair, ...], clock: Clock) -> Questions:
+    """Return the questions whether these gears can be laid out in changed files."""
 
-    It has state because questions stay open: open, what a message says of them.
-    """
-
-    def __init__(self, pairs: tuple[GearPair, ...], clock: Clock) -> None:
-        self._pairs, self._clock, self.open = pairs, clock, list[str]()
-
-    def fits(self, scene: Scene, seconds: float = SECONDS) -> bool | None:
-        """Return whether these gears can be laid out; None where that is not known in time."""
-        if self._clock.over:
-            return None
-        box = self.read(scene)
+    def fits(other: Scene, clock: Clock) -> Verdict:
+        box = gearbox_of(other, pairs)
         if box is None or faults(box):
-            return False
-        return possible(box, self._clock.within(seconds), self._clock.watch)
+            return Verdict(False)
+        return Verdict(possible(box, clock.left.seconds or math.inf, clock.watch))
 
-    def read(self, scene: Scene) -> Gearbox | None:
-        """Return the gearbox of a changed file; None where its own rules refuse it."""
-        return gearbox_of(scene, self._pairs) if allowed(scene) else None
-
-    def smallest(
-        self, scene: Callable[[float], Scene], steps: int, key: str, high: float | None = None
-    ) -> list[float]:
-        """Return sizes of a change known to fit, the smallest first; none where there is none.
-
-        scene: the file with the change of some size. high: a size known to fit. A size that stays
-        undecided is not known to fit; it is noted in `open` where no size is known to fit.
-        """
-        if self._clock.over:
-            return []
-        if high is None:
-            high = self._farthest(scene) if steps else 1.0
-            found = self.fits(scene(high))
-            if found is None:
-                self.open.append(key)
-            if not found:
-                return []
-        return _halved(lambda size, seconds: self.fits(scene(size), seconds), high, steps)
-
-    def _farthest(self, scene: Callable[[float], Scene]) -> float:
-        """Return the largest size, up to 1, with which the rules of the file hold."""
-        low, high = 0.0, 1.0
-        if self.read(scene(high)) is not None:
-            return high
-        for _ in range(HALVINGS):
-            middle = 0.5 * (low + high)
-            low, high = (low, middle) if self.read(scene(middle)) is None else (middle, high)
-        return low
-
-    def proposal(
-        self, scene: Callable[[Any], Scene], edit: Edit, sizes: Sequence[float]
-    ) -> tuple[float, Any] | None:
-        """Size and what to write for it: the first that a layout is known to exist with."""
-        seconds = SECONDS
-        for size in sizes:
-            for value in edit.proposed(size):
-                found = self.fits(scene(value), seconds)
-                if found:
-                    return size, value
-                seconds = seconds if found is False else BRIEF
-        return None
+    return Questions(
+        scene,
+        fits,
+        clock,
+        seconds=SECONDS,
+        halving=(HALF, BRIEF),
+        doubts=HALVINGS,
+        ladder=(),
+        far=math.inf,
+    )
 
 
 def remedies(scene: Scene, gears: Result, clock: Clock) -> Remedies:
@@ -119,16 +81,16 @@ def remedies(scene: Scene, gears: Result, clock: Clock) -> Remedies:
     layout.ready(clock.watch)
     clock.start += clock.seconds - begun  # compiling takes no time of the remedies
     pairs = pairs_of(scene, gears)
-    asked = Questions(pairs, clock)
-    single, choices = edits(scene, pairs), switches(scene)
-    chosen = [c for m in choices if (c := _chosen(scene, m, asked)) is not None]
-    moved = [r for m in single if (r := _moved(scene, m, asked)) is not None]
+    asked = questions(scene, pairs, clock)
+    single, choices = box_moves(scene, pairs), switches(scene)
+    chosen = [r for m in choices if (r := _chosen(asked, m)) is not None]
+    moved = [r for m in single if (r := _moved(asked, m)) is not None]
     found = sorted(moved, key=_size) + chosen
     message = ""
     if found and asked.open:
         message = f"time ran out before it was known whether {', '.join(asked.open)} alone suffices"
     elif not found:
-        both = _pairs(scene, single + choices[::-1], asked)  # of two tables the last goes first
+        both = _pairs(asked, single + choices[::-1])  # of two tables the last goes first
         found = sorted(both, key=_size)
         if asked.open and not found:
             message = "no remedy was found, and time ran out before every change was decided"
@@ -198,130 +160,76 @@ def gearbox_of(scene: Scene, pairs: tuple[GearPair, ...]) -> Gearbox | None:
         return None
 
 
-def _halved(asks: Asks, high: float, steps: int) -> list[float]:
-    """Return sizes that fit, the smallest first, by halving from `high`, which fits."""
-    low, known, seconds = 0.0, [high], HALF
-    for _ in range(steps):
-        middle = 0.5 * (low + known[0])
-        found = asks(middle, seconds)
-        if found:
-            known.insert(0, middle)
-            continue
-        low = middle
-        if found is None:  # no proof of less is found nearer: only what fits is
-            seconds = BRIEF
-    return known
-
-
-def _moved(scene: Scene, edit: Edit, asked: Questions) -> Found | None:
-    """Return the smallest known size of one edit and its remedy; None where none is known."""
-    known = asked.smallest(
-        lambda size: edit.put(scene, edit.searched(size)), edit.steps, edit.key()
-    )
-    found = asked.proposal(lambda value: edit.put(scene, value), edit, known)
-    if found is None:
-        if known:
-            asked.open.append(edit.key())
+def _moved(asked: Questions, own: BoxMove) -> Found | None:
+    """Return the smallest known change of one number; None where none is known."""
+    known = least(asked, ((own.move, 1.0),))
+    if known is None:
         return None
-    size, value = found
-    less = asked.fits(edit.put(scene, edit.back(value)))
-    verified = {"with": "feasible", "with_less": _word(less)}
-    change = _change(scene, edit, value)
-    remedy = Remedy("least", edit.what, (change,), change.factor, None, verified)
-    return edit.change(size), remedy, edit.put(scene, value)
+    for move in (own.point, own.move) if own.point else (own.move,):
+        remedy = as_remedy(asked, Known(((move, 1.0),), known.low, known.high), "least")
+        there = asked.edited(((move, known.high),))
+        if remedy is not None and there is not None:
+            return own.change(known.high), remedy, there.scene
+    asked.open.append(own.key)
+    return None
 
 
-def _word(found: bool | None) -> str:
-    return "undecided" if found is None else ("feasible" if found else "infeasible")
-
-
-def _change(scene: Scene, edit: Edit, value: Any) -> Change:
-    """Return an edit as a change; its factor is infinite where a number is shifted."""
-    factor = math.inf
-    if edit.texts:
-        factor = 1.0
-    elif isinstance(value, Quantity):
-        now = edit.searched(0.0)
-        factor = max(value.value / now.value, now.value / value.value)
-    return Change(edit.key(), edit.was(scene), edit.write(value), factor)
-
-
-def _chosen(scene: Scene, edit: Edit, asked: Questions) -> Found | None:
+def _chosen(asked: Questions, own: BoxMove) -> Found | None:
     """Return a switch that suffices alone."""
-    value = edit.searched(1.0)
-    if not asked.smallest(lambda _: edit.put(scene, value), 0, edit.key()):
+    there = asked.edited(((own.move, SET),))
+    answer = False if there is None else asked.verdict_of(there).answer
+    if answer is None:
+        asked.open.append(own.key)
+    if there is None or not answer:
         return None
-    change = _change(scene, edit, value)
-    remedy = Remedy("choice", edit.what, (change,), 1.0, None, {"with": "feasible"})
-    return edit.change(1.0), remedy, edit.put(scene, value)
+    remedy = Remedy("choice", own.move.words, there.changes, 1.0, None, {"with": "feasible"})
+    return own.change(SET), remedy, there.scene
 
 
-def _pairs(scene: Scene, single: tuple[Edit, ...], asked: Questions) -> list[Found]:
+def _pairs(asked: Questions, single: tuple[BoxMove, ...]) -> list[Found]:
     """Return two changes that do together, each as small as the other allows."""
-    rough: list[tuple[float, float, Pair]] = []
+    rough: list[tuple[float, list[tuple[Move, float]], Pair]] = []
     for pair in combinations(single, 2):
         if _same(*pair):
             continue
-
-        def both(size: float, pair: Pair = pair) -> Scene:
-            return _put(scene, pair, [m.searched(size) for m in pair])
-
-        steps = ROUGH_HALVINGS if any(m.steps for m in pair) else 0
-        key = " and ".join(m.key() for m in pair)
-        for size in asked.smallest(both, steps, key)[:1]:
-            rough.append((sum(m.change(size) for m in pair), size, pair))
+        known = smallest(asked, tuple((own.scaled, 1.0) for own in pair))
+        if known is not None:
+            moves = [(own.move, own.unscaled(known.high)) for own in pair]
+            rough.append((_changed(pair, moves), moves, pair))
     found = []
-    for _, size, pair in sorted(rough, key=lambda r: r[0])[:PAIRS]:
-        if (remedy := _together(scene, pair, size, asked)) is not None:
+    for _, moves, pair in sorted(rough, key=lambda r: r[0])[:PAIRS]:
+        if (remedy := _together(asked, pair, moves)) is not None:
             found.append(remedy)
         else:
-            asked.open.append(" and ".join(m.key() for m in pair))
+            asked.open.append(" and ".join(own.key for own in pair))
     return found
 
 
-def _same(one: Edit, other: Edit) -> bool:
+def _changed(pair: Pair, moves: Sequence[tuple[Move, float]]) -> float:
+    """Return how much two moves change together, relative."""
+    return sum(own.change(factor) for own, (_, factor) in zip(pair, moves, strict=True))
+
+
+def _same(one: BoxMove, other: BoxMove) -> bool:
     """Return whether two moves change the same table or number, so that one undoes the other."""
     shared = min(len(one.path), len(other.path))
     return one.path[:shared] == other.path[:shared]
 
 
-def _together(scene: Scene, pair: Pair, size: float, asked: Questions) -> Found | None:
-    """Return the remedy of two moves of a common size: one made smaller, then the other."""
-    sizes, values = [size, size], [m.searched(size) for m in pair]
-    for k, edit in enumerate(pair):
-
-        def one(value: Any, k: int = k) -> Scene:
-            return _put(scene, pair, [value if i == k else v for i, v in enumerate(values)])
-
-        def searched(own: float, edit: Edit = edit, one: Callable[[Any], Scene] = one) -> Scene:
-            return one(edit.searched(own))
-
-        known = asked.smallest(searched, edit.steps, edit.key(), sizes[k])
-        found = asked.proposal(one, edit, known)
-        if found is None:
-            return None
-        sizes[k], values[k] = found
-    back = [
-        asked.fits(_put(scene, pair, [m.back(v) if i == k else v for i, v in enumerate(values)]))
-        for k, m in enumerate(pair)
-        if m.steps
-    ]
-    words = {_word(b) for b in back}
-    verified = {"with": "feasible", "with_less": words.pop() if len(words) == 1 else "mixed"}
-    if not back:
-        verified.pop("with_less")
-    changes = tuple(_change(scene, m, v) for m, v in zip(pair, values, strict=True))
-    change = sum(m.change(s) for m, s in zip(pair, sizes, strict=True))
-    what = " and ".join(m.what for m in pair)
-    remedy = Remedy("pair", what, changes, math.inf, None, verified)
-    return change, remedy, _put(scene, pair, values)
-
-
-def _put(scene: Scene, pair: Pair, values: list[Any]) -> Scene:
-    """Return both changes, in order: a table goes after others changed."""
-    for edit, value in zip(pair, values, strict=True):
-        scene = edit.put(scene, value)
-    return scene
+def _together(asked: Questions, pair: Pair, moves: list[tuple[Move, float]]) -> Found | None:
+    """Return the remedy of two moves that suffice: one made smaller, then the other."""
+    for k, (move, factor) in enumerate(moves):
+        known = Known(((move, 1.0),), 1.0, factor)
+        if move.switch is None:
+            narrow(asked.beside((moves[1 - k],)), known, FACTOR_TOLERANCE)
+        moves[k] = (move, known.high)
+    remedy = as_remedy(asked, Known(tuple(moves), 1.0, 1.0), "pair")
+    there = asked.edited(tuple(moves))
+    if remedy is None or there is None:
+        return None
+    what = " and ".join(own.move.words for own in pair)
+    remedy = replace(remedy, what=what, factor=math.inf)
+    return _changed(pair, moves), remedy, there.scene
 
 
 def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:

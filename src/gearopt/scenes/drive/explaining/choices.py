@@ -10,10 +10,11 @@ from typing import Any
 from gearopt.optimise.explaining.explain import DIGITS
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.optimise.explaining.repair import SLACK_TRIED, least_value
-from gearopt.scenes.drive.explaining.movable import edited_from
+from gearopt.scenes.drive.explaining.moves import inherited
 from gearopt.scenes.drive.explaining.together import is_real
 from gearopt.scenes.drive.explaining.tried import Case
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.explaining.moves import Move, changed
 from gearopt.scenes.explaining.numbers import SHORT, allowed, eased, put, written
 from gearopt.scenes.reading.module_series import SERIES, family, series_of
 from gearopt.scenes.reading.toml import dotted, toml_text
@@ -59,7 +60,7 @@ def nearest_ratio(case: Case, away: Fraction | None) -> Remedy | None:
     for found in (one for ratio in reached.ratios for one in _written(case.scene, ratio)):
         if case.status(found) == "feasible":
             place = ("duty", "ratio" if found.duty.output_speed is None else "output_speed")
-            change = edited_from(case.scene, found, [place]).changes[0]
+            (change,) = changed(case.scene, found, [Move(place, 1, inherits=inherited)]).changes
             verified = {"with": "feasible", "nearer": word}
             return Remedy("choice", "ratio", (change,), change.factor, None, verified)
     return None

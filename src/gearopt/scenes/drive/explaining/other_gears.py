@@ -12,7 +12,7 @@ from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.optimise.result import Event
 from gearopt.optimise.solve import run
 from gearopt.physics.gears import GearPair
-from gearopt.scenes.drive.explaining.box_edits import switches
+from gearopt.scenes.drive.explaining.box_moves import switched, switches
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.numbers import allowed
 
@@ -61,8 +61,9 @@ def _candidates(
         return
     alone = {change.key for remedy in known for change in remedy.changes if not change.write}
     for switch in switches(scene):
-        changed = switch.put(free, switch.searched(1.0))
-        change = Change(switch.key(), switch.was(scene), switch.write(None), 1.0)
+        changed = switched(free, switch)
+        assert switch.move.switch is not None
+        change = Change(*switch.move.switch, 1.0)
         if change.key in alone or not allowed(changed):
             continue
         if not of_any_gears(changed.gearbox(pairs)):

@@ -17,7 +17,7 @@ from gearopt.scenes.drive.explaining.requirements import (
     requirements,
     without,
 )
-from gearopt.scenes.drive.explaining.tried import Case
+from gearopt.scenes.drive.explaining.tried import Case, any_possible
 from gearopt.scenes.drive.rating.limits import STANDARDS
 
 RATED_BY = {"agma": "rating_by_AGMA", "iso6336": "rating_by_ISO_6336"}
@@ -57,7 +57,7 @@ class _Filter:
         """Return whether a design exists without what is dropped; None: not known."""
         key = frozenset(dropped)
         if key not in self.answers:
-            self.answers[key] = possible(self.case, without(self.case.scene, key))
+            self.answers[key] = any_possible(self.case, without(self.case.scene, key))
         return self.answers[key]
 
     def drop(self, families: Sequence[Sequence[str]]) -> None:
@@ -84,12 +84,6 @@ class _Filter:
                 self.needed.add(name)
             elif found is False:
                 self.dropped |= {name}
-
-
-def possible(case: Case, trains: Sequence[Train]) -> bool | None:
-    """Return whether one of some drives has a design; None where that is not known in time."""
-    answers = [case.possible(train) for train in trains]
-    return True if True in answers else (None if None in answers else False)
 
 
 def conflict(case: Case) -> Conflict:
@@ -128,7 +122,7 @@ def _standard(case: Case, dropped: Dropped, names: Sequence[str]) -> list[str]:
         return []
     trains = without(case.scene, dropped)
     for k, name in enumerate(RATED_BY.values()):
-        if possible(case, [_rated_by(train, k) for train in trains]) is False:
+        if any_possible(case, [_rated_by(train, k) for train in trains]) is False:
             return [name]
     return []
 

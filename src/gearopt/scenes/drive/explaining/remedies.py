@@ -2,31 +2,17 @@
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Remedies, Remedy
 from gearopt.optimise.explaining.handles import Handle
-from gearopt.optimise.explaining.repair import (
-    FARTHEST,
-    PRODUCT_TIE,
-    SLACK_TRIED,
-    any_resolves,
-    conflict,
-    even,
-)
+from gearopt.optimise.explaining.repair import FARTHEST, PRODUCT_TIE, any_resolves, conflict, even
 from gearopt.optimise.problem import Problem
 from gearopt.scenes.drive.explaining.choices import eased_tolerance, nearest_ratio, switches
-from gearopt.scenes.drive.explaining.movable import (
-    Movable,
-    Moves,
-    applied,
-    bound_of,
-    comparable,
-    less,
-)
+from gearopt.scenes.drive.explaining.moves import bound_of, comparable, shared, steps
 from gearopt.scenes.drive.explaining.together import (
     is_real,
     is_stepped,
@@ -35,16 +21,24 @@ from gearopt.scenes.drive.explaining.together import (
     together,
     widest,
 )
-from gearopt.scenes.drive.explaining.tried import (
-    Case,
+from gearopt.scenes.drive.explaining.tried import Case
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.explaining.engine import (
+    JOINT,
+    Known,
+    Questions,
+    as_remedy,
     enlarged,
-    smallest_alike,
-    smallest_step,
+    least,
+    smallest,
     trimmed,
 )
-from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.explaining.moves import DUTY, LIMIT, Move, Moves
 from gearopt.scenes.explaining.numbers import read
 from gearopt.scenes.parts import Duty
+
+NEARLY = 1.0 - 1e-6  # times what real-valued sizes need: a step that close to it is that one
+Proposal = tuple[str, Known]  # kind of a remedy, and its moves
 
 
 def remedies(scene: Scene, clock: Clock) -> Remedies:
@@ -53,11 +47,12 @@ def remedies(scene: Scene, clock: Clock) -> Remedies:
     Every remedy was tried: a design exists with it.
     """
     case, real = Case(scene, clock), is_real(scene, clock)
+    asked = case.asked
     base, known, movable = posed(scene)
     blamed = _conflict(base, known, clock) if real else ()
-    singles = _tried(case, _singles(case, base if real else None, movable, blamed))
+    singles = _tried(asked, _singles(case, asked, base if real else None, movable, blamed))
     floor, beside = together(case, base, movable) if real else (None, None)
-    found = _changes(case, movable, singles, beside, floor)
+    found = _changes(case, asked, movable, singles, beside, floor)
     if scene.duty.ratio_tolerance == 0 and (remedy := eased_tolerance(case)) is not None:
         found.append(remedy)
     if (remedy := nearest_ratio(case, _tolerance(found))) is not None:
@@ -82,21 +77,12 @@ def _conflict(base: Problem, known: Sequence[Handle], clock: Clock) -> tuple[Han
     return conflict(base, limits, clock) or conflict(base, known, clock)
 
 
-@dataclass(frozen=True)
-class Proposal:
-    """Moves that suffice, what they are called, and the proven minimum factor.
-
-    sure: every smaller change of the same numbers is known to be impossible; None: try a step less.
-    """
-
-    kind: str
-    moves: Moves
-    bound: float | None
-    sure: bool | None = None
-
-
 def _singles(
-    case: Case, base: Problem | None, movable: Sequence[Movable], blamed: Sequence[Handle]
+    case: Case,
+    asked: Questions,
+    base: Problem | None,
+    movable: Sequence[Move],
+    blamed: Sequence[Handle],
 ) -> Iterator[Proposal]:
     """Yield every number that suffices alone, moved as little as that takes.
 
@@ -106,56 +92,63 @@ def _singles(
     places = {(h.kind, h.place) for h in blamed if not h.given}
     conflicting = places and all(not h.given for h in blamed)
     common: dict[tuple[str, int], float] = {}  # smallest factors of all stages: one needs no less
-    for number in movable:
+    for move in movable:
         start, bound = 1.0, None
         if base is not None:
-            own = {(h.kind, h.place) for h in number.handles}
-            given = any(h.given for h in number.handles)
+            own = {(h.kind, h.place) for h in move.handles}
+            given = any(h.given for h in move.handles)
             if conflicting and not given and not own & places:
                 continue
-            alike = even(base, number.handles, case.clock)
+            alike = even(base, move.handles, case.clock)
             if alike is None:
                 continue
-            start, bound = alike.factor, bound_of(case.scene, number, alike.bound)
+            start, bound = alike.factor, bound_of(case.scene, move, alike.bound)
         if case.clock.over:
             return
-        kind = "less" if number.sort == "duty" else ("even" if number.shared else "one")
-        if is_stepped(case.scene, number):
-            alone = smallest_together(case, [number], FARTHEST * start)
-            if alone is not None:
-                yield Proposal(kind, alone[0], bound, alone[1] or None)
-        elif number.path[-1] == "module" and case.scene.teeth is not None:
-            stepped = smallest_step(case, number, FARTHEST * start)
-            if stepped is not None:
-                yield Proposal(kind, ((number, stepped[0]),), bound, stepped[1])
+        kind = "less" if move.role == DUTY else ("even" if shared(move) else "one")
+        if is_stepped(case.scene, move):
+            known = _given(case, move, FARTHEST * start)
+        elif move.listed:
+            there = [f for f in steps(case.scene, move) if start * NEARLY <= f <= FARTHEST * start]
+            stepped = replace(move, steps=tuple(there))
+            known = smallest(asked, ((stepped, 1.0),)) if there else None
         else:
-            start = max(start, common.get((number.family, number.direction), 1.0))
+            start = max(start, common.get((move.family, move.way), 1.0))
             doubts = len(case.open)
-            moves = None if math.isinf(start) else smallest_alike(case, ((number, start),))
-            if number.shared and len(case.open) == doubts:  # else a smaller one may do
-                least = math.inf if moves is None else moves[0][1]
-                common[number.family, number.direction] = least
-            if moves is not None:
-                yield Proposal(kind, moves, bound)
-    yield from _alike(case, base, movable)
+            known = None if math.isinf(start) else least(asked, ((move, start),))
+            if shared(move) and len(case.open) == doubts:  # else a smaller one may do
+                factor = math.inf if known is None else known.at(known.high)[0][1]
+                common[move.family, move.way] = factor
+        if known is not None:
+            known.bound = bound
+            yield kind, known
+    yield from _alike(case, asked, base, movable)
 
 
-def _tried(case: Case, proposals: Iterable[Proposal]) -> list[tuple[Proposal, Remedy]]:
+def _given(case: Case, move: Move, most: float) -> Known | None:
+    """Return the smallest change of a given whole number that suffices."""
+    alone = smallest_together(case, [move], most)
+    return None if alone is None else Known(alone[0], 1.0, 1.0, alone[1], stepped=alone[1])
+
+
+def _tried(asked: Questions, proposals: Iterable[Proposal]) -> list[tuple[Proposal, Remedy]]:
     """Return proposals with their edits, each as it is found, until time runs out."""
-    return [(proposal, r) for proposal in proposals if (r := _remedy(case, proposal)) is not None]
+    return [(p, r) for p in proposals if (r := as_remedy(asked, p[1], p[0])) is not None]
 
 
-def _alike(case: Case, base: Problem | None, movable: Sequence[Movable]) -> Iterator[Proposal]:
+def _alike(
+    case: Case, asked: Questions, base: Problem | None, movable: Sequence[Move]
+) -> Iterator[Proposal]:
     """Yield one factor for a kind of limit that every stage has for itself, and for load limits."""
-    limits = [m for m in movable if m.sort == "limit"]
-    common = {m.family for m in limits if m.shared}
+    limits = [m for m in movable if m.role == LIMIT]
+    common = {m.family for m in limits if shared(m)}
     groups = [
-        [m for m in limits if m.family == family and not m.shared]
+        [m for m in limits if m.family == family and not shared(m)]
         for family in dict.fromkeys(m.family for m in limits)
         if family not in common
     ]
     loads = [m for m in limits if m.family in case.scene.limits.LAW.names]
-    groups.append([m for m in loads if m.shared or m.family not in common])
+    groups.append([m for m in loads if shared(m) or m.family not in common])
     for group in groups:
         if len(group) < 2 or case.clock.over:
             continue
@@ -166,36 +159,35 @@ def _alike(case: Case, base: Problem | None, movable: Sequence[Movable]) -> Iter
                 continue
             start = alike.factor
             bound = alike.bound if comparable(case.scene, group) else None
-        moves = smallest_alike(case, tuple((m, start) for m in group))
-        if moves is not None:
-            yield Proposal("even", moves, bound)
+        known = least(asked, tuple((m, start) for m in group))
+        if known is not None:
+            known.bound = bound
+            yield "even", known
 
 
 def _changes(
     case: Case,
-    movable: list[Movable],
+    asked: Questions,
+    movable: list[Move],
     singles: list[tuple[Proposal, Remedy]],
     beside: Moves | None,
     floor: float | None,
 ) -> list[Remedy]:
     """Return the remedies of limits and sizes, the smallest first, then those that ask for less."""
-    proposals = []
+    whole, joint = case.scene.teeth is not None, []
     if beside is not None and len(beside) > 1:
-        proposals.append(Proposal("least", beside, floor))
-    for proposal, _ in singles:
-        several = (
-            proposal.kind == "even" and len(proposal.moves) > 1 and case.scene.teeth is not None
-        )
-        if several:
-            proposals.append(Proposal("least", trimmed(case, proposal.moves), floor))
-    rows = [r for _, r in (*singles, *_tried(case, proposals))]
+        joint.append(beside)
+    for (kind, known), _ in singles:
+        if kind == "even" and len(known.moves) > 1 and whole:
+            joint.append(trimmed(asked, known.at(known.high)))
+    proposals = [(JOINT, Known(moves, 1.0, 1.0, bound=floor)) for moves in joint]
+    rows = [r for _, r in (*singles, *_tried(asked, proposals))]
     best = min((_product(r) for r in rows if r.kind != "less"), default=FARTHEST)
-    joint = smallest_together(case, movable, best * (1.0 - PRODUCT_TIE))
-    if joint is not None and (
-        r := _remedy(case, Proposal("least", joint[0], floor, joint[1] or None))
-    ):
-        rows.append(r)
-    if not any(r.kind != "less" for r in rows) and (r := _all_limits(case, movable)):
+    given = smallest_together(case, movable, best * (1.0 - PRODUCT_TIE))
+    if given is not None:
+        known = Known(given[0], 1.0, 1.0, given[1], bound=floor, stepped=given[1])
+        rows += [r for _, r in _tried(asked, [(JOINT, known)])]
+    if not any(r.kind != "less" for r in rows) and (r := _all_limits(case, asked, movable)):
         rows.append(r)
     own = sorted((r for r in rows if r.kind != "less"), key=_product)
     own.sort(key=lambda r: r.kind == "even" and len(r.changes) > 1)  # its numbers move alike
@@ -204,7 +196,7 @@ def _changes(
         tried = "need more" if all_known else "not all known"
         least = replace(
             own[0],
-            kind="least",
+            kind=JOINT,
             factor=_product(own[0]),
             bound=own[0].bound if floor is None else floor,
             verified={**own[0].verified, "others": tried},
@@ -222,11 +214,13 @@ def _worth_reporting(found: Any) -> Iterator[Remedy]:
         seen.add(remedy.what if remedy.kind == "one" else "")
 
 
-def _all_limits(case: Case, movable: list[Movable]) -> Remedy | None:
+def _all_limits(case: Case, asked: Questions, movable: list[Move]) -> Remedy | None:
     """Return all limits enlarged alike, then each made as small as the others allow."""
     moves = tuple((m, 1.0) for m in widest(movable))
-    larger = enlarged(case, moves) if moves and case.scene.teeth is not None else None
-    return None if larger is None else _remedy(case, Proposal("least", trimmed(case, larger), None))
+    larger = enlarged(asked, moves) if moves and case.scene.teeth is not None else None
+    return (
+        None if larger is None else as_remedy(asked, Known(trimmed(asked, larger), 1.0, 1.0), JOINT)
+    )
 
 
 def _product(remedy: Remedy) -> float:
@@ -241,25 +235,3 @@ def _distinct(found: Sequence[Remedy]) -> list[Remedy]:
         if keys not in best or _product(remedy) < _product(best[keys]) * (1.0 - PRODUCT_TIE):
             best[keys] = remedy
     return list(best.values())
-
-
-def _remedy(case: Case, proposal: Proposal) -> Remedy | None:
-    """Return a remedy as edits, tried as they are written; None if it is none."""
-    edited = applied(case.scene, proposal.moves)
-    if edited is None or case.status(edited.scene) != "feasible":
-        return None
-    if proposal.sure is not None:
-        word = "infeasible" if proposal.sure else "undecided"
-    else:
-        each = (None,) if proposal.kind == "even" else range(len(edited.changes))
-        words = {case.status(less(case.scene, edited, SLACK_TRIED, k)) for k in each}
-        word = words.pop() if len(words) == 1 else "mixed"
-    factors = [c.factor for c in edited.changes]
-    return Remedy(
-        proposal.kind,
-        ", ".join(dict.fromkeys(number.family for number, _ in proposal.moves)),
-        edited.changes,
-        max(factors) if proposal.kind == "even" else math.prod(factors),
-        proposal.bound,
-        {"with": "feasible", "with_less": word},
-    )

@@ -22,19 +22,20 @@ from gearopt.optimise.explaining.handles import Handle, handles
 from gearopt.optimise.explaining.repair import FARTHEST, PRODUCT_TIE, least_factors
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.solve import solve_within
-from gearopt.scenes.drive.explaining.movable import (
+from gearopt.scenes.drive.explaining.moves import (
     WIDTH,
-    Movable,
-    Moves,
     applied,
     comparable,
-    movables,
+    moves_of,
     reachable,
+    shared,
     stage_of,
     steps,
 )
-from gearopt.scenes.drive.explaining.tried import Case, enlarged, trimmed
+from gearopt.scenes.drive.explaining.tried import Case
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.explaining.engine import enlarged, trimmed
+from gearopt.scenes.explaining.moves import DUTY, LIMIT, SIZE, Move, Moves
 
 EDGE = 1.001  # a reach is known this closely; it ends between two values
 QUESTIONS = 60  # at most, whether the drives of a box are possible
@@ -45,7 +46,7 @@ Box = tuple[tuple[int, int], ...]
 
 @dataclass(frozen=True)
 class Choice:
-    """A given number: its stage (from 0), and the factors (n,) and movables of its values, by size.
+    """A given number: its stage (from 0), and the factors (n,) and moves of its values, by size.
 
     Where the file's own value stands, the factor is 1 and the number None.
     """
@@ -54,17 +55,15 @@ class Choice:
     field: str
     values: tuple[Any, ...]
     factors: tuple[float, ...]
-    movables: tuple[Movable | None, ...]
+    moves: tuple[Move | None, ...]
 
 
-def smallest_together(
-    case: Case, movables: list[Movable], most: float
-) -> tuple[Moves, bool] | None:
+def smallest_together(case: Case, movable: list[Move], most: float) -> tuple[Moves, bool] | None:
     """Return moves of given numbers with the smallest product below `most`; whether that is proven.
 
     None where there are none. After so many questions, the best that was met on the way.
     """
-    choices = _choices(case, movables, most)
+    choices = _choices(case, movable, most)
     if not choices:
         return None
     sure, asked, train = True, 0, case.scene.train()
@@ -112,16 +111,16 @@ def _met(case: Case, train: Train, choices: list[Choice], box: Box) -> Box | boo
     return tuple((j, j) for j in places)
 
 
-def _choices(case: Case, movables: list[Movable], most: float) -> list[Choice]:
+def _choices(case: Case, movable: list[Move], most: float) -> list[Choice]:
     """Return the numbers that may be moved together, with their values of a factor below `most`."""
-    numbers: dict[tuple[Any, ...], list[tuple[Any, float, Movable | None]]] = {}
-    for number in movables:
-        if number.sort == "size":
-            reach = EDGE * number.reach
+    numbers: dict[tuple[Any, ...], list[tuple[Any, float, Move | None]]] = {}
+    for number in movable:
+        if number.role == SIZE:
+            reach = EDGE * number.far
             for factor in steps(case.scene, number):
                 if factor < most and factor <= reach:
                     row = (
-                        _plain(case.scene, number.path, factor, number.direction),
+                        _plain(case.scene, number.path, factor, number.way),
                         factor,
                         number,
                     )
@@ -181,7 +180,7 @@ def _product(choices: list[Choice], box: Box) -> float:
 def _moves(choices: list[Choice], box: Box) -> Moves:
     moved = []
     for choice, (i, _) in zip(choices, box, strict=True):
-        number = choice.movables[i]
+        number = choice.moves[i]
         if number is not None:
             moved.append((number, choice.factors[i]))
     return tuple(moved)
@@ -192,13 +191,13 @@ def is_real(scene: Scene, clock: Clock) -> bool:
     return solve_within(clock, sizing.problem(scene.train())).status == "infeasible"
 
 
-def posed(scene: Scene) -> tuple[Problem, list[Handle], list[Movable]]:
+def posed(scene: Scene) -> tuple[Problem, list[Handle], list[Move]]:
     """Return the problem with real-valued sizes, what may be relaxed, and the file's numbers."""
     train = scene.train()
     base = sizing_text.movable(train)
     known = [_named(h, train, scene.teeth is None) for h in handles(base)]
-    movable = [reachable(scene, number) for number in movables(scene, known)]
-    return base, known, [m for m in movable if m.reach > 1.0]
+    movable = [reachable(scene, number) for number in moves_of(scene, known)]
+    return base, known, [m for m in movable if m.far > 1.0]
 
 
 def _named(handle: Handle, train: Train, whole: bool) -> Handle:
@@ -214,9 +213,7 @@ def _named(handle: Handle, train: Train, whole: bool) -> Handle:
     return replace(handle, name=name, whole=whole and not handle.given and "teeth" in handle.family)
 
 
-def together(
-    case: Case, base: Problem, movable: list[Movable]
-) -> tuple[float | None, Moves | None]:
+def together(case: Case, base: Problem, movable: list[Move]) -> tuple[float | None, Moves | None]:
     """Return the proven minimum product over all limits and given sizes, and moves of about that.
 
     Whole numbers that are given are set first: the others follow them.
@@ -233,7 +230,7 @@ def together(
         made = None if rest is None else _beside(case, whole, rest)
         if made is not None:
             return bound, made
-    return bound, _from_sizes(case, movable, tuple(m for m in others if m[0].sort == "size"))
+    return bound, _from_sizes(case, movable, tuple(m for m in others if m[0].role == SIZE))
 
 
 def _rounded(scene: Scene, moves: Moves) -> list[Moves]:
@@ -251,27 +248,28 @@ def _rounded(scene: Scene, moves: Moves) -> list[Moves]:
 
 def _beside(case: Case, fixed: Moves, rest: Moves) -> Moves | None:
     """Return fixed moves, and the smallest of others that suffice beside them."""
-    if fixed and case.works(fixed):
+    asked = case.asked
+    if fixed and asked.possible_with(fixed):
         return fixed
-    if case.scene.teeth is None and case.works((*fixed, *rest)):
+    if case.scene.teeth is None and asked.possible_with((*fixed, *rest)):
         return (*fixed, *rest)
-    limits = tuple(m for m in rest if m[0].sort == "limit")
+    limits = tuple(m for m in rest if m[0].role == LIMIT)
     given = tuple(m for m in rest if m not in limits)
     for still, alike in ((given, limits), ((), rest)):  # what is given need not be easier further
         beside = (*fixed, *still)
-        larger = enlarged(case, alike, beside) if alike else None
+        larger = enlarged(asked.beside(beside), alike) if alike else None
         if larger is not None:
-            return (*beside, *trimmed(case, larger, beside))
+            return (*beside, *trimmed(asked.beside(beside), larger))
     return None
 
 
-def _from_sizes(case: Case, movable: list[Movable], real: Moves) -> Moves | None:
+def _from_sizes(case: Case, movable: list[Move], real: Moves) -> Moves | None:
     """Return given whole numbers moved as little as possible under wide limits, then limits.
 
     real: given real-valued sizes that move too.
     """
     limits = widest(movable)
-    wide = [(m, min(FARTHEST, m.reach)) for m in limits]
+    wide = [(m, min(FARTHEST, m.far)) for m in limits]
     edited = applied(case.scene, (*wide, *real))
     if edited is None:
         return None
@@ -281,10 +279,10 @@ def _from_sizes(case: Case, movable: list[Movable], real: Moves) -> Moves | None
 
 
 def _smallest_moves(
-    case: Case, base: Problem, movable: Sequence[Movable]
+    case: Case, base: Problem, movable: Sequence[Move]
 ) -> tuple[Moves, float | None] | None:
     """Return the moves of limits and given sizes of the smallest product, and its bound."""
-    groups = [m for m in movable if m.sort != "duty"]
+    groups = [m for m in movable if m.role != DUTY]
     found = least_factors(base, [m.handles for m in groups], case.clock) if groups else None
     if found is None:
         return None
@@ -304,13 +302,13 @@ def _after(case: Case, scene: Scene) -> Moves | None:
     return None if found is None else found[0]
 
 
-def is_stepped(scene: Scene, number: Movable) -> bool:
+def is_stepped(scene: Scene, number: Move) -> bool:
     """Return whether a number is given and may only take steps."""
-    return number.sort == "size" and bool(steps(scene, number))
+    return number.role == SIZE and bool(steps(scene, number))
 
 
-def widest(movable: Sequence[Movable]) -> list[Movable]:
+def widest(movable: Sequence[Move]) -> list[Move]:
     """Return all limits, where they stand for most stages."""
-    limits = [m for m in movable if m.sort == "limit"]
-    shared = {m.family for m in limits if m.shared}
-    return [m for m in limits if m.shared or m.family not in shared]
+    limits = [m for m in movable if m.role == LIMIT]
+    common = {m.family for m in limits if shared(m)}
+    return [m for m in limits if shared(m) or m.family not in common]

@@ -1,4 +1,4 @@
-"""Whether an impossible drive is possible with some numbers moved; the smallest moves that do."""
+"""Whether an impossible drive is possible with some numbers moved."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -11,10 +11,12 @@ from gearopt.formulations.drive.teeth.search import any_train, possible
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import THERE
-from gearopt.optimise.explaining.repair import WIDEST, Works, least_between, least_value
+from gearopt.optimise.explaining.repair import FARTHEST
 from gearopt.optimise.solve import solve_within
-from gearopt.scenes.drive.explaining.movable import Movable, Moves, applied, less, steps
+from gearopt.scenes.drive.explaining.moves import applied
 from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.explaining.engine import Questions
+from gearopt.scenes.explaining.possible import Verdict, of_status
 
 SECONDS = 2.0  # at most, for one question
 WHOLE, FEW = 0.7, 0.1  # parts of them, for a rated drive and for one of few pinions
@@ -88,12 +90,24 @@ class Case:
         found = self.possible(scene.train())
         return "undecided" if found is None else ("feasible" if found else "infeasible")
 
-    def works(self, moves: Sequence[tuple[Movable, float]], back: float = 0.0) -> bool | None:
-        """Return whether moves suffice (less a part `back` of each); None: not known."""
-        edited = applied(self.scene, moves)
-        if edited is None:
-            return None
-        return self.possible((less(self.scene, edited, back) if back else edited.scene).train())
+    @property
+    def asked(self) -> Questions:
+        """Return the questions of the search for the smallest change."""
+
+        def sized(scene: Scene, clock: Clock) -> Verdict:
+            return Verdict(self.possible(scene.train()))
+
+        def sure(scene: Scene, clock: Clock) -> Verdict:
+            return of_status(self.status(scene))
+
+        both = sized if self.scene.teeth is None else sure
+        return Questions(self.scene, sized, self.clock, both, far=FARTHEST, apply=applied)
+
+
+def any_possible(case: Case, trains: Sequence[Train]) -> bool | None:
+    """Return whether one of some drives has a design; None where that is not known in time."""
+    answers = [case.possible(train) for train in trains]
+    return True if True in answers else (None if None in answers else False)
 
 
 def _of_pinion(train: Train, end: int) -> Train:
@@ -114,72 +128,3 @@ def _widest(train: Train) -> Train:
         widest = replace(face, low=face.high) if free and face.high else face
         stages.append(replace(stage, face_width=widest))
     return replace(train, stages=tuple(stages))
-
-
-def smallest_step(case: Case, number: Movable, most: float) -> tuple[float, bool] | None:
-    """Return the smallest factor, at most `most`, of a number that may only take steps.
-
-    And whether every smaller one is known to be impossible.
-    """
-    sure = True
-    for factor in steps(case.scene, number):
-        edited = applied(case.scene, [(number, factor)])
-        if edited is None or factor > most or case.clock.over:
-            break
-        found = case.possible(edited.scene.train())
-        if found:
-            return factor, sure
-        sure = sure and found is False
-    return None
-
-
-def smallest_alike(case: Case, moves: Moves) -> Moves | None:
-    """Return the smallest moves that suffice, all alike: as given, or enlarged for whole teeth."""
-    if case.scene.teeth is None:
-        return moves
-    return enlarged(case, moves)
-
-
-def enlarged(case: Case, moves: Moves, fixed: Moves = ()) -> Moves | None:
-    """Return moves with the smallest common factor beyond their own with which a design exists.
-
-    fixed: moves that are made beside them, as they are.
-    """
-
-    def larger(extra: float) -> Moves:
-        return tuple((number, min(f * extra, max(f, number.reach))) for number, f in moves)
-
-    def works(extra: float, back: float = 0.0) -> bool | None:
-        return case.works((*larger(extra), *fixed), back)
-
-    hopeless = all(number.eases for number, _ in moves) and works(WIDEST[-1]) is False
-    extra = None if hopeless else least_value(1.0, WIDEST, works)
-    return None if extra is None else larger(extra)
-
-
-def trimmed(case: Case, moves: Moves, fixed: Moves = ()) -> Moves:
-    """Return moves of which each is needed, and as small as the others and those fixed allow."""
-    kept = moves
-    for number, factor in reversed(moves):
-        beside = tuple(m for m in kept if m[0] is not number)
-        others = (*beside, *fixed)
-        if others and case.works(others):
-            kept = beside
-            continue
-        least = least_between(1.0, factor, _alone(case, others, number))
-        kept = tuple((m, least if m is number else f) for m, f in kept)
-    return kept
-
-
-def _alone(case: Case, others: Moves, number: Movable) -> Works:
-    """Return whether a factor of one move will do beside the others: works(factor, back)."""
-
-    def works(factor: float, back: float = 0.0) -> bool | None:
-        moves = (*others, (number, factor))
-        edited = applied(case.scene, moves)
-        if edited is None or not back:
-            return case.works(moves)
-        one = less(case.scene, edited, back, edited.paths.index(number.path))
-        return case.possible(one.train())
-
-    return works

@@ -12,10 +12,12 @@ from gearopt.scenes.drive.explaining.counts import remedies_of_counts
 from gearopt.scenes.drive.explaining.influences import explained
 from gearopt.scenes.drive.explaining.rated import conflict_soon
 from gearopt.scenes.drive.explaining.rated import remedies as of_rated
+from gearopt.scenes.drive.explaining.tried import Case, any_possible
 from gearopt.scenes.drive.layout import APART, at_once_of_count, gears_of
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.sizing import of_count, sized
 from gearopt.scenes.drive.without import without
+from gearopt.scenes.explaining.possible import UNKNOWN, Verdict
 from gearopt.scenes.reading.ask import Ask
 
 ANY_DESIGN_GAP = 1e9  # gap of a design that need not be the best
@@ -60,6 +62,13 @@ def _of_boxes(scene: Scene, clock: Clock) -> Remedies:
         solid = without(scene, "webs")
         return remedies_of_counts(solid, without(solid, "layout"), clock)
     return min(known, key=lambda ways: min((r.factor for r in ways.remedies), default=math.inf))
+
+
+def possible(scene: Scene, clock: Clock) -> Verdict:
+    """Whether a drive has a design; of one that is laid out not known where it has gears."""
+    case = Case(scene, clock)
+    answer = any_possible(case, [scene.held(count).train() for count in scene.counts])
+    return UNKNOWN if answer and scene.layout is not None else Verdict(answer)
 
 
 def _status(scene: Scene, clock: Clock) -> str:

@@ -2,25 +2,18 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
-from gearopt.optimise.explaining.explanation import Change
 from gearopt.optimise.explaining.handles import Handle
+from gearopt.optimise.explaining.repair import FACTOR_TOLERANCE
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.drive import StageTable
-from gearopt.scenes.explaining.numbers import (
-    Path,
-    allowed,
-    apart,
-    at,
-    eased,
-    put,
-    taken_back,
-    written,
-)
-from gearopt.scenes.reading.toml import dotted, exact, toml_text
+from gearopt.scenes.explaining.moves import DUTY, LIMIT, SIZE, Edited, Move, Moves, edited
+from gearopt.scenes.explaining.numbers import Path, eased, taken_back, written
+from gearopt.scenes.reading.toml import exact
 from gearopt.units import Quantity
 
 FIELDS: dict[str, tuple[str, int | None]] = {
@@ -46,79 +39,32 @@ FIELDS: dict[str, tuple[str, int | None]] = {
     "face_width": ("face_width", None),
     "face_width_over_diameter": ("face_width_over_diameter", None),
 }
-DUTY = {"ratio_low": "ratio_tolerance", "ratio_high": "ratio_tolerance", "torque": "power"}
+OF_DUTY = {"ratio_low": "ratio_tolerance", "ratio_high": "ratio_tolerance", "torque": "power"}
 WIDTH = "face_width_over_diameter"
-FACTOR_TOLERANCE = 1.0005  # ratio of a refused to an allowed factor that ends a search
 
 
-@dataclass(frozen=True)
-class Movable:
-    """A number of the file, moved one way.
-
-    family: the limits or sizes it sets; path: where it is written; end: of a range (None: the
-    number, or both ends); direction: +1 or -1; sort: limit, size (given) or duty; handles: what of
-    the real-valued problem it moves.
-    """
-
-    family: str
-    path: Path
-    end: int | None
-    direction: int
-    sort: str
-    handles: tuple[Handle, ...] = ()
-
-    @property
-    def shared(self) -> bool:
-        """Return whether it holds for more than one stage."""
-        return self.path[0] != "stage"
-
-    @property
-    def eases(self) -> bool:
-        """Return whether more of it is never harder: so with limits, the duty, and b/d1."""
-        return self.sort != "size" or self.family == WIDTH
-
-    @property
-    def reach(self) -> float:
-        """Return the largest factor by which it may move."""
-        return min(h.reach for h in self.handles)
-
-
-Moves = tuple[tuple[Movable, float], ...]
-
-
-@dataclass(frozen=True)
-class Edited:
-    """A changed scene, the edits that lead to it and the places they concern."""
-
-    scene: Scene
-    changes: tuple[Change, ...]
-    paths: tuple[Path, ...]
-
-
-def movables(scene: Scene, handles: Sequence[Handle]) -> list[Movable]:
+def moves_of(scene: Scene, handles: Sequence[Handle]) -> list[Move]:
     """Return every number that a remedy may move, with the handles of the problem behind it.
 
     A number of [limits] or [gears] for all stages that have none of their own, and that of each
     stage alone; where a single stage takes it from there, once.
     """
-    found: list[Movable] = []
+    found: list[Move] = []
     groups: dict[tuple[str, int], list[Handle]] = {}
     for handle in handles:
         groups.setdefault((handle.family, handle.direction), []).append(handle)
     for (family, direction), group in groups.items():
-        if family in DUTY:
-            path: Path = ("duty", DUTY[family])
+        if family in OF_DUTY:
+            path: Path = ("duty", OF_DUTY[family])
             if inherited(scene, path):  # a tolerance of zero has no factor
                 end = {"ratio_low": 0, "ratio_high": 1}.get(family)
-                found.append(Movable(family, path, end, direction, "duty", tuple(group)))
+                found.append(_move(scene, family, path, end, direction, DUTY, tuple(group)))
         elif family in fields(scene):
             found += _of_stages(scene, family, direction, {stage_of(h): h for h in group})
     return found
 
 
-def _of_stages(
-    scene: Scene, family: str, direction: int, group: dict[int, Handle]
-) -> list[Movable]:
+def _of_stages(scene: Scene, family: str, direction: int, group: dict[int, Handle]) -> list[Move]:
     field, own_end = fields(scene)[family]
     table = "gears" if field == WIDTH else "limits"
     shared = getattr(getattr(scene, table), field, None)
@@ -127,20 +73,20 @@ def _of_stages(
     # A range of [limits] with equal ends is widened; a size that a stage gives is moved, and b/d1.
     widened = given and field != WIDTH
     end = (0 if direction < 0 else 1) if widened else own_end
-    taken = "limit" if widened or not given else "size"
+    taken = LIMIT if widened or not given else SIZE
     found = []
     if shared is not None and takers:
         behind = tuple(group[k] for k in takers)
-        found.append(Movable(family, (table, field), end, direction, taken, behind))
+        found.append(_move(scene, family, (table, field), end, direction, taken, behind))
     for k, handle in group.items():
         path = ("stage", k, field)
         if k not in takers:
-            sort = "size" if given else "limit"
-            found.append(Movable(family, path, own_end, direction, sort, (handle,)))
+            role = SIZE if given else LIMIT
+            found.append(_move(scene, family, path, own_end, direction, role, (handle,)))
         elif shared is not None and takers != [k]:
-            found.append(Movable(family, path, end, direction, taken, (handle,)))
+            found.append(_move(scene, family, path, end, direction, taken, (handle,)))
         elif shared is None and inherited(scene, path) is not None:  # a load limit of a preset
-            found.append(Movable(family, path, own_end, direction, "limit", (handle,)))
+            found.append(_move(scene, family, path, own_end, direction, LIMIT, (handle,)))
     return found
 
 
@@ -161,27 +107,44 @@ def staged(scene: Scene) -> Scene:
     return scene.model_copy(update={"stage": (StageTable(),) * scene.counts[0]})
 
 
-def applied(scene: Scene, moves: Sequence[tuple[Movable, float]]) -> Edited | None:
-    """Return the scene with numbers moved by factors >= 1; None: the file's rules refuse it."""
-    found = staged(scene)
-    paths: list[Path] = []
-    for number, factor in sorted(moves, key=lambda move: not move[0].shared):
-        value = _value(found, number, factor)
-        if value is None:
-            return None
-        found = put(found, number.path, value)
-        paths += [number.path] if number.path not in paths else []
-    return edited_from(scene, found, paths) if allowed(found) else None
+def _move(
+    scene: Scene,
+    family: str,
+    path: Path,
+    end: int | None,
+    way: int,
+    role: str,
+    behind: tuple[Handle, ...],
+) -> Move:
+    """Return a move of a number of the file, or of an end of a range (None: the number, or both).
+
+    More of it is never harder of limits, the duty, and b/d1.
+    """
+    series = path[-1] == "module" and scene.teeth is not None
+    return Move(
+        path,
+        way,
+        role,
+        family,
+        far=min(handle.reach for handle in behind),
+        far_first=role != SIZE or family == WIDTH,
+        handles=behind,
+        inherits=inherited,
+        write=partial(_value, scene, end),
+        back=partial(_module_back, scene) if series else taken_back,
+        text=_raw,
+        listed=series,
+    )
 
 
-def edited_from(scene: Scene, found: Scene, paths: Sequence[Path]) -> Edited:
-    """Return what leads from a scene to another that differs at some places."""
-    changes = []
-    for path in paths:
-        was, now = inherited(scene, path), inherited(found, path)
-        old, new = (toml_text(_raw(v, path)) for v in (was, now))
-        changes.append(Change(dotted(path), old, new, apart(was, now)))
-    return Edited(found, tuple(changes), tuple(paths))
+def shared(move: Move) -> bool:
+    """Return whether a number holds for more than one stage."""
+    return move.path[0] != "stage"
+
+
+def applied(scene: Scene, moves: Moves) -> Edited | None:
+    """Return the scene with numbers moved, those that stages share first; None: it is refused."""
+    return edited(staged(scene), tuple(sorted(moves, key=lambda move: not shared(move[0]))))
 
 
 def _raw(value: Any, path: Path) -> Any:
@@ -191,34 +154,41 @@ def _raw(value: Any, path: Path) -> Any:
     return [raw, raw] if pair else raw
 
 
-def _value(scene: Scene, number: Movable, factor: float) -> Any:
+def _value(scene: Scene, end: int | None, now: Any, factor: float, move: Move) -> Any:
     """Return what to write for a factor; None where no module of [teeth] is left."""
-    now = inherited(scene, number.path)
-    if number.path[-1] == "ratio_tolerance":
-        return max(now, eased(tolerance(now, number.end, factor), 1.0, 1))
+    if move.path[-1] == "ratio_tolerance":
+        return max(now, eased(tolerance(now, end, factor), 1.0, 1))
     if not isinstance(now, tuple):
-        return eased(now, factor, number.direction)
+        return eased(now, factor, move.way)
     ends = list(now)
-    for k in (0, 1) if number.end is None else (number.end,):
-        ends[k] = eased(ends[k], factor, number.direction)
-        if number.path[-1] == "module" and scene.teeth is not None:
-            ends[k] = next_module(scene, ends[k], number.direction, beyond=False)
+    for k in (0, 1) if end is None else (end,):
+        ends[k] = eased(ends[k], factor, move.way)
+        if move.listed:
+            ends[k] = next_module(scene, ends[k], move.way, beyond=False)
     return None if None in ends else tuple(ends)
 
 
-def steps(scene: Scene, number: Movable) -> list[float]:
+def steps(scene: Scene, move: Move) -> list[float]:
     """Return the factors of all values of a whole number or module, near ones first; else empty."""
-    now = inherited(scene, number.path)
-    now = now[number.end or 0] if isinstance(now, tuple) else now
-    if number.path[-1] == "module" and scene.teeth is not None:
+    now = inherited(scene, move.path)
+    now = now[moved_end(move) or 0] if isinstance(now, tuple) else now
+    if move.listed:
         size = now.exact[0]
-        beyond = [m for m in scene.teeth.sizes if (m - size) * number.direction > 0]
+        assert scene.teeth is not None
+        beyond = [m for m in scene.teeth.sizes if (m - size) * move.way > 0]
         return sorted(float(max(m, size) / min(m, size)) for m in beyond)
     if not isinstance(now, int):
         return []
-    far = 4 * now if number.direction > 0 else max(1, now // 4)
-    values = range(now + number.direction, far + number.direction, number.direction)
+    far = 4 * now if move.way > 0 else max(1, now // 4)
+    values = range(now + move.way, far + move.way, move.way)
     return [max(v, now) / min(v, now) for v in values]
+
+
+def moved_end(move: Move) -> int | None:
+    """Return which end of a range moves; None: it is a number, or both move."""
+    assert isinstance(move.write, partial)
+    end: int | None = move.write.args[1]
+    return end
 
 
 def tolerance(now: Fraction, end: int | None, factor: float) -> Fraction:
@@ -227,58 +197,42 @@ def tolerance(now: Fraction, end: int | None, factor: float) -> Fraction:
     return 1 - (1 - now) / f if end == 0 else (1 + now) * f - 1
 
 
-def bound_of(scene: Scene, number: Movable, bound: float | None) -> float | None:
+def bound_of(scene: Scene, move: Move, bound: float | None) -> float | None:
     """Return the proven minimum factor of a number as the file has it, from that of its handles."""
     if bound is None:
         return None
-    if number.path[-1] == "ratio_tolerance":
+    if move.path[-1] == "ratio_tolerance":
         now = scene.duty.ratio_tolerance
-        return float(tolerance(now, number.end, bound) / now)
-    return None if _mismatched(scene, number) else bound
+        return float(tolerance(now, moved_end(move), bound) / now)
+    return None if _mismatched(scene, move) else bound
 
 
-def _mismatched(scene: Scene, number: Movable) -> bool:
+def _mismatched(scene: Scene, move: Move) -> bool:
     """Return whether the problem has another number than the file: an end between two modules."""
-    now = inherited(scene, number.path)
-    if number.path[-1] != "module" or scene.teeth is None or number.end is None:
+    now, end = inherited(scene, move.path), moved_end(move)
+    if not move.listed or end is None:
         return False
-    return any(float(now[number.end].exact[0]) != h.value for h in number.handles)
+    return any(float(now[end].exact[0]) != h.value for h in move.handles)
 
 
-def comparable(scene: Scene, found: Sequence[Movable]) -> bool:
+def comparable(scene: Scene, found: Sequence[Move]) -> bool:
     """Return whether a proven minimum product of handles is one of the file's numbers."""
-    return not any(_mismatched(scene, number) for number in found)
+    return not any(_mismatched(scene, move) for move in found)
 
 
-def reachable(scene: Scene, number: Movable) -> Movable:
-    """Return the number with its handles' reach cut to what the file's rules allow (1: no move)."""
-    low, high = 1.0, max((h.reach for h in number.handles), default=1.0)
-    if applied(scene, [(number, high)]) is not None:
-        return number
+def reachable(scene: Scene, move: Move) -> Move:
+    """Return the number with its reach cut to what the file's rules allow (1: no move)."""
+    low, high = 1.0, max((h.reach for h in move.handles), default=1.0)
+    if applied(scene, ((move, high),)) is not None:
+        return move
     while high > low * FACTOR_TOLERANCE:
         middle = math.sqrt(low * high)
-        refused = applied(scene, [(number, middle)]) is None
+        refused = applied(scene, ((move, middle),)) is None
         low, high = (low, middle) if refused else (middle, high)
-    return replace(number, handles=tuple(replace(h, reach=low) for h in number.handles))
+    return replace(move, far=low, handles=tuple(replace(h, reach=low) for h in move.handles))
 
 
-def less(scene: Scene, edited: Edited, part: float, only: int | None = None) -> Scene:
-    """Return the edited scene with its changes (or one of them) taken back by a part of their size.
-
-    Whole numbers go back by one, modules of [teeth] to the one before.
-    """
-    found = edited.scene
-    for k, path in enumerate(edited.paths):
-        if only is not None and k != only:
-            continue
-        now, before = at(found, path), inherited(scene, path)
-        series = path[-1] == "module" and scene.teeth is not None
-        back = _module_back(scene, now, before) if series else taken_back(now, before, part)
-        found = put(found, path, back)
-    return found
-
-
-def _module_back(scene: Scene, now: Any, before: Any) -> Any:
+def _module_back(scene: Scene, now: Any, before: Any, part: float) -> Any:
     """Return a range of modules with its moved ends one module nearer to where they were."""
     ends = list(now)
     for k, (new, old) in enumerate(zip(now, before, strict=True)):
