@@ -1,8 +1,10 @@
 """Compiled kernels are kept between runs, and never stale."""
 
 import gc
+import hashlib
 import importlib.util
 import os
+import pickle
 import resource
 import subprocess
 import sys
@@ -139,3 +141,16 @@ def test_a_kernel_that_cannot_be_kept_is_compiled_in_every_run(doubled, tmp_path
     assert f"cannot be kept in {tmp_path / 'cache'} (File too large)" in words[0]
     (tmp_path / "cache").mkdir(exist_ok=True)
     assert doubled() == (3.0, False, []) and doubled() == (3.0, True, [])
+
+
+def test_machine_code_that_names_a_class_which_has_moved_is_compiled_again(doubled, tmp_path):
+    """The index names the classes of tuples that a kernel takes; another version may lack them."""
+    assert doubled() == (3.0, False, [])
+    index = next((tmp_path / "cache").rglob("*.nbi"))
+    with index.open("rb") as file:
+        pickle.load(file)
+        version = file.tell()
+    data = index.read_bytes()[:version] + b"cgearopt.formulations\nMoved\n."
+    index.write_bytes(data + hashlib.sha256(data).digest())
+    assert doubled() == (3.0, False, [])
+    assert doubled() == (3.0, True, [])
