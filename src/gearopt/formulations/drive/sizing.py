@@ -165,7 +165,7 @@ def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
     best = min(designs, key=lambda design: design.value, default=None)
     long = SEARCH * (3.0 if len(train.stages) > 2 else 1.0)
     seconds = None if clock.budget.gap > 0.0 else clock.within(long)
-    if bound < math.inf and not clock.stopped:
+    if bound < math.inf and not clock.over:
         found = _searched(train, best, clock, seconds)
         own = _of_pairs(train, exact, found)
         bound, designs = max(bound, found.bound), [*designs, *([own] if own else [])]
