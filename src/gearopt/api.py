@@ -23,8 +23,7 @@ from gearopt.optimise.explaining.explanation import Explanation, Remedy
 from gearopt.optimise.options import check, in_turn, named
 from gearopt.optimise.own_problems import solve_own
 from gearopt.optimise.pareto.front import Front
-from gearopt.optimise.pareto.pareto import traders
-from gearopt.optimise.pareto.several import Several, chosen_of, several, solved
+from gearopt.optimise.pareto.several import Several, chosen_of, several, solved, traders
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch, plain  # noqa: F401
 from gearopt.optimise.solve import GAP, evaluate  # noqa: F401

@@ -1,4 +1,4 @@
-"""Several objectives of one problem, as a file or a user poses them, to their front."""
+"""Several objectives of one problem, as a file or a user poses them, to their front by a method."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -8,13 +8,107 @@ from typing import Any
 from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.pareto import epsilon, evolution, scalarised
 from gearopt.optimise.pareto.epsilon import Limiting
+from gearopt.optimise.pareto.found import Found, Point, sifted
 from gearopt.optimise.pareto.front import Front, Objective
 from gearopt.optimise.pareto.judged import judged, united
-from gearopt.optimise.pareto.pareto import EXACT, default, found
+from gearopt.optimise.pareto.posed import Limit, posed
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Watch
+from gearopt.optimise.scale import violation
 from gearopt.optimise.terms import Array, Terms, Var
+
+EXACT, EPSILON, NSGA, ANNEALING, HYBRID = "exact", "epsilon", "nsga2", "annealing", "hybrid"
+SAMPLERS: Mapping[str, Callable[..., Found]] = {
+    NSGA: evolution.front,
+    ANNEALING: scalarised.annealed,
+    HYBRID: scalarised.polished,
+}
+METHODS = (EXACT, EPSILON, *SAMPLERS)
+RANDOM = tuple(SAMPLERS)
+POINTS = {2: 60, 3: 400}  # of a front, by its number of objectives
+
+
+def found(
+    problem: Problem | Conic,
+    names: Sequence[str],
+    most: Mapping[str, float],
+    method: str | None = None,
+    points: int | None = None,
+    budget: Budget | None = None,
+    seed: int = 0,
+    watch: Watch | None = None,
+    limiting: Limiting | None = None,
+) -> Found:
+    """Front of some objectives of a problem by a method.
+
+    names: two or three objectives, the first minimised where others are limited. most: largest
+    values of interest, by name. method: one of METHODS; by default the problem's own exact one,
+    else epsilon constraints; nsga2 of discrete variables, and of a text that is declared
+    vectorised, which no solver traces. points: sought, where a method has a choice. limiting: how
+    the kind of problem limits objectives. SolveError where the method does
+    not fit the problem.
+    """
+    budget, chosen = budget or Budget(), method or default(problem, limiting)
+    whole = limiting is not None and limiting.whole
+    count = points or (0 if whole else POINTS[len(names)])
+    if chosen == EPSILON:
+        return epsilon.front(problem, names, dict(most), count, budget, watch, limiting=limiting)
+    if isinstance(problem, Conic):
+        raise SolveError(f"{chosen} takes a Problem; the front of a Conic is for {EPSILON}")
+    limited = {name: Limit.of(float(value), 0.0) for name, value in most.items()}
+    own = posed(problem, names, limited)
+    assert isinstance(own, Problem)
+    if chosen == EXACT and EXACT in own.methods:
+        return _checked(own, own.methods[EXACT](own, budget, seed, watch))
+    if chosen not in SAMPLERS:
+        known = [m for m in METHODS if m != EXACT or EXACT in own.methods]
+        raise SolveError(f"no method {chosen!r} for a front; methods: {', '.join(known)}")
+    return SAMPLERS[chosen](own, points or 0, budget, seed, watch)
+
+
+def default(problem: Problem | Conic, limiting: Limiting | None = None) -> str:
+    """Return the method that is run where none is named."""
+    if limiting is not None:
+        return EPSILON
+    if EXACT in problem.methods:
+        return EXACT
+    if not isinstance(problem, Problem):
+        return EPSILON
+    untraced = problem.vectorised or any(v.discrete for v, _ in problem.columns)
+    return NSGA if untraced else EPSILON
+
+
+def traders(problem: Problem | Conic, limiting: Limiting | None = None) -> tuple[str, ...]:
+    """Return the methods that are compared where none are named."""
+    if isinstance(problem, Conic):
+        return (EPSILON,)
+    first = default(problem, limiting)
+    return (first, *(method for method in SAMPLERS if method != first))
+
+
+def _checked(problem: Problem, outcome: Any) -> Found:
+    """Return the front of an exact algorithm, each point checked by the problem's own text."""
+    every = () if outcome.x is None else (outcome.x, *outcome.others)
+    points = []
+    for x in every:
+        batch = problem.batch(x[None])
+        excess, worst = violation(problem, x, batch)
+        if excess > FEASIBLE:
+            raise SolveError(f"{problem.name}: a design of the front violates {worst}")
+        points.append(Point(x, batch.F[0], proven=outcome.finished))
+    kept, beaten = sifted(points)
+    return Found(
+        kept,
+        complete=outcome.finished and bool(kept),
+        beaten=beaten,
+        infeasible=outcome.infeasible,
+        finished=outcome.finished,
+        proof=dict(outcome.proof or {}),
+        evaluations=outcome.evaluations,
+        message=outcome.message,
+    )
 
 
 @dataclass(frozen=True)
@@ -73,7 +167,7 @@ def chosen_of(names: Sequence[str] | None, known: Sequence[str], of: str) -> tup
 
 
 def solved(
-    posed: Several,
+    trade: Several,
     most: Mapping[str, float],
     method: str | None,
     points: int | None,
@@ -84,7 +178,7 @@ def solved(
     **names: Any,
 ) -> Front:
     """Return the front of posed objectives, judged and measured; names: fields of a `Front`."""
-    if posed.others:
+    if trade.others:
         given: dict[str, Any] = {
             "most": most,
             "method": method,
@@ -92,23 +186,23 @@ def solved(
             "weights": weights,
         }
         given |= {"seed": seed, "watch": watch, **names}
-        return united(_each(posed, given, Clock(budget)), weights)
-    clock, listed = Clock(), [one.name for one in posed.objectives]
+        return united(_each(trade, given, Clock(budget)), weights)
+    clock, listed = Clock(), [one.name for one in trade.objectives]
     for name in (*most, *(weights or ())):
         if name not in listed:
             raise SolveError(f"{name} is none of the objectives of this front: {', '.join(listed)}")
-    chosen = method or default(posed.problem, posed.limiting)
-    watch = in_part(watch, posed.objectives[0].unit, "front")
-    made = found(posed.problem, listed, most, chosen, points, budget, seed, watch, posed.limiting)
-    shown = [replace(one, most=most.get(one.name)) for one in posed.objectives]
-    front = judged(posed.problem, made, shown, chosen, clock, weights, posed.drawn, **names)
-    proof = {**front.proof, "scope": posed.scope} if posed.scope else front.proof
+    chosen = method or default(trade.problem, trade.limiting)
+    watch = in_part(watch, trade.objectives[0].unit, "front")
+    made = found(trade.problem, listed, most, chosen, points, budget, seed, watch, trade.limiting)
+    shown = [replace(one, most=most.get(one.name)) for one in trade.objectives]
+    front = judged(trade.problem, made, shown, chosen, clock, weights, trade.drawn, **names)
+    proof = {**front.proof, "scope": trade.scope} if trade.scope else front.proof
     return replace(front, seed=seed, proof=proof)
 
 
-def _each(posed: Several, given: Mapping[str, Any], clock: Clock) -> list[Front]:
+def _each(trade: Several, given: Mapping[str, Any], clock: Clock) -> list[Front]:
     """Front of each of several problems, in equal shares of the time that is left."""
-    every, fronts = (replace(posed, others=()), *posed.others), list[Front]()
+    every, fronts = (replace(trade, others=()), *trade.others), list[Front]()
     for k, one in enumerate(every):
         left = clock.left
         if left.seconds is not None:

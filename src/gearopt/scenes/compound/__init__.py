@@ -12,8 +12,7 @@ from gearopt.formulations import compound
 from gearopt.formulations.compound import wider
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.pareto import EPSILON
-from gearopt.optimise.pareto.several import Several
+from gearopt.optimise.pareto.several import EPSILON, Several
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array

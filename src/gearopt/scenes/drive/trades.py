@@ -11,8 +11,7 @@ from gearopt.formulations.drive.teeth import load_front
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.pareto import EPSILON, EXACT
-from gearopt.optimise.pareto.several import Several
+from gearopt.optimise.pareto.several import EPSILON, EXACT, Several
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive import sides

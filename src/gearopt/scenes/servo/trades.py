@@ -10,8 +10,7 @@ from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.formulations.servo.tolerance import conic, grades
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.pareto import EPSILON, EXACT
-from gearopt.optimise.pareto.several import Several, impossible
+from gearopt.optimise.pareto.several import EPSILON, EXACT, Several, impossible
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
