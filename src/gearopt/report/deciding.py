@@ -25,7 +25,7 @@ GIVEN = ("common_divisor",)  # rules that every design of the file is at the end
 def lead(result: Result, text: str = "") -> str:
     """One sentence: what decides, is exceeded, or cannot be met together.
 
-    own: what the kind of result says of a design, instead of its limits.
+    text: the words of the kind of result on a design, instead of its limits.
     """
     if result.status == "infeasible":
         return _impossible(result)
@@ -76,11 +76,11 @@ def _some(names: Sequence[str], staged: bool) -> str:
 def _over(limits: Mapping[str, float], staged: bool) -> list[str]:
     """The limits that are exceeded, and by how much."""
     worst = sorted((u, n) for n, u in limits.items() if u > 1.0 + REACHED)[::-1]
-    sentences = [
+    exceeded = [
         f"{limit_words(n, staged)} by {rounded(100.0 * (u - 1.0), 2)} %" for u, n in worst[:NAMED]
     ]
     more = len(worst) - NAMED
-    return sentences if more <= 0 else [*sentences, f"{more} other limits"]
+    return exceeded if more <= 0 else [*exceeded, f"{more} other limits"]
 
 
 def of_limits(result: Result, shown: Collection[str] = ()) -> str:
@@ -91,14 +91,14 @@ def of_limits(result: Result, shown: Collection[str] = ()) -> str:
     may decide or not.
     """
     left_out = {*GIVEN, *RATIO_ENDS, *shown}
-    text = {n: u for n, u in result.limits.items() if _stem(n) not in left_out}
-    reached = [n for n, u in text.items() if u >= 1.0 - REACHED]
+    limits = {n: u for n, u in result.limits.items() if _stem(n) not in left_out}
+    reached = [n for n, u in limits.items() if u >= 1.0 - REACHED]
     relaxed = next((part.limits for part in result.parts if part.name == "sizing"), {})
-    decisive = [n for n in text if relaxed.get(n, 0.0) >= 1.0 - REACHED] or reached
+    decisive = [n for n in limits if relaxed.get(n, 0.0) >= 1.0 - REACHED] or reached
     if result.method == "exact" and result.design.get("rating") and not relaxed:
         decisive = []
     ends = [n for n in reached if n not in decisive]
-    rest = {n: u for n, u in text.items() if n not in (*decisive, *ends) and not _is_end(n)}
+    rest = {n: u for n, u in limits.items() if n not in (*decisive, *ends) and not _is_end(n)}
     parts = [_decided(result, decisive)] if decisive else []
     parts += (
         [f"{_on(grouped(ends, has_stages(result)), len(ends))} {_verb(len(ends))} active"]
@@ -127,13 +127,13 @@ def _stem(name: str) -> str:
 
 def _decided(result: Result, names: list[str]) -> str:
     """Sentence that limits determine the optimum, where that is certain; else that they bind."""
-    text = grouped(names, has_stages(result))
-    if len(text) > NAMED:
-        text = [*text[: NAMED - 1], f"{len(text) - NAMED + 1} other limits"]
+    limits = grouped(names, has_stages(result))
+    if len(limits) > NAMED:
+        limits = [*limits[: NAMED - 1], f"{len(limits) - NAMED + 1} other limits"]
     if result.status not in PROVEN:
-        return f"{_on(text, len(names))} {_verb(len(names))} active"
+        return f"{_on(limits, len(names))} {_verb(len(names))} active"
     determine = "determines" if len(names) == 1 else "determine"
-    return f"{_on(text, len(names))} {determine} the {_goal(result)}"
+    return f"{_on(limits, len(names))} {determine} the {_goal(result)}"
 
 
 def _on(words: Sequence[str], count: int | None = None) -> str:

@@ -49,8 +49,8 @@ def decided(front: Front, measures: Measures = METRIC) -> list[str]:
     count = len(front.points)
     if count:
         ends = "; ".join(
-            f"{words(step.name)} {_span(front, k, measures)}"
-            for k, step in enumerate(front.objectives)
+            f"{words(objective.name)} {_span(front, k, measures)}"
+            for k, objective in enumerate(front.objectives)
         )
         designs = "1 design" if count == 1 else f"{count:,} designs"
         among = "on the Pareto front" if front.whole else "found, none dominated by another of them"
@@ -73,7 +73,7 @@ def decided(front: Front, measures: Measures = METRIC) -> list[str]:
         )
     if front.message:
         sentences.append(f"{front.message[0].upper()}{front.message[1:]}.")
-    return [step for step in sentences if step]
+    return list(filter(None, sentences))
 
 
 def _span(front: Front, k: int, measures: Measures) -> str:

@@ -81,17 +81,17 @@ def main(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]
         return staged[:AXES]
     columns = zip(*(p.values for p in front.points), strict=True)
     known = [
-        [measures.of(v, unit_of(rating)) for v in column]
-        for column, rating in zip(columns, front.objectives, strict=True)
+        [measures.of(v, unit_of(objective)) for v in column]
+        for column, objective in zip(columns, front.objectives, strict=True)
     ]
     names = _different(each, _names(front, each, measures))
-    return [n for n in names if [rating[n].value for rating in each] not in known][:FEW]
+    return [n for n in names if [named[n].value for named in each] not in known][:FEW]
 
 
 def _different(each: Sequence[Numbers], names: Sequence[str]) -> list[str]:
     """The names of numbers that all designs have and that are not the same in all."""
-    there = [n for n in names if all(n in rating for rating in each)]
-    return [n for n in there if _varies([rating[n].value for rating in each])]
+    there = [n for n in names if all(n in named for named in each)]
+    return [n for n in there if _varies([named[n].value for named in each])]
 
 
 def _varies(values: Sequence[Any]) -> bool:
@@ -146,10 +146,10 @@ def impossible(front: Front, measures: Measures) -> Table | None:
     rows = [
         [
             k,
-            *_most(front, objective, measures),
-            "proven impossible" if objective.proven else "none found",
+            *_most(front, step, measures),
+            "proven impossible" if step.proven else "none found",
         ]
-        for k, objective in enumerate(front.impossible, 1)
+        for k, step in enumerate(front.impossible, 1)
     ]
     return Table("limits without a design", ("", *heads, "result"), rows, texts=("result",))
 
@@ -180,19 +180,17 @@ def data(
     heads = [head(objective, measures) for objective in front.objectives]
     main = list(shown)
     names = [n for n in _names(front, each, measures) if n not in main]
-    alike = {n for n in names if all(n in objective for objective in each)} - {
-        *_different(each, names)
-    }
+    alike = {n for n in names if all(n in named for named in each)} - {*_different(each, names)}
     others = [n for n in names if len(each) == 1 or n not in alike]
     limits = list(dict.fromkeys(name for p in front.points for name in p.limits))
     points = [
         [
             *(c.text for c in _values(front, p.values, measures)),
-            *(objective[n].text if n in objective else "" for n in main),
+            *(named[n].text if n in named else "" for n in main),
             *(_used(p, n) for n in limits),
-            *(objective[n].text if n in objective else "" for n in others),
+            *(named[n].text if n in named else "" for n in others),
         ]
-        for p, objective in zip(front.points, each, strict=True)
+        for p, named in zip(front.points, each, strict=True)
     ]
     staged = front.scene is not None
     ends = [0, len(heads) + len(main)]
@@ -217,11 +215,7 @@ def data(
 def _names(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]:
     """The names of all numbers of designs that are no objective."""
     known = {head(objective, measures) for objective in front.objectives}
-    return [
-        name
-        for name in dict.fromkeys(n for objective in each for n in objective)
-        if name not in known
-    ]
+    return [name for name in dict.fromkeys(n for named in each for n in named) if name not in known]
 
 
 def _share(used: float | None) -> float:

@@ -62,10 +62,10 @@ def drawn(front: Front, measures: Measures) -> Drawn:
 
     corners = [
         tuple(
-            None if (v := objective.limits.get(o.name)) is None else measures.of(v, unit_of(o))
+            None if (v := step.limits.get(o.name)) is None else measures.of(v, unit_of(o))
             for o in front.objectives
         )
-        for objective in front.impossible
+        for step in front.impossible
     ]
     return Drawn(
         tuple(head(objective, measures) for objective in front.objectives),
@@ -250,7 +250,7 @@ def parallel(
         list(zip(drawn_front.column(k), _texts(drawn_front, k), strict=True))
         for k in _count(drawn_front)
     ]
-    columns += [[(float(rating[n].value), rating[n].text) for rating in each] for n in names]
+    columns += [[(float(named[n].value), named[n].text) for named in each] for n in names]
     heads = [*drawn_front.heads, *names]
     shares, ends = [], []
     for column in columns:

@@ -318,8 +318,8 @@ def _unverified(rating: DriveRating, named: bool) -> list[str]:
 
 
 def _of_stages(symbol: str, stages: Sequence[str]) -> str:
-    text = [stage for stage in stages if stage]
-    return f"{symbol} of stage{'s' * (len(text) > 1)} {counted(text)}" if text else symbol
+    named = [stage for stage in stages if stage]
+    return f"{symbol} of stage{'s' * (len(named) > 1)} {counted(named)}" if named else symbol
 
 
 def greek(text: str) -> str:

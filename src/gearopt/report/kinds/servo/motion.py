@@ -92,7 +92,7 @@ def _value(achieved: Achieved, ratio: RatioDesign, measures: Measures) -> str:
 
 def _achieved(ratio: RatioDesign, measures: Measures) -> Table:
     """Speeds, torques and inertias of the axis, a column for every train and ratio."""
-    columns = {who: train for who in COLUMNS if (train := getattr(ratio, who)) is not None}
+    columns = {who: held for who in COLUMNS if (held := getattr(ratio, who)) is not None}
     trains = [*columns.values()]
     value = f"{ratio.name} [{measures.unit(ratio.unit)}]" if ratio.unit else ratio.name
     rows = [
