@@ -10,6 +10,7 @@ from functools import partial
 from typing import Any
 
 from gearopt.bench import timed
+from gearopt.optimise.tape import legacy_numpy
 from gearopt.physics.strain_wave.conjugate import Flank, contact, flank
 from gearopt.physics.strain_wave.fitted_curvature import FITS
 from gearopt.physics.strain_wave.gearing import StrainWave
@@ -79,8 +80,6 @@ def by_derivatives(made: Flank) -> Callable[[Any], Any]:
     """Return the curvature of the flank by two derivatives of its position, traced by casadi."""
     import casadi as ca
     import numpy as np
-
-    from gearopt.optimise.tape import legacy_numpy
 
     with legacy_numpy():
         angle = ca.SX.sym("p")

@@ -24,6 +24,7 @@ from gearopt.optimise.stationarity import evaluated
 from gearopt.optimise.terms import Array
 from gearopt.physics.strain_wave.clearance import Least, least_gaps
 from gearopt.physics.strain_wave.conjugate import Flank, flank
+from gearopt.physics.strain_wave.neutral_curve import neutral_curve
 
 STEP_DEG = 0.05  # of the wave, at which every design is looked at, and between: see `least_gaps`
 ROUNDS = 10
@@ -152,8 +153,6 @@ def _cutting(least: Sequence[Least], known: Sequence[Passage]) -> tuple[Passage,
 
 def stretched(made: Flank, deflection: float) -> Flank:
     """Return the same teeth and blank on a wave generator of another deflection w."""
-    from gearopt.physics.strain_wave.neutral_curve import neutral_curve
-
     gearing = replace(made.gearing, deflection=deflection, neutral=made.gearing.neutral_radius)
     return replace(made, gearing=gearing, curve=neutral_curve(gearing))
 
