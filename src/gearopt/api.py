@@ -19,7 +19,7 @@ from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.comparing.fronts import compare_fronts
 from gearopt.optimise.comparing.runs import EVALUATIONS, SECONDS, SEEDS, Follow, Model, Plan
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.explaining.explanation import Explanation, Remedy
+from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.options import check, in_turn, named
 from gearopt.optimise.own_problems import solve_own
 from gearopt.optimise.pareto.front import Front
@@ -29,14 +29,11 @@ from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch, plain
 from gearopt.optimise.solve import GAP, evaluate  # noqa: F401
 from gearopt.optimise.terms import Param, Repeat, Terms, Var  # noqa: F401
 from gearopt.scenes.explaining.default import explanation, without_design
-from gearopt.scenes.explaining.shorter import shorter
 from gearopt.scenes.kind import Kind
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.inputs import inputs_of
 from gearopt.scenes.reading.load import FORMAT, bare, kind_named, kind_of
 from gearopt.scenes.reading.load import load as load_file
-
-ANY_DESIGN_GAP = 1.0  # gap at which a search for any design may end
 
 File = str | Path | Mapping[str, Any] | BaseModel  # its path, its tables, or what `load` returns
 Changes = Mapping[str, Any] | None  # {key of a file: value}
@@ -161,29 +158,7 @@ def explain(
     ask = Ask(budget=budget, watch=watch)
     scene, kind, names = _opened(what, changes)
     found = explanation(kind, scene, ask)
-    left = replace(ask, budget=budget.less(found.seconds))
-    short = _shortened(found.remedies, what, changes, kind, left)
-    return replace(found, remedies=short, result=_named(found.result, **names))
-
-
-def _shortened(
-    found: Sequence[Remedy], what: Any, changes: Changes, kind: Kind[Any], ask: Ask
-) -> tuple[Remedy, ...]:
-    """Return remedies with what one would write, where the file with it has a design."""
-    if not found:
-        return ()
-    clock = Clock(ask.budget, of_others(ask.watch))
-
-    def works(edits: dict[str, Any], seconds: float) -> bool:
-        try:
-            scene = _opened(what, {**(changes or {}), **edits})[0]
-        except SceneError:
-            return False
-        budget = replace(clock.left, seconds=seconds, gap=ANY_DESIGN_GAP)
-        answer = kind.solve(scene, replace(ask, budget=budget, watch=clock.watch, top=1))
-        return answer.value is not None and answer.feasible
-
-    return shorter(found, clock, works)
+    return replace(found, result=_named(found.result, **names))
 
 
 def _with_remedies(
@@ -203,8 +178,6 @@ def _with_remedies(
     ways = kind.remedies(scene, clock, result, True)
     if ways is None:
         return result
-    left = replace(ask, budget=clock.left)
-    ways = replace(ways, remedies=_shortened(ways.remedies, what, changes, kind, left))
     report = {**result.report, **ways.drawn, "ways_out": ways.told}
     return replace(result, report=report, seconds=clock.seconds)
 

@@ -9,15 +9,16 @@ from typing import Any
 
 from gearopt.optimise.explaining.explain import DIGITS
 from gearopt.optimise.explaining.explanation import Change, Remedy
-from gearopt.optimise.explaining.repair import SLACK_TRIED, least_value
+from gearopt.optimise.explaining.repair import SLACK_TRIED
 from gearopt.scenes.drive.explaining.moves import inherited
 from gearopt.scenes.drive.explaining.together import is_real
 from gearopt.scenes.drive.explaining.tried import Case
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.explaining.moves import Move, changed
-from gearopt.scenes.explaining.numbers import SHORT, allowed, eased, put, written
+from gearopt.scenes.explaining.engine import as_remedy, least
+from gearopt.scenes.explaining.moves import DUTY, Move, changed
+from gearopt.scenes.explaining.numbers import SHORT, STEP_FROM_ZERO, allowed, eased, put, written
 from gearopt.scenes.reading.module_series import SERIES, family, series_of
-from gearopt.scenes.reading.toml import dotted, toml_text
+from gearopt.scenes.reading.toml import toml_text
 from gearopt.units import Quantity
 
 TOLERANCE = ("duty", "ratio_tolerance")
@@ -33,7 +34,6 @@ NEARER_ASKED = Fraction(1, 10)
 SLACK_FRACTION = Fraction(SLACK_TRIED)
 QUESTIONS = 40  # at most, for nearer ratios
 LONGEST_DIGITS = 15  # digits of what is written
-TOLERANCES = (Fraction(1, 10**5), Fraction(1, 2))  # tried where the file allows none
 
 
 @dataclass(frozen=True)
@@ -148,24 +148,11 @@ def _short(number: Fraction, digits: int) -> Fraction:
 
 def eased_tolerance(case: Case) -> Remedy | None:
     """Return the smallest ratio tolerance with which a drive of none is possible."""
-    path = ("duty", "ratio_tolerance")
-
-    def works(value: float, back: float = 0.0) -> bool | None:
-        word = case.status(put(case.scene, path, Fraction(value * (1.0 - back))))
-        return {"feasible": True, "infeasible": False}.get(word)
-
-    low, high = map(float, TOLERANCES)
-    least = least_value(low, (high,), works)
-    if least is None:
-        return None
-    value = eased(Fraction(least), 1.0, 1)
-    texts = [toml_text(written(v, path)) for v in (Fraction(0), value)]
-    change = Change(dotted(path), texts[0], texts[1], math.inf)
-    words = [case.status(put(case.scene, path, value * Fraction(1 - b))) for b in (0, SLACK_TRIED)]
-    if words[0] != "feasible":
-        return None
-    verified = {"with": words[0], "with_less": words[1]}
-    return Remedy("less", path[-1], (change,), change.factor, None, verified)
+    widest = 1.0 + float(WIDEST[0] / STEP_FROM_ZERO)
+    move = Move(TOLERANCE, 1, DUTY, TOLERANCE[-1], far=widest, inherits=inherited)
+    asked = replace(case.asked, far=widest)
+    known = least(asked, ((move, 1.0),))
+    return None if known is None else as_remedy(asked, known, "less")
 
 
 def switches(case: Case) -> Iterator[Remedy]:
