@@ -1,7 +1,6 @@
 """Why a servo train is impossible: limits in conflict, a ratio too narrow, bodies in the way."""
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -83,18 +82,3 @@ def in_the_way(train: ServoTrain, clock: Clock) -> Bodies | None:
         if status(replace(train, bodies=thinner), clock) == "infeasible":
             blamed = thinner
     return blamed
-
-
-def largest_part(train_of: Callable[[float], ServoTrain], clock: Clock) -> float | None:
-    """Return the largest part of some diameters that leaves a train, by bisection.
-
-    train_of: the train with such a part of them. None where no part does, or time is up.
-    """
-    low, high = THIN, 1.0
-    if status(train_of(low), clock) != "optimal":
-        return None
-    while high - low > PART_TOLERANCE * high:
-        middle = 0.5 * (low + high)
-        leaves = status(train_of(middle), clock) == "optimal"
-        low, high = (middle, high) if leaves else (low, middle)
-    return None if clock.over else low
