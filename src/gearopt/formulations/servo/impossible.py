@@ -13,10 +13,7 @@ from gearopt.optimise.explaining.repair import conflict
 from gearopt.optimise.solve import solve_within
 
 WIDER = tuple(Fraction(1, 10**k) for k in range(6, 0, -1))  # ratio tolerances that are tried
-# relative: between the largest part that leaves a train and the smallest without
-PART_TOLERANCE = 1e-7
 FAINT = 1e-9  # N mm, a torque that loads no tooth
-THIN = 1e-6  # part of a diameter below which it is no remedy
 
 
 def status(train: ServoTrain, clock: Clock) -> str:
