@@ -340,9 +340,9 @@ def test_an_output_shaft_in_the_way_is_named_without_an_error_to_hold(aim):
     told = scene(FAST, train=FEW | aim | {"ratio": 48, "output_shaft_diameter": "95 mm"})
     explained = gearopt.explain(told)
     assert explained.result.status == "infeasible" and explained.conflict == ("output_shaft",)
-    way, *_ = explained.remedies
-    assert way.what == "train.output_shaft_diameter" and way.bound is None
-    assert way.verified == {"with": "feasible", "with_less": "infeasible"}
+    (way,) = (r for r in explained.remedies if r.what == "train.output_shaft_diameter")
+    assert way.bound is None and way.verified["with"] == "feasible"
+    assert way.verified["with_less"] == "infeasible"
     assert "room for the output shaft" in explained.message
 
 

@@ -322,10 +322,10 @@ def test_an_impossible_duty_is_told_what_would_do(torque, diameter, status, conf
     assert found.status == status and set(ways["conflict"]) == set(conflict)
     told = found.message + ways["message"]
     assert "ratcheting: at" in told and "N m of" in told and "a safety of" in told
-    less, wider = ways["remedies"]
+    wider, less = ways["remedies"]
     assert less["what"] == "duty.torque" and wider["what"] == "duty.outer_diameter"
     assert less["factor"] ** (1.0 / 3.0) == pytest.approx(wider["factor"], rel=2e-3)
-    assert explanation(KIND, own, Ask(), found).remedies[1].factor == wider["factor"]
+    assert explanation(KIND, own, Ask(), found).remedies[0].factor == wider["factor"]
 
 
 @pytest.mark.slow
