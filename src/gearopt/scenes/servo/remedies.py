@@ -116,7 +116,7 @@ class Cause:
 def remedies(scene: Scene, clock: Clock, message: str = NO_TEETH) -> Remedies:
     """Return the conflict of a train that is impossible, and what to write instead.
 
-    message: of the search. Numbers that help alone are looked for at most PATIENCE.
+    message: of the search. Numbers beside the cause are looked for at most PATIENCE.
     """
     if (bound := binds(scene, clock)) is not None:
         return bound
@@ -124,11 +124,14 @@ def remedies(scene: Scene, clock: Clock, message: str = NO_TEETH) -> Remedies:
     if clock.over:
         return Remedies(cause.names, message=cause.message)
     assert scene.train is not None
-    left = within(clock, PATIENCE[bool(GOALS[scene.train.goal].motion)])
-    asked = Questions(scene, possible, left, lower_bounds=not cause.names)
+    asked = Questions(scene, possible, clock, lower_bounds=not cause.names)
     single = {(move.path, move.way): move for move in moves(scene)}
     found = singles(asked, _errors(scene, cause))
-    found += singles(asked, (Group((move,)) for move in single.values()))
+    blamed = [(path, -1) for path in DIAMETERS if cause.bodies and (path, -1) in single]
+    found += singles(asked, (Group((single[place],)) for place in blamed))
+    left = within(clock, PATIENCE[bool(GOALS[scene.train.goal].motion)])
+    asked = replace(asked, clock=left)
+    found += singles(asked, (Group((m,)) for place, m in single.items() if place not in blamed))
     moved = {change.key for remedy in found for change in remedy.changes}
     thinner = [single[path, -1] for path in DIAMETERS if (path, -1) in single]
     bodies = cause.bodies and not moved & {dotted(move.path) for move in thinner}
