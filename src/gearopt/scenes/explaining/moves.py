@@ -20,6 +20,7 @@ from gearopt.scenes.explaining.numbers import (
 from gearopt.scenes.reading.toml import dotted, toml_text
 from gearopt.units import Quantity
 
+SET = 2.0  # a factor above 1, at which a switch is set
 LIMIT, SIZE, DUTY = "limit", "size", "duty"  # roles; a size is given, a duty is what is asked for
 
 
@@ -75,28 +76,32 @@ Moves = tuple[tuple[Move, float], ...]
 
 @dataclass(frozen=True)
 class Edited:
-    """A changed scene, and the edits that lead to it, one of each place that moves."""
+    """A changed scene, and the edits that lead to it, one of each place that moves.
+
+    moved: the scene before its switches, whose places are those of the file.
+    """
 
     scene: Any
     changes: tuple[Change, ...]
     places: tuple[Move, ...]
+    moved: Any
 
 
 def edited(scene: Any, moves: Moves) -> Edited | None:
     """Return the scene with numbers moved by factors; None where the rules of its file refuse it.
 
-    A number that others inherit moves before them.
+    A number that others inherit moves before them. Switches are set last.
     """
     new, places = scene, dict[tuple[Any, ...], Move]()
     for move, factor in moves:
-        value = move.write(move.inherits(new, move.path), factor, move)
-        if value is None and move.switch is None:
-            return None
-        new = put(new, move.path, value)
         places.setdefault((move.path, move.switch), move)
-    if not allowed(new):
-        return None
-    return changed(scene, new, tuple(places.values()))
+        if move.switch is None:
+            value = move.write(move.inherits(new, move.path), factor, move)
+            if value is None:
+                return None
+            new = put(new, move.path, value)
+    there = changed(scene, new, tuple(places.values()))
+    return there if allowed(there.scene) else None
 
 
 def changed(scene: Any, new: Any, places: Sequence[Move]) -> Edited:
@@ -109,7 +114,15 @@ def changed(scene: Any, new: Any, places: Sequence[Move]) -> Edited:
         was, now = (move.inherits(one, move.path) for one in (scene, new))
         old, write = (toml_text(move.text(value, move.path)) for value in (was, now))
         changes.append(Change(dotted(move.path), old, write, move.factor(was, now)))
-    return Edited(new, tuple(changes), tuple(places))
+    return Edited(_switched(new, places), tuple(changes), tuple(places), new)
+
+
+def _switched(scene: Any, places: Sequence[Move]) -> Any:
+    """Return the scene with the switches among some places set."""
+    for move in places:
+        if move.switch is not None:
+            scene = put(scene, move.path, move.write(at(scene, move.path), SET, move))
+    return scene
 
 
 def less(scene: Any, there: Edited, part: float, only: int | None = None) -> Any:
@@ -117,11 +130,12 @@ def less(scene: Any, there: Edited, part: float, only: int | None = None) -> Any
 
     Whole numbers go back by one. None where the rules of the file refuse that.
     """
-    new = there.scene
+    new = there.moved
     for k, move in enumerate(there.places):
         if move.switch is None and (only is None or k == only):
             before, now = (move.inherits(one, move.path) for one in (scene, new))
             new = put(new, move.path, move.back(now, before, part))
+    new = _switched(new, there.places)
     return new if allowed(new) else None
 
 
@@ -130,19 +144,20 @@ def shorter(scene: Any, there: Edited, digits: int) -> Edited | None:
 
     None where none is shorter.
     """
-    new, changes = there.scene, []
+    new, changes = there.moved, []
     for move, change in zip(there.places, there.changes, strict=True):
         if move.switch is not None:
             changes.append(change)
             continue
-        before, now = (move.inherits(one, move.path) for one in (scene, there.scene))
+        before, now = (move.inherits(one, move.path) for one in (scene, there.moved))
         value = now if move.listed else _short(before, now, move.way, digits)
         text = toml_text(move.text(value, move.path))
         changes.append(replace(change, short="" if text == change.write else text))
         new = put(new, move.path, value)
-    if not any(change.short for change in changes) or not allowed(new):
+    final = _switched(new, there.places)
+    if not any(change.short for change in changes) or not allowed(final):
         return None
-    return Edited(new, tuple(changes), there.places)
+    return Edited(final, tuple(changes), there.places, new)
 
 
 def _short(before: Any, now: Any, way: int, digits: int) -> Any:

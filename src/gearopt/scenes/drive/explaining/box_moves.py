@@ -9,7 +9,7 @@ from typing import Any
 
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.explaining.moves import Move
+from gearopt.scenes.explaining.moves import SET, Move
 from gearopt.scenes.explaining.numbers import Number, Path, at, numbers, put
 from gearopt.scenes.reading.toml import dotted
 from gearopt.units import UNITS, Quantity
@@ -40,7 +40,6 @@ SPAN = 10.0  # mm that a place moves for a factor of e, so that it is found to h
 GRID = 1e-2  # mm; what is proposed is a multiple of it, within the tolerance of a place
 LEFT = 0.01  # part of a keep-out that is left of it
 SCALE = math.e**6  # farthest factor of a move whose size is a part of its own farthest
-SET = 2.0  # a factor above 1, at which a switch is set
 
 
 @dataclass(frozen=True)

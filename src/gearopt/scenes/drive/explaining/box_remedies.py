@@ -21,7 +21,6 @@ from gearopt.optimise.solve import run, solve
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.explaining.box_moves import (
-    SET,
     BoxMove,
     box_moves,
     limits_of,
@@ -33,7 +32,7 @@ from gearopt.scenes.drive.layout_design import described, keep_out_design, pairs
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import Known, Questions, as_remedy, least, narrow, smallest
 from gearopt.scenes.explaining.influences import Basis, influences, smooth
-from gearopt.scenes.explaining.moves import Move
+from gearopt.scenes.explaining.moves import SET, Move
 from gearopt.scenes.explaining.numbers import numbers
 from gearopt.scenes.explaining.possible import Verdict
 from gearopt.units import Quantity
@@ -58,7 +57,7 @@ def questions(scene: Scene, pairs: tuple[GearPair, ...], clock: Clock) -> Questi
         box = gearbox_of(other, pairs)
         if box is None or faults(box):
             return Verdict(False)
-        return Verdict(possible(box, clock.left.seconds or math.inf, clock.watch))
+        return Verdict(possible(box, clock.within(SECONDS), clock.watch))
 
     return Questions(
         scene,
