@@ -124,10 +124,11 @@ FIELDS = {
 
 
 def thinned(change):
-    was, write = (
-        F(text.strip('"').split()[0]) if " mm" in text else 0 for text in (change.was, change.write)
-    )
-    return change.key in FIELDS and write < was
+    """Whether a change makes a diameter smaller."""
+    if change.key not in FIELDS:
+        return False
+    was, write = (F(text.strip('"').split()[0]) for text in (change.was, change.write))
+    return write < was
 
 
 def thinner(axis, remedy, more=1.0):
