@@ -23,7 +23,7 @@ from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.options import check, in_turn, named
 from gearopt.optimise.own_problems import solve_own
 from gearopt.optimise.pareto.front import Front
-from gearopt.optimise.pareto.several import Several, chosen_of, several, solved, traders
+from gearopt.optimise.pareto.several import Several, chosen_of, compared_methods, several, solved
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch, plain  # noqa: F401
 from gearopt.optimise.solve import GAP, evaluate  # noqa: F401
@@ -273,7 +273,7 @@ def _fronts(
         raise SolveError(
             "methods are compared on fronts of one problem: write one number of stages in the file"
         )
-    listed = methods or traders(first.problem, first.limiting)
+    listed = methods or compared_methods(first.problem, first.limiting)
 
     def model(method: str) -> Model:
         return Model(pose(method).problem, words)

@@ -81,7 +81,7 @@ def _sampled(method: str, seeds: int) -> dict[str, Any]:
         if result.value is not None:
             values.append(result.value)
         if outcome.x is not None:
-            gaps.append(sampled.hidden(DEMAND, outcome.x[: len(FREE)]))
+            gaps.append(sampled.least_clearance(DEMAND, outcome.x[: len(FREE)]))
     return _row(f"{method}, {seeds} seeds", "feasible", values, gaps, seconds, EVALUATIONS)
 
 
@@ -95,7 +95,7 @@ def _fronts(seeds: int) -> dict[str, Any]:
         found = front(posed, SIZE, Budget(evaluations=EVALUATIONS), seed)
         seconds.append(clock.seconds)
         best.append(np.min([point.values for point in found.points], axis=0))
-        gaps += [sampled.hidden(DEMAND, point.x) for point in found.points]
+        gaps += [sampled.least_clearance(DEMAND, point.x) for point in found.points]
     pressures, volumes, shares = np.array(best).T
     row = _row(f"front, {seeds} seeds", "feasible", pressures.tolist(), gaps, seconds, EVALUATIONS)
     teeth = 1.0 / shares

@@ -153,7 +153,14 @@ def test_made_smaller_boxes_hold_all_designs_that_are_accepted():
     used = stage.options[0].utilisations(pair, *load, train.safety)
     module = pair.normal_module
     good = (np.max([*used.values()], axis=0) <= 1.0) & (module >= 1.0) & (module <= 12.0)
-    at = {"teeth": z, "slim": slim, "diameter": d, "end": u, "module": module, "width": slim * d}
+    at = {
+        "teeth": z,
+        "width_over_diameter": slim,
+        "diameter": d,
+        "end": u,
+        "module": module,
+        "width": slim * d,
+    }
     at |= {"wheel": u * d, "ratio": u}
     point = np.log([at[name][good] for name in ROWS])[:, None, :]
     low, high = (boxes.sizes[:, end, :, None] for end in (0, 1))
@@ -168,7 +175,7 @@ def test_first_boxes_hold_face_widths_of_any_proportion(slim):
     train = rated_drive(4, [FaceWidth(slim, slim)], pinion_teeth=(20, 40))
     shafts = shafts_about(train, 8)
     boxes = first_boxes(shafts, 0)
-    assert np.exp(boxes.sizes[ROWS.index("slim")]) == pytest.approx(float(slim))
+    assert np.exp(boxes.sizes[ROWS.index("width_over_diameter")]) == pytest.approx(float(slim))
     assert len(bounded(shafts, 0, boxes)[0]) == len(boxes)
 
 

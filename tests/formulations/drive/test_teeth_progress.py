@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from gearopt.formulations.drive.teeth.progress import MARGIN, TIE, Progress, Spent
+from gearopt.formulations.drive.teeth.progress import MARGIN, TIE, Progress, SearchEnded
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Event
 
@@ -99,7 +99,7 @@ def test_a_watcher_is_told_and_stops_a_search():
     progress.tick()
     assert seen[-1].bound == 3.0
     clock.watch = lambda event: False
-    with pytest.raises(Spent):
+    with pytest.raises(SearchEnded):
         progress.tick()
     assert progress.clock.stopped and not progress.enough
     clock.watch = None

@@ -67,11 +67,11 @@ class FaceWidth:
         """Whether b has no limits but those of b/d1."""
         return self.over_module == (None, None) and not self.least
 
-    def proportions(self, slenderness: Fraction) -> tuple[Fraction, Fraction | None]:
-        """Return the limits of b/m_n, least aside, of a pinion with d1/m_n = slenderness."""
+    def proportions(self, diameter_over_module: Fraction) -> tuple[Fraction, Fraction | None]:
+        """Return the limits of b/m_n of a pinion of this d1/m_n; least is left aside."""
         low, high = self.over_module
-        most = [x for x in (high, self.high and self.high * slenderness) if x is not None]
-        return max(self.low * slenderness, low or Fraction(0)), min(most, default=None)
+        most = [x for x in (high, self.high and self.high * diameter_over_module) if x is not None]
+        return max(self.low * diameter_over_module, low or Fraction(0)), min(most, default=None)
 
 
 @dataclass(frozen=True)

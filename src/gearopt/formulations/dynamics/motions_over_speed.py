@@ -78,7 +78,9 @@ def passed(frequencies: Array) -> Array:
     return np.concatenate(found)
 
 
-def limited(pair: MovingPair, level: str, harmonics: int, clock: Clock) -> float | None:
+def rms_limited_by_backlash(
+    pair: MovingPair, level: str, harmonics: int, clock: Clock
+) -> float | None:
     """Return the RMS of the motion at the pair's own mesh frequency [mm], from contact there.
 
     None where the pair has no frequency or no backlash, where the motion grows for ever, or where

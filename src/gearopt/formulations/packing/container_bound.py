@@ -54,9 +54,10 @@ def always() -> bool:
 
 @dataclass(frozen=True)
 class Bound:
-    """value: a lower bound. choices: number of ways to assign the cylinders; 0: too many.
+    """A lower bound on the objective of all packings of a plan.
 
-    complete: all that can be best were examined to the end.
+    choices: number of ways to assign the cylinders; 0: too many. complete: all that can be best
+    were examined to the end.
     """
 
     value: float
@@ -326,7 +327,9 @@ def _triple(a: float, b: float, c: float, w: Array) -> Array:
 
 
 def _beside(outer: float, first: float, second: float, maximum: Array, other: Array) -> Array:
-    """Return the same with the middle one `maximum` across from one, up to `other` from another.
+    """Return the minimum distance along of three discs, the middle one beside the outer two.
+
+    It is `maximum` across from the first, and up to `other` from the last.
 
     With v from 0 to the smaller of them, the outer distance grows and the sum of the inner ones
     falls.

@@ -141,7 +141,7 @@ class Places(NamedTuple):
     centre: Array
 
     def copied(self) -> "Places":
-        """Return the same in arrays of its own."""
+        """Return a copy of the places, in arrays of its own."""
         return Places(self.x.copy(), self.y.copy(), self.layer.copy(), self.centre.copy())
 
 

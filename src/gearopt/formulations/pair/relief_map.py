@@ -145,7 +145,7 @@ class Removed:
         return cls(pinion, wheel, lengths, None, points)
 
     def on(self, mesh: Mesh, other: Mesh) -> "Removed":
-        """Return the same at the contacts of another mesh of the gears, free shapes by lines."""
+        """Return the depths at the contacts of another mesh of the gears, free shapes by lines."""
         if self.points is None:
             assert self.exponent is not None
             ends = zip(self.amounts(mesh), self.lengths, strict=True)
@@ -157,7 +157,7 @@ class Removed:
         return replace(self, pinion=pinion, wheel=wheel)
 
     def separations(self, mesh: Mesh) -> Array:
-        """Return the sum of both at each contact [mm], infinite where there is none."""
+        """Return the separations of flanks by relief at each contact [mm], infinite without one."""
         return np.where(mesh.cycle.present, self.pinion + self.wheel, np.inf)
 
     def amounts(self, mesh: Mesh) -> tuple[float, float]:

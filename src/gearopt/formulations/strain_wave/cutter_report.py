@@ -20,10 +20,11 @@ USUAL = math.radians(20.0)  # pressure angle of usual tools
 
 @dataclass(frozen=True)
 class Cutter:
-    """teeth Z_b of a pinion-type cutter, 0: a rack; pitch_radius P_f of the blank [mm], 0: m z_f/2.
+    """The cutter that is asked for: a pinion-type cutter or a rack, and what may replace its edge.
 
-    angle [rad]: of a straight tool that is there, beside the best one. least_radius [mm]: of an arc
-    that replaces the edge, 0: any. replaced: whether a line and an arc that replace it are sought.
+    teeth Z_b, 0: a rack; pitch_radius P_f of the blank [mm], 0: m z_f/2. angle [rad]: of a straight
+    tool that is there, beside the best one. least_radius [mm]: of an arc that replaces the edge, 0:
+    any. replaced: whether a line and an arc that replace it are sought.
     """
 
     teeth: int = 0

@@ -76,7 +76,7 @@ def loads_at(duty: Duty, flank: Flank) -> tuple[Teeth, Loads]:
 
 
 def loads_turned(duty: Duty, flank: Flank, shifts: Sequence[float]) -> list[tuple[Teeth, Loads]]:
-    """Return the same for turns of the wave generator, in pitches from -1/2 to 1/2."""
+    """Return teeth and loads as `loads_at`, at turns of the wave generator of -1/2 to 1/2 pitch."""
     rim = (duty.cup, duty.face_width) if duty.elastic else None
     every = teeth_turned(flank, duty.pair_stiffness, rim, shifts)
     arms = [np.full(len(teeth.gaps), teeth.arm) for teeth in every]
@@ -193,9 +193,9 @@ def limits(
     """Return the utilisations of all limits but interference, at most 1 where they are met."""
     root, tip = contacts[0].point, contacts[-1].point
     widths = *flexspline_widths(gearing, root, tip), spline_land(gearing)
-    slips = slipping(demand, gearing, contacts[-1])
+    ratchets_at = flank_ratcheting_torque(demand, gearing, contacts[-1])
     return {
-        **common_limits(demand, gearing, curve, pairs_of(gearing, contacts), slips, widths),
+        **common_limits(demand, gearing, curve, pairs_of(gearing, contacts), ratchets_at, widths),
         "base_circle": OUTSIDE_BASE * gearing.base_radius / gearing.tip_radius,
         "curvature": tuple(
             1.0 + (LEAST_CURVATURE - c.gap_curvature) / CURVATURE_UNIT for c in contacts
@@ -209,20 +209,20 @@ def common_limits(
     gearing: StrainWave,
     curve: NeutralCurve,
     pairs: Any,
-    slips: Any,
+    ratchets_at: Any,
     widths: tuple[Any, Any, Any],
 ) -> dict[str, Any]:
     """Return the utilisations of the limits on teeth of any law.
 
-    pairs: mean conjugate ones; slips: torque [N mm] at which teeth ratchet; widths [mm] of the
-    flexspline's tip land and root space, and of the circular spline's tip land.
+    pairs: mean conjugate ones; ratchets_at: torque [N mm] at which teeth ratchet; widths [mm] of
+    the flexspline's tip land and root space, and of the circular spline's tip land.
     """
     names = ("flexspline_land", "flexspline_space", "spline_land")
     thin = {k: 1.0 + LAND - v / gearing.module for k, v in zip(names, widths, strict=True)}
     found = {
         "pairs": demand.pairs / pairs,
         "rim_fatigue": fatigue(demand, gearing, curve),
-        "ratcheting": demand.ratchet_factor * demand.duty.torque / slips,
+        "ratcheting": demand.ratchet_factor * demand.duty.torque / ratchets_at,
         "outer_radius": demand.radius_needed(gearing) / demand.outer_radius,
         **thin,
         "minor_axis": (TIP_GAP + 2.0 * gearing.addendum) / (2.0 * gearing.deflection),
@@ -230,7 +230,7 @@ def common_limits(
     return {name: used for name, used in found.items() if name not in demand.unasked}
 
 
-def slipping(demand: Demand, gearing: StrainWave, tip: Contact) -> Any:
+def flank_ratcheting_torque(demand: Demand, gearing: StrainWave, tip: Contact) -> Any:
     """Return the torque [N mm] at which teeth ratchet, by the flank's angle at the tip."""
     slope = -tip.direction.y / tip.direction.x
     return ratcheting_torque(gearing, demand.radial_stiffness, slope)

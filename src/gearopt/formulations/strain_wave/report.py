@@ -15,12 +15,12 @@ from gearopt.formulations.strain_wave.demand import (
     Demand,
     Duty,
     equal_pressure,
+    flank_ratcheting_torque,
     limits,
     loads_turned,
     pressures,
     rim_of,
     shared_pressure,
-    slipping,
 )
 from gearopt.formulations.strain_wave.design import COUNT
 from gearopt.formulations.strain_wave.exchange import CUTTING, STEP_DEG, RangeEnd, stretched
@@ -293,7 +293,7 @@ def _sizes(demand: Demand, made: Flank) -> dict[str, Any]:
         **sizes_of(demand, gearing, made.curve),
         "base_diameter_mm": 2.0 * float(gearing.base_radius),
         "pairs_in_contact": float(made.pairs_in_contact),
-        "ratcheting_torque_Nm": 1e-3 * float(slipping(demand, gearing, tip)),
+        "ratcheting_torque_Nm": 1e-3 * float(flank_ratcheting_torque(demand, gearing, tip)),
     }
 
 

@@ -74,7 +74,9 @@ def problem(
         return Terms(goals, {name: _given(v, shape) for name, v in found.items()})
 
     def exact(x: Array) -> dict[str, float]:
-        return {"interference": 1.0 + (CUTTING - hidden(demand, x[: len(FREE)])) / GAP_UNIT}
+        return {
+            "interference": 1.0 + (CUTTING - least_clearance(demand, x[: len(FREE)])) / GAP_UNIT
+        }
 
     return Problem(
         "strain wave gearing, sampled",
@@ -167,7 +169,7 @@ def _share(wide: StrainWave, curve: NeutralCurve, made: Flank, known: Array) -> 
     return np.where(known & (count > 0.0), 1.0 / np.maximum(count, 0.25), 1.0)
 
 
-def hidden(demand: Demand, numbers: Array) -> float:
+def least_clearance(demand: Demand, numbers: Array) -> float:
     """Return the least clearance [mm] over all poses of a sampled design's free numbers (6,).
 
     Negative: the teeth cut each other between the poses that were looked at.

@@ -75,7 +75,7 @@ def teeth_of(flank: Flank, pair_stiffness: float, rim: tuple[Cup, float] | None 
 def teeth_turned(
     flank: Flank, pair_stiffness: float, rim: tuple[Cup, float] | None, shifts: Sequence[float]
 ) -> list[Teeth]:
-    """Return the same for turns of the wave generator, in pitches from -1/2 to 1/2."""
+    """Return the teeth as `teeth_of`, at turns of the wave generator of -1/2 to 1/2 pitch."""
     most = round(REACH * float(flank.gearing.teeth) / (2.0 * np.pi))
     number = np.arange(-most, most + 1)
     arcs = np.array([tooth_arcs(flank, number, shift) for shift in shifts])
@@ -186,7 +186,7 @@ def problem(compliance: Any, gaps: Any, arms: Any, moment: float) -> Problem:
 
 
 def conic(compliance: Any, gaps: Any, arms: Any, moment: float) -> Conic:
-    """Pose the same for `conic`, the square by a triangular root of the compliance."""
+    """Pose the sharing of the torque for `conic`, by a triangular root of the compliance."""
     matrix, gap, arm = (np.asarray(v, float) for v in (compliance, gaps, arms))
     count, longest = len(gap), float(arm.max())
     root = np.linalg.cholesky(matrix * (moment / longest)).T

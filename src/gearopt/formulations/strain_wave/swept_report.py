@@ -172,7 +172,7 @@ def described_by_law(
         **load_columns(turned),
         **shares(turned[0]),
         pairs_in_contact=made.pairs,
-        ratcheting_torque_Nm=1e-3 * float(_slips(demand, gearing)),
+        ratcheting_torque_Nm=1e-3 * float(_ratcheting_torque(demand, gearing)),
         equal_pressure_MPa=_equal(duty, made, made.pairs),
         whole_pairs_pressure_MPa=_equal(duty, made, max(1.0, math.floor(made.pairs))),
         shared_pressure_MPa=max(
@@ -193,15 +193,15 @@ def used_by_law(demand: Demand, made: SweptGearing) -> dict[str, float]:
     mesh = made.mesh
     gearing, tooth = mesh.gearing, mesh.tooth.points
     widths = *flexspline_widths(gearing, tooth[0], tooth[-1]), mesh.spline_land
-    slips = _slips(demand, gearing)
-    found = common_limits(demand, gearing, mesh.curve, made.pairs, slips, widths)
+    ratchets_at = _ratcheting_torque(demand, gearing)
+    found = common_limits(demand, gearing, mesh.curve, made.pairs, ratchets_at, widths)
     least, _ = _least(mesh)
     if least < -TOUCH:
         found["interference"] = 1.0 - least / float(gearing.module)
     return {name: float(value) for name, value in found.items()}
 
 
-def _slips(demand: Demand, gearing: StrainWave) -> Any:
+def _ratcheting_torque(demand: Demand, gearing: StrainWave) -> Any:
     """Return the torque [N mm] at which teeth ratchet, by their pressure angle."""
     slope = math.tan(float(gearing.pressure_angle))
     return ratcheting_torque(gearing, demand.radial_stiffness, slope)

@@ -99,7 +99,7 @@ class Agma:
 
     @property
     def steps(self) -> dict[str, tuple[float, ...]]:
-        """Return that no size makes a rating jump."""
+        """Sizes [mm] at which a rating jumps, by name of `Cells`: none."""
         return {}
 
     def needed(self, cells: Cells, safety: tuple[float, float]) -> tuple[Any, Any]:

@@ -81,7 +81,7 @@ class AgmaFloor:
     hard: Monomial
 
     def utilisations(self, pair: GearPair, torque: Any, speed: Any, safety: Any) -> dict[str, Any]:
-        """Return them, of loads, at required safety factors (S_F, S_H), a name for every branch."""
+        """Return the bounds, of loads, at required safety factors (S_F, S_H), by name of branch."""
         standard, given = self.standard, self.standard.given
         load, d, b = standard.loads[0], pair.pinion.reference_diameter, pair.face_width
         z, u = pair.pinion_teeth, pair.ratio

@@ -107,7 +107,7 @@ class Iso6336:
 
     @property
     def unknowns(self) -> dict[str, tuple[float, float, bool]]:
-        """Return that the smooth form has none."""
+        """Ends of the unknowns of the smooth form: none, for it has no unknowns."""
         return {}
 
     def choices(self, helical: bool) -> tuple[str, ...]:
@@ -119,7 +119,7 @@ class Iso6336:
         return tuple(other for other in RANGES if other != choice)
 
     def guess(self, pair: GearPair, choice: str) -> dict[str, float]:
-        """Return no unknowns."""
+        """Unknowns of a pair of floats: none, as of `unknowns`."""
         return {}
 
     def smooth(
@@ -132,7 +132,7 @@ class Iso6336:
         return Smooth(made, {}, {}, {})
 
     def floor(self, box: Box, choice: str) -> None:
-        """Return that no posynomials below it are known."""
+        """Lower bounds of the used capacity as posynomials: None, for none are known."""
 
     def like(self, other: Any) -> bool:
         """Return whether `prepared` of another standard is the same."""
@@ -237,7 +237,7 @@ class Iso6336:
         form = self.given.get("f_falpha", made.profile_form)
         columns = {}
         for k, case in enumerate(cases[: 1 if cases[0] is cases[1] else 2]):
-            worn = [self.worn(case, found, value) for value in (pitch, form)]
+            worn = [self.running_in_allowance(case, found, value) for value in (pitch, form)]
             columns[f"force{k}"] = force * torque[k]
             columns[f"pace{k}"] = case.operation.pinion_speed * slow.pair.pinion_teeth * mass**0.5
             columns[f"speed{k}"] = case.speed
@@ -246,7 +246,7 @@ class Iso6336:
             columns[f"deviation{k}"] = np.maximum(pitch, form) - worn[0]
         return columns
 
-    def worn(self, case: Case, found: dict[str, Any], deviation: Any) -> Any:
+    def running_in_allowance(self, case: Case, found: dict[str, Any], deviation: Any) -> Any:
         """Return y_alpha of a deviation [mm], the mean of both gears."""
         limits = found["sigma_Hlim"]
         first, second = (
@@ -317,7 +317,9 @@ class Strength:
     curve: Curve
 
     def greatest(self, cases: tuple[Case, Case]) -> Any:
-        """Return it at the cycles of cases: life factors of the slow end, exponents of the better.
+        """Return the greatest strength [MPa] at the cycles of cases: an upper bound.
+
+        Life factors are those of the slow end, exponents of the better one.
 
         cases: at the slow and at the fast end.
         """
@@ -330,7 +332,7 @@ class Strength:
         return self.fixed * life * found
 
     def knots(self) -> list[Any]:
-        """Return it at the knots of the life curve."""
+        """Return the greatest strength [MPa] at each knot of the life curve."""
         shares = [float(reference_share(self.curve, n)) for n in self.curve.cycles]
         rows = zip(self.curve.values, shares, strict=True)
         return [self.fixed * value * self._other(share) for value, share in rows]

@@ -90,7 +90,7 @@ class IsoCells:
             return self.given["c_gamma_alpha"] / self.single(1 - end, 1 - end)
         return stiffness.mesh_stiffness(1.0, self.teeth["contact"][end])[0]
 
-    def tilting(self, end: int) -> Any:
+    def c_gamma_beta_over_c_prime(self, end: int) -> Any:
         """Return c_gamma_beta/c', at least or at most."""
         if "c_gamma_beta" in self.given:
             return self.given["c_gamma_beta"] / self.single(1 - end, 1 - end)
@@ -110,7 +110,7 @@ class IsoCells:
         found = []
         for end, case in enumerate(self.cases):
             own, other, form = (
-                size - self.standard.worn(case, self.found, worn)
+                size - self.standard.running_in_allowance(case, self.found, worn)
                 for size, worn in (
                     (pitches[end], pitches[end]),
                     (forms[end], pitches[1 - end]),
@@ -212,10 +212,10 @@ class IsoCells:
             (loads.LEAST_PER_LOAD, 0.0),
             (0.0, 0.5 * slope),
         )
-        stiff = self.tilting(LOWER) * self.single(LOWER, LOWER)
+        stiff = self.c_gamma_beta_over_c_prime(LOWER) * self.single(LOWER, LOWER)
         x = np.zeros(len(slow.speed))
-        sure = self.tilting(LOWER) / self.loaded
-        possible = self.tilting(UPPER) / (self.deflection[LOWER] * self.dynamic)
+        sure = self.c_gamma_beta_over_c_prime(LOWER) / self.loaded
+        possible = self.c_gamma_beta_over_c_prime(UPPER) / (self.deflection[LOWER] * self.dynamic)
         for share, worn in self._worn():
             for per_load, fixed in parts:
                 rest = share * fixed - worn
@@ -264,7 +264,9 @@ class IsoCells:
             for k, m in enumerate(self.standard.materials)
         ]
         after = before - 0.5 * (worn[0] + worn[1])
-        return self.loaded * loads.face_load_factor(after, self.tilting(UPPER), self.loaded)
+        return self.loaded * loads.face_load_factor(
+            after, self.c_gamma_beta_over_c_prime(UPPER), self.loaded
+        )
 
     def transverse(self, name: str, most: Any) -> Any:
         """Return the least K_Halpha or K_Falpha; most: the least of its greatest value."""

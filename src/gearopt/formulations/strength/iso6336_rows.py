@@ -237,9 +237,9 @@ class Box:
             for k, m in enumerate(self.standard.materials)
         ]
         after = before - 0.5 * (worn[0] + worn[1])
-        return dynamic * loads.face_load_factor(after, self._tilting(end), dynamic)
+        return dynamic * loads.face_load_factor(after, self._c_gamma_beta(end), dynamic)
 
-    def _tilting(self, end: int) -> Any:
+    def _c_gamma_beta(self, end: int) -> Any:
         """Return c_gamma_beta [MPa]."""
         if "c_gamma_beta" in self.given:
             return self.given["c_gamma_beta"]

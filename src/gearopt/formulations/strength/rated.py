@@ -155,11 +155,11 @@ class IndexRows:
     widths: Array
 
     def used(self, low: Array, high: Array) -> Array:
-        """Return the narrowest width over the larger one."""
+        """Lower bound of the part of the load capacity used at widths up to the larger one."""
         return np.asarray(self.widths / high)
 
     def border(self, width: Array) -> Array:
-        """Return that there is none."""
+        """Width [mm] above which another law holds: inf, for a proportional law has none."""
         return np.full(len(width), np.inf)
 
     def take(self, place: Any) -> "IndexRows":
@@ -186,7 +186,7 @@ class Floor(Protocol):
     """Lower bounds of the used load capacity, as posynomials."""
 
     def utilisations(self, pair: GearPair, torque: Any, speed: Any, safety: Any) -> dict[str, Any]:
-        """Return them by name, at required safety factors (S_F, S_H)."""
+        """Return the bounds by name, at required safety factors (S_F, S_H)."""
 
     def limits(self, pair: GearPair) -> dict[str, Any]:
         """Limits that keep to the regime chosen beforehand."""

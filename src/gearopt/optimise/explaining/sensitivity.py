@@ -24,10 +24,10 @@ STATIONARY = 1e-4  # largest gradient left in a variable off its bounds, of the 
 
 @dataclass(frozen=True)
 class Sensitivities:
-    """parameters (np,) and columns (n,): relative change of the objective per relative change.
+    """Logarithmic sensitivities of the objective: relative change per relative change.
 
-    columns: of a bound that holds the variable (0 where none does). multipliers (ng,), equalities
-    (nh,): of the rows, relative change of the objective per relative change of a row's limit.
+    parameters (np,): to each. columns (n,): to the bound that holds the variable (0 where none
+    does). multipliers (ng,), equalities (nh,): to the limit of each row.
     """
 
     parameters: Array

@@ -80,7 +80,7 @@ def default(problem: Problem | Conic, limiting: Limiting | None = None) -> str:
     return NSGA if untraced else EPSILON
 
 
-def traders(problem: Problem | Conic, limiting: Limiting | None = None) -> tuple[str, ...]:
+def compared_methods(problem: Problem | Conic, limiting: Limiting | None = None) -> tuple[str, ...]:
     """Return the methods that are compared where none are named."""
     if isinstance(problem, Conic):
         return (EPSILON,)

@@ -194,7 +194,9 @@ def _at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
         spent = sum(p.seconds for p in parts)
         return replace(result, name="drive", seconds=result.seconds + spent, **_why(result, apart))
     if isinstance(model.problem, Problem) and real:
-        return _real(scene, result, outcome, sized, model.problem, _start(scene, apart)[0], events)
+        return _real_valued_design(
+            scene, result, outcome, sized, model.problem, _start(scene, apart)[0], events
+        )
     train = scene.train()
     make = partial(scene.gearbox, train=train)
     box, angles, order = together.laid_out(train, make, outcome.x)
@@ -206,7 +208,7 @@ def _at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
     if scene.by_ratings:
         return found
     left = replace(ask, budget=asked.less(result.seconds))
-    smooth = _from(scene, (order.slabs, pairs, angles), left)
+    smooth = _real_valued_part(scene, (order.slabs, pairs, angles), left)
     return replace(found, parts=(*found.parts, *smooth))
 
 
@@ -280,7 +282,7 @@ def _options(train: Train, found: Result) -> tuple[int, ...]:
     return tuple(own.index(n) for own, n in zip(known, names, strict=True))
 
 
-def _from(scene: Scene, start: Start, ask: Ask) -> tuple[Result, ...]:
+def _real_valued_part(scene: Scene, start: Start, ask: Ask) -> tuple[Result, ...]:
     """Return the real-valued part, started from an exact answer; none unless Ipopt improves it."""
     slabs, pairs, angles = start
     train = scene.train()
@@ -294,7 +296,7 @@ def _from(scene: Scene, start: Start, ask: Ask) -> tuple[Result, ...]:
     return (replace(result, name=REAL_VALUED, objective=result.objective | {"unit": unit}),)
 
 
-def _real(
+def _real_valued_design(
     scene: Scene,
     result: Result,
     outcome: Outcome,

@@ -7,7 +7,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations.dynamics import parts
 from gearopt.formulations.dynamics.design import DynamicsDesign
 from gearopt.formulations.dynamics.motion.stability import UNSTABLE
-from gearopt.formulations.dynamics.motions_over_speed import limited, over_speeds
+from gearopt.formulations.dynamics.motions_over_speed import over_speeds, rms_limited_by_backlash
 from gearopt.formulations.dynamics.orbit.task import pair_of
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.runs import Model
@@ -122,7 +122,9 @@ def _design(scene: Scene, pair: MovingPair, level: str, clock: Clock) -> Dynamic
         across, up = (low, high, stability.frequencies), (first, last, stability.depths)
         mapped = parts.stability(pair, level, across, up, clock)
         if mapped is not None and mapped.here is not None and mapped.here > 1.0 + UNSTABLE:
-            mapped = replace(mapped, limited_rms_mm=limited(pair, level, HARMONICS, clock))
+            mapped = replace(
+                mapped, limited_rms_mm=rms_limited_by_backlash(pair, level, HARMONICS, clock)
+            )
     if speeds is not None:
         low, high = (30.0 / math.pi * end.value for end in speeds.range)
         grid = low, high, speeds.points

@@ -12,7 +12,10 @@ RANDOM = ("annealing", "multistart", "nsga2", "scip")  # back ends that another 
 
 @dataclass(frozen=True)
 class Ask:
-    """method: None for the scene's own choice. top: answers in proven order. gap: see `solve`."""
+    """What a caller asks beside the file: by which method, in what budget, how many answers.
+
+    method: None for the scene's own choice. top: answers in proven order. gap: see `solve`.
+    """
 
     method: str | None = None
     budget: Budget = field(default_factory=Budget)
@@ -23,12 +26,12 @@ class Ask:
 
     @property
     def half(self) -> "Ask":
-        """Return the same in half of its seconds: an answer that leaves time to explain it."""
+        """What is asked, in half of its seconds: an answer that leaves time to explain it."""
         seconds = self.budget.seconds and 0.5 * self.budget.seconds
         return replace(self, budget=replace(self.budget, seconds=seconds))
 
     def for_prices(self, share: bool | float, spent: float) -> "Ask":
-        """Return the same for sensitivities, after an answer that took so many seconds.
+        """What is asked of sensitivities, after an answer that took so many seconds.
 
         share: True for all that is left; else of these seconds, and LEAST_PRICES, at most.
         """

@@ -183,7 +183,7 @@ def given_overlap(scene: Scene) -> str:
 
 
 def _overlaps(scene: Scene, results: tuple[Result, ...]) -> str:
-    """Say the same of the lightest train, whose limits are relaxed: its mass is a lower bound."""
+    """Say which gears of the lightest train overlap something: its mass is a lower bound."""
     found = [r for r in results if r.name == "stiff" and r.value is not None]
     if not found:
         return ""

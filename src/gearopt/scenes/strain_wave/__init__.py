@@ -126,7 +126,7 @@ def _sampled(scene: Scene, ask: Ask) -> Result:
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
     if outcome.x is None:
         return result
-    least = sampled.hidden(scene.demand(), outcome.x[: len(FREE)])
+    least = sampled.least_clearance(scene.demand(), outcome.x[: len(FREE)])
     if result.value is None:
         return replace(result, message=HIDDEN.format(-1e3 * least)) if least < CUTTING else result
     made = design_of(scene.demand(), outcome.x[: len(FREE)])
@@ -185,7 +185,7 @@ def _with(
     ends = ends_of(demand.ranges, numbers[: len(FREE)], slopes)
     design = described(demand, made, scene.tool(), _spare(clock), rounds)
     design = replace(design, range_ends=ends)
-    return _shown(scene, result, design, _cut(result) | used(demand, made))
+    return _shown(scene, result, design, _interference_used(result) | used(demand, made))
 
 
 def _shown(scene: Scene, result: Result, design: WaveDesign, limits: dict[str, float]) -> Result:
@@ -212,7 +212,7 @@ def _shown(scene: Scene, result: Result, design: WaveDesign, limits: dict[str, f
     )
 
 
-def _cut(result: Result) -> dict[str, float]:
+def _interference_used(result: Result) -> dict[str, float]:
     """Return the largest utilisation of the poses that an optimisation held clear."""
     own = [v for name, v in result.limits.items() if name.startswith("interference")]
     return {"interference": max(own)} if own else {}

@@ -80,7 +80,7 @@ def _methods(box: Gearbox, orders: tuple[Arrangement, ...]) -> dict[str, Any]:
 def _polish(
     plain: Problem, text: Problem, shape: Chain, x: Array, budget: Budget, watch: Watch | None
 ) -> annealing.Polished:
-    """X or a better point that Ipopt reaches from it; the value is inf where x is not feasible."""
+    """Polish a layout by Ipopt: a point no worse than x, its value (inf: not feasible), cost."""
     links = shape.link.size
     value, lack = (float(v[0]) for v in violation(plain, x[None]))
     box = sides(shape, *positions(shape, tuple(x[:links])))

@@ -17,11 +17,11 @@ from gearopt.formulations.strength.cells import LOWER, Cells
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
-ROWS = ("teeth", "slim", "diameter", "end", "module", "width", "wheel", "ratio")
-Z, SLIM, D, END, M, B, D2, U = range(len(ROWS))
-FREE = (Z, SLIM, D, END)  # from which the others follow
+ROWS = ("teeth", "width_over_diameter", "diameter", "end", "module", "width", "wheel", "ratio")
+Z, B_OVER_D, D, END, M, B, D2, U = range(len(ROWS))
+FREE = (Z, B_OVER_D, D, END)  # from which the others follow
 LENGTHS = 1e-3, 1e5  # mm: of diameters
-SLIMMEST, WIDEST = 1e-3, 1e3  # b/d1 without limits
+NARROWEST, WIDEST = 1e-3, 1e3  # b/d1 without limits
 TEETH = 1e6
 ROUND = 1e-12  # of logarithms: a box this narrow is a point
 MARGIN = 1e-9  # relative, of what is needed: rounding
@@ -113,9 +113,9 @@ def first_boxes(shafts: Shafts, k: int) -> Boxes:
     face, last = stage.face_width, k == shafts.last
     sizes = np.empty((len(ROWS), 2))
     sizes[Z] = max(1.0, numbers["pinion_low"][k]), min(TEETH, numbers["pinion_high"][k])
-    slim = float(face.low) or min(SLIMMEST, SLIMMEST * face.widest)
-    wide = face.widest if math.isfinite(face.widest) else max(WIDEST, WIDEST * slim)
-    sizes[SLIM] = slim, wide
+    narrow = float(face.low) or min(NARROWEST, NARROWEST * face.widest)
+    wide = face.widest if math.isfinite(face.widest) else max(WIDEST, WIDEST * narrow)
+    sizes[B_OVER_D] = narrow, wide
     sizes[D] = LENGTHS
     total = float(train.lowest_ratio), float(train.highest_ratio)
     sizes[END] = total if last else (1.0, 1.0)
@@ -149,15 +149,15 @@ def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
     torque = shafts.train.torque * np.exp(before)
     size = np.exp(sizes)
     speed = shafts.train.speed_at(torque)[::-1]
-    ends = size[Z], size[U], size[D], size[D2], size[M], size[B], size[SLIM]
+    ends = size[Z], size[U], size[D], size[D2], size[M], size[B], size[B_OVER_D]
     cells = Cells(stage.toothing, *ends, torque, speed)
     needed = _needed(shafts.train, stage, cells)
     weak = _needed_by_weak(stage, cells, shafts.train.safety, needed[0])
     most = np.maximum(weak * (1.0 + 1.0 / size[U, 1]), needed[1]) * torque[0]
     with np.errstate(divide="ignore"):
-        least = np.log(most * (1.0 - MARGIN))  # of d1^2 b = d1^3 slim
-    sizes[D, 0] = np.maximum(sizes[D, 0], (least - sizes[SLIM, 1]) / 3.0)
-    sizes[SLIM, 0] = np.maximum(sizes[SLIM, 0], least - 3.0 * sizes[D, 1])
+        least = np.log(most * (1.0 - MARGIN))  # of d1^2 b = d1^3 (b/d1)
+    sizes[D, 0] = np.maximum(sizes[D, 0], (least - sizes[B_OVER_D, 1]) / 3.0)
+    sizes[B_OVER_D, 0] = np.maximum(sizes[B_OVER_D, 0], least - 3.0 * sizes[D, 1])
     _follow(shafts.train, k, sizes)
     parts = [(needed[0], True, True), (needed[1], False, True), (weak, True, False)]
     value = _of_sizes(shafts, k, sizes, before, after)
@@ -186,12 +186,12 @@ def _follow(train: Train, k: int, sizes: Array) -> None:
         sizes[Z, row] = pick(sizes[Z, row], end - sizes[U, 1 - row])
     low, high = stage.face_width.over_module
     if low is not None:
-        sizes[SLIM, 0] = np.maximum(sizes[SLIM, 0], math.log(low) + cosine - sizes[Z, 1])
+        sizes[B_OVER_D, 0] = np.maximum(sizes[B_OVER_D, 0], math.log(low) + cosine - sizes[Z, 1])
     if high is not None:
-        sizes[SLIM, 1] = np.minimum(sizes[SLIM, 1], math.log(high) + cosine - sizes[Z, 0])
-        sizes[Z, 1] = np.minimum(sizes[Z, 1], math.log(high) + cosine - sizes[SLIM, 0])
+        sizes[B_OVER_D, 1] = np.minimum(sizes[B_OVER_D, 1], math.log(high) + cosine - sizes[Z, 0])
+        sizes[Z, 1] = np.minimum(sizes[Z, 1], math.log(high) + cosine - sizes[B_OVER_D, 0])
     for _ in range(2):
-        for whole, one, other, by in ((D, M, Z, -cosine), (B, SLIM, D, 0.0), (D2, D, U, 0.0)):
+        for whole, one, other, by in ((D, M, Z, -cosine), (B, B_OVER_D, D, 0.0), (D2, D, U, 0.0)):
             (a_low, a_high), (b_low, b_high) = sizes[one] + by, sizes[other]
             c_low, c_high = sizes[whole]
             sizes[whole] = np.maximum(c_low, a_low + b_low), np.minimum(c_high, a_high + b_high)
@@ -235,13 +235,13 @@ def _needed_by_weak(stage: Any, cells: Cells, safety: Any, usual: Array) -> Arra
 
 
 def _moved(shafts: Shafts, k: int, before: Any, after: Any) -> Any:
-    """Addition of the potentials to the share of a stage at torques before and after it."""
+    """What the potentials of `Shafts` add to the share of a stage, by torques at its shafts."""
     (first, second), (at, then) = shafts.potential[k : k + 2], shafts.middle[k : k + 2]
     return first * (before - at) - second * (after - then)
 
 
 def _of_sizes(shafts: Shafts, k: int, sizes: Array, before: Array, after: Array) -> Array:
-    """Share of the least sizes of boxes, and the least addition of the potentials."""
+    """Lower bound of the share of designs in boxes, potentials added, by their least sizes."""
     own, moved = _least_sizes(shafts, k, sizes, before, after)
     return np.asarray(own * (1.0 - MARGIN) + moved)
 
@@ -249,7 +249,7 @@ def _of_sizes(shafts: Shafts, k: int, sizes: Array, before: Array, after: Array)
 def _least_sizes(
     shafts: Shafts, k: int, sizes: Array, before: Array, after: Array
 ) -> tuple[Array, Array]:
-    """Share of the least sizes of boxes, and the least addition of the potentials to it."""
+    """The two terms of `_of_sizes`: share at the least sizes, least addition of the potentials."""
     size = np.exp(sizes[:, LOWER])
     own = shafts.train.stages[k].toothing
     pair = own.of_diameter(size[M], size[Z], size[D], size[U], size[B])
@@ -277,7 +277,7 @@ def _of_ratings(
     wide, slope = (1.0 + 1.0 / u, 1.0 / (1.0 + u)) if pressed else (1.0, 0.0)
     least = shafts.train.torque * np.exp(t if loaded else before[0]) * coefficient * wide
     if not shafts.train.by_width:
-        least = least / np.exp(sizes[SLIM, 1])
+        least = least / np.exp(sizes[B_OVER_D, 1])
     value = least**power * grown * (1.0 - MARGIN)
     by_t, by_e = value * (power * (loaded + slope) - rise), value * (rise - power * slope)
     lost = np.abs(by_t + first) * half[0] + np.abs(by_e - second) * half[1]

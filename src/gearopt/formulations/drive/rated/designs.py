@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.drive.rated.boxes import (
+    B_OVER_D,
     D2,
     ROUND,
-    SLIM,
     B,
     D,
     M,
@@ -92,7 +92,7 @@ def _around(train: Train, k: int, pair: GearPair, size: float) -> Array:
     d = pair.pinion.reference_diameter
     for row, value, wide in (
         (Z, pair.pinion_teeth, size),
-        (SLIM, pair.face_width / d, size),
+        (B_OVER_D, pair.face_width / d, size),
         (D, d, 2.0 * size),
     ):
         ends = np.log(float(value)) + np.array([-wide, wide])
@@ -111,14 +111,14 @@ def smallest(
     stage, ratio = train.stages[k], math.exp(float(np.clip(after - before, *box[U])))
     spread = [
         np.linspace(box[row, 0], box[row, 1], sides if np.ptp(box[row]) > ROUND else 1)
-        for row in (Z, SLIM)
+        for row in (Z, B_OVER_D)
     ]
     diameters = np.linspace(box[D, 0], max(box[D, 1], box[D, 0] + ABOVE), TRIED)
     sizes = np.exp([side.ravel() for side in np.meshgrid(*spread, diameters)])
 
-    def pairs(z: Array, slim: Array, d: Array) -> GearPair:
+    def pairs(z: Array, b_over_d: Array, d: Array) -> GearPair:
         module = d * stage.toothing.cosine / z
-        return stage.toothing.of_diameter(module, z, d, ratio, slim * d)
+        return stage.toothing.of_diameter(module, z, d, ratio, b_over_d * d)
 
     sizes = sizes[:, _allowed(train, k, pairs(*sizes))]
     if not sizes.shape[1]:
@@ -155,7 +155,7 @@ def _allowed(train: Train, k: int, pair: GearPair) -> Array:
     """Return which pairs keep to the limits of a stage on sizes."""
     sizes = first_boxes(shafts_about(train, 1), k).sizes[:, :, 0]
     d, width = pair.pinion.reference_diameter, pair.face_width
-    rows = {Z: pair.pinion_teeth, SLIM: width / d, D: d, M: pair.normal_module, B: width}
+    rows = {Z: pair.pinion_teeth, B_OVER_D: width / d, D: d, M: pair.normal_module, B: width}
     rows[D2] = pair.wheel.reference_diameter
     found = np.ones(np.shape(d), bool)
     for row, value in rows.items():

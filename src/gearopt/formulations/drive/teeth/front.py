@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from gearopt.formulations.drive.shares import share
 from gearopt.formulations.drive.teeth.columns import Index
 from gearopt.formulations.drive.teeth.later_stages import Bound, bound, ragged
-from gearopt.formulations.drive.teeth.progress import Spent, Teeth
+from gearopt.formulations.drive.teeth.progress import SearchEnded, Teeth
 from gearopt.formulations.drive.teeth.rated import RatedTable
 from gearopt.formulations.drive.teeth.search import search, within
 from gearopt.formulations.drive.teeth.stage import EDGE, Table
@@ -53,11 +53,11 @@ class Choice:
     option: Index
 
     def take(self, which: Index | Mask | slice) -> "Choice":
-        """Return some of them."""
+        """Return the choices in some rows."""
         return Choice(self.pair[which], self.module[which], self.width[which], self.option[which])
 
     def after(self, own: "Choice") -> "Choice":
-        """Return these stages followed by another one."""
+        """Return the choices with those of another stage added behind."""
         columns = ("pair", "module", "width", "option")
         return Choice(*(np.hstack([getattr(self, n), getattr(own, n)]) for n in columns))
 
@@ -77,7 +77,7 @@ class Nodes:
     made: Choice
 
     def take(self, which: Index | Mask | slice) -> "Nodes":
-        """Return some of them."""
+        """Return some of the nodes."""
         columns = self.bound[which], self.cost[which], self.log_ratio[which]
         return Nodes(self.level, *columns, self.made.take(which))
 
@@ -125,10 +125,10 @@ class Search:
         return found
 
     def tick(self) -> None:
-        """Raise Spent where budget and watcher stop the search."""
+        """Raise SearchEnded where budget and watcher stop the search."""
         self.clock.best = float(self.values[:, 0].min(initial=math.inf))
         if not self.clock.tell():
-            raise Spent
+            raise SearchEnded
 
 
 def fronts(train: Train, most: Array, clock: Clock) -> Search:
@@ -147,7 +147,7 @@ def fronts(train: Train, most: Array, clock: Clock) -> Search:
             if all(len(t.ratio) for t in run.tables) and _ends(run):
                 _bounds(run)
                 _all(run)
-    except Spent:
+    except SearchEnded:
         _inside(run)  # the ends of the front are found without its limits
     return run
 

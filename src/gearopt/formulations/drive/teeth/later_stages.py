@@ -28,10 +28,11 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class Bound:
-    """to_go[k] (cells,): minimum cost of stages k..N-1 from a cell of log cumulative ratio.
+    """Minimum cost of the stages still to come, tabulated by the ratio reached so far.
 
-    minimum[k] (cells, ratio cells): minimum cost of stage k alone. starts[k]: first pair of each
-    ratio cell, so that pairs of cell r are starts[k][r] : starts[k][r + 1].
+    to_go[k] (cells,): that of stages k..N-1 from a cell of log cumulative ratio. minimum[k] (cells,
+    ratio cells): that of stage k alone. starts[k]: first pair of each ratio cell, so that pairs of
+    cell r are starts[k][r] : starts[k][r + 1].
     """
 
     delta: float

@@ -13,7 +13,7 @@ MARGIN = 1e-11  # a node is dropped only when its bound exceeds the best by this
 Teeth = tuple[tuple[int, int], ...]
 
 
-class Spent(Exception):
+class SearchEnded(Exception):
     """Budget or watcher ended a search between two of its steps."""
 
 
@@ -73,11 +73,11 @@ class Progress:
             self.lower = max(self.lower, min(bound, self.beside, best))
 
     def tick(self) -> None:
-        """Raise Spent where budget and watcher stop the search."""
+        """Raise SearchEnded where budget and watcher stop the search."""
         if self.continues():
             return
         if self.clock.refused or self.late >= self.patience:
-            raise Spent
+            raise SearchEnded
 
     @property
     def late(self) -> float:

@@ -107,7 +107,7 @@ class RatedTable(Table):
 
     @property
     def one_module(self) -> bool:
-        """Return False: a larger module may be the better one."""
+        """Whether the smallest module that carries is the best one: not where ratings limit."""
         return False
 
     @property

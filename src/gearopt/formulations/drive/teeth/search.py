@@ -24,7 +24,7 @@ from gearopt.formulations.drive.teeth.later_stages import (
     ragged,
     useful_cells,
 )
-from gearopt.formulations.drive.teeth.progress import TIE, Progress, Spent, Teeth
+from gearopt.formulations.drive.teeth.progress import TIE, Progress, SearchEnded, Teeth
 from gearopt.formulations.drive.teeth.rated import RatedTable
 from gearopt.formulations.drive.teeth.reach import first_cut, largest_ratio, reach
 from gearopt.formulations.drive.teeth.stage import EDGE, Table
@@ -97,7 +97,7 @@ def search(
         progress.whole = whole
         if not (closed and far <= cut):
             _look(train, max(cut, far), progress, math.inf, shelf)
-    except Spent:
+    except SearchEnded:
         pass  # `stopped` or `enough` holds the reason
     return progress
 
@@ -112,7 +112,7 @@ def _glance(train: Train, cut: Fraction, progress: Progress, shelf: list[RatedTa
     try:
         progress.patience = 0.0
         _first_dive(train, tables, tables, progress)
-    except Spent:
+    except SearchEnded:
         if progress.found or progress.clock.refused:
             raise
         progress.patience = math.inf

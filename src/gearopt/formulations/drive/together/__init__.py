@@ -175,8 +175,9 @@ def slabs_of(box: Gearbox) -> tuple[Slabs, ...]:
 def text(
     train: Train, make: Make, box: Gearbox, methods: Mapping[str, Callable[..., Any]]
 ) -> Problem:
-    """Variables: those of `teeth`, angle [rad] of each link, arrangement where several are open.
+    """Pose the smallest box over whole teeth and link angles, for the given methods.
 
+    Variables: those of `teeth`, angle [rad] of each link, arrangement where several are open.
     box: what `make` gives for any sizes.
     """
     sized, known, links = teeth.problem(train), slabs_of(box), len(train.stages)

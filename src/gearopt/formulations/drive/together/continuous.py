@@ -39,8 +39,9 @@ Facing = list[tuple[int, int, Body, Body]]
 def continuous(
     train: Train, make: Make, slabs: Slabs, start: tuple[tuple[GearPair, ...], tuple[float, ...]]
 ) -> Problem:
-    """Variables: of `sizing_text`, angle [rad], left, bottom, width, height and the slabs' widths.
+    """Pose the smallest box over real-valued sizes and link angles: a smooth problem.
 
+    Variables: of `sizing_text`, angle [rad], left, bottom, width, height and the slabs' widths.
     start: gear pairs and link angles. SolveError for keep-outs with a range along the shafts.
     """
     box = make(start[0])

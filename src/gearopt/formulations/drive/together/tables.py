@@ -214,7 +214,7 @@ def _no_worse(a: tuple[Slabs, NDArray[np.uint8]], b: tuple[Slabs, NDArray[np.uin
 
 
 def _faces(box: Gearbox, slabs: Slabs) -> NDArray[np.uint8]:
-    """(N+1, 4, N+1, 4): 1 where two bodies stand side by side and do not mesh."""
+    """Which bodies of the shafts stand side by side and do not mesh: 1, (N+1, 4, N+1, 4)."""
     bodies = arrange(box, slabs).bodies
     found = np.zeros((len(bodies), 4, len(bodies), 4), np.uint8)
     for x, own in enumerate(bodies):

@@ -26,7 +26,7 @@ class Timeline:
     asked: NDArray[np.int64]
 
     def divided(self, parts: NDArray[np.int64]) -> "Timeline":
-        """Return the same with each interval cut into so many equal parts."""
+        """Return the timeline with each interval cut into so many equal parts."""
         first = np.cumsum(parts) - parts
         share = (np.arange(parts.sum()) - np.repeat(first, parts)) / np.repeat(parts, parts)
         starts, lengths = np.repeat(self.starts, parts), np.repeat(self.lengths, parts)

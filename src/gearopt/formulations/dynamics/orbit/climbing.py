@@ -28,7 +28,7 @@ JUDGE_MARGIN = 0.01  # of an objective, by which what is judged more closely may
 JUDGE_HARMONICS = 40  # harmonics of the judge of a mesh in contact
 AGAIN = 3  # runs from the motions that a design really has
 SPARE_SECONDS = 0.5  # for the multipliers of a design once the budget is spent
-GROWTHS = 91  # speeds at which the multipliers of a design are looked at
+SPEEDS_CHECKED = 91  # speeds at which the multipliers of a design are looked at
 STEP = 1e-4  # of a range: differences of the largest multiplier
 REACH, SHORTEST = 0.25, 1e-5  # of the ranges: steps within a limit of the multiplier
 WORTH = 1.25  # of the best objective so far: designs up to there are led on within the limit
@@ -125,7 +125,7 @@ def _steadied(task: Task, problem: Problem, found: Climbed, clock: Clock) -> Cli
     approximations there become rows of the problem beside those before, which is solved again.
     """
     cuts = list[Cut]()
-    while growth(task, found.point, clock) > _most(task) + WITHIN:
+    while largest_multiplier(task, found.point, clock) > _most(task) + WITHIN:
         cuts += _tangents(task, found.point, clock)[:1]
         made = None
         if len(cuts) <= PEAKS and not clock.over:
@@ -159,9 +159,11 @@ def _improved(task: Task, problem: Problem, best: Climbed, clock: Clock) -> Clim
             if clock.over:
                 return best
             made = _contact(task, with_cuts(problem, rows), made.point, clock)
-            if made is None or growth(task, made.point, clock) <= _most(task) + WITHIN:
+            if made is None or largest_multiplier(task, made.point, clock) <= _most(task) + WITHIN:
                 break
-        within = made is not None and growth(task, made.point, clock) <= _most(task) + WITHIN
+        within = (
+            made is not None and largest_multiplier(task, made.point, clock) <= _most(task) + WITHIN
+        )
         if made is not None and within and made.objective < (1.0 - GAIN) * best.objective:
             best = made
         else:
@@ -176,13 +178,13 @@ def _tangents(task: Task, point: Array, clock: Clock) -> list[Cut]:
     Of the speeds at which it has its highest peaks, the highest first. None where the clock is
     over.
     """
-    growths, slopes = _growths(task, point, clock), growth_slopes(task, point, clock)
+    multipliers, slopes = _multipliers(task, point, clock), multiplier_slopes(task, point, clock)
     if clock.over:
         return []
-    padded = np.concatenate([[-np.inf], growths, [-np.inf]])
-    peaks = np.flatnonzero((growths >= padded[:-2]) & (growths > padded[2:]))
-    highest = peaks[np.argsort(-growths[peaks], kind="stable")][:PEAKS]
-    rooms = _most(task) - growths[highest]
+    padded = np.concatenate([[-np.inf], multipliers, [-np.inf]])
+    peaks = np.flatnonzero((multipliers >= padded[:-2]) & (multipliers > padded[2:]))
+    highest = peaks[np.argsort(-multipliers[peaks], kind="stable")][:PEAKS]
+    rooms = _most(task) - multipliers[highest]
     rooms = np.where(np.abs(rooms) <= WITHIN, np.maximum(rooms, 0.0), rooms)
     return [
         (slopes[:, k], float(room + slopes[:, k] @ point))
@@ -198,7 +200,7 @@ def _most(task: Task) -> float:
 def _as_it_is(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbed | None:
     """Return a design with its own motions, where it is within the limit of the multiplier."""
     assert task.most_growth is not None
-    if known_growth(task, point, clock) > task.most_growth + WITHIN:
+    if largest_multiplier_in_time(task, point, clock) > task.most_growth + WITHIN:
         return None
     return _with_its_motions(task, problem, point)
 
@@ -210,38 +212,38 @@ def _with_its_motions(task: Task, problem: Problem, point: Array) -> Climbed | N
     return None if value is None else Climbed(problem, outcome, value, value)
 
 
-def known_growth(task: Task, point: Array, clock: Clock) -> float:
-    """Return `growth`, with SPARE_SECONDS where less is left of a clock."""
+def largest_multiplier_in_time(task: Task, point: Array, clock: Clock) -> float:
+    """Return `largest_multiplier`, with SPARE_SECONDS where less is left of a clock."""
     pair, left = pair_of(task, point, task.speeds_rpm[0]), clock.left.seconds
     ready(linear(pair, "line"), pair.wave, Clock(watch=clock.watch))
     seconds = None if left is None else max(left, SPARE_SECONDS)
-    return growth(task, point, Clock(Budget(seconds)))
+    return largest_multiplier(task, point, Clock(Budget(seconds)))
 
 
-def growth(task: Task, point: Array, clock: Clock | None = None) -> float:
+def largest_multiplier(task: Task, point: Array, clock: Clock | None = None) -> float:
     """Return the largest Floquet multiplier of a design in contact over all speeds.
 
     Infinite where the clock stops.
     """
-    return float(_growths(task, point, clock).max())
+    return float(_multipliers(task, point, clock).max())
 
 
-def _growths(task: Task, point: Array, clock: Clock | None) -> Array:
-    speeds = np.linspace(task.speeds_rpm[0], task.speeds_rpm[-1], GROWTHS)
+def _multipliers(task: Task, point: Array, clock: Clock | None) -> Array:
+    speeds = np.linspace(task.speeds_rpm[0], task.speeds_rpm[-1], SPEEDS_CHECKED)
     pair = pair_of(task, point, float(speeds[0]))
     found = largest(linear(pair, "line"), pair.wave, task.teeth * speeds / 60.0, clock)
-    return np.pad(found, (0, GROWTHS - len(found)), constant_values=np.inf)
+    return np.pad(found, (0, SPEEDS_CHECKED - len(found)), constant_values=np.inf)
 
 
-def growth_slopes(task: Task, point: Array, clock: Clock | None = None) -> Array:
-    """Return derivatives of the multipliers (5, GROWTHS) by the design, into the ranges.
+def multiplier_slopes(task: Task, point: Array, clock: Clock | None = None) -> Array:
+    """Return derivatives of the multipliers (5, SPEEDS_CHECKED) by the design, into the ranges.
 
     NaN where the clock stops.
     """
     low, high = task.box()
     step = STEP * (high - low)
     step = np.where(point + step > high, -step, step)
-    each = [_growths(task, point + one, clock) for one in (0.0 * step, *np.diag(step))]
+    each = [_multipliers(task, point + one, clock) for one in (0.0 * step, *np.diag(step))]
     with np.errstate(invalid="ignore"):
         moved = np.array(each[1:]) - each[0]
     return np.asarray(moved / np.where(step, step, np.inf)[:, None])

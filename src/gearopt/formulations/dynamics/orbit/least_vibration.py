@@ -19,8 +19,8 @@ from gearopt.formulations.dynamics.orbit.climbing import (
     JUDGE_MARGIN,
     Climbed,
     climb,
-    growth,
-    known_growth,
+    largest_multiplier,
+    largest_multiplier_in_time,
     measure,
     posed,
 )
@@ -73,7 +73,7 @@ def starts(task: Task, pool: Array, clock: Clock) -> Array:
     """
     space = box(reduced(task))
     if task.most_growth is not None:
-        grown = np.array([growth(task, point, clock) for point in pool])
+        grown = np.array([largest_multiplier(task, point, clock) for point in pool])
         over = np.maximum(grown - task.most_growth, 0.0)
         pool = pool[np.argsort(over, kind="stable")]
     if task.backlash is None:
@@ -214,7 +214,7 @@ def response_over_speed(
     built = orbit_parts(task, kb, ratio, width, rim)
     found, highest, repeats = _motions(task, point, speeds)
     coarse = np.linspace(speeds[0], speeds[-1], SPEEDS_BEFORE)
-    grown = known_growth(task, point, clock)
+    grown = largest_multiplier_in_time(task, point, clock)
     told = np.full(SPEEDS_BEFORE, np.nan) if clock.stopped else _before(task, before, coarse)
     return Chosen(
         bearing_stiffness_N_per_mm=kb,

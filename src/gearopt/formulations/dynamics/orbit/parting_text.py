@@ -52,8 +52,8 @@ def rate(task: Task) -> float:
     return math.sqrt(built.mean / built.mesh_mass)
 
 
-def squeezed(task: Task) -> float:
-    """Return F/k [um] in the middle of the ranges."""
+def static_deflection(task: Task) -> float:
+    """Return the static deflection F/k [um] of the mesh in the middle of the ranges."""
     kb, ratio, _, width, rim = middle(task)
     return float(MICRO * task.load / parts(task, kb, ratio, width, rim).mean)
 
@@ -122,7 +122,7 @@ def problem(task: Task, methods: dict[str, Any] | None = None) -> Problem:
 
     omega = 2.0 * math.pi * task.teeth / 60.0 * np.array(task.speeds_rpm)
     rows = {"period": 2.0 * math.pi * task.periods * rate(task) / omega}
-    corner = Param("width", "um", WIDTHS[-1] * squeezed(task))
+    corner = Param("width", "um", WIDTHS[-1] * static_deflection(task))
     given = (*parameters(task), corner)
     repeat = Repeat("speed", _of_a_speed(task), rows, motion)
     return Problem("orbit", (*shared(task), top), given, evaluate, (repeat,), methods or {})
@@ -145,7 +145,7 @@ def _of_a_speed(task: Task) -> tuple[Var, ...]:
 
 def rounded(task: Task, problem: Problem, width: float) -> Problem:
     """Return the problem with the corner rounded over a width in units of F/k."""
-    return problem.at(width=width * squeezed(task))
+    return problem.at(width=width * static_deflection(task))
 
 
 def judged(task: Task, x: Any, found: Collocated) -> dict[str, Any]:

@@ -48,7 +48,7 @@ def problem(compliances: Any, separations: Any, load: float, coupling: float = 0
 
 
 def conic(compliances: Any, separations: Any, load: float, coupling: float = 0.0) -> Conic:
-    """Pose the same for `conic`: with products of parameters as parameters of their own (DPP)."""
+    """Pose the sharing for `conic`: products of parameters are parameters of their own (DPP)."""
     count = len(compliances)
     own = load * (np.asarray(compliances, float) - coupling)
     parameters = (

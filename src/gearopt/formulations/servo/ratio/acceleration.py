@@ -128,7 +128,7 @@ def law_of(drive: Drive, load_speed: float, ratio: float) -> float:
 
 
 def _exact(drive: Drive, load_speed: float) -> Outcome:
-    """Return the closed form; its bound follows from convexity alone."""
+    """Return the ratio of maximum acceleration in closed form, bounded by convexity alone."""
     low, high = drive.ratios(load_speed)
     if low > high:
         return impossible(f"the motor's speed limit allows a ratio of at most {high:.6g}")

@@ -161,7 +161,7 @@ def _best(drive: Drive, angle: float) -> float:
 
 
 def _exact(drive: Drive, angle: float, rubs: bool) -> Outcome:
-    """Return the root; the bound follows from convexity alone. rubs: there is some friction."""
+    """Return the ratio of minimum time as a root, bounded by convexity. rubs: with friction."""
     ratio, best = best_ratio(drive)
     if math.isinf(ratio) and math.isinf(drive.speed_limit):
         return unbounded("time", "a motor inertia, a maximum ratio or a speed limit")
