@@ -10,8 +10,8 @@ import pytest
 
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
-from gearopt.scenes.drive.explaining.rated_conflict import conflict
-from gearopt.scenes.drive.explaining.tried import Case
+from gearopt.scenes.drive.explain.rated_conflict import conflict
+from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.reading.load import load
 
 PROBLEMS = sorted((Path(__file__).parents[1] / "problems").glob("*.toml"))

@@ -11,8 +11,8 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.repair import WIDEST, least_value
 from gearopt.report.explained import remedy_words
 from gearopt.scenes import drive
-from gearopt.scenes.drive.explaining.choices import nearest_ratio
-from gearopt.scenes.drive.explaining.tried import Case
+from gearopt.scenes.drive.explain.choices import nearest_ratio
+from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.explaining.default import explanation
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read

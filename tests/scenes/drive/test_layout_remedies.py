@@ -19,9 +19,9 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.explained import remedy_words
 from gearopt.scenes.drive import Scene
-from gearopt.scenes.drive.explaining import box_remedies as ways
-from gearopt.scenes.drive.explaining.box_moves import LARGER, SMALLER
-from gearopt.scenes.drive.explaining.box_remedies import BRIEF
+from gearopt.scenes.drive.explain import box_remedies as ways
+from gearopt.scenes.drive.explain.box_moves import LARGER, SMALLER
+from gearopt.scenes.drive.explain.box_remedies import BRIEF
 from gearopt.scenes.drive.without import without
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
@@ -173,7 +173,7 @@ def ways_by(monkeypatch, text, answer):
         asked.append(seconds)
         return answer(box)
 
-    monkeypatch.setattr("gearopt.scenes.drive.explaining.box_remedies.possible", possible_)
+    monkeypatch.setattr("gearopt.scenes.drive.explain.box_remedies.possible", possible_)
     scene, _ = scene_of(text)
     return gearopt.solve(scene).report["ways_out"], asked
 

@@ -171,7 +171,7 @@ def test_a_search_and_the_ways_out_of_it_share_a_budget(monkeypatch):
     given = []
     none = Remedies()
     monkeypatch.setattr(
-        "gearopt.scenes.drive.explaining.box_remedies.remedies",
+        "gearopt.scenes.drive.explain.box_remedies.remedies",
         lambda *asked: given.append(asked[-1].left) or none,
     )
     tight = scene(with_layout(largest_height='"415 mm"', largest_width='"600 mm"'))
@@ -369,7 +369,7 @@ def small():
 def test_the_drive_is_read_once_for_all_its_boxes(small, monkeypatch):
     """A search over gears and box makes hundreds of boxes of one drive."""
     from gearopt.optimise.clock import Clock
-    from gearopt.scenes.drive.explaining.other_gears import _fits
+    from gearopt.scenes.drive.explain.other_gears import _fits
 
     read, train = [], type(small).train
     monkeypatch.setattr(type(small), "train", lambda one: read.append(1) or train(one))

@@ -9,9 +9,9 @@ import gearopt
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.deciding import lead
-from gearopt.scenes.drive.explaining.rated_conflict import conflict
-from gearopt.scenes.drive.explaining.requirements import requirements, without
-from gearopt.scenes.drive.explaining.tried import Case
+from gearopt.scenes.drive.explain.rated_conflict import conflict
+from gearopt.scenes.drive.explain.requirements import requirements, without
+from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.reading.load import load
 
 

@@ -27,7 +27,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.report.kinds.servo.housing import box as box_section
 from gearopt.report.measures import METRIC
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.servo.remedies import remedies
+from gearopt.scenes.servo.explain import remedies
 
 PIXEL = 0.02  # rounding of a drawing
 

@@ -17,7 +17,7 @@ from gearopt.optimise.result import Budget
 from gearopt.report.pages.result import page, sections, tables
 from gearopt.report.terminal import show
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.servo.remedies import remedies
+from gearopt.scenes.servo.explain import remedies
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
 FAST = (PROBLEMS / "servo_gimbal_fast.toml").read_text(encoding="utf-8")

@@ -18,9 +18,9 @@ from gearopt.optimise.result import Budget
 from gearopt.report.answer import proof, summary
 from gearopt.report.measures import METRIC
 from gearopt.scenes.servo import KIND
+from gearopt.scenes.servo.explain import remedies
 from gearopt.scenes.servo.notes import notes
 from gearopt.scenes.servo.reach import reached
-from gearopt.scenes.servo.remedies import remedies
 
 EXAMPLE = KIND.example.text
 

@@ -21,8 +21,8 @@ from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.strain_wave import KIND, compared, objectives, posed, several
 from gearopt.scenes.strain_wave import KIND as WAVES
+from gearopt.scenes.strain_wave.explain import costs, of_pressure
 from gearopt.scenes.strain_wave.notes import assumptions, notes, range_notes
-from gearopt.scenes.strain_wave.remedies import costs, of_pressure
 
 FROM_DUTY = WAVES.examples["strain-wave-from-duty"].text
 

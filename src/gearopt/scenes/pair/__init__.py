@@ -14,7 +14,7 @@ from gearopt.optimise.pareto.several import Several
 from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
 from gearopt.scenes import drive
-from gearopt.scenes.drive.explaining import why as of_drive
+from gearopt.scenes.drive.explain import why as of_drive
 from gearopt.scenes.drive.rating import rated
 from gearopt.scenes.drive.tables.blanks import body_flaws
 from gearopt.scenes.explaining.default import by_solving

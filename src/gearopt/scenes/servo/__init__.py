@@ -31,10 +31,10 @@ from gearopt.scenes.explaining.possible import Verdict, of_status
 from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.ask import Ask, unseeded
+from gearopt.scenes.servo.explain import moves
+from gearopt.scenes.servo.explain import remedies as of_train
 from gearopt.scenes.servo.notes import assumptions, notes
 from gearopt.scenes.servo.reach import some_train
-from gearopt.scenes.servo.remedies import moves
-from gearopt.scenes.servo.remedies import remedies as of_train
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tolerances import by_every_rule, named, old, tolerance_part
 from gearopt.scenes.servo.tolerances import problem as tolerance_problem

@@ -46,8 +46,8 @@ from gearopt.physics.strain_wave.conjugate import Flank
 from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.ask import Ask, unseeded, without_method
+from gearopt.scenes.strain_wave.explain import MOVES, of_pressure, possible, remedies
 from gearopt.scenes.strain_wave.notes import assumptions, notes, range_notes
-from gearopt.scenes.strain_wave.remedies import MOVES, of_pressure, possible, remedies
 from gearopt.scenes.strain_wave.scene import Scene
 
 METHODS = ("exchange",)  # its own

@@ -7,12 +7,12 @@ from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import GAP
-from gearopt.scenes.drive.explaining import box_remedies
-from gearopt.scenes.drive.explaining.counts import remedies_of_counts
-from gearopt.scenes.drive.explaining.influences import explained
-from gearopt.scenes.drive.explaining.rated import conflict_soon
-from gearopt.scenes.drive.explaining.rated import remedies as of_rated
-from gearopt.scenes.drive.explaining.tried import Case, any_possible
+from gearopt.scenes.drive.explain import box_remedies
+from gearopt.scenes.drive.explain.counts import remedies_of_counts
+from gearopt.scenes.drive.explain.influences import explained
+from gearopt.scenes.drive.explain.rated import conflict_soon
+from gearopt.scenes.drive.explain.rated import remedies as of_rated
+from gearopt.scenes.drive.explain.tried import Case, any_possible
 from gearopt.scenes.drive.layout import APART, at_once_of_count, gears_of
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.sizing import of_count, sized

@@ -13,7 +13,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import THERE
 from gearopt.optimise.explaining.repair import FARTHEST
 from gearopt.optimise.solve import solve_within
-from gearopt.scenes.drive.explaining.moves import applied
+from gearopt.scenes.drive.explain.moves import applied
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import Questions
 from gearopt.scenes.explaining.possible import Verdict, of_status

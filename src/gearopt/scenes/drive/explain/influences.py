@@ -13,7 +13,7 @@ from gearopt.optimise.explaining.sensitivity import sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
-from gearopt.scenes.drive.explaining.moves import fields, next_module
+from gearopt.scenes.drive.explain.moves import fields, next_module
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.blanks import HUBS, RIM, WEB
 from gearopt.scenes.explaining.influences import Basis, influences, per_cent

@@ -20,13 +20,13 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
-from gearopt.scenes.drive.explaining.box_moves import (
+from gearopt.scenes.drive.explain.box_moves import (
     BoxMove,
     box_moves,
     limits_of,
     switches,
 )
-from gearopt.scenes.drive.explaining.other_gears import other_gears
+from gearopt.scenes.drive.explain.other_gears import other_gears
 from gearopt.scenes.drive.layout import others_may_fit
 from gearopt.scenes.drive.layout_design import described, keep_out_design, pairs_of
 from gearopt.scenes.drive.scene import Scene

@@ -5,7 +5,7 @@ from typing import Any
 
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.physics.iso6336.materials import QUALITIES, Material
-from gearopt.scenes.drive.explaining.rated_conflict import Conflict
+from gearopt.scenes.drive.explain.rated_conflict import Conflict
 from gearopt.scenes.drive.scene import MOST_STAGES, Scene
 from gearopt.scenes.explaining.numbers import allowed, content
 from gearopt.scenes.reading.module_series import SERIES, family, series_of

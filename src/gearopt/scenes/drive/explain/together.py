@@ -22,7 +22,7 @@ from gearopt.optimise.explaining.handles import Handle, handles
 from gearopt.optimise.explaining.repair import FARTHEST, PRODUCT_TIE, least_factors
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.solve import solve_within
-from gearopt.scenes.drive.explaining.moves import (
+from gearopt.scenes.drive.explain.moves import (
     WIDTH,
     applied,
     comparable,
@@ -32,7 +32,7 @@ from gearopt.scenes.drive.explaining.moves import (
     stage_of,
     steps,
 )
-from gearopt.scenes.drive.explaining.tried import Case
+from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import enlarged, trimmed
 from gearopt.scenes.explaining.moves import DUTY, LIMIT, SIZE, Move, Moves

@@ -10,9 +10,9 @@ from typing import Any
 from gearopt.optimise.explaining.explain import DIGITS
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.optimise.explaining.repair import SLACK_TRIED
-from gearopt.scenes.drive.explaining.moves import inherited
-from gearopt.scenes.drive.explaining.together import is_real
-from gearopt.scenes.drive.explaining.tried import Case
+from gearopt.scenes.drive.explain.moves import inherited
+from gearopt.scenes.drive.explain.together import is_real
+from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import as_remedy, least
 from gearopt.scenes.explaining.moves import DUTY, Move, changed

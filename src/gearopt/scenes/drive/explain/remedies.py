@@ -11,9 +11,9 @@ from gearopt.optimise.explaining.explanation import Remedies, Remedy
 from gearopt.optimise.explaining.handles import Handle
 from gearopt.optimise.explaining.repair import FARTHEST, PRODUCT_TIE, any_resolves, conflict, even
 from gearopt.optimise.problem import Problem
-from gearopt.scenes.drive.explaining.choices import eased_tolerance, nearest_ratio, switches
-from gearopt.scenes.drive.explaining.moves import bound_of, comparable, shared, steps
-from gearopt.scenes.drive.explaining.together import (
+from gearopt.scenes.drive.explain.choices import eased_tolerance, nearest_ratio, switches
+from gearopt.scenes.drive.explain.moves import bound_of, comparable, shared, steps
+from gearopt.scenes.drive.explain.together import (
     is_real,
     is_stepped,
     posed,
@@ -21,7 +21,7 @@ from gearopt.scenes.drive.explaining.together import (
     together,
     widest,
 )
-from gearopt.scenes.drive.explaining.tried import Case
+from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import (
     JOINT,

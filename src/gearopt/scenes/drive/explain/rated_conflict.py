@@ -10,14 +10,14 @@ from dataclasses import dataclass, field, replace
 
 from gearopt.formulations.drive.train import Train
 from gearopt.formulations.strength.rated import Option
-from gearopt.scenes.drive.explaining.requirements import (
+from gearopt.scenes.drive.explain.requirements import (
     BENDING,
     CONTACT,
     Dropped,
     requirements,
     without,
 )
-from gearopt.scenes.drive.explaining.tried import Case, any_possible
+from gearopt.scenes.drive.explain.tried import Case, any_possible
 from gearopt.scenes.drive.rating.limits import STANDARDS
 
 RATED_BY = {"agma": "rating_by_AGMA", "iso6336": "rating_by_ISO_6336"}

@@ -7,12 +7,12 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Remedies
 from gearopt.optimise.explaining.handles import REACH
 from gearopt.optimise.result import Budget
-from gearopt.scenes.drive.explaining.influences import GRADES, eases
-from gearopt.scenes.drive.explaining.moves import WIDTH, next_module
-from gearopt.scenes.drive.explaining.rated_choices import choices
-from gearopt.scenes.drive.explaining.rated_conflict import Conflict, conflict
-from gearopt.scenes.drive.explaining.requirements import ORDER, TEETH
-from gearopt.scenes.drive.explaining.tried import Case, any_possible
+from gearopt.scenes.drive.explain.influences import GRADES, eases
+from gearopt.scenes.drive.explain.moves import WIDTH, next_module
+from gearopt.scenes.drive.explain.rated_choices import choices
+from gearopt.scenes.drive.explain.rated_conflict import Conflict, conflict
+from gearopt.scenes.drive.explain.requirements import ORDER, TEETH
+from gearopt.scenes.drive.explain.tried import Case, any_possible
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import Group, Questions, singles, with_least, within
 from gearopt.scenes.explaining.moves import DUTY, LIMIT, Move

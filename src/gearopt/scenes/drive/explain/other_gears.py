@@ -12,7 +12,7 @@ from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.optimise.result import Event
 from gearopt.optimise.solve import run
 from gearopt.physics.gears import GearPair
-from gearopt.scenes.drive.explaining.box_moves import switched, switches
+from gearopt.scenes.drive.explain.box_moves import switched, switches
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.numbers import allowed
 
