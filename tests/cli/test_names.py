@@ -8,9 +8,10 @@ import pytest
 
 from gearopt import bench
 from gearopt.cli import names
+from gearopt.scenes.reading.load import kinds
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
-KINDS = ("compound", "drive", "dynamics", "packing", "pair", "servo", "strain_wave")
+KINDS = kinds()
 FILES = Path(bench.__file__).parent.glob("*.py")
 BENCHES = tuple(sorted(p.stem for p in FILES if p.stem != "__init__"))
 

@@ -53,6 +53,7 @@ DESIGNED = {  # a file of every kind, which other tests solve too
 @pytest.mark.parametrize("kind", load.kinds())
 def test_a_kind_has_a_drawing_or_says_that_it_has_none(kind, solved):
     """A kind whose designs have no drawing declares `drawn=False` in report/kinds/KIND."""
+    assert kind in DESIGNED, f"name a file of kind {kind} in DESIGNED of {__file__}"
     result = solved(DESIGNED[kind])
     drawn = any(section.drawings for section in sections(result))
     assert drawn is pages_of(kind).drawn

@@ -13,11 +13,11 @@ from gearopt.optimise.comparing.runs import Entry
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import method_of
-from gearopt.scenes import compound, drive, packing, pair, servo
 from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.reading.load import kind_named, kinds
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
-ROOMS = {room.KIND.scene: room.KIND for room in (compound, drive, packing, pair, servo)}
+ROOMS = {kind_named(name).scene: kind_named(name) for name in kinds()}
 FILES = (
     *("elevator", "elevator_box", "sandgren_train", "seven_points"),
     pytest.param("three_stage_together", marks=pytest.mark.slow),

@@ -6,17 +6,18 @@ from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
 import pytest
 from bars import KIND, Bars
 from campaigns import few
 from edits import edited, scene_of
 
 import gearopt
-from gearopt import SolveError
+from gearopt import Problem, SolveError, Terms, Var
 from gearopt.optimise.explaining.handles import each_word, handles
 from gearopt.scenes.explaining import default
 from gearopt.scenes.explaining.default import explanation
-from gearopt.scenes.explaining.influences import STEP
+from gearopt.scenes.explaining.influences import STEP, Basis
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import kind_named, kind_of, read
 from gearopt.scenes.reading.mistakes import table_of
@@ -340,3 +341,16 @@ def test_every_key_of_a_problem_is_a_place_of_its_file(path):
             table = table_of(table.model_fields[name].annotation)
         assert field in table.model_fields, f"{key} is no place of a {kind} file"
     assert keys, f"no number of model(scene, '') of {kind} has a key"
+
+
+def test_sizes_that_a_file_fixes_are_those_of_the_changed_file():
+    """Where the whole numbers are held and no other size is free, the old sizes are not kept."""
+
+    def posed(width):
+        return Problem("bar", (Var("width", "mm", width, width, width),), (), section)
+
+    def section(x, p):
+        return Terms({"section": x.width}, {})
+
+    basis = Basis(2.0, lambda width: width, posed, np.array([2.0]))
+    assert basis._of_same(3.0)[0] == 3.0

@@ -39,5 +39,17 @@ def test_every_reader_takes_its_example_and_what_it_returned():
         for _, table in tables(kind_named(kind).scene):
             for name, info in table.model_fields.items():
                 for reads in (m for m in info.metadata if isinstance(m, Reads) and not m.opens):
-                    found = reads.reader(as_written(reads.example), reads.example)
+                    try:
+                        found = reads.reader(as_written(reads.example), reads.example)
+                    except Exception as reason:
+                        reason.add_note(f"the example of {kind}: {table.__name__}.{name}")
+                        raise
                     assert reads.reader(found, reads.example) == found, (table, name)
+
+
+def test_numbers_that_a_remedy_may_move_are_places_of_the_file():
+    for kind in map(kind_named, kinds()):
+        for example in kind.examples.values():
+            _, scene = read(example.text.encode())
+            for move in kind.moves(scene) if kind.moves is not None else ():
+                move.inherits(scene, move.path)

@@ -173,6 +173,7 @@ def moving(own):
 
 @pytest.mark.parametrize("kind", kinds())
 def test_every_key_is_in_the_table_once(kind):
+    assert kind in TABLE, f"moving_keys.toml has no [{kind}]: name a file that its keys move"
     every = [*listed(kind), *TABLE[kind].get("still", {})]
     assert len(every) == len(set(every))
     lent = {key for key in KNOWN[kind] if kind == "pair" and key in KNOWN["drive"]}

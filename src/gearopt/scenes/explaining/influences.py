@@ -106,7 +106,7 @@ class Basis:
         problem = self.posed(scene)
         lower, upper, _ = problem.bounds()
         if (lower == upper).all():
-            return float(problem.batch(self.point[None]).F[0, 0]), OBJECTIVE_TIE
+            return float(problem.batch(lower[None]).F[0, 0]), OBJECTIVE_TIE  # the file's own sizes
         found = solve(problem.starting(self.point), "ipopt")
         return (found.value if found.status in CERTAIN else None), SOLVED
 
