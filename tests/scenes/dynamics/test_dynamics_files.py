@@ -99,7 +99,8 @@ def test_a_mass_that_no_pair_of_the_ranges_has(tmp_path):
     path.write_text(changed(('mass = "2 kg"', 'mass = "0.5 kg"'), text=text))
     result = gearopt.solve(path)
     assert result.status == "infeasible" and result.proof["conflict"] == ["mass"]
-    found = {r["what"]: r["changes"][0]["write"] for r in result.report["ways_out"]["remedies"]}
+    edits = {r["what"]: r["changes"][0] for r in result.report["ways_out"]["remedies"]}
+    found = {what: edit["short"] or edit["write"] for what, edit in edits.items()}
     assert found["optimise.mass"] == '"1.35 kg"'
     assert float(found["optimise.rim[1]"]) == pytest.approx(0.6 * 0.5 / 1.3406, abs=1e-3)
     assert found["optimise.face_width[1]"] == '"2.98 mm"'

@@ -260,8 +260,11 @@ def _allowed(asked: Questions, moves: Moves, far: float) -> float:
 def narrow(asked: Questions, known: Known, close: float, clock: Clock | None = None) -> None:
     """Halve the logarithm of the change that is not known, until its ends are this close.
 
-    What stays undecided is not known to suffice. clock: of this search, beside that of all.
+    What stays undecided is not known to suffice; between steps there is nothing. clock: of this
+    search, beside that of all.
     """
+    if known.stepped:
+        return
     doubts, ends = 0, [asked.edited(known.at(end)) for end in (known.low, known.high)]
     while known.high > known.low * close and doubts < asked.doubts:
         if asked.clock.over or clock is not None and clock.over:
