@@ -329,7 +329,7 @@ def _written(asked: Questions, known: Known) -> Edited | None:
 
 
 def _less(asked: Questions, known: Known, there: Edited, kind: str, sharp: Clock | None) -> str:
-    """Return what is known of moves taken back a little, together or each of them: one word."""
+    """Verdict, in one word, on moves taken back a little, together or each of them."""
     if known.stepped:
         return "infeasible" if known.sure else "undecided"
     if known.excess or sharp is not None and sharp.over:
@@ -425,7 +425,7 @@ def with_least(found: Sequence[Remedy], complete: bool) -> tuple[Remedy, ...]:
 
 
 def _order(remedy: Remedy) -> tuple[int, float]:
-    """Return what sorts remedies: those that keep the duty first, choices last."""
+    """Sort key of remedies: those that keep the duty first, choices last."""
     return ("less", "choice").index(remedy.kind) + 1 if remedy.kind in (
         "less",
         "choice",

@@ -67,7 +67,7 @@ class Move:
 
     @property
     def words(self) -> str:
-        """Return what moves, in a remedy's words."""
+        """Name of the number that moves, in a remedy's words."""
         return self.family or dotted(self.path)
 
 

@@ -97,7 +97,7 @@ def at(scene: Any, path: Path) -> Any:
 
 
 def one_at(scene: Any, path: Path) -> Any:
-    """Return what stands at the place of a `Number`: of a range of equal ends one of them."""
+    """Value at the place of a `Number`: of a range of equal ends one of them."""
     value = at(scene, path)
     return value[0] if isinstance(value, tuple) else value
 

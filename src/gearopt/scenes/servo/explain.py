@@ -287,7 +287,7 @@ def why(scene: Scene, clock: Clock, message: str) -> Cause:
 
 
 def blocked(scene: Scene, clock: Clock) -> Cause | None:
-    """Return what stands in the way; None where a train is impossible without it too."""
+    """Cause of the conflict; None where a train is impossible without it too."""
     blamed = impossible.in_the_way(scene.servo_train(), clock)
     if blamed is None:
         return None
@@ -344,7 +344,7 @@ def _span(scene: Scene, train: split.ServoTrain) -> str:
 
 
 def _of_duty(scene: Scene, clock: Clock) -> Cause:
-    """Return what of the duty no train keeps, where some keep all else: limits, a sentence."""
+    """Part of the duty that no train keeps, where some keep all else: limits, a sentence."""
     train = scene.servo_train()
     duty = train.duty
     assert duty is not None

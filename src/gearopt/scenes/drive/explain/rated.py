@@ -145,7 +145,7 @@ def _wider(number: Number) -> int:
 
 
 def _rank(number: Number) -> tuple[bool, int]:
-    """Return what sorts numbers: ranges of teeth take longest, and likely conflicts come first."""
+    """Sort key of numbers: ranges of teeth take longest, and likely conflicts come first."""
     slow = any(str(step).endswith("_teeth") for step in number.path)
     likely, name = ORDER[0], _name(number)
     return slow, likely.index(name) if name in likely else len(likely)
