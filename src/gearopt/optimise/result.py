@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearopt.optimise.terms import Array
+from gearopt.optimise.typed import SINGLE
 
 if TYPE_CHECKING:
     from gearopt.optimise.conic.cone_bound import Leaf
@@ -303,6 +304,10 @@ def versions(*packages: str) -> dict[str, str]:
 
 def plain(value: Any) -> Any:
     """Return a value as JSON holds it: dicts, lists, numbers; None for NaN and infinities."""
+    if value.__class__ is float:
+        return value if math.isfinite(value) else None
+    if value.__class__ in SINGLE:
+        return value
     if is_dataclass(value) and not isinstance(value, type):
         return as_dict(value)
     if isinstance(value, Mapping):

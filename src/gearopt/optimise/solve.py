@@ -224,11 +224,19 @@ def _key(variable: Var, name: str) -> str:
 
 def limits(problem: Problem | Conic, x: Array) -> dict[str, float]:
     """Return utilisation of every user limit at a point."""
-    rows = problem.batch(x[None]).G[0]
-    named = zip(problem.rows.inequalities, rows, strict=True)
-    found = {row.name: float(v) for row, v in named if row.kind == "limits"}
+    return limits_of(problem, x[None])[0]
+
+
+def limits_of(problem: Problem | Conic, points: Array) -> list[dict[str, float]]:
+    """Utilisations of every user limit at points (N, n)."""
+    kept = [
+        (k, row.name) for k, row in enumerate(problem.rows.inequalities) if row.kind == "limits"
+    ]
+    used = [{name: row[k] for k, name in kept} for row in problem.batch(points).G.tolist()]
     exact = None if isinstance(problem, Conic) else problem.exact_limits
-    return found if exact is None else found | dict(exact(x))
+    return (
+        used if exact is None else [u | dict(exact(x)) for u, x in zip(used, points, strict=True)]
+    )
 
 
 def report(problem: Problem | Conic, x: Array) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from functools import cache
 from types import NoneType, UnionType
 from typing import Any, get_args, get_origin, get_type_hints
 
+SINGLE = frozenset((float, int, str, bool, NoneType))  # classes of plain values
 INLINE = {"inline": True}  # metadata of a mapping whose keys stand among those of its dataclass
 NUMBERS: dict[Any, tuple[type, ...]] = {
     float: (int, float),
@@ -59,12 +60,14 @@ def typed(kind: Any, data: Any, where: str = "") -> Any:
 
 def untyped(value: Any) -> Any:
     """Return plain data of dataclasses, for `typed`, without fields that hold their default."""
+    if value.__class__ in SINGLE:
+        return value
     if is_dataclass(value) and not isinstance(value, type):
-        held = ((f, getattr(value, f.name)) for f in fields(value))
-        each = (
-            untyped(v) if f.metadata else {f.name: untyped(v)} for f, v in held if v != f.default
-        )
-        return {k: v for part in each for k, v in part.items()}
+        data: dict[str, Any] = {}
+        for name, default, inline in _written(value.__class__):
+            if (held := getattr(value, name)) != default:
+                data |= untyped(held) if inline else {name: untyped(held)}
+        return data
     if isinstance(value, Mapping):
         return {k: untyped(v) for k, v in value.items()}
     return [untyped(v) for v in value] if isinstance(value, list | tuple) else value
@@ -82,6 +85,12 @@ def _filled(kind: Any, data: Any, where: str) -> Any:
         raise ValueError(f"lacks keys in {where or 'it'}: {', '.join(missing)}")
     head = f"{where}." if where else ""
     return kind(**{k: typed(hints[k], v, f"{head}{k}") for k, v in held.items()})
+
+
+@cache
+def _written(kind: type) -> tuple[tuple[str, Any, bool], ...]:
+    """Names of a dataclass's fields, their defaults, and which are inline."""
+    return tuple((f.name, f.default, bool(f.metadata)) for f in fields(kind))
 
 
 @cache

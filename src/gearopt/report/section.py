@@ -6,11 +6,11 @@ A table is written once. What only one of the two shows of it is marked: columns
 import csv
 import io
 import re
+from base64 import b64encode
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, get_type_hints
-from urllib.parse import quote
 
 from rich.text import Text
 
@@ -136,7 +136,8 @@ class Table:
     @property
     def link(self) -> str:
         """The CSV as an address that needs no network."""
-        return "data:text/csv;charset=utf-8," + quote("\ufeff" + self.csv())  # for spreadsheets
+        text = "\ufeff" + self.csv()  # the mark is for spreadsheets
+        return "data:text/csv;charset=utf-8;base64," + b64encode(text.encode()).decode()
 
 
 @dataclass(frozen=True)
@@ -290,6 +291,8 @@ def percent(used: float | None) -> Cell:
 
 def _csv(value: Any) -> Any:
     """A value as CSV holds it: before a text that a spreadsheet would compute stands a '."""
+    if value.__class__ is float:
+        return value
     text = _plain(value)
     if not isinstance(text, str) or NUMBER.fullmatch(text) or not FORMULA.match(text):
         return text

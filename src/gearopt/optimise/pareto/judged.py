@@ -16,7 +16,7 @@ from gearopt.optimise.pareto.front import Front, FrontPoint, Growth, Impossible,
 from gearopt.optimise.pareto.measures import hypervolume, picks, reference, unbeaten
 from gearopt.optimise.pareto.posed import posed
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.solve import design, limits
+from gearopt.optimise.solve import design, limits_of
 from gearopt.optimise.terms import Array
 
 
@@ -36,7 +36,8 @@ def judged(
     """
     one = posed(problem, [objectives[0].name], {}) if isinstance(problem, Conic) else problem
     shown = drawn or (lambda x: design(one, x))
-    points = tuple(_point(one, p, shown) for p in made.points)
+    used = limits_of(one, np.array([p.x for p in made.points])) if made.points else []
+    points = tuple(_point(p, shown(p.x), u) for p, u in zip(made.points, used, strict=True))
     values = made.values
     corner = reference(values) if len(values) else np.empty(0)
     whole = hypervolume(values, corner) if len(values) else None
@@ -72,9 +73,7 @@ def status(made: Found) -> str:
     return "proven" if made.points and all(p.proven for p in made.points) else "not proven"
 
 
-def _point(
-    problem: Problem | Conic, point: Point, drawn: Callable[[Array], Mapping[str, Any]]
-) -> FrontPoint:
+def _point(point: Point, design: Mapping[str, Any], used: Mapping[str, float]) -> FrontPoint:
     slopes = None
     if point.slopes is not None:
         slopes = tuple(float(s) if np.isfinite(s) else None for s in point.slopes)
@@ -83,8 +82,8 @@ def _point(
         point.proven,
         point.bound,
         slopes,
-        drawn(point.x),
-        limits(problem, point.x),
+        design,
+        used,
     )
 
 

@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Any
 
+import numpy as np
+
 from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.conic.problem import Conic
@@ -14,7 +16,7 @@ from gearopt.optimise.pareto.found import Found, Point, sifted
 from gearopt.optimise.pareto.front import Front, Objective
 from gearopt.optimise.pareto.judged import judged, united
 from gearopt.optimise.pareto.posed import Limit, posed
-from gearopt.optimise.problem import Problem
+from gearopt.optimise.problem import Batch, Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Watch
 from gearopt.optimise.scale import violation
 from gearopt.optimise.terms import Array, Terms, Var
@@ -88,17 +90,9 @@ def compared_methods(problem: Problem | Conic, limiting: Limiting | None = None)
     return (first, *(method for method in SAMPLERS if method != first))
 
 
-def _checked(problem: Problem, outcome: Any) -> Found:
+def _checked(problem: Problem, outcome: Outcome) -> Found:
     """Return the front of an exact algorithm, each point checked by the problem's own text."""
-    every = () if outcome.x is None else (outcome.x, *outcome.others)
-    points = []
-    for x in every:
-        batch = problem.batch(x[None])
-        excess, worst = violation(problem, x, batch)
-        if excess > FEASIBLE:
-            raise SolveError(f"{problem.name}: a design of the front violates {worst}")
-        points.append(Point(x, batch.F[0], proven=outcome.finished))
-    kept, beaten = sifted(points)
+    kept, beaten = sifted([] if outcome.x is None else _feasible(problem, outcome))
     return Found(
         kept,
         complete=outcome.finished and bool(kept),
@@ -109,6 +103,18 @@ def _checked(problem: Problem, outcome: Any) -> Found:
         evaluations=outcome.evaluations,
         message=outcome.message,
     )
+
+
+def _feasible(problem: Problem, outcome: Outcome) -> list[Point]:
+    """Points of an exact algorithm with their values; SolveError where one violates a limit."""
+    x = np.array([outcome.x, *outcome.others])
+    batch = problem.batch(x)
+    for k, point in enumerate(x):
+        alone = Batch(batch.F[k : k + 1], batch.G[k : k + 1], batch.H[k : k + 1], {})
+        excess, worst = violation(problem, point, alone)
+        if excess > FEASIBLE:
+            raise SolveError(f"{problem.name}: a design of the front violates {worst}")
+    return [Point(*both, proven=outcome.finished) for both in zip(x, batch.F, strict=True)]
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """The page of a Pareto front: to pick a design from, beside the one that a rule picks."""
 
-import base64
 import json
+from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -48,6 +48,7 @@ def page(front: Front, html: str = "page.html", measures: Measures = METRIC) -> 
 
 def tables(front: Front, measures: Measures = METRIC) -> dict[str, str]:
     """The CSV of every table by the name of its file, such as `front.csv`."""
+    front = Front.from_dict(front.to_dict())  # plain numbers
     each = [front_designs.numbers(p.design, measures) for p in front.points]
     listed = [
         front_designs.designs(front, each, (), measures) if front.points else None,
@@ -163,7 +164,7 @@ def _spent(front: Front) -> Section:
 def _link(data: Mapping[str, Any]) -> str:
     """A front as JSON, as an address that needs no network."""
     text = json.dumps(data, separators=(",", ":"), allow_nan=False)
-    return "data:application/json;base64," + base64.b64encode(text.encode()).decode()
+    return "data:application/json;base64," + b64encode(text.encode()).decode()
 
 
 def _source(front: Front) -> str | None:

@@ -1,6 +1,8 @@
 """The designs of a Pareto front as numbers, limits and sketches, and the tables of its page."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from itertools import chain
 from typing import Any
 
 from gearopt.optimise.pareto.front import Front, FrontPoint, Impossible
@@ -12,52 +14,52 @@ from gearopt.report.words import MODULE, heading, is_module, limit_words, parted
 
 MAIN = (MODULE, "pinion_teeth", "face_width_mm", "wheel_teeth")  # of a stage, the first ones first
 AXES, FEW = 9, 6  # of parallel coordinates beside the objectives, about; of names of any length
+ALIKE = 2**14  # numbers that are kept as they are written
 NUMBER_TIE = 1e-9  # relative; numbers that differ by less are alike
 DIFFERENT = "Other numbers that differ between designs (front.csv has all)"
 Numbers = dict[str, Cell]  # of a design, by what they are called
+NONE = Cell(None, "")  # a number that a design does not have
 
 
 def numbers(design: Mapping[str, Any], measures: Measures) -> Numbers:
     """Every single number of a design, those of its stages first, by name and unit."""
-    cells = {}
-    stages = stages_of(design)
-    for k, stage in enumerate(stages, 1):
-        for key in (*(key for key in STAGE_ROWS if key in stage), *(_others(stage))):
+    cells: Numbers = {}
+    for k, stage in enumerate(stages_of(design), 1):
+        staged = {key: stage[key] for key in STAGE_ROWS if key in stage}
+        staged |= {k: v for k, v in stage.items() if k not in STAGE_ROWS and _is_number(v)}
+        for key, value in staged.items():
             unit = STAGE_ROWS.get(key, parted(key))[1]
-            cells[f"stage {k}: {_label(key, measures)}"] = _cell(stage[key], key, unit, measures)
-    return cells | dict(_single(design, measures))
-
-
-def _others(stage: Mapping[str, Any]) -> Iterator[str]:
-    return (k for k, v in stage.items() if k not in STAGE_ROWS and _is_number(v))
+            cells[f"stage {k}: {_label(key, measures)}"] = _cell(value, key, unit, measures)
+    _add(cells, design, measures)
+    return cells
 
 
 def _label(key: str, measures: Measures) -> str:
     return stage_label(key, measures) if key in STAGE_ROWS else heading(key, measures)
 
 
-def _single(
-    group: Mapping[str, Any], measures: Measures, first: str = ""
-) -> Iterator[tuple[str, Cell]]:
-    """Yield single numbers, those of lists by their place, and those of groups by their name."""
+def _add(cells: Numbers, group: Mapping[str, Any], measures: Measures, first: str = "") -> None:
+    """Add single numbers, those of lists by their place, and those of groups by their name."""
     for key, value in group.items():
-        name = f"{first}{heading(key, measures)}"
-        if isinstance(value, Mapping):
-            yield from _single(value, measures, f"{name}: ")
+        if _is_number(value):
+            name = f"{first}{heading(key, measures)}"
+            cells[name] = _cell(value, key, parted(key)[1], measures)
+        elif isinstance(value, dict):
+            _add(cells, value, measures, f"{first}{heading(key, measures)}: ")
         elif isinstance(value, list | tuple) and key != "stages":
+            name = f"{first}{heading(key, measures)}"
             for k, item in enumerate(value, 1):
-                if isinstance(item, Mapping):
-                    yield from _single(item, measures, f"{name} {item.get('name', k)}: ")
+                if isinstance(item, dict):
+                    _add(cells, item, measures, f"{name} {item.get('name', k)}: ")
                 elif _is_number(item):
-                    yield f"{name} {k}", _cell(item, key, parted(key)[1], measures)
-        elif _is_number(value):
-            yield name, _cell(value, key, parted(key)[1], measures)
+                    cells[f"{name} {k}"] = _cell(item, key, parted(key)[1], measures)
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    return value.__class__ is float or value.__class__ is int
 
 
+@lru_cache(ALIKE, typed=True)  # designs of a front share most of their numbers
 def _cell(value: Any, key: str, unit: str, measures: Measures) -> Cell:
     if is_module(key):
         return cell(measures.of_module(value), "", measures)
@@ -90,15 +92,13 @@ def main(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]
 
 def _different(each: Sequence[Numbers], names: Sequence[str]) -> list[str]:
     """The names of numbers that all designs have and that are not the same in all."""
-    there = [n for n in names if all(n in named for named in each)]
-    return [n for n in there if _varies([named[n].value for named in each])]
+    columns = ((n, [named.get(n, NONE).value for named in each]) for n in names)
+    return [n for n, values in columns if None not in values and _varies(values)]
 
 
-def _varies(values: Sequence[Any]) -> bool:
-    known = [v for v in values if v is not None]
-    if not all(map(_is_number, known)) or not known:
-        return False
-    return bool(max(known) - min(known) > NUMBER_TIE * max(map(abs, known)))
+def _varies(values: Sequence[float]) -> bool:
+    low, high = min(values), max(values)
+    return high - low > NUMBER_TIE * max(abs(low), abs(high))
 
 
 def designs(
@@ -115,7 +115,7 @@ def designs(
     staged = front.scene is not None
     heads = [*front_table.heads, "proven", *names, *(f"used: {_limit(n, staged)}" for n in limits)]
     rows = [
-        [*row, p.proven, *(cells.get(n) for n in names), *(p.limits.get(n) for n in limits)]
+        [*row, p.proven, *map(cells.get, names), *map(p.limits.get, limits)]
         for row, p, cells in zip(front_table.rows, front.points, each, strict=True)
     ]
     gears = any(stages_of(p.design) for p in front.points)
@@ -180,15 +180,15 @@ def data(
     heads = [head(objective, measures) for objective in front.objectives]
     main = list(shown)
     names = [n for n in _names(front, each, measures) if n not in main]
-    alike = {n for n in names if all(n in named for named in each)} - {*_different(each, names)}
+    alike = set.intersection(*map(set, each)).difference(_different(each, names))
     others = [n for n in names if len(each) == 1 or n not in alike]
     limits = list(dict.fromkeys(name for p in front.points for name in p.limits))
     points = [
         [
             *(c.text for c in _values(front, p.values, measures)),
-            *(named[n].text if n in named else "" for n in main),
-            *(_used(p, n) for n in limits),
-            *(named[n].text if n in named else "" for n in others),
+            *[named.get(n, NONE).text for n in main],
+            *[_used(p, n) for n in limits],
+            *[named.get(n, NONE).text for n in others],
         ]
         for p, named in zip(front.points, each, strict=True)
     ]
@@ -215,7 +215,7 @@ def data(
 def _names(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]:
     """The names of all numbers of designs that are no objective."""
     known = {head(objective, measures) for objective in front.objectives}
-    return [name for name in dict.fromkeys(n for named in each for n in named) if name not in known]
+    return [name for name in dict.fromkeys(chain.from_iterable(each)) if name not in known]
 
 
 def _share(used: float | None) -> float:

@@ -1,7 +1,7 @@
 """The tolerances of a servo train at minimum cost, and what they give in fact."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -26,7 +26,7 @@ from gearopt.optimise.terms import Array, Terms, Var
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.scene import Scene
-from gearopt.scenes.servo.tables.mesh import BudgetTable, Source
+from gearopt.scenes.servo.tables.mesh import BudgetTable, Price, Source
 from gearopt.scenes.servo.train import Found, sensitivity
 
 RULES: tuple[tuple[str, Any, float], ...] = (  # name, rule and kappa
@@ -186,10 +186,10 @@ def tolerance_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
         proof = {k: v for k, v in result.proof.items() if k != "conflict"}
         return Found((replace(result, proof=proof),), report=ServoReport(figures=figures))
     t, own, lost = np.array(outcome.x, float), stack(scene, gears), start(scene, gears)
-    t = widths(scene, t)
+    t = widths(scene, t, old(scene))
     allotted = _allocation(own, t, result, scene, lost)
     draws = drawn(own, t, lost + own.budgets[0].error, seed=table.seed, start=lost)
-    design = ServoDesign(tolerances=rows(scene, own, t), allocation=allotted, drawn=draws)
+    design = ServoDesign(tolerances=listed(scene, own)(t), allocation=allotted, drawn=draws)
     figures |= by_every_rule(scene, gears, t, "new")
     figures |= {
         "new_quantile_deg": draws.quantile_deg,
@@ -211,40 +211,39 @@ def named(limit: str, parts: Sequence[Component | Source]) -> str:
     return f"{stem} of {parts[int(index) - 1].name}" if index else limit
 
 
-def widths(scene: Scene, x: Array) -> Array:
-    """Return the tolerances [mm] of a point of `problem`: what it holds, or what its grades are."""
+def widths(scene: Scene, x: Array, before: Array) -> Array:
+    """Tolerances [mm] of a point of `problem`: what it holds, or what its grades are.
+
+    before: the tolerances of the file (`old`) [mm].
+    """
     table = scene.tolerances
     assert table is not None
-    if table.grades is None:
-        return x
-    return old(scene) * 2.0 ** (0.5 * (x - 1.0 - table.grades))
+    return x if table.grades is None else before * 2.0 ** (0.5 * (x - 1.0 - table.grades))
 
 
-def rows(scene: Scene, own: Stack, t: Array) -> tuple[ToleranceRow, ...]:
-    """Return tolerances t [mm] beside the old ones, with their ends and costs."""
-    table = scene.tolerances
+def listed(scene: Scene, own: Stack) -> Callable[[Array], tuple[ToleranceRow, ...]]:
+    """Rows of any tolerances t [mm] beside the old ones, with their ends and costs."""
+    table, sources, prices = scene.tolerances, scene.sources, scene.prices
     assert table is not None
     ends = 2.0 ** (0.5 * table.grades) if table.grades is not None else None
-    rows = []
-    named = zip(scene.sources, scene.prices, own.components, t.tolist(), strict=True)
-    for source, price, part, new in named:
+
+    def row(source: Source, price: Price, part: Component, new: float) -> ToleranceRow:
         before = source.tolerance
         low, high = (part.least, part.most) if ends is None else (before / ends, before * ends)
-        rows.append(
-            ToleranceRow(
-                name=source.name,
-                stage=source.stage,
-                kind=source.kind,
-                old_mm=before,
-                new_mm=new,
-                lower_mm=low,
-                upper_mm=high if math.isfinite(high) else None,
-                sensitivity_deg_per_mm=part.sensitivity,
-                old_cost=price.cost,
-                new_cost=price.cost * (before / new) ** price.exponent,
-            )
+        return ToleranceRow(
+            name=source.name,
+            stage=source.stage,
+            kind=source.kind,
+            old_mm=before,
+            new_mm=new,
+            lower_mm=low,
+            upper_mm=high if math.isfinite(high) else None,
+            sensitivity_deg_per_mm=part.sensitivity,
+            old_cost=price.cost,
+            new_cost=price.cost * (before / new) ** price.exponent,
         )
-    return tuple(rows)
+
+    return lambda t: tuple(map(row, sources, prices, own.components, t.tolist()))
 
 
 def _allocation(own: Stack, t: Array, result: Result, scene: Scene, lost: float) -> Allocation:

@@ -102,11 +102,12 @@ def _tolerances(
 def _allotted(scene: Scene, gears: Pairs) -> Callable[[Array], Mapping[str, Any]]:
     """Return how the tolerances of a point are shown, each beside the old one, with the gears."""
     train: Mapping[str, Any] = untyped(ServoDesign(train=described(scene, gears)))
-    own = None if tolerance_part.spent(scene, gears) else tolerance_part.stack(scene, gears)
+    if tolerance_part.spent(scene, gears):
+        return lambda _: train  # there is no point
+    listed = tolerance_part.listed(scene, tolerance_part.stack(scene, gears))
+    before = tolerance_part.old(scene)
 
     def shown(x: Array) -> Mapping[str, Any]:
-        assert own is not None
-        rows = tolerance_part.rows(scene, own, tolerance_part.widths(scene, x))
-        return {**train, "tolerances": untyped(rows)}
+        return {**train, "tolerances": untyped(listed(tolerance_part.widths(scene, x, before)))}
 
     return shown
