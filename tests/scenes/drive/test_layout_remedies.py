@@ -12,6 +12,7 @@ from edits import edited, scene_of
 
 import gearopt
 from gearopt.formulations.drive import layout
+from gearopt.formulations.drive.design import drive_design
 from gearopt.formulations.drive.layout.faults import faults, possible
 from gearopt.formulations.drive.layout.gearbox import KeepOut, Place
 from gearopt.formulations.drive.layout.slabs import orders
@@ -309,9 +310,7 @@ def some_box(seed, box):
 def test_a_fault_excludes_every_order_of_slabs(seeds):
     """What the data check calls impossible no order allows, each searched alone."""
     scene, _ = scene_of(BARE)
-    from gearopt.scenes.drive.layout_design import pairs_of
-
-    plain = scene.gearbox(pairs_of(scene, gearopt.solve(scene).parts[0]))
+    plain = scene.gearbox(scene.pairs(drive_design(gearopt.solve(scene).parts[0].design)))
     seen = 0
     for seed in seeds:
         box = some_box(seed, plain)

@@ -10,6 +10,7 @@ from edits import scene_of
 from rich.console import Console
 
 import gearopt
+from gearopt.formulations.drive.design import drive_design
 from gearopt.formulations.drive.layout.faults import of_any_gears
 from gearopt.optimise.clock import Clock
 from gearopt.report.measures import METRIC
@@ -17,7 +18,6 @@ from gearopt.report.pages.result import page
 from gearopt.report.terminal import show
 from gearopt.scenes.drive import KIND
 from gearopt.scenes.drive.layout import lay_out
-from gearopt.scenes.drive.layout_design import pairs_of
 from gearopt.scenes.drive.without import without
 from gearopt.scenes.reading.ask import Ask
 
@@ -94,7 +94,7 @@ def test_two_shafts_through_the_box_have_no_common_axis(sized):
     """16 T/(pi d^3) is the shaft stress: 49.393 N m at the input, the ratio times that behind."""
     asked = '[layout]\nshaft_stress = "40 MPa"\n{}[[place]]\nshaft = 3\ny = "0 mm"\nz = "0 mm"\n'
     full, partial = (scene_of(GEARS + asked.format(s))[0] for s in ("", 'span = "partial"\n'))
-    pairs = pairs_of(full, sized)
+    pairs = full.pairs(drive_design(sized.design))
     assert of_any_gears(partial.gearbox(pairs)) == []
     (words,) = of_any_gears(full.gearbox(pairs))
     torques = 49_393.0, 49_393.0 * sized.design["ratio"]

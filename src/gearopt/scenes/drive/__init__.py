@@ -14,8 +14,7 @@ from gearopt.scenes.drive import layout
 from gearopt.scenes.drive.explain.why import influences, possible, remedies
 from gearopt.scenes.drive.notes import assumptions
 from gearopt.scenes.drive.processes import by_processes
-from gearopt.scenes.drive.rating.limits import check_safe, rated_afterwards
-from gearopt.scenes.drive.rating.rated import rate, with_rating
+from gearopt.scenes.drive.rating.rated import check_safe, rate, rated_afterwards, with_rating
 from gearopt.scenes.drive.scene import PROCESSES, Scene
 from gearopt.scenes.drive.sizing import SMOOTH, sized, takes_real_values, whole_teeth
 from gearopt.scenes.drive.trades import advice, objectives, several, to_choose

@@ -2,12 +2,16 @@
 
 import math
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import layout, sizing, sizing_text, teeth, together
-from gearopt.formulations.drive.design import drive_design, gears_first
+from gearopt.formulations.drive.design import (
+    DriveDesign,
+    describe,
+    drive_design,
+    gears_first,
+)
 from gearopt.formulations.drive.layout.exact import GAP
 from gearopt.formulations.drive.layout.faults import faults, of_any_gears
 from gearopt.formulations.drive.layout.gearbox import Gearbox
@@ -18,8 +22,9 @@ from gearopt.formulations.drive.train import Train
 from gearopt.optimise.clock import Clock, following, in_part
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Outcome, Result
+from gearopt.optimise.result import Result
 from gearopt.optimise.solve import limits, run
+from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.counts import best_count
@@ -27,7 +32,6 @@ from gearopt.scenes.drive.layout_design import (
     described,
     distances_used,
     handed,
-    pairs_of,
     reached,
 )
 from gearopt.scenes.drive.scene import Scene
@@ -85,7 +89,7 @@ def gears_of(result: Result) -> Result | None:
 
 
 def _laid_out(scene: Scene, ask: Ask, sized: Result) -> Result:
-    box = scene.gearbox(pairs_of(scene, sized))
+    box = scene.gearbox(scene.pairs(drive_design(sized.design)))
     orders = arrangements(box)
     parts = (replace(sized, name="gears"),)
     if wrong := faults(box):
@@ -93,23 +97,25 @@ def _laid_out(scene: Scene, ask: Ask, sized: Result) -> Result:
         objective = {"name": str(scene.layout and scene.layout.minimise), "value": None}
         result = replace(sized, method="data check", objective=objective, bound=None, gap=None)
         result = replace(result, status="infeasible", proof=proof, certificate={}, limits={})
-        return _impossible(scene, sized, replace(result, parts=parts), wrong)
+        return _impossible(scene, box, sized, replace(result, parts=parts), wrong)
     problem = layout.problem(box, ask.method)
     watch, events = following(in_part(ask.watch, box.unit))
     gap = ask.gap if ask.budget.gap else GAP
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, watch, gap)
     result = replace(result, objective=result.objective | {"unit": box.unit}, parts=parts)
     if result.status == "infeasible":
-        return _impossible(scene, sized, result, [UNFIT])
+        return _impossible(scene, box, sized, result, [UNFIT])
     if result.value is None or outcome.x is None:
         return replace(result, name="drive")
     return _with_layout(scene, result, events, sized, box, *read(orders, outcome.x))
 
 
-def _impossible(scene: Scene, sized: Result, result: Result, notes: list[str]) -> Result:
+def _impossible(
+    scene: Scene, box: Gearbox, sized: Result, result: Result, notes: list[str]
+) -> Result:
     """Proof that sized gears cannot be laid out, in words."""
     message = " ".join(notes)
-    if others_may_fit(scene, pairs_of(scene, sized)):
+    if others_may_fit(scene, box):
         result = replace(result, proof=result.proof | _scope(sized))
         assert scene.layout is not None
         if not scene.layout.together:
@@ -129,7 +135,8 @@ def _with_layout(
 ) -> Result:
     """A result with its gears and layout in the words of a drawing."""
     gears = drive_design(sized.design)
-    found = handed(described(box, order, angles, gears), scene)
+    hands = [stage.pinion_hand for stage in scene.stage]
+    drawing = handed(described(box, order, angles, gears), hands)
     if any(part.name == "gears" for part in result.parts) and not scene.given:
         result = _of_gears_first(scene, result, sized)
     before = sum(p.seconds for p in result.parts), sum(p.evaluations for p in result.parts)
@@ -142,11 +149,11 @@ def _with_layout(
     return replace(
         result,
         name="drive",
-        design=untyped(replace(gears, layout=found)),
-        limits=sized.limits | distances_used(found) | _sides_used(result),
+        design=untyped(replace(gears, layout=drawing)),
+        limits=sized.limits | distances_used(drawing) | _sides_used(result),
         report={
             "progress": [*steps, last],
-            "notes": [*sized.report.get("notes", []), *reached(box, found)],
+            "notes": [*sized.report.get("notes", []), *reached(box, drawing)],
         },
         evaluations=spent,
         seconds=seconds,
@@ -154,12 +161,12 @@ def _with_layout(
 
 
 def _scope(sized: Result) -> dict[str, str]:
-    """Return the scope of whatever is proven of a layout of gears that were sized before it."""
+    """Scope of whatever is proven of a layout of gears that were sized before it."""
     return {"scope": gears_first(str(sized.objective["name"]))}
 
 
 def _of_gears_first(scene: Scene, result: Result, sized: Result) -> Result:
-    """Return a layout whose message says that it is one of gears that were sized before it."""
+    """Layout whose message says that it is one of gears that were sized before it."""
     words = f"the box is that of {_scope(sized)['scope']}"
     if scene.teeth is not None:
         words += ": with together = true in [layout] gears and box are optimised together"
@@ -171,19 +178,20 @@ def _sides_used(result: Result) -> dict[str, float]:
     return {n: v for n, v in result.limits.items() if n.startswith("largest_")}
 
 
-def others_may_fit(scene: Scene, pairs: tuple[GearPair, ...]) -> bool:
-    """Return whether a fault of gears says nothing of others: they were sized first."""
-    return not scene.given and not of_any_gears(scene.gearbox(pairs))
+def others_may_fit(scene: Scene, box: Gearbox) -> bool:
+    """Whether a fault of the gears in a box says nothing of others: they were sized first."""
+    return not scene.given and not of_any_gears(box)
 
 
 def _at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
-    clock = Clock(ask.budget)
+    clock, train = Clock(ask.budget), scene.train()
     together.ready(ask.watch)
     apart = replace(_laid_out(scene, replace(ask, method=None), sized), name=APART)
-    if apart.status == "infeasible" and not others_may_fit(scene, pairs_of(scene, sized)):
+    box = scene.gearbox(scene.pairs(drive_design(sized.design)))
+    if apart.status == "infeasible" and not others_may_fit(scene, box):
         return replace(apart, name="drive")
     real = ask.method in REAL
-    model = _posed_at_once(scene, ask.method or "exact", apart)
+    model = _posed_at_once(scene, train, ask.method or "exact", apart)
     watch, events = following(in_part(ask.watch, model.unit))
     asked = clock.left
     gap = ask.gap if ask.budget.gap or real else together.GAP
@@ -194,22 +202,21 @@ def _at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
         spent = sum(p.seconds for p in parts)
         return replace(result, name="drive", seconds=result.seconds + spent, **_why(result, apart))
     if isinstance(model.problem, Problem) and real:
+        slabs = _start(scene, apart)[0]
         return _real_valued_design(
-            scene, result, outcome, sized, model.problem, _start(scene, apart)[0], events
+            scene, train, result, outcome.x, sized, model.problem, slabs, events
         )
-    train = scene.train()
-    make = partial(scene.gearbox, train=train)
-    box, angles, order = together.laid_out(train, make, outcome.x)
+    box, angles, order = together.laid_out(train, scene.gearbox, outcome.x)
     own, pairs = teeth.problem(train), together.pairs(train, outcome.x)
     point = outcome.x[: sum(v.size for v in own.variables)]
-    chosen = together.options(train, outcome.x)
-    gears = replace(sized, design=untyped(scene.design(pairs, chosen)), limits=limits(own, point))
-    found = _with_layout(scene, result, events, replace(gears, report={}), box, angles, order)
+    design = untyped(describe(train, pairs, together.options(train, outcome.x)))
+    gears = replace(sized, design=design, limits=limits(own, point), report={})
+    whole = _with_layout(scene, result, events, gears, box, angles, order)
     if scene.by_ratings:
-        return found
+        return whole
     left = replace(ask, budget=asked.less(result.seconds))
-    smooth = _real_valued_part(scene, (order.slabs, pairs, angles), left)
-    return replace(found, parts=(*found.parts, *smooth))
+    smooth = _real_valued_part(scene, train, (order.slabs, pairs, angles), left)
+    return replace(whole, parts=(*whole.parts, *smooth))
 
 
 def _why(result: Result, apart: Result) -> dict[str, Any]:
@@ -227,8 +234,8 @@ def posed(scene: Scene, method: str, sized: Result) -> Model:
     if sized.value is None:
         raise SolveError("there are no gears to lay out: gearopt explain shows why")
     if scene.layout.together:
-        return _posed_at_once(scene, method, _laid_out(scene, Ask(), sized))
-    box = scene.gearbox(pairs_of(scene, sized))
+        return _posed_at_once(scene, scene.train(), method, _laid_out(scene, Ask(), sized))
+    box = scene.gearbox(scene.pairs(drive_design(sized.design)))
     if wrong := faults(box):
         raise SolveError(" ".join(wrong))
     layout.ready()  # what is compared is machine code
@@ -236,20 +243,18 @@ def posed(scene: Scene, method: str, sized: Result) -> Model:
     return Model(layout.problem(box, method), f"{words}, of gears that were chosen first", box.unit)
 
 
-def _posed_at_once(scene: Scene, method: str, apart: Result) -> Model:
-    """Return the problem that a method gets; apart: the layout of gears sized first, a start."""
-    assert scene.layout is not None
-    train = scene.train()
-    make = partial(scene.gearbox, train=train)
-    unit = make(pairs_of(scene, apart.parts[0])).unit
+def _posed_at_once(scene: Scene, train: Train, method: str, apart: Result) -> Model:
+    """Problem that a method gets; apart: the layout of gears sized first, a start."""
+    make = scene.gearbox
+    unit = make(scene.pairs(drive_design(apart.parts[0].design))).unit
     if method == "exact":
         import numpy as np
 
         known = None
         if apart.value is not None:
             slabs, pairs, angles = _start(scene, apart)
-            made = pairs, _options(train, apart)
-            known = (made, arrange(make(pairs), slabs), np.array(angles))
+            gears = pairs, _options(train, drive_design(apart.design))
+            known = (gears, arrange(make(pairs), slabs), np.array(angles))
         problem = together.problem(train, make, known)
         return Model(problem, "Gears and box at once", unit)
     if method not in REAL:
@@ -264,17 +269,17 @@ def _posed_at_once(scene: Scene, method: str, apart: Result) -> Model:
 
 
 def _start(scene: Scene, apart: Result) -> Start:
-    """Return slabs, gear pairs and angles of a layout."""
-    found = drive_design(apart.design).layout
-    assert found is not None
-    slabs = tuple(tuple(s - 1 for s in slab) for slab in found.slabs)
-    return slabs, pairs_of(scene, apart), tuple(math.radians(t) for t in found.link_angles_deg)
+    """Slabs, gear pairs and angles of a layout."""
+    design = drive_design(apart.design)
+    assert design.layout is not None
+    slabs = tuple(tuple(s - 1 for s in slab) for slab in design.layout.slabs)
+    angles = tuple(math.radians(t) for t in design.layout.link_angles_deg)
+    return slabs, scene.pairs(design), angles
 
 
-def _options(train: Train, found: Result) -> tuple[int, ...]:
-    """Return the option of every stage of a design, from 0, by its materials."""
-    stages = drive_design(found.design).stages
-    names = [(stage.pinion_material, stage.wheel_material) for stage in stages]
+def _options(train: Train, design: DriveDesign) -> tuple[int, ...]:
+    """Option of every stage of a design, from 0, by its materials."""
+    names = [(stage.pinion_material, stage.wheel_material) for stage in design.stages]
     known = [
         [option.materials for option in stage.options] or [n]
         for stage, n in zip(train.stages, names, strict=True)
@@ -282,13 +287,11 @@ def _options(train: Train, found: Result) -> tuple[int, ...]:
     return tuple(own.index(n) for own, n in zip(known, names, strict=True))
 
 
-def _real_valued_part(scene: Scene, start: Start, ask: Ask) -> tuple[Result, ...]:
-    """Return the real-valued part, started from an exact answer; none unless Ipopt improves it."""
+def _real_valued_part(scene: Scene, train: Train, start: Start, ask: Ask) -> tuple[Result, ...]:
+    """Real-valued part, started from an exact answer; none unless Ipopt improves it."""
     slabs, pairs, angles = start
-    train = scene.train()
-    make = partial(scene.gearbox, train=train)
-    problem = continuous(train, make, slabs, (pairs, angles))
-    unit = make(pairs).unit
+    problem = continuous(train, scene.gearbox, slabs, (pairs, angles))
+    unit = scene.gearbox(pairs).unit
     watch = in_part(ask.watch, unit, REAL_VALUED)
     result, _ = run(problem, "ipopt", ask.budget, watch=watch)
     if result.value is None or result.status == "limit":  # a start is no answer
@@ -298,22 +301,20 @@ def _real_valued_part(scene: Scene, start: Start, ask: Ask) -> tuple[Result, ...
 
 def _real_valued_design(
     scene: Scene,
+    train: Train,
     result: Result,
-    outcome: Outcome,
+    x: Array,
     sized: Result,
     problem: Problem,
     slabs: Slabs,
     events: list[dict[str, Any]],
 ) -> Result:
-    """Return a result with real-valued teeth in the words of a drawing."""
-    assert outcome.x is not None
-    train = scene.train()
+    """Result with real-valued teeth in the words of a drawing."""
     own = sizing.problem(train)
-    point = outcome.x[: sum(v.size for v in own.variables)]
+    point = x[: sum(v.size for v in own.variables)]
     pairs = sizing_text.pairs(train, point)
-    gears = replace(
-        sized, design=untyped(scene.design(pairs)), limits=limits(own, point), report={}
-    )
+    design = untyped(describe(train, pairs))
+    gears = replace(sized, design=design, limits=limits(own, point), report={})
     box = scene.gearbox(pairs)
-    angles = angles_of(problem, outcome.x)
+    angles = angles_of(problem, x)
     return _with_layout(scene, result, events, gears, box, angles, arrange(box, slabs))

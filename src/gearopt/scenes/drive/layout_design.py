@@ -1,9 +1,10 @@
 """The layout of a drive in the words of a drawing: box, shafts, gears, gaps, keep-outs."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
-from gearopt.formulations.drive.design import DriveDesign, drive_design
+from gearopt.formulations.drive.design import DriveDesign
 from gearopt.formulations.drive.layout.gearbox import Gearbox, KeepOut
 from gearopt.formulations.drive.layout.layout_design import (
     BearingDesign,
@@ -19,19 +20,7 @@ from gearopt.formulations.drive.layout.layout_design import (
 )
 from gearopt.formulations.drive.layout.layout_text import Placed, placed
 from gearopt.formulations.drive.layout.slabs import Arrangement
-from gearopt.optimise.result import Result
-from gearopt.physics.gears import GearPair
 from gearopt.physics.shaft_forces import OTHER, hands
-from gearopt.scenes.drive.scene import Scene
-
-
-def pairs_of(scene: Scene, sized: Result) -> tuple[GearPair, ...]:
-    """Return the gear pairs of a sized drive."""
-    train = scene.train()
-    return tuple(
-        train.pair(k, s.normal_module_mm, s.pinion_teeth, s.wheel_teeth, s.face_width_mm)
-        for k, s in enumerate(drive_design(sized.design).stages)
-    )
 
 
 def described(
@@ -70,14 +59,13 @@ def described(
     )
 
 
-def handed(found: LayoutDesign, scene: Scene) -> LayoutDesign:
-    """Return a layout with the hands of its helices, where the file gives one."""
-    given = [stage.pinion_hand for stage in scene.stage]
+def handed(layout: LayoutDesign, given: Sequence[str | None]) -> LayoutDesign:
+    """Layout with the hands of its helices; given: those of the pinions in the file, if any."""
     if not any(given):
-        return found
+        return layout
     of_stage = [{"pinion": hand, "wheel": OTHER[hand]} for hand in hands(given)]
-    gears = [replace(gear, hand=of_stage[gear.stage - 1][gear.member]) for gear in found.gears]
-    return replace(found, gears=tuple(gears))
+    gears = [replace(gear, hand=of_stage[gear.stage - 1][gear.member]) for gear in layout.gears]
+    return replace(layout, gears=tuple(gears))
 
 
 def distances_used(found: LayoutDesign) -> dict[str, float]:

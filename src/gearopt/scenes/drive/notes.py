@@ -1,18 +1,18 @@
 """What a drive takes for granted, and what a reader of its result should know."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from gearopt.formulations.drive.design import STEEL_DENSITY
 from gearopt.physics.gears import ISO_53_A, MEMBERS
 from gearopt.physics.iso6336.case import Practice
-from gearopt.scenes.drive.rating.gears import gear_choices
 from gearopt.scenes.drive.rating.iso_material import steel
-from gearopt.scenes.drive.rating.materials import unused
+from gearopt.scenes.drive.rating.materials import Named, choices, unused
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.blanks import blank
-from gearopt.scenes.drive.tables.drive import ORIGINS, StageTable
+from gearopt.scenes.drive.tables.drive import ORIGINS
 from gearopt.scenes.drive.tables.layout import Layout
-from gearopt.scenes.drive.tables.rating import RatingTable, with_shared
+from gearopt.scenes.drive.tables.rating import GearTable, RatingTable, with_shared
 from gearopt.scenes.drive.tables.teeth import toothing
 from gearopt.scenes.reading.module_series import unverified
 
@@ -46,19 +46,25 @@ def notes(scene: Scene, exact: bool) -> list[str]:
 
 def unused_materials(scene: Scene) -> list[str]:
     """Return a note on the materials of the file that no gear may have, if there are any."""
-    names = unused(scene.stage or (StageTable(),), scene.gears, scene.material)
+    names = unused(scene.stage_tables, scene.gears, scene.material)
     return [f"[[material]] in no list of a gear: {', '.join(names)}."] if names else []
 
 
 def _dense(scene: Scene) -> bool:
     """Return whether every gear has the density of its material."""
-    known = [gear_choices(scene, k, m) for k in range(len(scene.stage) or 1) for m in MEMBERS]
-    return all(one and one.density for choices in known for _, one in choices)
+    return all(material and material.density for _, material in _gears(scene))
+
+
+def _gears(scene: Scene) -> Iterator[tuple[GearTable, Named | None]]:
+    """Every gear with each material that it may have, and that material."""
+    for stage in scene.stage_tables:
+        for member in MEMBERS:
+            yield from choices(getattr(stage, member), scene.gears, scene.material)
 
 
 def assumptions(scene: Scene) -> list[str]:
     """Return what a design takes for granted, in sentences."""
-    density, stages = scene.objective.density, scene.stage or (StageTable(),)
+    density, stages = scene.objective.density, scene.stage_tables
     angles = dict.fromkeys(str(own.pressure_angle or scene.gears.pressure_angle) for own in stages)
     angle = " and ".join(angles)
     stated = "pressure_angle" in scene.gears.model_fields_set or any(
@@ -85,7 +91,7 @@ def assumptions(scene: Scene) -> list[str]:
 
 def _bodies(scene: Scene) -> str:
     """Return what volumes and masses are those of."""
-    stages = scene.stage or (StageTable(),)
+    stages = scene.stage_tables
     tables = [with_shared(getattr(own, m), scene.gears) for own in stages for m in MEMBERS]
     if all(blank(table, None).solid and not table.web_thickness for table in tables):
         return "Volumes and masses are those of solid reference cylinders"
@@ -115,7 +121,7 @@ def _loads(scene: Scene, angle: str, assumed: str) -> list[str]:
 
 def _teeth(scene: Scene) -> list[str]:
     """Return what is taken for granted of the teeth: shifts, tools, backlash."""
-    each = [toothing(own, scene.gears) for own in scene.stage or (StageTable(),)]
+    each = [toothing(own, scene.gears) for own in scene.stage_tables]
     shifted = any(any(one.profile_shifts) for one in each)
     shifts = "with the profile shifts of the file" if shifted else "without profile shift"
     ends = "no losses in mesh and bearings"
@@ -172,15 +178,9 @@ def _agma_assumptions(asked: RatingTable) -> list[str]:
 
 def _iso_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
     """Return what a rating by ISO 6336 takes for granted: materials, misalignment."""
-    tables = [
-        table
-        for k in range(max(1, len(scene.stage)))
-        for member in MEMBERS
-        for table, _ in gear_choices(scene, k, member)
-    ]
     chosen = dict.fromkeys(
         f"{table.treatment or 'none given'} as {steel(table).name}"
-        for table in tables
+        for table, _ in _gears(scene)
         if table.iso_material is None
     )
     helix = asked.iso6336.helix_modification

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import teeth
+from gearopt.formulations.drive.design import describe
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.clock import in_part
 from gearopt.optimise.result import Result
@@ -31,7 +32,9 @@ def by_processes(scene: Scene, ask: Ask, best: Result) -> Result:
         except SolveError as reason:
             remarks.append(f"There is no design by {words}: {reason}.")
             continue
-        design = {} if outcome.x is None else untyped(scene.design(teeth.pairs(train, outcome.x)))
+        design = (
+            {} if outcome.x is None else untyped(describe(train, teeth.pairs(train, outcome.x)))
+        )
         part = replace(part, objective=part.objective | {"unit": train.unit}, design=design)
         parts.append(with_rating(scene, reconcile(replace(part, name=words), best, ask.gap)))
     return replace(best, parts=(*best.parts, *parts), report=best.report | {"notes": remarks})

@@ -7,12 +7,10 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
-from gearopt.formulations.drive.design import DriveDesign, describe
+from gearopt.formulations.drive.design import DriveDesign
 from gearopt.formulations.drive.layout.gearbox import Gearbox
-from gearopt.formulations.drive.processes import methods
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength import RATED, Law
-from gearopt.optimise.result import Outcome
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.loads import torque
@@ -27,6 +25,7 @@ from gearopt.scenes.drive.rating.checks import (
     not_given,
 )
 from gearopt.scenes.drive.rating.materials import MaterialTable, check_materials, check_same
+from gearopt.scenes.drive.rating.options import of_stages, required
 from gearopt.scenes.drive.tables.blanks import blank, check_blanks
 from gearopt.scenes.drive.tables.drive import (
     Gears,
@@ -182,6 +181,11 @@ class Scene(Table):
         return tuple(range(low, high + 1))
 
     @property
+    def stage_tables(self) -> tuple[StageTable, ...]:
+        """Tables of the stages of the least number; empty ones where the file has none."""
+        return self.stage or (StageTable(),) * self.counts[0]
+
+    @property
     def several(self) -> bool:
         """Return whether the number of stages is to be chosen."""
         return len(self.counts) > 1
@@ -316,32 +320,36 @@ class Scene(Table):
         """Return whether teeth, modules and face widths are all given: nothing is to be sized."""
         return not any(not_given(self.gears, self.stage))
 
+    @property
+    def torque(self) -> float:
+        """Torque at the input shaft [N mm]."""
+        return float(torque(self.duty.power.value, self.duty.input_speed.value))
+
     def train(self) -> Train:
-        """Return the drive as plain numbers; it has one number of stages."""
+        """Drive in plain numbers; it has one number of stages."""
         assert not self.several
-        stages = self.stage or (StageTable(),) * self.counts[0]
-        density, speed = self.objective.density, self.duty.input_speed.value
-        sized = tuple(self._stage(s) for s in stages)
+        tables, density = self.stage_tables, self.objective.density
+        stages = tuple(self._stage(s) for s in tables)
         safety = (1.0, 1.0)
         if self.by_ratings:
-            from gearopt.scenes.drive.rating.limits import of_stages, required
-
-            made = zip(sized, of_stages(self, len(sized)), strict=True)
-            sized = tuple(replace(stage, options=options) for stage, options in made)
-            safety = required(self)
+            assert self.rating
+            rated = of_stages(self.rating, tables, self.gears, self.material, self.duty, self.load)
+            both = zip(stages, rated, strict=True)
+            stages = tuple(replace(stage, options=options) for stage, options in both)
+            safety = required(self.rating)
         return Train(
-            torque=torque(self.duty.power.value, speed),
+            torque=self.torque,
             ratio=self.duty.total_ratio,
             tolerance=self.duty.ratio_tolerance,
-            stages=sized,
+            stages=stages,
             coprime=bool(self.teeth and self.teeth.coprime),
             objective=self.objective.minimise,
             density=density.value if density else None,
             law=self.law,
-            speed=speed,
+            speed=self.duty.input_speed.value,
             safety=safety,
             same_option=self.gears.same_materials and self.by_ratings,
-            keys=KEYS | self._keys(stages),
+            keys=KEYS | self._keys(tables),
         )
 
     def _keys(self, stages: tuple[StageTable, ...]) -> dict[str, str | tuple[str, ...]]:
@@ -362,22 +370,20 @@ class Scene(Table):
         ends = {name: (name, None) for name in self.law.names} | ENDS
         return {n: tuple(place(k, *ends[n]) for k in range(len(stages))) for n in ends}
 
-    def design(self, pairs: tuple[GearPair, ...], options: tuple[int, ...] = ()) -> DriveDesign:
-        """Return the drive of these gear pairs in the words of its drawing.
+    def pairs(self, design: DriveDesign) -> tuple[GearPair, ...]:
+        """Gear pairs of a design, with shifts, tools and centre distances of the file."""
+        tables = self.held(len(design.stages)).stage_tables
+        return tuple(
+            toothing(own, self.gears).pair(
+                s.normal_module_mm, s.pinion_teeth, s.wheel_teeth, s.face_width_mm
+            )
+            for own, s in zip(tables, design.stages, strict=True)
+        )
 
-        options: of every stage with materials to choose from, from 0; none: the first.
-        """
-        return describe(self.train(), pairs, options)
-
-    def processes(self) -> dict[str, Callable[..., Outcome]]:
-        """Return the two design processes, with their tables, as methods for whole teeth."""
-        one, two = self.process_one, self.process_two
-        return methods(self.train(), one.inputs() if one else None, two.inputs() if two else None)
-
-    def gearbox(self, pairs: tuple[GearPair, ...], train: Train | None = None) -> Gearbox:
-        """Return the drive of gear pairs with its [layout], to be laid out; train: `train()`."""
+    def gearbox(self, pairs: tuple[GearPair, ...]) -> Gearbox:
+        """Drive of gear pairs with its [layout], to be laid out."""
         assert self.layout is not None
-        return gearbox(self.layout, self.place, self.keep_out, train or self.train(), pairs)
+        return gearbox(self.layout, self.place, self.keep_out, self.torque, pairs)
 
     def _stage(self, own: StageTable) -> Stage:
         limits = self.limits

@@ -17,7 +17,7 @@ from gearopt.optimise.pareto.front import Objective
 from gearopt.optimise.pareto.several import Several, impossible
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.typed import untyped
-from gearopt.scenes.drive.layout_design import described, handed, pairs_of
+from gearopt.scenes.drive.layout_design import described, handed
 from gearopt.scenes.drive.scene import Scene
 
 
@@ -46,7 +46,8 @@ def several(scene: Scene, names: Sequence[str], sized: Result) -> Several:
         if sized.status != "infeasible":
             raise SolveError(f"there are no gears to lay out: {why}")
         return Several(impossible("layout", names, none), listed)
-    box = scene.gearbox(pairs_of(scene, sized))
+    gears = drive_design(sized.design)
+    box = scene.gearbox(scene.pairs(gears))
     if wrong := faults(box):
         proof = {
             "method": "closed form",
@@ -55,12 +56,12 @@ def several(scene: Scene, names: Sequence[str], sized: Result) -> Several:
         none = Outcome(None, infeasible=True, proof=proof, message=" ".join(wrong))
         return Several(impossible("layout", names, none), listed)
     layout.ready()
-    orders, gears = arrangements(box), drive_design(sized.design)
+    orders, given = arrangements(box), [stage.pinion_hand for stage in scene.stage]
 
     def drawn(x: Any) -> Mapping[str, Any]:
         angles, order = read(orders, x)
-        found = handed(described(box, order, angles, gears), scene)
-        design: Mapping[str, Any] = untyped(replace(gears, layout=found))
+        drawing = handed(described(box, order, angles, gears), given)
+        design: Mapping[str, Any] = untyped(replace(gears, layout=drawing))
         return design
 
     limiting = Limiting(lambda name, most: layout_front.limited(box, name, most), tuple(SIDES))

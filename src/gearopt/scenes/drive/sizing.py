@@ -6,6 +6,8 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing, sizing_text, teeth
+from gearopt.formulations.drive.design import describe
+from gearopt.formulations.drive.processes import methods
 from gearopt.formulations.drive.shares import MASSES
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.certificate import reconcile
@@ -91,12 +93,13 @@ def real_valued(scene: Scene, ask: Ask) -> Result:
 
     Of a drive that ratings limit, too, they are those of its load limits, whose bound holds.
     """
-    train = _by_load_limits(scene.train())
-    if train is None:
-        objective = {"name": scene.objective.minimise, "value": None, "unit": scene.train().unit}
+    train = scene.train()
+    by_loads = _by_load_limits(train)
+    if by_loads is None:
+        objective = {"name": train.objective, "value": None, "unit": train.unit}
         return Result("sizing", "limit", "", objective)
     asked = Ask(None, ask.budget, watch=ask.watch)
-    return _solved(without(scene, "layout"), train, asked, sizing.problem(train))
+    return _solved(without(scene, "layout"), train, asked, sizing.problem(by_loads))
 
 
 def _by_load_limits(train: Train) -> Train | None:
@@ -114,7 +117,14 @@ def whole_teeth(scene: Scene, train: Train, top: int = 1, floor: float = -math.i
     problem = teeth.problem(train, top, floor)
     if not train.law.limits:
         return problem
-    return replace(problem, methods={**problem.methods, **scene.processes()})
+    one, two = scene.process_one, scene.process_two
+    return replace(
+        problem,
+        methods={
+            **problem.methods,
+            **methods(train, one.inputs() if one else None, two.inputs() if two else None),
+        },
+    )
 
 
 def takes_real_values(scene: Scene, method: str | None) -> bool:
@@ -144,7 +154,7 @@ def _solved(scene: Scene, train: Train, ask: Ask, problem: Problem) -> Result:
     points = (outcome.x, *outcome.others)
     gears = [formulation.pairs(train, x) for x in points]
     options = [teeth.options(train, x) if exact and train.several_options else () for x in points]
-    designs = [untyped(scene.design(*both)) for both in zip(gears, options, strict=True)]
+    designs = [untyped(describe(train, *both)) for both in zip(gears, options, strict=True)]
     values = [float(problem.batch(x[None]).F[0, 0]) for x in points]
     trains = [
         {"objective": value, "ratio": design["ratio"], "stages": design["stages"]}

@@ -6,6 +6,7 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing, sizing_text, teeth
+from gearopt.formulations.drive.design import describe
 from gearopt.formulations.drive.shares import OBJECTIVES
 from gearopt.formulations.drive.teeth import load_front
 from gearopt.formulations.drive.train import Train
@@ -91,8 +92,8 @@ def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
             f"[teeth], and a method other than {EPSILON}"
         )
     if not whole:
-        return Several(sizing.problem(train), listed, lambda x: _real(scene, train, x))
-    return Several(teeth.problem(train), listed, lambda x: _whole(scene, train, x))
+        return Several(sizing.problem(train), listed, lambda x: _real(train, x))
+    return Several(teeth.problem(train), listed, lambda x: _whole(train, x))
 
 
 def _loaded(scene: Scene, names: Sequence[str], method: str | None) -> Several:
@@ -110,19 +111,19 @@ def _loaded(scene: Scene, names: Sequence[str], method: str | None) -> Several:
         load_front.discrete(train),
     )
     problem = load_front.problem(train, tuple(names))
-    return Several(problem, listed, lambda x: _whole(scene, train, x), limiting)
+    return Several(problem, listed, lambda x: _whole(train, x), limiting)
 
 
 def _train(scene: Scene) -> Train:
     return scene.held(scene.counts[0]).train()
 
 
-def _real(scene: Scene, train: Train, x: Array) -> Mapping[str, Any]:
-    found: Mapping[str, Any] = untyped(scene.design(sizing_text.pairs(train, x)))
-    return found
+def _real(train: Train, x: Array) -> Mapping[str, Any]:
+    design: Mapping[str, Any] = untyped(describe(train, sizing_text.pairs(train, x)))
+    return design
 
 
-def _whole(scene: Scene, train: Train, x: Array) -> Mapping[str, Any]:
+def _whole(train: Train, x: Array) -> Mapping[str, Any]:
     chosen = teeth.options(train, x) if train.several_options else ()
-    found: Mapping[str, Any] = untyped(scene.design(teeth.pairs(train, x), chosen))
-    return found
+    design: Mapping[str, Any] = untyped(describe(train, teeth.pairs(train, x), chosen))
+    return design

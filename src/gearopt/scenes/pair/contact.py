@@ -18,7 +18,7 @@ from gearopt.physics.tooth.elastic import POISSON, STEEL, ElasticPair
 from gearopt.physics.tooth.foundation import SAINSOT_BORE_RATIOS
 from gearopt.physics.tooth.ladder import COUPLINGS, LEVELS, USUAL
 from gearopt.physics.tooth.validity import cheapest, doubts, refused, usual_level, usual_plane
-from gearopt.scenes.drive.rating import gears as rated_gears
+from gearopt.scenes.drive.rating.gears import Tables, blanks, gear_tables
 from gearopt.scenes.pair.scene import Scene
 from gearopt.units import Quantity
 
@@ -103,10 +103,7 @@ def level_of(scene: Scene, elastic: ElasticPair) -> str:
 
 def elastic_pair(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> ElasticPair:
     """Return a pair with its bores, materials and plane state."""
-    tables = [
-        rated_gears.own(scene.drive, 0, m, n) for m, n in zip(MEMBERS, materials, strict=True)
-    ]
-    made = blanks_of(scene, pair, materials)
+    tables, made = _tables(scene, materials), blanks_of(scene, pair, materials)
     bores = [
         bore_of(blank, float(g.root_diameter)) for blank, g in zip(made, pair.gears, strict=True)
     ]
@@ -119,10 +116,13 @@ def elastic_pair(scene: Scene, pair: GearPair, materials: Materials = ("", "")) 
 
 
 def blanks_of(scene: Scene, pair: GearPair, materials: Materials) -> tuple[Blank, Blank]:
-    """Return the blanks of the gears of a pair."""
+    """Blanks of the gears of a pair."""
+    return blanks(scene.drive.stage_tables[0], _tables(scene, materials), pair)
+
+
+def _tables(scene: Scene, materials: Materials) -> Tables:
     drive = scene.drive
-    tables = tuple(rated_gears.own(drive, 0, m, n) for m, n in zip(MEMBERS, materials, strict=True))
-    return rated_gears.blanks(drive, 0, (tables[0], tables[1]), pair)
+    return gear_tables(drive.stage_tables[0], drive.gears, drive.material, 0, materials)
 
 
 def bore_of(blank: Blank, root: float) -> float:

@@ -76,8 +76,8 @@ class Scene(Table):
 
     @property
     def given_pair(self) -> GearPair:
-        """Return the gears of a pair that is given."""
-        return given_pairs(self.drive)[0]
+        """Gears of a pair that is given."""
+        return given_pairs(self.stage, self.gears)[0]
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":

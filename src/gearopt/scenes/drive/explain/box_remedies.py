@@ -28,7 +28,7 @@ from gearopt.scenes.drive.explain.box_moves import (
 )
 from gearopt.scenes.drive.explain.other_gears import other_gears
 from gearopt.scenes.drive.layout import others_may_fit
-from gearopt.scenes.drive.layout_design import described, keep_out_design, pairs_of
+from gearopt.scenes.drive.layout_design import described, keep_out_design
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import Known, Questions, as_remedy, least, narrow, smallest
 from gearopt.scenes.explaining.influences import Basis, influences, smooth
@@ -79,7 +79,7 @@ def remedies(scene: Scene, gears: Result, clock: Clock) -> Remedies:
     begun = clock.seconds
     layout.ready(clock.watch)
     clock.start += clock.seconds - begun  # compiling takes no time of the remedies
-    pairs = pairs_of(scene, gears)
+    pairs = scene.pairs(drive_design(gears.design))
     asked = questions(scene, pairs, clock)
     single, choices = box_moves(scene, pairs), switches(scene)
     chosen = [r for m in choices if (r := _chosen(asked, m)) is not None]
@@ -101,7 +101,7 @@ def remedies(scene: Scene, gears: Result, clock: Clock) -> Remedies:
     changed = found[0][2] if found else None
     known = tuple(remedy for _, remedy, _ in found)
     more, unknown = other_gears(scene, pairs, known, clock)
-    first = GEARS_FIRST if known and others_may_fit(scene, pairs) else ""
+    first = GEARS_FIRST if known and others_may_fit(scene, scene.gearbox(pairs)) else ""
     words = "; ".join(filter(None, (message, first, unknown)))
     ways = _of_gears(scene, known, more, words)
     drawn = None if changed is None else _nearest(scene, changed, gears, clock)
@@ -113,7 +113,8 @@ def _nearest(scene: Scene, changed: Scene, sized: Result, clock: Clock) -> dict[
 
     None where none is found in SECONDS.
     """
-    pairs = pairs_of(scene, sized)
+    design = drive_design(sized.design)
+    pairs = scene.pairs(design)
     asked, box = scene.gearbox(pairs), changed.gearbox(pairs)
     budget = replace(clock.left, seconds=clock.within(SECONDS))
     result, outcome = run(layout.problem(box, None), None, budget, watch=clock.watch)
@@ -123,7 +124,7 @@ def _nearest(scene: Scene, changed: Scene, sized: Result, clock: Clock) -> dict[
     found = placed(box, order, angles)
     gone = [keep_out_design(k, found) for k in asked.keep_outs if k not in box.keep_outs]
     return {
-        "layout": untyped(described(box, order, angles, drive_design(sized.design))),
+        "layout": untyped(described(box, order, angles, design)),
         "keep_outs": [untyped(k) for k in gone],
         "motor_mm": 2.0 * asked.motor if asked.motor != box.motor else None,
         "largest_mm": [None if math.isinf(v) else v for v in asked.largest],
@@ -237,7 +238,8 @@ def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:
         return Explanation(
             result, message="sensitivities need a proven layout", seconds=clock.seconds
         )
-    pairs = pairs_of(scene, next((p for p in result.parts if p.name == "gears"), result))
+    sized = next((p for p in result.parts if p.name == "gears"), result)
+    pairs = scene.pairs(drive_design(sized.design))
 
     def solved(other: Scene) -> float | None:
         box = gearbox_of(other, pairs)

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import partial
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import together
@@ -80,7 +79,7 @@ def _fits(scene: Scene, clock: Clock) -> bool | None:
 
     try:
         train = scene.train()
-        problem = together.problem(train, partial(scene.gearbox, train=train))
+        problem = together.problem(train, scene.gearbox)
         budget = replace(clock.left, seconds=min(seconds, SECONDS))
         found, _ = run(problem, None, budget, watch=first)
     except SolveError:  # too many pairs to examine

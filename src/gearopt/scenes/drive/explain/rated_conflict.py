@@ -18,7 +18,7 @@ from gearopt.scenes.drive.explain.requirements import (
     without,
 )
 from gearopt.scenes.drive.explain.tried import Case, any_possible
-from gearopt.scenes.drive.rating.limits import STANDARDS
+from gearopt.scenes.drive.rating.options import STANDARDS
 
 RATED_BY = {"agma": "rating_by_AGMA", "iso6336": "rating_by_ISO_6336"}
 

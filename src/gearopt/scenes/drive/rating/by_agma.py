@@ -12,7 +12,7 @@ from gearopt.physics.agma.rating_factors import Practice, Steel
 from gearopt.physics.gears import GearPair
 from gearopt.physics.rating import Operation
 from gearopt.scenes.drive.rating.gears import Tables, blanks
-from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, RatingTable
 
 __all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
@@ -81,29 +81,32 @@ def finish(table: GearTable) -> float:
     return steel(table).finish
 
 
-def practice(scene: Scene, stage: int, pair: GearPair, gears: Tables) -> Practice:
-    """Return how the pair of a stage (from 0) is made and rated."""
-    assert scene.rating
-    rows = zip(blanks(scene, stage, gears, pair), pair.gears, strict=True)
+def practice(rating: RatingTable, own: StageTable, pair: GearPair, tables: Tables) -> Practice:
+    """Manufacture and rating practice of the pair of a stage."""
+    rows = zip(blanks(own, tables, pair), pair.gears, strict=True)
     first, second = (blank.backup(gear) for blank, gear in rows)
-    return replace(_practice(scene.rating, gears), backup=(first, second))
+    return replace(_practice(rating, tables), backup=(first, second))
 
 
 def limits(
-    scene: Scene, stage: int, gears: Tables, one: Operation, loads: tuple[Load, ...]
+    rating: RatingTable,
+    own: StageTable,
+    tables: Tables,
+    one: Operation,
+    loads: tuple[Load, ...],
 ) -> Agma:
-    """Return the rating as what limits a stage (from 0).
+    """Rating as a limit of a stage.
 
-    one: its operation, at unit power; loads: levels relative to the duty.
+    own, tables: of the stage and of its gears; one: its operation, at unit power; loads: levels
+    relative to the duty.
     """
-    assert scene.rating
     return Agma(
         loads,
         one,
-        (steel(gears[0]), steel(gears[1])),
-        _practice(scene.rating, gears),
-        blanks(scene, stage, gears),
-        given(scene, stage),
+        (steel(tables[0]), steel(tables[1])),
+        _practice(rating, tables),
+        blanks(own, tables),
+        given(rating, own),
     )
 
 
@@ -129,8 +132,6 @@ def _quality(asked: RatingTable) -> float:
     return Practice().quality if asked.quality is None else float(asked.quality)
 
 
-def given(scene: Scene, stage: int) -> dict[str, Any]:
-    """Return the factors that a file gives for a stage (from 0), those of all stages below."""
-    assert scene.rating
-    mine = scene.stage[stage].given.factors() if scene.stage else {}
-    return scene.rating.given.factors() | mine
+def given(rating: RatingTable, own: StageTable) -> dict[str, Any]:
+    """Factors that a file gives for a stage, else for all stages."""
+    return rating.given.factors() | own.given.factors()

@@ -11,7 +11,7 @@ from gearopt.physics.iso6336.rating import rate, rate_spectrum
 from gearopt.physics.rating import Operation
 from gearopt.scenes.drive.rating.gears import Tables, blanks
 from gearopt.scenes.drive.rating.iso_material import finish, material, steel
-from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.drive.tables.iso6336 import NAMES
 from gearopt.scenes.drive.tables.rating import RatingTable
 
@@ -29,27 +29,30 @@ def title(asked: RatingTable) -> str:
     return f"ISO 6336 parts 1, 2, 3 and 5, method B, edition {asked.iso6336.edition}"
 
 
-def practice(scene: Scene, stage: int, pair: GearPair, gears: Tables) -> Practice:
-    """Return how the pair of a stage (from 0) is made and rated."""
-    assert scene.rating
-    return of_blanks(_practice(scene.rating, gears), pair, blanks(scene, stage, gears, pair))
+def practice(rating: RatingTable, own: StageTable, pair: GearPair, tables: Tables) -> Practice:
+    """Manufacture and rating practice of the pair of a stage."""
+    return of_blanks(_practice(rating, tables), pair, blanks(own, tables, pair))
 
 
 def limits(
-    scene: Scene, stage: int, gears: Tables, one: Operation, loads: tuple[Load, ...]
+    rating: RatingTable,
+    own: StageTable,
+    tables: Tables,
+    one: Operation,
+    loads: tuple[Load, ...],
 ) -> Iso6336:
-    """Return the rating as what limits a stage (from 0).
+    """Rating as a limit of a stage.
 
-    one: its operation, at unit power; loads: levels relative to the duty.
+    own, tables: of the stage and of its gears; one: its operation, at unit power; loads: levels
+    relative to the duty.
     """
-    assert scene.rating
     return Iso6336(
         loads,
         one,
-        (steel(gears[0]), steel(gears[1])),
-        _practice(scene.rating, gears),
-        blanks(scene, stage, gears),
-        given(scene, stage),
+        (steel(tables[0]), steel(tables[1])),
+        _practice(rating, tables),
+        blanks(own, tables),
+        given(rating, own),
     )
 
 
@@ -72,9 +75,7 @@ def _practice(rating: RatingTable, gears: Tables) -> Practice:
     )
 
 
-def given(scene: Scene, stage: int) -> dict[str, Any]:
-    """Return the factors that a file gives for a stage (from 0), those of all stages below."""
-    assert scene.rating
-    mine = scene.stage[stage].given_iso6336.factors() if scene.stage else {}
-    found: dict[str, Any] = scene.rating.iso6336.given.factors() | mine
-    return found
+def given(rating: RatingTable, own: StageTable) -> dict[str, Any]:
+    """Factors that a file gives for a stage, else for all stages."""
+    factors: dict[str, Any] = rating.iso6336.given.factors() | own.given_iso6336.factors()
+    return factors

@@ -8,8 +8,7 @@ from gearopt.errors import SolveError
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.rating import Operation, Rating
-from gearopt.scenes.drive.rating import gears
-from gearopt.scenes.drive.rating.gears import Tables
+from gearopt.scenes.drive.rating.gears import Tables, gear_tables, operations
 from gearopt.scenes.drive.scene import Scene
 
 Materials = Sequence[tuple[str, str]]
@@ -75,19 +74,21 @@ def _mesh(
     scene: Scene, k: int, pair: GearPair, slower: float, standard: Any, named: tuple[str, str]
 ) -> Mesh:
     """Rate one stage (from 0); slower: input over pinion speed; named: its materials."""
-    tables = gears.own(scene, k, "pinion", named[0]), gears.own(scene, k, "wheel", named[1])
+    rating, stage = scene.rating, scene.stage_tables[k]
+    assert rating
+    tables = gear_tables(stage, scene.gears, scene.material, k, named)
     steels = standard.steel(tables[0]), standard.steel(tables[1])
-    made = standard.practice(scene, k, pair, tables)
-    levels = gears.operations(scene, slower, tables)
-    given = standard.given(scene, k)
+    practice = standard.practice(rating, stage, pair, tables)
+    levels = operations(rating, scene.duty, scene.load, slower, tables)
+    given = standard.given(rating, stage)
 
     def grown(factor: float) -> Mesh:
         own = tuple(replace(one, power=factor * one.power) for one in levels)
         if not scene.load:
-            one = standard.rate(pair, own[0], steels, made, given)
+            one = standard.rate(pair, own[0], steels, practice, given)
             both = one.bending_safety, one.contact_safety
             return Mesh(standard, k + 1, pair, tables, own, (one,), *both, None, grown)
-        found = standard.rate_spectrum(pair, own, steels, made, given)
+        found = standard.rate_spectrum(pair, own, steels, practice, given)
         damages = found.bending_damage, found.contact_damage
         both = found.bending_safety, found.contact_safety
         return Mesh(standard, k + 1, pair, tables, own, found.levels, *both, damages, grown)

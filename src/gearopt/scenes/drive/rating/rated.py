@@ -5,23 +5,28 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from gearopt.errors import SolveError
-from gearopt.formulations.drive.design import DriveDesign, StageDesign, drive_design, of_pairs
+from gearopt.errors import CertificateError, SolveError
+from gearopt.formulations.drive.design import DriveDesign, drive_design, of_pairs
 from gearopt.formulations.drive.rating import DriveRating, MeshRating
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
 from gearopt.physics.blanks import Blank
-from gearopt.physics.gears import MEMBERS, GearPair
+from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.flaws import Flaw
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
 from gearopt.scenes.drive.notes import rating_assumptions, unused_materials
-from gearopt.scenes.drive.rating import gears as rated_gears
 from gearopt.scenes.drive.rating.checks import not_given
+from gearopt.scenes.drive.rating.gears import (
+    blanks,
+    gear_tables,
+    given_pairs,
+    required_hours,
+)
 from gearopt.scenes.drive.rating.geometry import tooth_geometry
-from gearopt.scenes.drive.rating.limits import SECOND, STANDARDS
 from gearopt.scenes.drive.rating.mesh import Materials, rated_meshes
+from gearopt.scenes.drive.rating.options import SECOND, STANDARDS, required
 from gearopt.scenes.drive.rating.rows import (
     factor_rows,
     gear_row,
@@ -49,11 +54,11 @@ def rate(scene: Scene, ask: Ask) -> Result:
             "gearopt solve FILE, which sizes them and rates what it finds"
         )
     clock = Clock(ask.budget, ask.watch)
-    pairs = rated_gears.given_pairs(scene)
+    pairs = given_pairs(scene.stage, scene.gears)
     found = rating(scene, pairs)
-    made, blanks = given_design(scene, pairs)
+    made, bodies = given_design(scene, pairs)
     bored = [(s.pinion.bore is not None, s.wheel.bore is not None) for s in scene.stage]
-    geometric = (*tooth_flaws(pairs), *body_flaws(blanks, pairs, bored))
+    geometric = (*tooth_flaws(pairs), *body_flaws(bodies, pairs, bored))
     found = fitted(found, geometric)
     accepted = (flaw.sentence for flaw in geometric if not flaw.misfit)
     told = replace(found, flaws=(*off_ratio(scene, made), *accepted, *found.flaws))
@@ -91,18 +96,20 @@ def given_design(
     speed = scene.duty.input_speed.value
     asked = scene.duty.total_ratio if scene.duty.asks_ratio else None
     density = scene.objective.density
-    tables = [[rated_gears.own(scene, k, m) for m in MEMBERS] for k in range(len(pairs))]
-    blanks = [rated_gears.blanks(scene, k, (a, b), pairs[k]) for k, (a, b) in enumerate(tables)]
+    bodies = [
+        blanks(own, gear_tables(own, scene.gears, scene.material, k), pair)
+        for k, (own, pair) in enumerate(zip(scene.stage_tables, pairs, strict=True))
+    ]
     made = of_pairs(
         scene.limits.LAW,
         pairs,
-        torque(scene.duty.power.value, speed),
+        scene.torque,
         speed,
         asked,
         density.value if density else None,
-        blanks,
+        bodies,
     )
-    return made, blanks
+    return made, bodies
 
 
 def off_ratio(scene: Scene, made: DriveDesign) -> list[str]:
@@ -123,8 +130,8 @@ def with_rating(scene: Scene, result: Result) -> Result:
     """
     if result.value is None:
         return result
-    held, stages = scene.held(len(result.design["stages"])), drive_design(result.design).stages
-    pairs = chosen_pairs(held, stages)
+    design = drive_design(result.design)
+    held, pairs = scene.held(len(design.stages)), scene.pairs(design)
     geometric, notes = tuple(tooth_flaws(pairs)), result.report.get("notes", [])
     if misfits := [flaw.sentence for flaw in geometric if flaw.misfit]:
         notes = [note for note in notes if note not in misfits]
@@ -132,7 +139,7 @@ def with_rating(scene: Scene, result: Result) -> Result:
     if scene.rating is None:
         return result
     try:
-        materials = [(s.pinion_material, s.wheel_material) for s in stages]
+        materials = [(s.pinion_material, s.wheel_material) for s in design.stages]
         found = fitted(rating(held, pairs, materials), geometric)
     except SolveError as reason:
         report = result.report | {"notes": [*notes, f"There is no rating: {reason}."]}
@@ -140,14 +147,23 @@ def with_rating(scene: Scene, result: Result) -> Result:
     return replace(result, design=result.design | {"rating": untyped(found)})
 
 
-def chosen_pairs(scene: Scene, stages: Sequence[StageDesign]) -> tuple[GearPair, ...]:
-    """Return the pairs of a design, with the tools of the file."""
-    return tuple(
-        rated_gears.pair_of(
-            scene, k, s.normal_module_mm, (s.pinion_teeth, s.wheel_teeth), s.face_width_mm
-        )
-        for k, s in enumerate(stages)
-    )
+def check_safe(scene: Scene, result: Result) -> None:
+    """Refuse gears that the rating was to limit and that it finds unsafe: an error of ours."""
+    if not scene.by_ratings or result.value is None:
+        return
+    rating = drive_design(result.design).rating
+    if rating is None or not rating.met_by_all:
+        why = "has no rating" if rating is None else f"is unsafe: {rating.governs}"
+        raise CertificateError(f"the design that ratings limit {why}")
+
+
+def rated_afterwards(scene: Scene, result: Result) -> Result:
+    """Result whose proof names its scope, where its rating did not limit the sizes."""
+    if scene.rating is None or scene.by_ratings or scene.given or result.value is None:
+        return result
+    before = result.proof.get("scope")
+    words = ", ".join(filter(None, (before, "sized by load limits alone, rated afterwards")))
+    return replace(result, proof=result.proof | {"scope": words})
 
 
 def utilisations(found: DriveRating) -> dict[str, float]:
@@ -203,8 +219,8 @@ def _by(
     asked = scene.rating
     assert asked
     meshes = rated_meshes(scene, pairs, standard, materials)
-    wanted = float(asked.minimum_bending_safety), float(asked.minimum_contact_safety)
-    rows = tuple(mesh_row(scene, mesh, wanted) for mesh in meshes)
+    wanted = required(asked)
+    rows = tuple(mesh_row(asked, mesh, wanted) for mesh in meshes)
     least = min(rows, key=lambda row: row.power_capacity_kW)
     gears = tuple(gear_row(mesh, k) for mesh in meshes for k in (0, 1))
     factors = tuple(row for mesh in meshes for row in factor_rows(mesh))
@@ -219,7 +235,7 @@ def _by(
         minimum_bending_safety=wanted[0],
         minimum_contact_safety=wanted[1],
         power_capacity_kW=least.power_capacity_kW,
-        required_life_h=rated_gears.required_hours(scene),
+        required_life_h=required_hours(asked, scene.duty),
         life_h=shortest.life_h,
         efficiency_percent=efficiency,
         efficiency_error_percent=error,
@@ -232,7 +248,12 @@ def _by(
             for mesh in meshes
             for k in (0, 1)
         ),
-        levels=tuple(row for mesh in meshes if scene.load for row in level_rows(scene, mesh)),
+        levels=tuple(
+            row
+            for mesh in meshes
+            if scene.load
+            for row in level_rows(scene.load, scene.duty.input_speed, mesh)
+        ),
         unverified=(
             *dict.fromkeys(f"{r.symbol} of stage {r.stage}" for r in factors if not r.verified),
             *(standard.UNVERIFIED_SPECTRUM if scene.load else ()),

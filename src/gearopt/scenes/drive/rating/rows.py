@@ -27,7 +27,8 @@ from gearopt.physics.mesh_loss import (
 )
 from gearopt.physics.shaft_forces import mesh_forces, rotation, rpm, train_forces
 from gearopt.scenes.drive.rating.mesh import Mesh
-from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.rating import LoadTable, RatingTable
+from gearopt.units import Quantity
 
 SHORTER = 1e-6  # relative, by which a path is shorter than another
 LOAD_MARGIN = 1e-10  # margin of load at which a capacity is found
@@ -87,8 +88,8 @@ def life_hours(mesh: Mesh, k: int) -> float:
     return float(min(_lives(mesh, k)) / cycles * hours)
 
 
-def mesh_row(scene: Scene, mesh: Mesh, wanted: tuple[float, float]) -> MeshRating:
-    """Return a mesh; wanted: the safety factors asked for, of bending and contact."""
+def mesh_row(rating: RatingTable, mesh: Mesh, wanted: tuple[float, float]) -> MeshRating:
+    """Row of a mesh; wanted: the safety factors asked for, of bending and contact."""
     pair, (moved, speed) = mesh.pair, mesh.largest_load
     growth, governs = _capacity(mesh, wanted), _margins(mesh, wanted)[1]
     forces = mesh_forces(pair, moved)
@@ -111,7 +112,7 @@ def mesh_row(scene: Scene, mesh: Mesh, wanted: tuple[float, float]) -> MeshRatin
         usable_contact_ratio=_usable(pair),
         circumferential_backlash_mm=float(circumferential_backlash(pair)),
         normal_backlash_mm=float(normal_backlash(pair)),
-        **_losses(scene, mesh),
+        **_losses(rating, mesh),
     )
 
 
@@ -122,9 +123,9 @@ def _usable(pair: GearPair) -> float | None:
     return float(left.transverse_ratio) if short else None
 
 
-def _losses(scene: Scene, mesh: Mesh) -> dict[str, Any]:
-    """Return what is lost by the sliding of teeth, where the friction is known."""
-    loss, (friction, sure) = float(tooth_loss_factor(mesh.pair)), _friction(scene, mesh)
+def _losses(rating: RatingTable, mesh: Mesh) -> dict[str, Any]:
+    """Losses by the sliding of teeth, where the friction is known."""
+    loss, (friction, sure) = float(tooth_loss_factor(mesh.pair)), _friction(rating, mesh)
     found: dict[str, Any] = {"tooth_loss_factor": loss, "friction_coefficient": friction}
     if friction is not None and friction * loss < 1.0:  # else the formula is far from its tests
         found["mesh_efficiency_percent"] = 100.0 * float(mesh_efficiency(loss, friction))
@@ -164,17 +165,16 @@ def _capacity(mesh: Mesh, wanted: tuple[float, float]) -> float:
     return 0.0
 
 
-def _friction(scene: Scene, mesh: Mesh) -> tuple[float | None, bool]:
-    """Return the coefficient of friction, None where nothing is known; whether it is given."""
-    asked, (moved, speed) = scene.rating, mesh.largest_load
-    assert asked
-    if asked.friction_coefficient is not None:
-        return float(asked.friction_coefficient), True
-    if asked.oil_viscosity is None:
+def _friction(rating: RatingTable, mesh: Mesh) -> tuple[float | None, bool]:
+    """Coefficient of friction, None where nothing is known; whether it is given."""
+    moved, speed = mesh.largest_load
+    if rating.friction_coefficient is not None:
+        return float(rating.friction_coefficient), True
+    if rating.oil_viscosity is None:
         return None, False
     roughness = 0.5 * sum(mesh.standard.finish(table) for table in mesh.tables)
     load = 2.0 * moved / float(mesh.pair.working_diameters[0])
-    known = load, speed, asked.oil_viscosity.value, roughness
+    known = load, speed, rating.oil_viscosity.value, roughness
     return float(friction_coefficient(mesh.pair, *known)), False
 
 
@@ -218,10 +218,10 @@ def shaft_rows(
     )
 
 
-def level_rows(scene: Scene, mesh: Mesh) -> list[LoadLevel]:
-    """Return the levels of a load spectrum, for each gear of a mesh."""
+def level_rows(levels: Sequence[LoadTable], usual: Quantity, mesh: Mesh) -> list[LoadLevel]:
+    """Levels of a load spectrum, for each gear of a mesh; usual: the input speed of the duty."""
     rows = []
-    for n, (level, one) in enumerate(zip(scene.load, mesh.levels, strict=True), 1):
+    for n, (level, one) in enumerate(zip(levels, mesh.levels, strict=True), 1):
         for k in (0, 1):
             rows.append(
                 LoadLevel(
@@ -229,7 +229,7 @@ def level_rows(scene: Scene, mesh: Mesh) -> list[LoadLevel]:
                     member=MEMBERS[k],
                     level=n,
                     power_kW=1e-6 * level.power.value,
-                    input_speed_rpm=rpm((level.input_speed or scene.duty.input_speed).value),
+                    input_speed_rpm=rpm((level.input_speed or usual).value),
                     share_percent=100.0 * float(level.share),
                     cycles=one.cycles[k],
                     bending_stress_MPa=one.bending_stress[k],

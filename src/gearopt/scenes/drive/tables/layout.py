@@ -17,7 +17,6 @@ from gearopt.formulations.drive.layout.gearbox import (
     Range,
     Shaft,
 )
-from gearopt.formulations.drive.train import Train
 from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import torsion_diameter
 from gearopt.scenes.reading.fields import (
@@ -260,11 +259,11 @@ def gearbox(
     table: Layout,
     places: tuple[PlaceTable, ...],
     keep_outs: tuple[KeepOutTable, ...],
-    train: Train,
+    torque: float,
     pairs: tuple[GearPair, ...],
 ) -> Gearbox:
-    """Return a drive of these gear pairs as a layout sees it."""
-    torques = [train.torque]
+    """Drive of gear pairs, to be laid out; torque: at the input shaft [N mm]."""
+    torques = [torque]
     for pair in pairs:
         torques.append(torques[-1] * pair.ratio)
     wide, high, long = (

@@ -1,0 +1,79 @@
+"""The ways of making the gears of a stage, each with the rating that limits it."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from gearopt.formulations.strength.rated import Load, Option
+from gearopt.physics.gears import MEMBERS
+from gearopt.scenes.drive.rating import by_agma, by_iso6336
+from gearopt.scenes.drive.rating.gears import loads, required_hours, unit_operation
+from gearopt.scenes.drive.rating.materials import Named, choices
+from gearopt.scenes.drive.tables.drive import Gears, StageTable
+from gearopt.scenes.drive.tables.rating import GearTable, LoadTable, RatingTable
+from gearopt.scenes.parts import Duty
+
+STANDARDS: dict[str, tuple[Any, ...]] = {  # of the key standard
+    "agma": (by_agma,),
+    "iso6336": (by_iso6336,),
+    "both": (by_agma, by_iso6336),
+}
+SECOND = "_iso"  # after the names of limits by the second of two standards
+
+
+def of_stages(
+    rating: RatingTable,
+    stages: Sequence[StageTable],
+    gears: Gears,
+    materials: Sequence[Named],
+    duty: Duty,
+    levels: Sequence[LoadTable],
+) -> tuple[tuple[Option, ...], ...]:
+    """Ways of making the gears of every stage.
+
+    Where all stages have the same materials these alone, in the order of the first stage.
+    """
+    hours, loaded = required_hours(rating, duty), loads(rating, duty, levels)
+    options = []
+    for own in stages:
+        pinion, wheel = (choices(getattr(own, member), gears, materials) for member in MEMBERS)
+        options.append(
+            tuple(_option(rating, own, (a, b), hours, loaded) for a in pinion for b in wheel)
+        )
+    if not gears.same_materials:
+        return tuple(options)
+    named = [{option.materials: option for option in stage} for stage in options]
+    shared = [names for names in named[0] if all(names in stage for stage in named)]
+    return tuple(tuple(stage[names] for names in shared) for stage in named)
+
+
+def _option(
+    rating: RatingTable,
+    own: StageTable,
+    made: tuple[tuple[GearTable, Named | None], tuple[GearTable, Named | None]],
+    hours: float,
+    loaded: tuple[Load, ...],
+) -> Option:
+    """One way of making the gears of a stage; made: the table and the material of each."""
+    tables, materials = (made[0][0], made[1][0]), (made[0][1], made[1][1])
+    operation = unit_operation(rating, hours, tables)
+    standards = [
+        standard.limits(rating, own, tables, operation, loaded)
+        for standard in STANDARDS[rating.standard]
+    ]
+    if len(standards) > 1:
+        standards[1] = replace(standards[1], suffix=SECOND)
+    named = tuple(m.name if m else "" for m in materials)
+    densities = tuple(m.density.value if m and m.density else None for m in materials)
+    prices = tuple(float(m.price) if m and m.price is not None else 1.0 for m in materials)
+    words = " and ".join(filter(None, named))
+    return Option(tuple(standards), words, _two(densities), _two(prices), _two(named))
+
+
+def _two(values: tuple[Any, ...]) -> tuple[Any, Any]:
+    return values[0], values[1]
+
+
+def required(rating: RatingTable) -> tuple[float, float]:
+    """Safety factors asked for against bending and against pitting."""
+    return float(rating.minimum_bending_safety), float(rating.minimum_contact_safety)
