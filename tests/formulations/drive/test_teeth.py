@@ -10,11 +10,10 @@ from brute_force import some_drive
 from campaigns import few
 
 from gearopt.formulations.drive import sizing, teeth
-from gearopt.formulations.drive.shares import OBJECTIVES
 from gearopt.formulations.drive.teeth.reach import narrowed
 from gearopt.formulations.drive.teeth.search import possible
 from gearopt.formulations.drive.toothing import Toothing
-from gearopt.formulations.drive.train import FaceWidth, Stage, Train
+from gearopt.formulations.drive.train import OBJECTIVES, FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve

@@ -16,7 +16,6 @@ from gearopt.formulations.drive.layout.gearbox import Gearbox, Shaft
 from gearopt.formulations.drive.processes import ProcessTwo
 from gearopt.formulations.drive.together.tables import numbers
 from gearopt.formulations.drive.toothing import Toothing
-from gearopt.formulations.drive.train import terms
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.optimise.solve import run
 from gearopt.physics.gears import ISO_53_A, Rack
@@ -54,7 +53,9 @@ def test_every_stage_has_its_own_helix_in_every_formulation():
         assert pair.face_width == pytest.approx(0.6 * d, rel=1e-15)
     lower, relaxed = run(sizing.problem(train))
     assert lower.status == "optimal" and lower.bound <= result.value
-    text = terms(train, SimpleNamespace(**train.numbers()), sizing_text.pairs(train, relaxed.x))
+    text = sizing_text.terms(
+        train, SimpleNamespace(**train.numbers()), sizing_text.pairs(train, relaxed.x)
+    )
     assert text.minimise["gear_volume"] == pytest.approx(lower.value, rel=1e-9)
 
 

@@ -2,31 +2,17 @@
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from gearopt.formulations.drive.train import MASSES, WEIGHTED, Train
 from gearopt.formulations.strength.rated import Option
 from gearopt.physics.gears import GearPair
 
-if TYPE_CHECKING:
-    from gearopt.formulations.drive.train import Train
-
-OBJECTIVES = {  # name -> unit
-    "gear_volume": "mm3",
-    "mass": "kg",
-    "sum_of_centre_distances": "mm",
-    "total_length": "mm",
-    "cost": "",
-    "mesh_loss": "percent",
-}
-WEIGHTED = "weighted sum"  # of objectives, by the train's weights
 FRICTION = 0.06  # coefficient of friction of `mesh_loss`
-LENGTHS = ("sum_of_centre_distances", "total_length")  # objectives along the line of centres
-MASSES = ("mass", "cost")  # objectives of gears as heavy as their blanks
-BY_WIDTH = ("gear_volume", *MASSES)  # objectives whose shares are proportional to b
 
 
 def share(
-    train: "Train",
+    train: Train,
     stage: int,
     pair: GearPair,
     density: Any = None,
@@ -61,7 +47,7 @@ def share(
 
 
 def least_share(
-    train: "Train",
+    train: Train,
     stage: int,
     pair: GearPair,
     density: Any = None,
@@ -92,7 +78,7 @@ def least_share(
 
 
 def _worth(
-    train: "Train", stage: int, volumes: Sequence[Any], density: Any, option: int, objective: str
+    train: Train, stage: int, volumes: Sequence[Any], density: Any, option: int, objective: str
 ) -> Any:
     """Return mass [kg] or cost of gears of these volumes [mm3] of a stage."""
     usual: Any = train.density if density is None else density

@@ -21,7 +21,7 @@ from gearopt.formulations.drive import sizing_text, teeth
 from gearopt.formulations.drive.rated.bound import Choice, bounding, solved, stage_box
 from gearopt.formulations.drive.rated.cells import Searched, search
 from gearopt.formulations.drive.rated.designs import polished
-from gearopt.formulations.drive.train import Stage, Train, terms
+from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength.rated import MODES, Standard
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
@@ -104,7 +104,7 @@ def smooth_problem(train: Train, choice: Choice) -> Problem:
                     extra[part] |= {f"{n}{suffix}[{k + 1}]": v for n, v in found}
             return rows
 
-        found = terms(train, p, sizing_text.text_pairs(train, x, p), rated=rated)
+        found = sizing_text.terms(train, p, sizing_text.text_pairs(train, x, p), rated=rated)
         equal = {**found.equal, **extra["equal"]}
         return Terms(found.minimise, found.limits, extra["defines"], equal)
 

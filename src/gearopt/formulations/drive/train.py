@@ -5,21 +5,29 @@ fractions; the rest are floats in mm, N, rad, MPa.
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
-
-from gearopt.formulations.drive.shares import BY_WIDTH, LENGTHS, MASSES, OBJECTIVES, WEIGHTED, share
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
-from gearopt.optimise.terms import Terms, each
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import GearPair
 
+OBJECTIVES = {  # name -> unit
+    "gear_volume": "mm3",
+    "mass": "kg",
+    "sum_of_centre_distances": "mm",
+    "total_length": "mm",
+    "cost": "",
+    "mesh_loss": "percent",
+}
+WEIGHTED = "weighted sum"  # of objectives, by the train's weights
+LENGTHS = ("sum_of_centre_distances", "total_length")  # objectives along the line of centres
+MASSES = ("mass", "cost")  # objectives of gears as heavy as their blanks
+BY_WIDTH = ("gear_volume", *MASSES)  # objectives whose shares are proportional to b
 CHOICES = (  # of `Train.numbers`, those that limit what a stage may choose
     "width_low",
     "width_high",
@@ -305,94 +313,3 @@ class Train:
 
 def _or_inf(number: Fraction | int | None) -> float:
     return math.inf if number is None else float(number)
-
-
-def terms(
-    train: Train,
-    numbers: Any,
-    pairs: tuple[GearPair, ...],
-    options: Sequence[Any] = (),
-    rated: Callable[..., Mapping[str, Any]] | None = None,
-    shares: Callable[..., Any] = share,
-) -> Terms:
-    """Return objective and limits of a drive made of these pairs, as terms of a geometric program.
-
-    numbers: `train.numbers()` as attributes, floats or parameters; options: of every stage, counted
-    from 0, floats or arrays; none: the first. rated(stage, pair, torque, speed, safety): limits in
-    the place of those of the ratings. shares: what stages add to the objective, as `share`. A limit
-    is left out where the drive leaves it open or fixes the quantity.
-    """
-    totals: dict[str, Any] = dict.fromkeys(train.objectives, 0.0)
-    product, torque = 1.0, numbers.torque
-    limits: dict[str, Any] = {}
-    equal: dict[str, Any] = {}
-    for k, pair in enumerate(pairs):
-        own = {name: each(getattr(numbers, name))[k] for name in train.by_stage}
-        stage, option = train.stages[k], options[k] if options else 0
-        asked = np.unique(np.rint(option)).astype(int)
-        option = np.searchsorted(asked, np.rint(option))
-        for name in totals:
-            worth = [shares(train, k, pair, numbers.density, one, name) for one in asked]
-            totals[name] = totals[name] + _chosen(worth, option)
-        allowable = [own[name] for name in train.law.names]
-        rows = train.law.utilisations(pair, torque, numbers.speed / product, allowable)
-        if stage.options:
-            safety = numbers.bending_safety, numbers.contact_safety
-            load = torque, numbers.speed / product
-            if rated is not None:
-                rows |= rated(k, pair, *load, safety)
-            else:
-                made = [stage.options[o].utilisations(pair, *load, safety) for o in asked]
-                rows |= {name: _chosen([r[name] for r in made], option) for name in made[0]}
-        rows |= _choices(stage, own, pair)
-        if stage.wheel_fixed and not stage.pinion_fixed:
-            equal[f"wheel_teeth[{k + 1}]"] = pair.wheel_teeth / own["wheel_low"]
-        limits |= {f"{name}[{k + 1}]": value for name, value in rows.items()}
-        torque = torque * pair.ratio
-        product = product * pair.ratio
-    if train.tolerance > 0:
-        limits["ratio_low"] = numbers.lowest_ratio / product
-        limits["ratio_high"] = product / numbers.highest_ratio
-    else:
-        equal["ratio"] = product / numbers.highest_ratio
-    return Terms(totals, limits, equal=equal)
-
-
-def _chosen(values: Sequence[Any], option: Any) -> Any:
-    """Return the value of an option, by its place among the values."""
-    return values[0] if len(values) == 1 else np.choose(option, values)
-
-
-def _choices(stage: Stage, own: dict[str, Any], pair: GearPair) -> dict[str, Any]:
-    """Return the limits of a stage on its module, teeth, ratio, face width and wheel."""
-    limits: dict[str, Any] = {}
-
-    def between(name: str, value: Any, low: Any, high: Any) -> None:
-        """Add the ends of a range; None where there is none."""
-        limits.update({} if low is None else {f"{name}_low": low / value})
-        limits.update({} if high is None else {f"{name}_high": value / high})
-
-    face, d = stage.face_width, pair.pinion.reference_diameter
-    if not face.tied:
-        low = own["width_low"] * d if face.low > 0 else None
-        high = None if face.high is None else own["width_high"] * d
-        between("face_width_over_diameter", pair.face_width, low, high)
-    ends = (own[n] if end else None for n, end in zip(WIDTHS[:2], face.over_module, strict=True))
-    between("face_width_over_module", pair.face_width / pair.normal_module, *ends)
-    if face.least:
-        limits["minimum_face_width"] = own["least_width"] / pair.face_width
-    if len(stage.modules) > 1:
-        between("module", pair.normal_module, own["module_low"], own["module_high"])
-    if not stage.pinion_fixed:
-        high = None if stage.pinion_teeth[1] is None else own["pinion_high"]
-        between("pinion_teeth", pair.pinion_teeth, own["pinion_low"], high)
-    if not stage.wheel_fixed:
-        low = own["wheel_low"] if stage.wheel_teeth[0] > 1 else None
-        high = None if stage.wheel_teeth[1] is None else own["wheel_high"]
-        between("wheel_teeth", pair.wheel_teeth, low, high)
-    given = stage.pinion_fixed and stage.wheel_fixed  # then no bound of a variable keeps u >= 1
-    low = own["ratio_low"] if stage.ratio[0] > 1 or given else None
-    between("stage_ratio", pair.ratio, low, None if stage.ratio[1] is None else own["ratio_high"])
-    if stage.wheel_diameter is not None:
-        limits["wheel_diameter"] = pair.wheel.reference_diameter / own["wheel_diameter"]
-    return limits

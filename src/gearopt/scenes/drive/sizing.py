@@ -8,8 +8,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing, sizing_text, teeth
 from gearopt.formulations.drive.design import describe
 from gearopt.formulations.drive.processes import methods
-from gearopt.formulations.drive.shares import MASSES
-from gearopt.formulations.drive.train import Train
+from gearopt.formulations.drive.train import MASSES, Train
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.problem import Problem

@@ -7,9 +7,8 @@ from typing import Any
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing, sizing_text, teeth
 from gearopt.formulations.drive.design import describe
-from gearopt.formulations.drive.shares import OBJECTIVES
 from gearopt.formulations.drive.teeth import load_front
-from gearopt.formulations.drive.train import Train
+from gearopt.formulations.drive.train import OBJECTIVES, Train
 from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
 from gearopt.optimise.pareto.several import EPSILON, EXACT, Several

@@ -9,8 +9,8 @@ from types import SimpleNamespace
 from typing import Any
 
 from gearopt.formulations.drive import sizing_text
-from gearopt.formulations.drive.shares import BY_WIDTH, LENGTHS, least_share
-from gearopt.formulations.drive.train import Train, terms
+from gearopt.formulations.drive.shares import least_share
+from gearopt.formulations.drive.train import BY_WIDTH, LENGTHS, Train
 from gearopt.formulations.strength.rated import Box
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
@@ -52,7 +52,7 @@ def bounding(train: Train, choice: Choice, most: float = math.inf) -> Problem | 
             return rows
 
         gears = sizing_text.text_pairs(train, x, p)
-        return terms(train, p, gears, rated=rated, shares=_least)
+        return sizing_text.terms(train, p, gears, rated=rated, shares=_least)
 
     return Problem(
         "bounding", sizing_text.variables(train), sizing_text.parameters(train), evaluate

@@ -20,7 +20,7 @@ from gearopt.formulations.drive.teeth.progress import MARGIN, TIE, Progress, Tee
 from gearopt.formulations.drive.teeth.reach import narrowed, trimmed
 from gearopt.formulations.drive.teeth.search import BEAM, search
 from gearopt.formulations.drive.teeth.tables import table
-from gearopt.formulations.drive.train import Stage, Train, terms
+from gearopt.formulations.drive.train import Stage, Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.pareto.posed import caps
 from gearopt.optimise.problem import Problem
@@ -68,7 +68,7 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
     def evaluate(x: Any, p: Any) -> Terms:
         if train.rated and not _is_plain(each(x.module)[0]):
             raise SolveError(RATED)
-        found = terms(train, numbers, _pairs(train, x), _options(train, x))
+        found = sizing_text.terms(train, numbers, _pairs(train, x), _options(train, x))
         # A module is one of a set: the ends of the set are no limits of their own here.
         limits = {n: v for n, v in found.limits.items() if not n.startswith("module_")}
         if not train.coprime:

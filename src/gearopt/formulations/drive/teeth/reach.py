@@ -8,12 +8,12 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from gearopt.formulations.drive.shares import LENGTHS, least_share, share
+from gearopt.formulations.drive.shares import least_share, share
 from gearopt.formulations.drive.teeth.columns import spans
 from gearopt.formulations.drive.teeth.progress import MARGIN
 from gearopt.formulations.drive.teeth.rated import RatedTable
 from gearopt.formulations.drive.teeth.tables import stage_tables
-from gearopt.formulations.drive.train import Train
+from gearopt.formulations.drive.train import LENGTHS, Train
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair, reference_diameter
 

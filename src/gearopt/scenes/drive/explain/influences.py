@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from gearopt.formulations.drive import sizing
-from gearopt.formulations.drive.shares import MASSES
+from gearopt.formulations.drive.train import MASSES
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import EASE, STEP, binding
 from gearopt.optimise.explaining.explanation import Explanation

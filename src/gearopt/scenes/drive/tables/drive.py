@@ -8,7 +8,7 @@ from pydantic import Field, create_model, model_validator
 
 from gearopt import units
 from gearopt.formulations.drive.processes import ProcessOne, ProcessTwo
-from gearopt.formulations.drive.shares import OBJECTIVES
+from gearopt.formulations.drive.train import OBJECTIVES
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.scenes.drive.tables.iso6336 import IsoGiven

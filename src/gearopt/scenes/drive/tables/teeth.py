@@ -3,9 +3,8 @@
 import math
 from fractions import Fraction
 
-from gearopt.formulations.drive.shares import LENGTHS
 from gearopt.formulations.drive.toothing import Toothing
-from gearopt.formulations.drive.train import Stage
+from gearopt.formulations.drive.train import LENGTHS, Stage
 from gearopt.physics.gears import ISO_53_A, MEMBERS, Rack
 from gearopt.scenes.drive.tables.drive import Gears, StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, with_shared
