@@ -2,6 +2,7 @@
 
 import math
 from fractions import Fraction as F
+from itertools import product
 
 from gearopt.formulations.servo.split import ServoTrain, StiffTrain
 
@@ -46,3 +47,17 @@ STIFF = StiffTrain(
     inertia=8e-4,
     sector=0.25,
 )
+
+
+def trains_within(train):
+    """Teeth (4) and modules (2) of all trains within ratio, wheel tips and bore, as fractions."""
+    low, high = train.ratios
+    pinions = range(train.pinion_teeth[0], train.pinion_teeth[1] + 1)
+    wheels = range(train.pinion_teeth[0], train.max_wheel_teeth + 1)
+    for z1, z2, z3, z4 in product(pinions, wheels, pinions, wheels):
+        if z2 < z1 or z4 < z3 or not low <= F(z2 * z4, z1 * z3) <= high:
+            continue
+        for m1, m2 in product(train.modules, repeat=2):
+            tips = m1 * (z2 + 2) <= train.wheel_tips[0] and m2 * (z4 + 2) <= train.wheel_tips[1]
+            if tips and m2 * z3 >= train.bore:
+                yield (z1, z2, z3, z4), (m1, m2)

@@ -3,12 +3,11 @@
 import math
 from dataclasses import replace
 from fractions import Fraction as F
-from itertools import product
 
 import numpy as np
 import pytest
 from campaigns import few
-from servo_trains import PAPER
+from servo_trains import PAPER, trains_within
 from uncompiled import uncompiled
 
 from gearopt.formulations.servo.servo_design import OBJECTIVES
@@ -166,40 +165,32 @@ def test_bounds_of_the_relaxation(error, wheel, goal, bound):
 
 def brute_force(train, goal):
     """Feasible trains and the best of them: whole numbers as fractions, all else plain."""
-    low, high = train.ratios
-    pinions = range(train.pinion_teeth[0], train.pinion_teeth[1] + 1)
-    wheels = range(train.pinion_teeth[0], train.max_wheel_teeth + 1)
     best, count = math.inf, 0
-    for z1, z2, z3, z4 in product(pinions, wheels, pinions, wheels):
-        if z2 < z1 or z4 < z3 or not low <= F(z2 * z4, z1 * z3) <= high:
+    for (z1, z2, z3, z4), (m1, m2) in trains_within(train):
+        d1, d2, d3, d4 = (float(m * z) for m, z in ((m1, z1), (m1, z2), (m2, z3), (m2, z4)))
+        n2 = z4 / z3
+        error = (train.lost_motion[0] / d2) / n2 + train.lost_motion[1] / d4
+        y1, y3 = lewis_form_factor(z1), lewis_form_factor(z3)
+        width, torque = train.face_width, train.output_torque
+        root = (
+            2 * torque / d4 / (width * float(m2) * y3),
+            2 * torque / n2 / d2 / (width * float(m1) * y1),
+        )
+        if error > train.error or max(root) > train.bending:
             continue
-        for m1, m2 in product(train.modules, repeat=2):
-            if m1 * (z2 + 2) > train.wheel_tips[0] or m2 * (z4 + 2) > train.wheel_tips[1]:
-                continue
-            d1, d2, d3, d4 = (float(m * z) for m, z in ((m1, z1), (m1, z2), (m2, z3), (m2, z4)))
-            n2 = z4 / z3
-            error = (train.lost_motion[0] / d2) / n2 + train.lost_motion[1] / d4
-            y1, y3 = lewis_form_factor(z1), lewis_form_factor(z3)
-            width, torque = train.face_width, train.output_torque
-            root = (
-                2 * torque / d4 / (width * float(m2) * y3),
-                2 * torque / n2 / d2 / (width * float(m1) * y1),
-            )
-            if m2 * z3 < train.bore or error > train.error or max(root) > train.bending:
-                continue
-            count += 1
-            area = math.pi / 4 * train.density * width
-            discs = [area * d * d for d in (d1, d2, d3, d4)]
-            polar = [m * d * d / 8 for m, d in zip(discs, (d1, d2, d3, d4), strict=True)]
-            shaft = math.pi / 32 * train.density * train.shaft[1] * train.shaft[0] ** 4
-            n = z2 / z1 * n2
-            inertia = polar[0] + (polar[1] + polar[2] + shaft) / (z2 / z1) ** 2
-            value = {
-                "inertia": inertia + train.sector * polar[3] / n**2,
-                "mass": 1000 * (sum(discs[:3]) + train.sector * discs[3]),
-                "error": error,
-            }[goal]
-            best = min(best, value)
+        count += 1
+        area = math.pi / 4 * train.density * width
+        discs = [area * d * d for d in (d1, d2, d3, d4)]
+        polar = [m * d * d / 8 for m, d in zip(discs, (d1, d2, d3, d4), strict=True)]
+        shaft = math.pi / 32 * train.density * train.shaft[1] * train.shaft[0] ** 4
+        n = z2 / z1 * n2
+        inertia = polar[0] + (polar[1] + polar[2] + shaft) / (z2 / z1) ** 2
+        value = {
+            "inertia": inertia + train.sector * polar[3] / n**2,
+            "mass": 1000 * (sum(discs[:3]) + train.sector * discs[3]),
+            "error": error,
+        }[goal]
+        best = min(best, value)
     return count, best
 
 

@@ -3,12 +3,11 @@
 import math
 from dataclasses import replace
 from fractions import Fraction as F
-from itertools import product
 
 import numpy as np
 import pytest
 from campaigns import few
-from servo_trains import PAPER
+from servo_trains import PAPER, trains_within
 from uncompiled import uncompiled
 
 from gearopt.formulations.servo.ratio import Drive, ServoDuty, best_ratio
@@ -111,32 +110,22 @@ def pinion_torques(train, n1, n2, inertias):
 
 def full_enumeration(train):
     """Feasible trains that move the load, and the best value of all; whole numbers as fractions."""
-    low, high = train.ratios
-    pinions = range(train.pinion_teeth[0], train.pinion_teeth[1] + 1)
-    wheels = range(train.pinion_teeth[0], train.max_wheel_teeth + 1)
     best, count = math.inf, 0
-    for z1, z2, z3, z4 in product(pinions, wheels, pinions, wheels):
-        if z2 < z1 or z4 < z3 or not low <= F(z2 * z4, z1 * z3) <= high:
+    for (z1, z2, z3, z4), (m1, m2) in trains_within(train):
+        d1, d2, d3, d4 = (float(m * z) for m, z in ((m1, z1), (m1, z2), (m2, z3), (m2, z4)))
+        n1, n2, width = z2 / z1, z4 / z3, train.face_width
+        j1, j2, j3, j4 = (math.pi / 32 * train.density * width * d**4 for d in (d1, d2, d3, d4))
+        moved = pinion_torques(train, n1, n2, (j1, j2 + j3, train.sector * j4))
+        asked = train.output_torque / (n1 * n2), train.output_torque / n2
+        loads = (max(asked[0], moved[0]), d1, m1, z1), (max(asked[1], moved[1]), d3, m2, z3)
+        root = [2 * t / (d * width * float(m) * math.pi * (0.154 - 0.912 / z))
+                for t, d, m, z in loads]  # fmt: skip
+        if max(root) > train.bending:
             continue
-        for m1, m2 in product(train.modules, repeat=2):
-            if m1 * (z2 + 2) > train.wheel_tips[0] or m2 * (z4 + 2) > train.wheel_tips[1]:
-                continue
-            if m2 * z3 < train.bore:
-                continue
-            d1, d2, d3, d4 = (float(m * z) for m, z in ((m1, z1), (m1, z2), (m2, z3), (m2, z4)))
-            n1, n2, width = z2 / z1, z4 / z3, train.face_width
-            j1, j2, j3, j4 = (math.pi / 32 * train.density * width * d**4 for d in (d1, d2, d3, d4))
-            moved = pinion_torques(train, n1, n2, (j1, j2 + j3, train.sector * j4))
-            asked = train.output_torque / (n1 * n2), train.output_torque / n2
-            loads = (max(asked[0], moved[0]), d1, m1, z1), (max(asked[1], moved[1]), d3, m2, z3)
-            root = [2 * t / (d * width * float(m) * math.pi * (0.154 - 0.912 / z))
-                    for t, d, m, z in loads]  # fmt: skip
-            if max(root) > train.bending:
-                continue
-            gears = j1 + (j2 + j3) / n1**2 + train.sector * j4 / (n1 * n2) ** 2
-            value = worth(train.duty, n1 * n2, gears)
-            if value < math.inf:
-                best, count = min(best, value), count + 1
+        gears = j1 + (j2 + j3) / n1**2 + train.sector * j4 / (n1 * n2) ** 2
+        value = worth(train.duty, n1 * n2, gears)
+        if value < math.inf:
+            best, count = min(best, value), count + 1
     return count, best
 
 

@@ -4,19 +4,17 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.formulations.strength.agma import Agma
-from gearopt.formulations.strength.rated import Load
 from gearopt.physics.agma.allowables import CURVES
 from gearopt.physics.agma.factors import quality_of_accuracy
 from gearopt.physics.agma.rating import rate, rate_spectrum
 from gearopt.physics.agma.rating_factors import Practice, Steel
 from gearopt.physics.gears import GearPair
-from gearopt.physics.rating import Operation
 from gearopt.scenes.drive.rating.gears import Tables, blanks
 from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, RatingTable
 
 __all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
-__all__ += ["NAME", "UNVERIFIED_SPECTRUM", "limits", "practice", "steel", "title"]
+__all__ += ["NAME", "UNVERIFIED_SPECTRUM", "LIMIT", "bare_practice", "practice", "steel", "title"]
 NAME = "AGMA"  # in short
 NAMES = {
     "K_o": "overload",
@@ -41,6 +39,7 @@ TITLES = {  # by edition
     "D04": "ANSI/AGMA 2001-D04 (2101)",
     "B88": "ANSI/AGMA 2001-B88 for rims and the strength of through-hardened steel, else 2001-D04",
 }
+LIMIT = Agma  # the rating as a limit of a stage
 PROPORTIONAL = True  # stresses, or their squares, grow with the load
 UNVERIFIED_SPECTRUM = ()  # of a load spectrum: what no second source has
 
@@ -85,33 +84,11 @@ def practice(rating: RatingTable, own: StageTable, pair: GearPair, tables: Table
     """Manufacture and rating practice of the pair of a stage."""
     rows = zip(blanks(own, tables, pair), pair.gears, strict=True)
     first, second = (blank.backup(gear) for blank, gear in rows)
-    return replace(_practice(rating, tables), backup=(first, second))
+    return replace(bare_practice(rating, tables), backup=(first, second))
 
 
-def limits(
-    rating: RatingTable,
-    own: StageTable,
-    tables: Tables,
-    one: Operation,
-    loads: tuple[Load, ...],
-) -> Agma:
-    """Rating as a limit of a stage.
-
-    own, tables: of the stage and of its gears; one: its operation, at unit power; loads: levels
-    relative to the duty.
-    """
-    return Agma(
-        loads,
-        one,
-        (steel(tables[0]), steel(tables[1])),
-        _practice(rating, tables),
-        blanks(own, tables),
-        given(rating, own),
-    )
-
-
-def _practice(asked: RatingTable, gears: Tables) -> Practice:
-    """Return how gears are made and rated, but for their blanks."""
+def bare_practice(asked: RatingTable, gears: Tables) -> Practice:
+    """Manufacture and rating practice of gears, but for their blanks."""
     return Practice(
         quality=min(_quality(asked) if t.quality is None else float(t.quality) for t in gears),
         curve=asked.mounting,

@@ -3,12 +3,10 @@
 from typing import Any
 
 from gearopt.formulations.strength.iso6336 import Iso6336
-from gearopt.formulations.strength.rated import Load
 from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336.case import Practice, of_blanks
 from gearopt.physics.iso6336.factors import CLAUSES
 from gearopt.physics.iso6336.rating import rate, rate_spectrum
-from gearopt.physics.rating import Operation
 from gearopt.scenes.drive.rating.gears import Tables, blanks
 from gearopt.scenes.drive.rating.iso_material import finish, material, steel
 from gearopt.scenes.drive.tables.drive import StageTable
@@ -16,10 +14,11 @@ from gearopt.scenes.drive.tables.iso6336 import NAMES
 from gearopt.scenes.drive.tables.rating import RatingTable
 
 __all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
-__all__ += ["NAME", "UNVERIFIED_SPECTRUM", "limits", "practice", "steel", "title"]
+__all__ += ["NAME", "UNVERIFIED_SPECTRUM", "LIMIT", "bare_practice", "practice", "steel", "title"]
 NAME = "ISO 6336"  # in short
 SUFFIXES = {"MPa": "MPa", "mm": "mm", "sqrt(MPa)": "sqrt_MPa"}
 UNITS = {symbol: SUFFIXES[unit] for symbol, (_, unit) in CLAUSES.items() if unit}
+LIMIT = Iso6336  # the rating as a limit of a stage
 PROPORTIONAL = False  # stresses, or their squares, grow with the load
 UNVERIFIED_SPECTRUM = ("load spectrum by part 6",)  # what no second source has
 
@@ -31,33 +30,11 @@ def title(asked: RatingTable) -> str:
 
 def practice(rating: RatingTable, own: StageTable, pair: GearPair, tables: Tables) -> Practice:
     """Manufacture and rating practice of the pair of a stage."""
-    return of_blanks(_practice(rating, tables), pair, blanks(own, tables, pair))
+    return of_blanks(bare_practice(rating, tables), pair, blanks(own, tables, pair))
 
 
-def limits(
-    rating: RatingTable,
-    own: StageTable,
-    tables: Tables,
-    one: Operation,
-    loads: tuple[Load, ...],
-) -> Iso6336:
-    """Rating as a limit of a stage.
-
-    own, tables: of the stage and of its gears; one: its operation, at unit power; loads: levels
-    relative to the duty.
-    """
-    return Iso6336(
-        loads,
-        one,
-        (steel(tables[0]), steel(tables[1])),
-        _practice(rating, tables),
-        blanks(own, tables),
-        given(rating, own),
-    )
-
-
-def _practice(rating: RatingTable, gears: Tables) -> Practice:
-    """Return how gears are made and rated, but for their blanks."""
+def bare_practice(rating: RatingTable, gears: Tables) -> Practice:
+    """Manufacture and rating practice of gears, but for their blanks."""
     asked, usual = rating.iso6336, Practice()
     grades = asked.accuracy_grade or usual.grades
     rows = zip(gears, grades, strict=True)

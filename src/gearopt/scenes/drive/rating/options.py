@@ -7,7 +7,7 @@ from typing import Any
 from gearopt.formulations.strength.rated import Load, Option
 from gearopt.physics.gears import MEMBERS
 from gearopt.scenes.drive.rating import by_agma, by_iso6336
-from gearopt.scenes.drive.rating.gears import loads, required_hours, unit_operation
+from gearopt.scenes.drive.rating.gears import blanks, loads, required_hours, unit_operation
 from gearopt.scenes.drive.rating.materials import Named, choices
 from gearopt.scenes.drive.tables.drive import Gears, StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, LoadTable, RatingTable
@@ -57,8 +57,16 @@ def _option(
     """One way of making the gears of a stage; made: the table and the material of each."""
     tables, materials = (made[0][0], made[1][0]), (made[0][1], made[1][1])
     operation = unit_operation(rating, hours, tables)
+    bodies = blanks(own, tables)
     standards = [
-        standard.limits(rating, own, tables, operation, loaded)
+        standard.LIMIT(
+            loaded,
+            operation,
+            (standard.steel(tables[0]), standard.steel(tables[1])),
+            standard.bare_practice(rating, tables),
+            bodies,
+            standard.given(rating, own),
+        )
         for standard in STANDARDS[rating.standard]
     ]
     if len(standards) > 1:
