@@ -6,7 +6,7 @@ import pytest
 from bars import Bars
 
 from gearopt.optimise.clock import Clock
-from gearopt.scenes.explaining.engine import Group, Questions, singles, with_least
+from gearopt.scenes.explaining.engine import FeasibilityQuestions, Group, singles, with_least
 from gearopt.scenes.explaining.moves import DUTY, Move
 from gearopt.scenes.explaining.possible import UNKNOWN, Verdict
 
@@ -16,14 +16,14 @@ STRESS = Move(("bar", "stress"), 1, power=2.5)
 
 
 def asked(answer, **more):
-    """Questions of which answer(number of MPa) is the verdict, and the numbers asked."""
+    """FeasibilityQuestions of which answer(number of MPa) is the verdict, and the numbers asked."""
     seen = []
 
     def possible(scene, clock):
         seen.append(float(scene.bar.stress.number))
         return answer(seen[-1])
 
-    return Questions(SCENE, possible, Clock(), **more), seen
+    return FeasibilityQuestions(SCENE, possible, Clock(), **more), seen
 
 
 @pytest.mark.parametrize("power", [2.5, 0.7])
@@ -66,7 +66,7 @@ def test_one_question_rejects_a_number_that_does_not_help():
 def test_a_number_of_steps_goes_to_the_first_that_does():
     """4 bars become 7; 6 would not do, which was tried."""
     move = Move(("bar", "most"), 1, steps=tuple(k / 4.0 for k in range(5, 12)))
-    questions = Questions(SCENE, lambda own, clock: Verdict(own.bar.most >= 7), Clock())
+    questions = FeasibilityQuestions(SCENE, lambda own, clock: Verdict(own.bar.most >= 7), Clock())
     (remedy,) = singles(questions, [Group((move,))])
     assert remedy.changes[0].write == "7" and remedy.verified["with_less"] == "infeasible"
 
@@ -80,7 +80,7 @@ def test_numbers_that_move_alike_have_one_factor_and_the_duty_comes_last():
 
     both = (STRESS, Move(("bar", "diameter"), 1))
     pull = Move(("bar", "pull"), -1, DUTY)
-    questions = Questions(SCENE, possible, Clock(), lower_bounds=True)
+    questions = FeasibilityQuestions(SCENE, possible, Clock(), lower_bounds=True)
     found = with_least(singles(questions, [Group((pull,)), Group(both)]), True)
     even, less = found
     assert (even.kind, less.kind) == ("least", "less")

@@ -7,7 +7,7 @@ from bars import Bars
 
 import gearopt
 from gearopt.optimise.clock import Clock
-from gearopt.scenes.explaining.engine import Group, Questions, singles
+from gearopt.scenes.explaining.engine import FeasibilityQuestions, Group, singles
 from gearopt.scenes.explaining.moves import Move
 from gearopt.scenes.explaining.possible import Verdict
 
@@ -24,7 +24,9 @@ def told(key, way, enough):
         number = float(getattr(value, "number", value))
         return Verdict(number >= enough if way > 0 else number <= enough)
 
-    (remedy,) = singles(Questions(SCENE, possible, Clock()), [Group((Move(("bar", key), way),))])
+    (remedy,) = singles(
+        FeasibilityQuestions(SCENE, possible, Clock()), [Group((Move(("bar", key), way),))]
+    )
     return remedy.changes[0]
 
 
@@ -50,7 +52,7 @@ def test_more_digits_are_tried_where_few_do_not_work():
         return Verdict(307.3421 <= own.bar.stress.number < 307.9)
 
     move = Move(("bar", "stress"), 1, far=3.075)
-    (remedy,) = singles(Questions(SCENE, possible, Clock()), [Group((move,))])
+    (remedy,) = singles(FeasibilityQuestions(SCENE, possible, Clock()), [Group((move,))])
     assert remedy.changes[0].short in ('"307.4 MPa"', '"307.5 MPa"')
 
 

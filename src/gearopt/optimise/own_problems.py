@@ -12,7 +12,7 @@ from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.own_methods import back_ends
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Result, Watch
-from gearopt.optimise.solve import default, solve
+from gearopt.optimise.solve import default_method, solve
 from gearopt.optimise.tape import log_convex_in_logarithms
 from gearopt.optimise.terms import Array
 
@@ -38,7 +38,7 @@ def solve_own(
     ValueError for a start that is no point of the box, SolveError where the method takes none.
     """
     one_objective(problem.name, problem.rows.objectives)
-    name = method or default(problem)
+    name = method or default_method(problem)
     discrete = [n for v, n in problem.columns if v.discrete]
     sampled = method is None and name == "ipopt" and bool(discrete)
     name = SAMPLER if sampled else name

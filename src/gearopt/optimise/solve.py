@@ -58,7 +58,7 @@ def run(
     Of several objectives the first counts; the outcome's other points are the rest of the Pareto
     front.
     """
-    name = method or default(problem)
+    name = method or default_method(problem)
     clock = Clock()
     follow = of_problem(watch, problem)
     call = method_of(problem, name)
@@ -130,7 +130,7 @@ def solve_within(clock: Clock, problem: Problem | Conic, method: str | None = No
     return result
 
 
-def default(problem: Problem | Conic) -> str:
+def default_method(problem: Problem | Conic) -> str:
     """Return the method that is run where none is named."""
     return next(iter(problem.methods), "conic" if isinstance(problem, Conic) else "ipopt")
 

@@ -15,8 +15,8 @@ from gearopt.formulations.strain_wave.demand import (
     shared_pressure,
     squares,
 )
-from gearopt.formulations.strain_wave.design import Passage, problem, variables
 from gearopt.formulations.strain_wave.exchange import design_of, exchange, stretched
+from gearopt.formulations.strain_wave.sizing import Passage, problem, variables
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.compare import compare
 from gearopt.optimise.comparing.runs import Model, Plan
@@ -135,7 +135,7 @@ def test_what_limits_cost_is_what_solving_again_finds(monkeypatch):
     start = np.array(STARTS[0])
 
     def pressure(demand=DEMAND, more=0.0):
-        monkeypatch.setattr("gearopt.formulations.strain_wave.design.LEAST_GAP", 1e-5 + more)
+        monkeypatch.setattr("gearopt.formulations.strain_wave.sizing.LEAST_GAP", 1e-5 + more)
         return exchange(demand, start, Clock()).result.value
 
     prices = exchange(DEMAND, start, Clock()).result.multipliers

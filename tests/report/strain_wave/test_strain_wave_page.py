@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearopt.formulations.strain_wave.report import WaveDesign
+from gearopt.formulations.strain_wave.design import WaveDesign
 from gearopt.optimise.typed import typed
 from gearopt.report.drawing.sheet import Row
 from gearopt.report.kinds.strain_wave import cutter, moving, numbers, search, shift, tiles, warns

@@ -9,8 +9,8 @@ import pytest
 import gearopt
 from gearopt.errors import SceneError, SolveError
 from gearopt.formulations.strain_wave.demand import equal_pressure, loads_at, pressures
+from gearopt.formulations.strain_wave.design import Deflected, WaveDesign, used
 from gearopt.formulations.strain_wave.exchange import Exchanged, RangeEnd, design_of
-from gearopt.formulations.strain_wave.report import Deflected, WaveDesign, used
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.typed import typed
 from gearopt.report.kinds.strain_wave.tables import loads

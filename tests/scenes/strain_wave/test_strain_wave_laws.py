@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gearopt.errors import SceneError
-from gearopt.formulations.strain_wave.report import WaveDesign
+from gearopt.formulations.strain_wave.design import WaveDesign
 from gearopt.optimise.typed import typed
 from gearopt.report.kinds.strain_wave import cutter, moving, numbers, shift
 from gearopt.report.kinds.strain_wave.motion import drawn, running

@@ -290,7 +290,7 @@ def needed_module(law: Law, stage: Stage, torque: float, teeth: tuple[int, int])
     """
     one = stage.toothing.pair(1.0, *teeth, 1.0)
     tied = one.of_width(float(stage.face_width.high or 0) * one.pinion.reference_diameter)
-    return math.cbrt(law.load(tied, torque, 0.0, stage.allowable))
+    return math.cbrt(law.largest_utilisation(tied, torque, 0.0, stage.allowable))
 
 
 def next_module(stage: Stage, minimum: float) -> Fraction | None:

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.strain_wave.demand import FREE, OUTSIDE_BASE, PRESSURE, TIP_GAP, Demand
-from gearopt.formulations.strain_wave.design import COUNT, NO_LIMITS, Passage, problem, tip_leaves
 from gearopt.formulations.strain_wave.impossible import Nearest, nearest
+from gearopt.formulations.strain_wave.sizing import COUNT, NO_LIMITS, Passage, problem, tip_leaves
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.dual import multipliers
 from gearopt.optimise.form import form

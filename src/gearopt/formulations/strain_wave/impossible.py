@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from gearopt.formulations.strain_wave.demand import FREE, LAND, TIP_GAP, Demand
-from gearopt.formulations.strain_wave.design import problem, tip_leaves
+from gearopt.formulations.strain_wave.sizing import problem, tip_leaves
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE

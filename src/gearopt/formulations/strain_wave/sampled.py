@@ -20,8 +20,8 @@ from gearopt.formulations.strain_wave.demand import (
     limits,
     squares,
 )
-from gearopt.formulations.strain_wave.design import COUNT
 from gearopt.formulations.strain_wave.exchange import CUTTING, STEP_DEG, design_of, exchange
+from gearopt.formulations.strain_wave.sizing import COUNT
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch

@@ -9,8 +9,7 @@ import numpy as np
 
 from gearopt.formulations.strain_wave.cutter_report import Cutter, cutter_of
 from gearopt.formulations.strain_wave.demand import SHIFTS, Demand, Duty, common_limits
-from gearopt.formulations.strain_wave.exchange import STEP_DEG
-from gearopt.formulations.strain_wave.report import (
+from gearopt.formulations.strain_wave.design import (
     ROWS,
     TURNS,
     WITHIN,
@@ -26,6 +25,7 @@ from gearopt.formulations.strain_wave.report import (
     shares,
     sizes_of,
 )
+from gearopt.formulations.strain_wave.exchange import STEP_DEG
 from gearopt.formulations.strain_wave.sharing import compliance_of, shared
 from gearopt.optimise.clock import Clock
 from gearopt.physics.strain_wave.circular_arc import DoubleArc, half_locus_tooth, tooth_heights

@@ -87,8 +87,10 @@ class Law:
         found = self.indices(pair, torque, speed)
         return {n: i / a for n, i, a in zip(self.names, found, allowable, strict=True)}
 
-    def load(self, pair: GearPair, torque: Any, speed: Any, allowable: Sequence[float]) -> Array:
-        """Return the largest utilisation, at unit width the narrowest one of a proportional law."""
+    def largest_utilisation(
+        self, pair: GearPair, torque: Any, speed: Any, allowable: Sequence[float]
+    ) -> Array:
+        """Largest utilisation; at unit width the narrowest width of a proportional law."""
         found = tuple(self.utilisations(pair, torque, speed, allowable).values())
         return np.asarray(np.maximum.reduce(np.broadcast_arrays(*found)))
 
@@ -107,7 +109,7 @@ class Law:
 
         def carries(width: Array) -> Any:
             loaded = pair.of_width(width)
-            return self.load(loaded, torque, speed, allowable) <= 1.0 + ALLOWANCE
+            return self.largest_utilisation(loaded, torque, speed, allowable) <= 1.0 + ALLOWANCE
 
         narrowest, widest = np.maximum(ends[0], NARROW * ends[1]), ends[1]
         with np.errstate(all="ignore"):  # of widths of zero, where there is no choice

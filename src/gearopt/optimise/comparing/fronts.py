@@ -37,7 +37,7 @@ from gearopt.optimise.pareto.found import Found, Step
 from gearopt.optimise.pareto.judged import status
 from gearopt.optimise.pareto.measures import hypervolume, igd, reference, unbeaten
 from gearopt.optimise.pareto.posed import posed
-from gearopt.optimise.pareto.several import EPSILON, METHODS, NSGA, SAMPLERS, default, found
+from gearopt.optimise.pareto.several import EPSILON, METHODS, NSGA, SAMPLERS, default_method, found
 from gearopt.optimise.problem import Batch, Problem
 from gearopt.optimise.result import Budget, Event
 from gearopt.optimise.scale import violation
@@ -181,7 +181,7 @@ def _standard(
 ) -> tuple[str, Found] | None:
     """Method of the reference front and its findings; None where nothing proves one."""
     problem = replace(model.problem)
-    chosen = method or default(problem, goal.limiting)
+    chosen = method or default_method(problem, goal.limiting)
     if chosen == NSGA:
         return None
 

@@ -52,7 +52,7 @@ def found(
     the kind of problem limits objectives. SolveError where the method does
     not fit the problem.
     """
-    budget, chosen = budget or Budget(), method or default(problem, limiting)
+    budget, chosen = budget or Budget(), method or default_method(problem, limiting)
     whole = limiting is not None and limiting.whole
     count = points or (0 if whole else POINTS[len(names)])
     if chosen == EPSILON:
@@ -70,7 +70,7 @@ def found(
     return SAMPLERS[chosen](own, points or 0, budget, seed, watch)
 
 
-def default(problem: Problem | Conic, limiting: Limiting | None = None) -> str:
+def default_method(problem: Problem | Conic, limiting: Limiting | None = None) -> str:
     """Return the method that is run where none is named."""
     if limiting is not None:
         return EPSILON
@@ -86,7 +86,7 @@ def compared_methods(problem: Problem | Conic, limiting: Limiting | None = None)
     """Return the methods that are compared where none are named."""
     if isinstance(problem, Conic):
         return (EPSILON,)
-    first = default(problem, limiting)
+    first = default_method(problem, limiting)
     return (first, *(method for method in SAMPLERS if method != first))
 
 
@@ -197,7 +197,7 @@ def solved(
     for name in (*most, *(weights or ())):
         if name not in listed:
             raise SolveError(f"{name} is none of the objectives of this front: {', '.join(listed)}")
-    chosen = method or default(trade.problem, trade.limiting)
+    chosen = method or default_method(trade.problem, trade.limiting)
     watch = in_part(watch, trade.objectives[0].unit, "front")
     made = found(trade.problem, listed, most, chosen, points, budget, seed, watch, trade.limiting)
     shown = [replace(one, most=most.get(one.name)) for one in trade.objectives]

@@ -195,8 +195,8 @@ class Scene(Table):
         return self.model_copy(update={"stages": (count, count)}) if self.several else self
 
     @property
-    def limited(self) -> bool:
-        """Return whether there is anything to size: limits, and a ratio to be met."""
+    def to_size(self) -> bool:
+        """Whether there is anything to size: limits, and a ratio to be met."""
         return "limits" in self.model_fields_set and self.duty.asks_ratio
 
     @property
@@ -206,7 +206,7 @@ class Scene(Table):
         Load limits beside them size alone what ratings cannot.
         """
         alone = self.limits.loaded and self.teeth is None and not self.rated_real
-        return self.rating is not None and self.limited and not alone
+        return self.rating is not None and self.to_size and not alone
 
     @property
     def rated_real(self) -> bool:
@@ -261,7 +261,7 @@ class Scene(Table):
             check_same(self.gears, self.stage)
             check_rated(self.rating, self.gears, self.stage, self.load, self.material)
         check_objective(self.objective, self.gears, self.stage, self.material)
-        if self.given and not self.limited:
+        if self.given and not self.to_size:
             check_unsized(self.limits.LAW, self.stage)
         if self.by_ratings:
             ruled = [n for n in PROCESSES if getattr(self, n) is not None]
@@ -273,7 +273,7 @@ class Scene(Table):
         asked = "together" if self.layout is not None and self.layout.together else ""
         asked = asked or ("process_two" if self.process_two is not None else "")
         check_teeth(self.stage, self.gears, self.given, aim, asked)
-        for k, own in enumerate(self.stage if self.limited else ()):  # else a rating refuses it
+        for k, own in enumerate(self.stage if self.to_size else ()):  # else a rating refuses it
             check_mesh(self._stage(own), k, own, self.gears)
 
     def _check_layout(self) -> None:

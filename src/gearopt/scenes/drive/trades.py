@@ -31,7 +31,7 @@ def objectives(scene: Scene) -> dict[str, str]:
 
 def to_choose(scene: Scene) -> None:
     """Raise SolveError for a drive that can only be rated."""
-    if not scene.limited:
+    if not scene.to_size:
         raise SolveError(
             "the file has no [limits] and no ratio, so there is nothing to choose: gearopt rate "
             "FILE rates its gears"

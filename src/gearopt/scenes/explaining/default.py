@@ -21,7 +21,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
-from gearopt.scenes.explaining.engine import Group, Questions, singles, with_least
+from gearopt.scenes.explaining.engine import FeasibilityQuestions, Group, singles, with_least
 from gearopt.scenes.explaining.influences import Basis, Solved, influences, stepped
 from gearopt.scenes.explaining.moves import DUTY, LIMIT, Move
 from gearopt.scenes.explaining.numbers import Number, numbers, one_at
@@ -156,7 +156,7 @@ def remedies(
     relaxed, problem = problem.relaxed is not None, problem.relaxed or problem
     known = _handles(problem)
     groups = (Group((m,)) for m in (moves(scene) if moves else _moves(scene, known)))
-    ways = with_least(singles(Questions(scene, possible, clock), groups), not clock.over)
+    ways = with_least(singles(FeasibilityQuestions(scene, possible, clock), groups), not clock.over)
     blamed = _conflict(problem, known, clock)
     late = "the budget ended before all remedies were tried" if clock.over else ""
     sure = not relaxed and any_resolves(problem, known, blamed, clock)

@@ -54,7 +54,7 @@ class Group:
 
 
 @dataclass
-class Questions:
+class FeasibilityQuestions:
     """Questions whether a changed file has a design; it has state because it keeps the answers.
 
     scene: the impossible file. possible: asked while a factor is sought; sure: the same of a remedy
@@ -105,7 +105,7 @@ class Questions:
         verdict = self.verdict(moves)
         return None if verdict is None else verdict.answer
 
-    def beside(self, fixed: Moves) -> "Questions":
+    def beside(self, fixed: Moves) -> "FeasibilityQuestions":
         """Return the questions whose moves stand beside others, which are as they are."""
         return replace(self, apply=lambda scene, moves: self.apply(scene, (*moves, *fixed)))
 
@@ -124,7 +124,7 @@ class Questions:
 
 
 @dataclass
-class Known:
+class FactorBracket:
     """Moves with a common factor that suffice; it has state because the search narrows it.
 
     moves: with the least factors they may have, times which `low` does not suffice (sure: that is
@@ -157,7 +157,9 @@ def within(clock: Clock, seconds: float, share: float = 1.0) -> Clock:
     return Clock(replace(clock.left, seconds=own if math.isfinite(own) else None), clock.watch)
 
 
-def smallest(asked: Questions, moves: Moves, bound: float | None = None) -> Known | None:
+def smallest(
+    asked: FeasibilityQuestions, moves: Moves, bound: float | None = None
+) -> FactorBracket | None:
     """Return the common factor of moves that is known roughly to suffice; None: none is known."""
     steps = moves[0][0].steps if len(moves) == 1 else ()
     if steps:
@@ -165,7 +167,7 @@ def smallest(asked: Questions, moves: Moves, bound: float | None = None) -> Know
     if any(factor > 1.0 for _, factor in moves):  # a floor, which often suffices
         first = asked.verdict(moves)
         if first is not None and first.answer:
-            return Known(moves, 1.0, 1.0, bound=bound)
+            return FactorBracket(moves, 1.0, 1.0, bound=bound)
     if asked.excess is not None:
         return _by_secants(asked, moves, asked.excess)
     known = _bracketed(asked, moves)
@@ -176,8 +178,8 @@ def smallest(asked: Questions, moves: Moves, bound: float | None = None) -> Know
 
 
 def _first_step(
-    asked: Questions, move: Move, steps: Sequence[float], bound: float | None
-) -> Known | None:
+    asked: FeasibilityQuestions, move: Move, steps: Sequence[float], bound: float | None
+) -> FactorBracket | None:
     """Return the first step of a number with which the file is possible."""
     sure, before = True, 1.0
     for factor in steps:
@@ -185,12 +187,14 @@ def _first_step(
         if verdict is None or asked.clock.over:
             return None
         if verdict.answer:
-            return Known(((move, factor),), before / factor, 1.0, sure, bound=bound, stepped=True)
+            return FactorBracket(
+                ((move, factor),), before / factor, 1.0, sure, bound=bound, stepped=True
+            )
         sure, before = sure and verdict.answer is False, factor
     return None
 
 
-def _by_secants(asked: Questions, moves: Moves, excess: float) -> Known | None:
+def _by_secants(asked: FeasibilityQuestions, moves: Moves, excess: float) -> FactorBracket | None:
     """Return the factor with which the excess of the nearest design vanishes; None: not found.
 
     Utilisations are nearly powers of a number, so that secants of their logarithms come near in a
@@ -215,10 +219,10 @@ def _by_secants(asked: Questions, moves: Moves, excess: float) -> Known | None:
         x = x if low < x < high else 0.5 * (low + high)
     if math.isinf(high):
         return None
-    return Known(moves, math.exp(high), math.exp(high), excess=True)
+    return FactorBracket(moves, math.exp(high), math.exp(high), excess=True)
 
 
-def _bracketed(asked: Questions, moves: Moves) -> Known | None:
+def _bracketed(asked: FeasibilityQuestions, moves: Moves) -> FactorBracket | None:
     """Return a factor that suffices; None where the farthest that is decided does not.
 
     Other numbers are tried from near on.
@@ -231,13 +235,13 @@ def _bracketed(asked: Questions, moves: Moves) -> Known | None:
         for factor in tried[::-1]:
             verdict = asked.verdict(grown(moves, factor))
             if verdict is not None and verdict.answer:
-                return Known(moves, low, factor)
+                return FactorBracket(moves, low, factor)
             low = factor
         return None
     for factor in tried:
         verdict = asked.verdict(grown(moves, factor))
         if verdict is not None and verdict.answer is not None:
-            known = Known(moves, 1.0, factor)
+            known = FactorBracket(moves, 1.0, factor)
             return known if verdict.answer else None
         if asked.clock.over:
             break
@@ -245,7 +249,7 @@ def _bracketed(asked: Questions, moves: Moves) -> Known | None:
     return None
 
 
-def _allowed(asked: Questions, moves: Moves, far: float) -> float:
+def _allowed(asked: FeasibilityQuestions, moves: Moves, far: float) -> float:
     """Return the largest factor up to one with which the rules of the file hold, nearly."""
     low, high = 1.0, far
     if asked.edited(grown(moves, far)) is not None:
@@ -257,7 +261,9 @@ def _allowed(asked: Questions, moves: Moves, far: float) -> float:
     return low
 
 
-def narrow(asked: Questions, known: Known, close: float, clock: Clock | None = None) -> None:
+def narrow(
+    asked: FeasibilityQuestions, known: FactorBracket, close: float, clock: Clock | None = None
+) -> None:
     """Halve the logarithm of the change that is not known, until its ends are this close.
 
     What stays undecided is not known to suffice; between steps there is nothing. clock: of this
@@ -292,14 +298,18 @@ def _same(one: Edited, other: Edited | None) -> bool:
     return other is not None and [c.write for c in one.changes] == [c.write for c in other.changes]
 
 
-def as_remedy(asked: Questions, known: Known, kind: str) -> Remedy | None:
+def as_remedy(asked: FeasibilityQuestions, known: FactorBracket, kind: str) -> Remedy | None:
     """Return moves as edits that were tried as they are written; None where no design is known."""
     tried = _tried(asked, known, kind)
     return None if tried is None else _shortened(asked, *tried)
 
 
 def _tried(
-    asked: Questions, known: Known, kind: str, what: str = "", sharp: Clock | None = None
+    asked: FeasibilityQuestions,
+    known: FactorBracket,
+    kind: str,
+    what: str = "",
+    sharp: Clock | None = None,
 ) -> tuple[Remedy, Edited] | None:
     """Return a remedy and its edits, exactly; sharp: a clock of whether less suffices, too."""
     there = _written(asked, known)
@@ -318,7 +328,7 @@ def _tried(
     return Remedy(kind, what, there.changes, factor, known.bound, verified), there
 
 
-def _written(asked: Questions, known: Known) -> Edited | None:
+def _written(asked: FeasibilityQuestions, known: FactorBracket) -> Edited | None:
     """Return the edits of moves that were tried as they are written; None: no design is known."""
     for room in ROOM if known.excess else (1.0,):
         moves = known.at(known.high * room)
@@ -328,7 +338,9 @@ def _written(asked: Questions, known: Known) -> Edited | None:
     return None
 
 
-def _less(asked: Questions, known: Known, there: Edited, kind: str, sharp: Clock | None) -> str:
+def _less(
+    asked: FeasibilityQuestions, known: FactorBracket, there: Edited, kind: str, sharp: Clock | None
+) -> str:
     """Verdict, in one word, on moves taken back a little, together or each of them."""
     if known.stepped:
         return "infeasible" if known.sure else "undecided"
@@ -340,7 +352,7 @@ def _less(asked: Questions, known: Known, there: Edited, kind: str, sharp: Clock
     return "mixed" if len(words) > 1 else next(iter(words), "")
 
 
-def least(asked: Questions, moves: Moves) -> Known | None:
+def least(asked: FeasibilityQuestions, moves: Moves) -> FactorBracket | None:
     """Return the common factor of moves that suffices, closely; None: none is known."""
     known = smallest(asked, moves)
     if known is not None:
@@ -348,13 +360,13 @@ def least(asked: Questions, moves: Moves) -> Known | None:
     return known
 
 
-def enlarged(asked: Questions, moves: Moves) -> Moves | None:
+def enlarged(asked: FeasibilityQuestions, moves: Moves) -> Moves | None:
     """Return moves with the least common factor beyond their own that suffices; None: none does."""
     known = least(asked, moves)
     return None if known is None else known.at(known.high)
 
 
-def trimmed(asked: Questions, moves: Moves) -> Moves:
+def trimmed(asked: FeasibilityQuestions, moves: Moves) -> Moves:
     """Return moves of which each is needed, and as small as the others allow."""
     kept = moves
     for move, factor in moves[::-1]:
@@ -363,24 +375,24 @@ def trimmed(asked: Questions, moves: Moves) -> Moves:
         if others and beside.possible_with(()):
             kept = others
             continue
-        known = Known(((move, 1.0),), 1.0, factor)
+        known = FactorBracket(((move, 1.0),), 1.0, factor)
         narrow(beside, known, FACTOR_TOLERANCE)
         kept = tuple((m, known.high if m is move else f) for m, f in kept)
     return kept
 
 
-def _works(asked: Questions, there: Edited, moves: Moves) -> bool:
+def _works(asked: FeasibilityQuestions, there: Edited, moves: Moves) -> bool:
     if asked.sure is None:
         verdict = asked.verdict(moves)
         return verdict is not None and bool(verdict.answer)
     return bool(asked.ask(there.scene, asked.sure).answer)
 
 
-def _possible(asked: Questions, scene: Any) -> bool | None:
+def _possible(asked: FeasibilityQuestions, scene: Any) -> bool | None:
     return None if scene is None else asked.ask(scene, asked.sure or asked.possible).answer
 
 
-def _shortened(asked: Questions, remedy: Remedy, there: Edited) -> Remedy:
+def _shortened(asked: FeasibilityQuestions, remedy: Remedy, there: Edited) -> Remedy:
     """Return a remedy with `short`: as one would write it, where a design exists so, too."""
     judge = asked.possible if asked.excess is None else asked.sure or asked.possible
     for digits in DIGITS:
@@ -390,7 +402,9 @@ def _shortened(asked: Questions, remedy: Remedy, there: Edited) -> Remedy:
     return remedy
 
 
-def singles(asked: Questions, groups: Iterable[Group], seconds: float = math.inf) -> list[Remedy]:
+def singles(
+    asked: FeasibilityQuestions, groups: Iterable[Group], seconds: float = math.inf
+) -> list[Remedy]:
     """Return the groups of numbers that suffice by one factor: first roughly, then sharper.
 
     seconds: at most, to make them sharper.

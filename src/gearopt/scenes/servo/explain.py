@@ -17,8 +17,8 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve, solve_within
 from gearopt.physics.gears import SERIES_I, SERIES_II
 from gearopt.scenes.explaining.engine import (
+    FeasibilityQuestions,
     Group,
-    Questions,
     singles,
     with_least,
     within,
@@ -120,11 +120,11 @@ def remedies(scene: Scene, clock: Clock, message: str = NO_TEETH) -> Remedies:
     """
     if (bound := binds(scene, clock)) is not None:
         return bound
-    cause = why(scene, clock, message)
+    cause = cause_of(scene, clock, message)
     if clock.over:
         return Remedies(cause.names, message=cause.message)
     assert scene.train is not None
-    asked = Questions(scene, possible, clock, lower_bounds=not cause.names)
+    asked = FeasibilityQuestions(scene, possible, clock, lower_bounds=not cause.names)
     single = {(move.path, move.way): move for move in moves(scene)}
     found = singles(asked, _errors(scene, cause))
     blamed = [(path, -1) for path in DIAMETERS if cause.bodies and (path, -1) in single]
@@ -213,7 +213,9 @@ def _finer_by(before: Any, after: Any) -> float:
     return ends[0][-1] / ends[1][-1]
 
 
-def _both_sides(asked: Questions, single: dict[Any, Move], found: list[Remedy]) -> list[Remedy]:
+def _both_sides(
+    asked: FeasibilityQuestions, single: dict[Any, Move], found: list[Remedy]
+) -> list[Remedy]:
     """Return both sides of the box larger by one factor, where that is less than of one alone."""
     scene = asked.scene
     if scene.space is None or not scene.space.required:
@@ -227,7 +229,7 @@ def _both_sides(asked: Questions, single: dict[Any, Move], found: list[Remedy]) 
     ]
 
 
-def _module(asked: Questions) -> Remedy | None:
+def _module(asked: FeasibilityQuestions) -> Remedy | None:
     """Return the nearest module that alone, added to the list, makes a train possible.
 
     None for lists of diametral pitches.

@@ -9,6 +9,13 @@ from typing import Any
 from gearopt.errors import SolveError
 from gearopt.formulations.strain_wave import sampled
 from gearopt.formulations.strain_wave.demand import FREE, PRESSURE, VOLUME
+from gearopt.formulations.strain_wave.design import (
+    RoundRow,
+    WaveDesign,
+    described,
+    sketched,
+    used,
+)
 from gearopt.formulations.strain_wave.exchange import (
     CUTTING,
     Exchanged,
@@ -18,13 +25,6 @@ from gearopt.formulations.strain_wave.exchange import (
     slopes_of,
 )
 from gearopt.formulations.strain_wave.impossible import told
-from gearopt.formulations.strain_wave.report import (
-    RoundRow,
-    WaveDesign,
-    described,
-    sketched,
-    used,
-)
 from gearopt.formulations.strain_wave.sampled import SHARE
 from gearopt.formulations.strain_wave.swept_report import (
     described_by_law,
@@ -69,7 +69,7 @@ HIDDEN = (
 
 def gearing(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Choose what the file leaves open, without interference; describe the gearing."""
-    if not scene.limited:
+    if not scene.has_free_sizes:
         return _evaluated(scene, ask)
     if ask.method in SAMPLERS:
         return _sampled(scene, ask)
@@ -226,10 +226,10 @@ def idle(scene: Scene, method: str | None) -> dict[str, str]:
 
 def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
     """What every number does to the pressure of a design that was chosen."""
-    if scene.limited and result.status == "stationary":
+    if scene.has_free_sizes and result.status == "stationary":
         clock = Clock(ask.budget, of_others(ask.watch))
         return of_pressure(scene, result, clock, ask.gap)
-    message = UNPROVEN if scene.limited else NOTHING
+    message = UNPROVEN if scene.has_free_sizes else NOTHING
     return Explanation(result, (), (), binding(result), (), message, result.seconds)
 
 
@@ -279,7 +279,7 @@ def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
 
 
 def _to_choose(scene: Scene) -> None:
-    if not scene.limited:
+    if not scene.has_free_sizes:
         raise SolveError(f"{NOTHING}: gearopt solve FILE describes it")
 
 

@@ -4,16 +4,16 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from gearopt.formulations.strain_wave.demand import GAP_UNIT
-from gearopt.formulations.strain_wave.design import problem
 from gearopt.formulations.strain_wave.exchange import exchange
 from gearopt.formulations.strain_wave.impossible import nearest
+from gearopt.formulations.strain_wave.sizing import problem
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.scenes.explaining.default import at_point, eases, of_design
-from gearopt.scenes.explaining.engine import Group, Questions, singles, with_least
+from gearopt.scenes.explaining.engine import FeasibilityQuestions, Group, singles, with_least
 from gearopt.scenes.explaining.moves import DUTY, Move
 from gearopt.scenes.explaining.possible import UNKNOWN, Verdict
 from gearopt.scenes.strain_wave.scene import Scene
@@ -55,7 +55,7 @@ def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies
     over = sorted((n for n, u in used.items() if u > 1.0), key=lambda n: -used[n])
     names = tuple(result.proof.get("conflict", over))
     excess = max(used.values()) - 1.0 if used else None
-    asked = Questions(scene, possible, clock, clear, excess=excess)
+    asked = FeasibilityQuestions(scene, possible, clock, clear, excess=excess)
     known = with_least(singles(asked, (Group((move,)) for move in MOVES)), False)
     late = "the budget ended before all remedies were tried" if clock.over else ""
     reached = result.report.get("reached", "") if result.status == "infeasible" else ""

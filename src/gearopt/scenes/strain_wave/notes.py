@@ -11,8 +11,8 @@ from gearopt.formulations.strain_wave.demand import (
     UNITS,
     Demand,
 )
+from gearopt.formulations.strain_wave.design import INVOLUTE, WaveDesign
 from gearopt.formulations.strain_wave.exchange import CUTTING, WIDER, RangeEnd
-from gearopt.formulations.strain_wave.report import INVOLUTE, WaveDesign
 from gearopt.formulations.strain_wave.swept_report import DOUBLE_ARC
 from gearopt.scenes.strain_wave.scene import STEEL, Scene
 
@@ -42,7 +42,7 @@ def assumptions(scene: Scene) -> list[str]:
         "between the tips on the minor axis."
     )
     assumed = [*_sizes(scene), *_materials(scene, scene.demand()), *_sharing(scene)]
-    ranges = list(_ranges(scene)) if scene.limited else []
+    ranges = list(_ranges(scene)) if scene.has_free_sizes else []
     found = [*model, limits, *(f"Assumed: {words}." for words in (*assumed, *ranges))]
     return found if math.isfinite(scene.demand().bending_limit) else [*found, NOT_JUDGED]
 

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from gearopt.formulations.strain_wave.cutter_report import USUAL, Cutter
 from gearopt.formulations.strain_wave.demand import FREE, Demand, Duty
-from gearopt.formulations.strain_wave.report import INVOLUTE
+from gearopt.formulations.strain_wave.design import INVOLUTE
 from gearopt.formulations.strain_wave.swept_report import HALF_LOCUS, Law
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.rim import Cup
@@ -62,7 +62,7 @@ class Scene(Table):
     cutter: WaveCutter | None = None
 
     @property
-    def limited(self) -> bool:
+    def has_free_sizes(self) -> bool:
         """Whether the file leaves some of the six numbers open, to be chosen within limits."""
         return self.involute and any(getattr(self.gears, name) is None for name in FREE)
 
@@ -73,11 +73,15 @@ class Scene(Table):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
-        if self.limited and self.duty.outer_diameter is None:
+        if self.has_free_sizes and self.duty.outer_diameter is None:
             left = next(name for name in FREE if getattr(self.gears, name) is None)
             rule = f"is missing: [gears] leaves {left} open, and what is chosen must fit into it"
             raise refuse(rule, at=("duty", "outer_diameter"), action="sample")
-        if not self.limited and self.duty.outer_diameter is None and self.gears.face_width is None:
+        if (
+            not self.has_free_sizes
+            and self.duty.outer_diameter is None
+            and self.gears.face_width is None
+        ):
             rule = "is missing: without it or an outer diameter the face width is unknown"
             raise refuse(rule, at=("gears", "face_width"), action="sample")
         for name in FREE:
@@ -90,7 +94,7 @@ class Scene(Table):
     def _with_fatigue_limits(self) -> "Scene":
         """Refuse a material other than steel without the fatigue limits that something asks."""
         names = ("bending_limit", "shear_limit")
-        asks = self.limited or "safety" in self.design.model_fields_set
+        asks = self.has_free_sizes or "safety" in self.design.model_fields_set
         asks = asks or any(getattr(self.material, name) is not None for name in names)
         for name in names if asks and not self.steel else ():
             if getattr(self.material, name) is None:
@@ -113,7 +117,7 @@ class Scene(Table):
     @model_validator(mode="after")
     def _given_by_law(self) -> "Scene":
         """Refuse what a law of teeth cannot do, each with its key."""
-        if self.limited:
+        if self.has_free_sizes:
             return self
         if self.involute:
             return self._made(contact_fault(self.gearing()))
@@ -268,7 +272,7 @@ class Scene(Table):
         """Return the numbers at which the search begins, in the order of FREE."""
         ranges = self.ranges()
         usual = dict(START)
-        if self.limited:
+        if self.has_free_sizes:
             assert self.duty.outer_diameter is not None
             rim = START_RIM * self.duty.outer_diameter.value
             usual |= {"module": self.usual_module, "rim": rim}

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from gearopt.formulations.strain_wave.report import INVOLUTE
+from gearopt.formulations.strain_wave.design import INVOLUTE
 from gearopt.formulations.strain_wave.swept_report import DOUBLE_ARC, HALF_LOCUS
 from gearopt.physics.strain_wave.gearing import WAVES
 from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, whole

@@ -212,7 +212,7 @@ def _needed(train: Train, stage: Stage, cells: Cells) -> tuple[Array, Array]:
         if train.law.limits and train.law.proportional:
             z = cells.teeth[LOWER]
             pair = cells.toothing.of_diameter(cells.toothing.cosine / z, z, 1.0, u, 1.0)
-            load = train.law.load(pair, 1.0, cells.speed[LOWER], stage.allowable)
+            load = train.law.largest_utilisation(pair, 1.0, cells.speed[LOWER], stage.allowable)
             made.append((load / (1.0 + 1.0 / u), zero))
         given = stage.toothing.working_distance is not None  # then teeth alone say little
         for one in stage.options[0].standards if stage.options and not given else ():

@@ -138,7 +138,9 @@ def _judges(
     stage = train.stages[k]
     if train.law.limits:
         law = train.law
-        yield lambda pair: np.asarray(law.load(pair, torque, speed, stage.allowable) <= 1.0)
+        yield lambda pair: np.asarray(
+            law.largest_utilisation(pair, torque, speed, stage.allowable) <= 1.0
+        )
     for option in stage.options[:1]:
         for standard in reversed(option.standards):
             alone = replace(option, standards=(standard,))

@@ -61,7 +61,7 @@ def closed(
     if not train.law.proportional:
         return None, np.zeros_like(ratio), 1.0, np.zeros_like(ratio)
     one = stage.toothing.of_diameter(1.0, z1, z1 / cosine, ratio, 1.0)
-    load = train.law.load(one, 1.0, 0.0, stage.allowable)
+    load = train.law.largest_utilisation(one, 1.0, 0.0, stage.allowable)
     slope = np.zeros_like(ratio)
     if train.objective in ("gear_volume", "mass"):  # no module counts: d1 is 1 mm here
         size = load * (z1 / cosine) ** 2  # b d1^2 for a torque of 1 N mm

@@ -77,7 +77,7 @@ def _least_size(train: Train, k: int, ratios: Array) -> Array:
     stage = train.stages[k]
     z = float(stage.pinion_teeth[0])
     unit = stage.toothing.of_diameter(stage.toothing.cosine / z, z, 1.0, ratios, 1.0)
-    return train.law.load(unit, train.torque, train.speed, stage.allowable)
+    return train.law.largest_utilisation(unit, train.torque, train.speed, stage.allowable)
 
 
 PAIRS_AT_ONCE = 200_000  # tooth pairs of a stage that are searched at once

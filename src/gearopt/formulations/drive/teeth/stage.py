@@ -263,7 +263,10 @@ class Table:
 
         def carries(torque: Array) -> Any:
             speed = train.speed_at(torque)
-            return train.law.load(widest, torque, speed, self.stage.allowable) <= 1.0 + ALLOWANCE
+            return (
+                train.law.largest_utilisation(widest, torque, speed, self.stage.allowable)
+                <= 1.0 + ALLOWANCE
+            )
 
         low = np.full(len(every), train.torque)
         high = low * float(train.highest_ratio)

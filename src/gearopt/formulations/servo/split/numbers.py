@@ -90,7 +90,7 @@ def numbers(train: ServoTrain, moved: bool = False) -> Numbers:
     most, width, density = train.pinion_teeth[1], train.face_width, train.density
     known = np.maximum(np.arange(most + 1, dtype=float), train.pinion_teeth[0])
     pinions = GearPair.of_teeth(1.0, known, known, width)
-    tooth = LEWIS.load(pinions, known, 0.0, (train.bending,))
+    tooth = LEWIS.largest_utilisation(pinions, known, 0.0, (train.bending,))
     thick, long = train.shaft or (0.0, 0.0)
     return Numbers(
         least=-_floors(-low, most**2),

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.formulations.strain_wave.cutter_report import CutterDesign
+from gearopt.formulations.strain_wave.design import WaveDesign
 from gearopt.formulations.strain_wave.exchange import CUTTING
-from gearopt.formulations.strain_wave.report import WaveDesign
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.answer import asked, assumptions, limits, summary

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from gearopt.formulations.strain_wave import report
+from gearopt.formulations.strain_wave import design as of_design
 from gearopt.formulations.strain_wave.cutter_report import EDGE, CutterDesign
-from gearopt.formulations.strain_wave.report import INVOLUTE, WaveDesign
+from gearopt.formulations.strain_wave.design import INVOLUTE, WaveDesign
 from gearopt.report.measures import Measures
 from gearopt.report.section import Cell, Table, cell, columns, names_and_values, records
 from gearopt.report.words import amount
@@ -98,16 +98,17 @@ def deflections(design: WaveDesign, measures: Measures) -> Table:
 def points(design: WaveDesign, measures: Measures) -> list[Table]:
     """Points of the conjugate contact, and of both flanks, to make them by."""
     return [
-        columns(design, measures, report.CONTACT, caption=CONTACT),
-        columns(design, measures, report.FLANK, folded=True),
-        columns(design, measures, report.SPACE, folded=True),
+        columns(design, measures, of_design.CONTACT, caption=CONTACT),
+        columns(design, measures, of_design.FLANK, folded=True),
+        columns(design, measures, of_design.SPACE, folded=True),
     ]
 
 
 def over_wave(design: WaveDesign, measures: Measures) -> list[Table]:
     """Clearance, load and pressure of a tooth by its angle on the wave."""
     return [
-        columns(design, measures, name, folded=True) for name in (report.CLEARANCE, report.LOAD)
+        columns(design, measures, name, folded=True)
+        for name in (of_design.CLEARANCE, of_design.LOAD)
     ]
 
 

@@ -30,7 +30,14 @@ from gearopt.scenes.drive.explain.other_gears import other_gears
 from gearopt.scenes.drive.layout import others_may_fit
 from gearopt.scenes.drive.layout_design import described, keep_out_design
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.explaining.engine import Known, Questions, as_remedy, least, narrow, smallest
+from gearopt.scenes.explaining.engine import (
+    FactorBracket,
+    FeasibilityQuestions,
+    as_remedy,
+    least,
+    narrow,
+    smallest,
+)
 from gearopt.scenes.explaining.influences import Basis, influences, smooth
 from gearopt.scenes.explaining.moves import SET, Move
 from gearopt.scenes.explaining.numbers import numbers
@@ -50,7 +57,7 @@ Pair = tuple[BoxMove, BoxMove]
 Found = tuple[float, Remedy, Scene]  # how much is changed, and the file with it
 
 
-def questions(scene: Scene, pairs: tuple[GearPair, ...], clock: Clock) -> Questions:
+def questions(scene: Scene, pairs: tuple[GearPair, ...], clock: Clock) -> FeasibilityQuestions:
     """Return the questions whether these gears can be laid out in changed files."""
 
     def fits(other: Scene, clock: Clock) -> Verdict:
@@ -59,7 +66,7 @@ def questions(scene: Scene, pairs: tuple[GearPair, ...], clock: Clock) -> Questi
             return Verdict(False)
         return Verdict(possible(box, clock.within(SECONDS), clock.watch))
 
-    return Questions(
+    return FeasibilityQuestions(
         scene,
         fits,
         clock,
@@ -160,13 +167,13 @@ def gearbox_of(scene: Scene, pairs: tuple[GearPair, ...]) -> Gearbox | None:
         return None
 
 
-def _moved(asked: Questions, own: BoxMove) -> Found | None:
+def _moved(asked: FeasibilityQuestions, own: BoxMove) -> Found | None:
     """Return the smallest known change of one number; None where none is known."""
     known = least(asked, ((own.move, 1.0),))
     if known is None:
         return None
     for move in (own.point, own.move) if own.point else (own.move,):
-        remedy = as_remedy(asked, Known(((move, 1.0),), known.low, known.high), "least")
+        remedy = as_remedy(asked, FactorBracket(((move, 1.0),), known.low, known.high), "least")
         there = asked.edited(((move, known.high),))
         if remedy is not None and there is not None:
             return own.change(known.high), remedy, there.scene
@@ -174,7 +181,7 @@ def _moved(asked: Questions, own: BoxMove) -> Found | None:
     return None
 
 
-def _chosen(asked: Questions, own: BoxMove) -> Found | None:
+def _chosen(asked: FeasibilityQuestions, own: BoxMove) -> Found | None:
     """Return a switch that suffices alone."""
     there = asked.edited(((own.move, SET),))
     answer = False if there is None else asked.verdict_of(there).answer
@@ -186,7 +193,7 @@ def _chosen(asked: Questions, own: BoxMove) -> Found | None:
     return own.change(SET), remedy, there.scene
 
 
-def _pairs(asked: Questions, single: tuple[BoxMove, ...]) -> list[Found]:
+def _pairs(asked: FeasibilityQuestions, single: tuple[BoxMove, ...]) -> list[Found]:
     """Return two changes that do together, each as small as the other allows."""
     rough: list[tuple[float, list[tuple[Move, float]], Pair]] = []
     for pair in combinations(single, 2):
@@ -216,14 +223,16 @@ def _same(one: BoxMove, other: BoxMove) -> bool:
     return one.path[:shared] == other.path[:shared]
 
 
-def _together(asked: Questions, pair: Pair, moves: list[tuple[Move, float]]) -> Found | None:
+def _together(
+    asked: FeasibilityQuestions, pair: Pair, moves: list[tuple[Move, float]]
+) -> Found | None:
     """Return the remedy of two moves that suffice: one made smaller, then the other."""
     for k, (move, factor) in enumerate(moves):
-        known = Known(((move, 1.0),), 1.0, factor)
+        known = FactorBracket(((move, 1.0),), 1.0, factor)
         if move.switch is None:
             narrow(asked.beside((moves[1 - k],)), known, FACTOR_TOLERANCE)
         moves[k] = (move, known.high)
-    remedy = as_remedy(asked, Known(tuple(moves), 1.0, 1.0), "pair")
+    remedy = as_remedy(asked, FactorBracket(tuple(moves), 1.0, 1.0), "pair")
     there = asked.edited(tuple(moves))
     if remedy is None or there is None:
         return None

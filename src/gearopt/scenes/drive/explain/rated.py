@@ -14,7 +14,13 @@ from gearopt.scenes.drive.explain.rated_conflict import Conflict, conflict
 from gearopt.scenes.drive.explain.requirements import ORDER, TEETH
 from gearopt.scenes.drive.explain.tried import Case, any_possible
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.explaining.engine import Group, Questions, singles, with_least, within
+from gearopt.scenes.explaining.engine import (
+    FeasibilityQuestions,
+    Group,
+    singles,
+    with_least,
+    within,
+)
 from gearopt.scenes.explaining.moves import DUTY, LIMIT, Move
 from gearopt.scenes.explaining.numbers import Number, apart, numbers, one_at
 from gearopt.scenes.explaining.possible import Verdict, of_status
@@ -55,7 +61,7 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
             return of_status(status(other)).answer
         return any_possible(case, [other.held(count).train() for count in other.counts])
 
-    asked = Questions(scene, lambda other, clock: Verdict(works(other)), clock)
+    asked = FeasibilityQuestions(scene, lambda other, clock: Verdict(works(other)), clock)
     first = soon(ROUGH_SECONDS)
     ways = singles(asked, _until(first, _groups(scene, known)), SHARPEN_SECONDS)
     if not ways:

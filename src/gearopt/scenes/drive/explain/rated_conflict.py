@@ -43,7 +43,7 @@ class Conflict:
 
 @dataclass
 class _Filter:
-    """Questions and their answers; it has state because the filter fills it.
+    """FeasibilityQuestions and their answers; it has state because the filter fills it.
 
     dropped: for good; needed: known to be in the conflict.
     """

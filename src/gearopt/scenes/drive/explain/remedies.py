@@ -25,8 +25,8 @@ from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import (
     JOINT,
-    Known,
-    Questions,
+    FactorBracket,
+    FeasibilityQuestions,
     as_remedy,
     enlarged,
     least,
@@ -38,7 +38,7 @@ from gearopt.scenes.explaining.numbers import read
 from gearopt.scenes.parts import Duty
 
 NEARLY = 1.0 - 1e-6  # times what real-valued sizes need: a step that close to it is that one
-Proposal = tuple[str, Known]  # kind of a remedy, and its moves
+Proposal = tuple[str, FactorBracket]  # kind of a remedy, and its moves
 
 
 def remedies(scene: Scene, clock: Clock) -> Remedies:
@@ -79,7 +79,7 @@ def _conflict(base: Problem, known: Sequence[Handle], clock: Clock) -> tuple[Han
 
 def _singles(
     case: Case,
-    asked: Questions,
+    asked: FeasibilityQuestions,
     base: Problem | None,
     movable: Sequence[Move],
     blamed: Sequence[Handle],
@@ -125,19 +125,21 @@ def _singles(
     yield from _alike(case, asked, base, movable)
 
 
-def _given(case: Case, move: Move, most: float) -> Known | None:
+def _given(case: Case, move: Move, most: float) -> FactorBracket | None:
     """Return the smallest change of a given whole number that suffices."""
     alone = smallest_together(case, [move], most)
-    return None if alone is None else Known(alone[0], 1.0, 1.0, alone[1], stepped=alone[1])
+    return None if alone is None else FactorBracket(alone[0], 1.0, 1.0, alone[1], stepped=alone[1])
 
 
-def _tried(asked: Questions, proposals: Iterable[Proposal]) -> list[tuple[Proposal, Remedy]]:
+def _tried(
+    asked: FeasibilityQuestions, proposals: Iterable[Proposal]
+) -> list[tuple[Proposal, Remedy]]:
     """Return proposals with their edits, each as it is found, until time runs out."""
     return [(p, r) for p in proposals if (r := as_remedy(asked, p[1], p[0])) is not None]
 
 
 def _alike(
-    case: Case, asked: Questions, base: Problem | None, movable: Sequence[Move]
+    case: Case, asked: FeasibilityQuestions, base: Problem | None, movable: Sequence[Move]
 ) -> Iterator[Proposal]:
     """Yield one factor for a kind of limit that every stage has for itself, and for load limits."""
     limits = [m for m in movable if m.role == LIMIT]
@@ -167,7 +169,7 @@ def _alike(
 
 def _changes(
     case: Case,
-    asked: Questions,
+    asked: FeasibilityQuestions,
     movable: list[Move],
     singles: list[tuple[Proposal, Remedy]],
     beside: Moves | None,
@@ -180,12 +182,12 @@ def _changes(
     for (kind, known), _ in singles:
         if kind == "even" and len(known.moves) > 1 and whole:
             joint.append(trimmed(asked, known.at(known.high)))
-    proposals = [(JOINT, Known(moves, 1.0, 1.0, bound=floor)) for moves in joint]
+    proposals = [(JOINT, FactorBracket(moves, 1.0, 1.0, bound=floor)) for moves in joint]
     rows = [r for _, r in (*singles, *_tried(asked, proposals))]
     best = min((_product(r) for r in rows if r.kind != "less"), default=FARTHEST)
     given = smallest_together(case, movable, best * (1.0 - PRODUCT_TIE))
     if given is not None:
-        known = Known(given[0], 1.0, 1.0, given[1], bound=floor, stepped=given[1])
+        known = FactorBracket(given[0], 1.0, 1.0, given[1], bound=floor, stepped=given[1])
         rows += [r for _, r in _tried(asked, [(JOINT, known)])]
     if not any(r.kind != "less" for r in rows) and (r := _all_limits(case, asked, movable)):
         rows.append(r)
@@ -214,12 +216,14 @@ def _worth_reporting(found: Any) -> Iterator[Remedy]:
         seen.add(remedy.what if remedy.kind == "one" else "")
 
 
-def _all_limits(case: Case, asked: Questions, movable: list[Move]) -> Remedy | None:
+def _all_limits(case: Case, asked: FeasibilityQuestions, movable: list[Move]) -> Remedy | None:
     """Return all limits enlarged alike, then each made as small as the others allow."""
     moves = tuple((m, 1.0) for m in widest(movable))
     larger = enlarged(asked, moves) if moves and case.scene.teeth is not None else None
     return (
-        None if larger is None else as_remedy(asked, Known(trimmed(asked, larger), 1.0, 1.0), JOINT)
+        None
+        if larger is None
+        else as_remedy(asked, FactorBracket(trimmed(asked, larger), 1.0, 1.0), JOINT)
     )
 
 

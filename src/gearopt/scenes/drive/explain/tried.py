@@ -15,7 +15,7 @@ from gearopt.optimise.explaining.repair import FARTHEST
 from gearopt.optimise.solve import solve_within
 from gearopt.scenes.drive.explain.moves import applied
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.explaining.engine import Questions
+from gearopt.scenes.explaining.engine import FeasibilityQuestions
 from gearopt.scenes.explaining.possible import Verdict, of_status
 
 SECONDS = 2.0  # at most, for one question
@@ -91,7 +91,7 @@ class Case:
         return "undecided" if found is None else ("feasible" if found else "infeasible")
 
     @property
-    def asked(self) -> Questions:
+    def asked(self) -> FeasibilityQuestions:
         """Return the questions of the search for the smallest change."""
 
         def sized(scene: Scene, clock: Clock) -> Verdict:
@@ -101,7 +101,9 @@ class Case:
             return of_status(self.status(scene))
 
         both = sized if self.scene.teeth is None else sure
-        return Questions(self.scene, sized, self.clock, both, far=FARTHEST, apply=applied)
+        return FeasibilityQuestions(
+            self.scene, sized, self.clock, both, far=FARTHEST, apply=applied
+        )
 
 
 def any_possible(case: Case, trains: Sequence[Train]) -> bool | None:
