@@ -23,7 +23,7 @@ from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.options import check, in_turn, named
 from gearopt.optimise.own_problems import solve_own
 from gearopt.optimise.pareto.front import Front
-from gearopt.optimise.pareto.several import Several, chosen_of, compared_methods, several, solved
+from gearopt.optimise.pareto.tradeoff import Tradeoff, chosen_of, compared_methods, solved, traded
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch, plain  # noqa: F401
 from gearopt.optimise.solve import GAP, evaluate  # noqa: F401
@@ -258,7 +258,7 @@ def _of_comparison(names: dict[str, Any]) -> dict[str, Any]:
 
 
 def _fronts(
-    pose: Callable[[str | None], Several],
+    pose: Callable[[str | None], Tradeoff],
     names: Sequence[str],
     most: Mapping[str, float] | None,
     methods: Sequence[str] | None,
@@ -283,13 +283,13 @@ def _fronts(
 
 def _traded(
     what: File | Problem | Conic, changes: Changes, objectives: Sequence[str] | str | None
-) -> tuple[Callable[[str | None], Several], tuple[str, ...], dict[str, Any]]:
+) -> tuple[Callable[[str | None], Tradeoff], tuple[str, ...], dict[str, Any]]:
     """Return how objectives are posed to a method, their names, and the names of a file."""
     names = objectives.split(",") if isinstance(objectives, str) else objectives
     names = None if names is None else [name.strip() for name in names]
     if isinstance(what, Problem | Conic):
         _unchanged(what, changes)
-        own = several(what, names)
+        own = traded(what, names)
         return lambda method: own, tuple(o.name for o in own.objectives), {"title": what.name}
     scene, kind, about = _opened(what, changes)
     known = kind.trades.objectives(scene)
@@ -299,7 +299,7 @@ def _traded(
     chosen = chosen_of(names, list(known), f'this file of kind "{about["scene"]}"')
     report = {"assumptions": told} if (told := kind.assumptions(scene)) else {}
     about |= {"title": getattr(scene, "title", ""), "report": report}
-    return lambda method: kind.trades.several(scene, chosen, method), chosen, about
+    return lambda method: kind.trades.traded(scene, chosen, method), chosen, about
 
 
 @in_turn

@@ -8,7 +8,7 @@ import pytest
 import gearopt
 from gearopt.bench.front import LENGTH, LOSS, MOST, VOLUME, _row, elevator
 from gearopt.optimise.pareto.found import Found, Point, Step
-from gearopt.optimise.pareto.several import found
+from gearopt.optimise.pareto.tradeoff import found
 
 FILE = Path(__file__).parents[2] / "problems" / "elevator_free_width.toml"
 EXACT = {"duty.ratio_tolerance": "0 %", "limits.pinion_teeth": [20, 1000]}

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from blank_rings import backup, rings, volume
 
-from gearopt.formulations.drive.shares import share
+from gearopt.formulations.drive.shares import objective_share
 from gearopt.formulations.drive.teeth.columns import spans
 from gearopt.formulations.drive.teeth.search import within
 from gearopt.formulations.strength.iso6336 import Iso6336
@@ -79,7 +79,7 @@ def least_share(train, k, torque, z1, z2, most=math.inf):
     for module in train.stages[k].modules:
         for width in widths(train, k, module, z1):
             pair = train.pair(k, float(module), z1, z2, float(width))
-            value = share(train, k, pair) if not train.hollow else mass(train, k, pair)
+            value = objective_share(train, k, pair) if not train.hollow else mass(train, k, pair)
             found += [(value, len(found), pair)] if value < most else []
     return next((value for value, _, p in sorted(found) if safe(train, k, p, torque)), math.inf)
 

@@ -18,7 +18,7 @@ from gearopt.optimise.comparing.fronts import REFERENCE_POINTS
 from gearopt.optimise.pareto.found import Found
 from gearopt.optimise.pareto.judged import status
 from gearopt.optimise.pareto.measures import hypervolume, reference
-from gearopt.optimise.pareto.several import found
+from gearopt.optimise.pareto.tradeoff import found
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
 from gearopt.optimise.terms import Array, Terms, Var

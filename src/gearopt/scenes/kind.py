@@ -15,7 +15,7 @@ from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
-from gearopt.optimise.pareto.several import Several
+from gearopt.optimise.pareto.tradeoff import Tradeoff
 from gearopt.optimise.result import Result
 from gearopt.scenes.explaining.moves import Move
 from gearopt.scenes.explaining.possible import Possible
@@ -60,7 +60,7 @@ def _no_objectives(scene: BaseModel) -> dict[str, str]:
     return {}
 
 
-def _no_front(scene: BaseModel, names: Sequence[str], method: str | None) -> Several:
+def _no_front(scene: BaseModel, names: Sequence[str], method: str | None) -> Tradeoff:
     raise SolveError("this kind of file has no objectives to weigh against each other")
 
 
@@ -72,13 +72,13 @@ def _no_advice(scene: BaseModel, unknown: Sequence[str]) -> str:
 class Trades(Generic[S]):
     """The fronts of a kind.
 
-    objectives: name and unit of all that a front of a file may minimise. several: the problem of
+    objectives: name and unit of all that a front of a file may minimise. traded: the problem of
     these objectives for a method, None for the one that proves most. advice: what to write for
     names that are no objectives of this file; "" where nothing would make them so.
     """
 
     objectives: Callable[[S], Mapping[str, str]] = _no_objectives
-    several: Callable[[S, Sequence[str], str | None], Several] = _no_front
+    traded: Callable[[S, Sequence[str], str | None], Tradeoff] = _no_front
     advice: Callable[[S, Sequence[str]], str] = _no_advice
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from gearopt.formulations.compound import ERROR, SQUARED, Compound, nearest, problem, wider
-from gearopt.optimise.pareto.several import found
+from gearopt.optimise.pareto.tradeoff import found
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 

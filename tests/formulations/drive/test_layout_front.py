@@ -11,7 +11,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations.drive.layout import layout_front
 from gearopt.formulations.drive.layout.gearbox import SIDES, KeepOut
 from gearopt.optimise.pareto.epsilon import Limiting
-from gearopt.optimise.pareto.several import found
+from gearopt.optimise.pareto.tradeoff import found
 
 FLOOR = KeepOut("floor", (-1e3, 1e3), (-1e3, -140.0))
 STEP = 0.01  # rad

@@ -16,7 +16,7 @@ from small_drives import drive
 from gearopt.formulations.drive import teeth
 from gearopt.formulations.drive.teeth import load_front
 from gearopt.optimise.pareto.epsilon import Limiting
-from gearopt.optimise.pareto.several import found
+from gearopt.optimise.pareto.tradeoff import found
 from gearopt.optimise.result import Budget
 
 SMALL = {"total": 6, "pinion_teeth": (15, 16), "modules": (F(3, 2), F(2), F(3))}

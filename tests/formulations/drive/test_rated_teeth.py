@@ -11,7 +11,7 @@ from rated_brute_force import cheapest, least_share, safe
 from rated_drives import FREE, MODULES, TIED, F, agma, by, rated_drive
 
 from gearopt.formulations.drive import teeth
-from gearopt.formulations.drive.shares import share
+from gearopt.formulations.drive.shares import objective_share
 from gearopt.formulations.drive.teeth.columns import spans
 from gearopt.formulations.drive.teeth.later_stages import bound, first_costs, useful_cells
 from gearopt.formulations.drive.teeth.search import search, within
@@ -159,7 +159,7 @@ def test_cells_of_use_hold_the_best_train():
         ratios = np.log([z2 / z1 for z1, z2 in chosen])
         cells = rest.cell(np.concatenate([[0.0], np.cumsum(ratios)]))
         pairs = teeth.best_pairs(train, chosen)
-        costs = [float(share(train, k, p)) for k, p in enumerate(pairs)]
+        costs = [float(objective_share(train, k, p)) for k, p in enumerate(pairs)]
         assert rest.minimum[1][cells[1], rest.cell(ratios[1:2])[0]] <= costs[1]
         assert rest.to_go[1][cells[1]] <= sum(costs[1:])
         assert rest.to_go[2][cells[2]] <= costs[2]

@@ -14,7 +14,7 @@ from small_drives import drive
 from gearopt.formulations.drive import teeth
 from gearopt.formulations.drive.teeth.front import fronts, teeth_of
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.pareto.several import found
+from gearopt.optimise.pareto.tradeoff import found
 from gearopt.optimise.result import Budget
 
 TWO = ("gear_volume", "sum_of_centre_distances"), ("gear_volume", "mesh_loss")

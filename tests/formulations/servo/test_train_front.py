@@ -17,7 +17,7 @@ from gearopt.formulations.servo.ratio import Drive, ServoDuty
 from gearopt.formulations.servo.servo_box import Room, first_that_fits, of_train
 from gearopt.formulations.servo.split.servo_train import pairs
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.pareto.several import found
+from gearopt.optimise.pareto.tradeoff import found
 from gearopt.optimise.result import Budget
 
 DRIVE = Drive(1.98e1, 8.6e-3, 50.0, motor_friction=3.0, load_friction=400.0)

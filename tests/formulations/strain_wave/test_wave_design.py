@@ -20,7 +20,7 @@ from gearopt.formulations.strain_wave.sizing import Passage, problem, variables
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.compare import compare
 from gearopt.optimise.comparing.runs import Model, Plan
-from gearopt.optimise.pareto.several import found
+from gearopt.optimise.pareto.tradeoff import found
 from gearopt.optimise.result import Budget, Outcome
 from gearopt.optimise.solve import run
 from gearopt.physics.strain_wave.clearance import clearances, interference, least_gaps, poses

@@ -11,7 +11,7 @@ import pytest
 import gearopt
 from gearopt import SolveError
 from gearopt.formulations.servo.tolerance.grades import Choice, Graded, problem
-from gearopt.optimise.pareto.several import found
+from gearopt.optimise.pareto.tradeoff import found
 from gearopt.scenes.servo.notes import assumptions
 
 PROBLEMS = Path(__file__).parents[3] / "problems"

@@ -19,7 +19,7 @@ from gearopt.scenes import strain_wave
 from gearopt.scenes.explaining.default import explanation
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.strain_wave import KIND, compared, objectives, posed, several
+from gearopt.scenes.strain_wave import KIND, compared, objectives, posed, traded
 from gearopt.scenes.strain_wave import KIND as WAVES
 from gearopt.scenes.strain_wave.explain import costs, of_pressure
 from gearopt.scenes.strain_wave.notes import assumptions, notes, range_notes
@@ -258,14 +258,14 @@ def test_problems_of_a_duty_alone():
     assert set(posed(own, "").problem.methods) == {"exchange"}
     assert len(posed(own, "nsga2").problem.columns) == 6
     assert list(objectives(own)) == ["pressure", "volume_per_torque", "load_share"]
-    traded = several(own, ("pressure", "load_share"), "nsga2")
-    assert traded.problem.rows.objectives == ("pressure", "load_share")
-    traded = several(own, ("volume_per_torque", "pressure"), None)
-    assert traded.limiting.names == ("pressure",)
-    traded = several(own, ("pressure", "volume_per_torque"), None)
-    assert traded.limiting.names == ("volume_per_torque",)
+    tradeoff = traded(own, ("pressure", "load_share"), "nsga2")
+    assert tradeoff.problem.rows.objectives == ("pressure", "load_share")
+    tradeoff = traded(own, ("volume_per_torque", "pressure"), None)
+    assert tradeoff.limiting.names == ("pressure",)
+    tradeoff = traded(own, ("pressure", "volume_per_torque"), None)
+    assert tradeoff.limiting.names == ("volume_per_torque",)
     with pytest.raises(SolveError, match="load_share counts teeth"):
-        several(own, ("pressure", "load_share"), None)
+        traded(own, ("pressure", "load_share"), None)
     for call in (compared, objectives, lambda s: posed(s, "")):
         with pytest.raises(SolveError, match="the gearing is given"):
             call(scene(EXAMPLE))

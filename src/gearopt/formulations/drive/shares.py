@@ -11,7 +11,7 @@ from gearopt.physics.gears import GearPair
 FRICTION = 0.06  # coefficient of friction of `mesh_loss`
 
 
-def share(
+def objective_share(
     train: Train,
     stage: int,
     pair: GearPair,
@@ -29,7 +29,9 @@ def share(
     """
     objective = objective or train.objective
     if objective == WEIGHTED:
-        return sum(w * share(train, stage, pair, density, option, n) for n, w in train.weights)
+        return sum(
+            w * objective_share(train, stage, pair, density, option, n) for n, w in train.weights
+        )
     if objective in MASSES:
         rows = zip(train.stages[stage].blanks, pair.gears, strict=True)
         volumes = [blank.volume(gear) for blank, gear in rows]
@@ -55,7 +57,7 @@ def least_share(
     fewest: Sequence[Any] | None = None,
     objective: str | None = None,
 ) -> Any:
-    """Return a lower bound of `share` that grows with every size of the pair; equal of solid gears.
+    """Lower bound of a share that grows with every size of the pair; equal of solid gears.
 
     fewest: least numbers of teeth of pinion and wheel; None: unknown, then it is proportional to
     b d1^2 at a given ratio.
@@ -67,7 +69,7 @@ def least_share(
     if objective == "mesh_loss" and fewest is None:
         return 0.0 * pair.volume  # it falls with more teeth
     if objective not in MASSES or not train.hollow:
-        return share(train, stage, pair, density, option, objective)
+        return objective_share(train, stage, pair, density, option, objective)
     if fewest is None:
         rows = zip(blanks, pair.gears, strict=True)
         volumes = [blank.least_fraction * gear.volume for blank, gear in rows]

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.drive.shares import share
+from gearopt.formulations.drive.shares import objective_share
 from gearopt.formulations.drive.train import WIDTHS, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.optimise.problem import Problem
@@ -227,14 +227,14 @@ def terms(
     pairs: tuple[GearPair, ...],
     options: Sequence[Any] = (),
     rated: Callable[..., Mapping[str, Any]] | None = None,
-    shares: Callable[..., Any] = share,
+    shares: Callable[..., Any] = objective_share,
 ) -> Terms:
     """Return objective and limits of a drive made of these pairs, as terms of a geometric program.
 
     numbers: `train.numbers()` as attributes, floats or parameters; options: of every stage, counted
     from 0, floats or arrays; none: the first. rated(stage, pair, torque, speed, safety): limits in
-    the place of those of the ratings. shares: what stages add to the objective, as `share`. A limit
-    is left out where the drive leaves it open or fixes the quantity.
+    the place of those of the ratings. shares: what stages add to the objective. A limit is left out
+    where the drive leaves it open or fixes the quantity.
     """
     totals: dict[str, Any] = dict.fromkeys(train.objectives, 0.0)
     product, torque = 1.0, numbers.torque

@@ -37,7 +37,7 @@ from gearopt.optimise.pareto.found import Found, Step
 from gearopt.optimise.pareto.judged import status
 from gearopt.optimise.pareto.measures import hypervolume, igd, reference, unbeaten
 from gearopt.optimise.pareto.posed import posed
-from gearopt.optimise.pareto.several import EPSILON, METHODS, NSGA, SAMPLERS, default_method, found
+from gearopt.optimise.pareto.tradeoff import EPSILON, METHODS, NSGA, SAMPLERS, default_method, found
 from gearopt.optimise.problem import Batch, Problem
 from gearopt.optimise.result import Budget, Event
 from gearopt.optimise.scale import violation
@@ -56,7 +56,7 @@ class Goal:
     limiting: Limiting | None = None
 
     def front(self, problem: Problem | Conic, method: str, *given: Any, **named: Any) -> Found:
-        """Front that a method finds: `several.found`."""
+        """Front that a method finds: `tradeoff.found`."""
         named["limiting"] = self.limiting
         return found(problem, self.names, self.most, method, *given, **named)
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from gearopt.formulations.drive.design import drive_design
 from gearopt.optimise.pareto.front import Front
-from gearopt.optimise.pareto.several import RANDOM
+from gearopt.optimise.pareto.tradeoff import RANDOM
 from gearopt.report import front as front_words
 from gearopt.report.answer import assumptions
 from gearopt.report.drawing import layout_views, train_views

@@ -12,7 +12,7 @@ from gearopt.formulations import compound
 from gearopt.formulations.compound import wider
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.several import EPSILON, Several
+from gearopt.optimise.pareto.tradeoff import EPSILON, Tradeoff
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
@@ -127,13 +127,13 @@ def objectives(scene: Scene) -> dict[str, str]:
     return {scene.train.minimise: "", compound.LARGEST: ""}
 
 
-def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
+def traded(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
     """Return the problem of a front; SolveError for a method that does not take whole teeth."""
     if method == EPSILON:
         raise SolveError(f"{EPSILON} is for real-valued sizes; teeth are whole: leave it out")
     train = _train(scene)
     listed = tuple(Objective(name) for name in names)
-    return Several(compound.problem(train, names), listed, lambda x: _design(train, x))
+    return Tradeoff(compound.problem(train, names), listed, lambda x: _design(train, x))
 
 
 def _achieved(train: compound.Compound, ratio: Fraction) -> str:
@@ -198,6 +198,6 @@ KIND = Kind(
     posed=posed,
     compared=compared,
     methods=METHODS,
-    trades=Trades(objectives, several),
+    trades=Trades(objectives, traded),
     idle=idle,
 )

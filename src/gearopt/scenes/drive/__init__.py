@@ -17,7 +17,7 @@ from gearopt.scenes.drive.processes import by_processes
 from gearopt.scenes.drive.rating.rated import check_safe, rate, rated_afterwards, with_rating
 from gearopt.scenes.drive.scene import PROCESSES, Scene
 from gearopt.scenes.drive.sizing import SMOOTH, sized, takes_real_values, whole_teeth
-from gearopt.scenes.drive.trades import advice, objectives, several, to_choose
+from gearopt.scenes.drive.trades import advice, objectives, to_choose, traded
 from gearopt.scenes.drive.without import without
 from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.plan import Step, carried_out
@@ -128,7 +128,7 @@ KIND = Kind(
     remedies=remedies,
     influences=influences,
     assumptions=assumptions,
-    trades=Trades(objectives, several, advice),
+    trades=Trades(objectives, traded, advice),
     rate=rate,
     idle=idle,
 )

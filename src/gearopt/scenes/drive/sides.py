@@ -14,7 +14,7 @@ from gearopt.formulations.drive.layout.layout_text import read
 from gearopt.formulations.drive.layout.slabs import arrangements
 from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.several import Several, impossible
+from gearopt.optimise.pareto.tradeoff import Tradeoff, impossible
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.layout_design import described, handed
@@ -29,7 +29,7 @@ def objectives(scene: Scene) -> dict[str, str]:
     return {name: unit for name, unit in layout_front.GOALS.items() if name not in given}
 
 
-def several(scene: Scene, names: Sequence[str], sized: Result) -> Several:
+def traded(scene: Scene, names: Sequence[str], sized: Result) -> Tradeoff:
     """Return the problem of a front of the box around gears that were sized.
 
     Of three objectives, or two, those behind the first are sides, which epsilon steps limit.
@@ -45,7 +45,7 @@ def several(scene: Scene, names: Sequence[str], sized: Result) -> Several:
         none = Outcome(None, infeasible=True, proof=dict(sized.proof), message=why)
         if sized.status != "infeasible":
             raise SolveError(f"there are no gears to lay out: {why}")
-        return Several(impossible("layout", names, none), listed)
+        return Tradeoff(impossible("layout", names, none), listed)
     gears = drive_design(sized.design)
     box = scene.gearbox(scene.pairs(gears))
     if wrong := faults(box):
@@ -54,7 +54,7 @@ def several(scene: Scene, names: Sequence[str], sized: Result) -> Several:
             "sentence": "Proof: the sizes of these gears exclude every layout.",
         }
         none = Outcome(None, infeasible=True, proof=proof, message=" ".join(wrong))
-        return Several(impossible("layout", names, none), listed)
+        return Tradeoff(impossible("layout", names, none), listed)
     layout.ready()
     orders, given = arrangements(box), [stage.pinion_hand for stage in scene.stage]
 
@@ -67,4 +67,4 @@ def several(scene: Scene, names: Sequence[str], sized: Result) -> Several:
     limiting = Limiting(lambda name, most: layout_front.limited(box, name, most), tuple(SIDES))
     scope = "" if scene.given else gears_first(str(sized.objective["name"]))
     problem = layout_front.problem(box, tuple(names))
-    return Several(problem, listed, drawn, limiting, scope=scope)
+    return Tradeoff(problem, listed, drawn, limiting, scope=scope)

@@ -11,7 +11,7 @@ from gearopt.formulations.drive.teeth import load_front
 from gearopt.formulations.drive.train import OBJECTIVES, Train
 from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.several import EPSILON, EXACT, Several
+from gearopt.optimise.pareto.tradeoff import EPSILON, EXACT, Tradeoff
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive import sides
@@ -55,7 +55,7 @@ def advice(scene: Scene, names: Sequence[str]) -> str:
     return what + hint
 
 
-def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
+def traded(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
     """Return the problem of a front; SolveError where the drive has none.
 
     With a [teeth] table it is of whole teeth, but for epsilon constraints, which are for
@@ -70,9 +70,9 @@ def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
             )
         gears = sized(without(scene, "layout"), Ask())
         held = scene.held(len(gears.design["stages"])) if gears.value is not None else scene
-        return sides.several(held, names, gears)
+        return sides.traded(held, names, gears)
     if scene.several:
-        each = [several(scene.held(count), names, method) for count in scene.counts]
+        each = [traded(scene.held(count), names, method) for count in scene.counts]
         curves = any(one.limiting is not None and not one.limiting.whole for one in each)
         if scene.teeth is None or method not in (None, EXACT) or curves:
             raise SolveError(
@@ -91,11 +91,11 @@ def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
             f"[teeth], and a method other than {EPSILON}"
         )
     if not whole:
-        return Several(sizing.problem(train), listed, lambda x: _real(train, x))
-    return Several(teeth.problem(train), listed, lambda x: _whole(train, x))
+        return Tradeoff(sizing.problem(train), listed, lambda x: _real(train, x))
+    return Tradeoff(teeth.problem(train), listed, lambda x: _whole(train, x))
 
 
-def _loaded(scene: Scene, names: Sequence[str], method: str | None) -> Several:
+def _loaded(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
     """Return the problem of a front against the utilisation of the load limits."""
     if len(names) != 2 or names[1] != load_front.UTILISATION:
         raise SolveError(
@@ -110,7 +110,7 @@ def _loaded(scene: Scene, names: Sequence[str], method: str | None) -> Several:
         load_front.discrete(train),
     )
     problem = load_front.problem(train, tuple(names))
-    return Several(problem, listed, lambda x: _whole(train, x), limiting)
+    return Tradeoff(problem, listed, lambda x: _whole(train, x), limiting)
 
 
 def _train(scene: Scene) -> Train:

@@ -10,7 +10,7 @@ from gearopt.formulations.pair.relief import parametric
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
-from gearopt.optimise.pareto.several import Several
+from gearopt.optimise.pareto.tradeoff import Tradeoff
 from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
 from gearopt.scenes import drive
@@ -177,11 +177,11 @@ def objectives(scene: Scene) -> Mapping[str, str]:
     return drive.KIND.trades.objectives(_to_size(scene).drive)
 
 
-def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
+def traded(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
     """Return the problem of a front of reliefs, else of sizes."""
     if scene.relief is not None:
-        return relief_part.several(scene, _mesh_of_gears(scene), names)
-    return drive.KIND.trades.several(_to_size(scene).drive, names, method)
+        return relief_part.traded(scene, _mesh_of_gears(scene), names)
+    return drive.KIND.trades.traded(_to_size(scene).drive, names, method)
 
 
 def _mesh_of_gears(scene: Scene) -> PairMesh:
@@ -215,6 +215,6 @@ KIND = Kind(
     remedies=remedies,
     remedied=lambda scene: scene.relief is None,
     influences=influences,
-    trades=Trades(objectives, several),
+    trades=Trades(objectives, traded),
     idle=idle,
 )

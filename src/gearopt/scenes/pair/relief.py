@@ -16,7 +16,7 @@ from gearopt.optimise.clock import in_part
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.several import Several
+from gearopt.optimise.pareto.tradeoff import Tradeoff
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import evaluate, run
@@ -236,7 +236,7 @@ def _named(scene: Scene) -> dict[str, str]:
     return {name: name for name in known} | each
 
 
-def several(scene: Scene, made: PairMesh, names: Sequence[str]) -> Several:
+def traded(scene: Scene, made: PairMesh, names: Sequence[str]) -> Tradeoff:
     """Return the problem of a front of reliefs; of transmission errors every point is proven."""
     asked = scene.relief
     assert asked
@@ -259,7 +259,7 @@ def several(scene: Scene, made: PairMesh, names: Sequence[str]) -> Several:
     proven = tuple(name for name in known if name.startswith(parametric.PROVEN))
     limiting = Limiting(limited, proven) if set(names) <= set(proven) else None
     where = mesh.sampled if limiting else ""
-    return Several(_problem(asked, mesh, ranges, chosen), listed, drawn, limiting, scope=where)
+    return Tradeoff(_problem(asked, mesh, ranges, chosen), listed, drawn, limiting, scope=where)
 
 
 def _unit(name: str) -> str:

@@ -38,7 +38,7 @@ from gearopt.scenes.servo.reach import some_train
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tolerances import by_every_rule, named, old, tolerance_part
 from gearopt.scenes.servo.tolerances import problem as tolerance_problem
-from gearopt.scenes.servo.trades import objectives, several
+from gearopt.scenes.servo.trades import objectives, traded
 from gearopt.scenes.servo.train import (
     Found,
     backlashes,
@@ -239,6 +239,6 @@ KIND = Kind(
     remedied=lambda scene: scene.train is not None,
     influences=influences,
     assumptions=assumptions,
-    trades=Trades(objectives, several),
+    trades=Trades(objectives, traded),
     idle=idle,
 )

@@ -256,8 +256,8 @@ def _module(asked: FeasibilityQuestions) -> Remedy | None:
     return None
 
 
-def why(scene: Scene, clock: Clock, message: str) -> Cause:
-    """Return the conflict of an impossible train, and the cause; message: of the search."""
+def cause_of(scene: Scene, clock: Clock, message: str) -> Cause:
+    """Conflict of an impossible train, and its cause; message: of the search."""
     asked = scene.accuracy.error
     assert scene.train is not None
     if GOALS[scene.train.goal].motion:

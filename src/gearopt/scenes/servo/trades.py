@@ -10,7 +10,7 @@ from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.formulations.servo.tolerance import conic, grades
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.several import EPSILON, EXACT, Several, impossible
+from gearopt.optimise.pareto.tradeoff import EPSILON, EXACT, Tradeoff, impossible
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
@@ -35,15 +35,15 @@ def objectives(scene: Scene) -> dict[str, str]:
     return {COST: "", **dict.fromkeys(_errors(scene).values(), "deg")}
 
 
-def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
+def traded(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
     """Return the problem of a front; SolveError where a method does not fit it."""
     units = objectives(scene)
     listed = tuple(Objective(name, units[name]) for name in names)
     if scene.train is not None:
-        return Several(_trains(scene, names, method), listed, lambda x: _train(scene, x))
+        return Tradeoff(_trains(scene, names, method), listed, lambda x: _train(scene, x))
     gears = given_gears(scene)
     assert gears is not None
-    return Several(_tolerances(scene, gears, names, method), listed, _allotted(scene, gears))
+    return Tradeoff(_tolerances(scene, gears, names, method), listed, _allotted(scene, gears))
 
 
 def _trains(scene: Scene, names: Sequence[str], method: str | None) -> Problem:

@@ -37,7 +37,7 @@ from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.several import Several
+from gearopt.optimise.pareto.tradeoff import Tradeoff
 from gearopt.optimise.result import FEASIBLE, Budget, Result, versions
 from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
@@ -255,7 +255,7 @@ def objectives(scene: Scene) -> dict[str, str]:
     return dict(sampled.OBJECTIVES)
 
 
-def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
+def traded(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
     """Return the problem of a front: the first objective under limits on the other, or sampled.
 
     The former is clear at all poses. load_share counts teeth, so that it is for the latter.
@@ -267,7 +267,7 @@ def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
         return sketched(demand, design_of(demand, x[: len(FREE)]))
 
     if method in SAMPLERS:
-        return Several(sampled.problem(demand, start, names), listed, drawn)
+        return Tradeoff(sampled.problem(demand, start, names), listed, drawn)
     if SHARE in names:
         raise SolveError(
             f"{SHARE} counts teeth and has no gradient: add --method {' or '.join(SAMPLERS)}; "
@@ -275,7 +275,7 @@ def several(scene: Scene, names: Sequence[str], method: str | None) -> Several:
         )
     limiting = Limiting(partial(sampled.limited, demand, start), tuple(names[1:]))
     whole = sampled.problem(demand, start, names, sampled.WHOLE)
-    return Several(whole, listed, drawn, limiting)
+    return Tradeoff(whole, listed, drawn, limiting)
 
 
 def _to_choose(scene: Scene) -> None:
@@ -299,6 +299,6 @@ KIND = Kind(
     remedies=remedies,
     influences=influences,
     assumptions=assumptions,
-    trades=Trades(objectives, several),
+    trades=Trades(objectives, traded),
     idle=idle,
 )

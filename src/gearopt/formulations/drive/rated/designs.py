@@ -21,7 +21,7 @@ from gearopt.formulations.drive.rated.boxes import (
     first_boxes,
     shafts_about,
 )
-from gearopt.formulations.drive.shares import share
+from gearopt.formulations.drive.shares import objective_share
 from gearopt.formulations.drive.train import Train
 from gearopt.formulations.strength.rated import Option
 from gearopt.optimise.clock import Clock
@@ -52,7 +52,7 @@ def in_boxes(
         if pair is None:
             return None
         pairs.append(pair)
-        value += float(share(train, k, pair))
+        value += float(objective_share(train, k, pair))
         at += math.log(pair.ratio)
     low, high = float(train.lowest_ratio), float(train.highest_ratio)
     good = math.log(low) - RATIO_TIE <= at <= math.log(high) + RATIO_TIE
@@ -128,7 +128,7 @@ def smallest(
         sizes = sizes[:, accepts(pairs(*sizes))]
         if not sizes.shape[1]:
             return None
-    return pairs(*sizes[:, int(share(train, k, pairs(*sizes)).argmin())])
+    return pairs(*sizes[:, int(objective_share(train, k, pairs(*sizes)).argmin())])
 
 
 def _judges(

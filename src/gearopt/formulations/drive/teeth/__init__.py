@@ -14,7 +14,7 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing_text
-from gearopt.formulations.drive.shares import share
+from gearopt.formulations.drive.shares import objective_share
 from gearopt.formulations.drive.teeth.front import fronts
 from gearopt.formulations.drive.teeth.progress import MARGIN, TIE, Progress, Teeth
 from gearopt.formulations.drive.teeth.reach import narrowed, trimmed
@@ -346,7 +346,11 @@ def _choices(train: Train, teeth: Teeth) -> tuple[float, tuple[GearPair, ...], t
         module, width, option = only.choose(torque, 0)
         found.append(train.pair(k, module, z1, z2, width))
         chosen.append(option)
-        value += float(share(train, k, found[-1], option=option)) if module < math.inf else math.inf
+        value += (
+            float(objective_share(train, k, found[-1], option=option))
+            if module < math.inf
+            else math.inf
+        )
         torque *= z2 / z1
     return value, tuple(found), tuple(chosen)
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from gearopt.formulations.drive.shares import share
+from gearopt.formulations.drive.shares import objective_share
 from gearopt.formulations.drive.teeth.columns import Index
 from gearopt.formulations.drive.teeth.later_stages import Bound, bound, ragged
 from gearopt.formulations.drive.teeth.progress import SearchEnded, Teeth
@@ -305,7 +305,9 @@ def _row(
 def _costs(run: Search, level: int, pair: GearPair, option: int) -> Array:
     """Shares of pairs in every objective and weighted sum, (n, objectives + w)."""
     names = run.train.objectives
-    made = [share(run.train, level, pair, option=option, objective=name) for name in names]
+    made = [
+        objective_share(run.train, level, pair, option=option, objective=name) for name in names
+    ]
     return weighed(np.stack([np.asarray(m, float) for m in made], axis=1), run.weights)
 
 

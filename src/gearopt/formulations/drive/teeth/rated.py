@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.drive.shares import least_share, share
+from gearopt.formulations.drive.shares import least_share, objective_share
 from gearopt.formulations.drive.teeth.columns import Index
 from gearopt.formulations.drive.teeth.stage import EDGE, Cells, Table
 from gearopt.formulations.drive.train import Train
@@ -309,7 +309,7 @@ class RatedTable(Table):
 
     def _worth(self, pair: GearPair, width: Array, option: int) -> Array:
         """Share of pairs of these face widths [mm] in the objective."""
-        shares = share(self.train, self.position, pair.of_width(width), option=option)
+        shares = objective_share(self.train, self.position, pair.of_width(width), option=option)
         return np.asarray(shares)
 
     def _floor(self, pair: GearPair, width: Array, option: int) -> Array:

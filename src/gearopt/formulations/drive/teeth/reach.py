@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from gearopt.formulations.drive.shares import least_share, share
+from gearopt.formulations.drive.shares import least_share, objective_share
 from gearopt.formulations.drive.teeth.columns import spans
 from gearopt.formulations.drive.teeth.progress import MARGIN
 from gearopt.formulations.drive.teeth.rated import RatedTable
@@ -63,7 +63,7 @@ def reach(
         else:
             face = stage.face_width
             d = (load / float(face.fixed or face.widest)) ** (0.5 if face.fixed else 1.0 / 3.0)
-            lower = share(
+            lower = objective_share(
                 train, k, GearPair.of_teeth(d, 1.0, ratios, math.nan)
             )  # a length, whatever the width
         useful |= np.asarray(lower) <= threshold

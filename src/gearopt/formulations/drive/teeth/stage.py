@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gearopt.formulations.drive.shares import share
+from gearopt.formulations.drive.shares import objective_share
 from gearopt.formulations.drive.teeth.columns import Index, closed
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength import ALLOWANCE, HALVINGS
@@ -253,7 +253,7 @@ class Table:
 
     def _share(self, pair: GearPair, width: Any) -> Array:
         """Share of pairs of these face widths [mm] in the objective."""
-        return np.asarray(share(self.train, self.position, pair.of_width(width)))
+        return np.asarray(objective_share(self.train, self.position, pair.of_width(width)))
 
     def _bisected_capacity(self, module: int) -> Array:
         """Return the largest torque [N mm] of every pair with a module (index), from above."""

@@ -118,7 +118,7 @@ def _feasible(problem: Problem, outcome: Outcome) -> list[Point]:
 
 
 @dataclass(frozen=True)
-class Several:
+class Tradeoff:
     """A problem, its objectives in order, and the design of a point as its file shows it.
 
     limiting: how it is posed with one objective under limits on others, by a method of its own.
@@ -130,7 +130,7 @@ class Several:
     objectives: tuple[Objective, ...]
     drawn: Callable[[Array], Mapping[str, Any]] | None = None
     limiting: Limiting | None = None
-    others: tuple["Several", ...] = ()
+    others: tuple["Tradeoff", ...] = ()
     scope: str = ""
 
 
@@ -145,11 +145,11 @@ def impossible(of: str, names: Sequence[str], none: Outcome) -> Problem:
     )
 
 
-def several(problem: Problem | Conic, names: Sequence[str] | None) -> Several:
+def traded(problem: Problem | Conic, names: Sequence[str] | None) -> Tradeoff:
     """Return the objectives of a problem of one's own; by default all that it minimises."""
     known = problem.objectives if isinstance(problem, Conic) else problem.rows.objectives
     chosen = chosen_of(names or known, known, problem.name)
-    return Several(problem, tuple(Objective(name) for name in chosen))
+    return Tradeoff(problem, tuple(Objective(name) for name in chosen))
 
 
 def chosen_of(names: Sequence[str] | None, known: Sequence[str], of: str) -> tuple[str, ...]:
@@ -173,7 +173,7 @@ def chosen_of(names: Sequence[str] | None, known: Sequence[str], of: str) -> tup
 
 
 def solved(
-    trade: Several,
+    trade: Tradeoff,
     most: Mapping[str, float],
     method: str | None,
     points: int | None,
@@ -206,7 +206,7 @@ def solved(
     return replace(front, seed=seed, proof=proof)
 
 
-def _each(trade: Several, given: Mapping[str, Any], clock: Clock) -> list[Front]:
+def _each(trade: Tradeoff, given: Mapping[str, Any], clock: Clock) -> list[Front]:
     """Front of each of several problems, in equal shares of the time that is left."""
     every, fronts = (replace(trade, others=()), *trade.others), list[Front]()
     for k, one in enumerate(every):
