@@ -28,7 +28,7 @@ from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch, plain  # noqa: F401
 from gearopt.optimise.solve import GAP, evaluate  # noqa: F401
 from gearopt.optimise.terms import Param, Repeat, Terms, Var  # noqa: F401
-from gearopt.scenes.explaining.default import explanation, without_design
+from gearopt.scenes.explaining.explanations import explanation, without_design
 from gearopt.scenes.kind import Kind
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.inputs import inputs_of

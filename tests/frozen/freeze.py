@@ -29,7 +29,7 @@ if "--explain" in sys.argv:  # budgets count CPU seconds: a busy machine changes
 import gearopt
 from gearopt.errors import GearoptError
 from gearopt.report import shown
-from gearopt.scenes.explaining.default import explanation
+from gearopt.scenes.explaining.explanations import explanation
 from gearopt.scenes.explaining.numbers import content
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import examples

@@ -15,8 +15,8 @@ from edits import edited, scene_of
 import gearopt
 from gearopt import Problem, SolveError, Terms, Var
 from gearopt.optimise.explaining.handles import each_word, handles
-from gearopt.scenes.explaining import default
-from gearopt.scenes.explaining.default import explanation
+from gearopt.scenes.explaining import explanations
+from gearopt.scenes.explaining.explanations import explanation
 from gearopt.scenes.explaining.influences import STEP, Basis
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import kind_named, kind_of, read
@@ -47,7 +47,7 @@ def scene(text):
 
 
 def test_a_changed_file_that_is_not_decided_does_not_cost_the_answer(monkeypatch):
-    own, calls = default.run, []
+    own, calls = explanations.run, []
 
     def once(*given, **more):
         calls.append(given)
@@ -55,7 +55,7 @@ def test_a_changed_file_that_is_not_decided_does_not_cost_the_answer(monkeypatch
             raise SolveError("this is not decided")
         return own(*given, **more)
 
-    monkeypatch.setattr(default, "run", once)
+    monkeypatch.setattr(explanations, "run", once)
     found = gearopt.explain(scene(TRAIN))
     assert found.result.status == "optimal" and len(calls) > 2
     assert all(one.resolved == (None, None) for one in found.influences)

@@ -32,7 +32,7 @@ from gearopt.physics.stiffness import lewis_form_factor
 from gearopt.scenes import drive as drives
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.drive import Limits, StageTable, limited_by
-from gearopt.scenes.explaining.default import explanation
+from gearopt.scenes.explaining.explanations import explanation
 from gearopt.scenes.reading.ask import Ask
 
 F = Fraction

@@ -13,7 +13,7 @@ from gearopt.report.explained import remedy_words
 from gearopt.scenes import drive
 from gearopt.scenes.drive.explain.choices import nearest_ratio
 from gearopt.scenes.drive.explain.tried import Case
-from gearopt.scenes.explaining.default import explanation
+from gearopt.scenes.explaining.explanations import explanation
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
 

@@ -17,7 +17,7 @@ from gearopt.formulations.strength.lewis import LEWIS
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.solve import run, solve
 from gearopt.physics.gears import MODULES, GearPair
-from gearopt.scenes.explaining.default import explanation
+from gearopt.scenes.explaining.explanations import explanation
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, number, quantity, whole
 from gearopt.scenes.reading.lists import span

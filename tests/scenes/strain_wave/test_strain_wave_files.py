@@ -16,7 +16,7 @@ from gearopt.optimise.typed import typed
 from gearopt.report.kinds.strain_wave.tables import loads
 from gearopt.report.measures import METRIC
 from gearopt.scenes import strain_wave
-from gearopt.scenes.explaining.default import explanation
+from gearopt.scenes.explaining.explanations import explanation
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.strain_wave import KIND, compared, objectives, posed, traded

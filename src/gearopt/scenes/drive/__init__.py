@@ -11,7 +11,7 @@ from gearopt.formulations.drive import sizing as continuous
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.result import Result
 from gearopt.scenes.drive import layout
-from gearopt.scenes.drive.explain.why import influences, possible, remedies
+from gearopt.scenes.drive.explain.answers import influences, possible, remedies
 from gearopt.scenes.drive.notes import assumptions
 from gearopt.scenes.drive.processes import by_processes
 from gearopt.scenes.drive.rating.rated import check_safe, rate, rated_afterwards, with_rating

@@ -29,7 +29,7 @@ from gearopt.scenes.dynamics.steps import (
     told,
     whole_problem,
 )
-from gearopt.scenes.explaining.default import explained
+from gearopt.scenes.explaining.explanations import explained
 from gearopt.scenes.kind import Kind, examples_in
 from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.ask import Ask, without_method

@@ -20,7 +20,7 @@ from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.solve import run
 from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.scenes.dynamics.scene import Scene
-from gearopt.scenes.explaining.default import remedies as each_alone
+from gearopt.scenes.explaining.explanations import remedies as each_alone
 from gearopt.scenes.explaining.possible import Verdict, of_status
 from gearopt.scenes.reading.ask import Ask
 

@@ -35,7 +35,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result
 from gearopt.optimise.solve import run, solve_within
 from gearopt.optimise.typed import untyped
-from gearopt.scenes.explaining.default import at_point, eases, of_design
+from gearopt.scenes.explaining.explanations import at_point, eases, of_design
 from gearopt.scenes.explaining.numbers import rounded
 from gearopt.scenes.kind import Kind, examples_in
 from gearopt.scenes.plan import Step, carried_out

@@ -14,10 +14,10 @@ from gearopt.optimise.pareto.tradeoff import Tradeoff
 from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
 from gearopt.scenes import drive
-from gearopt.scenes.drive.explain import why as of_drive
+from gearopt.scenes.drive.explain import answers as of_drive
 from gearopt.scenes.drive.rating import rated
 from gearopt.scenes.drive.tables.blanks import body_flaws
-from gearopt.scenes.explaining.default import by_solving
+from gearopt.scenes.explaining.explanations import by_solving
 from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.pair import relief as relief_part
 from gearopt.scenes.pair.contact import contact_of, mesh_of

@@ -26,7 +26,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import disc_mass
-from gearopt.scenes.explaining.default import explained
+from gearopt.scenes.explaining.explanations import explained
 from gearopt.scenes.explaining.possible import Verdict, of_status
 from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.plan import one_step

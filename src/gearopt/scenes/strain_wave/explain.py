@@ -12,8 +12,8 @@ from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
-from gearopt.scenes.explaining.default import at_point, eases, of_design
 from gearopt.scenes.explaining.engine import FeasibilityQuestions, Group, singles, with_least
+from gearopt.scenes.explaining.explanations import at_point, eases, of_design
 from gearopt.scenes.explaining.moves import DUTY, Move
 from gearopt.scenes.explaining.possible import UNKNOWN, Verdict
 from gearopt.scenes.strain_wave.scene import Scene
