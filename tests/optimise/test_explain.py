@@ -9,6 +9,7 @@ import pytest
 
 from gearopt import Param, Problem, Repeat, SolveError, Terms, Var, explain
 from gearopt.optimise.clock import Clock
+from gearopt.optimise.explaining.halving import DOUBTS, Bracket, middles, take
 from gearopt.optimise.explaining.handles import handles
 from gearopt.optimise.explaining.repair import elastic, least
 from gearopt.optimise.result import Budget, Outcome
@@ -280,3 +281,17 @@ def test_a_bound_with_a_key_is_priced():
     assert lower.resolved == pytest.approx((2.0, 2.0), abs=1e-6)
     assert lower.step == "-1%" and lower.price == pytest.approx(0.99**2 - 1.0, abs=1e-9)
     assert upper.sensitivity == 0.0 and upper.price == 0.0
+
+
+@pytest.mark.parametrize("least", [1.0, 1.003, 1.05, 1.4, 2.5])
+@pytest.mark.parametrize("band", [1.0, 1.0001, 1.01, 1.3, 3.0])
+def test_undecided_factors_are_not_known_to_do_and_few_are_tried(least, band):
+    """A factor that suffices from `least` on, undecided a factor `band` below that."""
+    known, undecided = Bracket(1.0, 4.0), 0
+    for factor in middles(known, 1.0005):
+        answer = True if factor >= least else (None if factor * band > least else False)
+        undecided += answer is None
+        take(known, factor, answer)
+    close = 1.0006 if band <= 1.0001 else (1.05 if band < 1.1 else 1.7)
+    assert least <= known.high <= least * close
+    assert undecided <= DOUBTS

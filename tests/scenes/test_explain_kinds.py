@@ -325,7 +325,7 @@ def test_every_key_of_a_problem_is_a_place_of_its_file(path):
     sized = getattr(own, "drive", own)  # what a pair is sized as
     if getattr(sized, "by_ratings", False):
         pytest.skip("gears that ratings limit have no real-valued sizes yet")
-    if not getattr(sized, "limited", True):
+    if not getattr(sized, "to_size", True):
         pytest.skip("gears that are given and rated pose no problem")
     if kind == "strain_wave":
         pytest.skip("no number of it is moved: test_strain_wave_keys looks at every key")

@@ -8,7 +8,6 @@ from given_drives import every_train, faults, feasible, given_drive, readable, w
 
 from gearopt import Budget
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.explaining.repair import WIDEST, least_value
 from gearopt.report.explained import remedy_words
 from gearopt.scenes import drive
 from gearopt.scenes.drive.explain.choices import nearest_ratio
@@ -16,32 +15,6 @@ from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.explaining.explanations import explanation
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
-
-
-def undecided_from(least, band, asked):
-    """Works of a number that does from `least` on, undecided a factor `band` below that."""
-
-    def works(value, back=0.0):
-        asked.append(value * (1.0 - back))
-        return True if asked[-1] >= least else (None if asked[-1] * band > least else False)
-
-    return works
-
-
-@pytest.mark.parametrize("least", [1.0, 1.003, 1.05, 1.4, 2.5])
-@pytest.mark.parametrize("band", [1.0, 1.0001, 1.01, 1.3, 3.0])
-def test_undecided_factors_are_not_known_to_do_and_hide_none_that_does(least, band):
-    asked = []
-    found = least_value(1.0, WIDEST, undecided_from(least, band, asked))
-    assert found >= least
-    close = 1.0006 if band <= 1.0001 else (1.02 if band < 1.1 else 1.3)
-    assert found <= least * close
-    assert sum(least > a and a * band > least for a in asked) <= 6
-
-
-def test_no_factor_is_made_up_where_none_is_known_to_do():
-    assert least_value(1.0, WIDEST, lambda value, back=0.0: None) is None
-    assert least_value(1.0, WIDEST, lambda value, back=0.0: False) is None
 
 
 def drive_file(duty, stages, limits, power="1 kW", teeth="[teeth]"):

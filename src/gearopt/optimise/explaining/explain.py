@@ -4,11 +4,13 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+from functools import cache
 
 import numpy as np
 
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.explaining.explanation import Change, Explanation, Influence, Remedy
+from gearopt.optimise.explaining.halving import Bracket, middles, take
 from gearopt.optimise.explaining.handles import (
     LOWER,
     PARAM,
@@ -20,13 +22,13 @@ from gearopt.optimise.explaining.handles import (
     handles,
 )
 from gearopt.optimise.explaining.repair import (
+    FACTOR_TOLERANCE,
     FACTORS_TRIED,
     SLACK_TRIED,
     Repair,
     any_resolves,
     elastic,
     impossible,
-    least_value,
     value_within,
 )
 from gearopt.optimise.explaining.sensitivity import BINDS, sensitivities
@@ -183,28 +185,35 @@ def _alone(problem: Problem, handle: Handle, method: str, clock: Clock) -> Remed
     """Return the smallest change of one number that makes a problem possible; None: none does."""
     if handle.kind == ROW or handle.value <= 0.0:
         return None
-    words = dict.fromkeys(THERE, True) | {"infeasible": False}
+    answers = dict.fromkeys(THERE, True) | {"infeasible": False}
     whole = handle.kind in (LOWER, UPPER) and problem.columns[handle.place][0].integer
     handle = replace(handle, whole=whole)
 
-    def tried(factor: float, back: float = 0.0) -> str:
-        asked = handle.eased(_asked(handle, factor)) if factor > 1.0 else 1.0
-        if back:
-            asked = handle.one_back(asked) if whole else asked * (1.0 - back)
-        return solve_within(clock, _moved(problem, handle, asked), method).status
+    def asked(factor: float) -> float:
+        return handle.eased(_asked(handle, factor))
 
-    def works(factor: float, back: float = 0.0) -> bool | None:
-        return None if clock.over else words.get(tried(factor, back))
+    @cache
+    def status(factor: float) -> str:
+        return solve_within(clock, _moved(problem, handle, factor), method).status
 
     down = whole and handle.direction < 0  # to 1 at the most
-    wider = tuple(f for f in FACTORS_TRIED if not down or f <= handle.value)
-    least = least_value(1.0, wider, works)
-    if least is None or least == 1.0:
+    known = Bracket(1.0, 1.0)
+    for high in (f for f in FACTORS_TRIED if not down or f <= handle.value):
+        if answers.get(status(asked(high))):
+            known.high = high
+            break
+        known.low = high
+    else:
         return None
-    factor = handle.eased(_asked(handle, least))
+    for middle in middles(known, FACTOR_TOLERANCE):
+        if clock.over:
+            break
+        take(known, middle, answers.get(status(asked(middle))))
+    factor = asked(known.high)
+    less = handle.one_back(factor) if whole else factor * (1.0 - SLACK_TRIED)
     number = f"{handle.relaxed(factor):.{DIGITS + 2}g}"
     change = Change(handle.label, f"{handle.value:.10g}", number, factor)
-    verified = {"with": tried(least), "with_less": tried(least, SLACK_TRIED)}
+    verified = {"with": status(factor), "with_less": status(less)}
     return Remedy(
         "less" if handle.given else "alone", handle.name, (change,), factor, None, verified
     )

@@ -6,7 +6,7 @@ of limit, the even repair (one factor for that kind alone).
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -29,11 +29,7 @@ FARTHEST = 4.0  # factor to which whole numbers and modules are tried
 WIDEST = (1.02, 1.1, 1.3, 2.0, FARTHEST)  # factors tried in turn, before the smallest is sought
 # ratio of an impossible to a possible factor that ends a search
 FACTOR_TOLERANCE = 1.0 + 0.5 * SLACK_TRIED
-SMALLEST_BRACKET = 1.0 + 1e-7  # a search between two factors this close ends in any case
-DOUBTS = 3  # factors that may stay undecided before a search ends at the smallest that is known
 FACTORS_TRIED = (*WIDEST, 16.0, 256.0, 1e6)  # the same of real numbers
-
-Works = Callable[..., bool | None]
 
 
 @dataclass(frozen=True)
@@ -241,43 +237,6 @@ def _blamed(verdict: Result, kept: Sequence[int], movable: Sequence[Handle]) -> 
     """Return those of the kept limits that the proof of impossibility uses."""
     rows = set(verdict.proof.get("conflict", ()))
     return [k for k in kept if rows & set(movable[k].rows)] or list(kept)
-
-
-def least_value(low: float, wider: Sequence[float], works: Works) -> float | None:
-    """Return the smallest value from `low` that will do, below the first of `wider` that does.
-
-    works(value, back): whether a value will do, also with its edits taken back by a part; None:
-    not known, so that the widest is tried. None where none is known to do.
-    """
-    if works(low):
-        return low
-    for high in wider:
-        found = works(high)
-        if found is None and high < wider[-1]:
-            high, found = wider[-1], works(wider[-1]) or None
-        if found is not False:
-            return least_between(low, high, works) if found else None
-        low = high
-    return None
-
-
-def least_between(low: float, high: float, works: Works) -> float:
-    """Return the smallest factor known to do, between an impossible and a possible one.
-
-    works(factor, back): whether a factor will do, also with its edits taken back by a part. One
-    that stays undecided is not known to do.
-    """
-    doubts = 0
-    while doubts < DOUBTS:
-        if high <= low * FACTOR_TOLERANCE and not (
-            high > low * SMALLEST_BRACKET and works(high, SLACK_TRIED)
-        ):
-            break
-        middle = math.sqrt(low * high)
-        found = works(middle)
-        doubts += found is None
-        low, high = (low, middle) if found else (middle, high)
-    return high
 
 
 _Place = tuple[str, int]  # kind and place of a handle

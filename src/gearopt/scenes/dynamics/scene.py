@@ -46,8 +46,8 @@ class Scene(Table):
     optimise: OptimiseTable | None = None
 
     @property
-    def limited(self) -> bool:
-        """Return whether there is anything to choose, and limits of it."""
+    def to_size(self) -> bool:
+        """Whether there is anything to choose, and limits of it."""
         return self.optimise is not None
 
     @model_validator(mode="after")

@@ -15,13 +15,13 @@ from typing import Any
 from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Remedy
+from gearopt.optimise.explaining.halving import DOUBTS, ROUGH, between, middles, take
 from gearopt.optimise.explaining.handles import REACH
-from gearopt.optimise.explaining.repair import DOUBTS, FACTOR_TOLERANCE, SLACK_TRIED
+from gearopt.optimise.explaining.repair import FACTOR_TOLERANCE, SLACK_TRIED
 from gearopt.scenes.explaining.moves import DUTY, Edited, Move, Moves, edited, less, shorter
 from gearopt.scenes.explaining.possible import UNKNOWN, WORDS, Possible, Verdict
 from gearopt.scenes.reading.toml import dotted
 
-ROUGH = 1.02  # ratio of a refused to an allowed factor up to which every number is known first
 FACTORS_TRIED = (1e6, 1e3, 16.0, 4.0, 2.0, 1.3, 1.1)  # the first that is decided counts
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, to make numbers sharper in given seconds
 SECANTS = 24
@@ -129,7 +129,7 @@ class FactorBracket:
 
     moves: with the least factors they may have, times which `low` does not suffice (sure: that is
     proven) and `high` does. excess: whether an excess led there. bound: proven for the factor.
-    stepped: every smaller change was tried.
+    stepped: every smaller change was tried; doubts: answers that stayed open as it was narrowed.
     """
 
     moves: Moves
@@ -139,6 +139,7 @@ class FactorBracket:
     excess: bool = False
     bound: float | None = None
     stepped: bool = False
+    doubts: int = 0
 
     def at(self, factor: float) -> Moves:
         """Return the moves with another common factor, none beyond the farthest it may have."""
@@ -255,7 +256,7 @@ def _allowed(asked: FeasibilityQuestions, moves: Moves, far: float) -> float:
     if asked.edited(grown(moves, far)) is not None:
         return far
     while high > low * FACTOR_TOLERANCE:
-        middle = _between(low, high)
+        middle = between(low, high)
         refused = asked.edited(grown(moves, middle)) is None
         low, high = (low, middle) if refused else (middle, high)
     return low
@@ -271,27 +272,17 @@ def narrow(
     """
     if known.stepped:
         return
-    doubts, ends = 0, [asked.edited(known.at(end)) for end in (known.low, known.high)]
-    while known.high > known.low * close and doubts < asked.doubts:
+    ends = [asked.edited(known.at(end)) for end in (known.low, known.high)]
+    for middle in middles(known, close, asked.doubts):
         if asked.clock.over or clock is not None and clock.over:
             return
-        middle = _between(known.low, known.high)
         there = asked.edited(known.at(middle))
         if there is not None and any(_same(there, end) for end in ends):
             return  # of whole numbers
-        verdict = UNKNOWN if there is None else asked.verdict_of(there, asked.halving[doubts > 0])
-        doubts += verdict.answer is None
-        if verdict.answer:
-            known.high, ends[1] = middle, there
-        else:
-            known.low, known.sure, ends[0] = middle, verdict.answer is False, there
-
-
-def _between(low: float, high: float) -> float:
-    """Return a factor between two: of far ones that of the geometric mean of their logarithms."""
-    near, far = math.log(low), math.log(high)
-    least = math.log(ROUGH)
-    return math.exp(math.sqrt(max(near, least) * far) if far > 4.0 * least else 0.5 * (near + far))
+        seconds = asked.halving[known.doubts > 0]
+        verdict = UNKNOWN if there is None else asked.verdict_of(there, seconds)
+        take(known, middle, verdict.answer)
+        ends[bool(verdict.answer)] = there
 
 
 def _same(one: Edited, other: Edited | None) -> bool:
