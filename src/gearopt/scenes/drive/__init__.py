@@ -27,7 +27,7 @@ METHODS = ("exact", "process-one", "process-two", "sa", "sa-polish", "sa-paper",
 
 
 def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
-    """Gears, designs by the processes, their layout; then what is told, and the rating."""
+    """Gears, designs by the processes, their layout; then assumptions and the rating."""
     to_choose(scene)
     last = (Step(with_assumptions, always=True), Step(rated, always=True))
     if scene.layout is None:
@@ -55,7 +55,7 @@ def processes(scene: Scene, ask: Ask, known: Result | None) -> Result:
 
 
 def with_assumptions(scene: Scene, ask: Ask, known: Result | None) -> Result:
-    """What the design takes for granted, in its report."""
+    """The answer with the assumptions of its design."""
     assert known is not None
     return replace(known, report=known.report | {"assumptions": assumptions(scene)})
 

@@ -23,7 +23,7 @@ Answer = Callable[[Scene, Ask, Result], Result]  # the drive, where those are kn
 
 @dataclass(frozen=True)
 class Count:
-    """A number of stages: its drive, that with real-valued sizes, and what was found in a time."""
+    """A number of stages: its drive, that with real-valued sizes, and its answer so far."""
 
     scene: Scene
     real: Result
@@ -32,7 +32,7 @@ class Count:
 
     @property
     def floor(self) -> float:
-        """Return what no design is below by its real-valued sizes; a box has no such bound."""
+        """Lower bound of all designs by their real-valued sizes; a box has no such bound."""
         if self.real.status == "infeasible":
             return math.inf
         boxed = self.scene.layout is not None
@@ -45,7 +45,7 @@ class Count:
 
     @property
     def bound(self) -> float:
-        """Return what no design of this count is below."""
+        """Lower bound of all designs of this count."""
         if self.found.status == "infeasible":
             return math.inf
         return -math.inf if self.found.bound is None else self.found.bound

@@ -1,4 +1,4 @@
-"""What the tables of a drive say of face widths: how they fit together, and what is chosen."""
+"""Face widths in the tables of a drive: how they fit together, and how one is chosen."""
 
 from fractions import Fraction
 from typing import Any

@@ -1,4 +1,4 @@
-"""What a drive takes for granted, and what a reader of its result should know."""
+"""Assumptions of a drive, and notes for the reader of its result."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -25,7 +25,7 @@ CLEARANCES = {
 
 
 def notes(scene: Scene, exact: bool) -> list[str]:
-    """Return what a reader of the result should know beside the numbers."""
+    """Notes for the reader of a result beside the numbers."""
     found = []
     limits, stages = scene.limits, scene.stage
     if limits.preset is not None:
@@ -63,7 +63,7 @@ def _gears(scene: Scene) -> Iterator[tuple[GearTable, Named | None]]:
 
 
 def assumptions(scene: Scene) -> list[str]:
-    """Return what a design takes for granted, in sentences."""
+    """Assumptions of a design, in sentences."""
     density, stages = scene.objective.density, scene.stage_tables
     angles = dict.fromkeys(str(own.pressure_angle or scene.gears.pressure_angle) for own in stages)
     angle = " and ".join(angles)
@@ -90,7 +90,7 @@ def assumptions(scene: Scene) -> list[str]:
 
 
 def _bodies(scene: Scene) -> str:
-    """Return what volumes and masses are those of."""
+    """The bodies whose volumes and masses are given."""
     stages = scene.stage_tables
     tables = [with_shared(getattr(own, m), scene.gears) for own in stages for m in MEMBERS]
     if all(blank(table, None).solid and not table.web_thickness for table in tables):
@@ -102,7 +102,7 @@ def _bodies(scene: Scene) -> str:
 
 
 def _loads(scene: Scene, angle: str, assumed: str) -> list[str]:
-    """Return what limits the loads, and what the pressure angle enters."""
+    """The limits of the loads, and the laws that the pressure angle enters."""
     if scene.by_ratings:
         title = scene.limits.LAW.title
         beside = f"and by {title}" if scene.limits.loaded else "alone"
@@ -120,7 +120,7 @@ def _loads(scene: Scene, angle: str, assumed: str) -> list[str]:
 
 
 def _teeth(scene: Scene) -> list[str]:
-    """Return what is taken for granted of the teeth: shifts, tools, backlash."""
+    """Assumptions on the teeth: shifts, tools, backlash."""
     each = [toothing(own, scene.gears) for own in scene.stage_tables]
     shifted = any(any(one.profile_shifts) for one in each)
     shifts = "with the profile shifts of the file" if shifted else "without profile shift"
@@ -141,7 +141,7 @@ def _teeth(scene: Scene) -> list[str]:
 
 
 def rating_assumptions(scene: Scene) -> list[str]:
-    """Return what a rating takes for granted, in sentences."""
+    """Assumptions of a rating, in sentences."""
     asked = scene.rating
     assert asked
     by_agma, by_iso = asked.standard != "iso6336", asked.standard != "agma"
@@ -161,7 +161,7 @@ def rating_assumptions(scene: Scene) -> list[str]:
 
 
 def _agma_assumptions(asked: RatingTable) -> list[str]:
-    """Return what a rating by AGMA takes for granted."""
+    """Assumptions of a rating by AGMA."""
     load = (
         "at the highest point of single tooth contact"
         if asked.bending_load == "highest single"
@@ -177,7 +177,7 @@ def _agma_assumptions(asked: RatingTable) -> list[str]:
 
 
 def _iso_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
-    """Return what a rating by ISO 6336 takes for granted: materials, misalignment."""
+    """Assumptions of a rating by ISO 6336: materials, misalignment."""
     chosen = dict.fromkeys(
         f"{table.treatment or 'none given'} as {steel(table).name}"
         for table, _ in _gears(scene)

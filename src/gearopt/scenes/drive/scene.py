@@ -215,7 +215,7 @@ class Scene(Table):
 
     @property
     def law(self) -> Law:
-        """Return what limits the loads of the gears beside ratings."""
+        """Strength law that limits the loads of the gears beside ratings."""
         return RATED if self.rating is not None and not self.limits.loaded else self.limits.LAW
 
     def _check_loads(self) -> None:

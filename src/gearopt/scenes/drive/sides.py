@@ -22,7 +22,7 @@ from gearopt.scenes.drive.scene import Scene
 
 
 def objectives(scene: Scene) -> dict[str, str]:
-    """Return what a front of the box may minimise: name and unit; nothing without [layout]."""
+    """Objectives of a front of the box: name and unit; none without [layout]."""
     if scene.layout is None:
         return {}
     given = {"width"} if scene.layout.width is not None else set()

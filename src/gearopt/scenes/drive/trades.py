@@ -22,7 +22,7 @@ from gearopt.scenes.reading.ask import Ask
 
 
 def objectives(scene: Scene) -> dict[str, str]:
-    """Return what a front of the drive may minimise: name and unit."""
+    """Objectives of a front of the drive: name and unit."""
     to_choose(scene)
     found = {name: unit for name, unit in OBJECTIVES.items() if not _lacking(scene, name)}
     used = {load_front.UTILISATION: ""} if scene.teeth is not None else {}
@@ -39,7 +39,7 @@ def to_choose(scene: Scene) -> None:
 
 
 def _lacking(scene: Scene, name: str) -> str:
-    """Return what an objective needs and the drive lacks; "" where it has it."""
+    """The reason why the drive lacks an objective; "" where it has it."""
     try:
         replace(_train(scene), objective=name)
     except ValueError as reason:

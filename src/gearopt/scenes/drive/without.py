@@ -1,4 +1,4 @@
-"""A drive without what a question leaves aside: layout, processes, rating, webs."""
+"""A drive without the tables that a question leaves aside: layout, processes, rating, webs."""
 
 from typing import Any
 

@@ -1,1 +1,1 @@
-"""What the answer to any problem file rests on, said in the numbers of the file."""
+"""Remedies and sensitivities of all kinds, in the numbers of their files."""

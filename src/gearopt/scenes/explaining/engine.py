@@ -152,7 +152,7 @@ def grown(moves: Moves, factor: float) -> Moves:
 
 
 def within(clock: Clock, seconds: float, share: float = 1.0) -> Clock:
-    """Return a clock of so many seconds, or of a share of what is left if that is less."""
+    """Clock of so many seconds, or of a share of the time left if that is less."""
     left = clock.left.seconds
     own = seconds if left is None else min(seconds, share * left)
     return Clock(replace(clock.left, seconds=own if math.isfinite(own) else None), clock.watch)

@@ -42,7 +42,7 @@ UNPROVEN = "numbers are not solved again, because the answer is not proven optim
 
 
 def explanation(kind: Kind[S], scene: S, ask: Ask, result: Result | None = None) -> Explanation:
-    """Remedies of an impossible file, with its conflict; else what every number does to an answer.
+    """Remedies of an impossible file, with its conflict; else sensitivities to every number.
 
     result: the answer, where it is known; half of the time is for it otherwise.
     """
@@ -68,7 +68,7 @@ def without_design(result: Result) -> bool:
 
 
 def by_solving(kind: Kind[S], scene: S, ask: Ask, result: Result) -> Explanation:
-    """What every number of a file does to its answer, or which would make it possible."""
+    """Sensitivities to every number of a file, or the numbers that would make it possible."""
     clock = Clock(ask.budget, of_others(ask.watch))
 
     def answer(other: S) -> Result:

@@ -129,7 +129,7 @@ def influences(
     sloped: Callable[[Number], bool] = smooth,
     near: Callable[[Number], tuple[float, float]] | None = None,
 ) -> Iterator[Influence]:
-    """Yield what every wanted number does to the objective, as long as the clock allows.
+    """Yield the influence of every wanted number on the objective, while the clock allows.
 
     easing(number): the step that eases it and what that brings. sloped: whether a small change
     of it means anything.

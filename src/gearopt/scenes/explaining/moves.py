@@ -140,7 +140,7 @@ def less(scene: Any, there: Edited, part: float, only: int | None = None) -> Any
 
 
 def shorter(scene: Any, there: Edited, digits: int) -> Edited | None:
-    """Return the edits with every moved number of so few digits, away from what was there.
+    """Edits with every moved number of so few digits, rounded away from its old value.
 
     None where none is shorter.
     """

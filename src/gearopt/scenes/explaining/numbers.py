@@ -90,7 +90,7 @@ def _is_one(model: type[BaseModel], field: str, value: Any, path: Path) -> bool:
 
 
 def at(scene: Any, path: Path) -> Any:
-    """Return what stands at a place."""
+    """Value at a place."""
     for step in path:
         scene = scene[step] if isinstance(step, int) else getattr(scene, step)
     return scene
@@ -139,7 +139,7 @@ def allowed(scene: BaseModel) -> bool:
 
 
 def content(scene: BaseModel) -> dict[str, Any]:
-    """Return what the file of a scene holds, to be read again by its own rules."""
+    """Content of the file of a scene, to be read again by its own rules."""
     found: dict[str, Any] = _content(scene, ())
     return found
 

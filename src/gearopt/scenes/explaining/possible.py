@@ -1,4 +1,4 @@
-"""Whether a changed file has a design: what a kind answers to the search for remedies."""
+"""Whether a changed file has a design: the question of the search for remedies to a kind."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -95,7 +95,7 @@ def with_relief(scene: Scene, ask: Ask, gears: Result | None) -> Result:
 
 
 def _evaluated(scene: Scene, ask: Ask) -> Result:
-    """Return what is to be known of gears that are given, rated where the file asks for it."""
+    """Result of gears that are given, rated where the file asks for it."""
     without_method(ask, NOTHING)
     clock = Clock(ask.budget, ask.watch)
     if scene.rating is not None:
@@ -123,12 +123,12 @@ def _evaluated(scene: Scene, ask: Ask) -> Result:
 
 
 def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies | None:
-    """What to write instead where no gears meet the limits of the rating."""
+    """Remedies where no gears meet the limits of the rating."""
     return of_drive.remedies(scene.drive, clock, result, soon)
 
 
 def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
-    """What every number of the file does to the relief, else to the size of the pair."""
+    """Sensitivities of the relief, else of the size of the pair, to every number of the file."""
     if scene.relief is not None:
         return by_solving(KIND, scene, ask, result)
     return of_drive.influences(_to_size(scene).drive, ask, result)
@@ -171,7 +171,7 @@ def posed(scene: Scene, method: str) -> Model:
 
 
 def objectives(scene: Scene) -> Mapping[str, str]:
-    """Return what a front of reliefs, else of sizes, may minimise: name and unit."""
+    """Objectives of a front of reliefs, else of sizes: name and unit."""
     if scene.relief is not None:
         return relief_part.objectives(scene)
     return drive.KIND.trades.objectives(_to_size(scene).drive)

@@ -1,4 +1,4 @@
-"""What the contact of a pair takes for granted."""
+"""Assumptions of the contact of a pair."""
 
 from collections.abc import Iterator
 
@@ -11,7 +11,7 @@ from gearopt.scenes.pair.scene import Scene
 
 
 def contact_assumptions(scene: Scene, made: PairContact, pair: GearPair) -> list[str]:
-    """Return what the contact takes for granted, in sentences."""
+    """Assumptions of the contact, in sentences."""
     strain = "strain (wide gears)" if made.plane == "strain" else "stress (narrow gears)"
     coupled = 1e6 * made.coupling_mm_per_N
     return [

@@ -1,4 +1,4 @@
-"""What given gears must have to carry load: an involute, room for their bores, steady contact."""
+"""Checks of given gears: an involute, room for their bores, steady contact."""
 
 from typing import Any
 

@@ -216,7 +216,7 @@ def model(scene: Scene, made: PairMesh) -> Model:
 
 
 def objectives(scene: Scene) -> dict[str, str]:
-    """Return what a front of reliefs may minimise: the worst of all loads, or at one of them.
+    """Objectives of a front of reliefs: the worst of all loads, or at one of them.
 
     A free shape has no front.
     """

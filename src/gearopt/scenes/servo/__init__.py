@@ -90,7 +90,7 @@ def axis(scene: Scene, ask: Ask, known: Result | None) -> Result:
 
 
 def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies:
-    """What to write instead of a train that is impossible.
+    """Remedies of a train that is impossible.
 
     A changed file that is not decided does not cost the conflict.
     """
@@ -177,7 +177,7 @@ def possible(scene: Scene, clock: Clock) -> Verdict:
 
 
 def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
-    """What every number does to the answer."""
+    """Sensitivities of the answer to every number."""
     clock = Clock(ask.budget, of_others(ask.watch))
 
     def answer(other: Scene) -> Result:

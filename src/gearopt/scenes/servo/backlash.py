@@ -1,4 +1,4 @@
-"""What to write where gears may bind: a smaller minimum backlash, or other allowances.
+"""Remedies where gears may bind: a smaller minimum backlash, or other allowances.
 
 j = -(A_s1 + A_s2) + 2 tan(alpha) A_a, all at the ends that close the mesh (`physics.backlash`).
 """
@@ -23,7 +23,7 @@ DIGITS = 3  # of a minimum backlash that is proposed
 
 
 def binds(scene: Scene, clock: Clock) -> Remedies | None:
-    """Return which minimum backlashes are not kept, and what to write; None where all are.
+    """Minimum backlashes that are not kept, with their remedies; None where all are.
 
     An allowance moves as a whole, both ends alike, so that its width stays. Where both stages may
     bind, a key moves in both.

@@ -1,4 +1,4 @@
-"""What to write instead where no train is possible: why, and the smallest changes that help."""
+"""Remedies where no train is possible: the conflict, and the smallest changes that help."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -114,7 +114,7 @@ class Cause:
 
 
 def remedies(scene: Scene, clock: Clock, message: str = NO_TEETH) -> Remedies:
-    """Return the conflict of a train that is impossible, and what to write instead.
+    """Conflict and remedies of a train that is impossible.
 
     message: of the search. Numbers beside the cause are looked for at most PATIENCE.
     """

@@ -1,4 +1,4 @@
-"""What the answer for a servo axis takes for granted, in sentences."""
+"""Assumptions and notes of the answer for a servo axis, in sentences."""
 
 import math
 from dataclasses import replace
@@ -210,7 +210,7 @@ UNLISTED = "Other trains are not listed: time ran out before all were compared."
 def notes(
     scene: Scene, results: tuple[Result, ...], design: ServoDesign, report: ServoReport
 ) -> list[str]:
-    """Return what a reader should know beside the numbers."""
+    """Notes for the reader beside the numbers."""
     duty, found = scene.servo_duty(), []
     if duty is not None and design.ratio is not None:
         judged = candidates(scene, design.train).values()

@@ -1,4 +1,4 @@
-"""A servo axis's file as a whole: its tables, how they fit together, and what they describe."""
+"""A servo axis's file as a whole: its tables, how they fit together, the axis they describe."""
 
 import math
 from typing import Annotated, Any
@@ -236,7 +236,7 @@ class Scene(Table):
 
     @property
     def prices(self) -> tuple[Price, ...]:
-        """Return what every one of `sources` costs."""
+        """Costs of `sources`."""
         assert self.tolerances is not None
         return tuple(price(source, self.tolerances, self.cost) for source in self.sources)
 
@@ -303,7 +303,7 @@ class Scene(Table):
         )
 
     def choice(self, boxed: bool = True) -> Choice:
-        """Return the train to be chosen, and what it must keep; boxed: a required box too."""
+        """The train to be chosen, and its limits; boxed: a required box too."""
         assert self.train is not None
         held = boxed and self.space is not None and self.space.required
         asked = [(k, m.minimum_backlash) for k, m in enumerate(self.mesh, 1)]

@@ -1,4 +1,4 @@
-"""The tolerances of a servo train at minimum cost, and what they give in fact."""
+"""The tolerances of a servo train at minimum cost, and the error that they give in fact."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -148,7 +148,7 @@ def grades(scene: Scene, gears: Pairs) -> graded.Choice:
 
 
 def spent(scene: Scene, gears: Pairs) -> Outcome | None:
-    """Return the claim that what is held leaves nothing to the tolerances; None where it does."""
+    """The claim that the numbers held leave nothing to the tolerances; None where some is left."""
     rows = []
     for k, mesh in enumerate(scene.mesh, 1):
         asked, turns = (
@@ -173,7 +173,7 @@ def spent(scene: Scene, gears: Pairs) -> Outcome | None:
 
 
 def tolerance_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
-    """Solve the tolerances; add what they cost and what they give."""
+    """Solve the tolerances; add their costs and the errors they give."""
     import numpy as np
 
     posed, table = problem(scene, gears), scene.tolerances
@@ -212,7 +212,7 @@ def named(limit: str, parts: Sequence[Component | Source]) -> str:
 
 
 def widths(scene: Scene, x: Array, before: Array) -> Array:
-    """Tolerances [mm] of a point of `problem`: what it holds, or what its grades are.
+    """Tolerances [mm] of a point of `problem`: those it holds, or those of its grades.
 
     before: the tolerances of the file (`old`) [mm].
     """

@@ -23,7 +23,7 @@ COST, ERROR = "cost", "error"
 
 
 def objectives(scene: Scene) -> dict[str, str]:
-    """Return what a front of the axis may minimise: name and unit.
+    """Objectives of a front of the axis: name and unit.
 
     Of a train what it is judged by; of tolerances of given gears cost and error, by the rule of the
     budget, or of each budget where there are several.

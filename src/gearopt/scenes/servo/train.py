@@ -1,4 +1,4 @@
-"""The parts of a servo axis's answer: train, ratio and box, with what is known beside them."""
+"""The parts of a servo axis's answer: train, ratio and box, with bounds beside them."""
 
 import math
 from dataclasses import dataclass, replace
@@ -228,7 +228,7 @@ def _neighbour(scene: Scene, gears: Pairs, first: float, best_of: str) -> Listed
 
 
 def beside(scene: Scene, chosen: Pairs | None) -> ServoReport:
-    """Return real-valued bounds, and what other numbers of stages would bring.
+    """Real-valued bounds, and the figures of other numbers of stages.
 
     These are of the ratio that is asked for, or of the chosen train where a range is.
     """
@@ -280,7 +280,7 @@ def candidates(scene: Scene, chosen: TrainDesign | None) -> dict[str, Candidate]
 
 
 def ratio_part(scene: Scene, chosen: TrainDesign | None, ask: Ask) -> Found:
-    """Solve the best total ratio; judge the chosen train and what is given beside it."""
+    """Solve the best total ratio; judge the chosen train and the given one beside it."""
     duty = scene.servo_duty()
     assert duty is not None
     goal = GOALS[duty.goal]

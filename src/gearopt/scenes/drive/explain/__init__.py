@@ -1,1 +1,1 @@
-"""What a scene's answer rests on, said in the numbers of its file."""
+"""Remedies and sensitivities of a drive, in the numbers of its file."""

@@ -1,4 +1,4 @@
-"""What to write instead of an impossible drive, and what every number does to a possible one."""
+"""Remedies of an impossible drive, and the sensitivities of a possible one."""
 
 import math
 from dataclasses import replace
@@ -24,7 +24,7 @@ ANY_DESIGN_GAP = 1e9  # gap of a design that need not be the best
 
 
 def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies | None:
-    """What to write instead: of the box where the gears are possible, else of the gears.
+    """Remedies: of the box where the gears are possible, else of the gears.
 
     soon: of a drive that ratings limit the conflict alone, where it is found soon.
     """
@@ -79,7 +79,7 @@ def _status(scene: Scene, clock: Clock) -> str:
 
 
 def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
-    """What every number of the file does to a design; the number of stages is held."""
+    """Sensitivities of a design to every number of the file; the number of stages is held."""
     scene = without(scene, "processes", *(() if scene.by_ratings else ("rating",)))
     clock = Clock(ask.budget, of_others(ask.watch))
     if result.value is None:

@@ -1,4 +1,4 @@
-"""A drive that was sized, explained: what binds, and its sensitivities to every number."""
+"""A drive that was sized, explained: its binding limits, its sensitivities to every number."""
 
 from collections.abc import Callable
 from typing import Any

@@ -221,7 +221,7 @@ def comparable(scene: Scene, found: Sequence[Move]) -> bool:
 
 
 def reachable(scene: Scene, move: Move) -> Move:
-    """Return the number with its reach cut to what the file's rules allow (1: no move)."""
+    """The number with its reach cut to the range that the file's rules allow (1: no move)."""
     low, high = 1.0, max((h.reach for h in move.handles), default=1.0)
     if applied(scene, ((move, high),)) is not None:
         return move
@@ -245,7 +245,7 @@ def _module_back(scene: Scene, now: Any, before: Any, part: float) -> Any:
 
 
 def inherited(scene: Scene, path: Path) -> Any:
-    """Return what holds at a place of the file: its own, or that for all stages."""
+    """Value at a place of the file: its own, or that for all stages."""
     field = str(path[-1])
     own = scene.stage[path[1]] if path[0] == "stage" and scene.stage else None  # type: ignore[index]
     if own is not None and getattr(own, field) is not None:

@@ -24,7 +24,7 @@ Tried = tuple[Scene, tuple[Change, ...]]
 def other_gears(
     scene: Scene, pairs: tuple[GearPair, ...], known: tuple[Remedy, ...], clock: Clock
 ) -> tuple[tuple[Remedy, ...], str]:
-    """Return the switches with which other gears fit, each solved, and what is not known.
+    """Switches with which other gears fit, each solved, and a sentence on those not known.
 
     pairs: gears sized first, which do not fit. known: remedies for these, which are not tried.
     """

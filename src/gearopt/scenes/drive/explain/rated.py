@@ -45,7 +45,7 @@ def conflict_soon(scene: Scene, clock: Clock) -> Remedies | None:
 
 
 def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Remedies:
-    """Return the conflict, and what alone makes the drive possible, smallest changes first.
+    """The conflict, and the changes that alone make the drive possible, the smallest first.
 
     status(scene): of a changed drive, solved; asked where sizes are real-valued.
     """

@@ -17,7 +17,7 @@ GRADES = (1, 2, 3)  # metallurgical ones of AGMA
 
 
 def choices(scene: Scene, known: Conflict, works: Works) -> Iterator[Remedy]:
-    """Yield what suffices alone: more materials, a better grade, a series, one stage more or less.
+    """Yield choices that suffice alone: more materials, a better grade, a series, another count.
 
     known: what is in no conflict is not tried. works(scene): whether a changed drive has a design.
     """

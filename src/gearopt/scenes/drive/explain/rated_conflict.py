@@ -54,14 +54,14 @@ class _Filter:
     needed: set[str] = field(default_factory=set)
 
     def possible(self, dropped: Sequence[str] | Dropped) -> bool | None:
-        """Return whether a design exists without what is dropped; None: not known."""
+        """Whether a design exists without the requirements dropped; None: not known."""
         key = frozenset(dropped)
         if key not in self.answers:
             self.answers[key] = any_possible(self.case, without(self.case.scene, key))
         return self.answers[key]
 
     def drop(self, families: Sequence[Sequence[str]]) -> None:
-        """Drop what can be dropped of some families, in halves where all together cannot be."""
+        """Drop all of some families that can be, in halves where all together cannot be."""
         if not families:
             return
         names = [name for family in families for name in family]

@@ -1,4 +1,4 @@
-"""What a drive that ratings limit is asked for, by name, and the drive without some of it.
+"""Requirements of a drive that ratings limit, by name, and the drive without some of them.
 
 What is dropped: safety factors, limits of sizes and ratios, hunting teeth and equal materials as if
 they were not there; modules within the widest series of [teeth]; b/d1 from WIDTHS to three; numbers
@@ -45,7 +45,7 @@ ALWAYS = 1e9  # times a load limit: none
 
 
 def requirements(scene: Scene) -> tuple[tuple[tuple[str, ...], ...], ...]:
-    """Return the names of what is asked for: the groups of ORDER, families, names of their stages.
+    """Names of the requirements: the groups of ORDER, families, names of their stages.
 
     A name of a stage is `wheel_diameter[2]`; where the number of stages is open, it is of all.
     """
@@ -111,7 +111,7 @@ def _ends(name: str, low: Any, high: Any, least: int = 0) -> list[str]:
 
 
 def without(scene: Scene, dropped: Dropped) -> tuple[Train, ...]:
-    """Return the drives of every number of stages without what is dropped."""
+    """Drives of every number of stages without the requirements dropped."""
     for name, changed in (("materials", _with_materials), ("material_grade", _with_grades)):
         scene = changed(scene) if name in dropped else scene
     scene = _short_lived(scene) if "life" in dropped else scene

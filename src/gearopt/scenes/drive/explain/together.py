@@ -192,7 +192,7 @@ def is_real(scene: Scene, clock: Clock) -> bool:
 
 
 def posed(scene: Scene) -> tuple[Problem, list[Handle], list[Move]]:
-    """Return the problem with real-valued sizes, what may be relaxed, and the file's numbers."""
+    """The problem with real-valued sizes, its relaxable numbers, and the file's."""
     train = scene.train()
     base = sizing_text.movable(train)
     known = [_named(h, train, scene.teeth is None) for h in handles(base)]

@@ -78,7 +78,7 @@ class Case:
         return any_train(train, self.clock.within(self.seconds), self.clock.watch, self.shelf)
 
     def status(self, scene: Scene) -> str:
-        """Return what is known of a changed drive: feasible, infeasible or undecided.
+        """Status of a changed drive in a word: feasible, infeasible or undecided.
 
         Real-valued sizes are asked first: where they are impossible, whole teeth are.
         """

@@ -1,4 +1,4 @@
-"""Rating by AGMA 2001: what its tables say of a stage, its factors by name, materials in words."""
+"""Rating by AGMA 2001: a stage from its tables, factors by name, materials in words."""
 
 from dataclasses import replace
 from typing import Any
@@ -45,7 +45,7 @@ UNVERIFIED_SPECTRUM = ()  # of a load spectrum: what no second source has
 
 
 def title(asked: RatingTable) -> str:
-    """Return what the rating follows."""
+    """The standard that the rating follows."""
     return f"{TITLES[asked.edition]}, geometry factors of AGMA 908-B89"
 
 

@@ -1,4 +1,4 @@
-"""Rating by ISO 6336: what its tables say of a stage, its factors by name, materials in words."""
+"""Rating by ISO 6336: a stage from its tables, factors by name, materials in words."""
 
 from typing import Any
 
@@ -24,7 +24,7 @@ UNVERIFIED_SPECTRUM = ("load spectrum by part 6",)  # what no second source has
 
 
 def title(asked: RatingTable) -> str:
-    """Return what the rating follows."""
+    """The standard that the rating follows."""
     return f"ISO 6336 parts 1, 2, 3 and 5, method B, edition {asked.iso6336.edition}"
 
 

@@ -1,4 +1,4 @@
-"""What the tables of a rating must agree on; what only a rating needs."""
+"""Checks of the tables of a rating, and of keys that only a rating needs."""
 
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
@@ -40,7 +40,7 @@ CYCLES = ("Y_N", "Z_N", "Y_NT", "Z_NT")  # factors that follow from the levels o
 
 
 def not_given(gears: Gears, stages: Sequence[StageTable]) -> Iterator[Place]:
-    """Yield the places of what leaves gears open: a tooth number, module or width to be found."""
+    """Yield the places of open sizes: a tooth number, module or width to be found."""
     if not stages:
         yield ("stage",)
     for k, stage in enumerate(stages):
@@ -66,7 +66,7 @@ def check_given(gears: Gears, stages: Sequence[StageTable]) -> None:
 
 
 def check_sized(law: Law, own: Law, stages: Sequence[StageTable], ruled: Sequence[str]) -> None:
-    """Refuse what gears that ratings limit cannot have: processes, own load limits.
+    """Refuse the keys that gears limited by ratings cannot have: processes, own load limits.
 
     law: what limits the loads beside ratings; own: of which stages have limits of their own; ruled:
     names of the processes asked for.
@@ -120,7 +120,7 @@ def check_unrated(
     materials: Sequence[Named],
     used: Sequence[str] = (),
 ) -> None:
-    """Refuse what changes nothing without a table [rating]; used: keys of gears that do."""
+    """Refuse keys that change nothing without a table [rating]; used: keys of gears that do."""
     if materials:
         raise refuse("needs a table [rating]", at=("material",), action="remove")
     for place in _only_rated(gears, stages, load):

@@ -1,4 +1,4 @@
-"""From the tables of a file to what physics rates: gears, blanks, operations, levels of load."""
+"""The gears that physics rates, from tables: materials, blanks, operations, levels of load."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -50,7 +50,7 @@ def names(own: GearTable, shared: GearKeys) -> tuple[str, ...]:
 def choices(
     own: GearTable, shared: GearKeys, materials: Sequence[Named]
 ) -> tuple[tuple[GearTable, Named | None], ...]:
-    """Return what a gear has with each material that it may have, and that material."""
+    """Tables of a gear with each material that it may have, and that material."""
     table = with_shared(own, shared)
     table = table.model_copy(update={"materials": None})
     known = {one.name: one for one in materials}
@@ -61,7 +61,7 @@ def choices(
 
 
 def _of(material: Named) -> dict[str, Any]:
-    """Return what a gear has of its material: its steel, and its accuracy where it has one."""
+    """Keys of a gear by its material: its steel, and its accuracy where it has one."""
     steel = {key: getattr(material, key) for key in STEEL}
     made = {key: getattr(material, key) for key in MADE}
     return steel | {key: value for key, value in made.items() if value is not None}

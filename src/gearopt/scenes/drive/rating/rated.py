@@ -167,7 +167,7 @@ def rated_afterwards(scene: Scene, result: Result) -> Result:
 
 
 def utilisations(found: DriveRating) -> dict[str, float]:
-    """Return what of its safety factors every gear uses: asked for over there, of stress.
+    """Utilisations of the safety factors of every gear: asked for over there, of stress.
 
     Of two standards those of the second, which is ISO 6336, have names of their own.
     """

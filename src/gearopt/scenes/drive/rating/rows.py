@@ -203,7 +203,7 @@ def factor_rows(mesh: Mesh) -> list[RatingFactor]:
 def shaft_rows(
     pairs: Sequence[GearPair], pinion_hands: Sequence[str], moved: float, speed: float
 ) -> tuple[ShaftRating, ...]:
-    """Return what every shaft carries; moved: torque [N mm] of the input, speed [rad/s]."""
+    """Loads of every shaft; moved: torque [N mm] of the input, speed [rad/s]."""
     forces = train_forces(pairs, moved, pinion_hands)
     ratios = [float(pair.ratio) for pair in pairs]
     return tuple(

@@ -1,4 +1,4 @@
-"""The bodies of gears in a file: keys of rim, web, bore and hub; checks; and what does not fit."""
+"""The bodies of gears in a file: keys of rim, web, bore and hub; checks; flaws."""
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
@@ -76,7 +76,7 @@ def beside(key: str) -> tuple[str, ...]:
 
 
 def blank(table: BlankKeys, face_width: float | None) -> Blank:
-    """Return the blank of gears with what all of them share; face_width [mm], where it is given."""
+    """Blank of a gear by its table; face_width [mm], where it is given."""
     web = table.web_over_face_width
     thick = 1.0 if web is None else float(web)
     if table.web_thickness is not None and face_width:

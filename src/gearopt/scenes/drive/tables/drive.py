@@ -1,4 +1,4 @@
-"""Stages and limits of a drive, what is best, and design processes beside it."""
+"""Tables of a drive: stages, limits, objective, and design processes."""
 
 from collections.abc import Callable
 from fractions import Fraction

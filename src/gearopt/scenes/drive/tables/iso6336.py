@@ -1,4 +1,4 @@
-"""What a rating by ISO 6336 needs beside what ratings share: materials, accuracy, oil, factors."""
+"""Tables of a rating by ISO 6336 alone: materials, accuracy, oil, factors."""
 
 from fractions import Fraction
 from typing import Annotated, Any

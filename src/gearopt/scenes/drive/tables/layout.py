@@ -1,4 +1,4 @@
-"""[layout], [[place]] and [[keep_out]]: the box around a drive, and what stands in its way."""
+"""[layout], [[place]] and [[keep_out]]: the box around a drive, and obstacles."""
 
 import math
 from typing import Annotated, Any

@@ -1,4 +1,4 @@
-"""What a rating needs beside the gears: materials and tools of gears, service, factors, loads."""
+"""Tables of a rating: materials and tools of gears, service, factors, loads."""
 
 from fractions import Fraction
 from typing import Annotated
@@ -192,7 +192,7 @@ class GearTable(GearKeys):
 
 
 def with_shared(own: GearTable, shared: GearKeys) -> GearTable:
-    """Return what a gear has, of its own or of all gears."""
+    """Keys of a gear: its own, else those of all gears."""
     fields = GearKeys.model_fields
     names = [n for n in fields if all(getattr(own, key) is None for key in beside(n))]
     return own.model_copy(update={n: getattr(shared, n) for n in names})

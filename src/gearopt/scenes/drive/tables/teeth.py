@@ -55,7 +55,7 @@ def _allowance(gear: GearTable) -> float:
 def check_teeth(
     stages: tuple[StageTable, ...], gears: Gears, given: bool, objective: str, asked: str
 ) -> None:
-    """Refuse centre distances off the reference circles where what is sought cannot take them.
+    """Refuse centre distances off the reference circles where the objective cannot take them.
 
     given: whether all gears are; objective: what is minimised; asked: what else takes reference
     circles, such as gears and box at once, or nothing.

@@ -332,7 +332,7 @@ class Price:
 
 
 def price(source: Source, table: Tolerances, costs: tuple[CostTable, ...]) -> Price:
-    """Return what a deviation costs, by its own table where it has one."""
+    """Cost of a deviation, by its own table where it has one."""
     cost, k = (table.pitch_cost if source.kind == "pitch" else Fraction(1)), table.exponent
     for own in costs:
         if own.meets(source):

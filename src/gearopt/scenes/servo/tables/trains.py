@@ -116,7 +116,7 @@ class Train(Table):
 
     @property
     def goal(self) -> str:
-        """Return what is minimised: an objective of a `ServoTrain`."""
+        """Objective that is minimised, of a `ServoTrain`."""
         return AIMS[self.aim].name
 
     @property
