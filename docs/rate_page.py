@@ -58,9 +58,9 @@ inches: `diametral_pitch = 10`, `"1.5 in"`, `"4 hp"`, `"50 ksi"`.
 ```
 {catalogue}```
 
-- **safe**: the gears fit, and every safety factor is at least the one asked for,
+- **safe**: the gears fit, and every safety factor is at least the required one,
   `minimum_bending_safety` and `minimum_contact_safety` (1 by default). The exit code is 0 either
-  way: an unsafe pair is an answer too. In `--json`, `limits` holds asked for over there, here
+  way: an unsafe pair is an answer too. In `--json`, `limits` holds required over actual, here
   {used_value} for {used}. Gears that cannot be assembled or cannot run (backlash below zero, tips
   that reach into roots or cut into fillets, a bore as wide as its root circle) are never safe, by
   any standard: the reasons come first, in numbers (`misfits` in `--json`), and the exit code is 3.
@@ -70,8 +70,8 @@ inches: `diametral_pitch = 10`, `"1.5 in"`, `"4 hp"`, `"50 ksi"`.
 - **S_F**, **S_H**: permissible over existing stress. S_H is of stress; of load it is its square,
   {square} here for the pinion.
 - **permissible**: the allowable stress number of the steel, s_at or s_ac, times Y_N or Z_N (and C_H
-  for a softer wheel), over K_T K_R: what the tooth bears for the life asked for.
-- **power capacity**: the power at which the least safety factor is just the one asked for.
+  for a softer wheel), over K_T K_R: what the tooth bears for the required life.
+- **power capacity**: the power at which the least safety factor is just the required one.
 - **life**: until a safety factor has fallen to 1. The curves of Y_N and Z_N end at 1e10 cycles;
   beyond them no number is told.
 - **efficiency**: of the mesh alone, from `oil_viscosity` or `friction_coefficient`. A computed
@@ -186,7 +186,7 @@ The sum is what the bearings of a shaft hold. Turned the other way round all thr
 
 ## A drive that is sized
 
-With a table `[rating]` beside `[limits]` its safety factors, at the life that is asked for, are
+With a table `[rating]` beside `[limits]` its safety factors, at the required life, are
 limits: `gearopt solve` finds the teeth, modules and face widths of least volume, mass or length
 whose gears are all safe, by AGMA, by ISO 6336 or by both, and proves it by exhausting all others
 (`problems/elevator_by_agma.toml`, `problems/minimum_volume_pair.toml`). The winner is rated once
@@ -403,4 +403,4 @@ def _sized() -> str:
     text = (PROBLEMS / "sized_and_rated.toml").read_text(encoding="utf-8")
     expected = tomllib.loads(text)["x-expected"]
     duty = tomllib.loads(text)["duty"]["power"]
-    return f"it may transmit {expected['power_capacity_kW']:.1f} kW, {duty} asked for"
+    return f"it may transmit {expected['power_capacity_kW']:.1f} kW, {duty} required"

@@ -74,7 +74,7 @@ def test_blocks_of_limits_of_an_own_problem_are_no_stages():
     assert "The limits on shaft length[1] and shaft length[2] determine" in repr(
         found
     ) and "stage" not in repr(found)
-    assert [row["limit used, %"] for row in found.table("limits")] == [
+    assert [row["utilisation, %"] for row in found.table("limits")] == [
         "shaft length[1]",
         "shaft length[2]",
     ]

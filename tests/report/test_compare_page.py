@@ -147,7 +147,9 @@ def test_verdicts():
     )
     (group,) = made.groups
     ipopt, wrong = group.rows
-    assert words.reference(group).startswith("Gaps are to the proven lower bound of the inverse, 1")
+    assert words.reference(group).startswith(
+        "Gaps are measured from the proven lower bound of the inverse, 1"
+    )
     assert words.verdict(group, ipopt).startswith("reaches the proven optimum in ")
     missed = "0 of 3 seeds within 0.1 %, 2 without a feasible point"
     assert words.verdict(group, wrong).startswith(
@@ -238,7 +240,9 @@ def test_gaps_to_a_bound_of_zero_are_said_in_the_scale_of_the_objective(found):
     said = words.reference(group)
     assert "scale, 4" in said and "best known is 0.0017" in said and "e-73" not in said
     assert "%" not in said
-    assert "a feasible point attains it" in words.reference(replace(group, best=1e-9))
+    assert "a feasible point attains: it is the optimum" in words.reference(
+        replace(group, best=1e-9)
+    )
 
 
 def test_the_call_on_the_page_of_comparisons_runs():

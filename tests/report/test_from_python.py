@@ -84,7 +84,7 @@ def test_the_lines_of_a_drive(solved):
     assert repr(solved("elevator")).splitlines()[:4] == [
         "Two-stage elevator drive: gear volume 5,782.4 cm³, proven optimal",
         "  The limits on K-factor of stages 1 and 2 determine the gear volume; "
-        "ratio tolerance: 63 % used.",
+        "the ratio uses 63 % of its tolerance.",
         "  stage 1: m_n 2 mm, z 21/115",
         "  stage 2: m_n 3 mm, z 23/91",
     ]
@@ -175,13 +175,15 @@ def test_a_stage_is_a_row(solved):
     assert [row["name"] for row in rows] == ["stage 1", "stage 2"]
     for row, stage in zip(rows, found.design["stages"], strict=True):
         assert row["teeth z1"] == stage["pinion_teeth"] and type(row["teeth z1"]) is int
-        assert row["diameter d2 [mm]"] == stage["wheel_diameter_mm"]
+        assert row["reference diameter d2 [mm]"] == stage["wheel_diameter_mm"]
     assert [part["name"] for part in found.table("proof")] == ["drive", "real-valued sizes"]
     assert found.table("proof")[1]["status"] == "proven optimal"
     (totals,) = found.table("totals")
     assert totals["ratio"] == found.design["ratio"]
     inch = found.table("stages", units="inch")
-    assert inch[0]["diameter d2 [in]"] == pytest.approx(rows[0]["diameter d2 [mm]"] / 25.4)
+    assert inch[0]["reference diameter d2 [in]"] == pytest.approx(
+        rows[0]["reference diameter d2 [mm]"] / 25.4
+    )
 
 
 def test_an_unknown_table_is_told_with_those_there_are(solved):

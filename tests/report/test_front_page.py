@@ -188,7 +188,7 @@ def test_designs_of_different_numbers_of_stages_stand_in_one_table():
     last = replace(front.points[1], design=short, limits=limits)
     html = page(replace(front, points=(first, front.points[1])))
     told = plots(html)[1]
-    row = told["rows"].index("stage 2: diameter d2 [mm]")
+    row = told["rows"].index("stage 2: reference diameter d2 [mm]")
     assert told["points"][0][row] == "" and float(told["points"][1][row]) > 300.0
     assert 'hidden><th scope="row">K-factor of stage 2' not in html
     both = page(replace(front, points=(first, last, front.points[1]), picks=()))

@@ -66,11 +66,11 @@ def test_other_kinds_are_shown_by_what_their_design_holds(scene):
     result = replace(cases.elevator(), scene=scene, design=design, parts=())
     assert pages_of(scene) is generic.PAGES
     made = {section.heading: section for section in sections(result)}
-    assert len(made["Gears in one line"].drawings) == 2
+    assert len(made["Gears with all shafts in one plane"].drawings) == 2
     assert [t.name for t in made["Design"].tables] == ["stages", "totals"]
     out = io.StringIO()
     show(result, Console(file=out, width=99))
-    for words in ("face width b [mm]", "shift [mm]", "limit used, %"):
+    for words in ("face width b [mm]", "shift [mm]", "utilisation, %"):
         assert words in out.getvalue()
 
 
@@ -125,7 +125,7 @@ def test_a_problem_file_makes_a_page(path):
 def test_cylinders_at_the_clearance_to_the_walls_are_counted(make, clear, asked, some):
     """Around cylinders that touch the walls, walls 5.08 mm = 0.2 in farther out."""
     near = answer.opening(make())
-    assert "cylinders stand at the walls" in near
+    assert "cylinders touch the walls" in near
     box = make().design["container"]
     wider = {
         k: v + 2.0 * clear for k, v in box.items() if k in ("diameter_mm", "width_mm", "depth_mm")
@@ -134,7 +134,7 @@ def test_cylinders_at_the_clearance_to_the_walls_are_counted(make, clear, asked,
     design = make().design | {"container": box | wider}
     found = answer.opening(replace(make(), design=design, asked={"container": {"wall": asked}}))
     count = near.split(" cylinders")[0] if some else near.split(": ")[0] + ": 0 of the "
-    assert found.startswith(count) and "at the clearance to the walls" in found
+    assert found.startswith(count) and "at the minimum clearance to the walls" in found
 
 
 def test_gears_of_several_stages_are_told_apart():

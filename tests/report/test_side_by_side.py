@@ -48,7 +48,7 @@ def test_every_design_is_a_column(three):
     heads, rows, missing = side_by_side(three)
     cells = {row[0]: list(map(read, row[1:])) for row in rows}
     assert heads == ["", "exact", "process one", "process two"] and not missing
-    assert cells["stage 1: m_n, z1/z2"] == ["1.5, 21/160", "1.5, 27/229", "1.25, 27/237"]
+    assert cells["stage 1: m_n [mm], z1/z2"] == ["1.5, 21/160", "1.5, 27/229", "1.25, 27/237"]
     assert cells["stage 3: a [mm]"] == ["220.68", "251.57", "236.12"]
     assert cells["ratio error [%]"] == ["-0.860", "0.335", "-0.878"]
     assert cells["gear volume [cm³]"] == ["12,715", "20,369", "17,877"]

@@ -160,7 +160,7 @@ def test_inch_tables_are_the_metric_ones_converted(elevator):
     assert set(metric) == set(inch)
     mm = {row[0]: row[1:] for row in rows(metric["stages.csv"])}
     inches = {row[0]: row[1:] for row in rows(inch["stages.csv"])}
-    for name in ("face width b", "diameter d1", "tip diameter d_a2", "centre distance a"):
+    for name in ("face width b", "reference diameter d1", "tip diameter d_a2", "centre distance a"):
         for a, b in zip(mm[f"{name} [mm]"], inches[f"{name} [in]"], strict=True):
             assert math.isclose(float(a), 25.4 * float(b), rel_tol=1e-14)
     pitches = [float(v) for v in inches["diametral pitch P_nd [1/in]"]]
@@ -191,7 +191,7 @@ def test_units_in_heads_are_no_markup_on_the_terminal():
 
 LONG = 'mesh[1].wheel_thickness = ["-0.0429 mm", "-0.0184 mm"]'
 WAYS = [  # as of remedies
-    ["all deviations, all alike", LONG, '["-0.07 mm", "-0.03 mm"]', 1.628, 1.626],
+    ["all deviations, by one factor", LONG, '["-0.07 mm", "-0.03 mm"]', 1.628, 1.626],
     ["  and", 'mesh[1].pitch = "0.0184 mm"', "0.03 mm", "", ""],
 ]
 
@@ -203,7 +203,7 @@ def test_what_is_to_be_written_is_never_cut(width):
     console.print(grid(Table("remedies", heads, WAYS, words=True, left=3), width))
     lines = console.file.getvalue().splitlines()
     assert max(map(len, lines)) <= width and not any("…" in line for line in lines)
-    assert any("all deviations, all" in line for line in lines)  # no column of single letters
+    assert any("all deviations, by" in line for line in lines)  # no column of single letters
     assert (LONG in "\n".join(lines)) == (width >= 90)
     assert "0.0184" in "".join(lines) and len(lines) < 10
 

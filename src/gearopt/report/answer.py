@@ -46,6 +46,15 @@ ROWS = (
 )
 WAYS = {"below": -1, "above": 1}  # in which a bound is rounded, by the side without designs
 SHOWN_ELSEWHERE = ("method", "arithmetic", "sentence")  # of a proof, elsewhere
+PROOFS = {  # methods of proofs: what their names mean
+    "boxes": "search of boxes",
+    "corner": "bound at a corner",
+    "dual": "dual bound",
+    "exhausted": "exhaustive search",
+    "patterns": "search of contact patterns",
+    "subdivision": "subdivision of the width",
+    "volume": "volume of the cylinders",
+}
 CHECKS = {  # of a certificate: what each number is
     "feasibility": "largest violation of a limit",
     "stationarity": "largest gradient left in the Lagrangian, relative",
@@ -117,7 +126,7 @@ def limits(result: Result, measures: Measures) -> Section | None:
         return None
     stages, rows = limit_rows(result.limits, has_stages(result))
     heads = [
-        "limit used, %",
+        "utilisation, %",
         *(f"stage {k}" for k in range(1, stages + 1)),
         pages_of_result(result).whole,
     ]
@@ -237,10 +246,16 @@ def _column(part: Result, measures: Measures) -> list[Any]:
         *amounts,
         "" if part.gap is None else Cell(100.0 * part.gap, gap_percent(part.gap).rstrip(" %")),
         part.method,
-        "by rules" if part.name in RULED else str(part.proof.get("method", "")),
+        "by rules" if part.name in RULED else _proven_by(part),
         part.evaluations,
         Cell(part.seconds, f"{part.seconds:.3g}"),
     ]
+
+
+def _proven_by(part: Result) -> str:
+    """The method of a proof in words."""
+    method, comma, early = str(part.proof.get("method", "")).partition(",")
+    return f"{PROOFS.get(method, method)}{comma}{early}"
 
 
 def _amount(value: float | None, unit: str, measures: Measures, way: int) -> Cell | str:
@@ -272,7 +287,7 @@ def assumed(result: Result) -> list[str]:
     """Where the assumptions of a result are listed, as one sentence; none where it has none."""
     count = len(result.report.get("assumptions", ()))
     if count == 1:
-        return ["1 assumption; --html and --json tell it."]
+        return ["1 assumption; --html and --json list it."]
     return [f"{count} assumptions; --html and --json list them."] if count else []
 
 

@@ -90,16 +90,17 @@ def reference(group: Group) -> str:
     value = amount(0.0 if zero else group.reference, unit_of(group))
     if not group.proven:
         return (
-            f"Nothing is proven here: gaps are to the best {name} known, {value}, which may "
-            "itself not be the optimum."
+            f"Nothing is proven here: gaps are measured from the best {name} known, {value}, which "
+            "may itself not be the optimum."
         )
-    words = f"Gaps are to the proven lower bound of the {name}, {value} ({group.bound_from}"
+    words = f"Gaps are measured from the proven lower bound of the {name}, {value}"
+    words += f" (by {group.bound_from}"
     if zero:
         words += f"; relative to {_own(group)}"
     if group.best is None:
         return f"{words}). No method found a feasible point."
     if _closed(group):
-        return f"{words}, and a feasible point attains it: the optimum is known)."
+        return f"{words}), which a feasible point attains: it is the optimum."
     if zero:
         above = amount(group.best - group.reference, unit_of(group))
         return f"{words}). The best known is {above} above it; the optimum lies between."

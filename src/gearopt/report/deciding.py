@@ -172,7 +172,7 @@ def _tolerance(result: Result) -> list[str]:
     room = 1.0 - low * ratio / asked if error < 0.0 else ratio / high / asked - 1.0
     if room <= REACHED:
         return []
-    return [f"ratio tolerance: {_whole(abs(error) / 100.0 / room)} % used"]
+    return [f"the ratio uses {_whole(abs(error) / 100.0 / room)} % of its tolerance"]
 
 
 def _free(result: Result) -> str:

@@ -35,7 +35,7 @@ LISTED = {"between": ("from", "to")}  # lists of as many values: what each is ca
 
 def teeth_head(measures: Measures) -> str:
     """The head of a column of modules and teeth, for reading."""
-    return f"{measures.module[1]}, z1/z2"
+    return "{1} [{2}], z1/z2".format(*measures.module)
 
 
 def teeth_heads(measures: Measures) -> tuple[str, str, str]:
@@ -123,8 +123,8 @@ def trains(result: Result, measures: Measures) -> Section | None:
     minimum, stages = ranked[0]["objective"], len(ranked[0]["stages"])
     length = measures.unit("mm")
     goal, centres = (
-        f"{name}\n{measures.unit(unit)}".rstrip(),
-        f"centre distances\n{length}",
+        f"{name}\n[{measures.unit(unit)}]" if unit else name,
+        f"centre distances\n[{length}]",
     )
     names = {head.replace("\n", " "): head for head in (goal, centres)}
     single = [
@@ -146,8 +146,8 @@ def trains(result: Result, measures: Measures) -> Section | None:
         wrap=6,
     )
     words = (
-        "Distinct choices of teeth, each with its best modules and widths. The list is complete: "
-        "no other train is better than the last one."
+        "The trains differ in their teeth; each has its best modules and face widths. The list is "
+        "complete: no other train is better than the last one."
     )
     whole = best.proof.get("method") == "exhausted" and (best.gap or 0.0) <= EXACT
     words = words if whole else "The best trains of those evaluated; others may be better."

@@ -115,12 +115,16 @@ def influence_words(prices: Mapping[str, Any], result: Result) -> list[str]:
     if not _sloped(prices):
         return [
             *lines,
-            f"Change of the {name} as one number changes by a step: solved again for each.",
+            f"An effect is the change of the {name} as one number takes a step, solved again.",
         ]
-    slope = f"Sensitivity of the {name}: d ln objective / d ln number, % per %"
-    if any(i["sensitivity"] is not None for i in prices["influences"]):
-        return [*lines, f"{slope}{prices.get('basis', '')}."]
-    return [*lines, f"{slope}, by re-solving."]
+    slope = f"Sensitivities are changes of the {name} in % per 1 % of the number (d ln / d ln)"
+    known = any(i["sensitivity"] is not None for i in prices["influences"])
+    lines.append(f"{slope}{prices.get('basis', '') if known else ', by solving again'}.")
+    if any("|" in _sides(i["resolved"]) for i in prices["influences"]):
+        lines.append(
+            "Of two values the first is for a smaller number, the second for a larger one."
+        )
+    return lines
 
 
 def clean(change: float) -> float:
@@ -223,7 +227,7 @@ def _doubtful(way: Mapping[str, Any]) -> bool:
 
 def _rows(way: Mapping[str, Any]) -> list[list[Any]]:
     """A row for every edit of a remedy; a factor that all of them have stands once."""
-    alike = ", all alike" if way["kind"] == "even" else ", one stage"
+    alike = ", by one factor" if way["kind"] == "even" else ", one stage"
     label = KINDS.get(way["kind"])
     if label is None:
         label = f"{series_of(grouped(way['what'].split(', ')))}{alike}"

@@ -67,7 +67,7 @@ def gap_percent(gap: float) -> str:
     """A gap in per cent, never less than it is."""
     if 0.0 < gap < NO_GAP:
         return f"below {100.0 * NO_GAP:.6f} %"
-    text = rounded(100.0 * gap, 2, way=1)
+    text = rounded(100.0 * (1.0 - EXACT) * gap, 2, way=1)  # a shorter number is itself
     return f"{text.rstrip('0').rstrip('.') if '.' in text else text} %"
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from gearopt.formulations.strength import laws
 from gearopt.optimise.result import Result
-from gearopt.report.measures import DIGITS, METRIC, Measures, read_in, rounded
+from gearopt.report.measures import DIGITS, METRIC, Measures, gap_percent, read_in, rounded
 
 REACHED = 1e-6  # nearer to a limit than that, it is reached
 MODULE = "normal_module_mm"
@@ -24,9 +24,17 @@ VERDICTS = {
     "failed": ("failed", "red"),
 }
 RATING = "rating"  # name of a result that rates gears that are given
+SIDES = ("left", "right", "front", "bottom", "top")  # keys of where a box ends
 RULED = ("process one", "process two")  # parts that are designs by rules
 EXACT = 1e-6  # a gap below it is called optimal, one above it is named
 
+GOALS = {  # objectives whose names alone do not say of what they are, by kind
+    "dynamics.peak_to_peak": "peak-to-peak deformation",
+    "dynamics.rms": "RMS of the deformation",
+    "packing.area": "plan area",
+    "packing.volume": "container volume",
+    "pair.peak_to_peak": "peak-to-peak transmission error",
+}
 INVERSE = {"inverse acceleration": ("acceleration", "rad/s²")}  # name and unit of the inverse
 SECONDS = 60.0  # that a run may take
 TOP_ON_PAGE = 10  # trains that a page lists
@@ -99,9 +107,9 @@ def edit(change: Mapping[str, Any]) -> str:
 
 @lru_cache(4096)
 def heading(key: str, measures: Measures = METRIC) -> str:
-    """`face_width_mm` as "face width [mm]"."""
+    """`face_width_mm` as "face width [mm]", `left_mm` as "left side at [mm]"."""
     stem, suffix = parted(key, measures)
-    words = stem.replace("_", " ")
+    words = f"{stem} side at" if stem in SIDES else stem.replace("_", " ")
     return f"{words} [{measures.unit(suffix)}]" if suffix else words
 
 
@@ -174,7 +182,7 @@ def certainty(result: Result) -> tuple[str, str]:
         words = "least for these gears"
     if result.status == "optimal" and (result.gap or 0.0) > EXACT:
         of = "the least for these gears" if these else "the optimum"
-        words = f"proven within {100 * (result.gap or 0.0):.2g} % of {of}"
+        words = f"proven within {gap_percent(result.gap or 0.0)} of {of}"
     if "achieved" in result.report:  # something is come near to
         words = words.replace("optimal", result.report.get("best", "nearest"))
     return f"{words} ({scope})" if scope else words, colour
@@ -218,7 +226,7 @@ def title(result: Result) -> str:
 def objective(result: Result) -> tuple[str, str]:
     """The name of the objective in words, and its unit as a key has it."""
     name, unit = (str(result.objective.get(key, "")) for key in ("name", "unit"))
-    return name.replace("_", " "), read_in(name, unit)
+    return GOALS.get(f"{result.scene}.{name}", name.replace("_", " ")), read_in(name, unit)
 
 
 def goal(result: Result) -> tuple[str, str, float | None, float | None, str]:

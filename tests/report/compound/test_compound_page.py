@@ -55,7 +55,7 @@ def test_gears_mesh_and_are_as_large_as_their_teeth(seed):
         assert abs(x2 - x1 - r1 - r2) < 0.03  # reference circles touch
         assert abs(r1 / z1 - r2 / z2) < 0.02 / min(z1, z2)
     texts = [t.text for t in svg.iter("text")]
-    distances = {f"{0.5 * (z1 + z2):g} m" for z1, z2 in zip(teeth[:2], teeth[2:], strict=True)}
+    distances = {f"{0.5 * (z1 + z2):g}·m" for z1, z2 in zip(teeth[:2], teeth[2:], strict=True)}
     assert {f"z {z}" for z in teeth} | distances <= set(texts)
     legible(svg)
 

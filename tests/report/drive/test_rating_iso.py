@@ -93,11 +93,13 @@ def test_the_first_sentence_has_both_verdicts():
         "safe by ISO 6336 alone."
     )
     assert opening(cases.both()) == said
-    safe = "Safe: all safety factors are met by AGMA and by ISO 6336; contact of the pinion "
+    safe = (
+        "Safe: all required safety factors are met by AGMA and by ISO 6336; contact of the pinion "
+    )
     assert opening(cases.both_safe()) == f"{safe}governs both."
     fails = "Not safe: by AGMA and by ISO 6336, contact of the wheel of stage 1 falls short."
     assert opening(cases.train_by_both()) == fails
-    assert "S_H 0.8348 by AGMA, S_H 1.028 by ISO 6336, 1 asked for; power" in decided(cases.both())
+    assert "S_H 0.8348 by AGMA, S_H 1.028 by ISO 6336, 1 required; power" in decided(cases.both())
 
 
 def test_each_standard_beside_the_other_is_as_it_is_alone():
@@ -117,11 +119,11 @@ def test_each_standard_beside_the_other_is_as_it_is_alone():
 
 def test_key_figures_are_the_least_by_each_standard():
     tiles = {t.name: (t.value, t.remark) for t in sections(cases.both())[0].tiles}
-    assert tiles["least S_H, contact by AGMA"][0] == "0.8348"
-    assert tiles["least S_H, contact by ISO 6336"] == ("1.028", "pinion; 1 asked for")
-    assert {"least S_F, bending by AGMA", "least S_F, bending by ISO 6336"} < set(tiles)
+    assert tiles["minimum S_H, contact by AGMA"][0] == "0.8348"
+    assert tiles["minimum S_H, contact by ISO 6336"] == ("1.028", "pinion; 1 required")
+    assert {"minimum S_F, bending by AGMA", "minimum S_F, bending by ISO 6336"} < set(tiles)
     assert re.fullmatch(
-        r"[\d,.]+ h by ISO 6336; 50,000 h asked for", tiles["life at S = 1 by AGMA"][1]
+        r"[\d,.]+ h by ISO 6336; 50,000 h required", tiles["life at S = 1 by AGMA"][1]
     )
 
 
@@ -131,7 +133,11 @@ def test_factors_have_a_table_for_each_standard_and_teeth_one():
     assert "factors" not in tables and len(cases.both().table("teeth")) == 2
     assert rows(cases.both(), "factors-by-iso-6336") == rows(cases.iso(), "factors")
     mesh = rows(cases.both(), "meshes")
-    assert mesh["governs by AGMA"] == mesh["governs by ISO 6336"] == ["contact of the pinion"]
+    assert (
+        mesh["governs the power capacity by AGMA"]
+        == mesh["governs the power capacity by ISO 6336"]
+        == ["contact of the pinion"]
+    )
 
 
 @pytest.mark.parametrize("make", [cases.iso, cases.both, cases.train_by_both])
@@ -195,10 +201,10 @@ def test_what_is_taken_for_granted_is_that_of_the_standard():
         " ".join(make().report["assumptions"])
         for make in (cases.train, cases.iso, cases.train_by_both)
     )
-    assert "K_m by the curve" in agma and "6336" not in agma
+    assert "K_m follows the curve" in agma and "6336" not in agma
     assert "carburised as Eh" in iso and "K_Hβ by method C" in iso
     assert "K_m" not in iso and "AGMA" not in iso and "reliability" not in iso
-    assert "K_m by the curve" in both and "through-hardened as V alloy" in both
+    assert "K_m follows the curve" in both and "through-hardened as V alloy" in both
     assert all("Scuffing, micropitting" in words for words in (agma, iso, both))
 
 

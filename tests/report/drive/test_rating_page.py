@@ -81,7 +81,7 @@ def test_factors_are_those_of_the_book():
 
 def test_safe_or_not_is_said_first():
     said = (
-        "Safe: all safety factors are met; contact of the wheel governs.",
+        "Safe: all required safety factors are met; contact of the wheel governs.",
         "Not safe: 4 safety factors fall short, contact of the wheel most.",
         "Not safe: contact of the wheel of stage 1 falls short.",
     )
@@ -96,12 +96,12 @@ def test_the_terminal_begins_with_what_governs():
     first, second, third, *_ = told(cases.shigley(), INCH).splitlines()
     assert first == "Shigley, example 14-4: safe"
     assert f"{second.rstrip()} {third}" == (
-        "All safety factors are met; contact of the wheel governs: S_H 1.522, 1 asked for; "
-        "power capacity 9.277 hp, 4.000 hp asked for."
+        "All required safety factors are met; contact of the wheel governs: S_H 1.522, 1 required; "
+        "power capacity 9.277 hp, 4.000 hp required."
     )
     first, *lines = told(cases.train()).splitlines()
     assert first.endswith("load spectrum: not safe")
-    assert "S_H 0.9692, 1.1 asked for" in lines[0] and "30 kW asked for" in lines[1]
+    assert "S_H 0.9692, 1.1 required" in lines[0] and "30 kW required" in lines[1]
 
 
 @pytest.mark.parametrize("make", [*RATED, cases.sized])
@@ -163,9 +163,9 @@ def test_key_figures_name_gear_capacity_and_life():
     gears = {row[0]: row[1:] for row in zip(*_table(cases.train(), "gears"), strict=True)}
     least = min(range(4), key=lambda k: float(_column(gears, "S_F")[k]))
     assert list(gears)[1 + least] == "wheel 1"
-    assert tiles["least S_F, bending"][1] == "wheel of stage 1; 1.2 asked for"
-    assert tiles["power capacity"][1] == "30 kW asked for"
-    assert tiles["life at S = 1"][1] == "20,000 h asked for"
+    assert tiles["minimum S_F, bending"][1] == "wheel of stage 1; 1.2 required"
+    assert tiles["power capacity"][1] == "30 kW required"
+    assert tiles["life at S = 1"][1] == "20,000 h required"
     assert tiles["efficiency"][0].endswith(" %")
     beyond = {t.name: t.value for t in sections(cases.shigley())[0].tiles}
     assert beyond["life at S = 1"] == "beyond 1e10 cycles" and "efficiency" not in beyond
@@ -201,11 +201,11 @@ def test_a_safety_factor_and_a_capacity_are_written_in_one_way(make):
     factors = {safety(g[f"{m}_safety"]) for g in rating["gears"] for m in ("bending", "contact")}
     capacities = {safety(m["power_capacity_kW"]) for m in rating["meshes"]}
     for shown in (told(result), text(page(result, ""))):
-        found = set(re.findall(r"S_[FH] (\d+(?:\.\d+)?)(?![\d.]| asked)", shown))
+        found = set(re.findall(r"S_[FH] (\d+(?:\.\d+)?)(?![\d.]| required)", shown))
         assert found and found <= factors
         assert set(re.findall(r"capacity (?:\[kW\] )?(\d[\d.,]*\d)", shown)) <= capacities
     for section in sections(result):
-        assert {t.value for t in section.tiles if t.name.startswith("least S_")} <= factors
+        assert {t.value for t in section.tiles if t.name.startswith("minimum S_")} <= factors
 
 
 def test_contact_ratios_are_of_the_tip_circles_and_what_undercut_leaves_is_beside():
@@ -304,7 +304,7 @@ def test_an_optimum_that_is_not_safe_is_warned_of_at_once():
     assert sections(safe)[0].notes == [] and "Safe by its rating: all" in told(safe)
     assert opening(unsafe).startswith("Not safe by its rating; proven optimal (")
     assert opening(safe).startswith("Proven optimal (")
-    assert {"least S_F, bending", "least S_H, contact"} <= {t.name for t in top.tiles}
+    assert {"minimum S_F, bending", "minimum S_H, contact"} <= {t.name for t in top.tiles}
     headings = [section.heading for section in sections(unsafe)]
     assert headings.index("Rating") < headings.index("Factors") < headings.index("Teeth")
     assert "What is proven, and how" in headings
@@ -326,11 +326,11 @@ def test_flaws_of_teeth_are_seen_near_the_top():
 def test_in_a_notebook_and_kept(here, tmp_path):
     result = cases.train()
     assert repr(result).startswith("Two helical stages under a load spectrum: not safe\n")
-    assert "S_H 0.9692, 1.1 asked for" in result._repr_html_()
+    assert "S_H 0.9692, 1.1 required" in result._repr_html_()
     kept = tmp_path / "rating.json"
     kept.write_text(result.to_json(), encoding="utf-8")
     done = here("report", kept, "--html", tmp_path / "x.html", "--csv", tmp_path, "--units", "inch")
-    assert done.returncode == 0 and "40.2 hp asked for" in " ".join(done.stdout.split())
+    assert done.returncode == 0 and "40.2 hp required" in " ".join(done.stdout.split())
     again = gearopt.Result.from_json(kept.read_text(encoding="utf-8"))
     assert (tmp_path / "x.html").read_text(encoding="utf-8") == page(again, "", INCH)
     assert {f"{name}.csv" for name in again.tables} <= {p.name for p in tmp_path.iterdir()}

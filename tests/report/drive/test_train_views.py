@@ -1,4 +1,4 @@
-"""Gears without a layout, drawn with all shafts in one line: to scale, labels clear, told so."""
+"""Gears without a layout, drawn with all shafts in one plane: to scale, labels clear, told so."""
 
 import xml.etree.ElementTree as ET
 from dataclasses import replace
@@ -185,10 +185,10 @@ def test_rims_hubs_and_bores_are_circles():
 def test_words_say_that_nothing_is_optimised_and_how_it_would_be():
     html = page(result(TRAINS["two stages"]), "x")
     shown = "".join(Reader(html).text)
-    assert "shafts are drawn in one line: their places are not optimised" in shown
-    assert "A [layout] table" in shown and "Gears in one line" in shown
+    assert "shafts are drawn in one plane: their positions are not optimised" in shown
+    assert "A [layout] table" in shown and "Gears with all shafts in one plane" in shown
     other = page(replace(result(TRAINS["two stages"]), scene="another"), "x")
-    assert "A [layout] table" not in other and "Gears in one line" in other  # of drives alone
+    assert "A [layout] table" not in other and "shafts in one plane" in other  # of drives alone
 
 
 def test_a_laid_out_or_missing_design_is_not_drawn_so():
@@ -196,7 +196,7 @@ def test_a_laid_out_or_missing_design_is_not_drawn_so():
     assert drawings(page(replace(found, design={}), "")) == []
     laid_out = cases.elevator().design
     html = page(replace(found, design=laid_out), "")
-    assert len(drawings(html)) == 3 and "in one line" not in "".join(Reader(html).text)
+    assert len(drawings(html)) == 3 and "in one plane" not in "".join(Reader(html).text)
 
 
 def test_several_trains_are_drawn_to_one_scale():

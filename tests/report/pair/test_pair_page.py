@@ -79,7 +79,7 @@ def test_curves_are_csv_files_in_full(solved, measures, unit):
 
 def test_the_page_shows_contact_and_the_rating_of_a_pair_that_was_sized(solved):
     html = solved("pair_from_duty").to_html()
-    for words in ("largest load on a tooth", "points-of-contact.csv", "Gears in one line"):
+    for words in ("largest load on a tooth", "points-of-contact.csv", "shafts in one plane"):
         assert words in html
     assert "proven optimal" in html and "power capacity" in html
     assert PAGES.pages_of_given is not None and PAGES.drawn

@@ -209,7 +209,10 @@ def test_shares_of_springs(result, found):
     assert sum(bars["x"]) == pytest.approx(100.0) and bars["y"][-1] == "shaft between the stages"
     assert [t.value for t in made.tiles] == ["0.00060263°"]
     stiff = {tile.name: tile for tile in found["Result"].tiles}["stiffness at the output"]
-    assert (stiff.value, stiff.remark) == ("40,092 N m/rad", "226.47 Hz, motor locked")
+    assert (stiff.value, stiff.remark) == (
+        "40,092 N m/rad",
+        "natural frequency 226.47 Hz, motor locked",
+    )
 
 
 @pytest.mark.parametrize("make", [cases.servo, cases.too_wide])

@@ -95,7 +95,7 @@ def test_the_output_falls_back_by_a_tooth_in_half_a_turn(animation):
     readings = {r.name: np.asarray(r.values) for r in animation.readings}
     assert np.ptp(readings["wave generator"]) == pytest.approx(180.0)
     assert np.ptp(readings["output"]) == pytest.approx(360.0 / 160.0)
-    seen = readings["tooth at the top on the wave at"]
+    seen = readings["tooth at the top: angle on the wave"]
     assert np.nanmin(np.abs(seen)) < 1.3 and np.isnan(seen).any()
 
 

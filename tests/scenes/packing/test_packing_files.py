@@ -307,7 +307,7 @@ def test_words_of_a_bound_say_where_its_time_ended_it():
     result = gearopt.solve(read(NAMED.encode())[1], budget=gearopt.Budget(evaluations=50_000))
     words = " ".join(proof(result))
     assert (
-        "Bound of packings in layers: 2 ways to assign the cylinders" in words
+        "for each of the 2 ways to assign the cylinders to layers" in words
         and "Stopped early" not in words
     )
     early = dataclasses.replace(result, proof=packing.proof(Bound(1.0, 2, complete=False)))

@@ -92,7 +92,7 @@ def test_the_chosen_train_is_told_on_terminal_and_page(ranged):
     assert "7.5342" in cells["inertia of the train [g cm²]"] and number in shown(ranged)
     assert "ratio error" not in shown(ranged) and "ratio error" not in page(ranged, "x")
     table = tables(ranged)["motor-and-load.csv"]
-    heads = "best ratio, no gears", "best ratio, same inertia", "chosen train", "given train"
+    heads = "best ratio, without gears", "best ratio, same inertia", "chosen train", "given train"
     assert all(head in table.splitlines()[0] for head in heads)
     tiles = {t.name: t for t in sections(ranged)[0].tiles}
     assert tiles["load acceleration of the train"].value == value

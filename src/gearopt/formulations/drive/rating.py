@@ -68,7 +68,7 @@ class MeshRating:
     """
 
     stage: int
-    governs: Annotated[str, Shown("governs", "governing")]
+    governs: Annotated[str, Shown("governs the power capacity", "governing")]
     power_capacity_kW: Annotated[float, Shown("power capacity", "governing")]
     tangential_force_N: Annotated[float, Shown("tangential force F_t")]
     radial_force_N: Annotated[float, Shown("radial force F_r")]

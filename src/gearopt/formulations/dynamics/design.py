@@ -16,12 +16,12 @@ class Equilibrium:
 
     normal_load_N: Annotated[float, Shown("normal load")]
     mean_stiffness_N_per_mm: Annotated[float, Shown("mean mesh stiffness")]
-    mesh_mass_kg: Annotated[float, Shown("mesh mass")]
+    mesh_mass_kg: Annotated[float, Shown("reduced mass of the mesh")]
     deformation_mm: Annotated[float, Shown("deformation", unit="um")]
     centre_distance_mm: Annotated[float, Shown("centre distance")]
-    centre_distance_growth_mm: Annotated[float, Shown("its growth")]
+    centre_distance_growth_mm: Annotated[float, Shown("growth of the centre distance")]
     pressure_angle_deg: Annotated[float, Shown("pressure angle")]
-    bearing_force_N: Annotated[float, Shown("force of a bearing")]
+    bearing_force_N: Annotated[float, Shown("bearing force")]
     frequencies_Hz: Columns
     mesh_shares: Columns
 
@@ -124,14 +124,14 @@ class Chosen:
 
     bearing_stiffness_N_per_mm: Annotated[float, Shown("bearing stiffness")]
     contact_ratio: Annotated[float, Shown("contact ratio")]
-    ramp: Annotated[float, Shown("ramp of the stiffness, of the period")]
+    ramp: Annotated[float, Shown("ramp of the stiffness over the mesh period")]
     face_width_mm: Annotated[float, Shown("face width")]
     rim: Annotated[float, Shown("rim factor")]
     mass_kg: Annotated[float, Shown("mass of both gears")]
-    displacement_mm: Annotated[float, Shown("displacement of an axis", unit="um")]
-    dense_maximum_mm: Annotated[float, Shown("largest over all speeds", unit="um")]
+    displacement_mm: Annotated[float, Shown("displacement of an axis at rest", unit="um")]
+    dense_maximum_mm: Annotated[float, Shown("largest vibration over all speeds", unit="um")]
     highest_mm: Annotated[float, Shown("largest deformation", unit="um")]
-    largest_multiplier: Annotated[float | None, Shown("largest multiplier of all speeds")]
+    largest_multiplier: Annotated[float | None, Shown("largest Floquet multiplier of all speeds")]
     harmonics: int
     speed_rpm: Columns
     rounds: tuple[tuple[float, float, float, float], ...]

@@ -43,16 +43,15 @@ def problem(plan: Plan, loose: bool = True) -> Problem:
 def proof(floor: Bound) -> dict[str, Any]:
     """Return how a bound was proven, for a result."""
     method = "subdivision" if floor.choices else "volume"
-    ways = f"{floor.choices:,} ways" if floor.choices > 1 else "one way"
+    ways = f"each of the {floor.choices:,} ways" if floor.choices > 1 else "the one way"
     words = (
-        f"Bound of packings in layers: {ways} to assign the cylinders to layers; for each the "
-        "minimum plan area that discs, pairs and triples in any order need, by subdivision of the "
-        "width."
+        f"Lower bound: for {ways} to assign the cylinders to layers, the plan area that discs, "
+        "pairs and triples of them need in any order was bounded by subdivision of the width."
     )
     if not floor.complete:
         words += " Stopped early: the bound is weaker than it could be."
     if floor.complete and not floor.choices:
-        words = "Bound: the volume of the cylinders, and the widest with the highest of them."
+        words = "Lower bound: the volume of the cylinders, and the widest with the highest of them."
     return {
         "method": method if floor.complete else f"{method}, stopped early",
         "arithmetic": "double, with a rounding allowance",

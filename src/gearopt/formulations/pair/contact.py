@@ -65,10 +65,10 @@ class ContactLoad:
         float, Shown("mesh stiffness, mean", "stiffness", "N_per_mm_um")
     ]
     least_mesh_stiffness_MPa: Annotated[
-        float, Shown("mesh stiffness, least", "stiffness", "N_per_mm_um")
+        float, Shown("mesh stiffness, minimum", "stiffness", "N_per_mm_um")
     ]
     most_mesh_stiffness_MPa: Annotated[
-        float, Shown("mesh stiffness, most", "stiffness", "N_per_mm_um")
+        float, Shown("mesh stiffness, maximum", "stiffness", "N_per_mm_um")
     ]
     share: Columns
     contact_stress_MPa: Columns

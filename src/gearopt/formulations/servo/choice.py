@@ -175,7 +175,7 @@ class Springs:
         return 1.0 / output_compliance(self.compliances(pairs), (1.0, 1.0, 1.0))
 
     def design(self, pairs: Pairs) -> StiffnessDesign:
-        """Return stiffness, frequency and wind-up of a train, with the share of every spring."""
+        """Return stiffness, frequency and windup of a train, with the share of every spring."""
         parts = [float(c) for c in self.compliances(pairs)]
         total = math.fsum(parts)
         inertia, torque = self.load_inertia, self.load_torque

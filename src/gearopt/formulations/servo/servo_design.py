@@ -218,7 +218,7 @@ class Spring:
 
 @dataclass(frozen=True)
 class StiffnessDesign:
-    """Stiffness at the output; frequency and wind-up where load and torque are given."""
+    """Stiffness at the output; frequency and windup where load and torque are given."""
 
     output_Nm_per_rad: float
     springs: tuple[Spring, ...]

@@ -154,7 +154,7 @@ class WaveDesign:
     whole_pairs_pressure_MPa: Annotated[float, Shown("pressure, whole pairs", "loads")]
     rim_bending_MPa: Annotated[float, Shown("bending of the rim", "loads")]
     rim_shear_MPa: Annotated[float, Shown("shear of the rim", "loads")]
-    ratcheting_torque_Nm: Annotated[float, Shown("torque at which teeth ratchet", "loads")]
+    ratcheting_torque_Nm: Annotated[float, Shown("ratcheting torque", "loads")]
     least_deflection: Annotated[
         float | None, Shown("least deflection with contact, modules", "loads")
     ] = None

@@ -57,9 +57,9 @@ def conflict(result: Result, known: Sequence[str]) -> Drawing | None:
     sheet.line((x, tall - ABOVE + 6.0), (x, BELOW - 4.0), "gap")
     sheet.label("limit, 100 %", [Place(x, 12.0)], "gap")
     caption = (
-        "Utilisation of the limits in conflict where the largest excess is smallest"
+        "Utilisation of the limits in conflict at the design whose largest excess is smallest"
         f"{', with real-valued teeth and modules' if result.scene in ('drive', 'servo') else ''}: "
-        "whatever is made better, another of them becomes worse."
+        "whichever of them is lowered, another one rises."
     )
     return sheet.drawing("limits in conflict", caption)
 
@@ -86,8 +86,8 @@ def remedies(ways: Sequence[Mapping[str, Any]]) -> Drawing | None:
     if not rows:
         return None
     proven = any(row.blocked is not None for row in rows)
-    caption = "Factor by which one number of the file must change; a dot: a design exists" + (
-        "; orange: none does, proven even with real-valued sizes." if proven else "."
+    caption = "Factor by which one number of the file must change; at a dot a design exists" + (
+        ", in the orange range none does, proven even with real-valued sizes." if proven else "."
     )
     guides = (Guide(1.0, "asked", "gap"),)
     return number_line(rows, guides, "asked and what is enough", caption, "×")

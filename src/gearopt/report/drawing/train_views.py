@@ -65,15 +65,15 @@ def section(result: Result, measures: Measures, hint: str = "") -> Section | Non
     inside = ", thin ones the insides of rims, hubs and bores" if any(webs) else ""
     plural = f"modules {sign} in {unit}" if unit == "mm" else f"{name}es {sign} in {unit}"
     words = (
-        "All shafts are drawn in one line: their places are not optimised, and the gaps between "
-        f"the stages are only as wide as the labels need.{hint}",
+        "All shafts are drawn in one plane: their positions are not optimised, and the gaps "
+        f"between the stages are only as wide as the labels need.{hint}",
         f"Drawn to one scale; dimensions in {measures.lengths}: centre distances, length over "
         "tip circles (the total length of the design is that over reference circles), face widths "
         f"b; {plural}; teeth z. Solid lines are tip circles, "
         f"dash-dotted ones reference circles{inside}; numbers in circles name the "
         "shafts, which are not drawn.",
     )
-    return Section("Gears in one line", words=words, drawings=drawn)
+    return Section("Gears with all shafts in one plane", words=words, drawings=drawn)
 
 
 def beside(
@@ -281,7 +281,7 @@ def _side(train: Bodies, scale: float, measures: Measures) -> Drawing:
         sheet.balloon(str(shaft.shaft), spots)
     for gear in sorted(train.gears, key=lambda g: -g.tip_diameter_mm):
         side_name(sheet, gear, places[gear.shaft], f"z {number(gear.teeth)}")
-    return sheet.drawing("side view", "View across the shafts.")
+    return sheet.drawing("side view", "Side view, across the shafts.")
 
 
 def _widths(train: Bodies) -> list[float]:

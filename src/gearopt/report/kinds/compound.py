@@ -35,8 +35,11 @@ def binding_limit(result: Result) -> str:
         return ""
     if not result.report.get("reach", {"within": True})["within"]:
         return "the allowed numbers of teeth do not reach the ratio"
-    exact = _design(result).ratio_error_percent == 0.0
-    return f"whole numbers of teeth {'make' if exact else 'do not make'} the ratio exactly"
+    if _design(result).ratio_error_percent == 0.0:
+        return "the train has the ratio exactly"
+    if result.status == "optimal":
+        return "no train of the allowed teeth has the ratio exactly"
+    return "the train does not have the ratio exactly"
 
 
 def gears(result: Result, measures: Measures) -> Section | None:
@@ -50,10 +53,11 @@ def gears(result: Result, measures: Measures) -> Section | None:
     named = tuple(replace(gear, name=f"z {gear.teeth}") for gear in train.gears)
     drawing = along_shafts(replace(train, gears=named), scale, _modules, _title)
     words = (
-        "Drawn to scale as if both pairs had one normal module m, with spur gears and an addendum "
-        "of m: centre distances and the length over tip circles are multiples of m. Solid lines "
-        "are tip circles, dash-dotted ones reference circles; numbers in circles are shafts, 1 "
-        "the input and 3 the output. The drivers, and the driven gears, may change places.",
+        "Drawn to scale as if both pairs were spur gears of one module m with an addendum of m: "
+        "diameters, centre distances and the length over tip circles are multiples of m. Solid "
+        "lines are tip circles, dash-dotted ones reference circles; numbers in circles are shafts, "
+        "1 the input and 3 the output. The drivers may be interchanged, and so may the driven "
+        "gears.",
     )
     return Section("Gears", words=words, drawings=(drawing,))
 
@@ -74,7 +78,7 @@ def _stage(driver: int, driven: int) -> DrawnStage:
 
 
 def _modules(length: float) -> str:
-    return f"{length:g} m"
+    return f"{length:g}·m"
 
 
 def _title(gear: GearDesign) -> str:

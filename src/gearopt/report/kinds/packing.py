@@ -48,7 +48,7 @@ def plans(result: Result, measures: Measures) -> Section | None:
     colours = _colours(design.cylinders)
     layers = design.layers
     plans = [_plan(design, layer, window, scale, colours, measures) for layer in layers]
-    words = f"Seen from above, drawn to one scale; dimensions in {measures.lengths}."
+    words = f"Layers are seen from above, drawn to one scale; dimensions in {measures.lengths}."
     if any(c.fixed for c in design.cylinders):
         words += " Cylinders whose place the file gives have a heavy outline."
     return Section("Packing", words=(words,), drawings=plans)
@@ -73,7 +73,8 @@ def words(cylinder: CylinderDesign, measures: Measures) -> str:
     x, y = (measures.length(v, 3) for v in (cylinder.x_mm, cylinder.y_mm))
     unit = measures.unit("mm")
     return (
-        f"{cylinder.name}: diameter {diameter:.4g} {unit}, height {height:.4g} {unit}, x {x}, y {y}"
+        f"{cylinder.name}: diameter {diameter:.4g} {unit}, height {height:.4g} {unit}, "
+        f"x {x} {unit}, y {y} {unit}"
     )
 
 
@@ -110,7 +111,9 @@ def _plan(
         sheet.dimension((left, front), (left, back), away, measures.length(back - front))
     for it in sorted(on, key=lambda c: -c.diameter_mm):
         _name(sheet, it, colours[it.diameter_mm])
-    caption = f"Layer {layer.layer}, x to the right and y up."
+    ends = " to ".join(measures.length(z) for z in (layer.from_mm, layer.to_mm))
+    unit = measures.unit("mm")
+    caption = f"Layer {layer.layer}, at a height z of {ends} {unit}; x to the right and y up."
     return sheet.drawing(f"layer {layer.layer}", caption)
 
 
@@ -133,8 +136,9 @@ def binding_limit(result: Result) -> str:
     wall = parse(str(result.asked.get("container", {}).get("wall", "0 mm")), "length").value
     at_walls = sum(_at_wall(c, box, wall) for c in design.cylinders)
     all_ = "all" if at_walls == count else f"{at_walls} of the"
-    where = "at the clearance to the walls" if wall else "at the walls"
-    return f"{all_} {count} cylinders stand {where}; together they fill {share} of the container"
+    where = "are at the minimum clearance to the walls" if wall else "touch the walls"
+    fill = f"together the {count} fill {share} of the container's volume"
+    return f"{all_} {count} cylinders {where}; {fill}"
 
 
 def _at_wall(cylinder: CylinderDesign, box: ContainerDesign, wall: float) -> bool:

@@ -188,7 +188,7 @@
     });
     const all = kept.length === every.length;
     const words = all ? every.length === 1 ? "One design." : `All ${every.length} designs.` : `${kept.length} of ${every.length} designs.`;
-    count.replaceChildren(`${words} Click a head to sort; write a least and a largest value below it to filter.`, ...(all ? [] : [clear]));
+    count.replaceChildren(`${words} Click a column head to sort; write a minimum and a maximum below it to filter.`, ...(all ? [] : [clear]));
     leave();
   }
 

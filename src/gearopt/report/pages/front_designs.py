@@ -197,7 +197,7 @@ def data(
     ends += [ends[-1] + len(limits), ends[-1] + len(limits) + len(others)]
     titles = (
         "Objectives and main numbers",
-        "Limits used, %",
+        "Utilisation of limits, %",
         "Other numbers" if len(each) == 1 else DIFFERENT,
     )
     return {

@@ -272,8 +272,8 @@ def parallel(
     ring = {"x": [], "y": [], "meta": CHOSEN, "hoverinfo": "skip", "name": "shown beside"}
     traces.append(look | ring | {"line": {"color": "--series-4", "width": 3}})
     caption = (
-        "Every line is a design; at the ends of an axis its least and largest value. Filters of "
-        "the table below leave lines out here, too."
+        "Every line is a design; the ends of an axis are its minimum and maximum. Filters of the "
+        "table below leave lines out here, too."
     )
     plot = _axes(heads, ends)
     return Figure(

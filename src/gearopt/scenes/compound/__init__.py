@@ -25,7 +25,9 @@ from gearopt.scenes.reading.lists import span
 
 MIN_TEETH, MAX_TEETH = 5, 400  # teeth of a gear that a file may ask for
 METHODS = ("exact",)  # its own
-ASSUMED = "Numbers of teeth alone: modules, centre distances and loads are not considered."
+ASSUMED = (
+    "Numbers of teeth alone are chosen: modules, centre distances and loads are not considered."
+)
 NEAREST = {  # by objective: how the nearest ratio is said, and what that is
     compound.ERROR: ("nearest", "relative error of the ratio, |achieved/asked - 1|"),
     compound.SQUARED: ("nearest in 1/ratio", "squared error of 1/ratio, (1/asked - 1/achieved)^2"),

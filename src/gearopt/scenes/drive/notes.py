@@ -40,7 +40,7 @@ def notes(scene: Scene, exact: bool) -> list[str]:
     if exact and scene.teeth is not None:
         found += unverified(scene.teeth.modules)
     if scene.objective.density is None and not _dense(scene):
-        found.append(f"Masses are those of steel, {1e9 * STEEL_DENSITY:g} kg/dm³ (assumed).")
+        found.append(f"The density is that of steel, {1e9 * STEEL_DENSITY:g} kg/dm³ (assumed).")
     return found + unused_materials(scene)
 
 
@@ -77,11 +77,11 @@ def assumptions(scene: Scene) -> list[str]:
         else "the density of steel, because the file gives none"
     )
     if scene.material:
-        mass = f"the densities of the materials, else with {mass}"
+        mass = f"the densities of the materials, else from {mass}"
     found = [
         *_teeth(scene),
         *_loads(scene, angle, assumed),
-        f"{_bodies(scene)}; masses with {mass}.",
+        f"{_bodies(scene)}; masses follow from {mass}.",
     ]
     if scene.limits.preset is not None:
         name = scene.limits.preset
@@ -94,10 +94,10 @@ def _bodies(scene: Scene) -> str:
     stages = scene.stage_tables
     tables = [with_shared(getattr(own, m), scene.gears) for own in stages for m in MEMBERS]
     if all(blank(table, None).solid and not table.web_thickness for table in tables):
-        return "Volumes and masses are those of solid reference cylinders"
+        return "Volumes are those of solid cylinders of reference diameter and face width"
     return (
-        "Volumes are those of solid reference cylinders; masses those of rims, webs and hubs, with "
-        "the teeth as a ring between root and reference circle"
+        "Volumes are those of solid cylinders of reference diameter; masses are those of rims, "
+        "webs and hubs, with the teeth as a ring between root and reference circle"
     )
 
 
@@ -124,17 +124,17 @@ def _teeth(scene: Scene) -> list[str]:
     each = [toothing(own, scene.gears) for own in scene.stage_tables]
     shifted = any(any(one.profile_shifts) for one in each)
     shifts = "with the profile shifts of the file" if shifted else "without profile shift"
-    ends = "no losses in mesh and bearings"
-    found = [f"External cylindrical gears {shifts}; {ends}."]
+    ends = "losses in mesh and bearings are neglected"
+    found = [f"The gears are external cylindrical ones {shifts}; {ends}."]
     usual = {replace(ISO_53_A, pressure_angle=r.pressure_angle) for one in each for r in one.racks}
     if {rack for one in each for rack in one.racks} <= usual:
         found.append(
-            "Tip and root circles by the basic rack ISO 53 profile A: addendum "
-            f"{ISO_53_A.addendum:g} m_n, dedendum {ISO_53_A.dedendum:g} m_n; nominal sizes, "
+            "Tip and root circles follow from the basic rack ISO 53 profile A: addendum "
+            f"{ISO_53_A.addendum:g} m_n, dedendum {ISO_53_A.dedendum:g} m_n; sizes are nominal, "
             "without backlash."
         )
     else:
-        found.append("Tip and root circles by the tools of the file; nominal sizes.")
+        found.append("Tip and root circles follow from the tools of the file; sizes are nominal.")
     if shifted and scene.limits.loaded:
         found.append(f"{scene.limits.LAW.title} are those of the reference circles.")
     return found
@@ -146,8 +146,8 @@ def rating_assumptions(scene: Scene) -> list[str]:
     assert asked
     by_agma, by_iso = asked.standard != "iso6336", asked.standard != "agma"
     found = [
-        "External cylindrical steel gears on parallel shafts; the pinions drive. No losses except "
-        "those of the mesh, where they are reported.",
+        "The rating is of external cylindrical steel gears on parallel shafts; the pinions drive. "
+        "Losses are neglected, but for those of the mesh where they are reported.",
         "The standards themselves were not read: formulas and values are those of textbooks, "
         "tables and public programs; those from a single source are marked unverified.",
         *(_agma_assumptions(asked) if by_agma else []),
@@ -168,10 +168,11 @@ def _agma_assumptions(asked: RatingTable) -> list[str]:
         else "at the tip"
     )
     return [
-        f"K_m by the curve of {asked.mounting} gearing"
+        f"K_m follows the curve of {asked.mounting} gearing"
         + (", crowned" if asked.crowned else ", teeth without crowning")
-        + f"; pinion offset S_1/S {float(asked.pinion_offset):g}.",
-        f"Bending of spur gears, and of helical ones of low overlap ratio: load {load}"
+        + f"; the pinion offset S_1/S is {float(asked.pinion_offset):g}.",
+        "Bending stresses of spur gears, and of helical ones of low overlap ratio, are those of a "
+        f"load {load}"
         f"{' (AGMA)' * (asked.standard == 'both')}.",
     ]
 
@@ -190,7 +191,8 @@ def _iso_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
     return [
         *words,
         "K_Hβ by method C of ISO 6336-1, for a pinion midway between its bearings on a solid "
-        f"shaft; {modified}. Bending by method B: load at the outer point of single pair contact.",
+        f"shaft; {modified}. Bending by method B: the load acts at the outer point of single pair "
+        "contact.",
         *[f"K_A = {float(asked.overload_factor):g} multiplies every level of load."][:overloaded],
     ]
 

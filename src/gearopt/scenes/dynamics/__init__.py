@@ -192,8 +192,8 @@ def assumptions(scene: Scene) -> list[str]:
         )
     if scene.optimise is not None:
         said.append(
-            "Gears are discs of the pitch radii, times the rim factor; torques balance; the wave "
-            "between one and two pairs of teeth is a trapezoid."
+            "Gears are discs of the pitch radii, times the rim factor; torques balance; the mesh "
+            "stiffness changes between that of one and of two pairs of teeth as a trapezoid."
         )
     return said
 

@@ -133,7 +133,7 @@ def told(best: Chosen, result: Result, periods: int) -> list[str]:
         found.append(
             f"Between the {len(best.speed_rpm)} speeds the deformation reaches "
             f"{MICRO * best.dense_maximum_mm:.4g} µm, {more:.0f} % above the objective: "
-            "exchange = true adds the speeds where it does."
+            "exchange = true adds the speeds of its maxima."
         )
     if best.parting_speeds:
         found.append(

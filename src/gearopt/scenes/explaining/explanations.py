@@ -32,7 +32,7 @@ from gearopt.scenes.reading.ask import Ask
 
 BASIS = (
     " by Lagrange multipliers, checked by solving again. "
-    "Effect of relaxing a limit or a step: solved again"
+    "The effect of relaxing a limit, or of a step, is that of solving again"
 )
 HELD = f", with these whole numbers and choices,{BASIS}"
 SLOPE_TOLERANCE = 0.02  # between sensitivities by multipliers and by solving again that differ
@@ -226,7 +226,8 @@ def of_design(
         return stepped(scene, number, way, value, basis.solved, solved)
 
     found = tuple(map(_sure, influences(scene, basis, clock, wanted, easing, near=near)))
-    late = f"time ended after {len(found)} of {len(wanted)} sensitivities" if clock.over else note
+    late = f"{len(found)} of {len(wanted)} sensitivities were computed in the time allowed"
+    late = late if clock.over else note
     if ranges:
         late = "; ".join(filter(None, (late, f"the same design is best with {', '.join(ranges)}")))
     words = HELD if held else f",{BASIS}"

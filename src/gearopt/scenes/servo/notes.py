@@ -42,8 +42,8 @@ def assumptions(scene: Scene) -> list[str]:
     if scene.mesh:
         sides = "" if any(mesh.two_sided for mesh in scene.mesh) else "one-sided and "
         found.append(
-            "Error: lost motion between both flanks at the output, by small angles; every "
-            f"deviation is {sides}at its limit at the same time."
+            "The error is the lost motion between both flanks at the output, by small angles; "
+            f"every deviation is {sides}at its limit at the same time."
         )
     if any(mesh.two_sided or mesh.minimum_backlash for mesh in scene.mesh):
         found.append(
@@ -63,8 +63,8 @@ def assumptions(scene: Scene) -> list[str]:
         )
     if scene.tolerances is not None:
         found.append(
-            "Cost of a tolerance: that of the old one times (old/new)^exponent. Monte Carlo "
-            "errors: run-outs t cos(phi), phi uniform; all else uniform from 0 to t."
+            "The cost of a tolerance is that of the old one times (old/new)^exponent. Of Monte "
+            "Carlo errors run-outs are t cos(phi), phi uniform; all else is uniform from 0 to t."
         )
     if any(budget.rule == "rss" for budget in scene.budget):
         found.append(
@@ -77,21 +77,23 @@ def assumptions(scene: Scene) -> list[str]:
 def _of_train(scene: Scene) -> list[str]:
     assert scene.train is not None
     found = [
-        "External spur gears without profile shift, solid discs of one face width; addendum 1 m.",
+        "The gears are external spur gears without profile shift, with an addendum of one module: "
+        "solid discs of one face width.",
         *_sector(scene.train),
         *_carried(scene),
-        "Bending stress after Lewis at the tip of one tooth, form factor pi (0.154 - 0.912/z) of "
-        "full-depth teeth of 20 degrees (up to 8 % above tables, so that stresses may be that much "
-        "higher): no dynamic, load distribution or notch factor, and no contact stress. It is no "
-        "rating by ISO 6336 or AGMA 2101.",
+        "The bending stress is Lewis's at the tip of one tooth, with the form factor pi (0.154 - "
+        "0.912/z) of full-depth teeth of 20 degrees (up to 8 % above tables, so that stresses may "
+        "be that much higher), without dynamic, load distribution and notch factors and without "
+        "contact stress. It is no rating by ISO 6336 or AGMA 2101.",
         _counted(scene),
         *unverified(scene.train.modules),
     ]
     found += _of_bodies(scene)
     if scene.stiffness is not None:
         found.append(
-            "Stiffness: one pair of teeth in mesh, the shaft between the stages twisted over its "
-            "length; bearings, housing, motor and output shaft are rigid; motor locked."
+            "Stiffness is that of one pair of teeth in mesh and of the shaft between the stages, "
+            "twisted over its length; bearings, housing, motor and output shaft are rigid, and the "
+            "motor is locked."
         )
         if scene.stiffness.line_stiffness is None:
             found.append(
@@ -110,7 +112,7 @@ def _of_train(scene: Scene) -> list[str]:
 def _sector(train: Train) -> tuple[str, ...]:
     """Say what part of a disc the last wheel is, where it is no whole one."""
     share = 100.0 * float(train.sector)
-    return () if share == 100.0 else (f"The last wheel is {share:g} % of a disc.",)
+    return () if share == 100.0 else (f"The last wheel is a sector of {share:g} % of a disc.",)
 
 
 def _carried(scene: Scene) -> tuple[str, ...]:
@@ -159,8 +161,8 @@ def _of_bodies(scene: Scene) -> list[str]:
     return [
         "There are three planes along the shafts: motor, stage 1, stage 2. The motor's shaft ends "
         f"at its pinion, the other two pass through all three. {solid} in the same plane do not "
-        "overlap; no clearance is added. Root circles, 1.25 m inside the reference circle, lie "
-        f"outside their shafts. Diameter of the output shaft with hub: {thick}.{thin}"
+        "overlap; no clearance is added. Root circles, 1.25 modules inside the reference circle, "
+        f"lie outside their shafts. Diameter of the output shaft with hub: {thick}.{thin}"
     ]
 
 

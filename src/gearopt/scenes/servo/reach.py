@@ -85,7 +85,7 @@ def _stiff(springs: Springs, stiffness: float) -> str:
     if springs.load_inertia is not None:
         text += f", {float(locked_frequency(stiffness, springs.load_inertia)):.5g} Hz"
     if springs.load_torque is not None:
-        text += f", a wind-up of {math.degrees(springs.load_torque / stiffness):.4g} deg"
+        text += f", a windup of {math.degrees(springs.load_torque / stiffness):.4g} deg"
     return text
 
 

@@ -92,7 +92,7 @@ def binding_limit(result: Result) -> str:
     full = [n for n in gaps if result.limits.get(n, 0.0) >= 1.0 - REACHED]
     walls, apart = _at_walls(layout), any(part.name == "gears" for part in result.parts)
     first = "the gears were sized first" if apart else "gears and box were chosen at once"
-    words = [first, *([f"{series_of(walls)} touch the wall clearance"] if walls else [])]
+    words = [first, *([f"{series_of(walls)} reach the wall clearance"] if walls else [])]
     words += [f"{series_of(list(map(limit_words, full)))} at the minimum clearance"] if full else []
     return "; ".join(words if apart else [*words, of_limits(result, gaps)])
 
@@ -253,7 +253,7 @@ def counts(result: Result, measures: Measures) -> Section | None:
     )
     words = [
         f"Impossible with {row['stages']} {'stage' if row['stages'] == 1 else 'stages'}: in "
-        f"conflict are {series_of(grouped(row['conflict']))}."
+        f"conflict are the limits on {series_of(grouped(row['conflict']))}."
         for row in rows
         if row["conflict"]
     ]
@@ -327,10 +327,12 @@ def sentences_on_parts(result: Result, measures: Measures) -> list[str]:
 def _other_way(result: Result, part: Result) -> list[str]:
     if part.value is None or result.value is None:
         return []
-    more = percent_more(result.value, part.value)
+    more, name = percent_more(result.value, part.value), objective(result)[0]
     if part.name == "apart":
-        return [f"Gears and layout optimised together save {more} % of gears first, then layout."]
-    return [f"Whole teeth and standard modules cost {more} % more than real-valued ones."]
+        other = "if the gears are sized first and laid out afterwards"
+        return [f"The {name} is {more} % smaller than {other}."]
+    other = "with real-valued ones"
+    return [f"With whole teeth and standard modules the {name} is {more} % larger than {other}."]
 
 
 def percent_more(value: float, other: float) -> str:

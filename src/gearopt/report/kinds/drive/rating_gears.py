@@ -62,7 +62,7 @@ def _said(rating: DriveRating) -> list[str]:
     if any(rated.by == "ISO 6336" for rated in rating.each):
         words.append(LOAD_FACTORS)
     if len(rating.meshes) > 1:
-        words.append(f"Nearest to the safety factors asked for: {', '.join(nearest(rating))}.")
+        words.append(f"Nearest to its required safety factor is {series_of(nearest(rating))}.")
     if rating.levels:
         words.append("Safety factors are those of all load levels together, by Miner's rule.")
     lives = [(g.bending_life_cycles, g.contact_life_cycles) for _, g in _columns(rating)]
@@ -72,7 +72,7 @@ def _said(rating: DriveRating) -> list[str]:
 
 
 def _standards(rating: DriveRating) -> str:
-    return f"By {'; and by '.join(rated.standard for rated in rating.each)}."
+    return f"Rated by {'; and by '.join(rated.standard for rated in rating.each)}."
 
 
 def _columns(rating: DriveRating) -> list[tuple[DriveRating, GearRating]]:
@@ -111,7 +111,7 @@ def _gear_rows(rating: DriveRating, measures: Measures) -> Iterator[list[Any]]:
             yield [head, *map(_damage, values)]
         if it.key in asked:
             used = (_used(asked[it.key], value) for value in values)
-            yield [f"utilisation, {it.label} {asked[it.key]:g} asked for [%]", *used]
+            yield [f"utilisation, {it.label} {asked[it.key]:g} required [%]", *used]
 
 
 def _used(asked: float, safety_factor: float) -> Cell:
@@ -148,7 +148,7 @@ def _on_terminal(result: Result, rating: DriveRating, measures: Measures) -> lis
     read = dict(zip(keys, short, strict=True))
     table = Table("gears", heads, rows, short=read, left=1 + named, wrap=9)
     lives = of_standards(rating, [life(rated.life_h) for rated in rating.each])
-    asked = f"{';' if named else ','} {life(rating.required_life_h)} asked for."
+    asked = f"{';' if named else ','} {life(rating.required_life_h)} required."
     lasts = f"Life at safety factors of 1: {lives}{asked}"
     if rating.efficiency_percent is not None:
         lasts += f" Efficiency of the meshes: {efficiency(rating)}{unsure(rating)}."
@@ -214,7 +214,9 @@ def factors(result: Result, measures: Measures) -> Section | None:
         if rating.levels
         else ""
     )
-    words = [f"A single value applies to both gears.{level}"]
+    words = [
+        f"A single value applies to both gears; a source names its standard and clause.{level}"
+    ]
     words += map(measures.words, unverified(rating))
     blocks: list[str | Table] = []
     for rated in rating.each:

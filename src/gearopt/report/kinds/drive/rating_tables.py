@@ -141,9 +141,9 @@ def teeth(result: Result, measures: Measures) -> Section | None:
     rows = side_by_side(rating.teeth, measures)
     table = Table("teeth", ["", *names(rating)], rows, across=True)
     words = [
-        "Terms of ISO 21771; shifts in normal modules. The generating shift is that of the tool, "
-        "with the allowance of the tooth thickness; contact with the mate ends at the active root "
-        "diameter."
+        "Terms are those of ISO 21771, shifts are in normal modules. The generating shift is that "
+        "of the tool, with the allowance of the tooth thickness; contact with the mate ends at the "
+        "active root diameter."
     ]
     return Section("Teeth", words=words, tables=(table,), half=len(rating.meshes) <= ABREAST)
 

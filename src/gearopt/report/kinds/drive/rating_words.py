@@ -99,7 +99,7 @@ def _verdict(rating: DriveRating) -> str:
 def _strength(rating: DriveRating) -> str:
     """Gears that meet the safety factors asked for and gears that do not; the one that governs."""
     if rating.met_by_all:
-        return f"all safety factors are met{_by_both(rating)}; {_governs(rating)}"
+        return f"all required safety factors are met{_by_both(rating)}; {_governs(rating)}"
     short = [(rated.by, _short(rated)) for rated in rating.each if not rated.met]
     if rating.beside is None:
         return short[0][1]
@@ -144,8 +144,8 @@ def _figures(rating: DriveRating) -> str:
     capacities = [f"{safety(rated.power_capacity_kW)} kW" for rated in rating.each]
     power = rounded(required(rating), SAFETY_DIGITS)
     return (
-        f": {of_standards(rating, values)}, {wanted} asked for; power capacity "
-        f"{of_standards(rating, capacities)}, {power} kW asked for"
+        f": {of_standards(rating, values)}, {wanted} required; power capacity "
+        f"{of_standards(rating, capacities)}, {power} kW required"
     )
 
 
@@ -189,7 +189,7 @@ def nearest(rating: DriveRating) -> list[str]:
         ]
         _, what, by = min(rows)
         of = f" by {by}" if rating.beside is not None else ""
-        words.append(f"in stage {mesh.stage} {what}{of}")
+        words.append(f"{what} in stage {mesh.stage}{of}")
     return words
 
 
@@ -225,7 +225,7 @@ def least_safeties(results: Sequence[Result]) -> list[list[str]]:
                 "" if other is None else safety(min(getattr(g, key) for g in other.each[k].gears))
                 for other in ratings
             ]
-            rows.append([f"least {symbol}{by}", *least])
+            rows.append([f"minimum {symbol}{by}", *least])
     return rows
 
 
@@ -272,17 +272,17 @@ def _safety_tile(rating: DriveRating, mode: str, whole: DriveRating) -> Tile:
     """The least safety factor of a mode by one of the standards of the whole rating."""
     key, asked = f"{mode}_safety", float(getattr(rating, f"minimum_{mode}_safety"))
     least = min(rating.gears, key=lambda gear: float(getattr(gear, key)))
-    remark = f"{gear_words(rating, least)}; {asked:g} asked for"
+    remark = f"{gear_words(rating, least)}; {asked:g} required"
     of = "" if whole.beside is None else f" by {rating.by}"
-    return Tile(f"least {MODES[mode]}, {mode}{of}", safety(getattr(least, key)), remark)
+    return Tile(f"minimum {MODES[mode]}, {mode}{of}", safety(getattr(least, key)), remark)
 
 
 def _tile(rating: DriveRating, name: str, values: Sequence[str], asked: str) -> Tile:
     """A key figure: its value, or by each of two standards in the remark the second."""
     if rating.beside is None:
-        return Tile(name, values[0], f"{asked} asked for")
+        return Tile(name, values[0], f"{asked} required")
     first, second = rating.each
-    remark = f"{values[1]} by {second.by}; {asked} asked for"
+    remark = f"{values[1]} by {second.by}; {asked} required"
     return Tile(f"{name} by {first.by}", values[0], remark)
 
 

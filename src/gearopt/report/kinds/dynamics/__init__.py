@@ -43,7 +43,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     ]
     if (chosen := design.chosen) is not None:
         worst = amount(chosen.dense_maximum_mm, "um", measures)
-        figures.append(Tile("largest over all speeds", worst, "on the dense grid"))
+        figures.append(Tile("largest vibration over all speeds", worst, "on the dense grid"))
     if (moved := design.response) is not None:
         figures.append(
             Tile(
@@ -54,7 +54,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
         )
     if design.stability is not None and design.stability.here is not None:
         verdict = "unstable" if design.stability.here > 1.0 + UNSTABLE else "stable"
-        figures.append(Tile("largest multiplier", number(design.stability.here), verdict))
+        figures.append(Tile("largest Floquet multiplier", number(design.stability.here), verdict))
     fastest = f"{rest.frequencies_Hz[-1]:,.0f} Hz"
     return [*figures, Tile("highest natural frequency", fastest, "at the mean stiffness")]
 

@@ -238,7 +238,7 @@ def before_and_after(best: Chosen, measure: str, measures: Measures) -> Figure:
         hovermode="x",
     )
     plot["margin"] |= {"t": 44}
-    caption = "Vibration over speed before and after; between the marks nothing was asked for."
+    caption = "Vibration over speed of both pairs; only the marked speeds enter the objective."
     return Figure(traces, plot, caption)
 
 

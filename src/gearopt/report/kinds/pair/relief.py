@@ -25,8 +25,8 @@ SAME_PEAK_TO_PEAK = 1.001
 CRITERIA = {  # of a relief: what their names mean
     "peak_to_peak": "peak-to-peak transmission error",
     "harmonics": "first three harmonics of the transmission error",
-    "load_jump": "share with which a pair of teeth comes or goes",
-    "peak_load": "largest share of a pair of teeth",
+    "load_jump": "share of the load with which a pair of teeth enters or leaves contact",
+    "peak_load": "largest share of the load on a pair of teeth",
 }
 TABLE_STEPS = 10  # of the table from where a relief starts to the tip
 PLOT_STEPS = 60  # of its plot
@@ -64,13 +64,13 @@ def binding_limit(relief: PairRelief) -> str:
     """Amounts of the relief and its gain."""
     first, second = (amount(f.amount_mm, "um", METRIC) for f in (relief.pinion, relief.wheel))
     none, best = relief.rows[0], relief.rows[-1]
-    said = f"{_value(relief, best.value)}{_strays(relief)} instead of {_value(relief, none.value)}"
+    said = f"{_value(relief, none.value)} to {_value(relief, best.value)}{_strays(relief)}"
     at = f"{100.0 * relief.loads[0]:g} % of the torque"
     if len(relief.loads) > 1:
         at = f"the worst of {len(relief.loads)} loads"
     return (
-        f"{first} off the pinion's tips and {second} off the wheel's: {CRITERIA[relief.minimise]} "
-        f"{said} at {at}"
+        f"tip relief of {first} on the pinion and {second} on the wheel changes the "
+        f"{CRITERIA[relief.minimise]} from {said} at {at}"
     )
 
 
@@ -78,7 +78,7 @@ def _strays(relief: PairRelief) -> str:
     """The largest peak-to-peak on more positions of the gears, where it is larger."""
     if relief.minimise != "peak_to_peak" or not _finer(relief):
         return ""
-    return f" ({amount(max(relief.finer_mm), 'um', METRIC)} on ten times as many positions)"
+    return f" ({amount(max(relief.finer_mm), 'um', METRIC)} at ten times as many positions)"
 
 
 def _value(relief: PairRelief, value: float) -> str:
@@ -111,8 +111,8 @@ def _finer(relief: PairRelief) -> list[str]:
     if finer <= SAME_PEAK_TO_PEAK * known:
         return []
     return [
-        "Peak-to-peak values and what is proven of them are of the computed positions of the "
-        "gears. On ten times as many the transmission error varies by up to "
+        "Peak-to-peak values, and what is proven of them, hold at the computed positions of the "
+        "gears. At ten times as many the transmission error varies by up to "
         f"{1e3 * finer:.4g} µm at the loads this relief is made for, not {1e3 * known:.4g} µm."
     ]
 
@@ -150,7 +150,7 @@ def grinding(relief: PairRelief, measures: Measures) -> Table:
     """Amounts, diameters and roll angles of both gears."""
     both = relief.pinion, relief.wheel
     rows = [*side_by_side(both, measures), ["exponent", *(_power(f.exponent) for f in both)]]
-    return Table("relief", ["", "pinion", "wheel"], rows, "What to grind.", across=True)
+    return Table("relief", ["", "pinion", "wheel"], rows, "Tip relief to be ground.", across=True)
 
 
 def _power(exponent: float | None) -> Cell:
@@ -171,10 +171,11 @@ def rules(relief: PairRelief, measures: Measures) -> Table:
     for k, name in enumerate(at):
         lines.append([f"load jump {name} [%]", *(percent(r.load_jump[k]) for r in rows)])
     caption = (
-        "Without relief, by two rules, and as found here (this). At the torque of the duty the "
-        "paper's rule (Hwang and others) takes the full deflection of the pair that enters or "
-        "leaves contact as relief of the tips, the corrected rule the deflection of the pairs that "
-        "stay in contact. Load jump: share of the load with which a pair enters or leaves contact."
+        "Gears without relief, with relief by two rules, and with this relief. At the torque of "
+        "the duty the paper's rule (Hwang and others) takes the full deflection of the pair that "
+        "enters or leaves contact as relief of the tips, the corrected rule the deflection of the "
+        "pairs that stay in contact. A load jump is the share of the load with which a pair enters "
+        "or leaves contact."
     )
     return Table("relief and rules", ["", *(r.name for r in rows)], lines, caption, across=True)
 
@@ -192,7 +193,7 @@ def after(contact: PairContact, relief: PairRelief, measures: Measures) -> Table
         for words, values in figures.items():
             rows.append([f"{words}, {when}", *(cell(*value, measures) for value in values)])
     names = [f"{100.0 * load.load:g} %" for load in relief.at]
-    caption = "Every load without relief, and with it."
+    caption = "Transmission error and load of a tooth at every load, without and with relief."
     return Table("without and with relief", ["", *names], rows, caption, across=True)
 
 
@@ -279,7 +280,7 @@ def steps(flank: Flank, measures: Measures) -> Table:
             ]
         )
     name = flank.member
-    return Table(f"{name} profile", heads, rows, f"Flanks of the {name}.", left=0)
+    return Table(f"{name} profile", heads, rows, f"Relief along the flanks of the {name}.", left=0)
 
 
 def _length(value: float, measures: Measures) -> tuple[float, str]:
@@ -318,7 +319,7 @@ def profile_plot(flank: Flank, measures: Measures) -> Figure:
     )
     power = flank.relief.exponent
     shape = {1.0: "growing linearly", None: "a free, convex shape"}.get(power, f"exponent {power}")
-    caption = f"What is removed from the flanks of the {member}, normal to them: {shape}."
+    caption = f"Relief of the flanks of the {member}, normal to them: {shape}."
     return Figure([trace, above], plot, caption)
 
 

@@ -36,7 +36,7 @@ def answers(
     even = _even(contact, load, frequency)
     if pair is not None and (alike := graded(pair, load.peak_to_peak_mm)):
         even = f"{even} {alike}"
-    first = ["The results below are those of the gears without relief."] if relieved else []
+    first = ["The results here are those of the gears without relief."] if relieved else []
     change = [] if relieved or not load.normal_force_N else [_changed(contact)]
     return [*first, _shared(contact, load), even, *change, _stiff(contact, load), _sure(contact)]
 

@@ -57,7 +57,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     if (chain := design.stiffness) is not None:
         stiff, frequency = amount(chain.output_Nm_per_rad, "Nm_per_rad", measures), ""
         if chain.frequency_Hz is not None:
-            frequency = f"{number(chain.frequency_Hz)} Hz, motor locked"
+            frequency = f"natural frequency {number(chain.frequency_Hz)} Hz, motor locked"
         figures.append(Tile("stiffness at the output", stiff, frequency))
     if (cost := design.allocation) is not None and name != "cost":
         figures.append(Tile("cost of tolerances", number(cost.cost)))
@@ -71,10 +71,10 @@ def _ratio(ratio: RatioDesign, name: str, measures: Measures) -> list[Tile]:
     """Value of the chosen train, unless that is the objective, and the best ratio."""
     figures, chosen = [], ratio.chosen
     if chosen is not None and not ratio.name.endswith(name):
-        worse = f"{chosen.loss_percent:.3g} % worse than at the best ratio, no gears"
+        worse = f"{chosen.loss_percent:.3g} % worse than at the best ratio without gears"
         value = amount(chosen.value, ratio.unit, measures)
         figures.append(Tile(f"{ratio.name} of the train", value, worse))
-    without = "no gears" if chosen is not None else ""
+    without = "without the inertia of gears" if chosen is not None else ""
     return [*figures, Tile("best total ratio", number(ratio.total_ratio), without)]
 
 

@@ -44,7 +44,7 @@ def stiffness(result: Result, measures: Measures) -> Section | None:
         return None
     tiles = []
     if chain.windup_deg is not None:
-        tiles.append(Tile("wind-up", degrees(chain.windup_deg), arc_minutes(chain.windup_deg)))
+        tiles.append(Tile("windup", degrees(chain.windup_deg), arc_minutes(chain.windup_deg)))
     springs = sorted(chain.springs, key=lambda s: s.compliance_share)
     table, words = _springs(springs[::-1], measures), _stiffness_words(chain, measures)
     return Section(
@@ -95,12 +95,12 @@ def _springs(springs: Sequence[Spring], measures: Measures) -> Table:
 
 
 def _stiffness_words(chain: StiffnessDesign, measures: Measures) -> str:
-    """Say output stiffness, frequency and wind-up."""
+    """Say output stiffness, frequency and windup."""
     words = f"Seen at the output: {amount(chain.output_Nm_per_rad, 'Nm_per_rad', measures)}"
     if chain.frequency_Hz is not None:
         words += f"; the load swings at {number(chain.frequency_Hz)} Hz, motor locked"
     if chain.windup_deg is not None:
-        words += f"; wind-up {degrees(chain.windup_deg)} ({arc_minutes(chain.windup_deg)})"
+        words += f"; windup {degrees(chain.windup_deg)} ({arc_minutes(chain.windup_deg)})"
     return f"{words}."
 
 

@@ -13,11 +13,11 @@ from gearopt.report.words import amount, number
 
 MAXIMISED = "acceleration"  # the duty whose value is made largest
 COLUMNS = {  # field of a `RatioDesign`: the head of its column, in two lines on the terminal
-    "best": "best ratio,\nno gears",
+    "best": "best ratio,\nwithout gears",
     "best_with_train": "best ratio,\nsame inertia",
     "chosen": "chosen\ntrain",
     "given_train": "given\ntrain",
-    "given": "given ratio,\nno gears",
+    "given": "given ratio,\nwithout gears",
 }
 NOTE = (
     "Inertias are referred to the motor shaft; their ratio is that of the load to rotor plus train."
@@ -125,7 +125,7 @@ def _figure(ratio: RatioDesign, curve: Table, measures: Measures) -> Figure:
     curves = [(ratio.name, "solid", "--series-1", False)]
     if len(values) > 1:
         curves = [
-            ("no gears", "solid", "--series-1", True),
+            ("without gears", "solid", "--series-1", True),
             (WITH_TRAIN, "dash", "--series-3", True),
         ]
     hover = f"ratio %{{x:.5g}}: %{{y:.5g}} {unit}<extra></extra>"

@@ -73,7 +73,7 @@ def section(result: Result, measures: Measures) -> Section | None:
     drawn = train_views.views(stages, measures) if design.box is None else ()
     if drawn:
         words.append(
-            "All shafts are drawn in one line, wheels as full discs; reference circles are "
+            "All shafts are drawn in one plane, wheels as full discs; reference circles are "
             f"dash-dotted. Dimensions in {measures.lengths}."
         )
     side_by_side = replace(stage_table(stages, measures, page_only=()), short={"": "train"})

@@ -77,10 +77,10 @@ def binding_limit(result: Result) -> str:
         return ""
     if result.value is None:
         pressure = amount(design.shared_pressure_MPa, "MPa", METRIC)
-        carry = "1 tooth of a lobe carries"
+        carry = "1 tooth per lobe carries the load"
         if design.carrying_teeth > 1:
-            carry = f"{design.carrying_teeth} teeth of a lobe carry"
-        return f"{carry}, at up to {pressure}"
+            carry = f"{design.carrying_teeth} teeth per lobe carry the load"
+        return f"{carry}, with a contact pressure of up to {pressure}"
     sizes = (
         f"{design.flexspline_teeth} and {design.circular_spline_teeth} teeth of module "
         f"{amount(design.module_mm, 'mm', METRIC)} carry {amount(design.torque_Nm, 'Nm', METRIC)} "

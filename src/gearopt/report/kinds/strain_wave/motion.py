@@ -46,8 +46,13 @@ def running(gearing: WaveDesign, name: str, measures: Measures) -> Animation:
     readings = [
         Reading("wave generator", np.degrees(turns), "°", 1),
         Reading("output", -np.degrees(turns) / gearing.ratio, "°", 3),
-        Reading("tooth at the top on the wave at", seen, "°", 2),
-        Reading("its load", measures.of(1.0, "N") * _load(gearing, first), measures.unit("N"), 0),
+        Reading("tooth at the top: angle on the wave", seen, "°", 2),
+        Reading(
+            "tooth at the top: load",
+            measures.of(1.0, "N") * _load(gearing, first),
+            measures.unit("N"),
+            0,
+        ),
     ]
     return Animation(
         name,

@@ -72,7 +72,7 @@ def teeth(design: WaveDesign, measures: Measures) -> Table:
 
 def within(design: WaveDesign, measures: Measures) -> Table:
     """Mean numbers of teeth within some clearances."""
-    heads = [f"within [{measures.unit('um')}]", "teeth per lobe and flank"]
+    heads = [f"clearance up to [{measures.unit('um')}]", "teeth per lobe and flank"]
     factor = measures.of(1.0, "um") * 1e-3
     rows = [
         [Cell(factor * v, f"{factor * v:g}"), n]

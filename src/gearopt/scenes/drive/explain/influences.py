@@ -22,11 +22,11 @@ from gearopt.scenes.reading.module_series import series_of
 
 BASIS = (
     " with real-valued teeth and modules, by Lagrange multipliers, checked by solving again. "
-    "Effect of relaxing a limit: the drive itself solved again"
+    "The effect of relaxing a limit is that on the drive itself, solved again"
 )
 RATED = (  # of drives that ratings limit, or whose gears have webs
-    ". Effect of relaxing a limit: the drive itself solved again; numbers that ease no limit are "
-    "not listed"
+    ". The effect of relaxing a limit is that on the drive itself, solved again; numbers that ease "
+    "no limit are not listed"
 )
 OF_RATING = {  # keys of ratings: the direction that eases them
     **dict.fromkeys(("life", "input_revolutions", "overload_factor", "reliability"), -1),
@@ -73,7 +73,8 @@ def explained(
             lambda number: _smooth(spelt, number),
         )
     )
-    late = f"time ended after {len(found)} of {len(wanted)} sensitivities" if clock.over else ""
+    late = f"{len(found)} of {len(wanted)} sensitivities were computed in the time allowed"
+    late = late if clock.over else ""
     if not whole:
         late = late or "relaxing a limit is not tried, because the answer is not proven optimal"
     return Explanation(

@@ -289,12 +289,12 @@ class RatingTable(Table):
     )
     minimum_bending_safety: Annotated[Fraction, number(1.2, 0, 100)] = Field(
         default_factory=lambda: Fraction(1),
-        description="Safety factor asked for against bending",
+        description="Required safety factor against bending",
         json_schema_extra={"default": 1},
     )
     minimum_contact_safety: Annotated[Fraction, number(1.1, 0, 100)] = Field(
         default_factory=lambda: Fraction(1),
-        description="Safety factor asked for against pitting, of stress: its square is of load",
+        description="Required safety factor against pitting, of stress: its square is of load",
         json_schema_extra={"default": 1},
     )
     friction_coefficient: Annotated[Fraction | None, number(0.05, 0, 1)] = Field(

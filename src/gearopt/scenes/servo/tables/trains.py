@@ -157,7 +157,7 @@ class Stiffness(Table):
         None, description="Torque at the output under which the train winds up"
     )
     windup: Annotated[Quantity | None, quantity("angle", "0.001 deg", limit="90 deg")] = Field(
-        None, description="Maximum wind-up angle; needs load_torque"
+        None, description="Maximum windup; needs load_torque"
     )
 
     @model_validator(mode="after")
