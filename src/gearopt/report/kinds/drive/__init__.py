@@ -252,8 +252,9 @@ def counts(result: Result, measures: Measures) -> Section | None:
         wrap=9,
     )
     words = [
-        f"Impossible with {row['stages']} {'stage' if row['stages'] == 1 else 'stages'}: in "
-        f"conflict are the limits on {series_of(grouped(row['conflict']))}."
+        f"Impossible with {row['stages']} {'stage' if row['stages'] == 1 else 'stages'}: "
+        f"{series_of(grouped(row['conflict']))} cannot be met"
+        f"{' together' * (len(row['conflict']) > 1)}."
         for row in rows
         if row["conflict"]
     ]
