@@ -1,8 +1,8 @@
 """Dataclasses from plain JSON data and back, each value held to the type its field declares."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, fields, is_dataclass
-from functools import cache
+from functools import cache, partial
 from types import NoneType, UnionType
 from typing import Any, get_args, get_origin, get_type_hints
 
@@ -36,26 +36,53 @@ def typed(kind: Any, data: Any, where: str = "") -> Any:
 
     kind: a dataclass, a tuple, a mapping, a plain type, any of them or None.
     """
+    return _reader(kind)(data, where)
+
+
+@cache
+def _reader(kind: Any) -> Callable[[Any, str], Any]:
+    """Value of a type from plain data and the name of its place: what `typed` asks."""
     origin, inner = get_origin(kind), get_args(kind)
     if kind is Any:
-        return data
+        return lambda data, where: data
     if origin is UnionType:
-        if data is None and NoneType in inner:
-            return None
-        return typed(next(k for k in inner if k is not NoneType), data, where)
+        some = _reader(next(k for k in inner if k is not NoneType))
+        may_lack = NoneType in inner
+        return lambda data, where: None if data is None and may_lack else some(data, where)
     if is_dataclass(kind):
-        return _filled(kind, data, where)
+        return partial(_filled, kind)
     if origin is tuple:
-        held = _list(data, where)
-        each = (inner[0],) * len(held) if inner[-1] is Ellipsis else inner
-        if len(each) != len(held):
-            raise ValueError(f"holds {len(held)} values in {where}, not {len(each)}")
-        return tuple(typed(each[n], v, f"{where}[{n + 1}]") for n, v in enumerate(held))
+        return partial(_several if inner[-1] is Ellipsis else _each, inner)
     if origin is not None and issubclass(origin, Mapping):
-        return {k: typed(inner[1], v, f"{where}.{k}") for k, v in _mapping(data, where).items()}
+        of_value = _reader(inner[1])
+        return lambda data, where: {
+            k: of_value(v, f"{where}.{k}") for k, v in _mapping(data, where).items()
+        }
+    return partial(_plain, kind)
+
+
+def _plain(kind: type, data: Any, where: str) -> Any:
+    """A number, a truth or a word."""
     if not isinstance(data, NUMBERS[kind]) or (isinstance(data, bool) and kind is not bool):
         raise ValueError(f"has a value in {where} that is not a {kind.__name__}")
     return data
+
+
+def _several(inner: tuple[Any, ...], data: Any, where: str) -> tuple[Any, ...]:
+    """Any number of values of one type."""
+    held = _list(data, where)
+    if set(map(type, held)) <= set(NUMBERS.get(inner[0], ())):
+        return tuple(held)
+    of_value = _reader(inner[0])
+    return tuple(of_value(v, f"{where}[{n + 1}]") for n, v in enumerate(held))
+
+
+def _each(inner: tuple[Any, ...], data: Any, where: str) -> tuple[Any, ...]:
+    """Values of a type each."""
+    held = _list(data, where)
+    if len(inner) != len(held):
+        raise ValueError(f"holds {len(held)} values in {where}, not {len(inner)}")
+    return tuple(_reader(inner[n])(v, f"{where}[{n + 1}]") for n, v in enumerate(held))
 
 
 def untyped(value: Any) -> Any:
@@ -74,17 +101,19 @@ def untyped(value: Any) -> Any:
 
 
 def _filled(kind: Any, data: Any, where: str) -> Any:
-    """Return A dataclass with all its fields and no other."""
-    (hints, needed, inlined), held = _declared(kind), _mapping(data, where)
+    """A dataclass with all its fields and no other."""
+    (readers, needed, inlined), held = _declared(kind), _mapping(data, where)
     for inline in inlined:
-        others = {k: v for k, v in held.items() if k not in hints}
-        held = {k: v for k, v in held.items() if k in hints} | {inline: others}
-    if unknown := sorted(set(held) - set(hints)):
-        raise ValueError(f"has unknown keys in {where or 'it'}: {', '.join(unknown)}")
-    if missing := sorted(needed - set(held)):
-        raise ValueError(f"lacks keys in {where or 'it'}: {', '.join(missing)}")
+        others = {k: v for k, v in held.items() if k not in readers}
+        held = {k: v for k, v in held.items() if k in readers} | {inline: others}
+    if not held.keys() <= readers.keys():
+        unknown = ", ".join(sorted(set(held) - set(readers)))
+        raise ValueError(f"has unknown keys in {where or 'it'}: {unknown}")
+    if not needed <= held.keys():
+        missing = ", ".join(sorted(needed - set(held)))
+        raise ValueError(f"lacks keys in {where or 'it'}: {missing}")
     head = f"{where}." if where else ""
-    return kind(**{k: typed(hints[k], v, f"{head}{k}") for k, v in held.items()})
+    return kind(**{k: readers[k](v, f"{head}{k}") for k, v in held.items()})
 
 
 @cache
@@ -94,10 +123,13 @@ def _written(kind: type) -> tuple[tuple[str, Any, bool], ...]:
 
 
 @cache
-def _declared(kind: Any) -> tuple[Mapping[str, Any], frozenset[str], tuple[str, ...]]:
-    """Return the types of a dataclass's fields; those without a default; those with metadata."""
+def _declared(
+    kind: Any,
+) -> tuple[Mapping[str, Callable[[Any, str], Any]], frozenset[str], tuple[str, ...]]:
+    """Readers of a dataclass's fields; fields without a default; those with metadata."""
     needed = frozenset(f.name for f in fields(kind) if f.default is f.default_factory is MISSING)
-    return get_type_hints(kind), needed, tuple(f.name for f in fields(kind) if f.metadata)
+    readers = {name: _reader(hint) for name, hint in get_type_hints(kind).items()}
+    return readers, needed, tuple(f.name for f in fields(kind) if f.metadata)
 
 
 def _mapping(data: Any, where: str) -> Mapping[str, Any]:

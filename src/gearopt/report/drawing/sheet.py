@@ -63,34 +63,57 @@ class Ink:
     height: float
     cells: Counter[tuple[int, int]] = field(default_factory=Counter)
     texts: list[tuple[float, float, float]] = field(default_factory=list)  # x, y, reach
+    _counted: dict[tuple[int, int], int] = field(default_factory=dict)
 
     def add(self, points: Iterable[tuple[float, float]]) -> None:
         """Add lines, as points along them."""
         self.cells.update((int(x // CELL), int(y // CELL)) for x, y in points)
+        self._counted.clear()
 
-    def cost(self, x: float, y: float, reach: float) -> float:
+    def near(self, place: Place, text: str, reach: float) -> list[tuple[float, float, float]]:
+        """Texts that any letter of a text at a place may touch."""
+        wide = place.half_width(text) + reach
+        return [
+            (u, v, r)
+            for u, v, r in self.texts
+            if abs(u - place.x) < wide + r and abs(v - place.y) < wide + r
+        ]
+
+    def cost(
+        self, x: float, y: float, reach: float, texts: Iterable[tuple[float, float, float]]
+    ) -> float:
         """The cost of a letter here: texts and the edge weigh far more than lines."""
-        column, row = int(x // CELL), int(y // CELL)
-        lines = sum(
-            self.cells.get((column + i, row + j), 0) for i in (-1, 0, 1) for j in (-1, 0, 1)
-        )  # the height of a letter
-        texts = sum(
-            1 for u, v, r in self.texts if abs(u - x) < reach + r and abs(v - y) < reach + r
-        )
+        lines = self._lines(int(x // CELL), int(y // CELL))
+        met = 0
+        for u, v, r in texts:
+            if abs(u - x) < reach + r and abs(v - y) < reach + r:
+                met += 1
         edge = 0.6 * SIZE
         outside = not (edge <= x <= self.width - edge and edge <= y <= self.height - edge)
-        return min(lines, 6) + 100.0 * texts + 120.0 * outside
+        return min(lines, 6) + 100.0 * met + 120.0 * outside
+
+    def _lines(self, column: int, row: int) -> int:
+        """Lines in a cell and beside it: the height of a letter."""
+        lines = self._counted.get((column, row))
+        if lines is None:
+            lines = sum(
+                self.cells.get((column + i, row + j), 0) for i in (-1, 0, 1) for j in (-1, 0, 1)
+            )
+            self._counted[column, row] = lines
+        return lines
 
 
 def best(text: str, places: Sequence[Place], ink: Ink, reach: float = 0.58 * SIZE) -> Place:
     """The place of lowest cost for the text, which clears what is drawn by reach [px]."""
     cheapest, lowest = places[0], math.inf
     for place in places:
-        inked = 0.0
+        if place.cost >= lowest:
+            continue  # no letter costs less than nothing
+        inked, texts = 0.0, ink.near(place, text, reach)
         for x, y in place.spots(text):
-            inked += ink.cost(x, y, reach)
+            inked += ink.cost(x, y, reach, texts)
             if place.cost + inked >= lowest:
-                break  # no letter costs less than nothing
+                break
         else:
             cheapest, lowest = place, place.cost + inked
     ink.texts += ((x, y, reach) for x, y in cheapest.spots(text))

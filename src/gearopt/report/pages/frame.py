@@ -19,6 +19,15 @@ def templates() -> Any:
     )
 
 
+@cache
+def plots_script() -> str:
+    """The library that draws the figures of a page, 4.8 MB."""
+    from plotly.offline import get_plotlyjs
+
+    script: str = get_plotlyjs()
+    return script
+
+
 def render(
     template: str,
     title: str,
@@ -34,7 +43,6 @@ def render(
     plots: the page has figures, which need plotly (4.8 MB) inside it. moves: it has animations.
     """
     from markupsafe import Markup
-    from plotly.offline import get_plotlyjs
 
     room = templates()
 
@@ -49,7 +57,7 @@ def render(
         style=inlined("frame.css"),
         script=inlined("frame.js"),
         player=inlined("player.js") if moves else "",
-        plotly=Markup(get_plotlyjs()) if plots else "",
+        plotly=Markup(plots_script()) if plots else "",
         **content,
     )
     return page
