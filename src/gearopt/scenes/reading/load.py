@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation
 from difflib import get_close_matches
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
@@ -58,7 +59,12 @@ class Loaded:
 
 def kinds() -> tuple[str, ...]:
     """Return the kinds of problem file: all modules of `gearopt.scenes` but shared ones."""
-    return tuple(sorted({m.name for m in iter_modules(gearopt.scenes.__path__)} - SHARED))
+    return _kinds_in(tuple(gearopt.scenes.__path__))
+
+
+@cache
+def _kinds_in(folders: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(sorted({m.name for m in iter_modules(folders)} - SHARED))
 
 
 def kind_named(name: str) -> Kind[Any]:

@@ -191,11 +191,15 @@ class GearTable(GearKeys):
         return self
 
 
+SAID_BY = tuple((name, beside(name)) for name in GearKeys.model_fields)  # and what says the same
+
+
 def with_shared(own: GearTable, shared: GearKeys) -> GearTable:
     """Keys of a gear: its own, else those of all gears."""
-    fields = GearKeys.model_fields
-    names = [n for n in fields if all(getattr(own, key) is None for key in beside(n))]
-    return own.model_copy(update={n: getattr(shared, n) for n in names})
+    absent = {name for name, value in vars(own).items() if value is None}
+    of_all = vars(shared)
+    taken = {name: of_all[name] for name, same in SAID_BY if absent.issuperset(same)}
+    return own.model_copy(update=taken)
 
 
 class GivenTable(Given):

@@ -5,6 +5,7 @@ Where it comes from, how large it may be, and the same deviations reallocated at
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from typing import Annotated, get_args
 
 from pydantic import Field, model_validator
@@ -206,21 +207,14 @@ class Mesh(Table):
 
     def sources(self, stage: int, pressure_angle: float) -> tuple[Source, ...]:
         """Return the deviations above zero of a stage (from 1); pressure_angle [rad]."""
-        laws = {
-            **dict.fromkeys(RADIAL, backlash_angle(radial_backlash(1.0, pressure_angle), 1.0)),
-            **dict.fromkeys(
-                THICKNESS, backlash_angle(thickness_backlash(-1.0, 0.0, 0.0, pressure_angle), 1.0)
-            ),
-            **dict.fromkeys(PITCH, pitch_error_angle(1.0, 1.0)),
-        }
-        found = []
+        laws, found = angles_per_mm(pressure_angle), []
         for name, words in WORDS.items():
             tolerance = self._tolerance(name)
             if tolerance <= 0.0:
                 continue
             kind = "pitch" if name in PITCH else "backlash"
             law = RUN_OUT if name.endswith("run_out") else UNIFORM
-            own = f"{words} {stage}", name, kind, stage, tolerance, float(laws[name]), law
+            own = f"{words} {stage}", name, kind, stage, tolerance, laws[name], law
             found.append(Source(*own, start=self.opening(name)[0]))
         return tuple(found)
 
@@ -230,6 +224,15 @@ class Mesh(Table):
         gear = self.pair().gears[("pinion_pitch", "wheel_pitch").index(name)]
         diameter, module = gear.reference_diameter, gear.normal_module
         return float(total_pitch_tolerance(diameter, module, float(self.grade)))
+
+
+@cache
+def angles_per_mm(pressure_angle: float) -> dict[str, float]:
+    """Angles [rad] of a gear of 1 mm by 1 mm of every deviation; pressure_angle [rad]."""
+    radial = backlash_angle(radial_backlash(1.0, pressure_angle), 1.0)
+    thickness = backlash_angle(thickness_backlash(-1.0, 0.0, 0.0, pressure_angle), 1.0)
+    each = ((RADIAL, radial), (THICKNESS, thickness), (PITCH, pitch_error_angle(1.0, 1.0)))
+    return {name: float(angle) for names, angle in each for name in names}
 
 
 class Accuracy(Table):
