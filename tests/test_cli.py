@@ -282,7 +282,7 @@ runpy.run_module("gearopt", run_name="__main__", alter_sys=True)
             ("casadi", 1, 4, ""),
             ("casadi", 2, 130, "gearopt: interrupted\n"),
         ],
-        2,
+        1,
     ),
 )
 def test_ctrl_c_while_a_module_is_read_is_no_traceback(module, times, code, words):

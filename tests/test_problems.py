@@ -81,10 +81,12 @@ LONG = (
     "wind_pair_sized",
     "servo_gimbal_backlash",
     "servo_gimbal_fine",
+    "servo_gimbal_fast",
     "servo_gimbal_light",
     "strain_wave_double_arc",
     "elevator_by_agma",
     "six_stages",
+    "five_stages",
     "paper_program",
 )
 SI = {  # of numbers as a source prints them: their suffix, its value, the suffix of a result

@@ -18,7 +18,7 @@ ELEVATOR = Path(__file__).parents[2] / "problems" / "elevator.toml"
 
 
 @pytest.fixture
-def room(tmp_path, monkeypatch):
+def room(tmp_path, monkeypatch, solved):
     """A folder with a problem file `mine.toml`, links of both sorts to it, and a kept result."""
     (tmp_path / "mine.toml").write_bytes(ELEVATOR.read_bytes())
     (tmp_path / "plain").write_bytes(ELEVATOR.read_bytes())
@@ -28,7 +28,7 @@ def room(tmp_path, monkeypatch):
     os.link(tmp_path / "plain", tmp_path / "hard.html")
     (tmp_path / "tables").mkdir()
     os.link(tmp_path / "plain", tmp_path / "tables" / "stages.csv")
-    (tmp_path / "kept.json").write_text(solve(ELEVATOR).to_json(), encoding="utf-8")
+    (tmp_path / "kept.json").write_text(solved("elevator").to_json(), encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

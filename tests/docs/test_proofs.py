@@ -36,11 +36,16 @@ def module_of(parts):
     return folder / "__init__.py", ()
 
 
-def defined(body, names):
+def defined(text, names, indent=0):
     """Whether functions or classes inside each other have these names."""
-    kinds = ast.FunctionDef, ast.ClassDef
-    own = [n for n in body if isinstance(n, kinds) and n.name == names[0]]
-    return bool(own) and (len(names) == 1 or defined(own[0].body, names[1:]))
+    head, _, body = text.partition(next(iter(re.findall(heading(names[0], indent), text)), "\0"))
+    body = re.split(rf"(?m)^ {{0,{indent}}}[\w@]", body)[0]
+    return head != text and (len(names) == 1 or defined(body, names[1:], indent + 4))
+
+
+def heading(name, indent):
+    """The line that a function or class begins with."""
+    return rf"(?m)^ {{{indent}}}(?:def|class) {name}\b"
 
 
 def modules_with_methods():
@@ -60,7 +65,7 @@ def modules_with_methods():
 def is_function(name):
     """Whether the page names a function that there is."""
     path, names = module_of(tuple(name.split(".")))
-    return path.exists() and names and defined(tree(path).body, names)
+    return path.exists() and names and defined(text_of(path), names)
 
 
 def is_test(name):

@@ -103,7 +103,7 @@ CASES = {  # file, edit, method, evaluations, {part: (objective, unit, name of i
         {"compound": ("squared_error", "", "compound")},
     ),
 }
-LONG = "layout by nsga2", "real-valued drive", "stiff servo"
+LONG = "layout by nsga2", "real-valued drive", "stiff servo", "together", "servo", "packing"
 
 
 def told(scene, call=gearopt.solve, **kind):
@@ -154,6 +154,7 @@ def test_every_scene_says_what_its_events_are_of(case):
         assert all(e.bound <= answer.value * ROUNDED for e in own if e.bound is not None)
 
 
+@pytest.mark.slow
 def test_trains_that_do_not_fit_their_box_are_no_best():
     """Those before the answer are better, but limits beside the search refuse them."""
     text = (PROBLEMS / "servo_gimbal_fine.toml").read_text(encoding="utf-8")

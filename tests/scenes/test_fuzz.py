@@ -115,14 +115,15 @@ def test_the_bases_load_and_survive_our_own_writer(base):
     assert judge("byte_order_mark", base, 0) == "loaded"
 
 
-EVERY = [(kind, seed) for kind in KINDS for seed in range(1 if kind in SLOW else 2)]
+EVERY = [(kind, seed) for kind in KINDS for seed in range(2 if kind in SLOW else 3)]
+SOME = list(BASES)[::3]  # for the default tests, of seed 0
 
 
 @pytest.mark.parametrize(
     ("kind", "seed"), few(EVERY, [(kind, 0) for kind in KINDS if kind not in SLOW])
 )
 def test_every_mutation_of_every_base(kind, seed):
-    found = {judge(kind, base, seed) for base in BASES}
+    found = {judge(kind, base, seed) for base in (BASES if seed else SOME)}
     assert (found == {"loaded"}) == (kind in VALID)
 
 

@@ -99,7 +99,7 @@ def base(kind, name):
 def facts(file, changes, budget):
     """Return every number and short word of an answer by its place; of given drives the rating."""
     try:
-        found = gearopt.solve(file, changes, budget=budget)
+        found = gearopt.solve(file, changes, budget=budget, remedies=False)
     except SolveError as refused:
         if "nothing to choose" not in str(refused):
             raise

@@ -10,6 +10,7 @@ from gearopt import SolveError
 FILE = Path(__file__).parents[3] / "problems" / "elevator_box.toml"
 
 
+@pytest.mark.slow
 def test_the_end_of_a_front_is_the_box_that_the_file_asks_for(solved):
     front = gearopt.pareto(FILE, objectives="box_volume,height", points=2)
     best = solved("elevator_box")

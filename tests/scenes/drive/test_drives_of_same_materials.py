@@ -55,6 +55,7 @@ def test_the_best_is_that_of_every_pair_of_materials():
     assert chosen(found) == [best, best]
 
 
+@pytest.mark.slow
 def test_it_costs_more_than_a_choice_of_every_stage():
     free, found = (gearopt.solve(drive(same_materials=same)) for same in (False, True))
     assert free.value < found.value

@@ -80,8 +80,8 @@ def spelt(names):
 def test_least_repair_known_before(case, exact):
     text, percent, precise, where, conflict = CASES[case]
     text = without_teeth(text).replace(*EXACT) if exact else without_teeth(text)
-    scene, content = scene_of(text)
-    found = explain(scene)
+    _, content = scene_of(text)
+    found = explained(text)
     assert found.result.status == "infeasible"
     assert set(found.conflict) == spelt(conflict)
     least = found.remedies[0]
@@ -98,8 +98,9 @@ def test_least_repair_known_before(case, exact):
 @pytest.mark.slow
 def test_even_repair_known_before():
     """The same factor on both wheels: 1.12132 at the exact ratio."""
-    scene, content = scene_of(without_teeth(SMALL_WHEELS).replace(*EXACT))
-    ways = explain(scene).remedies
+    text = without_teeth(SMALL_WHEELS).replace(*EXACT)
+    _, content = scene_of(text)
+    ways = explained(text).remedies
     even = ways[0]  # the least change of all
     assert even.what == "wheel_diameter" and even.bound == pytest.approx(1.12132, rel=1e-5)
     (change,) = even.changes
@@ -219,7 +220,7 @@ helix_angle = "{draw.choice([0, 12, 25])} deg"
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("block", range(20))
+@pytest.mark.parametrize("block", range(9))
 def test_every_remedy_of_a_random_impossible_drive_is_verified(block):
     """The first impossible drive of every block; those drawn possible are left out."""
     for seed in range(1000 * block + 1, 1000 * block + 13):
@@ -232,11 +233,12 @@ def test_every_remedy_of_a_random_impossible_drive_is_verified(block):
     assert all(verify(content, r) for r in found.remedies)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
     [
         pytest.param(ELEVATOR, id="elevator"),
-        pytest.param(THREE, id="three stages", marks=pytest.mark.slow),
+        pytest.param(THREE, id="three stages"),
     ],
 )
 def test_sensitivity_of_every_number_against_re_solving(text):
@@ -269,6 +271,7 @@ def test_sensitivities_where_other_limits_bind():
         assert min(below, above) - 1e-3 <= i.sensitivity <= max(below, above) + 1e-3, i.key
 
 
+@pytest.mark.slow
 def test_prices_are_those_of_the_drive_solved_again():
     """1 % more K-factor, one tooth less: exact re-solves of the edited file."""
     scene, content = scene_of(ELEVATOR)

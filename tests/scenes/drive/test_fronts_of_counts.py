@@ -17,6 +17,7 @@ def values(front):
     return np.array([point.values for point in front.points])
 
 
+@pytest.mark.slow
 def test_the_front_is_what_is_unbeaten_of_the_fronts_of_every_count():
     whole = gearopt.pareto(FILE, {**FEW, "stages": [1, 3]}, objectives=NAMES)
     each = [gearopt.pareto(FILE, {**FEW, "stages": n}, objectives=NAMES) for n in (1, 2, 3)]

@@ -19,7 +19,6 @@ from gearopt.formulations.drive.layout.slabs import orders
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.explained import remedy_words
-from gearopt.scenes.drive import Scene
 from gearopt.scenes.drive.explain import box_remedies as ways
 from gearopt.scenes.drive.explain.box_moves import LARGER, SMALLER
 from gearopt.scenes.drive.explain.box_remedies import BRIEF
@@ -135,25 +134,20 @@ def test_a_split_line_that_a_place_contradicts():
 
 
 ELEVATOR = (PROBLEMS / "elevator_box.toml").read_text(encoding="utf-8").split("[x-expected]")[0]
-LOW = ELEVATOR.replace('z = ["300 mm", "1000 mm"]', 'z = ["150 mm", "1000 mm"]')
 HIGH = ELEVATOR + '[[place]]\nshaft = 3\nz = "250 mm"\n'
 BLOCK = 'y = ["-5000 mm", "5000 mm"]\nz = ["-5000 mm", "5000 mm"]\n'
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("text", "key", "works", "fails"),
-    [(LOW, "keep_out[2].z", 171.5, 165.0), (HIGH, "place[1].z", 144.0, 160.0)],
-)
-def test_what_cannot_be_decided_near_the_border_is_moved_all_the_same(text, key, works, fails):
+def test_what_cannot_be_decided_near_the_border_is_moved_all_the_same():
     """Beside the border no proof ends in time; the move is told, and it is the least."""
-    found, content = told(text)
-    assert {(key,), ("keep_out[2].z",), ("keep_out[2]",)} <= set(keys(found))
-    (way,) = (r for r in found.remedies if keys_of(r) == (key,))
+    found, content = told(HIGH)
+    assert {("place[1].z",), ("keep_out[2].z",), ("keep_out[2]",)} <= set(keys(found))
+    (way,) = (r for r in found.remedies if keys_of(r) == ("place[1].z",))
     assert status(edited(content, way)) == "optimal"
     written = float(re.findall(r"[\d.]+", way.changes[0].write)[0])
-    assert min(works, fails) < written < max(works, fails)
-    for number, known in ((works, "optimal"), (fails, "infeasible")):
+    assert 144.0 < written < 160.0
+    for number, known in ((144.0, "optimal"), (160.0, "infeasible")):
         write = way.changes[0].write.replace(f"{written:g} mm", f"{number} mm")
         assert status(edited(content, other_write(way, write))) == known
 
@@ -199,6 +193,7 @@ def test_the_smallest_size_known_to_fit_is_told_where_less_stays_undecided(monke
     assert any(0.9 * BRIEF < seconds <= BRIEF for seconds in asked)
 
 
+@pytest.mark.slow
 def test_where_nothing_is_decided_no_change_is_called_impossible(monkeypatch):
     ways, _ = ways_by(monkeypatch, BARE + POST, lambda box: None)
     assert not ways["remedies"]
@@ -216,19 +211,18 @@ def test_a_change_that_stays_undecided_is_named(monkeypatch):
 
 
 @pytest.mark.slow
-def test_what_was_tried_is_said_where_nothing_helps():
+def test_what_was_tried_is_said_where_nothing_helps(monkeypatch):
     """50 times the stress would do; moves end at 3 times."""
-    found, content = told(ELEVATOR.replace('"25 MPa"', '"0.5 MPa"'))
-    assert not found.remedies
+    text = ELEVATOR.replace('"25 MPa"', '"0.5 MPa"')
+    ways, _ = ways_by(monkeypatch, text, lambda box: False)
+    assert not ways["remedies"]
     for said in (
         "no layout was found by changing one or two numbers within these ranges: ",
         f"shaft_stress up to {LARGER['shaft_stress']:g} times",
         f"bearing_diameters down to 1/{SMALLER['bearing_diameters']:g}",
         "a keep-out left out",
     ):
-        assert said in found.message
-    content["layout"]["shaft_stress"] = "25 MPa"
-    assert status(Scene.model_validate(content)) == "optimal"
+        assert said in ways["message"]
 
 
 @pytest.mark.slow

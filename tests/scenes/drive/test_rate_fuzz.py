@@ -71,9 +71,10 @@ def checked(seed):
 
 
 def test_random_files():
-    assert 5 < sum(map(checked, range(30))) < 25
+    assert 2 < sum(map(checked, range(10))) < 9
 
 
 @pytest.mark.slow
-def test_many_random_files():
-    assert 200 < sum(map(checked, range(1000, 1900))) < 700
+@pytest.mark.parametrize("first", range(1000, 1900, 100))
+def test_many_random_files(first):
+    assert 22 < sum(map(checked, range(first, first + 100))) < 78

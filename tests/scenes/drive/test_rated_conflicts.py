@@ -85,16 +85,17 @@ def test_a_conflict_is_said_first_and_what_may_not_matter_last():
     )
 
 
-def test_of_many_requirements_that_may_not_matter_some_are_named():
+def test_of_many_requirements_that_may_not_matter_some_are_named(solved):
     names = ["a[1]", *(f"{letter}[1]" for letter in "bcdef")]
     ways = {"conflict": names, "unsure": names[1:], "remedies": []}
-    result = replace(gearopt.solve(some_file(1)), status="infeasible", report={"ways_out": ways})
+    result = replace(solved("elevator"), status="infeasible", report={"ways_out": ways})
     assert lead(result).startswith(
         "the limit on a of stage 1 cannot be met together with b of stage 1, c of stage 1, "
         "d of stage 1 and 2 other requirements"
     )
 
 
+@pytest.mark.slow
 def test_a_stage_like_the_last_is_a_remedy_that_a_file_can_hold():
     limits = {"pinion_teeth": [20, 22], "stage_ratio": [1, 4]}
     duty = {"power": "1 kW", "input_speed": "1000 rpm", "ratio": 6, "ratio_tolerance": "2 %"}

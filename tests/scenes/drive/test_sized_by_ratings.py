@@ -15,7 +15,6 @@ from gearopt.scenes.drive import sizing
 from gearopt.scenes.reading.load import examples
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
-NAME = "elevator_by_agma"
 DRIVE = {
     "gearopt": 1,
     "kind": "drive",
@@ -51,15 +50,19 @@ def drive(**tables):
     return made
 
 
+@pytest.fixture(scope="module")
+def small():
+    return gearopt.solve(drive())
+
+
 def safeties(result):
     """The least S_F and S_H of a result that is rated."""
     gears = result.design["rating"]["gears"]
     return min(g["bending_safety"] for g in gears), min(g["contact_safety"] for g in gears)
 
 
-def test_the_answer_is_rated_by_the_exact_form_as_its_limits_say(solved):
-    result = solved(NAME)
-    rating = result.design["rating"]
+def test_the_answer_is_rated_by_the_exact_form_as_its_limits_say(small):
+    result, rating = small, small.design["rating"]
     assert rating["safe"] and result.status == "optimal"
     for gear in rating["gears"]:
         for mode in ("bending", "contact"):
@@ -69,19 +72,21 @@ def test_the_answer_is_rated_by_the_exact_form_as_its_limits_say(solved):
 
 @pytest.mark.parametrize(
     "rating",
-    [{"minimum_contact_safety": 1.2}, {"minimum_bending_safety": 3}, {"overload_factor": 1.5}],
+    few(
+        [{"minimum_contact_safety": 1.2}, {"minimum_bending_safety": 3}, {"overload_factor": 1.5}],
+        1,
+    ),
     ids=str,
 )
-def test_more_safety_takes_more_volume(rating):
-    small, large = (gearopt.solve(drive(rating=more)) for more in ({}, rating))
+def test_more_safety_takes_more_volume(small, rating):
+    large = gearopt.solve(drive(rating=rating))
     assert large.value > small.value
     asked = rating.get("minimum_bending_safety", 1), rating.get("minimum_contact_safety", 1)
     assert all(s >= a - 1e-8 for s, a in zip(safeties(large), asked, strict=True))
 
 
-def test_given_gears_that_are_rated_and_sized_are_the_same():
-    result = gearopt.solve(drive())
-    stage = result.design["stages"][0]
+def test_given_gears_that_are_rated_and_sized_are_the_same(small):
+    stage = small.design["stages"][0]
     given = {
         "module": f"{stage['normal_module_mm']} mm",
         "pinion_teeth": stage["pinion_teeth"],
@@ -89,13 +94,13 @@ def test_given_gears_that_are_rated_and_sized_are_the_same():
         "face_width": f"{stage['face_width_mm']!r} mm",
     }
     rated = gearopt.rate(drive(stage=[given], limits=None))
-    assert safeties(rated) == pytest.approx(safeties(result), rel=1e-9)
+    assert safeties(rated) == pytest.approx(safeties(small), rel=1e-9)
 
 
 LOADS = {"preset": "chong-lee-elevator"}
 
 
-@pytest.mark.parametrize("factor", [1, 2])
+@pytest.mark.parametrize("factor", few([2, 1], 1))
 def test_load_limits_beside_a_rating_are_limits_too(factor):
     """The least of both is never below the least of either; the one that binds gives it."""
     rating = {"minimum_contact_safety": factor}
@@ -132,7 +137,7 @@ def test_a_spectrum_is_what_gears_carry(standard):
         assert used == pytest.approx(1.0 / gear["contact_safety"], rel=1e-8)
 
 
-@pytest.mark.parametrize("standard", ["iso6336", "both"])
+@pytest.mark.parametrize("standard", few(["iso6336", "both"], 1))
 def test_every_standard_asked_for_is_met(standard):
     tables = drive(rating={"standard": standard, "iso6336": {"accuracy_grade": 6}})
     if standard == "iso6336":
@@ -143,6 +148,7 @@ def test_every_standard_asked_for_is_met(standard):
     assert standard == "iso6336" or rating["beside"]["safe"]
 
 
+@pytest.mark.slow
 def test_widths_keep_to_their_limits():
     ends = {"face_width_over_diameter": [0.2, 1], "face_width_over_module": [9, 14]}
     free, held, least = (
@@ -155,6 +161,7 @@ def test_widths_keep_to_their_limits():
     assert free.value <= min(held.value, least.value)
 
 
+@pytest.mark.slow
 def test_explain_says_what_steel_and_life_bring():
     found = gearopt.explain(drive())
     brings = {one.key: one.price for one in found.influences}
@@ -228,6 +235,7 @@ def test_load_limits_alone_size_real_valued_teeth_that_ratings_cannot():
     assert "optimal (sized by load limits alone, rated afterwards)" in repr(both).splitlines()[0]
 
 
+@pytest.mark.slow
 def test_the_best_number_of_stages_is_that_of_each():
     of_all = {"face_width_over_diameter": 0.6}
     tables = drive(stage=[], gears=of_all, duty={"ratio": 8}) | {"stages": [1, 2]}
@@ -254,7 +262,8 @@ def of_materials(pinion, wheel, minimise="cost", materials=(HARD, TOUGH)):
     return made | {"material": [dict(one) for one in materials]}
 
 
-@pytest.mark.parametrize("minimise", few(["cost", "mass", "gear_volume"], 1))
+@pytest.mark.slow
+@pytest.mark.parametrize("minimise", ["cost", "mass", "gear_volume"])
 def test_the_best_of_lists_is_that_of_every_pair_of_materials(minimise):
     both = gearopt.solve(of_materials([*STEELS], [*STEELS], minimise))
     alone = {
@@ -383,6 +392,7 @@ def test_a_minimum_face_width_is_eased():
     assert gearopt.solve(tables, remedy.edits).value is not None
 
 
+@pytest.mark.slow
 def test_a_search_that_is_cut_short_has_the_bound_of_real_valued_sizes(monkeypatch):
     """No whole teeth in no time: the bound is that of real-valued sizes, which are a part."""
     monkeypatch.setattr(sizing, "BOUND_SHARE", 0.999)

@@ -66,7 +66,7 @@ def solved(stages, name):
     return gearopt.solve(scene_of(text_of(stages, changes, teeth))[0], top=3 if teeth else 1)
 
 
-@pytest.mark.parametrize("name", few(DUTIES, ["low ratio", "free width"]))
+@pytest.mark.parametrize("name", few(DUTIES, ["low ratio"]))
 def test_the_best_is_that_of_separate_files(name):
     """Value, bound, design and the table; counts that are impossible alone are in the table too."""
     found, own = solved("[1, 3]", name), {n: solved(n, name) for n in (1, 2, 3)}

@@ -4,6 +4,7 @@ import copy
 import math
 
 import pytest
+from campaigns import few
 
 import gearopt
 from gearopt.errors import SceneError
@@ -36,6 +37,7 @@ def ring(outer, inner):
     return math.pi / 4.0 * (outer**2 - inner**2)
 
 
+@pytest.mark.slow
 def test_masses_of_a_design_by_its_dimensions(solved):
     """Ring by ring of what the result lists; the pinions have no room for a web."""
     result = solved(NAME)
@@ -70,7 +72,7 @@ def test_webs_save_more_than_half(solved):
 THIN = {"rim_over_module": 2, "web_over_face_width": 0.25}
 
 
-@pytest.mark.parametrize("standard", ["agma", "iso6336"])
+@pytest.mark.parametrize("standard", few(["agma", "iso6336"], 1))
 def test_the_rating_of_the_design_has_the_same_rims(standard):
     """A sized design, rated as given gears with its dimensions in mm: factors and safeties."""
     rating = {"life": "20000 h", "standard": standard}
@@ -153,6 +155,7 @@ def test_what_does_not_belong_together_is_refused(mistake):
     assert told in str(caught.value)
 
 
+@pytest.mark.slow
 def test_explain_says_what_thinner_webs_bring():
     found = gearopt.explain(drive(WEBBED))
     effects = {i.key: i.resolved if hasattr(i, "resolved") else None for i in found.influences}

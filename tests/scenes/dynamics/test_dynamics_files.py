@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from campaigns import few
 
 import gearopt
 from gearopt.cli.app import exit_code
@@ -272,11 +273,14 @@ def test_least_vibration_says_what_lies_between_its_speeds(solved):
 
 @pytest.mark.parametrize(
     ("looks", "missing"),
-    [
-        (0, "the motion in time, 8 of 8 rows of the map, 12 of 12 speeds"),
-        (46, "2 of 8 rows of the map, 12 of 12 speeds"),
-        (74, "4 of 12 speeds"),
-    ],
+    few(
+        [
+            (0, "the motion in time, 8 of 8 rows of the map, 12 of 12 speeds"),
+            (46, "2 of 8 rows of the map, 12 of 12 speeds"),
+            (74, "4 of 12 speeds"),
+        ],
+        2,
+    ),
 )
 def test_a_watcher_ends_a_motion_with_what_there_is(tmp_path, looks, missing):
     """It is asked before the motion, between its runs, before rows, frequencies and speeds."""
@@ -331,6 +335,7 @@ def test_a_backlash_that_is_used_up_is_told(tmp_path):
     assert any("backlash is used up, first at" in each for each in told)
 
 
+@pytest.mark.slow
 def test_a_backlash_that_is_used_up_is_told_of_speeds(tmp_path):
     """Hardly damped, on bearings stiffer across: teeth part, and the axes come together.
 

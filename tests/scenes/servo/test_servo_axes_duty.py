@@ -166,7 +166,7 @@ def check(seed):
     return "optimal in a box" if axis.box is not None and axis.required else "optimal"
 
 
-@pytest.mark.parametrize("seed", few([3, 6, 21, 1, 9, 4, 10, 5, 23], [3, 6]))
+@pytest.mark.parametrize("seed", few([3, 6, 21, 1, 9, 4, 10, 5, 23], [6]))
 def test_the_best_train_for_a_duty_keeps_clear(seed):
     """Every goal, with and without a box; an enumeration under the same rules finds no better."""
     assert check(seed) in ("optimal", "optimal in a box")

@@ -65,6 +65,7 @@ def values(front):
     return np.array([point.values for point in front.points])
 
 
+@pytest.mark.slow
 def test_cost_against_error_of_tolerances_is_the_hyperbola_of_the_closed_form():
     """Cost times error is constant where no tolerance is at its minimum; the error bound holds."""
     front = gearopt.pareto(

@@ -310,6 +310,7 @@ def test_given_gears_stand_beside_the_best(solved):
     assert mass == pytest.approx([2305.0, 98.0, 42.623, 31.713, 28.522, 27.805], abs=6e-4)
 
 
+@pytest.mark.slow
 def test_stiffness_by_youngs_modulus_is_near_the_known_one():
     """There the teeth's form factors are those of a table; the fit here differs by 3 % or less."""
     content = parse(text("gimbal"))
@@ -346,6 +347,7 @@ def test_a_train_of_ratio_one_has_no_other_numbers_of_stages():
     assert result.report["stage_counts"] == []
 
 
+@pytest.mark.slow
 def test_wheels_may_have_more_than_a_thousand_teeth():
     edits = {"modules": ["0.1 mm"], "wheel_tip_diameters": ["200 mm", "200 mm"], "ratio": 6000}
     edits |= {"minimise": "error", "bending_stress": "1.5 GPa", "pinion_teeth": [20, 24]}

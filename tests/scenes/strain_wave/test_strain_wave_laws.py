@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from campaigns import few
 
 from gearopt.errors import SceneError
 from gearopt.formulations.strain_wave.design import WaveDesign
@@ -16,10 +17,7 @@ from gearopt.scenes.strain_wave import KIND
 
 EXAMPLE = KIND.example.text
 
-LAWS = (
-    "strain_wave_double_arc",
-    pytest.param("strain_wave_half_locus", marks=pytest.mark.slow),
-)
+LAWS = few(("strain_wave_double_arc", "strain_wave_half_locus"), 0)
 ARC = EXAMPLE.replace('"involute" ', '"double arc"')
 
 
