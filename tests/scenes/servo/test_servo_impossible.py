@@ -71,12 +71,6 @@ def test_the_wider_error_that_is_proposed_is_the_least():
             {"train.bending_stress", "train.face_width", "train.output_torque"},
         ),
         (
-            [(("train", "output_torque"), "2400 N m")],
-            {"bending_stress", "wheel_tip_diameter[2]"},
-            "real-valued",
-            {"train.bending_stress", "train.face_width", "train.output_torque"},
-        ),
-        (
             [(("train", "ratio"), 5000)],
             {"ratio_low", "wheel_tip_diameter[2]", "second_pinion_diameter_low"},
             "real-valued",
