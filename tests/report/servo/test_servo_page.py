@@ -364,7 +364,7 @@ def test_nothing_is_loaded_from_anywhere(result):
         if name in ("src", "href", "xlink:href", "data", "action", "srcset", "poster")
     ]
     assert loads[0] == "data:,"
-    assert all(address.startswith("data:text/csv;charset=utf-8,") for address in loads[1:])
+    assert all(address.startswith("data:text/csv;charset=utf-8;base64,") for address in loads[1:])
     assert not re.search(r"https?:|//[a-z]|@import|url\(", ours(html))
 
 
