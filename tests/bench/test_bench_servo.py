@@ -19,14 +19,12 @@ def test_the_train_is_that_of_the_tests():
     assert "servo" in names()
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_both_methods_find_the_same_train(method):
+def test_the_train_found_is_the_known_one():
     """Least inertia 5.142e-7 kg m2, the bound 4.884e-7: the optimum is 5.29 % above it."""
-    row = _row("", train_of(0.1082), "inertia", method, 4.8838353e-4, 1)
+    row = _row("", train_of(0.1082), "inertia", "exact", 4.8838353e-4, 1)
     assert row["objective"] == pytest.approx(5.142e-4, abs=6e-8) and row["status"] == "optimal"
     assert row["above_bound_percent"] == pytest.approx(100 * (5.142 / 4.884 - 1), abs=0.02)
-    assert (row["feasible_trains"] == 62054) == (method == "enumeration")
-    assert (row["trains_looked_at"] == 6_326_052) == (method == "enumeration")
+    assert row["feasible_trains"] != 62054 and row["trains_looked_at"] < 6_326_052
 
 
 @pytest.mark.slow
@@ -35,6 +33,6 @@ def test_every_goal_has_both_methods():
     assert len(rows) == 2 * len(OBJECTIVES) * len(METHODS)
     for every, useful in zip(rows[::2], rows[1::2], strict=True):
         assert every["objective"] == useful["objective"]
-        assert useful["trains_looked_at"] < every["trains_looked_at"]
+        assert useful["trains_looked_at"] < every["trains_looked_at"] == 6_326_052
         assert 0.0 < every["above_bound_percent"] == useful["above_bound_percent"]
         assert every["feasible_trains"] in (62054, 247948)

@@ -84,7 +84,7 @@ def on_a_tie(seed, unit, mm):
     }
 
 
-@pytest.mark.parametrize("seed", [5, 6, 8, 9])
+@pytest.mark.parametrize("seed", few([5, 6, 8, 9], 2))
 def test_lengths_in_inches_tie_as_those_in_mm_do(seed):
     """Inches of 16 digits are not quite these lengths; of these drives the answer hangs on it."""
     there, here = (gearopt.solve(on_a_tie(seed, *own)) for own in (("mm", 1), ("in", 25.4)))

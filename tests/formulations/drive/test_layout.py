@@ -38,7 +38,7 @@ PUBLISHED = [  # train, clearances, partial span, box [mm3]
 
 
 @pytest.mark.parametrize(
-    ("name", "clearances", "partial", "volume"), few(PUBLISHED, PUBLISHED[::3])
+    ("name", "clearances", "partial", "volume"), few(PUBLISHED, PUBLISHED[3::3])
 )
 def test_published_boxes(name, clearances, partial, volume):
     box = gearbox(name, clearances, partial=partial)
@@ -97,8 +97,9 @@ def weak_orders(stages):
             yield tuple(tuple(s for s in range(stages) if rank[s] == r) for r in used)
 
 
-@pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("stages", [2, 3, 4])
+@pytest.mark.parametrize(
+    ("stages", "seed"), few(product([2, 3, 4], range(6)), [*product([2, 3], range(6)), (4, 5)])
+)
 def test_arrangements_against_all_weak_orders(stages, seed):
     keep = KeepOut("post", (-100.0, 100.0), (150.0, 200.0), (0.0, 60.0))
     box = some_box(seed, stages, partial=seed > 1, slabs=None, keep_outs=(keep,) * (seed % 2))
@@ -143,7 +144,6 @@ FOLDED = Gearbox(  # coaxial: both centre distances are the same
     partial=True,
 )
 ELEVATOR = gearbox("elevator")
-QUICK = ("volume", "keep_out")
 GRID = {
     "volume": ELEVATOR,
     "height": replace(ELEVATOR, objective="height", largest=(500.0, math.inf, math.inf)),
@@ -193,10 +193,7 @@ def best_on_grid(box):
     return float(value[short <= 0.0].min(initial=math.inf))
 
 
-@pytest.mark.parametrize(
-    "name",
-    few(GRID, QUICK),
-)
+@pytest.mark.parametrize("name", few(GRID, ["keep_out"]))
 def test_exact_against_a_grid(name):
     box = GRID[name]
     result, grid = solve(problem(box)), best_on_grid(box)
@@ -205,7 +202,7 @@ def test_exact_against_a_grid(name):
     assert grid <= 1.06 * result.value  # a step moves the last shaft by 3 mm
 
 
-@pytest.mark.parametrize("name", few(IMPOSSIBLE, ["too_far", "walled_in"]))
+@pytest.mark.parametrize("name", few(IMPOSSIBLE, ["walled_in"]))
 def test_exact_proves_what_no_grid_point_contradicts(name):
     box = IMPOSSIBLE[name]
     result = solve(problem(box))
@@ -270,7 +267,7 @@ def test_no_local_optimum_is_below_the_bound(seed):
     assert result.value <= best * (1.0 + 1e-6)
 
 
-@pytest.mark.parametrize("seed", few(range(12), 4))
+@pytest.mark.parametrize("seed", few(range(12), 2))
 def test_random_trains_are_proven(seed):
     result = solve(problem(some_box(seed)))
     assert result.status == "optimal"
@@ -287,18 +284,20 @@ def test_annealing_on_angles_is_near_the_optimum():
     assert gaps.max() <= 1e-2
 
 
-@pytest.mark.parametrize("method", ["exact", "sa", "sa-polish", "sa-paper", "multistart", "nsga2"])
+@pytest.mark.parametrize(
+    "method", few(["sa", "sa-polish", "sa-paper", "exact", "multistart", "nsga2"], 3)
+)
 def test_a_seed_decides_the_answer(method):
     box = gearbox("elevator")
-    few = Budget(evaluations={"multistart": 100, "nsga2": 1000}.get(method, 5000))
-    runs = [run(problem(box, method), method, few, seed)[1] for seed in (3, 3, 4)]
+    budget = Budget(evaluations={"multistart": 100, "nsga2": 1000}.get(method, 5000))
+    runs = [run(problem(box, method), method, budget, seed)[1] for seed in (3, 3, 4)]
     assert (runs[0].x == runs[1].x).all()
     assert runs[0].evaluations == runs[1].evaluations
     same = method in ("exact", "multistart")  # the optimum; a first start that is given
     assert same or (runs[0].x != runs[2].x).any()
 
 
-@pytest.mark.parametrize("seed", few(range(5), 2))
+@pytest.mark.parametrize("seed", few(range(5), 1))
 def test_polishing_never_loses(seed):
     box = gearbox("table4_p1")
     rough, fine = (solve(problem(box, m), m, seed=seed) for m in ("sa", "sa-polish"))

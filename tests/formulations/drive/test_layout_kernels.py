@@ -158,10 +158,10 @@ def test_the_cut_of_a_distance_holds_for_every_layout_that_keeps_it():
 @pytest.mark.parametrize(
     "given",
     [
-        {},
+        pytest.param({}, marks=pytest.mark.slow),
         {"objective": "height", "largest": (450.0, math.inf, math.inf)},
-        {"objective": "longest_side"},
-        {"width": 450.0},
+        pytest.param({"objective": "longest_side"}, marks=pytest.mark.slow),
+        pytest.param({"width": 450.0}, marks=pytest.mark.slow),
         {"level": (0, 2)},
     ],
 )

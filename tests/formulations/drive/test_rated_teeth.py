@@ -84,7 +84,7 @@ def test_the_best_of_two_stages_by_iso_is_that_of_all_candidates(standards):
     [by("agma", "iso"), *(pytest.param(by(n), marks=SLOW) for n in ("agma", "iso"))],
 )
 def test_a_train_is_feasible_by_its_own_text(options):
-    train = rated_drive(Fraction(9), [TIED, TIED], pinion_teeth=(20, 24), options=options)
+    train = rated_drive(Fraction(9), [TIED, TIED], pinion_teeth=(20, 21), options=options)
     found = search(train, 1, Budget())
     point = teeth.point(train, teeth.best_pairs(train, found.found[0][1]))
     batch = teeth.problem(train).batch(point[None])
@@ -127,7 +127,7 @@ def test_the_best_material_is_that_of_all_of_them(objective):
 
 def test_index_limits_beside_ratings():
     """Each alone is a relaxation; where one of them does not bind, it changes nothing."""
-    rated = rated_drive(F(9), [FREE, FREE], pinion_teeth=(20, 21), modules=MODULES[1:6])
+    rated = rated_drive(F(9), [FREE, FREE], pinion_teeth=(20, 20), modules=MODULES[1:5])
     loose, tight = (1e3, 1e3), (2.0, 48.0)
     values = {}
     for name, limits, options in (
@@ -148,7 +148,7 @@ def test_index_limits_beside_ratings():
 
 def test_cells_of_use_hold_the_best_train():
     """The best train's value lies above what every grid says of the cells it passes through."""
-    train = rated_drive(F(30), [TIED] * 3, pinion_teeth=(20, 21), modules=MODULES[1:7])
+    train = rated_drive(F(30), [TIED] * 3, pinion_teeth=(20, 20), modules=MODULES[1:7])
     found = search(train, 1, Budget())
     value, chosen = found.found[0]
     tables = stage_tables(train, train.highest_ratio)

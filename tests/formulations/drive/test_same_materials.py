@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 
 import numpy as np
 import pytest
@@ -55,38 +56,38 @@ def of_each(train):
     return [with_options(train, *([s.options[k]] for s in train.stages)) for k in range(count)]
 
 
-def test_the_best_of_the_same_materials_is_the_best_of_each():
+@cache
+def best_of_the_same():
+    """Return the best drive of `small` in the same materials."""
+    return search(replace(small(), same_option=True), 1, Budget()).found[0]
+
+
+def test_the_best_of_the_same_materials_are_the_best_of_each():
+    """Trains of equal teeth count once, with the materials that are best for them."""
     train = small()
     alike = replace(train, same_option=True)
-    found = search(alike, 1, Budget())
-    alone = [search(one, 1, Budget()).found[0][0] for one in of_each(train)]
-    assert found.found[0][0] == pytest.approx(min(alone), rel=1e-12)
-    assert found.found[0][0] > search(train, 1, Budget()).found[0][0] * 1.001
-    pairs, options = teeth.best_choices(alike, found.found[0][1])
+    each = [search(one, 6, Budget()).found for one in of_each(train)]
+    value, made = best_of_the_same()
+    alone = [found[0][0] for found in each]
+    assert value == pytest.approx(min(alone), rel=1e-12)
+    assert value > search(train, 1, Budget()).found[0][0] * 1.001
+    pairs, options = teeth.best_choices(alike, made)
     assert options == (alone.index(min(alone)),) * 2
     point = teeth.point(alike, pairs, options)
     assert teeth.options(alike, point) == options
     batch = teeth.problem(alike).batch(np.stack([point, point]))
-    assert batch.F[:, 0] == pytest.approx(found.found[0][0], rel=1e-12)
+    assert batch.F[:, 0] == pytest.approx(value, rel=1e-12)
     assert batch.G.max() <= 1.0 + 1e-11
-
-
-def test_the_next_best_of_the_same_materials_are_in_order():
-    """Trains of equal teeth count once, with the materials that are best for them."""
-    train = small()
-    found = search(replace(train, same_option=True), 6, Budget()).found
-    alone = {}
-    for one in of_each(train):
-        for value, made in search(one, 6, Budget()).found:
-            alone[made] = min(value, alone.get(made, np.inf))
-    best = sorted(alone.values())[:6]
-    assert [value for value, _ in found] == pytest.approx(best, rel=1e-12)
+    by_teeth = {}
+    for value, made in (row for found in each for row in found):
+        by_teeth[made] = min(value, by_teeth.get(made, np.inf))
+    six = search(alike, 6, Budget()).found
+    assert [value for value, _ in six] == pytest.approx(sorted(by_teeth.values())[:6], rel=1e-12)
 
 
 def test_a_stop_leaves_a_bound_of_all_materials():
     """Whenever it ends, its bound is below the best drive of every material."""
-    train = replace(small(), same_option=True)
-    best = search(train, 1, Budget()).found[0][0]
+    train, (best, _) = replace(small(), same_option=True), best_of_the_same()
     for most in (3, 6, 12, 25):
         asked = []
         stopped = search(train, 1, Budget(), lambda e, n=most, a=asked: a.append(e) or len(a) < n)
@@ -99,7 +100,7 @@ def test_a_stop_leaves_a_bound_of_all_materials():
 def test_samplers_take_the_same_materials(method):
     train = replace(small(), same_option=True)
     result, outcome = run(teeth.problem(train), method, Budget(evaluations=150), 0)
-    best = search(train, 1, Budget()).found[0][0]
+    best, _ = best_of_the_same()
     assert result.value is None or result.value >= best * (1.0 - 1e-9)
     assert outcome.x is None or len(set(teeth.options(train, outcome.x))) == 1
 

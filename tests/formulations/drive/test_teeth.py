@@ -103,7 +103,7 @@ def test_more_pairs_than_memory_takes_are_a_limit_and_say_what_to_narrow():
     assert nothing.status == "limit" and nothing.value is None
 
 
-@pytest.mark.parametrize("number", few(range(20), 5))
+@pytest.mark.parametrize("number", few(range(20), 2))
 def test_wide_ranges_are_searched_like_narrow_ones(number, monkeypatch):
     """Pinions left out for their cost change nothing: of random drives and their ten best."""
     train = some_drive(number, 2)
@@ -189,7 +189,7 @@ def test_a_gap_that_is_enough_ends_the_search():
             (F(300), ("0.6",) * 3 + ("0.75",), 1e-3),
             (F(1000), ("0.6",) * 4 + ("0.75",), 1e-2),
         ],
-        2,
+        1,
     ),
 )
 def test_a_requested_gap_is_reached_or_the_search_goes_on(total, widths, gap):

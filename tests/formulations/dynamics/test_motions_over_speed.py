@@ -71,7 +71,7 @@ SWEEPS = {  # zeta, F_a, stiffness; peaks (W, RMS), teeth part from ... to, risi
         (0.45, 1.90, 146),
     ),
 }
-SLOW = ("shaken", "light damping")
+SLOW = ("shaken", "touching", "light damping")
 
 
 @pytest.mark.parametrize(

@@ -203,7 +203,7 @@ def test_points_in_a_square(count, distance):
 )
 def test_few_circles_in_a_circle(count, ratio):
     plan = Plan(cylinders(*[2.0] * count), shape="circle", objective="area")
-    found = solve(packing.problem(plan), "hop", Budget(evaluations=100_000))
+    found = solve(packing.problem(plan), "hop", Budget(evaluations=20_000))
     assert math.sqrt(found.value / math.pi) == pytest.approx(ratio, rel=1e-9)
 
 
@@ -302,11 +302,11 @@ def test_kernel_is_compiled_before_the_clock_starts(method, monkeypatch):
     order = []
     monkeypatch.setattr(method, "ready", lambda watch: order.append("compiled") or True)
     monkeypatch.setattr(method, "Clock", lambda *given: order.append("clock") or Clock(*given))
-    run(packing.problem(Plan(SIX)), method.__name__.rsplit(".", 1)[-1], Budget(evaluations=10))
+    run(packing.problem(Plan(SIX[:2])), method.__name__.rsplit(".", 1)[-1], Budget(evaluations=10))
     assert order == ["compiled", "clock"]
 
 
-APART = ("one layer", "circle around fixed", "fixed", "unlike heights")  # others are near these
+APART = ("circle around fixed", "unlike heights")  # others are near these
 
 
 @pytest.mark.parametrize(

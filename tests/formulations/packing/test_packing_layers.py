@@ -94,13 +94,12 @@ def check(seed):
     return proven
 
 
-@pytest.mark.parametrize("seeds", [range(6)])
-def test_packings_at_random(seeds):
-    assert [check(seed) for seed in seeds].count(True) > 1
+def test_packings_at_random():
+    assert [check(seed) for seed in range(4)].count(True) > 0
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", range(6, 150, 18))
+@pytest.mark.parametrize("first", range(4, 148, 18))
 def test_many_packings_at_random(first):
     found = [check(seed) for seed in range(first, first + 18)]
     assert found.count(None) < 8 and found.count(True) > 3

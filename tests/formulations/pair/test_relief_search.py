@@ -122,7 +122,8 @@ def test_least_harmonics(exponent):
     assert amplitudes.max() == pytest.approx(found.value, rel=1e-9)
 
 
-@pytest.mark.parametrize("part", few([0.3, 0.7], 1))
+@pytest.mark.slow
+@pytest.mark.parametrize("part", [0.3, 0.7])
 def test_one_load_under_a_limit_at_another(part):
     """The least value at the full load with a largest one at 60 %: proven, and the limit binds."""
     made = mesh((0.6, 1.0))

@@ -57,15 +57,16 @@ def test_the_numbers_of_the_paper():
 
 
 def test_a_train_with_nothing_in_the_way_is_the_same():
-    free, held = PAPER, replace(PAPER, bodies=Bodies(F(8), F(16), F(24)))
+    free = replace(PAPER, pinion_teeth=(16, 30))
+    held = replace(free, bodies=Bodies(F(8), F(16), F(24)))
     results = [solve(problem(t), "enumeration") for t in (free, held)]
     assert results[0].value == results[1].value
-    assert [r.proof["feasible_trains"] for r in results] == [62054, 62054]
+    assert results[0].proof["feasible_trains"] == results[1].proof["feasible_trains"] > 1000
 
 
 @pytest.mark.parametrize("bodies", [Bodies(F(8), F(16), F(60)), Bodies(F(16), F(80), F(0))])
 def test_bodies_in_the_way_change_the_train_and_raise_the_bound(bodies):
-    loose = replace(PAPER, error=math.radians(0.3), bore=F(15))
+    loose = replace(PAPER, error=math.radians(0.3), bore=F(15), pinion_teeth=(16, 40))
     held = replace(loose, bodies=bodies)
     free, found = (solve(problem(t)) for t in (loose, held))
     assert free.value < found.value and found.status == "optimal"
