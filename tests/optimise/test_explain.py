@@ -64,6 +64,9 @@ def test_a_bound_and_a_safety_factor_that_enters_squared():
     assert even["stress"].bound == pytest.approx(ratio, rel=1e-9)
     for remedy in found.remedies:
         assert remedy.verified == {"with": "optimal", "with_less": "infeasible"}
+    data = json.loads(found.to_json())
+    assert data["explanation"] == 1 and data["result"]["status"] == "infeasible"
+    assert data["remedies"][0]["changes"][0]["write"]
     keyless = replace(bar(power=2.0), parameters=(Param("safety", "", 1.2, role="limit"), STEEL))
     found = {r.what: r.changes[0].key for r in explain(keyless).remedies}
     assert found["stress"] == "safety"  # the number to write, not its row
@@ -200,12 +203,6 @@ def test_sensitivities_against_the_closed_form():
     assert slope["limits.safety"].step == "-1%"
     assert slope["limits.safety"].price == pytest.approx(-0.01, abs=1e-9)
     assert found.binding == ("stress",)
-
-
-def test_json_round_trip():
-    data = json.loads(explain(bar()).to_json())
-    assert data["explanation"] == 1 and data["result"]["status"] == "infeasible"
-    assert data["remedies"][0]["changes"][0]["write"]
 
 
 def test_discrete_problems_are_refused_by_name():

@@ -129,9 +129,10 @@ def coupled(scale=1.0):
     )
 
 
-@pytest.mark.parametrize("method", SAMPLERS)
-@pytest.mark.parametrize("scale", few([1.0, 1e6], [1e6]))
-def test_equalities_are_met(method, scale):
+@pytest.mark.parametrize(
+    ("scale", "method"), few(product([1.0, 1e6], SAMPLERS), [(1e6, "annealing")])
+)
+def test_equalities_are_met(scale, method):
     result = solve(coupled(scale), method, SMALL, seed=3)
     assert result.status == "feasible" and result.certificate["feasibility"] <= 1e-8
     assert result.value == pytest.approx(2.0 * scale, rel=1e-8) and result.design["n"] == 1
@@ -169,9 +170,8 @@ def waves():
     return Problem("waves", (Var("x", "", 0.0, 10.0, 8.0),), (), evaluate)
 
 
-@pytest.mark.parametrize("method", SAMPLERS)
-@pytest.mark.parametrize("seed", few(range(3), 1))
-def test_a_polish_never_returns_worse_than_the_sampler_found(method, seed):
+@pytest.mark.parametrize(("seed", "method"), few(product(range(3), SAMPLERS), 1))
+def test_a_polish_never_returns_worse_than_the_sampler_found(seed, method):
     told = []
     result = solve(waves(), method, SMALL, seed, watch=lambda e: told.append(e.best) is None)
     assert result.value <= min(v for v in told if v is not None)
@@ -203,7 +203,7 @@ def test_a_watcher_that_stops_the_sampler_is_not_asked_again(method):
     assert len(asked) == 5 and result.status == "limit"
 
 
-@pytest.mark.parametrize("method", SAMPLERS)
+@pytest.mark.parametrize("method", few(SAMPLERS, 1))
 def test_a_polish_is_told_counted_and_ended_by_the_watcher(method):
     """Ipopt's iterations come after the sampler's evaluations, which leave room for them."""
     events = []
