@@ -1,4 +1,7 @@
-"""`gearopt bench relief`: every published case is beaten, and no method is below the bound."""
+"""`gearopt bench relief`: published cases are beaten, and no method is below the bound.
+
+All of them: `test_the_published_table` of a relief, `test_published_profiles` of any shape.
+"""
 
 import pytest
 
@@ -8,7 +11,7 @@ from gearopt.optimise.result import Budget
 
 @pytest.mark.parametrize(
     "cases, methods",
-    [(1, ("annealing",)), pytest.param(6, ("annealing", "mpec"), marks=pytest.mark.slow)],
+    [(1, ("annealing",)), pytest.param(2, ("annealing", "mpec"), marks=pytest.mark.slow)],
 )
 def test_published_cases(monkeypatch, cases, methods):
     monkeypatch.setattr(relief, "SAMPLED", dict.fromkeys(methods, Budget(evaluations=200)))

@@ -56,6 +56,7 @@ def optimum(count):
     ).design
 
 
+@cache
 def rated(name, quality=None, grade=None):
     """The rating of a design by AGMA, that by ISO 6336 beside it.
 
@@ -74,7 +75,6 @@ def rated(name, quality=None, grade=None):
     return gearopt.rate(file | asked).design["rating"]
 
 
-@cache
 def least(name, quality=None, grade=None):
     """Of both standards: least S_F, least S_H, what governs, power [kW], whether safe."""
     found = rated(name, quality, grade)

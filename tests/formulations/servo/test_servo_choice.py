@@ -105,9 +105,10 @@ def test_stiff_trains_in_boxes_are_what_looking_at_all_finds():
 
 
 @pytest.mark.slow
-def test_hundreds_of_stiff_trains_in_boxes_are_what_looking_at_all_finds():
-    answered, impossible = compared(range(310))
-    assert answered > 120 and impossible > 60
+@pytest.mark.parametrize("first", range(0, 310, 31))
+def test_hundreds_of_stiff_trains_in_boxes_are_what_looking_at_all_finds(first):
+    answered, impossible = compared(range(first, first + 31))
+    assert answered > 8 and impossible > 2
 
 
 def test_a_look_at_a_range_of_links_excludes_no_layout():

@@ -1,6 +1,7 @@
 """What is used by ISO 6336 between widths and torques: a lower bound, exact where they are one."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -107,8 +108,12 @@ def test_one_width_and_torque_give_what_is_rated(kind):
     np.testing.assert_allclose(found, exact(standard, pair, width, torque, power), rtol=1e-12)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("wide", few([1.01, 1.0003, 1.5], 1))
+QUICK = "tempered", "2019, spur, fine", "webs", "short life", "many given", "others given"
+
+
+@pytest.mark.parametrize(
+    ("kind", "wide"), few(product(KINDS, [1.01, 1.0003, 1.5]), [(kind, 1.01) for kind in QUICK])
+)
 def test_no_width_and_torque_of_a_box_use_less(kind, wide):
     standard, helix = KINDS[kind]
     pair, width, torque, power, rng = pairs(helix, 2, (0.2, -0.1))

@@ -318,13 +318,17 @@ def _surfaces(A: Any, s: Array, surface: list[slice], factors: Array) -> tuple[A
 
     if not surface:
         return None, None, np.empty(0)
-    bent, normals, over = [], [], []
-    for block, factor in zip(surface, factors, strict=True):
-        rest = slice(block.start + 1, block.stop)
-        norm = np.linalg.norm(s[rest])
-        unit = s[rest] / norm
-        normals.append(sp.csr_array(A[[block.start]] - sp.csr_array(unit[None]) @ A[rest]))
-        over.append(norm - s[block.start])
-        shape = (np.eye(len(unit)) - np.outer(unit, unit)) * max(factor, 0.0) / norm
-        bent.append(A[rest].T @ sp.csr_array(shape) @ A[rest])
-    return sum(bent[1:], bent[0]), sp.vstack(normals), np.array(over)
+    count, start = len(surface), np.array([block.start for block in surface])
+    rest = [np.arange(block.start + 1, block.stop) for block in surface]
+    norms = np.array([np.linalg.norm(s[own]) for own in rest])
+    units = [s[own] / norm for own, norm in zip(rest, norms, strict=True)]
+    shapes = [
+        (np.eye(len(unit)) - np.outer(unit, unit)) * (max(factor, 0.0) / norm)
+        for unit, factor, norm in zip(units, factors, norms, strict=True)
+    ]
+    owner = np.repeat(np.arange(count), [len(own) for own in rest])
+    places = np.concatenate([np.arange(count), owner]), np.concatenate([start, *rest])
+    values = np.concatenate([np.ones(count), *(-unit for unit in units)])
+    normals = sp.csr_array((values, places), shape=(count, len(s))) @ A
+    tips = A[np.concatenate(rest)]
+    return tips.T @ sp.block_diag(shapes, "csr") @ tips, normals, norms - s[start]

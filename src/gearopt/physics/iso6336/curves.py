@@ -41,12 +41,11 @@ class Curve:
 
     def factor(self, cycles: Any) -> Any:
         """Return the strength at a number of cycles."""
-        at, logs = np.log(np.maximum(cycles, self.cycles[0])), self._logs
+        at, logs, knots = np.log(np.maximum(cycles, self.cycles[0])), self._logs, self._knots
         found = logs[0]
-        for k in range(len(self.cycles) - 1):
-            first, second = np.log(self.cycles[k]), np.log(self.cycles[k + 1])
-            drop = logs[k + 1] - logs[k]
-            found = found + drop * np.clip((at - first) / (second - first), 0.0, 1.0)
+        for k in range(len(knots) - 1):
+            share = (at - knots[k]) / (knots[k + 1] - knots[k])
+            found = found + (logs[k + 1] - logs[k]) * np.minimum(np.maximum(share, 0.0), 1.0)
         return np.exp(found)
 
     def take(self, place: Any) -> "Curve":
@@ -57,6 +56,11 @@ class Curve:
     def _logs(self) -> list[Any]:
         """Logarithms of the values."""
         return [np.log(each) for each in self.values]
+
+    @cached_property
+    def _knots(self) -> list[Any]:
+        """Logarithms of the numbers of cycles."""
+        return [np.log(each) for each in self.cycles]
 
     def life(self, value: Any) -> Any:
         """Return the number of cycles at which a strength is reached; the inverse of `factor`.
