@@ -226,7 +226,7 @@ def of_design(
         return stepped(scene, number, way, value, basis.solved, solved)
 
     found = tuple(map(_sure, influences(scene, basis, clock, wanted, easing, near=near)))
-    late = f"{len(found)} of {len(wanted)} sensitivities were computed in the time allowed"
+    late = f"the time sufficed for {len(found)} of {len(wanted)} sensitivities"
     late = late if clock.over else note
     if ranges:
         late = "; ".join(filter(None, (late, f"the same design is best with {', '.join(ranges)}")))

@@ -73,7 +73,7 @@ def explained(
             lambda number: _smooth(spelt, number),
         )
     )
-    late = f"{len(found)} of {len(wanted)} sensitivities were computed in the time allowed"
+    late = f"the time sufficed for {len(found)} of {len(wanted)} sensitivities"
     late = late if clock.over else ""
     if not whole:
         late = late or "relaxing a limit is not tried, because the answer is not proven optimal"
