@@ -304,6 +304,7 @@ POSED = {  # problems of each back end, by what a single one of them may go beyo
     "nsga2": (box, 0),
     "qp": (load_sharing, 0),
     "scip": (box, 0),
+    "spatial": (box, 1),  # both parts of a box
 }
 
 

@@ -23,6 +23,7 @@ from gearopt.optimise.quadratic import natural
 from gearopt.optimise.result import FEASIBLE, Outcome, Result
 from gearopt.optimise.scale import gap as gap_of
 from gearopt.optimise.scale import is_known, measured, runaway, violation, way
+from gearopt.optimise.spatial import certificate as records
 from gearopt.optimise.stationarity import (
     ACTIVE_WITHIN,
     STATIONARY,
@@ -39,6 +40,8 @@ CONVEX_IN_LOGARITHMS, CONVEX_QUADRATIC = (
     f"Proof: {shape}; the bound is a dual one, computed from our own derivatives."
     for shape in ("the problem is convex in logarithms", "a convex quadratic program")
 )
+SEARCHED = "Proof: the box in parts, each bounded by duals of linear rows or by intervals."
+EMPTY = "Proof: the box in parts, each shown by linear rows or by intervals to hold no point."
 
 
 @dataclass(frozen=True)
@@ -93,6 +96,8 @@ def certify(problem: Problem, outcome: Outcome, gap: float, exact: bool = False)
     reached = "stationary" if outcome.stationary else "feasible"
     status = reached if outcome.finished else "limit"
     before = Verdict(status, value, certificate=certificate, message=outcome.message)
+    if outcome.records:
+        return _searched(problem, outcome, before, gap, worst)
     if outcome.bound is not None and math.isfinite(outcome.bound):
         return _claimed(problem, outcome, before, gap)
     if outcome.stationary is not None:
@@ -168,6 +173,20 @@ def bounded(
 def reported_gap(gap: float) -> float | None:
     """Return a gap as results hold it, at least 0; None where infinite or below a bound."""
     return max(gap, 0.0) if -100 * FEASIBLE <= gap < math.inf else None
+
+
+def _searched(
+    problem: Problem, outcome: Outcome, before: Verdict, tolerance: float, worst: str
+) -> Verdict:
+    """Judge a point of spatial branch and bound: its records are gone through anew."""
+    assert outcome.x is not None
+    bound = records.proven(problem, outcome.records)
+    if not any(v.discrete for v, _ in problem.columns):
+        before = _local(problem, outcome, before, tolerance, worst)
+    if not math.isfinite(bound) or (before.bound is not None and before.bound >= bound):
+        return before
+    proof = {"method": "spatial", "boxes": len(outcome.records), "sentence": SEARCHED}
+    return bounded(problem, outcome.x, replace(before, proof=proof), bound, tolerance, worst)
 
 
 def _local(
@@ -259,6 +278,12 @@ def _infeasible(problem: Problem, outcome: Outcome) -> Verdict:
     """Accept an infeasibility claim only with an exhausted search or a Farkas certificate."""
     if outcome.proof:
         return Verdict("infeasible", proof=outcome.proof, message=outcome.message)
+    if outcome.records:
+        if records.proven(problem, outcome.records) < math.inf:
+            return Verdict("failed", message="no feasible point found; impossibility is not proven")
+        words = "no point of the box meets all limits"
+        proof = {"method": "spatial", "boxes": len(outcome.records), "sentence": EMPTY}
+        return Verdict("infeasible", proof=proof, message=words)
     shape = _shape(problem)
     low, high = (shape.to_y(a) for a in problem.bounds()[:2])
     if outcome.x is None or outcome.lam_g is None or not shape.convex:

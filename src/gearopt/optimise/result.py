@@ -18,6 +18,7 @@ from gearopt.optimise.typed import SINGLE
 
 if TYPE_CHECKING:
     from gearopt.optimise.conic.cone_bound import Leaf
+    from gearopt.optimise.spatial.step import Record
 
 FORMAT = 1
 _version = cache(version)  # reading package metadata takes a millisecond
@@ -100,6 +101,7 @@ class Outcome:
     the Pareto front. leaves: of a conic problem, the parts of its box with
     their multipliers. message: what it has to say. stationary: of an own algorithm, whether x was
     certified as stationary in a traced form that equals the text there; None: to be judged.
+    records: of spatial branch and bound, its boxes with their duals.
     """
 
     x: Array | None
@@ -114,6 +116,7 @@ class Outcome:
     evaluations: int = 0
     message: str = ""
     stationary: bool | None = None
+    records: tuple["Record", ...] = ()
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""Spatial branch and bound for smooth text: columns, intervals, linear relaxations, certificate."""

@@ -1,0 +1,123 @@
+"""Spatial branch and bound on problems with known optima, and against liars and forgers."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from global_cases import CASES, QUICK, case, posed
+
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import method_of, run, solve
+from gearopt.optimise.solvers import spatial
+from gearopt.optimise.spatial import certificate, linear
+from gearopt.optimise.spatial.step import Sparse
+from gearopt.optimise.terms import Var
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.slow] * (n not in QUICK)) for n in CASES]
+)
+def test_known_optima_are_proven(name):
+    best, problem = case(name)
+    result = solve(problem, "spatial")
+    assert result.status == "optimal" and result.proof["method"] == "spatial"
+    assert result.value == pytest.approx(best, rel=2e-7, abs=1e-9 if best == 0.0 else 1e-15)
+    assert result.bound <= best + 1e-7 * abs(best) and result.gap <= 1e-6
+
+
+def test_a_box_without_a_point_is_proven_empty():
+    bounds = [(-3.0, 3.0)] * 2
+    impossible = posed(
+        bounds, lambda x: (x[0], [x[0] ** 2 + x[1] ** 2 - 1.0, 1.6 - x[0] - x[1]], [])
+    )
+    result = solve(impossible, "spatial")
+    assert result.status == "infeasible" and "no point" in result.proof["sentence"]
+    whole = posed([(0, 9, "whole")] * 2, lambda x: (x[0], [], [x[0] ** 2 - 2.0 * x[1] ** 2 - 3.0]))
+    assert solve(whole, "spatial").status == "infeasible"
+
+
+def test_listed_values_are_kept_to():
+    def text(x):
+        return (x[0] - 1.3) ** 2 + (x[1] - 0.4 * x[0] ** 2) ** 2, [], []
+
+    free = posed([(0.5, 4.0), (-5.0, 5.0)], text)
+    listed = Var("x1", "", 0.5, 4.0, 1.0, values=(0.5, 1.0, 1.25, 1.6, 2.5, 4.0))
+    problem = replace(free, variables=(listed, free.variables[1]))
+    result = solve(problem, "spatial")
+    assert result.status == "optimal" and result.design["x1"] == 1.25
+
+
+def test_a_value_of_zero_is_proven_in_the_unit_of_the_contract():
+    def text(x):
+        return sum(v**2 - 10.0 * np.cos(2.0 * np.pi * v) + 10.0 for v in x), [], []
+
+    result = solve(posed([(-5.12, 5.12)] * 2, text, [3.0, -2.0]), "spatial")
+    assert result.status == "optimal" and abs(result.value) < 1e-9 and result.bound > -1e-4
+
+
+def test_an_infinite_box_is_closed_where_limits_close_it():
+    bounds = [(-np.inf, np.inf)] * 2
+    disc = posed(bounds, lambda x: (x[0] * x[1], [x[0] ** 2 + x[1] ** 2 - 2.0], []), [0.5, 0.2])
+    assert solve(disc, "spatial").bound == pytest.approx(-1.0, rel=1e-5)
+    loose = posed(bounds, lambda x: (x[0] ** 3 + x[1] ** 2, [], []), [0.5, 0.2])
+    result = solve(loose, "spatial", Budget(evaluations=40))
+    assert result.status != "optimal" and result.bound is None
+
+
+def test_budget_and_watcher_give_the_best_point_with_the_bound_so_far():
+    best, problem = case("spring")
+    seen = []
+    stopped = solve(problem, "spatial", watch=lambda e: seen.append(e) or len(seen) < 20)
+    assert stopped.status == "limit"
+    assert 0.0 < stopped.bound <= best * (1 + 1e-6) <= stopped.value * (1 + 2e-6)
+    bounds = [e.bound for e in seen if e.bound is not None]
+    assert bounds == sorted(bounds) and bounds[-1] <= best * (1 + 1e-6)
+    short = solve(problem, "spatial", Budget(evaluations=9))
+    assert short.status == "limit" and short.evaluations <= 10
+
+
+def test_a_lying_linear_solver_makes_no_false_bound(monkeypatch):
+    rng, true = np.random.default_rng(0), linear.Linear.solved
+
+    def lied(self):
+        hint = true(self)
+        y = hint.y * rng.normal(1.0, 0.3, len(hint.y)) + 1e-3 * rng.normal(size=len(hint.y))
+        return replace(hint, y=y, x=None if rng.random() < 0.2 else hint.x, ray=rng.random() < 0.15)
+
+    monkeypatch.setattr(linear.Linear, "solved", lied)
+    for name in ("threebar", "hs5", "hs15", "vessel", "nvs16"):
+        best, problem = case(name)
+        result = solve(problem, "spatial", Budget(evaluations=60))
+        assert result.status in ("optimal", "limit", "stationary", "feasible")
+        assert result.bound is None or result.bound <= best + 1e-6 * abs(best)
+
+
+def test_forged_records_prove_less_or_nothing():
+    best, problem = case("hs5")
+    records = list(run(problem, "spatial")[1].records)
+    claim = certificate.proven(problem, records)
+    assert best - 2e-6 * abs(best) < claim <= best
+    rng = np.random.default_rng(1)
+    for _ in range(60):
+        forged, k = records.copy(), int(rng.integers(len(records)))
+        kept = records[k]
+        sort = int(rng.integers(4))
+        if sort == 0:
+            del forged[k]
+        elif sort == 1 and kept.split is not None:
+            j, below, above = kept.split
+            forged[k] = replace(kept, split=(j, below, above + 0.01))
+        elif kept.duals is not None:
+            values = kept.duals.values * rng.normal(1.0, 1.0, len(kept.duals.values))
+            ray = sort == 3 or kept.ray
+            forged[k] = replace(kept, duals=Sparse(kept.duals.rows, values), ray=ray)
+        assert certificate.proven(problem, forged) <= claim
+    assert certificate.proven(problem, records[1:]) == -np.inf
+    assert certificate.proven(problem, []) == -np.inf
+
+
+def test_a_run_is_repeated_by_its_seed():
+    _, problem = case("hs33")
+    first, second = (method_of(problem, "spatial")(problem, Budget(), 4, None) for _ in range(2))
+    assert np.array_equal(first.x, second.x) and len(first.records) == len(second.records)
+    assert spatial.RANDOM
