@@ -12,6 +12,7 @@ from rated_drives import FREE, MODULES, TIED, F, agma, by, rated_drive
 
 from gearopt.formulations.drive import teeth
 from gearopt.formulations.drive.shares import objective_share
+from gearopt.formulations.drive.teeth import choices
 from gearopt.formulations.drive.teeth.columns import spans
 from gearopt.formulations.drive.teeth.later_stages import bound, first_costs, useful_cells
 from gearopt.formulations.drive.teeth.search import search, within
@@ -47,7 +48,7 @@ def test_the_best_of_one_stage_is_that_of_all_candidates(face, helix, options):
     ]
     best = min(least_share(train, 0, train.torque, *pair) for pair in pairs)
     assert found.found[0][0] == pytest.approx(best, rel=1e-11)
-    made = teeth.best_pairs(train, found.found[0][1])
+    made = choices.best_pairs(train, found.found[0][1])
     assert safe(train, 0, made[0], train.torque)
 
 
@@ -58,7 +59,7 @@ def test_no_narrower_width_carries(options, modules):
     train = rated_drive(F(3), [FREE], options=options, **choice)
     for z1, start, _ in spans(train, 0, train.highest_ratio):
         only = train.fixed_teeth(0, z1, start)
-        pair = teeth.best_pairs(only, ((z1, start),))[0]
+        pair = choices.best_pairs(only, ((z1, start),))[0]
         assert safe(train, 0, pair, train.torque)
         low = 0.3 * pair.pinion.reference_diameter
         for width in np.linspace(low, pair.face_width * (1.0 - 1e-9), 40):
@@ -86,7 +87,7 @@ def test_the_best_of_two_stages_by_iso_is_that_of_all_candidates(standards):
 def test_a_train_is_feasible_by_its_own_text(options):
     train = rated_drive(Fraction(9), [TIED, TIED], pinion_teeth=(20, 21), options=options)
     found = search(train, 1, Budget())
-    point = teeth.point(train, teeth.best_pairs(train, found.found[0][1]))
+    point = teeth.point(train, choices.best_pairs(train, found.found[0][1]))
     batch = teeth.problem(train).batch(point[None])
     assert batch.G.max() <= 1.0 + 1e-11
     assert batch.F[0, 0] == pytest.approx(found.found[0][0], rel=1e-12)
@@ -117,7 +118,7 @@ def test_the_best_material_is_that_of_all_of_them(objective):
             alone.append(search(replace(train, stages=tuple(stages)), 1, Budget()).found[0][0])
     assert found.found[0][0] == pytest.approx(min(alone), rel=1e-12)
     assert len({round(v, 9) for v in alone}) > 2
-    point = teeth.point(train, *teeth.best_choices(train, found.found[0][1]))
+    point = teeth.point(train, *choices.best_choices(train, found.found[0][1]))
     batch = teeth.problem(train).batch(np.stack([point, point]))
     assert batch.F[:, 0] == pytest.approx(found.found[0][0], rel=1e-12)
     assert batch.G.max() <= 1.0 + 1e-11
@@ -139,7 +140,7 @@ def test_index_limits_beside_ratings():
         stages = tuple(replace(s, allowable=limits or (), options=options) for s in rated.stages)
         train = replace(rated, stages=stages, law=K_FACTOR if limits else rated.law)
         found = search(train, 1, Budget()).found[0]
-        point = teeth.point(train, *teeth.best_choices(train, found[1]))
+        point = teeth.point(train, *choices.best_choices(train, found[1]))
         assert teeth.problem(train).batch(point[None]).G.max() <= 1.0 + 1e-11
         values[name] = found[0]
     assert values["loose"] == pytest.approx(values["rated"], rel=1e-12)
@@ -158,7 +159,7 @@ def test_cells_of_use_hold_the_best_train():
         rest = bound(train, tables, delta, lambda: None, useful, value * 1.001)
         ratios = np.log([z2 / z1 for z1, z2 in chosen])
         cells = rest.cell(np.concatenate([[0.0], np.cumsum(ratios)]))
-        pairs = teeth.best_pairs(train, chosen)
+        pairs = choices.best_pairs(train, chosen)
         costs = [float(objective_share(train, k, p)) for k, p in enumerate(pairs)]
         assert rest.minimum[1][cells[1], rest.cell(ratios[1:2])[0]] <= costs[1]
         assert rest.to_go[1][cells[1]] <= sum(costs[1:])
@@ -200,7 +201,7 @@ def test_without_time_a_first_train_is_looked_for_among_few_pairs(monkeypatch):
     assert [len(t.ratio) > 20 for t in tables[0]] == [True, True]
     assert [len(t.ratio) for t in tables[1]] == [20, 20] and len(tables) == 2
     value, chosen = progress.found[0]
-    point = teeth.point(train, *teeth.best_choices(train, chosen))
+    point = teeth.point(train, *choices.best_choices(train, chosen))
     assert progress.clock.stopped and within(train, chosen)
     made = teeth.problem(train).batch(point[None])
     assert made.G.max() <= 1.0 + 1e-9 and made.F[0, 0] == pytest.approx(value, rel=1e-12)

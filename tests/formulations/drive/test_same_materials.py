@@ -10,6 +10,7 @@ from rated_brute_force import cheapest
 from rated_drives import MODULES, TIED, TREATMENTS, agma, rated_drive, some_rated_drive
 
 from gearopt.formulations.drive import teeth
+from gearopt.formulations.drive.teeth import choices
 from gearopt.formulations.drive.teeth.search import search
 from gearopt.formulations.drive.train import FaceWidth
 from gearopt.formulations.strength.rated import Option
@@ -71,7 +72,7 @@ def test_the_best_of_the_same_materials_are_the_best_of_each():
     alone = [found[0][0] for found in each]
     assert value == pytest.approx(min(alone), rel=1e-12)
     assert value > search(train, 1, Budget()).found[0][0] * 1.001
-    pairs, options = teeth.best_choices(alike, made)
+    pairs, options = choices.best_choices(alike, made)
     assert options == (alone.index(min(alone)),) * 2
     point = teeth.point(alike, pairs, options)
     assert teeth.options(alike, point) == options
@@ -149,7 +150,7 @@ def test_random_drives_of_the_same_materials_as_by_brute_force(seed):
     assert value <= least * (1.0 + 1e-9)
     assert least <= value * (1.05 if continuous else 1.0 + 1e-9)  # brute force has a grid of widths
     assert free.found[0][0] <= value * (1.0 + 1e-12)
-    chosen = teeth.best_choices(train, free.found[0][1])[1]
+    chosen = choices.best_choices(train, free.found[0][1])[1]
     if len(set(chosen)) == 1:
         assert value == pytest.approx(free.found[0][0], rel=1e-12)
 

@@ -16,11 +16,11 @@ from gearopt.formulations.drive.teeth import (
     UNLIMITED,
     _in_order,
     _why,
-    best_pairs,
     pairs,
     point,
     problem,
 )
+from gearopt.formulations.drive.teeth.choices import best_pairs
 from gearopt.formulations.drive.teeth.progress import MARGIN, TIE, Progress
 from gearopt.formulations.drive.teeth.search import search
 from gearopt.formulations.drive.train import FaceWidth

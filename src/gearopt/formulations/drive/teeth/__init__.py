@@ -14,12 +14,11 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing_text
-from gearopt.formulations.drive.shares import objective_share
+from gearopt.formulations.drive.teeth.choices import best_choices
 from gearopt.formulations.drive.teeth.front import fronts
 from gearopt.formulations.drive.teeth.progress import MARGIN, TIE, Progress, Teeth
 from gearopt.formulations.drive.teeth.reach import narrowed, trimmed
 from gearopt.formulations.drive.teeth.search import BEAM, search
-from gearopt.formulations.drive.teeth.tables import table
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.pareto.posed import caps
@@ -322,37 +321,6 @@ def _in_order(progress: Progress) -> list[Teeth]:
         else:
             groups.append((value, [teeth]))
     return [t for _, ties in groups for t in sorted(ties, key=lambda t: (sum(map(sum, t)), t))]
-
-
-def best_pairs(train: Train, teeth: Teeth) -> tuple[GearPair, ...]:
-    """Return the gear pairs of a train: the best module and face width for its teeth."""
-    return best_choices(train, teeth)[0]
-
-
-def best_choices(train: Train, teeth: Teeth) -> tuple[tuple[GearPair, ...], tuple[int, ...]]:
-    """Return gear pairs and options (from 0) of a train: the best ones for its teeth."""
-    every = train.of_one_option
-    made = [_choices(one, teeth) for one in every]
-    least = min(range(len(every)), key=lambda k: made[k][0])
-    _, found, chosen = made[least]
-    return found, chosen if len(every) == 1 else (least,) * len(teeth)
-
-
-def _choices(train: Train, teeth: Teeth) -> tuple[float, tuple[GearPair, ...], tuple[int, ...]]:
-    """Return the objective of a train with the best pairs and options, and these; inf: none."""
-    torque, value, found, chosen = train.torque, 0.0, [], []
-    for k, (z1, z2) in enumerate(teeth):
-        only = table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio)
-        module, width, option = only.choose(torque, 0)
-        found.append(train.pair(k, module, z1, z2, width))
-        chosen.append(option)
-        value += (
-            float(objective_share(train, k, found[-1], option=option))
-            if module < math.inf
-            else math.inf
-        )
-        torque *= z2 / z1
-    return value, tuple(found), tuple(chosen)
 
 
 def point(train: Train, pairs: Iterable[GearPair], options: Iterable[int] | None = None) -> Array:

@@ -24,6 +24,7 @@ from gearopt.formulations.drive.layout.layout_text import (
     value,
 )
 from gearopt.formulations.drive.layout.slabs import Arrangement, Slabs, arrange, orders
+from gearopt.formulations.drive.teeth.choices import best_choices
 from gearopt.formulations.drive.teeth.search import search as sizing
 from gearopt.formulations.drive.together.search import (
     MARGINS,
@@ -124,7 +125,7 @@ def _first(search: Search) -> bool:
     for _, one in progress.found[:count]:
         if search.clock.stopped:
             break
-        lay(search, teeth.best_choices(search.train, one), MARGINS[3])
+        lay(search, best_choices(search.train, one), MARGINS[3])
     return bool(progress.found) or progress.clock.stopped
 
 

@@ -14,7 +14,7 @@ from fractions import Fraction
 from typing import Any
 
 from gearopt.formulations.drive import sizing, sizing_text
-from gearopt.formulations.drive.teeth import best_pairs
+from gearopt.formulations.drive.teeth.choices import best_pairs
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.best_first import best_first
 from gearopt.optimise.clock import Clock
