@@ -45,14 +45,15 @@ def exact_text(train: Train) -> Problem:
     """Continuous problem of a drive without methods of its own.
 
     Variables, one component per stage: module [mm], pinion_teeth, ratio and, where it is not tied
-    to d1, face_width [mm]. Of a rated drive the text is for numbers only, and of gears with webs
-    the objective is not a posynomial.
+    to d1, face_width [mm]. Of a rated drive the text is for numbers and arrays of them only, and of
+    gears with webs the objective is not a posynomial.
     """
 
     def evaluate(x: Any, p: Any) -> Terms:
         return terms(train, p, text_pairs(train, x, p))
 
-    return Problem("sizing", variables(train), parameters(train), evaluate)
+    columns, numbers = variables(train), parameters(train)
+    return Problem("sizing", columns, numbers, evaluate, vectorised=train.rated)
 
 
 def parameters(train: Train) -> tuple[Param, ...]:

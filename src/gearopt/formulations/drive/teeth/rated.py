@@ -27,15 +27,23 @@ FIRST_STEPS = 4  # steps towards a width, for a first lower bound
 BOUNDED_AGAIN = 1.01  # times the least of these: what is bounded again
 TOGETHER = 2000  # pairs bounded again at once, at least
 ROUGH = 0.01  # of what is used above 1, where a bound is only to compare
+AT_ONCE = 4000  # rows of several modules that are tried at once
 BATCH = 20_000  # pairs bounded at once
 CELL_TOLERANCE = 0.02  # of what is used above 1, for that, over the width of a cell
 TEETH = 10**8  # more than a wheel has: pairs are told apart by z1 TEETH + z2
 FINEST = 0.005  # width of a cell where none is given
 
 
+def _numbered(rows: Index, first: Index, last: Index, count: int) -> tuple[Index, Index]:
+    """Each of some rows with so many numbers from its first one on, at most to its last one."""
+    numbers = first[:, None] + np.arange(count)
+    there = numbers <= last[:, None]
+    return np.broadcast_to(rows[:, None], numbers.shape)[there], numbers[there]
+
+
 @dataclass(frozen=True)
 class Found:
-    """The least cost of rows (n,), and the index of the first module that carries at all."""
+    """The least cost of rows (n,), and of one option the index of the first module that carries."""
 
     cost: Array
     first: Index
@@ -220,7 +228,7 @@ class RatedTable(Table):
             ends = [self.train.torque * np.exp(e) for e in (low - EDGE, low + delta + EDGE)]
             place = row * cells.ratio + column[pair]
             made = self._found((ends[0], ends[1]), pair, most, first[pair], steps=FIRST_STEPS)
-            if self.monotone and most == np.inf:
+            if self.monotone and most == np.inf and len(self.stage.options) == 1:
                 first[pair[row == 0]] = made.first[row == 0]
             cost = self._closer(
                 (ends[0], ends[1]), pair, place, made.cost, CELL_TOLERANCE * delta, most
@@ -283,18 +291,20 @@ class RatedTable(Table):
         best = Found(np.full(len(pair), np.inf), np.full(len(pair), len(self.modules)))
         for option in range(len(self.stage.options)):
             at = np.maximum(self.first[pair], first)
-            rows = np.arange(len(pair))
+            left = np.arange(len(pair))
             while True:
                 self.tick()
-                rows = rows[at[rows] <= self.last[pair[rows]]]
-                own, module = pair[rows], at[rows]
+                left = left[at[left] <= self.last[pair[left]]]
+                if not len(left):
+                    break
+                several = max(1, AT_ONCE // len(left))
+                rows, module = _numbered(left, at[left], self.last[pair[left]], several)
+                own = pair[rows]
                 one = self.made(self.modules[module], own)
                 low, high = self._ends(one, module, own)
                 worth = self._worth(one, low, option)
                 limit = np.minimum(np.broadcast_to(most, len(pair))[rows], best.cost[rows])
                 larger, keep = self._floor(one, low, option) <= limit, worth <= limit
-                if not larger.any():
-                    break
                 if self.train.by_width:
                     high = np.minimum(high, low * (limit / worth) * (1.0 + EDGE))
                 if keep.any():
@@ -303,8 +313,8 @@ class RatedTable(Table):
                     own, module = own[keep], module[keep]
                     widths = self._narrowest(loads, own, module, option, ends, close, steps)
                     self._improve(best, tried, own, module, option, widths)
-                rows = rows[larger]
-                at[rows] += 1
+                left = np.setdiff1d(left, rows[~larger])
+                at[left] += several
         return best
 
     def _worth(self, pair: GearPair, width: Array, option: int) -> Array:
@@ -325,9 +335,9 @@ class RatedTable(Table):
         """Put pairs that carry and cost less in the place of the best so far."""
         some = np.isfinite(width)
         rows, pair, module, width = rows[some], pair[some], module[some], width[some]
-        best.first[rows] = np.minimum(best.first[rows], module)
+        np.minimum.at(best.first, rows, module)
         cost = self._worth(self.made(self.modules[module], pair), width, option)
-        best.cost[rows] = np.minimum(best.cost[rows], cost)
+        np.minimum.at(best.cost, rows, cost)
 
     def _ends(self, one: GearPair, module: Index, pair: Index) -> tuple[Array, Array]:
         """Return the minimum and maximum face width [mm] of pairs with modules (indices)."""
