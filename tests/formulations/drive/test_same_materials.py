@@ -3,6 +3,7 @@
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from itertools import product
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from rated_drives import MODULES, TIED, TREATMENTS, agma, rated_drive, some_rate
 
 from gearopt.formulations.drive import teeth
 from gearopt.formulations.drive.teeth import choices
+from gearopt.formulations.drive.teeth.choices import valued
 from gearopt.formulations.drive.teeth.search import search
 from gearopt.formulations.drive.train import FaceWidth
 from gearopt.formulations.strength.rated import Option
@@ -167,3 +169,14 @@ def test_a_search_of_lists_cut_short_has_a_design_and_a_bound():
     assert early.clock.stopped and early.found[0][0] >= best
     assert 0.5 * best < early.bound <= best
     assert all(e.bound <= best * (1.0 + 1e-12) for e in seen if e.bound is not None)
+
+
+def test_more_effort_never_finds_a_worse_train():
+    steels = (Steel(hardness=250.0), HARD)
+    options = made_of(7.0, *product(steels, repeat=2))
+    train = rated_drive(F(15), [TIED] * 2, options=options)
+    efforts = Budget(seconds=0.0), Budget(evaluations=1), Budget(evaluations=3000)
+    found = [search(train, 1, budget).found[0] for budget in efforts]
+    values = [valued(train, chosen)[0] for _, chosen in found]
+    assert [value for value, _ in found] == pytest.approx(values, rel=1e-12)
+    assert values[0] >= values[1] >= values[2]

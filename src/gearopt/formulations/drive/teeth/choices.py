@@ -16,11 +16,16 @@ def best_pairs(train: Train, teeth: Teeth) -> tuple[GearPair, ...]:
 
 def best_choices(train: Train, teeth: Teeth) -> tuple[tuple[GearPair, ...], tuple[int, ...]]:
     """Return gear pairs and options (from 0) of a train: the best ones for its teeth."""
+    return valued(train, teeth)[1:]
+
+
+def valued(train: Train, teeth: Teeth) -> tuple[float, tuple[GearPair, ...], tuple[int, ...]]:
+    """Objective of a train with its best pairs and options, and these; inf: none carries."""
     every = train.of_one_option
     made = [_choices(one, teeth) for one in every]
     least = min(range(len(every)), key=lambda k: made[k][0])
-    _, found, chosen = made[least]
-    return found, chosen if len(every) == 1 else (least,) * len(teeth)
+    value, pairs, chosen = made[least]
+    return value, pairs, chosen if len(every) == 1 else (least,) * len(teeth)
 
 
 def _choices(train: Train, teeth: Teeth) -> tuple[float, tuple[GearPair, ...], tuple[int, ...]]:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
+from gearopt.formulations.drive.teeth.choices import valued
 from gearopt.formulations.drive.teeth.later_stages import (
     SLICE,
     Bound,
@@ -91,7 +92,7 @@ def search(
     progress.whole = whole and cut == maximum
     try:
         for one in train.of_one_material if train.rated else ():
-            _glance(one, cut, progress, shelf)
+            _glance(train, one, cut, progress, shelf)
         closed = not progress.found and _look(train, cut, progress, FIRST_LOOK, shelf)
         far = reach(train, cut, maximum, progress.threshold, progress.tick, shelf)
         progress.whole = whole
@@ -102,21 +103,24 @@ def search(
     return progress
 
 
-def _glance(train: Train, cut: Fraction, progress: Progress, shelf: list[RatedTable]) -> None:
-    """Look for a first train among few, whatever the budget's evaluations.
+def _glance(
+    train: Train, own: Train, cut: Fraction, progress: Progress, shelf: list[RatedTable]
+) -> None:
+    """Look for a first train among few, then among more, whatever the budget's evaluations.
 
-    Where its seconds end before there is one, among far fewer; however short they are, this ends.
+    own: the drive of one material in which it is looked for; it is valued with the best materials.
+    The first look ends, however short the budget's seconds are, unless there is a train. What is
+    looked at in them does not depend on them, so that more seconds find nothing worse.
     """
-    progress.patience = math.inf
-    tables = stage_tables(train, cut, progress.tick, shelf)
-    try:
+    progress.patience = 0.0 if progress.found else math.inf
+    tables = stage_tables(own, cut, progress.tick, shelf)
+    for few in (thinned(tables), tables):
+        before = progress.found[:1]
+        _first_dive(own, tables, few, progress)
+        if own is not train and progress.found[:1] != before:
+            best = progress.found[0][1]
+            progress.add(np.array([valued(train, best)[0]]), iter([best]))
         progress.patience = 0.0
-        _first_dive(train, tables, tables, progress)
-    except SearchEnded:
-        if progress.found or progress.clock.refused:
-            raise
-        progress.patience = math.inf
-        _first_dive(train, tables, thinned(tables), progress)
     progress.patience = -math.inf
     progress.tick()
 
