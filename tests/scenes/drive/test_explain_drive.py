@@ -345,6 +345,16 @@ def test_a_tolerance_of_zero_can_be_eased():
     assert ease.changes[0].was == '"0 %"' and verify(content, ease)
 
 
+def test_a_tolerance_is_written_in_few_digits():
+    """A stage ratio of 3.96604 instead of 5: 20.6792 % is missing."""
+    sizes = "stage_ratio = [1, 3.96604]\nmodule = ['2 mm', '8 mm']"
+    text = ONE_STAGE.replace('wheel_diameter = "300 mm"', "").format(stage=sizes)
+    scene, content = scene_of(text.replace("2.07 MPa", "20 MPa").replace("48 MPa", "400 MPa"))
+    changed = {r.changes[0].key: r for r in explain(scene).remedies}
+    ease = changed["duty.ratio_tolerance"]
+    assert ease.changes[0].short == '"20.7 %"' and verify(content, ease)
+
+
 @pytest.mark.slow
 def test_standard_modules_move_to_standard_modules():
     text = with_limits(ELEVATOR, 'module = ["1 mm", "2 mm"]', 'wheel_diameter = "260 mm"')

@@ -123,7 +123,7 @@ def _move(
     series = path[-1] == "module" and scene.teeth is not None
     return Move(
         path,
-        way,
+        1 if path[-1] == "ratio_tolerance" else way,  # of the lowest ratio, too
         role,
         family,
         far=min(handle.reach for handle in behind),
