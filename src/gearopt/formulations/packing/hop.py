@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.packing.packing_text import of_layers, places, point, smooth, start
-from gearopt.formulations.packing.plan import Places, Plan, row
-from gearopt.formulations.packing.sa import Finish, Floor, Spent, anneal, ready, scattered
+from gearopt.formulations.packing.plan import Places, Plan
+from gearopt.formulations.packing.sa import Finish, Floor, Spent, anneal, begun, ready, scattered
 from gearopt.optimise.box import violation
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import UNREADY
@@ -69,11 +69,8 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
         """Hop until the bound is reached, rounds end alike, or the budget is spent."""
         if not ready(watch):
             return Outcome(None, False, message=UNREADY)
-        spent, rng = Spent(clock := Clock(budget, watch)), np.random.default_rng(seed)
-        first = point(plan, row(plan))
-        spent.keep(float(problem.batch(first[None]).F[0, 0]), first)
-        lower = floor(problem, spent)
-        clock.bound = lower.value
+        clock, rng = Clock(budget, watch), np.random.default_rng(seed)
+        spent, lower = begun(plan, problem, clock, floor)
         endless = budget.seconds is None and budget.evaluations is None
         ends: list[float] = []
         while clock.tell() and not spent.close(PROVEN):

@@ -183,6 +183,15 @@ def anneal(
     return Places(x, y, layer, centre)
 
 
+def begun(plan: Plan, problem: Problem, clock: Clock, floor: Floor) -> tuple[Spent, Bound]:
+    """A search that knows the packing of all cylinders in a row, and the bound of all."""
+    spent, first = Spent(clock), point(plan, row(plan))
+    spent.keep(float(problem.batch(first[None]).F[0, 0]), first)
+    lower = floor(problem, spent)
+    clock.bound = lower.value
+    return spent, lower
+
+
 def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
     """Return the run of `sa` for a plan; `finish` adds bound and proof."""
 
@@ -190,11 +199,8 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
         """Anneal once; keep the best feasible state, or else all cylinders in a row."""
         if not ready(watch):
             return Outcome(None, False, message=UNREADY)
-        spent, rng = Spent(clock := Clock(budget, watch)), np.random.default_rng(seed)
-        first = point(plan, row(plan))
-        spent.keep(float(problem.batch(first[None]).F[0, 0]), first)
-        lower = floor(problem, spent)
-        clock.bound = lower.value
+        clock, rng = Clock(budget, watch), np.random.default_rng(seed)
+        spent, lower = begun(plan, problem, clock, floor)
         asked = budget.evaluations
         moves = MOVES * len(plan.radius) if asked is None else asked
         begin = scattered(plan, plan.max_layers, rng)

@@ -70,12 +70,14 @@ def rated(scene: Scene, ask: Ask, known: Result | None) -> Result:
 
 def idle(scene: Scene, method: str | None) -> dict[str, str]:
     """Return the options of `solve` that change nothing, each with the reason."""
-    found, boxed = {}, scene.layout is not None
+    reasons, boxed = {}, scene.layout is not None
     if scene.teeth is None:
-        found["top"] = "next best answers are listed of whole teeth, which a table [teeth] asks for"
+        reasons["top"] = (
+            "next best answers are listed of whole teeth, which a table [teeth] asks for"
+        )
     elif not boxed and method not in (None, "exact"):
-        found["top"] = f"{method} finds one answer; exact lists the next best ones"
-    return found if boxed else found | unseeded(method)
+        reasons["top"] = f"{method} finds one answer; exact lists the next best ones"
+    return reasons if boxed else reasons | unseeded(method)
 
 
 def compared(scene: Scene) -> tuple[str, ...]:

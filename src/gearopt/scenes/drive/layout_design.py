@@ -24,13 +24,18 @@ from gearopt.physics.shaft_forces import OTHER, hands
 
 
 def described(
-    box: Gearbox, one: Arrangement, angles: tuple[float, ...], sized: DriveDesign
+    box: Gearbox, arrangement: Arrangement, angles: tuple[float, ...], sized: DriveDesign
 ) -> LayoutDesign:
     """Describe the layout of a sized drive as a result holds it."""
-    found = placed(box, one, angles)
-    shafts = [body for own in one.bodies for body in own if body.name.startswith("shaft")]
+    layout = placed(box, arrangement, angles)
+    shafts = [
+        body
+        for on_shaft in arrangement.bodies
+        for body in on_shaft
+        if body.name.startswith("shaft")
+    ]
     return LayoutDesign(
-        box=_box(found),
+        box=_box(layout),
         shafts=tuple(
             ShaftDesign(
                 shaft=k,
@@ -40,20 +45,20 @@ def described(
                 from_mm=body.x[0],
                 to_mm=body.x[1],
             )
-            for k, ((y, z), body) in enumerate(zip(found.axes, shafts, strict=True), 1)
+            for k, ((y, z), body) in enumerate(zip(layout.axes, shafts, strict=True), 1)
         ),
-        gears=_gears(box, one, sized),
+        gears=_gears(box, arrangement, sized),
         bearings=tuple(
             BearingDesign(shaft=k, diameter_mm=2 * body.radius, from_mm=body.x[0], to_mm=body.x[1])
-            for k, own in enumerate(one.bodies, 1)
-            for body in own
+            for k, on_shaft in enumerate(arrangement.bodies, 1)
+            for body in on_shaft
             if body.name.startswith("bearing")
         ),
         link_angles_deg=tuple(math.degrees(t) for t in angles),
-        slabs=tuple(tuple(s + 1 for s in slab) for slab in one.slabs),
-        gaps=_gaps(box, one, found),
+        slabs=tuple(tuple(s + 1 for s in slab) for slab in arrangement.slabs),
+        gaps=_gaps(box, arrangement, layout),
         clearances=_clearances(box),
-        obstacles=tuple(keep_out_design(k, found) for k in box.keep_outs),
+        obstacles=tuple(keep_out_design(k, layout) for k in box.keep_outs),
         motor=MotorDesign(diameter_mm=2 * box.motor) if box.motor else None,
         split=tuple(k + 1 for k in box.level),
     )
@@ -68,18 +73,18 @@ def handed(layout: LayoutDesign, given: Sequence[str | None]) -> LayoutDesign:
     return replace(layout, gears=tuple(gears))
 
 
-def distances_used(found: LayoutDesign) -> dict[str, float]:
+def distances_used(layout: LayoutDesign) -> dict[str, float]:
     """Return, of every two axes that must keep apart, the part of their distance that is needed."""
     return {
         " to ".join(gap.between).replace(" ", "_"): 1.0 - (gap.gap_mm - gap.needed_mm) / gap.axes_mm
-        for gap in found.gaps
+        for gap in layout.gaps
     }
 
 
-def reached(box: Gearbox, found: LayoutDesign) -> list[str]:
+def reached(box: Gearbox, layout: LayoutDesign) -> list[str]:
     """Return notes on keep-outs that the box itself reaches into."""
-    left, bottom = found.box.left_mm, found.box.bottom_mm
-    right, top = left + found.box.width_mm, bottom + found.box.height_mm
+    left, bottom = layout.box.left_mm, layout.box.bottom_mm
+    right, top = left + layout.box.width_mm, bottom + layout.box.height_mm
     deep = {
         k.name: min(right - k.y[0], k.y[1] - left, top - k.z[0], k.z[1] - bottom)
         for k in box.keep_outs
@@ -92,24 +97,24 @@ def reached(box: Gearbox, found: LayoutDesign) -> list[str]:
     ]
 
 
-def _box(found: Placed) -> BoxDesign:
-    width, height, length = found.width, found.height, found.length
+def _box(layout: Placed) -> BoxDesign:
+    width, height, length = layout.width, layout.height, layout.length
     return BoxDesign(
         width_mm=width,
         height_mm=height,
         length_mm=length,
-        left_mm=found.left,
-        bottom_mm=found.bottom,
+        left_mm=layout.left,
+        bottom_mm=layout.bottom,
         volume_mm3=width * height * length,
         plan_area_mm2=width * length,
         face_area_mm2=width * height,
     )
 
 
-def _gears(box: Gearbox, one: Arrangement, sized: DriveDesign) -> tuple[GearDesign, ...]:
+def _gears(box: Gearbox, arrangement: Arrangement, sized: DriveDesign) -> tuple[GearDesign, ...]:
     gears = []
-    for k, own in enumerate(one.bodies, 1):
-        for body in (b for b in own if b.gear):
+    for k, on_shaft in enumerate(arrangement.bodies, 1):
+        for body in (b for b in on_shaft if b.gear):
             member, stage = body.name.split()[0], sized.stages[body.stage]
             wheel, pair = member == "wheel", box.pairs[body.stage]
             gear = pair.wheel if wheel else pair.pinion
@@ -128,19 +133,19 @@ def _gears(box: Gearbox, one: Arrangement, sized: DriveDesign) -> tuple[GearDesi
     return tuple(gears)
 
 
-def _gaps(box: Gearbox, one: Arrangement, found: Placed) -> tuple[GapDesign, ...]:
+def _gaps(box: Gearbox, arrangement: Arrangement, layout: Placed) -> tuple[GapDesign, ...]:
     """Return clear distances of bodies that must keep apart, the tightest first."""
     gaps = []
-    for (i, j), need in one.needs.items():
-        (ya, za), (yb, zb) = found.axes[i], found.axes[j]
+    for (i, j), need in arrangement.needs.items():
+        (ya, za), (yb, zb) = layout.axes[i], layout.axes[j]
         there = math.hypot(yb - ya, zb - za)
         gap = there - (need.distance - need.clearance)
         gaps.append(
             GapDesign(between=need.between, gap_mm=gap, needed_mm=need.clearance, axes_mm=there)
         )
     for k, keep in enumerate(box.keep_outs):
-        for i, (y, z) in enumerate(found.axes):
-            if (needed := float(one.keep_apart[k, i])) > 0.0:
+        for i, (y, z) in enumerate(layout.axes):
+            if (needed := float(arrangement.keep_apart[k, i])) > 0.0:
                 dy = max(keep.y[0] - y, y - keep.y[1], 0.0)
                 dz = max(keep.z[0] - z, z - keep.z[1], 0.0)
                 gaps.append(
@@ -155,16 +160,16 @@ def _gaps(box: Gearbox, one: Arrangement, found: Placed) -> tuple[GapDesign, ...
 
 
 def _clearances(box: Gearbox) -> ClearanceDesign:
-    found = box.clearances
+    clearances = box.clearances
     return ClearanceDesign(
-        gear_to_gear_mm=found.gears,
-        gear_to_shaft_mm=found.shafts,
-        wall_mm=found.wall,
-        axial_mm=found.axial,
+        gear_to_gear_mm=clearances.gears,
+        gear_to_shaft_mm=clearances.shafts,
+        wall_mm=clearances.wall,
+        axial_mm=clearances.axial,
     )
 
 
-def keep_out_design(keep: KeepOut, found: Placed) -> KeepOutDesign:
+def keep_out_design(keep: KeepOut, layout: Placed) -> KeepOutDesign:
     """A keep-out, cut off a little beyond the box."""
     return KeepOutDesign(
         name=keep.name,
@@ -172,6 +177,6 @@ def keep_out_design(keep: KeepOut, found: Placed) -> KeepOutDesign:
         right_mm=keep.y[1],
         bottom_mm=keep.z[0],
         top_mm=keep.z[1],
-        from_mm=max(keep.x[0], -0.1 * found.length),
-        to_mm=min(keep.x[1], 1.1 * found.length),
+        from_mm=max(keep.x[0], -0.1 * layout.length),
+        to_mm=min(keep.x[1], 1.1 * layout.length),
     )

@@ -24,9 +24,9 @@ from gearopt.scenes.reading.ask import Ask
 def objectives(scene: Scene) -> dict[str, str]:
     """Objectives of a front of the drive: name and unit."""
     to_choose(scene)
-    found = {name: unit for name, unit in OBJECTIVES.items() if not _lacking(scene, name)}
+    names = {name: unit for name, unit in OBJECTIVES.items() if not _lacking(scene, name)}
     used = {load_front.UTILISATION: ""} if scene.teeth is not None else {}
-    return found | used | sides.objectives(scene)
+    return names | used | sides.objectives(scene)
 
 
 def to_choose(scene: Scene) -> None:

@@ -52,15 +52,15 @@ def given_pairs(stages: Sequence[StageTable], gears: Gears) -> tuple[GearPair, .
     for stage in stages:
         assert stage.size and stage.pinion_teeth and stage.wheel_teeth
         teeth = float(stage.pinion_teeth[0]), float(stage.wheel_teeth[0])
-        module, made = float(stage.size[0].exact[0]), toothing(stage, gears)
+        module, teeth_of = float(stage.size[0].exact[0]), toothing(stage, gears)
         if stage.face_width is not None:
             width = stage.face_width.value
         else:
             span = stage.face_width_over_diameter or gears.face_width_over_diameter
             assert span
-            unit = made.pair(module, *teeth, 1.0)
+            unit = teeth_of.pair(module, *teeth, 1.0)
             width = float(span[0]) * float(unit.pinion.reference_diameter)
-        pairs.append(made.pair(module, *teeth, width))
+        pairs.append(teeth_of.pair(module, *teeth, width))
     return tuple(pairs)
 
 
@@ -85,17 +85,17 @@ def operations(
     """Operation of a pair at every level of load; slower: input over pinion speed."""
     hours = required_hours(rating, duty)
     at_duty = duty.power.value, duty.input_speed.value / slower
-    one = _operation(rating, *at_duty, hours, tables)
+    at_power = _operation(rating, *at_duty, hours, tables)
     each: list[Any] = [
         replace(
-            one,
+            at_power,
             power=level.power.value,
             pinion_speed=(level.input_speed or duty.input_speed).value / slower,
             hours=hours * float(level.share),
         )
         for level in levels
     ]
-    return tuple(each) or (one,)
+    return tuple(each) or (at_power,)
 
 
 def unit_operation(rating: RatingTable, hours: float, tables: Tables) -> Operation:
@@ -106,7 +106,7 @@ def unit_operation(rating: RatingTable, hours: float, tables: Tables) -> Operati
 def _operation(
     rating: RatingTable, power: float, speed: float, hours: float, tables: Tables
 ) -> Operation:
-    one = Operation(
+    operation = Operation(
         power,
         speed,
         hours,
@@ -115,8 +115,8 @@ def _operation(
         contacts=(float(tables[0].contacts or 1), float(tables[1].contacts or 1)),
     )
     if rating.temperature is None:
-        return one
-    return replace(one, temperature_C=rating.temperature.value)
+        return operation
+    return replace(operation, temperature_C=rating.temperature.value)
 
 
 def loads(rating: RatingTable, duty: Duty, levels: Sequence[LoadTable]) -> tuple[Load, ...]:

@@ -53,18 +53,18 @@ def choices(
     """Tables of a gear with each material that it may have, and that material."""
     table = with_shared(own, shared)
     table = table.model_copy(update={"materials": None})
-    known = {one.name: one for one in materials}
-    found = [known[name] for name in names(own, shared)]
-    if not found:
+    known = {material.name: material for material in materials}
+    allowed = [known[name] for name in names(own, shared)]
+    if not allowed:
         return ((table, None),)
-    return tuple((table.model_copy(update=_of(one)), one) for one in found)
+    return tuple((table.model_copy(update=_of(material)), material) for material in allowed)
 
 
 def _of(material: Named) -> dict[str, Any]:
     """Keys of a gear by its material: its steel, and its accuracy where it has one."""
     steel = {key: getattr(material, key) for key in STEEL}
-    made = {key: getattr(material, key) for key in MADE}
-    return steel | {key: value for key, value in made.items() if value is not None}
+    accuracy = {key: getattr(material, key) for key in MADE}
+    return steel | {key: value for key, value in accuracy.items() if value is not None}
 
 
 def check_materials(

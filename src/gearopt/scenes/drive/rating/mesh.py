@@ -43,9 +43,9 @@ class Mesh:
 
         At the working pitch circles, whichever circles the standard has its load at.
         """
-        found = max(self.operations, key=lambda one: float(one.power / one.pinion_speed))
-        moved = float(found.power / found.pinion_speed)
-        return moved, 0.5 * float(self.pair.working_diameters[0] * found.pinion_speed)
+        hardest = max(self.operations, key=lambda level: float(level.power / level.pinion_speed))
+        moved = float(hardest.power / hardest.pinion_speed)
+        return moved, 0.5 * float(self.pair.working_diameters[0] * hardest.pinion_speed)
 
 
 def rated_meshes(
@@ -57,14 +57,14 @@ def rated_meshes(
     """
     meshes, slower = [], 1.0
     for k, pair in enumerate(pairs):
-        found = flaws(pair)
-        told = [flaw.sentence[0].lower() + flaw.sentence[1:].rstrip(".") for flaw in found]
-        if found and found[0].fatal:
-            raise SolveError(f"stage {k + 1} cannot be rated: {told[0]}")
+        known = flaws(pair)
+        sentences = [flaw.sentence[0].lower() + flaw.sentence[1:].rstrip(".") for flaw in known]
+        if known and known[0].fatal:
+            raise SolveError(f"stage {k + 1} cannot be rated: {sentences[0]}")
         try:
             meshes.append(_mesh(scene, k, pair, slower, standard, materials[k]))
         except ValueError as reason:
-            why = "; ".join([str(reason), *told])
+            why = "; ".join([str(reason), *sentences])
             raise SolveError(f"stage {k + 1} cannot be rated: {why}") from None
         slower *= float(pair.ratio)
     return meshes
@@ -83,14 +83,14 @@ def _mesh(
     given = standard.given(rating, stage)
 
     def grown(factor: float) -> Mesh:
-        own = tuple(replace(one, power=factor * one.power) for one in levels)
+        loaded = tuple(replace(operation, power=factor * operation.power) for operation in levels)
         if not scene.load:
-            one = standard.rate(pair, own[0], steels, practice, given)
-            both = one.bending_safety, one.contact_safety
-            return Mesh(standard, k + 1, pair, tables, own, (one,), *both, None, grown)
-        found = standard.rate_spectrum(pair, own, steels, practice, given)
-        damages = found.bending_damage, found.contact_damage
-        both = found.bending_safety, found.contact_safety
-        return Mesh(standard, k + 1, pair, tables, own, found.levels, *both, damages, grown)
+            rated = standard.rate(pair, loaded[0], steels, practice, given)
+            both = rated.bending_safety, rated.contact_safety
+            return Mesh(standard, k + 1, pair, tables, loaded, (rated,), *both, None, grown)
+        spectrum = standard.rate_spectrum(pair, loaded, steels, practice, given)
+        damages = spectrum.bending_damage, spectrum.contact_damage
+        both = spectrum.bending_safety, spectrum.contact_safety
+        return Mesh(standard, k + 1, pair, tables, loaded, spectrum.levels, *both, damages, grown)
 
     return grown(1.0)

@@ -55,14 +55,14 @@ def rate(scene: Scene, ask: Ask) -> Result:
         )
     clock = Clock(ask.budget, ask.watch)
     pairs = given_pairs(scene.stage, scene.gears)
-    found = rating(scene, pairs)
-    made, bodies = given_design(scene, pairs)
+    rated = rating(scene, pairs)
+    design, bodies = given_design(scene, pairs)
     bored = [(s.pinion.bore is not None, s.wheel.bore is not None) for s in scene.stage]
     geometric = (*tooth_flaws(pairs), *body_flaws(bodies, pairs, bored))
-    found = fitted(found, geometric)
+    rated = fitted(rated, geometric)
     accepted = (flaw.sentence for flaw in geometric if not flaw.misfit)
-    told = replace(found, flaws=(*off_ratio(scene, made), *accepted, *found.flaws))
-    limits, remarks = utilisations(found), unused_materials(scene)
+    told = replace(rated, flaws=(*off_ratio(scene, design), *accepted, *rated.flaws))
+    limits, remarks = utilisations(rated), unused_materials(scene)
     excess = [*(used - 1.0 for used in limits.values()), *(flaw.misfit for flaw in geometric)]
     return Result(
         name="rating",
@@ -70,7 +70,7 @@ def rate(scene: Scene, ask: Ask) -> Result:
         method=scene.rating.standard,
         objective={},
         certificate={"feasibility": max(0.0, *excess)},
-        design=untyped(replace(made, rating=told)),
+        design=untyped(replace(design, rating=told)),
         limits=limits,
         report={"assumptions": rating_assumptions(scene)} | ({"notes": remarks} if remarks else {}),
         evaluations=1,
@@ -80,13 +80,13 @@ def rate(scene: Scene, ask: Ask) -> Result:
     )
 
 
-def fitted(found: DriveRating, geometric: Iterable[Flaw]) -> DriveRating:
+def fitted(rated: DriveRating, geometric: Iterable[Flaw]) -> DriveRating:
     """Return a rating that knows which gears do not fit, and is not safe then, by any standard."""
     misfits = tuple(flaw.sentence for flaw in geometric if flaw.misfit)
     if not misfits:
-        return found
-    beside = replace(found.beside, safe=False) if found.beside else None
-    return replace(found, safe=False, misfits=misfits, beside=beside)
+        return rated
+    beside = replace(rated.beside, safe=False) if rated.beside else None
+    return replace(rated, safe=False, misfits=misfits, beside=beside)
 
 
 def given_design(
@@ -100,7 +100,7 @@ def given_design(
         blanks(own, gear_tables(own, scene.gears, scene.material, k), pair)
         for k, (own, pair) in enumerate(zip(scene.stage_tables, pairs, strict=True))
     ]
-    made = of_pairs(
+    design = of_pairs(
         scene.limits.LAW,
         pairs,
         scene.torque,
@@ -109,17 +109,17 @@ def given_design(
         density.value if density else None,
         bodies,
     )
-    return made, bodies
+    return design, bodies
 
 
-def off_ratio(scene: Scene, made: DriveDesign) -> list[str]:
+def off_ratio(scene: Scene, design: DriveDesign) -> list[str]:
     """Return how far given gears are off the ratio that is asked for, beyond its tolerance."""
-    off = made.ratio_error_percent
+    off = design.ratio_error_percent
     if abs(off) <= 100.0 * float(scene.duty.ratio_tolerance):
         return []
     way = "above" if off > 0.0 else "below"
     return [
-        f"The gears have a ratio of {made.ratio:.5g}, {abs(off):.3g} % {way} the one asked for."
+        f"The gears have a ratio of {design.ratio:.5g}, {abs(off):.3g} % {way} the one asked for."
     ]
 
 
@@ -140,11 +140,11 @@ def with_rating(scene: Scene, result: Result) -> Result:
         return result
     try:
         materials = [(s.pinion_material, s.wheel_material) for s in design.stages]
-        found = fitted(rating(held, pairs, materials), geometric)
+        rated = fitted(rating(held, pairs, materials), geometric)
     except SolveError as reason:
         report = result.report | {"notes": [*notes, f"There is no rating: {reason}."]}
         return replace(result, report=report)
-    return replace(result, design=result.design | {"rating": untyped(found)})
+    return replace(result, design=result.design | {"rating": untyped(rated)})
 
 
 def check_safe(scene: Scene, result: Result) -> None:
@@ -166,16 +166,16 @@ def rated_afterwards(scene: Scene, result: Result) -> Result:
     return replace(result, proof=result.proof | {"scope": words})
 
 
-def utilisations(found: DriveRating) -> dict[str, float]:
+def utilisations(rated: DriveRating) -> dict[str, float]:
     """Utilisations of the safety factors of every gear: asked for over there, of stress.
 
     Of two standards those of the second, which is ISO 6336, have names of their own.
     """
     limits = {}
-    for one, of_second in zip(found.each, ("", SECOND), strict=False):
-        for gear in one.gears:
-            bending = one.minimum_bending_safety / gear.bending_safety
-            contact = one.minimum_contact_safety / gear.contact_safety
+    for by_standard, of_second in zip(rated.each, ("", SECOND), strict=False):
+        for gear in by_standard.gears:
+            bending = by_standard.minimum_bending_safety / gear.bending_safety
+            contact = by_standard.minimum_contact_safety / gear.contact_safety
             limits[f"{gear.member}_bending{of_second}[{gear.stage}]"] = bending
             limits[f"{gear.member}_contact{of_second}[{gear.stage}]"] = contact
     return limits
@@ -190,18 +190,22 @@ def rating(
     """
     assert scene.rating
     names = materials or [("", "")] * len(pairs)
-    first, *others = (_by(scene, pairs, one, names) for one in STANDARDS[scene.rating.standard])
+    first, *others = (
+        _by(scene, pairs, standard, names) for standard in STANDARDS[scene.rating.standard]
+    )
     first = replace(first, beside=others[0]) if others else first
     return replace(first, flaws=tuple(_partial_contact(first)))
 
 
-def _partial_contact(found: DriveRating) -> Iterator[str]:
+def _partial_contact(rated: DriveRating) -> Iterator[str]:
     """Yield stages whose load lies on a part of the face width.
 
     Of a straight distribution K_Hbeta reaches 2 where the line load is 0 at one end;
     beyond, b_cal/b = 2/K_Hbeta is loaded. Source: ISO 6336-1:2006, 7.5, method C.
     """
-    rows = [row for one in found.each for row in one.factors if row.symbol == "K_Hbeta"]
+    rows = [
+        row for by_standard in rated.each for row in by_standard.factors if row.symbol == "K_Hbeta"
+    ]
     for row in rows:
         if row.pinion > FULL_CONTACT:
             yield (
@@ -228,7 +232,7 @@ def _by(
     hours = [life_hours(mesh, k) for mesh in meshes for k in (0, 1)]
     shortest = gears[min(range(len(gears)), key=hours.__getitem__)]
     efficiency, error = _efficiency(rows)
-    made = DriveRating(
+    rated = DriveRating(
         standard=standard.title(asked),
         safe=False,
         governs=f"{least.governs}, stage {least.stage}",
@@ -260,7 +264,7 @@ def _by(
         ),
         by=standard.NAME,
     )
-    return replace(made, safe=made.met)
+    return replace(rated, safe=rated.met)
 
 
 def _efficiency(rows: Sequence[MeshRating]) -> tuple[float | None, float | None]:

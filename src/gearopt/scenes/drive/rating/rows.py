@@ -41,9 +41,9 @@ MOST_STEPS, FLATTEST, LARGEST = (
 
 def gear_row(mesh: Mesh, k: int) -> GearRating:
     """Return the pinion (0) or the wheel (1) of a mesh."""
-    one = mesh.hardest
-    stresses = one.bending_stress[k], one.contact_stress[k]
-    safeties = one.bending_safety[k], one.contact_safety[k]
+    hardest = mesh.hardest
+    stresses = hardest.bending_stress[k], hardest.contact_stress[k]
+    safeties = hardest.bending_safety[k], hardest.contact_safety[k]
     cycles = sum(level.cycles[k] for level in mesh.levels)
     lives, life = _lives(mesh, k), life_hours(mesh, k)
     return GearRating(
@@ -126,12 +126,12 @@ def _usable(pair: GearPair) -> float | None:
 def _losses(rating: RatingTable, mesh: Mesh) -> dict[str, Any]:
     """Losses by the sliding of teeth, where the friction is known."""
     loss, (friction, sure) = float(tooth_loss_factor(mesh.pair)), _friction(rating, mesh)
-    found: dict[str, Any] = {"tooth_loss_factor": loss, "friction_coefficient": friction}
+    fields: dict[str, Any] = {"tooth_loss_factor": loss, "friction_coefficient": friction}
     if friction is not None and friction * loss < 1.0:  # else the formula is far from its tests
-        found["mesh_efficiency_percent"] = 100.0 * float(mesh_efficiency(loss, friction))
+        fields["mesh_efficiency_percent"] = 100.0 * float(mesh_efficiency(loss, friction))
         if not sure:
-            found["mesh_efficiency_error_percent"] = 100.0 * FRICTION_ERROR * friction * loss
-    return found
+            fields["mesh_efficiency_error_percent"] = 100.0 * FRICTION_ERROR * friction * loss
+    return fields
 
 
 def _margins(mesh: Mesh, wanted: tuple[float, float]) -> tuple[float, str]:
@@ -221,7 +221,7 @@ def shaft_rows(
 def level_rows(levels: Sequence[LoadTable], usual: Quantity, mesh: Mesh) -> list[LoadLevel]:
     """Levels of a load spectrum, for each gear of a mesh; usual: the input speed of the duty."""
     rows = []
-    for n, (level, one) in enumerate(zip(levels, mesh.levels, strict=True), 1):
+    for n, (level, rated) in enumerate(zip(levels, mesh.levels, strict=True), 1):
         for k in (0, 1):
             rows.append(
                 LoadLevel(
@@ -231,11 +231,11 @@ def level_rows(levels: Sequence[LoadTable], usual: Quantity, mesh: Mesh) -> list
                     power_kW=1e-6 * level.power.value,
                     input_speed_rpm=rpm((level.input_speed or usual).value),
                     share_percent=100.0 * float(level.share),
-                    cycles=one.cycles[k],
-                    bending_stress_MPa=one.bending_stress[k],
-                    contact_stress_MPa=one.contact_stress[k],
-                    bending_damage=_damage(one.cycles[k], one.bending_life[k]),
-                    contact_damage=_damage(one.cycles[k], one.contact_life[k]),
+                    cycles=rated.cycles[k],
+                    bending_stress_MPa=rated.bending_stress[k],
+                    contact_stress_MPa=rated.contact_stress[k],
+                    bending_damage=_damage(rated.cycles[k], rated.bending_life[k]),
+                    contact_damage=_damage(rated.cycles[k], rated.contact_life[k]),
                 )
             )
     return rows
