@@ -23,7 +23,6 @@ from gearopt.optimise.explaining.handles import (
 )
 from gearopt.optimise.explaining.repair import (
     FACTOR_TOLERANCE,
-    FACTORS_TRIED,
     SLACK_TRIED,
     Repair,
     any_resolves,
@@ -41,6 +40,7 @@ THERE = ("optimal", "stationary", "feasible")  # a design exists
 STEP = 1e-3  # relative, of the re-solves that check a sensitivity
 ZERO = 1e-9  # of the objective at the guess
 EASE = 0.01  # relative, of the step whose effect is reported
+FACTORS_IN_TURN = (1.02, 1.1, 1.3, 2.0, 4.0, 16.0, 256.0, 1e6)  # up to the first that suffices
 DIGITS = 6  # of a number that is proposed; rounded to relax the limit
 # a proposal asks for this much more than the factor found, to be feasible in doubles
 FEASIBILITY_MARGIN = 2e-7
@@ -198,7 +198,7 @@ def _alone(problem: Problem, handle: Handle, method: str, clock: Clock) -> Remed
 
     down = whole and handle.direction < 0  # to 1 at the most
     known = Bracket(1.0, 1.0)
-    for high in (f for f in FACTORS_TRIED if not down or f <= handle.value):
+    for high in (f for f in FACTORS_IN_TURN if not down or f <= handle.value):
         if answers.get(status(asked(high))):
             known.high = high
             break

@@ -28,7 +28,6 @@ SLACK_TRIED = 1e-3  # a remedy this much smaller must be impossible
 FARTHEST = 4.0  # factor to which whole numbers and modules are tried
 # ratio of an impossible to a possible factor that ends a search
 FACTOR_TOLERANCE = 1.0 + 0.5 * SLACK_TRIED
-FACTORS_TRIED = (1.02, 1.1, 1.3, 2.0, 4.0, 16.0, 256.0, 1e6)  # in turn, up to the first that works
 
 
 @dataclass(frozen=True)

@@ -1,18 +1,15 @@
 """Assumptions of a drive, and notes for the reader of its result."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 from gearopt.formulations.drive.design import STEEL_DENSITY
 from gearopt.physics.gears import ISO_53_A, MEMBERS
-from gearopt.physics.iso6336.case import Practice
-from gearopt.scenes.drive.rating.iso_material import steel
-from gearopt.scenes.drive.rating.materials import Named, choices, unused
+from gearopt.scenes.drive.rating.assumptions import every_gear, rating_assumptions, unused_materials
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.blanks import blank
 from gearopt.scenes.drive.tables.drive import ORIGINS
 from gearopt.scenes.drive.tables.layout import Layout
-from gearopt.scenes.drive.tables.rating import GearTable, RatingTable, with_shared
+from gearopt.scenes.drive.tables.rating import with_shared
 from gearopt.scenes.drive.tables.teeth import toothing
 from gearopt.scenes.reading.module_series import unverified
 
@@ -44,22 +41,9 @@ def notes(scene: Scene, exact: bool) -> list[str]:
     return found + unused_materials(scene)
 
 
-def unused_materials(scene: Scene) -> list[str]:
-    """Return a note on the materials of the file that no gear may have, if there are any."""
-    names = unused(scene.stage_tables, scene.gears, scene.material)
-    return [f"[[material]] in no list of a gear: {', '.join(names)}."] if names else []
-
-
 def _dense(scene: Scene) -> bool:
     """Return whether every gear has the density of its material."""
-    return all(material and material.density for _, material in _gears(scene))
-
-
-def _gears(scene: Scene) -> Iterator[tuple[GearTable, Named | None]]:
-    """Every gear with each material that it may have, and that material."""
-    for stage in scene.stage_tables:
-        for member in MEMBERS:
-            yield from choices(getattr(stage, member), scene.gears, scene.material)
+    return all(material and material.density for _, material in every_gear(scene))
 
 
 def assumptions(scene: Scene) -> list[str]:
@@ -138,76 +122,6 @@ def _teeth(scene: Scene) -> list[str]:
     if shifted and scene.limits.loaded:
         found.append(f"{scene.limits.LAW.title} are those of the reference circles.")
     return found
-
-
-def rating_assumptions(scene: Scene) -> list[str]:
-    """Assumptions of a rating, in sentences."""
-    asked = scene.rating
-    assert asked
-    by_agma, by_iso = asked.standard != "iso6336", asked.standard != "agma"
-    found = [
-        "The rating is of external cylindrical steel gears on parallel shafts; the pinions drive. "
-        "Losses are neglected, but for those of the mesh where they are reported.",
-        "The standards themselves were not read: formulas and values are those of textbooks, "
-        "tables and public programs; those from a single source are marked unverified.",
-        *(_agma_assumptions(asked) if by_agma else []),
-        *(_iso_assumptions(scene, asked) if by_iso else []),
-        "Scuffing, micropitting, wear, shafts and bearings are not rated.",
-        "S_H is a ratio of contact stresses, its square one of loads. Lives are those at which a "
-        "safety factor is 1.",
-    ]
-    unstated = _unstated(asked, by_agma, by_iso)
-    return [*found, f"Not in the file: {', '.join(unstated)}."] if unstated else found
-
-
-def _agma_assumptions(asked: RatingTable) -> list[str]:
-    """Assumptions of a rating by AGMA."""
-    load = (
-        "at the highest point of single tooth contact"
-        if asked.bending_load == "highest single"
-        else "at the tip"
-    )
-    return [
-        f"K_m follows the curve of {asked.mounting} gearing"
-        + (", crowned" if asked.crowned else ", teeth without crowning")
-        + f"; the pinion offset S_1/S is {float(asked.pinion_offset):g}.",
-        "Bending stresses of spur gears, and of helical ones of low overlap ratio, are those of a "
-        f"load {load}"
-        f"{' (AGMA)' * (asked.standard == 'both')}.",
-    ]
-
-
-def _iso_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
-    """Assumptions of a rating by ISO 6336: materials, misalignment."""
-    chosen = dict.fromkeys(
-        f"{table.treatment or 'none given'} as {steel(table).name}"
-        for table, _ in _gears(scene)
-        if table.iso_material is None
-    )
-    helix = asked.iso6336.helix_modification
-    modified = "without helix modification" if helix == "none" else f"helix modification: {helix}"
-    overloaded = bool(scene.load) and asked.overload_factor != 1
-    words = [f"Materials of ISO 6336-5 by treatment: {', '.join(chosen)}."] if chosen else []
-    return [
-        *words,
-        "K_Hβ by method C of ISO 6336-1, for a pinion midway between its bearings on a solid "
-        f"shaft; {modified}. Bending by method B: the load acts at the outer point of single pair "
-        "contact.",
-        *[f"K_A = {float(asked.overload_factor):g} multiplies every level of load."][:overloaded],
-    ]
-
-
-def _unstated(asked: RatingTable, by_agma: bool, by_iso: bool) -> list[str]:
-    """Return defaults that a rating takes where the file says nothing."""
-    given, iso = asked.model_fields_set, asked.iso6336.model_fields_set
-    usual = Practice()
-    rows = (
-        (True, "overload_factor" in given, "overload factor 1"),
-        (by_agma, "reliability" in given, "reliability 99 %"),
-        (by_agma, "mounting" in given, f"mounting {asked.mounting}"),
-        (by_iso, "oil_grade" in iso, f"oil of {usual.viscosity:g} mm²/s at 40 °C"),
-    )
-    return [f"{words} (default)" for enters, stated, words in rows if enters and not stated]
 
 
 def _layout_assumptions(layout: Layout) -> list[str]:

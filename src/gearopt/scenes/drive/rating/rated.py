@@ -16,7 +16,7 @@ from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.flaws import Flaw
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
-from gearopt.scenes.drive.notes import rating_assumptions, unused_materials
+from gearopt.scenes.drive.rating.assumptions import rating_assumptions, unused_materials
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.gears import (
     blanks,

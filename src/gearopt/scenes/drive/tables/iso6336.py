@@ -12,7 +12,7 @@ from gearopt.physics.iso6336.factors import CLAUSES, PAIRED
 from gearopt.physics.iso6336.load_factors import HELIX_MODIFICATIONS
 from gearopt.physics.iso6336.materials import CORES, MATERIALS, QUALITIES
 from gearopt.physics.iso6336.tooth_form import SHIFTS
-from gearopt.scenes.drive.rating.given import Given
+from gearopt.scenes.drive.tables.given import Given
 from gearopt.scenes.reading.fields import Table, advised, choice, number, quantity, truth, whole
 from gearopt.scenes.reading.lists import each_gear
 from gearopt.units import Quantity

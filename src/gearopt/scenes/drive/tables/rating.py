@@ -10,8 +10,8 @@ from gearopt.physics.agma.bending import LOADS
 from gearopt.physics.agma.factors import ALIGNMENT, QUALITIES
 from gearopt.physics.agma.life import SERVICES
 from gearopt.physics.agma.rating_factors import EDITIONS
-from gearopt.scenes.drive.rating.given import Given
 from gearopt.scenes.drive.tables.blanks import BlankKeys, beside
+from gearopt.scenes.drive.tables.given import Given
 from gearopt.scenes.drive.tables.iso6336 import ISO_KEYS, IsoGearKeys, IsoTable
 from gearopt.scenes.reading.fields import (
     Table,

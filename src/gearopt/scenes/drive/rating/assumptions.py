@@ -1,0 +1,93 @@
+"""Assumptions of the rating of a drive, and its materials that no gear may have."""
+
+from collections.abc import Iterator
+
+from gearopt.physics.gears import MEMBERS
+from gearopt.physics.iso6336.case import Practice
+from gearopt.scenes.drive.rating.iso_material import steel
+from gearopt.scenes.drive.rating.materials import Named, choices, unused
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.rating import GearTable, RatingTable
+
+
+def rating_assumptions(scene: Scene) -> list[str]:
+    """Assumptions of a rating, in sentences."""
+    asked = scene.rating
+    assert asked
+    by_agma, by_iso = asked.standard != "iso6336", asked.standard != "agma"
+    found = [
+        "The rating is of external cylindrical steel gears on parallel shafts; the pinions drive. "
+        "Losses are neglected, but for those of the mesh where they are reported.",
+        "The standards themselves were not read: formulas and values are those of textbooks, "
+        "tables and public programs; those from a single source are marked unverified.",
+        *(_agma_assumptions(asked) if by_agma else []),
+        *(_iso_assumptions(scene, asked) if by_iso else []),
+        "Scuffing, micropitting, wear, shafts and bearings are not rated.",
+        "S_H is a ratio of contact stresses, its square one of loads. Lives are those at which a "
+        "safety factor is 1.",
+    ]
+    unstated = _unstated(asked, by_agma, by_iso)
+    return [*found, f"Not in the file: {', '.join(unstated)}."] if unstated else found
+
+
+def _agma_assumptions(asked: RatingTable) -> list[str]:
+    """Assumptions of a rating by AGMA."""
+    load = (
+        "at the highest point of single tooth contact"
+        if asked.bending_load == "highest single"
+        else "at the tip"
+    )
+    return [
+        f"K_m follows the curve of {asked.mounting} gearing"
+        + (", crowned" if asked.crowned else ", teeth without crowning")
+        + f"; the pinion offset S_1/S is {float(asked.pinion_offset):g}.",
+        "Bending stresses of spur gears, and of helical ones of low overlap ratio, are those of a "
+        f"load {load}"
+        f"{' (AGMA)' * (asked.standard == 'both')}.",
+    ]
+
+
+def _iso_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
+    """Assumptions of a rating by ISO 6336: materials, misalignment."""
+    chosen = dict.fromkeys(
+        f"{table.treatment or 'none given'} as {steel(table).name}"
+        for table, _ in every_gear(scene)
+        if table.iso_material is None
+    )
+    helix = asked.iso6336.helix_modification
+    modified = "without helix modification" if helix == "none" else f"helix modification: {helix}"
+    overloaded = bool(scene.load) and asked.overload_factor != 1
+    words = [f"Materials of ISO 6336-5 by treatment: {', '.join(chosen)}."] if chosen else []
+    return [
+        *words,
+        "K_Hβ by method C of ISO 6336-1, for a pinion midway between its bearings on a solid "
+        f"shaft; {modified}. Bending by method B: the load acts at the outer point of single pair "
+        "contact.",
+        *[f"K_A = {float(asked.overload_factor):g} multiplies every level of load."][:overloaded],
+    ]
+
+
+def _unstated(asked: RatingTable, by_agma: bool, by_iso: bool) -> list[str]:
+    """Return defaults that a rating takes where the file says nothing."""
+    given, iso = asked.model_fields_set, asked.iso6336.model_fields_set
+    usual = Practice()
+    rows = (
+        (True, "overload_factor" in given, "overload factor 1"),
+        (by_agma, "reliability" in given, "reliability 99 %"),
+        (by_agma, "mounting" in given, f"mounting {asked.mounting}"),
+        (by_iso, "oil_grade" in iso, f"oil of {usual.viscosity:g} mm²/s at 40 °C"),
+    )
+    return [f"{words} (default)" for enters, stated, words in rows if enters and not stated]
+
+
+def unused_materials(scene: Scene) -> list[str]:
+    """Return a note on the materials of the file that no gear may have, if there are any."""
+    names = unused(scene.stage_tables, scene.gears, scene.material)
+    return [f"[[material]] in no list of a gear: {', '.join(names)}."] if names else []
+
+
+def every_gear(scene: Scene) -> Iterator[tuple[GearTable, Named | None]]:
+    """Every gear with each material that it may have, and that material."""
+    for stage in scene.stage_tables:
+        for member in MEMBERS:
+            yield from choices(getattr(stage, member), scene.gears, scene.material)
