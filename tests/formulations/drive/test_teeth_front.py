@@ -137,7 +137,7 @@ def test_fronts_of_random_drives_equal_brute_force(seed):
 
 
 RATED_SEEDS = [(1, seed) for seed in range(20)] + [
-    (2, seed) for seed in (40, 43, 44, 46, 47, 49, 63, 50)
+    (2, seed) for seed in (43, 44, 46, 40)
 ]  # stages and seed; of two stages those of few candidates
 
 
