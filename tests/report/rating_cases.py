@@ -155,6 +155,21 @@ def rated(text, edits=None):
     return gearopt.rate(_tables(text, edits or {}))
 
 
+SHOWN = {}  # of a result: it is kept beside, so that its id stays its own
+
+
+def once(show):
+    """What is shown of a result, made once; the cases below are made once, too."""
+
+    def shown(result, *how):
+        key = show, id(result), how
+        if key not in SHOWN:
+            SHOWN[key] = result, show(result, *how)
+        return SHOWN[key][1]
+
+    return shown
+
+
 @functools.cache
 def shigley():
     return rated(SHIGLEY)

@@ -5,13 +5,12 @@ import re
 import pytest
 import rating_cases as cases
 from read_numbers import repeated
-from test_rating_page import rows, text, told
+from test_rating_page import page, rows, sections, text, told
 
 import gearopt
 from gearopt.report.answer import decided, opening
 from gearopt.report.kinds.drive.rating_words import greek
 from gearopt.report.measures import INCH, METRIC
-from gearopt.report.pages.result import page, sections
 from gearopt.report.words import limit_words
 
 PRINTED = {  # ISO/TR 6336-30, example 1: pinion and wheel

@@ -16,7 +16,7 @@ from rich.console import Console
 import gearopt
 from gearopt.report.answer import opening
 from gearopt.report.measures import INCH, METRIC
-from gearopt.report.pages.result import page, sections, tables
+from gearopt.report.pages import result as pages
 from gearopt.report.terminal import show
 
 BOOK = {  # Shigley, example 14-4: pinion and wheel, as printed
@@ -41,8 +41,10 @@ AGAIN = {  # a title names its standard, 1 % of cycles has their digits, C_p of 
     "pair_by_both": {"6336": "in 2 tables", "18981": "in 2 tables"},
 }
 RATED = (cases.shigley, cases.unsafe, cases.train)
+page, sections, tables = map(cases.once, (pages.page, pages.sections, pages.tables))
 
 
+@cases.once
 def told(result, measures=METRIC, width=80):
     out = io.StringIO()
     show(result, Console(file=out, width=width), measures)

@@ -136,6 +136,7 @@ def test_a_cutter_never_shrinks_and_fits_a_sheet_by_default(result, found):
     assert {"0.000", "0.500", "-0.500"} <= set(numbers_at)
 
 
+@pytest.mark.slow
 def test_the_grid_of_a_high_or_wide_cutter_has_few_lines(found):
     """Edges 1 m high, or 10 km wide, on a grid of 0.05 mm: at most 62 lines either way."""
     for high, wide in ((1e3, 1.0), (1.0, 1e7)):

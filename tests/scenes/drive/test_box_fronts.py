@@ -25,7 +25,10 @@ def test_the_end_of_a_front_is_the_box_that_the_file_asks_for(solved):
     ("changes", "names", "words"),
     [
         ({}, "gear_volume,height", "are no front together"),
-        ({}, "height,box_volume", "box_volume cannot be limited, only width, height, length"),
+        pytest.param(
+            *({}, "height,box_volume", "box_volume cannot be limited, only width, height, length"),
+            marks=pytest.mark.slow,
+        ),
         ({"layout.together": True}, "width,height", "write together = false"),
     ],
 )

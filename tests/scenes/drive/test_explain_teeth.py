@@ -122,6 +122,7 @@ def test_sensitivities_and_steps_are_those_of_files_solved_again():
     assert least.price == pytest.approx(again(pinion_teeth=[14, 40]), abs=1e-12) and least.price < 0
 
 
+@pytest.mark.slow
 def test_an_impossible_pair_is_told_its_conflict_and_remedies_that_work():
     """A module of 1 mm: too little for the load with at most 40 teeth."""
     own = kind(modules=(Fraction(1),))

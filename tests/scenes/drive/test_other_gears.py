@@ -68,6 +68,7 @@ def test_gears_chosen_first_that_do_not_fit_exclude_no_others(sized):
     assert "impossible with these gears, proven" in repr(found)
 
 
+@pytest.mark.slow
 def test_the_headline_of_a_box_of_gears_sized_first_says_least_for_these():
     """With other gears 315 mm suffice, which a slow test below finds."""
     asked = '[layout]\nshaft_stress = "25 MPa"\nminimise = "height"\n'

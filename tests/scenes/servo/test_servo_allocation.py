@@ -27,7 +27,7 @@ import gearopt
             ("rss", 1, 6.872001013),
             ("rss", 2, 5.292125686),
         ],
-        2,
+        1,
     ),
 )
 def test_costs_known_independently(rule, exponent, cost):

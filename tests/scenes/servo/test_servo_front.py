@@ -94,6 +94,7 @@ def test_cost_against_error_of_tolerances_is_the_hyperbola_of_the_closed_form():
     assert sum(row["new_cost"] for row in rows) == pytest.approx(cost[0], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_an_error_that_the_least_tolerances_exceed_has_no_front():
     changes = {"accuracy.error": "0.01 deg"}
     file = PROBLEMS / "servo_gimbal_trade_off.toml"
