@@ -294,6 +294,7 @@ def test_real_valued_gears_and_box_at_once():
     assert max(result.limits.values()) <= 1.0 + 1e-7
 
 
+@pytest.mark.slow
 def test_together_is_for_exact_and_ipopt():
     text = (PROBLEMS / "three_stage_together.toml").read_text(encoding="utf-8")
     with pytest.raises(SolveError, match="together"):
