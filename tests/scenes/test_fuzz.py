@@ -116,14 +116,14 @@ def test_the_bases_load_and_survive_our_own_writer(base):
 
 
 EVERY = [(kind, seed) for kind in KINDS for seed in range(2 if kind in SLOW else 3)]
-SOME = list(BASES)[::3]  # for the default tests, of seed 0
+SOME = list(BASES)[::3]  # for the default tests, of seed 0; case 2 is seed 0 of all bases
 
 
 @pytest.mark.parametrize(
     ("kind", "seed"), few(EVERY, [(kind, 0) for kind in KINDS if kind not in SLOW])
 )
 def test_every_mutation_of_every_base(kind, seed):
-    found = {judge(kind, base, seed) for base in (BASES if seed else SOME)}
+    found = {judge(kind, base, seed % 2) for base in (BASES if seed else SOME)}
     assert (found == {"loaded"}) == (kind in VALID)
 
 
