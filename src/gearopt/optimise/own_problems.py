@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.own_methods import back_ends
 from gearopt.optimise.problem import Problem, one_objective
-from gearopt.optimise.result import Budget, Result, Watch
+from gearopt.optimise.result import Budget, Event, Result, Watch
 from gearopt.optimise.solve import default_method, solve
 from gearopt.optimise.tape import log_convex_in_logarithms
 from gearopt.optimise.terms import Array
@@ -20,7 +21,11 @@ MAXIMUM = (
     "write every np.maximum(a, b) as a further variable t with log=True and "
     "defines={'over': (a / t, b / t)}"
 )
-SAMPLER = "annealing"  # taken where variables are discrete and no method is named
+SAMPLER = "annealing"  # taken where variables are discrete and nothing is proven
+PROVER = "spatial"
+PROVEN = ("optimal", "infeasible")
+FIRST = 0.8  # of a budget is the prover's, where the sampler follows
+BOXES = 5000  # of the prover, where the budget names no end
 
 
 def solve_own(
@@ -34,25 +39,90 @@ def solve_own(
 ) -> Result:
     """Solve like `optimise.solve.solve`, from a start, by a method that takes the problem.
 
-    The message says where that method proves nothing, and what would make the problem provable.
+    Without a method named: by ipopt or by spatial branch and bound, else by a sampler. The message
+    says where nothing is proven, and what would make the problem provable.
     ValueError for a start that is no point of the box, SolveError where the method takes none.
     """
     one_objective(problem.name, problem.rows.objectives)
     name = method or default_method(problem)
-    discrete = [n for v, n in problem.columns if v.discrete]
-    sampled = method is None and name == "ipopt" and bool(discrete)
-    name = SAMPLER if sampled else name
     posed = problem if start is None else _started(problem, name, start)
-    result = solve(posed, name, budget, seed, watch, gap)
-    words = _of_sampler(discrete[0]) if sampled else _provable(problem, result)
-    return replace(result, message=". ".join(filter(None, [result.message.rstrip("."), words])))
+    if method is None and name == "ipopt" and isinstance(posed, Problem):
+        return _by_default(posed, budget, seed, watch, gap)
+    return _saying(solve(posed, name, budget, seed, watch, gap), problem)
 
 
-def _of_sampler(name: str) -> str:
-    return (
-        f"{SAMPLER} was taken, because {name} is discrete, and proves nothing; for a proof pose a "
-        "Conic, or bring an exact method of your own in Problem(methods=...)"
+def _saying(result: Result, problem: Problem | Conic, *words: str) -> Result:
+    """A result whose message holds further words, and what would make its problem provable."""
+    every = filter(None, [result.message.rstrip("."), *words, _provable(problem, result)])
+    return replace(result, message=". ".join(every))
+
+
+def _by_default(
+    problem: Problem, budget: Budget, seed: int, watch: Watch | None, gap: float
+) -> Result:
+    """Answer of the prover where it closes the gap, beside that of a local method or a sampler.
+
+    ipopt comes first, as its proofs are free, the sampler last. Where the text has no relaxation,
+    or the watcher stopped the first of the two, there is one answer.
+    """
+    refusals = list[Event]()
+
+    def follow(event: Event) -> bool:
+        goes_on = watch is None or watch(event) is not False
+        if not goes_on:
+            refusals.append(event)
+        return goes_on
+
+    discrete = [name for v, name in problem.columns if v.discrete]
+    order = [PROVER, SAMPLER] if discrete else ["ipopt", PROVER]
+    results, words, left = list[Result](), list[str](), budget
+    for name in order:
+        share = left if name == order[-1] else _share(left, discrete)
+        if name == PROVER and share.seconds is None and share.evaluations is None:
+            share = replace(share, evaluations=BOXES)
+        try:
+            results.append(solve(problem, name, share, seed, follow, gap))
+        except SolveError as refused:
+            if name != PROVER:
+                raise
+            words.append(str(refused))
+            continue
+        left = budget.less(sum(r.seconds for r in results), sum(r.evaluations for r in results))
+        if results[-1].status in PROVEN or refusals or 0 in (left.seconds, left.evaluations):
+            break
+    result = results[0] if len(results) == 1 else _joined(results[0], results[1], gap)
+    if result.method == SAMPLER and result.bound is None:
+        words.append(f"{SAMPLER} was taken, because {discrete[0]} is discrete, and proves nothing")
+    if result.status == "limit" and budget.seconds is None and budget.evaluations is None:
+        result = replace(result, status="limit" if refusals else "feasible")
+    return _saying(result, problem, *words)
+
+
+def _share(budget: Budget, discrete: list[str]) -> Budget:
+    """Part of a budget for the first of two methods: of ipopt all, most of the prover."""
+    seconds, evaluations = budget.seconds, budget.evaluations
+    if not discrete:
+        return budget
+    return replace(
+        budget,
+        seconds=None if seconds is None else FIRST * seconds,
+        evaluations=None if evaluations is None else int(FIRST * evaluations),
     )
+
+
+def _joined(first: Result, second: Result, gap: float) -> Result:
+    """The better of two answers, with the bound of the one that has one, and the effort of both."""
+    prover, other = (first, second) if first.method == PROVER else (second, first)
+    if prover.status in PROVEN or other.value is None:
+        best = prover
+    elif prover.bound is not None and other.value < prover.bound:  # it gains from an excess
+        best = prover
+    elif prover.value is not None and prover.value < other.value:
+        best = prover
+    else:
+        best = reconcile(other, prover, gap)
+    evaluations = first.evaluations + second.evaluations
+    return replace(best, seconds=first.seconds + second.seconds, evaluations=evaluations)
 
 
 def _provable(problem: Problem | Conic, result: Result) -> str:

@@ -14,7 +14,6 @@ from gearopt.optimise.spatial.columns import ROOM, Columns, columns
 from gearopt.optimise.spatial.incumbent import Incumbent
 from gearopt.optimise.spatial.step import Stepper
 from gearopt.optimise.spatial.tree import Tree, searched
-from gearopt.optimise.terms import Array
 
 STARTS = 3  # random points from which Ipopt begins beside the guess
 
@@ -24,14 +23,8 @@ COUNTS = "box"
 SETTINGS = {"gap": GAP, "random starts": STARTS, "linear solver": "HiGHS"}
 
 
-def run(
-    problem: Problem,
-    budget: Budget,
-    seed: int,
-    watch: Watch | None,
-    start: Array | None = None,
-) -> Outcome:
-    """Search from the guess, or from a known point `start`, until the gap is closed.
+def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
+    """Search from the guess and random points until the gap is closed.
 
     SolveError where an operation of the text has no relaxation here.
     """
@@ -41,7 +34,7 @@ def run(
     incumbent = Incumbent(problem, clock, max(budget.gap, GAP))
     rng = np.random.default_rng(seed)
     low, high, guess = problem.bounds()
-    incumbent.seek(guess if start is None else start)
+    incumbent.seek(guess)
     wide = np.isfinite(high - low)
     for _ in range(STARTS):
         point = np.where(wide, low + rng.random(len(low)) * np.where(wide, high - low, 0.0), guess)

@@ -14,6 +14,7 @@ from gearopt.optimise.scale import unit, violation, zero_scale
 from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 
+ITERATIONS = 200  # of Ipopt from one point
 SPARE = 0.9  # of the gap that is asked for; the rest is for rounding
 
 
@@ -65,7 +66,8 @@ class Incumbent:
         if discrete.all():
             return
         try:
-            found = ipopt.run(problem.holding(x), Budget(self.clock.left.seconds), 0, None, start=x)
+            effort = Budget(self.clock.left.seconds, ITERATIONS)
+            found = ipopt.run(problem.holding(x), effort, 0, None, start=x)
         except SolveError:  # no derivatives at this text
             return
         if found.x is not None:
