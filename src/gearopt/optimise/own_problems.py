@@ -25,7 +25,7 @@ SAMPLER = "annealing"  # taken where variables are discrete and nothing is prove
 PROVER = "spatial"
 PROVEN = ("optimal", "infeasible")
 FIRST = 0.8  # of a budget is the prover's, where the sampler follows
-BOXES = 5000  # of the prover, where the budget names no end
+BOXES = 3000  # of the prover, where the budget names no end
 
 
 def solve_own(
@@ -117,7 +117,7 @@ def _joined(first: Result, second: Result, gap: float) -> Result:
         best = prover
     elif prover.bound is not None and other.value < prover.bound:  # it gains from an excess
         best = prover
-    elif prover.value is not None and prover.value < other.value:
+    elif prover.value is not None and prover.value < other.value - gap * abs(other.value):
         best = prover
     else:
         best = reconcile(other, prover, gap)

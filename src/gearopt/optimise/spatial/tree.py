@@ -34,7 +34,7 @@ WORTH = 0.1  # share of a width that one of them must take
 LP_SHARE, KEPT_OFF = 0.75, 0.1  # where a box is split: towards the relaxation's point, off its ends
 NARROW = 1e-11  # relative width below which a variable is not split
 WHOLE_WITHIN = 1e-6  # of an allowed value a relaxation's point counts as there
-EARLY, OFTEN, SELDOM = 50, 3, 50  # nodes among which every third seeks a point, later every 50th
+OFTEN, SELDOM = 3, 400  # boxes between two points that are sought; doubled where one brings nothing
 
 
 @dataclass(frozen=True)
@@ -54,6 +54,7 @@ class Tree:
     """A search as it goes; it has state because records, incumbent and linear solver do.
 
     records: of all boxes, parents first. unsplit: least bound of leaves that no split can improve.
+    due: number of boxes from which on a point is sought, interval: how many were awaited.
     """
 
     problem: Problem
@@ -62,6 +63,8 @@ class Tree:
     incumbent: Incumbent
     records: list[Record] = field(default_factory=list)
     unsplit: float = math.inf
+    due: int = 0
+    interval: int = OFTEN
 
     def __post_init__(self) -> None:
         self.stepper = Stepper(self.columns)
@@ -192,12 +195,15 @@ class Tree:
                 yield max(least, bound), child
 
     def seek(self, x: Array | None, lower: Array, upper: Array) -> None:
-        """Look for a better point from the relaxation's, at the root and now and then."""
-        nodes = len(self.records)
-        if nodes % (OFTEN if nodes < EARLY else SELDOM) == 0 and not self.clock.over:
-            count = self.columns.variables
-            low, high = lower[:count], upper[:count]
-            self.incumbent.seek(_middle(low, high) if x is None else np.clip(x[:count], low, high))
+        """Look for a better point from the relaxation's, the more seldom the less that brings."""
+        if len(self.records) < self.due or self.clock.over:
+            return
+        count, before = self.columns.variables, self.incumbent.value
+        low, high = lower[:count], upper[:count]
+        self.incumbent.seek(_middle(low, high) if x is None else np.clip(x[:count], low, high))
+        gained = self.incumbent.value < before
+        self.interval = OFTEN if gained else min(2 * self.interval, SELDOM)
+        self.due = len(self.records) + self.interval
 
     def split(
         self, x: Array | None, y: Array, lower: Array, upper: Array
