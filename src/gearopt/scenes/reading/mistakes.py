@@ -17,6 +17,7 @@ from gearopt.scenes.reading.not_yet import nearest
 from gearopt.scenes.reading.toml import cut, dotted, short, toml_text
 
 OTHER_NAME, OTHER_TABLE = "has another name here", "belongs in another table"
+LISTED = 20  # keys of a table at most that the message on an unknown one names
 
 
 def wrong_value(
@@ -174,7 +175,10 @@ def _unknown(
     if taken is not None:
         rule = f"{what} beside {taken}, which may be meant"
         return SceneError(file, shown, short(value), rule, "Remove it", Fix("remove", key))
-    rule = f"{what}; known here: {', '.join(_table_at(model, place[:-1]).model_fields)}"
+    known = list(_table_at(model, place[:-1]).model_fields)
+    rule = f"{what}; known here: {', '.join(known[:LISTED])}"
+    if len(known) > LISTED:
+        rule += f" and {len(known) - LISTED} more (`gearopt schema {kind} --table`)"
     own = " (tables of your own are named [x-...])" if len(place) == 1 else ""
     return SceneError(file, shown, "", rule, f"Remove it{own}", Fix("remove", key))
 
