@@ -15,7 +15,7 @@ from gearopt.optimise.terms import Param, Repeat, Terms, Var
 
 METHODS = ("ipopt", "annealing", "nsga2", "multistart", "qp", "gp", "scip")
 SHORT = {
-    "multistart": Budget(seconds=0.1),
+    "multistart": Budget(evaluations=200),
     "annealing": Budget(evaluations=96),
     "nsga2": Budget(evaluations=20),
 }
