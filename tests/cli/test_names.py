@@ -67,6 +67,7 @@ def test_words_begin_as_typed():
         "smooth",
         "screened",
         "scip",
+        "spatial",
     ]
     assert dict(names.method_words("exact"))["exact"] == "compound, drive, pair, servo"
     assert names.method_lists("exact,an") == ["exact,annealing"]

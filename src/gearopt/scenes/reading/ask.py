@@ -7,7 +7,8 @@ from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.solve import GAP
 
 LEAST_PRICES = 2.0  # s, for sensitivities that may take a share of the answer's seconds
-RANDOM = ("annealing", "multistart", "nsga2", "scip")  # back ends that another seed leads elsewhere
+# Back ends that another seed leads elsewhere.
+RANDOM = ("annealing", "multistart", "nsga2", "scip", "spatial")
 
 
 @dataclass(frozen=True)
