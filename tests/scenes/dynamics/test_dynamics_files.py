@@ -434,3 +434,10 @@ def test_keys_without_effect_are_told(axes, said):
     found.append(gearopt.solve(content))
     assert found[0].design["equilibrium"] == found[1].design["equilibrium"]
     assert said in found[0].report["assumptions"][-1]
+
+
+def test_a_motion_of_too_many_steps_is_refused_with_the_period_of_its_fastest_mode():
+    text = changed(('base_diameter = "160 mm"', 'base_diameter = "1.6e14 mm"'))
+    _, wide = read(text.encode(), "wide.toml")
+    with pytest.raises(SolveError, match="has a period of 3.26e-16 s: a motion of 0.02 s takes"):
+        gearopt.solve(wide)

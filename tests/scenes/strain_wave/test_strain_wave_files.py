@@ -11,6 +11,7 @@ from gearopt.errors import SceneError, SolveError
 from gearopt.formulations.strain_wave.demand import equal_pressure, loads_at, pressures
 from gearopt.formulations.strain_wave.design import Deflected, WaveDesign, used
 from gearopt.formulations.strain_wave.exchange import Exchanged, RangeEnd, design_of
+from gearopt.formulations.strain_wave.sizing import variables
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.typed import typed
 from gearopt.report.kinds.strain_wave.tables import loads
@@ -269,6 +270,12 @@ def test_problems_of_a_duty_alone():
     for call in (compared, objectives, lambda s: posed(s, "")):
         with pytest.raises(SolveError, match="the gearing is given"):
             call(scene(EXAMPLE))
+
+
+def test_a_gearing_of_any_size_is_posed():
+    own = scene(FROM_DUTY.replace("90 mm", "180000000 mm"))
+    (change,) = [v for v in variables(own.demand(), own.start()) if v.name == "change"]
+    assert change.lower < change.guess < change.upper == -change.lower > 1e3
 
 
 def test_methods_that_are_not_there_are_refused():

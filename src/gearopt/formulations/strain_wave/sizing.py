@@ -149,6 +149,7 @@ def variables(demand: Demand, start: Any) -> tuple[Var, ...]:
     change = float(gearing.radial_deflection - curve.second) / CHANGE_UNIT
     if demand.wave == "ellipse":
         change = float(curve.second - curve.radius + gearing.radial_deflection) / CHANGE_UNIT
+    reach = max(1e3, 2.0 * abs(change))
     first, last = tangents(gearing)
     angles = angle_at(gearing, curve, np.linspace(first, last, COUNT))
     angles = np.where(np.isfinite(angles), angles, 0.03)
@@ -156,7 +157,7 @@ def variables(demand: Demand, start: Any) -> tuple[Var, ...]:
     highest = np.nan_to_num(squares(demand, gearing, at)).max() ** 0.5
     return (
         *free,
-        Var("change", "0.01 mm", -1e3, 1e3, change, search=True),
+        Var("change", "0.01 mm", -reach, reach, change, search=True),
         Var("contact", "rad", *REACH, tuple(np.clip(angles, *REACH)), COUNT, search=True),
         Var("pressure", "MPa", *PRESSURES, float(np.clip(highest, *PRESSURES)), search=True),
     )

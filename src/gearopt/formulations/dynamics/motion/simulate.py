@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from gearopt.errors import SolveError
 from gearopt.formulations.dynamics.motion.integrate import STEPPERS, Marched, conservative, march
 from gearopt.formulations.dynamics.motion.timeline import Timeline, timeline
 from gearopt.optimise.clock import Clock
@@ -87,6 +88,7 @@ def simulate(
     if pair.backlash is None and piecewise_linear(pair, level):
         exact = exact_motion(pair, level, intervals, state, clock)
         return _simulated(times, exact, "exponential", EXACT, error, exact.rates, 0.0)
+    _check_steps(pair, level, intervals.end)
     tried = _begun(pair, level, intervals, state, clock)
     spent, ended = sum(t.spent for t in tried), list[_Try]()
     while tried:
@@ -172,12 +174,27 @@ def fastest(pair: MovingPair, level: str) -> float:
     return 2.0 * math.pi / max(float(top), harmonic)
 
 
+def _longest_step(pair: MovingPair, level: str, method: str) -> float:
+    """Step of the first run by a method [s]."""
+    steps = LONGEST_STEPS_PER_PERIOD if method == "rk8" else 4.0 * LONGEST_STEPS_PER_PERIOD
+    return fastest(pair, level) / steps
+
+
+def _check_steps(pair: MovingPair, level: str, end: float) -> None:
+    """SolveError where a motion of `end` [s] takes more rates than any run may."""
+    period = fastest(pair, level)
+    if not end * LONGEST_STEPS_PER_PERIOD <= MAX_RATE_EVALUATIONS * period:
+        raise SolveError(
+            f"the fastest mode of the pair has a period of {period:.3g} s: a motion of {end:.3g} s "
+            f"takes more than {MAX_RATE_EVALUATIONS:,} steps; simulate a shorter time, or check "
+            "masses, inertias and stiffnesses"
+        )
+
+
 def _first(
     pair: MovingPair, level: str, times: Timeline, method: str, state: Array, clock: Clock
 ) -> _Try:
-    longest = fastest(pair, level) / (
-        LONGEST_STEPS_PER_PERIOD if method == "rk8" else 4.0 * LONGEST_STEPS_PER_PERIOD
-    )
+    longest = _longest_step(pair, level, method)
     motion = march(pair, level, times, method, longest, state, clock)
     return _Try(method, longest, motion, math.inf, math.inf, motion.rates)
 

@@ -114,28 +114,28 @@ def _met(case: Case, train: Train, choices: list[Choice], box: Box) -> Box | boo
 def _choices(case: Case, movable: list[Move], most: float) -> list[Choice]:
     """Return the numbers that may be moved together, with their values of a factor below `most`."""
     numbers: dict[tuple[Any, ...], list[tuple[Any, float, Move | None]]] = {}
+    train = case.scene.train()
     for number in movable:
         if number.role == SIZE:
             reach = EDGE * number.far
             for factor in steps(case.scene, number):
                 if factor < most and factor <= reach:
-                    row = (
-                        _plain(case.scene, number.path, factor, number.way),
-                        factor,
-                        number,
-                    )
-                    numbers.setdefault(number.path, []).append(row)
+                    value = _plain(case.scene, train, number.path, factor, number.way)
+                    numbers.setdefault(number.path, []).append((value, factor, number))
     found = []
     for path, known in numbers.items():
-        rows = sorted([*known, (_plain(case.scene, path), 1.0, None)], key=lambda row: row[0])
+        given = _plain(case.scene, train, path), 1.0, None
+        rows = sorted([*known, given], key=lambda row: row[0])
         values, factors, moved = zip(*rows, strict=True)
         found.append(Choice(int(path[1]), str(path[2]), values, factors, moved))
     return found
 
 
-def _plain(scene: Scene, path: tuple[Any, ...], factor: float = 1.0, direction: int = 1) -> Any:
-    """Return a given number of a stage as the train has it, moved: teeth, or a module in mm."""
-    stage = scene.train().stages[path[1]]
+def _plain(
+    scene: Scene, train: Train, path: tuple[Any, ...], factor: float = 1.0, direction: int = 1
+) -> Any:
+    """Given number of a stage as the train has it, moved: teeth, or a module in mm."""
+    stage = train.stages[path[1]]
     if path[2] != "module":
         return round(getattr(stage, path[2])[0] * factor**direction)
     now = stage.modules[0]
