@@ -66,7 +66,7 @@ OPERATIONS = {
     "angles": lambda x, y: np.arccos(x / (abs(x) + abs(y) + 0.1)) + np.arcsin(np.tanh(y)),
     "kinks": lambda x, y: np.maximum(x * y, x - y) + abs(x - 1.0) - np.minimum(y**2, 2.0 * x),
     "floor": lambda x, y: np.floor(3.0 * x - y) * y + np.ceil(x * y),
-    "hyperbolic": lambda x, y: np.sinh(x - y) / np.cosh(x) + np.hypot(x, y) + x ** (0.5 * y),
+    "hyperbolic": lambda x, y: np.sinh(x - y) / np.cosh(x) + np.hypot(x, y) + abs(x) ** (0.5 * y),
 }
 
 

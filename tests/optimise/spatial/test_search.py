@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from global_cases import CASES, QUICK, case, posed
 
+from gearopt.errors import SolveError
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import method_of, run, solve
 from gearopt.optimise.solvers import spatial
@@ -45,6 +46,30 @@ def test_listed_values_are_kept_to():
     problem = replace(free, variables=(listed, free.variables[1]))
     result = solve(problem, "spatial")
     assert result.status == "optimal" and result.design["x1"] == 1.25
+
+
+@pytest.mark.parametrize(
+    ("box", "text", "guess", "best"),
+    [
+        # exp(-x^2) is 0 on floats beyond 27, and not an empty box
+        ((0.0, 60.0), lambda x: 2.0 + np.cos(x) - 0.01 * x + np.exp(-(x**2)), 1.0, 0.4030473954),
+        ((-1000, -800, "whole"), lambda x: 1.0 + (x + 990.0) ** 2 + np.exp(x), -900.0, 1.0),
+        ((0.0, 2.0), lambda x: -np.floor(1e20 * x), 1.0, -2e20),
+        ((0, 5, "whole"), lambda x: 1.0 + np.exp(-1.0 / x), 1.0, 1.0),
+    ],
+)
+def test_ends_of_the_floats_lose_no_point(box, text, guess, best):
+    result = solve(posed([box], lambda x: (text(x[0]), [], []), [guess]), "spatial")
+    assert result.status == "optimal" and result.value == pytest.approx(best, rel=1e-6)
+
+
+@pytest.mark.parametrize("text", [lambda x: x[0] ** x[1], lambda x: (-2.0) ** x[1]])
+def test_a_variable_power_of_what_may_be_negative_is_refused(text):
+    bounds = [(-3.0, 3.0), (1, 3, "whole")]
+    with pytest.raises(SolveError, match="may be negative"):
+        solve(posed(bounds, lambda x: (text(x), [], [])), "spatial")
+    limited = posed(bounds, lambda x: ((x[0] - 0.5) ** x[1], [1.0 - x[0]], []))
+    assert solve(limited, "spatial").value == pytest.approx(0.5**3)
 
 
 def test_a_value_of_zero_is_proven_in_the_unit_of_the_contract():
@@ -111,6 +136,11 @@ def test_forged_records_prove_less_or_nothing():
             values = kept.duals.values * rng.normal(1.0, 1.0, len(kept.duals.values))
             ray = sort == 3 or kept.ray
             forged[k] = replace(kept, duals=Sparse(kept.duals.rows, values), ray=ray)
+        assert certificate.proven(problem, forged) <= claim
+    squeeze = records[0].squeezes[0]
+    for j, sign in ((0, 1000.0), (-1, 1.0)):
+        duals = tuple((j, sign, y) for _, _, y in squeeze.duals)
+        forged = [replace(records[0], squeezes=(replace(squeeze, duals=duals),)), *records[1:]]
         assert certificate.proven(problem, forged) <= claim
     assert certificate.proven(problem, records[1:]) == -np.inf
     assert certificate.proven(problem, []) == -np.inf

@@ -9,7 +9,7 @@ Factors that are multiplied or added up here carry by how much they may be off.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
@@ -85,6 +85,7 @@ class Builder:
     exponents: list[float] = field(default_factory=list)
     sums: dict[int, Affine] = field(default_factory=dict)
     of: dict[int, int] = field(default_factory=dict)  # the relation that makes a column
+    bases: set[int] = field(default_factory=set)  # of powers whose exponent is no constant
 
     def new(self, whole: bool) -> int:
         """A further column."""
@@ -245,6 +246,8 @@ def divided(builder: Builder, a: Affine, b: Affine) -> Affine:
         if a.fixed:
             return Affine({}, a.constant / b.constant)
         inverse = 1.0 / b.constant
+        if math.isinf(inverse):
+            raise Refused("division by a constant whose inverse is infinite")
         exact = Fraction(inverse) * Fraction(b.constant) == 1
         return scaled(a, inverse, 0.0 if exact else ROUNDED * abs(inverse))
     if a.fixed:
@@ -300,11 +303,12 @@ def _reader(builder: Builder) -> Callable[[int, list[Affine]], Affine]:
     def power(a: Affine, b: Affine) -> Affine:
         if b.fixed:
             return powered(builder, a, b.constant)
-        logarithm = (
-            Affine({}, math.log(a.constant), 8.0 * ROUNDED * abs(math.log(a.constant)))
-            if a.fixed and a.constant > 0.0
-            else of_column(builder, LOG, a)
-        )
+        if a.fixed and a.constant > 0.0:
+            log = math.log(a.constant)
+            logarithm = Affine({}, log, 8.0 * ROUNDED * abs(log))
+        else:
+            builder.bases.add(builder.column(a))
+            logarithm = of_column(builder, LOG, a)
         return of_column(builder, EXP, multiplied(builder, b, logarithm))
 
     known: dict[int, Callable[..., Affine]] = {
@@ -405,6 +409,7 @@ def columns(problem: Problem) -> Columns:
     for j in equal:
         lower[j] = max(lower[j], 1.0)
     first = _assembled(problem, builder, count, lower, upper, aim)
+    _check_bases(problem.name, builder, first)
     low, high = first.lower.copy(), first.upper.copy()
     if not first.propagated(low, high, ROOT_SWEEPS):
         return first
@@ -413,6 +418,21 @@ def columns(problem: Problem) -> Columns:
     lower = np.concatenate([lower, np.full(more, -np.inf)])
     upper = np.concatenate([upper, np.full(more, np.inf)])
     return _assembled(problem, builder, count, lower, upper, aim)
+
+
+def _check_bases(name: str, builder: Builder, form: Columns) -> None:
+    """Raise SolveError for u^v with u that may be negative: at whole v exp(v log u) is another."""
+    if not builder.bases:
+        return
+    relations = form.relations.copy()  # without the logarithms of bases, which cut them off at 0
+    relations[(relations[:, 0] == LOG) & np.isin(relations[:, 2], list(builder.bases)), 0] = LINEAR
+    low, high = form.lower.copy(), form.upper.copy()
+    inside = replace(form, relations=relations).propagated(low, high, ROOT_SWEEPS)
+    if inside and any(low[j] < 0.0 for j in builder.bases):
+        raise SolveError(
+            f"{name}: no relaxation of its text is known: a variable power of what may be "
+            "negative; write np.exp(v * np.log(u)) for u**v where u is positive"
+        )
 
 
 def _logarithms(builder: Builder, low: Array) -> None:

@@ -8,6 +8,8 @@ by u and v in the order of the text, and u and v by w in reverse order.
 
 import math
 
+import numpy as np
+
 from gearopt.optimise.jit_kernel import entry, inlined, inner
 
 LINEAR, PRODUCT, QUOTIENT, POWER, ROOT, EXP, LOG, SINE, COSINE, TANH, ATAN, ASIN = range(12)
@@ -40,9 +42,15 @@ def up(x, units):
 
 
 @inlined
+def lifted(y, x):
+    """A value that underflowed to 0 at x, which is not 0, off it: 0 is exact, this is not."""
+    return y if y != 0.0 or x == 0.0 else math.copysign(LEAST, y)
+
+
+@inlined
 def times(a, b):
     """Product of two ends, 0 times infinity being 0."""
-    return 0.0 if a == 0.0 or b == 0.0 else a * b
+    return 0.0 if a == 0.0 or b == 0.0 else lifted(a * b, a)
 
 
 @inlined
@@ -96,7 +104,7 @@ def value(kind, p, x):
     elif kind == ABS:
         y = abs(x)
     elif kind == FLOOR:
-        y = math.floor(x)
+        y = np.floor(x)  # a double: numba's math.floor is a 64 bit integer
     return y
 
 
@@ -120,7 +128,7 @@ def wave(kind, low, high):
 def power(n, low, high):
     """Range of a whole power n, not 0, of [low, high]."""
     even = n % 2.0 == 0.0
-    a, b = low**n, high**n
+    a, b = lifted(low**n, low), lifted(high**n, high)
     if n > 0.0:
         if not even or low >= 0.0:
             return down(a, LIBRARY), up(b, LIBRARY)
@@ -150,6 +158,8 @@ def image(kind, p, low, high):
         return a, b
     if kind == ABS:
         return (0.0 if low < 0.0 < high else min(a, b)), max(a, b)
+    if kind == ROOT or kind == EXP:
+        a, b = lifted(a, low), lifted(b, high)
     if kind == ROOT and p < 0.0:
         a, b = b, a
     a, b = down(a, LIBRARY), up(b, LIBRARY)
@@ -254,7 +264,7 @@ def narrow(sets, lo, hi, j, low, high):
     sort, first, last, values = sets
     if low > lo[j]:
         if sort[j] == WHOLE:
-            low = math.ceil(low - WHOLE_SLACK)
+            low = np.ceil(low - WHOLE_SLACK)
         elif sort[j] == LISTED:
             k = first[j]
             while k < last[j] and values[k] < low - WHOLE_SLACK * abs(low):
@@ -263,7 +273,7 @@ def narrow(sets, lo, hi, j, low, high):
         lo[j] = max(lo[j], low)
     if high < hi[j]:
         if sort[j] == WHOLE:
-            high = math.floor(high + WHOLE_SLACK)
+            high = np.floor(high + WHOLE_SLACK)
         elif sort[j] == LISTED:
             k = last[j] - 1
             while k >= first[j] and values[k] > high + WHOLE_SLACK * abs(high):

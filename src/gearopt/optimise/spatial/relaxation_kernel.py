@@ -59,7 +59,7 @@ def slope(kind, p, x):
     if kind == ATAN:
         return 1.0 / (1.0 + x * x)
     if kind == ASIN:
-        return 1.0 / math.sqrt(1.0 - x * x)
+        return 1.0 / math.sqrt((1.0 - x) * (1.0 + x))
     return -1.0 if x < 0.0 else 1.0  # ABS
 
 
@@ -383,7 +383,7 @@ def scale(rows, lo, hi, shift, unit, factor, out):
         width = high - low
         shift[j] = low if low > -math.inf else high if high < math.inf else 0.0
         size = width if 0.0 < width < math.inf else max(1.0, abs(shift[j]))
-        unit[j] = 2.0 ** math.ceil(math.log2(max(size, 1e-300)))
+        unit[j] = 2.0 ** math.ceil(math.log2(min(max(size, 1e-300), 1e300)))
         lower[j], upper[j] = (low - shift[j]) / unit[j], (high - shift[j]) / unit[j]
     k = 0
     for i in range(len(count)):
@@ -393,7 +393,7 @@ def scale(rows, lo, hi, shift, unit, factor, out):
             j = index[e]
             move += entry_of[e] * shift[j]
             largest = max(largest, abs(entry_of[e]) * unit[j])
-        factor[i] = 2.0 ** -math.ceil(math.log2(largest)) if largest > 0.0 else 1.0
+        factor[i] = 2.0 ** -math.ceil(math.log2(largest)) if 0.0 < largest < math.inf else 1.0
         for e in range(start[i], start[i] + count[i]):
             number[k] = entry_of[e] * unit[index[e]] * factor[i]
             column[k] = index[e]

@@ -192,6 +192,8 @@ def squeezed(
     stepper.fill(lower, upper, at)
     ends = []
     for j, sign, y in bounds():
+        if abs(sign) != 1.0 or not 0 <= j < len(lower):  # forged
+            continue
         end = stepper.safe(y, j, sign, lower, upper)
         if end > -math.inf:
             ends.append((j, sign, end))

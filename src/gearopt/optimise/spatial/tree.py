@@ -105,8 +105,7 @@ class Tree:
             )
             yield Squeezed(Squeeze(cutoff, at, tuple(duals)), not inside)
             width = upper - lower
-            with np.errstate(invalid="ignore"):
-                gained = (width < (1.0 - WORTH) * before)[: self.columns.variables].any()
+            gained = (width < (1.0 - WORTH) * before)[: self.columns.variables].any()
             if not (inside and gained) or self.clock.over:
                 return
 
@@ -247,8 +246,7 @@ class Tree:
         """Which continuous variables can be split."""
         size = np.maximum(np.abs(low), np.abs(high))
         continuous = self.columns.sets[0][: len(low)] == CONTINUOUS
-        with np.errstate(invalid="ignore"):
-            return continuous & (high - low > NARROW * np.where(size < np.inf, size, 1.0))
+        return continuous & (high - low > NARROW * np.where(size < np.inf, size, 1.0))
 
     def off(self, point: Array) -> Array:
         """Distance of every variable from its nearest allowed value, in steps of these."""
@@ -308,4 +306,5 @@ def searched(tree: Tree, watched: Callable[[float], bool]) -> Open[Node]:
     def goes_on(bound: float, node: Node) -> bool:
         return bound < tree.cutoff and watched(min(bound, tree.unsplit))
 
-    return best_first(tree.root(), goes_on, tree.branch)
+    with np.errstate(invalid="ignore"):  # widths of what is infinite at both ends
+        return best_first(tree.root(), goes_on, tree.branch)
