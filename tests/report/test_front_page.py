@@ -16,6 +16,7 @@ import front_cases as cases
 import pytest
 from page_reader import ATTACK, Reader, marks, ours
 from page_reader import drawings as drawn
+from plotly.offline import get_plotlyjs
 
 from gearopt import Front
 from gearopt.report.measures import INCH
@@ -250,7 +251,8 @@ setTimeout(() => {
 @pytest.mark.skipif(not shutil.which("chromium"), reason="needs a browser")
 def test_a_browser_clicks_sorts_and_filters(two, tmp_path):
     path = tmp_path / "page.html"
-    path.write_text(two.replace("</body>", f"{HOOK}</body>"), encoding="utf-8")
+    text = two.replace("/* plotly.js */", get_plotlyjs()).replace("</body>", f"{HOOK}</body>")
+    path.write_text(text, encoding="utf-8")
     words = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"]
     words += [f"--user-data-dir={tmp_path / 'user'}", "--virtual-time-budget=10000", path.as_uri()]
     dom = subprocess.run(words, capture_output=True, text=True, timeout=120, check=True).stdout

@@ -107,7 +107,7 @@ def test_csv_holds_the_numbers_in_full(elevator):
     used = {row[0]: row[1:] for row in rows(found["limits.csv"])}
     assert float(used["K-factor"][1]) == 100.0 * elevator.limits["k_factor[2]"]
     trains = rows(found["best-trains.csv"])
-    assert trains[0][1] == "gear volume cm³"
+    assert trains[0][1] == "gear volume [cm³]"
     assert [float(row[1]) for row in trains[1:]] == pytest.approx(
         [t["objective"] / 1e3 for t in elevator.report["trains"]], rel=1e-15
     )
