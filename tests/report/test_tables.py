@@ -5,7 +5,7 @@ import csv
 import io
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import layout_cases as cases
@@ -95,6 +95,20 @@ def test_both_systems_know_the_same_units():
 def test_keys_are_read_with_their_units(key, metric, inch):
     assert (heading(key), heading(key, INCH)) == (metric, inch)
     assert parted("gear_volume_mm3") == ("gear_volume", "mm3")
+
+
+def test_trains_of_other_numbers_of_stages_stand_in_one_list(solved):
+    best = solved("elevator")
+    stage = best.design["stages"][0]
+    listed = [
+        {"objective": 1.0 + n, "ratio": 20.0, "stages": [{**stage, "centre_distance_mm": 90.0}] * n}
+        for n in (2, 3, 1)
+    ]
+    several = replace(best, report=best.report | {"trains": listed})
+    heads, *trains = rows(tables(several)["best-trains.csv"])
+    assert heads[-4].startswith("m_n 3") and [len(train) for train in trains] == [len(heads)] * 3
+    assert trains[0][-4:] == [""] * 4 and trains[2][-8:] == [""] * 8 and trains[1][-1] == "90.0"
+    assert "best trains" in several.to_html()
 
 
 @pytest.mark.slow

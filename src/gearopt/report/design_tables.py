@@ -120,7 +120,7 @@ def trains(result: Result, measures: Measures) -> Section | None:
     if best is None:
         return None
     ranked, (name, unit) = best.report["trains"], objective(best)
-    minimum, stages = ranked[0]["objective"], len(ranked[0]["stages"])
+    minimum, stages = ranked[0]["objective"], max(len(train["stages"]) for train in ranked)
     length = measures.unit("mm")
     goal, centres = (
         f"{name}\n[{measures.unit(unit)}]" if unit else name,
@@ -132,6 +132,8 @@ def trains(result: Result, measures: Measures) -> Section | None:
     ]
     single = [f"{h} [{length}]" if h[0] == "a" else h for h in single]
     rows = [_train_row(k, train, minimum, unit, measures) for k, train in enumerate(ranked, 1)]
+    widest = max(len(row) for row in rows)
+    rows = [row + [""] * (widest - len(row)) for row in rows]  # of trains of fewer stages
     first, last = names
     heads = ("", first, "above the best, %", "ratio", teeth_head(measures), last, *single)
     table = Table(
