@@ -285,6 +285,19 @@ def of_two(builder: Builder, kind: int, a: Affine, b: Affine) -> Affine:
     return Affine({u: (1.0, 0.0)}) if u == v else builder.operation(kind, u, v)
 
 
+def raised(builder: Builder, a: Affine, b: Affine) -> Affine:
+    """Reading of a**b; with a variable b of exp(b log a), for which a may not be negative."""
+    if b.fixed:
+        return powered(builder, a, b.constant)
+    if a.fixed and a.constant > 0.0:
+        log = math.log(a.constant)
+        logarithm = Affine({}, log, 8.0 * ROUNDED * abs(log))
+    else:
+        builder.bases.add(builder.column(a))
+        logarithm = of_column(builder, LOG, a)
+    return of_column(builder, EXP, multiplied(builder, b, logarithm))
+
+
 def _reader(builder: Builder) -> Callable[[int, list[Affine]], Affine]:
     import casadi as ca
 
@@ -300,17 +313,6 @@ def _reader(builder: Builder) -> Callable[[int, list[Affine]], Affine]:
     def exponential(a: Affine, sign: float) -> Affine:
         return of_column(builder, EXP, scaled(a, sign))
 
-    def power(a: Affine, b: Affine) -> Affine:
-        if b.fixed:
-            return powered(builder, a, b.constant)
-        if a.fixed and a.constant > 0.0:
-            log = math.log(a.constant)
-            logarithm = Affine({}, log, 8.0 * ROUNDED * abs(log))
-        else:
-            builder.bases.add(builder.column(a))
-            logarithm = of_column(builder, LOG, a)
-        return of_column(builder, EXP, multiplied(builder, b, logarithm))
-
     known: dict[int, Callable[..., Affine]] = {
         ca.OP_ASSIGN: lambda a: a,
         ca.OP_ADD: added,
@@ -322,8 +324,8 @@ def _reader(builder: Builder) -> Callable[[int, list[Affine]], Affine]:
         ca.OP_INV: lambda a: divided(builder, one, a),
         ca.OP_SQ: lambda a: powered(builder, a, 2.0),
         ca.OP_SQRT: lambda a: powered(builder, a, 0.5),
-        ca.OP_POW: power,
-        ca.OP_CONSTPOW: power,
+        ca.OP_POW: lambda a, b: raised(builder, a, b),
+        ca.OP_CONSTPOW: lambda a, b: raised(builder, a, b),
         ca.OP_TAN: lambda a: divided(
             builder, of_column(builder, SINE, a), of_column(builder, COSINE, a)
         ),
