@@ -1,8 +1,11 @@
 """The entry point: `gearopt` and `python -m gearopt`."""
 
+import gc
 import io
 import os
 import sys
+
+LOADED = 50_000  # objects between two collections: what is loaded is kept, looking at it takes time
 
 
 def main() -> None:
@@ -17,6 +20,7 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # an ASCII terminal has no cubic millimetre
+    gc.set_threshold(LOADED)
     try:
         from gearopt.cli import run
 

@@ -28,6 +28,8 @@ def test_what_takes_too_long_is_listed_the_worst_first(monkeypatch, tmp_path):
     monkeypatch.setattr(budget, "COMMANDS", {"kept": calls["kept"]})
     (worst,) = budget.run(1)  # none over it: the nearest
     assert worst["over_s"] == pytest.approx(-0.05) and "budget" in names()
+    monkeypatch.setattr(budget, "COMMANDS", {"torn": lambda f, s: {}["key"]})
+    assert [row["fault"] for row in budget.run(1)] == 2 * ["KeyError('key')"]
 
 
 @pytest.mark.slow

@@ -200,6 +200,18 @@ def test_designs_of_different_numbers_of_stages_stand_in_one_table():
     assert 'hidden><th scope="row">K-factor of stage 2' in page(alone)
 
 
+def test_designs_that_differ_by_their_materials_alone_have_a_page():
+    """Words differ, too: they are listed, but have no axis."""
+    front = cases.drive(count=2)
+    designs = [copy.deepcopy(front.points[0].design) for _ in range(2)]
+    for design, name in zip(designs, ("case-hardened", "tempered"), strict=True):
+        design["stages"][0]["pinion_material"] = name
+    points = [replace(p, design=d) for p, d in zip(front.points, designs, strict=True)]
+    told = plots(page(replace(front, points=tuple(points))))[1]
+    row = told["rows"].index("stage 1: pinion material")
+    assert [texts[row] for texts in told["points"]] == ["case-hardened", "tempered"]
+
+
 def test_neighbours_cost_what_they_cost():
     words = repr(cases.drive())
     assert "design 1: gear volume -2 %, mesh loss +100 %" in words  # 2 against 1

@@ -6,6 +6,7 @@ Files: `problems/*.toml` of the folder in which it is run. Machine code is compi
 command has been run once, before it is timed.
 """
 
+import math
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -70,7 +71,8 @@ COMMANDS: dict[str, Call] = {
 def run(repeat: int) -> list[dict[str, Any]]:
     """Return a row for each file and command that breaks the promise, the worst first.
 
-    Times are the least of so many runs. Without any such row, one with the worst of all.
+    Times are the least of so many runs. Without any such row, one with the worst of all. A command
+    that fails by a fault of its own is a row, too, with the fault, before all others.
     """
     files = sorted(FOLDER.glob("*.toml"))
     if not files:
@@ -94,9 +96,14 @@ def measured(file: Path, command: str, asked: float, repeat: int) -> dict[str, A
             known = COMMANDS[command](file, asked)
         except GearoptError:
             return None
+        except Exception as fault:
+            return _row(file, command, asked, math.inf) | {"fault": repr(fault)}
         both = time.perf_counter() - wall, time.process_time() - processor
         used.append(known if isinstance(known, float) else min(both))
-    seconds = min(used[1:])
+    return _row(file, command, asked, min(used[1:]))
+
+
+def _row(file: Path, command: str, asked: float, seconds: float) -> dict[str, Any]:
     promised = OVER * asked + BESIDE
     return {
         "file": file.name,

@@ -217,7 +217,7 @@ def test_teeth_of_a_pair_keep_their_relief_and_no_others_are_taken(solved, tmp_p
 
 
 def test_the_stiffness_of_a_pair_is_load_over_transmission_error(solved):
-    from gearopt.formulations.pair.contact import PairContact
+    from gearopt.formulations.pair.design import PairContact
     from gearopt.optimise.typed import typed
 
     contact = typed(PairContact, solved("reference_pair").design["contact"], "contact")

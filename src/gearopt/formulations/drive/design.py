@@ -9,8 +9,7 @@ from typing import Annotated, Any
 from gearopt.formulations.drive.layout.layout_design import LayoutDesign
 from gearopt.formulations.drive.rating import DriveRating
 from gearopt.formulations.drive.train import Train
-from gearopt.formulations.pair.contact import PairContact
-from gearopt.formulations.pair.relief_map import PairRelief
+from gearopt.formulations.pair.design import PairContact, PairRelief
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
 from gearopt.optimise.typed import INLINE, Shown, typed

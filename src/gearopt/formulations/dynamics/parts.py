@@ -23,7 +23,7 @@ from gearopt.formulations.dynamics.motion.stability import (
     ready,
     stability_map,
 )
-from gearopt.formulations.pair.contact import ContactLoad, PairContact
+from gearopt.formulations.pair.design import ContactLoad, PairContact
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.kinematics import growth

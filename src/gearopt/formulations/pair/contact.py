@@ -1,19 +1,16 @@
-"""The contact of a spur pair for its report: stiffness, load shares, transmission error, stress.
-
-Fields are keys of a result, with their units; lists of one table are columns of equal length.
-"""
+"""The contact of a spur pair for its report: stiffness, load shares, transmission error, stress."""
 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 
+from gearopt.formulations.pair.design import Columns, ContactLoad, ContactPoint, PairContact
 from gearopt.formulations.pair.relief.meshing import NO_RELIEF, Mesh
 from gearopt.formulations.pair.relief.rules import tip_amounts
 from gearopt.optimise.terms import Array
-from gearopt.optimise.typed import Shown
 from gearopt.physics.agma.factors import elastic_coefficient
 from gearopt.physics.geometry.contact import ContactPath, diameters_at
 from gearopt.physics.mesh_cycle import break_points, cycle
@@ -23,94 +20,6 @@ from gearopt.physics.tooth.ladder import LEVELS
 DEAR = 1000.0  # us a position: of dearer models a few positions are computed, others interpolated
 NODES = 33  # of those: the stiffness between them is off by less than 2e-3 (finite elements)
 HARMONICS = 5  # of the mesh frequency, that are told
-Columns = tuple[float, ...]
-
-
-@dataclass(frozen=True, kw_only=True)
-class ContactPoint:
-    """A point of the path of contact with the stiffness of one pair of teeth there.
-
-    roll angles: from where the involutes begin. stiffness: force per face width and
-    approach along the line of action.
-    """
-
-    point: Annotated[str, Shown("point")]
-    position_mm: Annotated[float, Shown("s")]
-    pinion_diameter_mm: Annotated[float, Shown("pinion diameter")]
-    wheel_diameter_mm: Annotated[float, Shown("wheel diameter")]
-    pinion_roll_angle_deg: Annotated[float, Shown("pinion roll angle", form=".3f")]
-    wheel_roll_angle_deg: float
-    pair_stiffness_MPa: Annotated[float, Shown("stiffness of a pair", unit="N_per_mm_um")]
-
-
-@dataclass(frozen=True, kw_only=True)
-class ContactLoad:
-    """Contact at one load: on the path of contact, and over one base pitch of travel.
-
-    load: relative to the torque of the duty. share, contact stress: of the pair of teeth at every
-    position of the path. transmission error: approach of the gears along the line of action at
-    every travel; its harmonics: amplitudes at the mesh frequency and its multiples. mesh stiffness:
-    normal force over face width and approach.
-    """
-
-    load: float
-    normal_force_N: Annotated[float, Shown("normal force", "forces")]
-    largest_tooth_force_N: Annotated[float, Shown("largest load on a tooth", "forces")]
-    largest_share: float
-    largest_contact_stress_MPa: Annotated[float, Shown("largest contact stress", "motion")]
-    mean_transmission_error_mm: Annotated[float, Shown("transmission error, mean", "motion", "um")]
-    peak_to_peak_mm: Annotated[float, Shown("peak to peak", "motion", "um")]
-    harmonics_mm: Columns
-    mean_mesh_stiffness_MPa: Annotated[
-        float, Shown("mesh stiffness, mean", "stiffness", "N_per_mm_um")
-    ]
-    least_mesh_stiffness_MPa: Annotated[
-        float, Shown("mesh stiffness, minimum", "stiffness", "N_per_mm_um")
-    ]
-    most_mesh_stiffness_MPa: Annotated[
-        float, Shown("mesh stiffness, maximum", "stiffness", "N_per_mm_um")
-    ]
-    share: Columns
-    contact_stress_MPa: Columns
-    transmission_error_mm: Columns
-
-
-@dataclass(frozen=True, kw_only=True)
-class PairContact:
-    """The contact of a spur pair.
-
-    level, plane, coupling: models of the teeth's compliance; the load of one pair of teeth moves
-    the others by coupling_mm_per_N. error: least and largest of the level's stiffness against
-    finite elements, of all pairs it was measured on. bores: where the gears are held. iso: c' and
-    c_gamma_alpha of ISO 6336-1, beside. path: columns along the path of contact from SAP to EAP,
-    both sides of points where pairs come and go. rule_relief: what off the tips of pinion and wheel
-    lets pairs come and go without load at the duty's torque, by rule. travel_mm: of the pinion's
-    base circle over one base pitch, 0 where a pair comes into contact. validity: sentences on what
-    models do not cover.
-    """
-
-    level: str
-    error_percent: tuple[float, float]
-    plane: str
-    coupling: str
-    coupling_mm_per_N: float
-    pinion_bore_mm: float
-    wheel_bore_mm: float
-    base_pitch_mm: float
-    contact_ratio: float
-    iso_single_stiffness_MPa: float
-    iso_mesh_stiffness_MPa: float
-    rule_relief_mm: tuple[float, float]
-    points: tuple[ContactPoint, ...]
-    position_mm: Columns
-    pinion_diameter_mm: Columns
-    wheel_diameter_mm: Columns
-    pinion_roll_angle_deg: Columns
-    wheel_roll_angle_deg: Columns
-    pair_stiffness_MPa: Columns
-    travel_mm: Columns
-    loads: tuple[ContactLoad, ...]
-    validity: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

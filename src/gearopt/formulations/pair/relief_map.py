@@ -2,11 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.pair.contact import Columns, ContactLoad, PairMesh, at_loads, column
+from gearopt.formulations.pair.contact import PairMesh, at_loads, column
+from gearopt.formulations.pair.design import (
+    FlankRelief,
+    MadeRelief,
+    PairRelief,
+    ReliefRow,
+)
 from gearopt.formulations.pair.relief.free_form import Profile
 from gearopt.formulations.pair.relief.meshing import NO_RELIEF, Mesh, Relief
 from gearopt.formulations.pair.relief.parametric import objective
@@ -14,7 +20,6 @@ from gearopt.formulations.pair.relief.relief_tolerance import Tolerance, drawn, 
 from gearopt.formulations.pair.relief.rules import short_relief, tip_amounts
 from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.terms import Array
-from gearopt.optimise.typed import Shown
 from gearopt.physics.geometry.contact import diameters_at
 from gearopt.physics.mesh_cycle import cycle
 
@@ -22,84 +27,6 @@ LEAST_RELIEF = 1e-6  # mm: less than that is no relief
 LOADS_COMPARED = 100  # loads at which relief is held against none
 FINER = 10  # times as many positions, on which a relief is judged again
 DRAWN, MOST = 2000, 0.95  # reliefs as they are made, and the part of them told beside the median
-
-
-@dataclass(frozen=True, kw_only=True)
-class FlankRelief:
-    """Depth removed from the flanks of one gear: a (1 - x/l)^p at x from the tip.
-
-    amount a: normal to the flank, at the tip; length l: on the line of action; exponent p, None of
-    a shape of its own, which the profile tells; diameter and roll angle where it starts, which a
-    grinder needs.
-    """
-
-    amount_mm: Annotated[float, Shown("amount at the tip", unit="um")]
-    start_diameter_mm: Annotated[float, Shown("starts at diameter", form=".3f")]
-    start_roll_angle_deg: Annotated[float, Shown("starts at roll angle", form=".3f")]
-    tip_diameter_mm: Annotated[float, Shown("tip diameter", form=".3f")]
-    tip_roll_angle_deg: Annotated[float, Shown("roll angle at the tip", form=".3f")]
-    length_mm: Annotated[float, Shown("length on the path")]
-    exponent: float | None = None
-
-
-@dataclass(frozen=True, kw_only=True)
-class ReliefRow:
-    """A relief by rule, or none, beside the one that is designed.
-
-    peak_to_peak_mm, load_jump: at every load the relief is made for. value: of what is minimised.
-    """
-
-    name: str
-    pinion_amount_mm: Annotated[float, Shown("pinion", unit="um")]
-    wheel_amount_mm: Annotated[float, Shown("wheel", unit="um")]
-    value: float
-    peak_to_peak_mm: Columns
-    load_jump: Columns
-    exponent: float | None = None
-
-
-@dataclass(frozen=True, kw_only=True)
-class MadeRelief:
-    """The relief as it is made: amounts and lengths off by their tolerances, either way.
-
-    worst: largest peak-to-peak of all loads that was found, at these amounts and lengths of pinion
-    and wheel; bound: none exceeds it, proven. median, most: of so many drawn ones, uniformly, half
-    and 95 % stay below them.
-    """
-
-    amount_tolerance_mm: float
-    length_tolerance_mm: float
-    worst_mm: float
-    bound_mm: float
-    worst_amounts_mm: tuple[float, float]
-    worst_lengths_mm: tuple[float, float]
-    drawn: int
-    median_mm: float
-    most_mm: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class PairRelief:
-    """The relief of a spur pair.
-
-    minimise: of the worst of all loads, relative to the torque of the duty. pinion_removed_mm,
-    wheel_removed_mm: columns beside those of the path of contact. at: what happens at every load of
-    the contact with it. rows: rules beside it, and no relief. break_even: load below
-    which the gears run more evenly without it, None where there is none. finer_mm: peak-to-peak at
-    every load on ten times as many positions. made: within tolerances.
-    """
-
-    minimise: str
-    loads: Columns
-    pinion: FlankRelief
-    wheel: FlankRelief
-    pinion_removed_mm: Columns
-    wheel_removed_mm: Columns
-    at: tuple[ContactLoad, ...]
-    rows: tuple[ReliefRow, ...]
-    break_even: float | None = None
-    finer_mm: Columns = ()
-    made: MadeRelief | None = None
 
 
 @dataclass(frozen=True)

@@ -86,19 +86,22 @@ def main(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]
         [measures.of(v, unit_of(objective)) for v in column]
         for column, objective in zip(columns, front.objectives, strict=True)
     ]
-    names = _different(each, _names(front, each, measures))
+    numbered = [n for n in _names(front, each, measures) if _is_number(each[0].get(n, NONE).value)]
+    names = _different(each, numbered)
     return [n for n in names if [named[n].value for named in each] not in known][:FEW]
 
 
 def _different(each: Sequence[Numbers], names: Sequence[str]) -> list[str]:
-    """The names of numbers that all designs have and that are not the same in all."""
+    """The names of numbers and words that all designs have and that are not the same in all."""
     columns = ((n, [named.get(n, NONE).value for named in each]) for n in names)
     return [n for n, values in columns if None not in values and _varies(values)]
 
 
-def _varies(values: Sequence[float]) -> bool:
+def _varies(values: Sequence[Any]) -> bool:
+    if not all(map(_is_number, values)):
+        return len(set(values)) > 1
     low, high = min(values), max(values)
-    return high - low > NUMBER_TIE * max(abs(low), abs(high))
+    return bool(high - low > NUMBER_TIE * max(abs(low), abs(high)))
 
 
 def designs(

@@ -7,8 +7,7 @@ from typing import Any
 from gearopt.errors import SceneError
 from gearopt.formulations.drive.design import DriveDesign, drive_design
 from gearopt.formulations.dynamics.parts import nearest_load, of_contact
-from gearopt.formulations.pair.contact import ContactLoad, PairContact
-from gearopt.formulations.pair.relief_map import PairRelief
+from gearopt.formulations.pair.design import ContactLoad, PairContact, PairRelief
 from gearopt.optimise.typed import typed
 from gearopt.physics.gears import GearPair
 from gearopt.physics.motion.stiffness_wave import Wave

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from gearopt.errors import SolveError
-from gearopt.formulations.pair.contact import PairContact, PairMesh, contact
+from gearopt.formulations.pair.contact import PairMesh, contact
+from gearopt.formulations.pair.design import PairContact
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.flaws import flaws

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from gearopt.formulations.pair.contact import PairContact
+from gearopt.formulations.pair.design import PairContact
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.iso6336.stiffness import LEAST_LINE_LOAD
 from gearopt.scenes.drive.tables.rating import with_shared

@@ -6,12 +6,13 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.pair.contact import PairMesh
+from gearopt.formulations.pair.design import PairRelief
 from gearopt.formulations.pair.relief import parametric
 from gearopt.formulations.pair.relief.free_form import Profile, Shape, free_problem
 from gearopt.formulations.pair.relief.meshing import Mesh, Relief
 from gearopt.formulations.pair.relief.parametric import Ranges
 from gearopt.formulations.pair.relief.relief_tolerance import Tolerance, robust_problem
-from gearopt.formulations.pair.relief_map import PairRelief, Removed, as_made, described
+from gearopt.formulations.pair.relief_map import Removed, as_made, described
 from gearopt.optimise.clock import in_part
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.pareto.epsilon import Limiting

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from gearopt.formulations.pair.contact import ContactLoad, PairContact
+from gearopt.formulations.pair.design import ContactLoad, PairContact
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.answer import asked, assumptions, limits, summary

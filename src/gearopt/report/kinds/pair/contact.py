@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from gearopt.formulations.drive.design import StageDesign, drive_design
-from gearopt.formulations.pair.contact import ContactLoad, PairContact
-from gearopt.formulations.pair.relief_map import PairRelief
+from gearopt.formulations.pair.design import ContactLoad, PairContact, PairRelief
 from gearopt.optimise.result import Result
 from gearopt.physics.blanks import Body
 from gearopt.physics.gears import GearPair

@@ -7,8 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.pair.contact import ContactLoad, PairContact
-from gearopt.formulations.pair.relief_map import FlankRelief, MadeRelief, PairRelief
+from gearopt.formulations.pair.design import (
+    ContactLoad,
+    FlankRelief,
+    MadeRelief,
+    PairContact,
+    PairRelief,
+)
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.physics.gears import MEMBERS, GearPair

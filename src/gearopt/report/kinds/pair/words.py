@@ -2,7 +2,7 @@
 
 import math
 
-from gearopt.formulations.pair.contact import ContactLoad, PairContact
+from gearopt.formulations.pair.design import ContactLoad, PairContact
 from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336.accuracy import deviations
 from gearopt.physics.mesh_cycle import NARROW
