@@ -20,6 +20,7 @@ from gearopt.optimise.comparing.fronts import compare_fronts
 from gearopt.optimise.comparing.runs import EVALUATIONS, SECONDS, SEEDS, Follow, Model, Plan
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.explaining.explanation import Explanation
+from gearopt.optimise.maximised import explained_as_asked
 from gearopt.optimise.options import check, in_turn, named
 from gearopt.optimise.own_problems import solve_own
 from gearopt.optimise.pareto.front import Front
@@ -154,7 +155,7 @@ def explain(
         )
     if isinstance(what, Problem):
         _unchanged(what, changes)
-        return explain_problem(what, budget, watch)
+        return explained_as_asked(explain_problem(what, budget, watch))
     ask = Ask(budget=budget, watch=watch)
     scene, kind, names = _opened(what, changes)
     found = explanation(kind, scene, ask)

@@ -23,8 +23,6 @@ import tomllib
 from decimal import Decimal
 from pathlib import Path
 
-time.perf_counter = time.process_time  # budgets count CPU seconds: a busy machine changes no answer
-
 import gearopt
 from gearopt.errors import GearoptError
 from gearopt.report import shown
@@ -40,6 +38,7 @@ from bars import KIND, Bars  # noqa: E402
 from edits import edited  # noqa: E402
 from given_drives import given_drive  # noqa: E402
 
+time.perf_counter = time.process_time  # budgets count CPU seconds: a busy machine changes no answer
 PROBLEMS = HERE.parents[1] / "problems"
 CHECKED = 10.0  # s, at most, in which a remedy is solved again
 DECIMAL = re.compile(r"\d+\.\d+$")

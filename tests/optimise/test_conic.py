@@ -93,8 +93,8 @@ X = (Var("x", "", 0.5, 2.0, 1.0, size=2),)
         (lambda x, p: Terms({"c": x.x[0], "d": x.x[1]}), r"2 objectives \(c, d\)"),
         (lambda x, p: Terms({"c": x.x[0]}, {"l": cp.log(x.x)}), "limits l is not convex"),
         (
-            lambda x, p: Terms({"c": x.x[0]}, {"l": x.x <= 1}),
-            "limits l is a comparison|l is a comp",
+            lambda x, p: Terms({"c": x.x[0]}, {"l": cp.SOC(x.x[0], x.x)}),
+            "l is a constraint of its own",
         ),
         (lambda x, p: Terms({"c": x.x[0]}, equal={"e": x.x**2}), "equal e is not affine"),
         (lambda x, p: Terms({"c": x.x[0] / p.w}), "multiply by p.per.NAME"),

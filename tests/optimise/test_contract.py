@@ -247,7 +247,7 @@ def test_two_objectives_are_refused_by_a_single_objective_solve():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (lambda x, p: Terms({"f": x.a}, {"limit": 1.0 <= x.a}), "limits limit is a comparison"),
+        (lambda x, p: Terms({"f": x.a}, {"limit": 1.0 < x.a}), "limits limit is no comparison"),
         (lambda x, p: {"f": x.a}, "returns dict, not Terms"),
         (lambda x, p: Terms({"f": x.a}, [x.a]), "limits is not a dict"),
     ],

@@ -12,7 +12,7 @@ import logging
 import time
 import traceback
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -21,6 +21,7 @@ import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from gearopt.errors import GearoptError, SolveError
+from gearopt.optimise import comparisons
 from gearopt.optimise.terms import (
     SECTIONS,
     Array,
@@ -29,6 +30,7 @@ from gearopt.optimise.terms import (
     Terms,
     checked,
     flat,
+    minimised,
     namespace,
     spread,
 )
@@ -166,17 +168,51 @@ def called(
     x = namespace(problem.variables, list(shared))
     given = problem.parameter_values() if parameters is None else parameters
     p = namespace(problem.parameters, list(given))
-    if repeat is None:
-        return problem.evaluate(x, p)
-    x.__dict__.update(vars(namespace(repeat.variables, list(own))))
-    return repeat.evaluate(x, p, Named(**row))
+    if repeat is not None:
+        x.__dict__.update(vars(namespace(repeat.variables, list(own))))
+    return evaluated(problem, repeat, x, p, row)
+
+
+def evaluated(
+    problem: "Problem", repeat: Repeat | None, x: Any, p: Any, row: Mapping[str, Any]
+) -> Any:
+    """Return the terms of a text for scalars by name, all objectives minimised.
+
+    Of a text with limits written as comparisons they are rows (`comparisons`).
+    """
+    scales = problem.memo.get(("compares", repeat and repeat.name))
+    if scales is not None:
+        logs = {v.name: v.log for v in (*problem.variables, *(repeat.variables if repeat else ()))}
+        x, p = comparisons.quantities(x, logs), comparisons.quantities(p, _above(problem))
+        row = {name: comparisons.Quantity(value) for name, value in row.items()}
+    own = problem.evaluate(x, p) if repeat is None else repeat.evaluate(x, p, Named(**row))
+    terms = minimised(own)
+    if scales is None or not isinstance(terms, Terms):
+        return terms
+    return comparisons.rows(terms, scales)
+
+
+def _above(problem: "Problem") -> dict[str, bool]:
+    """Whether a parameter was above 0 at first, when rows that divide by it were made."""
+    now = {q.name: bool((spread(q.value, q.size) > 0.0).all()) for q in problem.parameters}
+    first: dict[str, bool] = problem.memo.setdefault("above", now)
+    if fallen := [name for name, above in first.items() if above and not now[name]]:
+        raise SolveError(
+            f"{problem.name}: limits are divided by the parameter {fallen[0]}, which was above 0 "
+            "and is not any more; pose the problem with its new value"
+        )
+    return first
 
 
 def at(problem: "Problem", repeat: Repeat | None, shared: Any, own: Any, row: int) -> Terms:
     """Terms of a text on floats; SolveError names its fault."""
     data = {k: np.float64(v[row]) for k, v in repeat.data.items()} if repeat else {}
+    key = "compares", repeat and repeat.name
     with blaming(*text_of(problem, repeat), "evaluated"):
         terms = called(problem, repeat, shared, own, data)
+        if key not in problem.memo and comparisons.compares(terms):
+            problem.memo[key] = {}
+            terms = called(problem, repeat, shared, own, data)
     return checked(terms, text_of(problem, repeat)[1], numbers=True)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.maximised import as_asked
 from gearopt.optimise.own_methods import back_ends
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Result, Watch
@@ -47,8 +48,8 @@ def solve_own(
     name = method or default_method(problem)
     posed = problem if start is None else _started(problem, name, start)
     if method is None and name == "ipopt" and isinstance(posed, Problem):
-        return _by_default(posed, budget, seed, watch, gap)
-    return _saying(solve(posed, name, budget, seed, watch, gap), problem)
+        return as_asked(_by_default(posed, budget, seed, watch, gap))
+    return as_asked(_saying(solve(posed, name, budget, seed, watch, gap), problem))
 
 
 def _saying(result: Result, problem: Problem | Conic, *words: str) -> Result:

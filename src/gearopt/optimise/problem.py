@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise.evaluation import at, terms_of
+from gearopt.optimise.evaluation import at, evaluated, terms_of
 from gearopt.optimise.own_methods import check_methods
 from gearopt.optimise.terms import (
     SECTIONS,
@@ -195,6 +195,11 @@ class Problem:
     @cached_property
     def _parameter_values(self) -> Array:
         return np.concatenate([spread(q.value, q.size) for q in self.parameters] or [np.empty(0)])
+
+    def text(self, x: Any, p: Any) -> Terms:
+        """Terms of the text for scalars by name: comparisons as rows, all objectives minimised."""
+        terms: Terms = evaluated(self, None, x, p, {})
+        return terms
 
     def batch(self, points: Array) -> Batch:
         """Evaluate the text on points (N, n) with numpy."""

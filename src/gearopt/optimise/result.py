@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 FORMAT = 1
 _version = cache(version)  # reading package metadata takes a millisecond
+MAXIMISE = "maximise"
 CLOSED_FORM = "Proof: a closed form, and a bound that follows from convexity alone."
 STATUSES = ("optimal", "stationary", "feasible", "evaluated", "infeasible", "limit", "failed")
 FEASIBLE = 1e-8  # of its own scale a variable, of 1 a row is off; that is below any data error
@@ -126,13 +127,14 @@ class Result:
     status: optimal (our bound within the stated gap), stationary (a local minimum, its bound, if
     there is one, further off), feasible, evaluated (nothing was minimised; `feasible` says whether
     the design given meets all limits), infeasible (proven), limit (stopped early), failed.
-    objective: {name, value, unit}; empty where nothing was minimised.
-    bound: nothing feasible is better; gap: (objective - bound)/|objective|, of an objective of zero
-    relative to certificate["scale"], its own scale. proof: {method, sentence, ...}. certificate:
-    {feasibility, stationarity, complementarity}. limits: utilisations by name. multipliers: shadow
-    prices of limits and equalities by name, d objective / d right-hand side: where 1.01 instead of
-    1 is allowed, the objective changes by 0.01 of it, in its own unit; of a limit at most 0, and 0
-    where it does not bind. Empty where they are not known: discrete variables, an exact search.
+    objective: {name, value, unit}, and sense "maximise" where it is; empty where nothing was
+    minimised. bound: nothing feasible is better; gap: |objective - bound|/|objective|, of an
+    objective of zero relative to certificate["scale"], its own scale. proof: {method, sentence,
+    ...}. certificate: {feasibility, stationarity, complementarity}. limits: utilisations by name.
+    multipliers: shadow prices of limits and equalities by name, d objective / d right-hand side:
+    where 1.01 instead of 1 is allowed, the objective changes by 0.01 of it, in its own unit; of a
+    limit never for the worse, and 0 where it does not bind. Empty where they are not known:
+    discrete variables, an exact search.
     file_sha256: of the file as it is. asked: its tables, with the changes; options: what was asked
     for beside it (method, seconds, gap, seed, top, prices, and changes {key: value} if there were).
     """
@@ -168,6 +170,11 @@ class Result:
         """Return the objective's value, None without a feasible design."""
         found = self.objective.get("value")
         return None if found is None else float(found)
+
+    @property
+    def maximised(self) -> bool:
+        """Return whether larger values of the objective are better."""
+        return self.objective.get("sense") == MAXIMISE
 
     @property
     def given(self) -> bool:

@@ -15,6 +15,7 @@ from gearopt.optimise.certificate import Verdict, certify
 from gearopt.optimise.clock import Clock, of_problem
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.deadline import until
+from gearopt.optimise.maximised import as_asked
 from gearopt.optimise.own_methods import back_ends, run_method
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch, versions
@@ -86,7 +87,8 @@ def evaluate(problem: Problem | Conic, point: Mapping[str, Any] | Array) -> Resu
         certificate={"feasibility": excess},
         message="" if excess <= FEASIBLE else f"{worst} is violated by {excess:.3g}",
     )
-    return _result(problem, "evaluation", Outcome(x, evaluations=1), verdict, clock.seconds, 0)
+    outcome = Outcome(x, evaluations=1)
+    return as_asked(_result(problem, "evaluation", outcome, verdict, clock.seconds, 0))
 
 
 def _given(problem: Problem | Conic, point: Mapping[str, Any] | Array) -> Array:

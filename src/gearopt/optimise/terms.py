@@ -1,7 +1,7 @@
 """The words a problem is written in: parameters, variables, terms and repeats."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,6 +13,7 @@ from gearopt.errors import SolveError
 Array = NDArray[np.float64]
 Number = float | tuple[float, ...]
 SECTIONS = ("minimise", "limits", "defines", "equal", "report")
+FALLING = "negative_of_"  # before the name of an objective that is maximised
 
 
 @dataclass(frozen=True)
@@ -102,16 +103,18 @@ class Var:
 class Terms:
     """Terms of an evaluation: {name: scalar, or a tuple = a block name[1], name[2], ...}.
 
-    minimise: objectives. limits: the user's utilisations, <= 1. defines: model rows <= 1
-    (epigraphs, couplings), never relaxed nor shown. equal: quotients that must be 1.
+    minimise, maximise: objectives. limits: the user's utilisations, <= 1, or comparisons, such as
+    x.a <= x.b, x.a >= 2.0, x.a == x.b (`comparisons`). defines: model rows <= 1 (epigraphs,
+    couplings), never relaxed nor shown. equal: quotients that must be 1, or comparisons by ==.
     report: values to show, of no effect.
     """
 
-    minimise: Mapping[str, Any]
+    minimise: Mapping[str, Any] = field(default_factory=dict)
     limits: Mapping[str, Any] = field(default_factory=dict)
     defines: Mapping[str, Any] = field(default_factory=dict)
     equal: Mapping[str, Any] = field(default_factory=dict)
     report: Mapping[str, Any] = field(default_factory=dict)
+    maximise: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -254,6 +257,14 @@ def namespace(declared: tuple[Any, ...], scalars: list[Any]) -> Named:
     return Named(**found)
 
 
+def minimised(terms: Any) -> Any:
+    """Terms whose objectives are all minimised: of those maximised the negatives."""
+    if not isinstance(terms, Terms) or not terms.maximise:
+        return terms
+    negative = {f"{FALLING}{name}": -value for name, value in terms.maximise.items()}
+    return replace(terms, minimise={**terms.minimise, **negative}, maximise={})
+
+
 def flat(block: Mapping[str, Any]) -> list[tuple[str, Any]]:
     """Return [(name or name[k], scalar)] of a block of terms; k counts from 1, as stages do."""
     found: list[tuple[str, Any]] = []
@@ -307,7 +318,7 @@ def _block(value: Any) -> Any:
 def _wrong(value: Any, numbers: bool) -> str:
     """Sort of a term that it must not be; "" for a scalar."""
     if isinstance(value, bool | np.bool_):
-        return "a comparison; write a quotient that must not exceed 1, such as needed/allowed"
+        return "no comparison of variables by <=, >= or ==, nor a quotient that must not exceed 1"
     if isinstance(value, tuple | list | np.ndarray | Mapping | set):
         return f"a {type(value).__name__} in a block or of several dimensions; write scalars"
     if value is None or isinstance(value, str | complex | np.complexfloating):

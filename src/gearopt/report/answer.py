@@ -207,7 +207,7 @@ def meaning(result: Result) -> str:
     if result.value is None:
         return "No design was found; that is no proof that there is none."
     early = "The run ended early. " if status == "limit" else ""
-    below = f", but none{scope(result)} is below the bound" if known else ""
+    below = f", but none{scope(result)} is better than the bound" if known else ""
     return f"{early}The design meets all limits; a better one may exist{below}."
 
 
@@ -238,7 +238,7 @@ def _numbers(arithmetic: str) -> str:
 def _column(part: Result, measures: Measures) -> list[Any]:
     """Values of ROWS of a result or one of its parts; "" for those it has not."""
     name, unit = objective(part)
-    bound = WAYS["below"]  # of the objective itself, which is minimised
+    bound = WAYS["above" if part.maximised else "below"]
     amounts = (_amount(v, unit, measures, way) for v, way in ((part.value, 0), (part.bound, bound)))
     return [
         certainty(part)[0],
@@ -356,7 +356,7 @@ def progress(result: Result, measures: Measures) -> Section | None:
         axis(f"{name} [{sign}]" if sign else name, tickformat="," if large else ""),
         340,
     )
-    words = "Best value so far" + (" and its lower bound" if bound else "")
+    words = "Best value so far" + (" and its bound" if bound else "")
     return Section("Progress", figures=(Figure(traces, plot, f"{words} against wall time."),))
 
 

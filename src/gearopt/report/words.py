@@ -236,7 +236,7 @@ def goal(result: Result) -> tuple[str, str, float | None, float | None, str]:
     """
     name, unit = objective(result)
     if name not in INVERSE:
-        return name, unit, result.value, result.bound, "below"
+        return name, unit, result.value, result.bound, "above" if result.maximised else "below"
     value, bound = (None if not v else 1.0 / v for v in (result.value, result.bound))
     return *INVERSE[name], value, bound, "above"
 

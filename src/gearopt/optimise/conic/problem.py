@@ -15,7 +15,18 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.optimise.evaluation import blaming
 from gearopt.optimise.problem import Batch, Problem, Row, Rows, declared, one_objective
-from gearopt.optimise.terms import Array, Named, Number, Param, Terms, Var, checked, flat, spread
+from gearopt.optimise.terms import (
+    Array,
+    Named,
+    Number,
+    Param,
+    Terms,
+    Var,
+    checked,
+    flat,
+    minimised,
+    spread,
+)
 
 
 @dataclass(frozen=True)
@@ -41,13 +52,13 @@ class Model:
 
 @dataclass(frozen=True)
 class Conic:
-    """A convex problem in cvxpy text: minimise one term, limits <= 1, equal rows = 1.
+    """A convex problem in cvxpy text: one objective, limits <= 1, equal rows = 1, or comparisons.
 
     evaluate(x, p) -> Terms: x.name are cvxpy variables made from `Var` (vectors for size > 1),
     p.name cvxpy parameters, p.per.name their inverses (a cvxpy text that divides by a parameter
-    cannot keep its canonical form). The objective, limits and defines are convex by cvxpy's rules,
-    equal rows affine; a vector expression is a block name[1], name[2], ... Variables with `integer`
-    or `values` are branched on. ValueError for names declared twice.
+    cannot keep its canonical form). What is minimised, limits and defines are convex by cvxpy's
+    rules, equal rows affine; a vector expression is a block name[1], name[2], ... Variables with
+    `integer` or `values` are branched on. ValueError for names declared twice.
     """
 
     name: str
@@ -121,6 +132,11 @@ class Conic:
                 raise SolveError(f"{self.name} divides by a parameter that is zero")
         return found
 
+    def text(self, x: Any, p: Any) -> Terms:
+        """Terms of the text on cvxpy's expressions, all objectives minimised."""
+        terms: Terms = minimised(self.evaluate(x, p))
+        return terms
+
     def batch(self, points: Array) -> Batch:
         """Evaluate the user's own expressions at points (N, n) by cvxpy, one after the other."""
         model = self.model()
@@ -168,8 +184,35 @@ def _symbols(problem: Conic, signs: tuple[str, ...]) -> tuple[Any, Any, Any, Ter
     per = Named(**dict(zip(names, inverses, strict=True)))
     p = Named(**{"per": per, **dict(zip(names, parameters, strict=True))})
     with blaming(problem.evaluate, problem.name, "run on cvxpy variables"):
-        terms = problem.evaluate(x, p)
-    return variables, parameters, inverses, checked(terms, problem.name)
+        terms = problem.text(x, p)
+    numbers = [spread(v.guess, v.size) for v in problem.variables]
+    numbers += [spread(q.value, q.size) for q in problem.parameters]
+    for symbol, value in zip((*variables, *parameters), numbers, strict=True):
+        symbol.value = value if symbol.ndim else float(value[0])
+    terms = _as_rows(checked(terms, problem.name), problem.memo.setdefault("scales", {}))
+    return variables, parameters, inverses, terms
+
+
+def _as_rows(terms: Terms, scales: dict[str, Any]) -> Terms:
+    """Terms with cvxpy's comparisons made rows, 1 + (lesser - greater)/scale.
+
+    scales: by name, the larger of both sides at the guess, as the first model finds it.
+    """
+    import cvxpy as cp
+
+    parts: dict[str, dict[str, Any]] = {part: {} for part in ("limits", "defines", "equal")}
+    for part, own in parts.items():
+        for name, value in flat(getattr(terms, part)):
+            balance = isinstance(value, cp.constraints.Equality)
+            if balance or isinstance(value, cp.constraints.Inequality):
+                lesser, greater = value.args
+                if name not in scales:
+                    sides = [np.abs(e.value) for e in value.args if e.value is not None]
+                    larger = np.max(np.broadcast_arrays(*sides, 0.0), axis=0)
+                    scales[name] = np.where((larger > 0.0) & np.isfinite(larger), larger, 1.0)
+                value = 1.0 + cp.multiply(1.0 / scales[name], lesser - greater)
+            (parts["equal"] if balance else own)[name] = value
+    return replace(terms, **parts)
 
 
 def _build(problem: Conic, signs: tuple[str, ...]) -> Model:
@@ -227,7 +270,7 @@ def _expression(value: Any, where: str, label: str) -> Any:
 
     if isinstance(value, cp.constraints.constraint.Constraint):
         raise SolveError(
-            f"{where}: {label} is a comparison; write a quotient that must not exceed 1"
+            f"{where}: {label} is a constraint of its own; write <=, >= or == between expressions"
         )
     expression = value if isinstance(value, cp.Expression) else cp.Constant(value)
     return cp.reshape(expression, (expression.size,), order="C")

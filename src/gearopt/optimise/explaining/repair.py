@@ -15,6 +15,7 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock
+from gearopt.optimise.evaluation import evaluated
 from gearopt.optimise.explaining.handles import LOWER, PARAM, REACH, ROW, UPPER, Handle, scale
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
@@ -279,7 +280,7 @@ class _Relaxed:
     def evaluate(self, x: Any, p: Any) -> Terms:
         """Return the terms of the problem's own text."""
         factors = self._factors(x)
-        terms = self.problem.evaluate(x, self._parameters(factors, p))
+        terms = evaluated(self.problem, None, x, self._parameters(factors, p), {})
         product = {"relaxation": math.prod(each(x.relaxation))}
         bounds = _bound_rows(self.problem, factors, x)
         return Terms(product, self._rows(factors, terms), defines=bounds, equal=terms.equal)
@@ -287,7 +288,7 @@ class _Relaxed:
     def repeated(self, repeat: Repeat, x: Any, p: Any, row: Any) -> Terms:
         """Return the terms of one row of a repeat."""
         factors = self._factors(x)
-        terms = repeat.evaluate(x, self._parameters(factors, p), row)
+        terms = evaluated(self.problem, repeat, x, self._parameters(factors, p), vars(row))
         return Terms({}, self._rows(factors, terms, f"{repeat.name}."), equal=terms.equal)
 
     def _factors(self, x: Any) -> dict[_Place, Any]:

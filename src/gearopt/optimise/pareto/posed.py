@@ -46,10 +46,9 @@ def posed(
     conic = isinstance(problem, Conic)
     quotient = {name: limit.most == limit.scale for name, limit in limits.items()}
     fixed = {name: limit.scale for name, limit in limits.items()} if conic else {}
-    own = problem.evaluate
 
     def evaluate(x: Any, p: Any) -> Terms:
-        found = own(x, p)
+        found = problem.text(x, p)
         rows = {
             f"{LIMIT_PREFIX}_{name}": _row(found.minimise[name], p, name, whole, fixed.get(name))
             for name, whole in quotient.items()
