@@ -46,7 +46,7 @@ def test_help_lists_kinds_methods_and_benches(here, wide):
         said = here(command, "--help").stdout
         kinds = "dynamics: screened; packing: hop, sa; pair: exact, mpec; servo: exact, enumeration"
         assert kinds in said
-        assert "annealing, conic, gp, ipopt, multistart, nsga2, qp, scip" in said
+        assert "annealing, cobyqa, conic, gp, ipopt, multistart, nsga2, qp, scip" in said
     assert all(f"{name} (" in here("bench", "--help").stdout for name in BENCHES)
 
 

@@ -296,6 +296,7 @@ def tolerances(integer=False):
 
 POSED = {  # problems of each back end, by what a single one of them may go beyond its evaluations
     "annealing": (box, 0),
+    "cobyqa": (box, 0),
     "conic": (tolerances, 100),  # whole rounds of Clarabel
     "conic with whole numbers": (lambda: tolerances(integer=True), 4),  # a node's relaxations
     "gp": (box, 0),

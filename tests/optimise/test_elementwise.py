@@ -123,5 +123,4 @@ def test_names_must_be_the_same_at_every_point():
     found = far.batch(np.array([[2.0, 1.0], [3.0, 1.0]]))
     assert np.isnan(found.F[0, 0]) and found.F[1, 0] == 1.0
     wrong = pair(lambda x, p: Terms({"f": float(x.a) + (None if x.a > 2.0 else 1.0)}))
-    with pytest.raises(SolveError):
-        wrong.batch(np.array([[1.0, 1.0], [3.0, 1.0]]))
+    assert np.isnan(wrong.batch(np.array([[1.0, 1.0], [3.0, 1.0]])).F).tolist() == [[False], [True]]

@@ -215,8 +215,8 @@ def test_a_sampler_takes_what_has_no_derivatives_and_says_that_nothing_is_proven
     def text(x, p):
         return Terms({"f": np.max(x.w) + 1.0 / np.min(x.w)})  # least at 1, 1, 1
 
-    result = solve(problem(text), "annealing", Budget(evaluations=3000))
-    assert result.status == "feasible" and 2.0 <= result.value < 2.1
+    result = solve(problem(text), "annealing", Budget(evaluations=500))
+    assert result.status == "feasible" and 2.0 <= result.value < 2.01
     assert result.bound is None and "cannot be traced" in result.message
 
 
@@ -250,12 +250,10 @@ def test_a_simulation_that_waits_for_a_number_is_ended_on_symbols(method, monkey
         return Terms({"y": (y - 0.2) ** 2})
 
     own, began = problem(simulated, size=1), time.perf_counter()
-    if method is None:
-        with pytest.raises(SolveError, match=r"line \d+ .*has not ended .*annealing and nsga2"):
-            gearopt.solve(own, budget=Budget(seconds=0.1))
-    else:
-        found = gearopt.solve(own, method=method, budget=Budget(seconds=0.15))
-        assert found.value < 0.1 and found.message.count("has not ended") == 1
+    found = gearopt.solve(own, method=method, budget=Budget(seconds=0.15))
+    assert found.value < 0.1 and found.message.count("has not ended") == 1
+    with pytest.raises(SolveError, match=r"line \d+ .*has not ended .*annealing and nsga2"):
+        gearopt.solve(own, method="ipopt", budget=Budget(seconds=0.1))
     assert time.perf_counter() - began < 20.0  # without an end it goes on for ever
 
 

@@ -86,7 +86,7 @@ def test_a_wrong_start_is_refused_by_name(start, words):
 def test_who_takes_no_start_says_who_does():
     for method in ("qp", "nsga2", "gp"):
         with pytest.raises(
-            SolveError, match=f"{method} takes no start; these do: annealing, ipopt"
+            SolveError, match=f"{method} takes no start; these do: annealing, cobyqa, ipopt"
         ):
             solve(wells(), method=method, start={"x": 1.0})
     with pytest.raises(SolveError, match="start changes nothing here"):

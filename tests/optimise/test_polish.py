@@ -1,12 +1,14 @@
 """What samplers return: discrete values within their bounds, continuous ones polished by Ipopt."""
 
 import math
+import re
 from itertools import product
 
 import numpy as np
 import pytest
 from campaigns import few
 
+import gearopt
 from gearopt.errors import SolveError
 from gearopt.optimise.box import box
 from gearopt.optimise.problem import Problem
@@ -194,6 +196,31 @@ def test_what_cannot_be_traced_is_not_polished_and_says_so(method):
     result = solve(alone, method, SMALL)
     assert result.status == "feasible" and result.bound is None
     assert result.message.startswith("not polished: the text of alone cannot be traced")
+
+
+MEASURED = {1: 0.8999416, 3: 0.8521369, 7: 0.8131789, 31: 0.7950415}  # of a, b, c = 1, 2, 1.8
+
+
+def simulated(x, p):
+    """Squared misfit of y' = -a y - b y^3 + c at 4 times, by steps that are asked for numbers."""
+    y, misfit = 1.0, 0.0
+    for k in range(32):
+        if x.b > 8.0:
+            raise OverflowError("no step")
+        y += 0.05 * (x.c - x.a * y - float(x.b) * y**3)
+        misfit += (y - MEASURED[k]) ** 2 if k in MEASURED else 0.0
+    return Terms({"misfit": misfit})
+
+
+@pytest.mark.parametrize("method", few([None, *SAMPLERS], 1))
+def test_a_simulation_is_polished_without_derivatives_and_its_failed_points_are_told(method):
+    ends = {"a": 5.0, "b": 10.0, "c": 5.0}
+    variables = tuple(Var(n, "", 0.0, end, end / 2.0) for n, end in ends.items())
+    problem = Problem("ode", variables, (), simulated)
+    result = gearopt.solve(problem, method=method, budget=Budget(evaluations=200))
+    assert result.status == "feasible" and result.value < 1e-6 and result.evaluations <= 200
+    assert "polished by cobyqa: the text of ode cannot be traced" in result.message
+    assert re.search(r"\d+ of \d+ points failed: OverflowError: no step at a = ", result.message)
 
 
 @pytest.mark.parametrize("method", SAMPLERS)

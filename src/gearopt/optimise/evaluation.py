@@ -22,6 +22,7 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from gearopt.errors import GearoptError, SolveError
 from gearopt.optimise import comparisons
+from gearopt.optimise.failures import current
 from gearopt.optimise.terms import (
     SECTIONS,
     Array,
@@ -111,6 +112,7 @@ if TYPE_CHECKING:
     from gearopt.optimise.problem import Problem
 
 logger = logging.getLogger("gearopt")
+TRIED = 20  # points at which a text may raise before it has none
 ELEMENTWISE = (np.where, np.clip, np.round, np.select, np.zeros_like, np.ones_like, np.full_like)
 
 
@@ -214,6 +216,20 @@ def at(problem: "Problem", repeat: Repeat | None, shared: Any, own: Any, row: in
             problem.memo[key] = {}
             terms = called(problem, repeat, shared, own, data)
     return checked(terms, text_of(problem, repeat)[1], numbers=True)
+
+
+def first_terms(problem: "Problem") -> Terms:
+    """Terms of a problem's text at the guess; where it raises there, at a random point."""
+    count, first = sum(v.size for v in problem.variables), None
+    for x in sample(problem, TRIED):
+        try:
+            return at(problem, None, x[:count], (), 0)
+        except SolveError as refused:
+            if refused.__cause__ is None:
+                raise
+            first = first or refused
+    assert first is not None
+    raise first
 
 
 def terms_of(problem: "Problem", repeat: Repeat | None, shared: Array, own: Array) -> Terms:
@@ -329,16 +345,19 @@ def seconds(problem: "Problem", repeat: Repeat | None) -> float:
 
 
 def _one_by_one(problem: "Problem", repeat: Repeat | None, shared: Array, own: Array) -> Terms:
-    """Return the terms of N points, each computed alone; NaN where the text raises."""
-    rows = range(repeat.count if repeat else 1)
+    """Return the terms of N points, each computed alone; NaN where the text raises.
+
+    Of several points those are NaN, too, for which the run has no time left.
+    """
+    rows, run = range(repeat.count if repeat else 1), current()
     names = problem.names(repeat)
-    values = np.array(
-        [
-            [_numbers(problem, repeat, x, y[k : k + 1], k, names) for k in rows]
-            for x, y in zip(shared, own, strict=True)
-        ]
-    )
-    values = values.reshape(len(shared), len(rows), -1)
+    values = np.full((len(shared), len(rows), sum(map(len, names.values()))), np.nan)
+    for k, (x, y) in enumerate(zip(shared, own, strict=True)):
+        if k and run.late:
+            break
+        for row in rows:
+            values[k, row], failure = _numbers(problem, repeat, x, y[row : row + 1], row, names)
+            run.note(failure)
     columns = iter(np.moveaxis(values if repeat else values[:, 0], -1, 0))
     return Terms(**{part: {name: next(columns) for name in names[part]} for part in SECTIONS})
 
@@ -350,18 +369,22 @@ def _numbers(
     own: Array,
     row: int,
     names: dict[str, list[str]],
-) -> list[float]:
-    """Return all values of a text at one point."""
+) -> tuple[list[float], str]:
+    """Return all values of a text at one point; NaN and what it raised there in words."""
     try:
         terms = at(problem, repeat, shared, own.ravel(), row)
     except SolveError as refused:
-        if isinstance(refused.__cause__, ArithmeticError | ValueError):  # as math.log(-1.0)
-            return [np.nan] * sum(map(len, names.values()))
-        raise
+        if refused.__cause__ is None:  # the text poses no problem
+            raise
+        inner = [own[0, k] for k in range(own.shape[1])]
+        where = zip(problem.columns, [*shared, *inner], strict=False)
+        named = ", ".join(f"{name} = {v:.6g}" for (_, name), v in where)
+        broken = _in_words(refused.__cause__)[:150]
+        return [np.nan] * sum(map(len, names.values())), f"{broken} at {named}"[:300]
     found = {part: flat(getattr(terms, part)) for part in SECTIONS}
     if {part: [n for n, _ in found[part]] for part in SECTIONS} != names:
         raise SolveError(
             f"the text of {text_of(problem, repeat)[1]} returns other names at other points; "
             "every point needs the same terms"
         )
-    return [float(v) for part in SECTIONS for _, v in found[part]]
+    return [float(v) for part in SECTIONS for _, v in found[part]], ""

@@ -10,8 +10,10 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.deadline import until
 from gearopt.optimise.maximised import as_asked
 from gearopt.optimise.own_methods import back_ends
+from gearopt.optimise.polish import TRACED
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Result, Watch
 from gearopt.optimise.solve import default_method, solve
@@ -64,7 +66,8 @@ def _by_default(
     """Answer of the prover where it closes the gap, beside that of a local method or a sampler.
 
     ipopt comes first, as its proofs are free, the sampler last. Where the text has no relaxation,
-    or the watcher stopped the first of the two, there is one answer.
+    or the watcher stopped the first of the two, there is one answer. A text without derivatives is
+    the sampler's alone.
     """
     refusals = list[Event]()
 
@@ -75,7 +78,9 @@ def _by_default(
         return goes_on
 
     discrete = [name for v, name in problem.columns if v.discrete]
+    blind = _without_derivatives(problem, budget)
     order = [PROVER, SAMPLER] if discrete else ["ipopt", PROVER]
+    order = [SAMPLER] if blind else order
     results, words, left = list[Result](), list[str](), budget
     for name in order:
         share = left if name == order[-1] else _share(left, discrete)
@@ -93,10 +98,24 @@ def _by_default(
             break
     result = results[0] if len(results) == 1 else _joined(results[0], results[1], gap)
     if result.method == SAMPLER and result.bound is None:
-        words.append(f"{SAMPLER} was taken, because {discrete[0]} is discrete, and proves nothing")
+        why = "the text has no derivatives" if blind else f"{discrete[0]} is discrete"
+        words.append(f"{SAMPLER} was taken, because {why}, and proves nothing")
     if result.status == "limit" and budget.seconds is None and budget.evaluations is None:
         result = replace(result, status="limit" if refusals else "feasible")
     return _saying(result, problem, *words)
+
+
+def _without_derivatives(problem: Problem, budget: Budget) -> bool:
+    """Return whether a text has no tape; SolveError where a sampler does not take it, either."""
+    seconds = None if budget.seconds is None else TRACED * budget.seconds
+    try:
+        with until(seconds):
+            problem.traced()
+    except SolveError:
+        if not np.isfinite(problem.bounds()[:2]).all():
+            raise
+        return True
+    return False
 
 
 def _share(budget: Budget, discrete: list[str]) -> Budget:

@@ -1,4 +1,6 @@
-"""The last step of a sampler: Ipopt from its best points, their discrete variables held.
+"""The last step of a sampler: a local method from its best points, their discrete variables held.
+
+Ipopt; for texts without derivatives that are run point by point, COBYQA, with most of the budget.
 
 A sampler meets an equality or a limit only as nearly as its last steps are short; a local method
 meets them to rounding. From the best point so reached, one discrete variable is moved to its next
@@ -13,17 +15,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise.box import allowed_values
+from gearopt.optimise.box import allowed_values, box
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.deadline import until
+from gearopt.optimise.evaluation import elementwise
 from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome
 from gearopt.optimise.scale import violation
-from gearopt.optimise.solvers import ipopt
+from gearopt.optimise.solvers import cobyqa, ipopt
 from gearopt.optimise.terms import Array
 
 SHARE, MOST = 0.1, 500  # of a budget is kept; evaluations at the most
+BLIND = 0.7  # of a budget is kept where the text has no derivatives
+BLIND_PER_VARIABLE = 150  # evaluations at the most, where it has none
+BLIND_VARIABLES = 30  # at the most: COBYQA's models grow with their square
+APART = 0.2  # of the box: nearer starts lead to the same place
 TRACED = 0.3  # of a budget at the most is for a tape; the sampler needs none
 STARTS = 5  # points of the sampler to polish, of different discrete values
 RUNS = 60  # of Ipopt at the most
@@ -40,23 +47,32 @@ SETTINGS = {
 class Polish:
     """A sampler's last step, and the clock of the whole run.
 
-    skipped: why there is none, None where there is; "" goes unsaid.
+    skipped: why there is none, None where there is; "" goes unsaid. blind: the text has no
+    derivatives, and why.
     """
 
     problem: Problem
     clock: Clock
     skipped: str | None
+    blind: str = ""
+
+    def sampling(self) -> tuple[Clock, int | None]:
+        """Return the clock of the sampling, and the evaluations at which it ends (`sampling`)."""
+        variables = len(self.problem.columns) if self.blind else 0
+        return sampling(self.clock, self.skipped is None, variables)
 
 
-def sampling(clock: Clock, polished: bool) -> tuple[Clock, int | None]:
+def sampling(clock: Clock, polished: bool, blind: int = 0) -> tuple[Clock, int | None]:
     """Return the clock of the sampling in a run, and the evaluations at which it ends.
 
-    polished: a polish follows, for which a part of the run's budget is kept.
+    polished: a polish follows, for which a part of the run's budget is kept. blind: the number of
+    variables of a text without derivatives.
     """
     seconds, most = clock.budget.seconds, clock.budget.evaluations
     if polished:
-        seconds = None if seconds is None else (1.0 - SHARE) * seconds
-        most = None if most is None else most - min(MOST, int(SHARE * most))
+        share, kept = (BLIND, BLIND_PER_VARIABLE * (blind + 1)) if blind else (SHARE, MOST)
+        seconds = None if seconds is None else (1.0 - share) * seconds
+        most = None if most is None else most - min(kept, int(share * most))
     return Clock(Budget(seconds), clock.watch, clock.start), most
 
 
@@ -64,25 +80,28 @@ def prepared(problem: Problem, clock: Clock) -> Polish:
     """Return the polish of a run: the text is traced here, within a part of its budget."""
     left = clock.left.seconds
     with until(None if left is None else TRACED * left):
-        return Polish(problem, clock, _obstacle(problem))
+        return _prepared(problem, clock)
 
 
-def _obstacle(problem: Problem) -> str | None:
-    """Return why a problem cannot be polished, None if it can; "" goes without saying."""
+def _prepared(problem: Problem, clock: Clock) -> Polish:
+    """Return the polish of a run, which traces the text."""
     lower, upper, guess = problem.bounds()
     variables = [v for v, _ in problem.columns]
     free = [not v.discrete and a < b for v, a, b in zip(variables, lower, upper, strict=True)]
     if not any(free) or len(problem.rows.objectives) > 1:
-        return ""
+        return Polish(problem, clock, "")
     try:
         form(problem.holding(guess))
     except SolveError as refusal:
-        return f"not polished: {refusal}"
-    return None
+        together = problem.vectorised or elementwise(problem, None)
+        if together or sum(free) > BLIND_VARIABLES:  # where a point costs as much as a population
+            return Polish(problem, clock, f"not polished: {refusal}")
+        return Polish(problem, clock, None, f"polished by cobyqa: {refusal}")
+    return Polish(problem, clock, None)
 
 
 def polished(polish: Polish, sampled: Outcome, starts: Array) -> Outcome:
-    """Return the sampler's outcome, or a better one of Ipopt from one of `starts` (N, n).
+    """Return the sampler's outcome, or a better one of a local method from `starts` (N, n).
 
     starts: in order of promise; the first of each choice of discrete values counts, and the
     sampler's own point. The iterations that are planned are its own end; clock and watcher are not.
@@ -90,11 +109,12 @@ def polished(polish: Polish, sampled: Outcome, starts: Array) -> Outcome:
     problem, most = polish.problem, polish.clock.budget.evaluations
     if polish.skipped is not None:
         return replace(sampled, message=sampled.message or polish.skipped)
+    sampled = replace(sampled, message=sampled.message or polish.blind)
     best, least, done = sampled, _value(problem, sampled.x), True
     planned = ITERATIONS if most is None else most - sampled.evaluations
     spent = runs = 0
     polish.clock.evaluations, polish.clock.best = sampled.evaluations, least
-    waiting, tried = _chosen(problem, sampled.x, starts), set[tuple[float, ...]]()
+    waiting, tried = _chosen(polish, sampled.x, starts), set[tuple[float, ...]]()
     while waiting and done and runs < RUNS and spent < planned:
         start = waiting.pop(0)
         tried.add(_choice(problem, start))
@@ -104,7 +124,7 @@ def polished(polish: Polish, sampled: Outcome, starts: Array) -> Outcome:
         done = found.finished or spent >= planned
         value = _value(problem, found.x)
         if value < least:
-            best, least = replace(found, message=""), value
+            best, least = replace(found, message=polish.blind), value
         if not waiting and best.x is not None:
             waiting = [x for x in _beside(problem, best.x) if _choice(problem, x) not in tried]
     return replace(
@@ -120,12 +140,26 @@ def _choice(problem: Problem, x: Array) -> tuple[float, ...]:
     return tuple(float(a) for a, (v, _) in zip(x, problem.columns, strict=True) if v.discrete)
 
 
-def _chosen(problem: Problem, best: Array | None, starts: Array) -> list[Array]:
-    """Return the best point, and the starts that differ from one another in a discrete value."""
+def _chosen(polish: Polish, best: Array | None, starts: Array) -> list[Array]:
+    """Return the best point, and the starts that differ from one another in a discrete value.
+
+    Without derivatives the best point comes first, and starts far from one another count, too.
+    """
+    problem, every = polish.problem, [] if best is None else [best]
+    if polish.blind:
+        space, apart = box(problem), list[Array]()
+        for x in [*every, *starts]:
+            unit, choice = space.unit(x[None])[0], _choice(problem, x)
+            near = (np.abs(space.unit(y[None])[0] - unit).max() <= APART for y in apart)
+            if not any(
+                _choice(problem, y) == choice and n for y, n in zip(apart, near, strict=True)
+            ):
+                apart.append(x)
+        return apart[:STARTS]
     firsts: dict[tuple[float, ...], Array] = {}
     for x in starts:
         firsts.setdefault(_choice(problem, x), x)
-    return [*list(firsts.values())[:STARTS], *([] if best is None else [best])]
+    return [*list(firsts.values())[:STARTS], *every]
 
 
 def _beside(problem: Problem, x: Array) -> list[Array]:
@@ -142,12 +176,14 @@ def _beside(problem: Problem, x: Array) -> list[Array]:
 
 
 def _solved(polish: Polish, start: Array, most: int) -> Outcome:
-    """Run Ipopt from a start, `most` iterations; nothing, unfinished, without time left."""
+    """Run the local method from a start, `most` steps; nothing, unfinished, without time left."""
     left = replace(polish.clock.left, evaluations=most)
     if left.seconds == 0.0:
         return Outcome(None, finished=False)
     held = polish.problem.holding(start)
-    return ipopt.run(held, left, 0, polish.clock.inner(), start=start)
+    method = cobyqa if polish.blind else ipopt
+    outcome: Outcome = method.run(held, left, 0, polish.clock.inner(), start=start)
+    return outcome
 
 
 def _value(problem: Problem, x: Array | None) -> float:

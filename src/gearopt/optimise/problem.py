@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise.evaluation import at, evaluated, terms_of
+from gearopt.optimise.evaluation import at, evaluated, first_terms, terms_of
 from gearopt.optimise.own_methods import check_methods
 from gearopt.optimise.terms import (
     SECTIONS,
@@ -240,11 +240,14 @@ class Problem:
         return found
 
     def names(self, repeat: Repeat | None) -> dict[str, list[str]]:
-        """Return names of all terms of a text, as it gives them at the guess."""
+        """Return names of all terms of a text, as it gives them at the guess, or near it."""
         key = ("names", repeat and repeat.name)
         if key not in self.memo:
-            own = _bounds(repeat.variables)[2] if repeat else np.empty(0)
-            terms = at(self, repeat, _bounds(self.variables)[2], own, 0)
+            if repeat is None:
+                terms = first_terms(self)
+            else:
+                guess, own = (_bounds(v)[2] for v in (self.variables, repeat.variables))
+                terms = at(self, repeat, guess, own, 0)
             self.memo[key] = {part: [n for n, _ in flat(getattr(terms, part))] for part in SECTIONS}
         found: dict[str, list[str]] = self.memo[key]
         return found

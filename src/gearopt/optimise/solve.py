@@ -3,6 +3,7 @@
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from difflib import get_close_matches
 from importlib import import_module
 from typing import Any
@@ -15,6 +16,7 @@ from gearopt.optimise.certificate import Verdict, certify
 from gearopt.optimise.clock import Clock, of_problem
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.deadline import until
+from gearopt.optimise.failures import counting
 from gearopt.optimise.maximised import as_asked
 from gearopt.optimise.own_methods import back_ends, run_method
 from gearopt.optimise.problem import Problem, one_objective
@@ -63,9 +65,14 @@ def run(
     clock = Clock()
     follow = of_problem(watch, problem)
     call = method_of(problem, name)
-    with until((budget or Budget()).seconds):
+    seconds = (budget or Budget()).seconds
+    with until(seconds), counting(seconds) as points:
         outcome = run_method(call, problem, name, budget or Budget(), seed, follow)
+        points.end = None
         verdict = judge(problem, name, outcome, gap)
+    if points.failed:
+        words = filter(None, [verdict.message.rstrip("."), str(points)])
+        verdict = replace(verdict, message=". ".join(words))
     return _result(problem, name, outcome, verdict, clock.seconds, seed), outcome
 
 

@@ -16,7 +16,7 @@ from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Array
 
 CHAINS = 32
-SWEEPS = 4000  # where the budget names no evaluations: 128,000 in all
+SWEEPS = 4000  # where the budget names no end: 128,000 evaluations in all
 HOT, COLD = 0.3, 1e-7  # temperatures, in units of the logarithm of the objective
 PENALTY, HARDER = 5.0, 100.0  # energy of a violation of 1 at first, and how often it at last
 LONGEST, SHORTEST = 0.3, 1e-6  # steps in a box of width 1
@@ -24,7 +24,7 @@ FEASIBLE = 1e-9
 
 FROM_GUESS = True  # it begins at the guess, or where a caller starts it
 RANDOM = True
-PACED = True  # the cooling is stretched over the evaluations it is given
+PACED = True  # the cooling is stretched over the evaluations, or else the seconds, it is given
 COUNTS = "point evaluated or Ipopt iteration"
 SETTINGS = {
     "chains": CHAINS,
@@ -39,7 +39,8 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     """Anneal CHAINS chains; the best feasible point ever visited is polished."""
     clock, rng, space = Clock(budget, watch), np.random.default_rng(seed), box(problem)
     last = polish.prepared(problem, clock)
-    own, most = polish.sampling(clock, last.skipped is None)
+    own, most = last.sampling()
+    began, end = own.seconds, own.budget.seconds if most is None else None
     chains = CHAINS if most is None else min(CHAINS, max(1, most))
     sweeps = SWEEPS if most is None else most // chains - 1
     unit = rng.random((chains, len(space.low)))
@@ -50,8 +51,8 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     best, own.best = _kept(space, unit, value, excess, None, np.inf)
     own.evaluations = chains
     sweep = 0
-    while own.tell() and sweep < sweeps:
-        done = sweep / sweeps
+    while own.tell() and (end is not None or sweep < sweeps):
+        done = sweep / sweeps if end is None else min((own.seconds - began) / (end - began), 1.0)
         temperature = HOT * (COLD / HOT) ** done
         moved = _moved(rng, space, unit, LONGEST * (SHORTEST / LONGEST) ** done)
         new_value, new_excess = violation(problem, space.points(moved))
@@ -68,7 +69,8 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
         excess[accept] = new_excess[accept]
         sweep += 1
     message = "" if best is not None else "no feasible point was visited"
-    outcome = Outcome(best, not own.stopped, evaluations=own.evaluations, message=message)
+    finished = not own.stopped or (end is not None and sweep > 0 and not own.refused)
+    outcome = Outcome(best, finished, evaluations=own.evaluations, message=message)
     energy = _energy(value, excess, PENALTY * HARDER, scale, positive)
     order = np.argsort(np.nan_to_num(energy, nan=np.inf), kind="stable")
     return polish.polished(last, outcome, space.points(unit[order])) if not own.refused else outcome

@@ -6,6 +6,7 @@ and nothing is polished.
 """
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,8 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 
 POPULATION = 100
-GENERATIONS = 300  # where the budget names no evaluations
+GENERATIONS = 300  # where the budget names no evaluations; within seconds again, twice as many
+MAX_GENERATIONS = 1_000_000  # of a front that ends by its seconds
 EQUAL = 1e-6  # an equality counts as met within this, before the polish
 
 RANDOM = True
@@ -37,18 +39,28 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
 
     clock, space = Clock(budget, watch), box(problem)
     last = polish.prepared(problem, clock)
-    own, most = polish.sampling(clock, last.skipped is None)
+    own, most = last.sampling()
     size = min(POPULATION, most or POPULATION)
+    timed = most is None and own.budget.seconds is not None
     generations = GENERATIONS if most is None else most // size
-    algorithm = NSGA2(pop_size=size)
-    algorithm.setup(posed(problem, space), seed=seed, termination=("n_gen", max(1, generations)))
-    while algorithm.has_next() and not own.stopped:
-        algorithm.next()
-        own.evaluations = int(algorithm.evaluator.n_eval)
-        own.best = min((float(one.F[0]) for one in algorithm.opt if one.feas), default=math.inf)
-        own.tell()
     several = len(problem.rows.objectives) > 1
-    found = _front(algorithm, space, several, not algorithm.has_next())
+    algorithm, found, spent = None, Outcome(None, False), 0
+    while algorithm is None or (timed and not own.stopped):  # again until the seconds end
+        algorithm = NSGA2(pop_size=size)
+        ending = ("n_gen", MAX_GENERATIONS if timed and several else max(1, generations))
+        algorithm.setup(posed(problem, space), seed=seed, termination=ending)
+        least = own.best
+        while algorithm.has_next() and not own.stopped:
+            algorithm.next()
+            own.evaluations = spent + int(algorithm.evaluator.n_eval)
+            best = min((float(one.F[0]) for one in algorithm.opt if one.feas), default=math.inf)
+            own.best = min(own.best, best)
+            own.tell()
+        ended = not algorithm.has_next()
+        if found.x is None or own.best < least:
+            found = _front(algorithm, space, several, ended or found.finished)
+        seed, size, spent = seed + 1, 2 * size, own.evaluations
+    found = replace(found, evaluations=spent)
     everyone = sorted(algorithm.pop, key=lambda one: (float(one.CV[0]), float(one.F[0])))
     starts = space.points(np.array([one.X for one in everyone]))
     return polish.polished(last, found, starts) if not own.refused else found
@@ -82,12 +94,9 @@ def posed(problem: Problem, space: Box) -> Any:
 
 def _front(algorithm: Any, space: Box, several: bool, finished: bool) -> Outcome:
     """Return the best feasible individual of the first objective; of several, the others too."""
-    spent = int(algorithm.evaluator.n_eval)
     good = [one for one in algorithm.opt if one.feas]
     if not good:
-        return Outcome(None, finished, evaluations=spent, message="no feasible individual")
+        return Outcome(None, finished, message="no feasible individual")
     front = sorted(good, key=lambda one: float(one.F[0]))
     points = [space.points(one.X[None])[0] for one in front]
-    return Outcome(
-        points[0], finished, others=tuple(points[1:]) if several else (), evaluations=spent
-    )
+    return Outcome(points[0], finished, others=tuple(points[1:]) if several else ())
