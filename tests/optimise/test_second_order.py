@@ -37,7 +37,8 @@ def word(minimise, at, ends=(-3.0, 3.0), guess=1.0, rows=(), prices=(), equal=()
     low, high, _ = problem.bounds()
     lam = (np.array(m, float) for m in (prices, forces))
     with np.errstate(all="ignore"):  # as in the certificate
-        said = no_minimum(evaluated(problem, shape, np.array(at, float), low, high, *lam))
+        point = evaluated(problem, shape, np.array(at, float), low, high, *lam)
+        said = no_minimum(point).words
     return "open" if said == OPEN else said.rpartition(" falls along ")[2]
 
 

@@ -339,7 +339,8 @@ def test_where_slopes_vanish_but_the_objective_falls_is_said(name):
     words = "not a minimum: gradients vanish there, but the objective falls along x. Ended."
     assert verdict.message == words
     if name == "parabola":
-        assert solve(problem).status == "feasible"  # Ipopt's guess is the maximum
+        result = solve(problem)  # Ipopt's guess is the maximum, which it leaves for an end
+        assert result.status in ("stationary", "optimal") and result.value < verdict.objective
 
 
 ROOT = math.sqrt(0.5)
@@ -372,6 +373,21 @@ def test_curvature_is_looked_at_along_the_limits(name):
     if along:
         falls = verdict.message.rstrip(".").rsplit(" along ", 1)[1]
         assert sorted(falls.split(", ")) == along.split(", ")
+
+
+@pytest.mark.parametrize(
+    ("text", "least"),
+    [
+        (lambda a, b: a**2 - b**2 + b**4, -0.25),
+        (lambda a, b: a * b + a**4 + b**4, -0.125),
+        (lambda a, b: (a - 0.5) ** 2 - abs(a - 0.5) + b**2, -0.25),
+        (lambda a, b: np.cos(3.0 * a) * np.cos(3.0 * b) + 0.1 * (a**2 + b**2), None),
+    ],
+)
+def test_ipopt_goes_on_from_a_saddle_and_a_kink_along_which_the_objective_falls(text, least):
+    result = solve(plane(text, -3.0, 3.0, (0.5 if least == -0.25 else 0.0, 0.0)), "ipopt")
+    assert result.status == "stationary" and "falls" not in result.message
+    assert result.value == pytest.approx(least, rel=1e-9) if least else result.value < -0.8
 
 
 def test_limits_without_a_price_leave_a_minimum_open():

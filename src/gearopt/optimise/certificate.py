@@ -48,7 +48,8 @@ EMPTY = "Proof: the box in parts, each shown by linear rows or by intervals to h
 class Verdict:
     """The certified facts: status, objective, bound and gap (or None), residuals, proof, words.
 
-    multipliers: {name of a limit or an equality: d objective / d right-hand side}.
+    multipliers: {name of a limit or an equality: d objective / d right-hand side}. lower: a point
+    beside one that is no minimum, from which the objective falls further.
     """
 
     status: str
@@ -59,6 +60,7 @@ class Verdict:
     proof: Mapping[str, Any] = field(default_factory=dict)
     message: str = ""
     multipliers: Mapping[str, float] = field(default_factory=dict)
+    lower: Array | None = None
 
 
 @np.errstate(all="ignore")  # numbers beyond doubles become NaN, and NaN proves nothing
@@ -215,9 +217,10 @@ def _local(
     if loose := runaway(problem, outcome.x, lower, upper, guess):
         return replace(before, status="failed", message=loose)
     if outcome.finished and all(v <= STATIONARY for v in found.values()):
-        why = no_minimum(best)
-        message = f"{why}. {before.message}".strip() if why else before.message
-        before = replace(before, status="feasible" if why else "stationary", message=message)
+        doubt = no_minimum(best)
+        message = f"{doubt.words}. {before.message}".strip() if doubt.words else before.message
+        status = "feasible" if doubt.words else "stationary"
+        before = replace(before, status=status, message=message, lower=doubt.lower)
     bounds = [dual_bound(point) for point in points] if shape.convex else []
     known = [pair for pair in bounds if math.isfinite(pair[0])]
     if not known:

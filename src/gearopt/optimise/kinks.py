@@ -45,10 +45,11 @@ def kink(problem: Problem, x: Array, active: Any) -> str:
     return next((name for name in (*every[0], *inequalities, *every[2]) if name), "")
 
 
-def probed(problem: Problem, x: Array) -> tuple[str, bool]:
-    """Return the variable along which the objective falls, and whether it rises along all others.
+def probed(problem: Problem, x: Array) -> tuple[str, bool, Array]:
+    """Return the variable along which the objective falls, whether it rises along all others.
 
     By PROBE_STEPS to both sides of each variable, alone, that exceed no limit further; "": none.
+    Beside them the lowest of these points along that variable, else x.
     """
     lower, upper, _ = problem.bounds()
     own, count = np.diag(sizes(problem, x)), len(x)
@@ -65,7 +66,11 @@ def probed(problem: Problem, x: Array) -> tuple[str, bool]:
     )
     falling = np.flatnonzero(less.all(axis=0))
     name = str(problem.columns[falling[0] % count][1]) if len(falling) else ""
-    return name, bool((more | ~free.reshape(more.shape)).all())
+    rising = bool((more | ~free.reshape(more.shape)).all())
+    if not name:
+        return name, rising, x
+    along = np.arange(len(PROBE_STEPS)) * len(ways) + falling[0]
+    return name, rising, points[along[change[along].argmin()]]
 
 
 def _read(problem: Problem, x: Array) -> tuple[list[str], list[str], list[str]]:

@@ -26,6 +26,8 @@ from gearopt.optimise.terms import Array, Var
 
 LIBRARIES = {Problem: ("casadi",), Conic: ("cvxpy", "clarabel")}  # what an answer rests on
 PRICED = ("optimal", "stationary")  # of other points multipliers mean nothing
+FOLLOWING = ("ipopt", "multistart", "cobyqa")  # they go on from a saddle or a maximum
+DESCENTS = 10  # from saddle to saddle, at most
 GAP = 1e-6  # relative; what `optimal` means unless the caller says otherwise
 
 
@@ -70,10 +72,33 @@ def run(
         outcome = run_method(call, problem, name, budget or Budget(), seed, follow)
         points.end = None
         verdict = judge(problem, name, outcome, gap)
+        if verdict.lower is not None and name in FOLLOWING and name not in problem.methods:
+            left = Clock(budget or Budget(), follow, clock.start)
+            outcome, verdict = _followed(left, problem, name, outcome, verdict, gap)
     if points.failed:
         words = filter(None, [verdict.message.rstrip("."), str(points)])
         verdict = replace(verdict, message=". ".join(words))
     return _result(problem, name, outcome, verdict, clock.seconds, seed), outcome
+
+
+def _followed(
+    clock: Clock, problem: Any, name: str, outcome: Outcome, verdict: Verdict, gap: float
+) -> tuple[Outcome, Verdict]:
+    """Go on by ipopt from where the objective falls beside a point, as long as it gets lower."""
+    ipopt = import_module("gearopt.optimise.solvers.ipopt")
+    clock.evaluations = outcome.evaluations
+    for _ in range(DESCENTS):
+        if verdict.lower is None or verdict.objective is None or not clock.tell():
+            break
+        spent = clock.evaluations
+        further = ipopt.run(problem, clock.left, 0, clock.inner(), start=verdict.lower)
+        spent += further.evaluations
+        further, outcome = (replace(o, evaluations=spent) for o in (further, outcome))
+        judged = judge(problem, name, further, gap)
+        if judged.objective is None or not judged.objective < verdict.objective:
+            break
+        outcome, verdict = further, judged
+    return outcome, verdict
 
 
 def evaluate(problem: Problem | Conic, point: Mapping[str, Any] | Array) -> Result:

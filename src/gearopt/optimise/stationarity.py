@@ -132,6 +132,7 @@ MAX_FREE = 1000  # variables off their bounds; the reduced Hessian is dense
 ROUNDS = 20  # of making the entries of a matrix equal
 NO_NUMBER = "its curvature is not a number"
 FALLS = "not a minimum: gradients vanish there, but the objective falls along {}"
+DOWN = 0.03  # of the own scale: the first step along a direction in which the objective falls
 NEWTON = 10  # steps from a straight line to a curve, by the Hessian at the point
 
 
@@ -167,46 +168,59 @@ class _Cone:
         return inverse
 
 
-def no_minimum(point: Point) -> str:
-    """Return why a stationary point may be no local minimum, in words; "" where it is one."""
+@dataclass(frozen=True)
+class Doubt:
+    """Why a stationary point may be no local minimum, in words; "" where it is one.
+
+    lower: a natural point (n,) beside it from which the objective falls further, if one is known.
+    """
+
+    words: str = ""
+    lower: Array | None = None
+
+
+def no_minimum(point: Point) -> Doubt:
+    """Return why a stationary point may be no local minimum."""
     if point.shape.convex:
-        return ""
+        return Doubt()
     name = kink(point.problem, point.shape.to_x(point.y), point.g >= -ACTIVE_WITHIN)
     return _kinked(point, name) if name else _curved(point)
 
 
-def _curved(point: Point) -> str:
+def _curved(point: Point) -> Doubt:
     """Return why the curvature makes a stationary point no minimum; "" where it does not."""
     free = _free(point)
     if free.sum() > MAX_FREE:
-        return f"its curvature was not examined: {free.sum()} variables are off their bounds"
+        words = f"its curvature was not examined: {free.sum()} variables are off their bounds"
+        return Doubt(words)
     cone = _cone(point, free)
     if not np.isfinite(cone.curved).all():
-        return NO_NUMBER
+        return Doubt(NO_NUMBER)
     blocked = False
     for value, direction in _eigen(cone.curved, cone.firm):
         for d in (direction, -direction):
             if not (cone.loose @ d <= ALONG).all():
                 blocked = blocked or value <= -FLAT
             elif value <= -FLAT or _sinks(point, cone, d):
-                return _words(point, cone, d)
+                return _down(point, cone, d)
     if not blocked:
-        return ""
+        return Doubt()
     for value, d in _eigen(cone.curved, np.vstack([cone.firm, cone.loose])):
         if value <= -FLAT:
-            return _words(point, cone, d)
-    return "not known to be a minimum: limits are active with zero multipliers"
+            return _down(point, cone, d)
+    return Doubt("not known to be a minimum: limits are active with zero multipliers")
 
 
-def _kinked(point: Point, name: str) -> str:
+def _kinked(point: Point, name: str) -> Doubt:
     """Return why a point where a function has a kink may be no minimum: gradients tell nothing."""
     x = point.shape.to_x(point.y)
-    along, rising = probed(point.problem, x)
+    along, rising, lower = probed(point.problem, x)
     if along:
-        return FALLS.format(along)
+        return Doubt(FALLS.format(along), lower)
     if rising and len(x) == 1:
-        return "" if np.isfinite(dense(hessian(point))).all() else NO_NUMBER
-    return f"whether it is a minimum is open: {name} has a kink there, where gradients tell nothing"
+        return Doubt("" if np.isfinite(dense(hessian(point))).all() else NO_NUMBER)
+    words = f"{name} has a kink there, where gradients tell nothing"
+    return Doubt(f"whether it is a minimum is open: {words}")
 
 
 def _free(point: Point) -> Any:
@@ -323,9 +337,12 @@ def _lagrangian(point: Point, cone: _Cone, y: Array) -> tuple[float, float, Arra
     return float(value), float(sizes), np.concatenate([slope[cone.free] * cone.unit, held])
 
 
-def _words(point: Point, cone: _Cone, d: Array) -> str:
-    """Return along which variables the objective falls."""
+def _down(point: Point, cone: _Cone, d: Array) -> Doubt:
+    """Return along which variables the objective falls, and a point that way."""
     names = [name for (_, name), at in zip(point.problem.columns, cone.free, strict=True) if at]
-    share = np.abs(cone.unit * d) / own_scales(point)[cone.free]
+    own, step = own_scales(point), np.zeros(len(point.y))
+    share = np.abs(cone.unit * d) / own[cone.free]
     most = [names[k] for k in np.argsort(-share, kind="stable")[:3] if share[k] > 0.3 * share.max()]
-    return FALLS.format(", ".join(most))
+    step[cone.free] = DOWN * cone.unit * d / share.max()
+    lower = point.shape.to_x(np.clip(point.y + step, point.low, point.high))
+    return Doubt(FALLS.format(", ".join(most)), lower)
