@@ -88,7 +88,9 @@ def test_whole_numbers_repeats_and_choices_take_comparisons():
         )
 
     whole = tuple(Var(n, "", 0, 10, 1, integer=True) for n in "ab")
-    result = solve(Problem("w", whole, (), text), method="annealing", budget=Budget(evaluations=3000))
+    result = solve(
+        Problem("w", whole, (), text), method="annealing", budget=Budget(evaluations=3000)
+    )
     best = min(
         (a + 10 if a <= 3 else a) + b
         for a in range(11)

@@ -17,6 +17,7 @@ from gearopt.errors import CertificateError, SolveError
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.dual import ROUNDING, farkas, multipliers
 from gearopt.optimise.dual import bound as dual_bound
+from gearopt.optimise.epigraphs import epigraph, raised
 from gearopt.optimise.form import Form, form
 from gearopt.optimise.problem import Problem, Rows
 from gearopt.optimise.quadratic import natural
@@ -200,6 +201,9 @@ def _local(
     """
     assert outcome.x is not None
     try:
+        if (smooth := epigraph(problem)) is not None:
+            lifted = replace(outcome, x=raised(problem, outcome.x), lam_g=None, lam_h=None)
+            return _local(smooth, lifted, before, tolerance, worst)
         shape = _shape(problem)
     except SolveError as untraced:  # without derivatives no more than a feasible point is certain
         said = str(untraced) in before.message

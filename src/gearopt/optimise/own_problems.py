@@ -20,10 +20,6 @@ from gearopt.optimise.solve import default_method, solve
 from gearopt.optimise.tape import log_convex_in_logarithms
 from gearopt.optimise.terms import Array
 
-MAXIMUM = (
-    "write every np.maximum(a, b) as a further variable t with log=True and "
-    "defines={'over': (a / t, b / t)}"
-)
 SAMPLER = "annealing"  # taken where variables are discrete and nothing is proven
 PROVER = "spatial"
 PROVEN = ("optimal", "infeasible")
@@ -157,9 +153,8 @@ def _provable(problem: Problem | Conic, result: Result) -> str:
     if any(v.discrete for v in variables) or (low < 0.0).any():
         return ""
     try:
-        bent = _takes_maxima(problem)
-        known = result.bound is not None and not bent
-        if known or not (plain or bent) or not log_convex_in_logarithms(problem):
+        known = result.bound is not None
+        if known or not plain or not log_convex_in_logarithms(problem):
             return ""
     except SolveError:  # no tape
         return ""
@@ -172,17 +167,8 @@ def _provable(problem: Problem | Conic, result: Result) -> str:
         ],
     }
     needs = "".join(f", {what} for {', '.join(names)}" for what, names in more.items() if names)
-    steps = [f"declare log=True for {', '.join(plain)}{needs}"] if plain else []
-    steps += [MAXIMUM] if bent else []
-    return f"{', and '.join(steps)}: then this is a geometric program, whose optimum is proven"
-
-
-def _takes_maxima(problem: Problem) -> bool:
-    """Return whether a text takes the larger of two numbers: there no dual bound is tight."""
-    import casadi as ca
-
-    tapes = (block.function for block in problem.traced().blocks)
-    return any(f.instruction_id(k) == ca.OP_FMAX for f in tapes for k in range(f.n_instructions()))
+    steps = f"declare log=True for {', '.join(plain)}{needs}"
+    return f"{steps}: then this is a geometric program, whose optimum is proven"
 
 
 def _started(problem: Problem | Conic, method: str, start: Mapping[str, Any]) -> Problem:

@@ -1,5 +1,6 @@
 """Ipopt through CasADi, on the form of a problem (logarithms of variables and proven rows).
 
+Maxima of log-convex texts become epigraphs (`epigraphs`).
 Wide logarithms are split up first (`nonlinear`); y is then followed by the u of their epigraphs.
 Ipopt's tolerances are absolute, so it is given natural variables and objectives in units of their
 own scale. Where that of the objective is far smaller in the end than at first, it continues from
@@ -10,7 +11,7 @@ turns into a proof where the form is convex.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -19,6 +20,7 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.optimise import tape
 from gearopt.optimise.clock import Clock
+from gearopt.optimise.epigraphs import epigraph, raised
 from gearopt.optimise.form import Form, form, values, violation
 from gearopt.optimise.nonlinear import OPTIONS, Split, Unit, program, scaled, split, unit_at
 from gearopt.optimise.problem import Problem
@@ -109,6 +111,13 @@ def run(
     for variable, name in problem.columns:
         if variable.discrete:
             raise SolveError(f"ipopt takes continuous variables only; {name} is discrete")
+    if (smooth := epigraph(problem)) is not None:
+        begin = None if start is None else raised(problem, start)
+        lifted = run(smooth, budget, seed, watch, begin)
+        own = None if lifted.x is None else lifted.x[: len(problem.columns)]
+        if not lifted.infeasible:
+            return replace(lifted, x=own, lam_g=None, lam_h=None)
+        clock.evaluations = lifted.evaluations
     shape = form(problem)
     lower, upper, guess = problem.bounds()
     y0 = shape.to_y(np.clip(guess if start is None else start, lower, upper))
