@@ -13,6 +13,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError  # noqa: F401
+from gearopt.optimise.certified import GAP
 from gearopt.optimise.clock import Clock, of_others, tell_known, whole
 from gearopt.optimise.comparing.compare import compare as compare_methods
 from gearopt.optimise.comparing.comparison import Comparison
@@ -27,7 +28,7 @@ from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.pareto.tradeoff import Tradeoff, chosen_of, compared_methods, solved, traded
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch, plain  # noqa: F401
-from gearopt.optimise.solve import GAP, evaluate  # noqa: F401
+from gearopt.optimise.solve import evaluate  # noqa: F401
 from gearopt.optimise.terms import Param, Repeat, Terms, Var  # noqa: F401
 from gearopt.scenes.explaining.explanations import explanation, without_design
 from gearopt.scenes.kind import Kind

@@ -5,7 +5,8 @@ import pytest
 
 from gearopt.formulations.pair.relief.meshing import Mesh
 from gearopt.formulations.pair.relief.parametric import Ranges, at_point, problem
-from gearopt.optimise.solve import Budget, solve
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import solve
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.load_sharing import share
 from gearopt.physics.mesh_cycle import cycle

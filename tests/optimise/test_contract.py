@@ -10,9 +10,10 @@ from gearopt.errors import SolveError
 from gearopt.optimise import tape
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.form import form
+from gearopt.optimise.own_methods import back_ends
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
-from gearopt.optimise.solve import back_ends, method_of, run, solve
+from gearopt.optimise.solve import method_of, run, solve
 from gearopt.optimise.terms import Param, Repeat, Terms, Var
 
 

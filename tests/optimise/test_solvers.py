@@ -13,9 +13,10 @@ from gearopt.formulations.drive import sizing, teeth
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.optimise.own_methods import back_ends
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
-from gearopt.optimise.solve import back_ends, solve
+from gearopt.optimise.solve import solve
 from gearopt.optimise.solvers import scip
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.gears import SERIES_I

@@ -15,7 +15,8 @@ from gearopt.formulations.pair.relief.rules import (
     tip_amounts,
     without_error,
 )
-from gearopt.optimise.solve import Budget, solve
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import solve
 
 
 def peaks(made, pinion=NO_RELIEF, wheel=NO_RELIEF):

@@ -6,7 +6,8 @@ from relief_pairs import COUPLING, mesh
 
 from gearopt.formulations.pair.relief.parametric import Ranges, at_point, problem
 from gearopt.formulations.pair.relief.relief_mpec import HOMOTOPY, MICRO, _point, complementarity
-from gearopt.optimise.solve import Budget, solve
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import solve
 
 
 @pytest.mark.parametrize("exponent", [1.0, 2.0])

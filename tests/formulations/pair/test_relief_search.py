@@ -10,7 +10,8 @@ from relief_pairs import COUPLING, LOAD, mesh
 from gearopt.formulations.pair.relief.meshing import Mesh, Relief
 from gearopt.formulations.pair.relief.parametric import Ranges, at_point, problem
 from gearopt.formulations.pair.relief.relief_search import numbers
-from gearopt.optimise.solve import Budget, solve
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import solve
 from gearopt.physics.geometry.contact import ContactPath
 from gearopt.physics.mesh_cycle import cycle
 

@@ -12,7 +12,8 @@ from gearopt.formulations.pair.relief.relief_tolerance import (
     robust_problem,
     worst,
 )
-from gearopt.optimise.solve import Budget, solve
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import solve
 
 MADE = mesh((0.6, 1.0))
 NOMINAL = Relief(11.7e-3, 4.16), Relief(13.5e-3, 4.75)

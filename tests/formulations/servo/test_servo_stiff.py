@@ -16,8 +16,9 @@ from gearopt.formulations.servo.split import (
 from gearopt.formulations.servo.split.servo_train import pairs, train_error
 from gearopt.optimise import tape
 from gearopt.optimise.certificate import certify
+from gearopt.optimise.certified import limits
 from gearopt.optimise.result import Budget
-from gearopt.optimise.solve import limits, solve
+from gearopt.optimise.solve import solve
 from gearopt.optimise.solvers import ipopt
 from gearopt.physics.stiffness import stiffness_of_frequency
 

@@ -14,12 +14,12 @@ import numpy as np
 from gearopt.formulations.strain_wave.demand import FREE, OUTSIDE_BASE, PRESSURE, TIP_GAP, Demand
 from gearopt.formulations.strain_wave.impossible import Nearest, nearest
 from gearopt.formulations.strain_wave.sizing import COUNT, NO_LIMITS, Passage, problem, tip_leaves
+from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.dual import multipliers
 from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch
-from gearopt.optimise.solve import run
 from gearopt.optimise.stationarity import evaluated
 from gearopt.optimise.terms import Array
 from gearopt.physics.strain_wave.clearance import Least, least_gaps

@@ -6,10 +6,10 @@ from typing import Any
 
 from gearopt.formulations.strain_wave.demand import FREE, LAND, TIP_GAP, Demand
 from gearopt.formulations.strain_wave.sizing import problem, tip_leaves
+from gearopt.optimise.certified import limits, run
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE
-from gearopt.optimise.solve import limits, run
 from gearopt.optimise.terms import Array, Terms, Var
 
 GUARDS = ("curvature", "cusp")  # keep the flank regular: there is no gearing without them

@@ -11,6 +11,7 @@ from typing import Any
 
 from gearopt.errors import GearoptError, SolveError
 from gearopt.optimise.certificate import Verdict
+from gearopt.optimise.certified import GAP
 from gearopt.optimise.clock import Clock, following, in_part, of_problem
 from gearopt.optimise.comparing.comparison import Comparison, Group, Row, Run, sample
 from gearopt.optimise.comparing.runs import (
@@ -32,7 +33,7 @@ from gearopt.optimise.own_methods import run_method
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome
 from gearopt.optimise.scale import zero_scale
-from gearopt.optimise.solve import GAP, judge, method_of
+from gearopt.optimise.solve import judge, method_of
 from gearopt.optimise.terms import Array
 
 BOUND_SECONDS = 60.0

@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 
+from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.explaining.explanation import Change, Explanation, Influence, Remedy
 from gearopt.optimise.explaining.halving import Bracket, middles, take
@@ -33,7 +34,7 @@ from gearopt.optimise.explaining.repair import (
 from gearopt.optimise.explaining.sensitivity import BINDS, sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result, Watch
-from gearopt.optimise.solve import run, solve_within
+from gearopt.optimise.solve import solve_within
 from gearopt.optimise.terms import Array, spread
 
 THERE = ("optimal", "stationary", "feasible")  # a design exists

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.optimise.certified import GAP
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.form import form
@@ -41,7 +42,6 @@ from gearopt.optimise.pareto.posed import (
 )
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Result, Watch
-from gearopt.optimise.solve import GAP
 from gearopt.optimise.solve import run as solve_raw
 from gearopt.optimise.terms import Array
 

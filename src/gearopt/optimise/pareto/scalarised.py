@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.pareto import evolution
 from gearopt.optimise.pareto.found import Found, Point, Step, sifted
 from gearopt.optimise.pareto.posed import Built, Limit, kept, posed, valued
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Watch
-from gearopt.optimise.solve import run
 from gearopt.optimise.solvers import annealing
 from gearopt.optimise.terms import Array, Terms
 

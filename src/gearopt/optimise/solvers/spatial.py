@@ -5,11 +5,11 @@ Continuous, whole and listed variables alike. Its records are the claim, judged 
 
 import numpy as np
 
+from gearopt.optimise.certified import GAP
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import compiling_aside, kernel
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
-from gearopt.optimise.solve import GAP
 from gearopt.optimise.spatial.columns import ROOM, Columns, columns
 from gearopt.optimise.spatial.incumbent import Incumbent
 from gearopt.optimise.spatial.step import Stepper

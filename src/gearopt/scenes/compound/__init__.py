@@ -10,11 +10,11 @@ from pydantic import Field
 from gearopt.errors import SolveError
 from gearopt.formulations import compound
 from gearopt.formulations.compound import wider
+from gearopt.optimise.certified import run
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.pareto.front import Objective
 from gearopt.optimise.pareto.tradeoff import EPSILON, Tradeoff
 from gearopt.optimise.result import Result
-from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.kind import Kind, Trades, examples_in
@@ -72,14 +72,14 @@ class CompoundDesign:
 
 
 def nearest(scene: Scene, ask: Ask, known: Result | None) -> Result:
-    """Return the teeth whose ratio is nearest; `report` and message name the ratio achieved."""
-    result, outcome = run(
-        posed(scene, "").problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap
-    )
+    """Teeth whose ratio is nearest; `report` and message name the ratio achieved."""
+    train = _train(scene)
+    problem = compound.problem(train)
+    result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": ""})
     if result.value is None or outcome.x is None:
         return result
-    train, teeth = _train(scene), tuple(round(float(z)) for z in outcome.x)
+    teeth = tuple(round(float(z)) for z in outcome.x)
     z1, z2, z3, z4 = teeth
     ratio = Fraction(z3 * z4, z1 * z2)
     value = float(train.miss(1 / ratio))  # rational until here

@@ -19,11 +19,11 @@ from gearopt.formulations.drive.layout.layout_text import read
 from gearopt.formulations.drive.layout.slabs import Arrangement, Slabs, arrange, arrangements
 from gearopt.formulations.drive.together.continuous import angles_of, continuous
 from gearopt.formulations.drive.train import Train
+from gearopt.optimise.certified import limits, run
 from gearopt.optimise.clock import Clock, following, in_part
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
-from gearopt.optimise.solve import limits, run
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
@@ -191,21 +191,19 @@ def _at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
     if apart.status == "infeasible" and not others_may_fit(scene, box):
         return replace(apart, name="drive")
     real = ask.method in REAL
-    model = _posed_at_once(scene, train, ask.method or "exact", apart)
-    watch, events = following(in_part(ask.watch, model.unit))
+    problem = _problem_at_once(scene, train, ask.method or "exact", apart)
+    watch, events = following(in_part(ask.watch, box.unit))
     asked = clock.left
     gap = ask.gap if ask.budget.gap or real else together.GAP
-    result, outcome = run(model.problem, ask.method, asked, ask.seed, watch, gap)
+    result, outcome = run(problem, ask.method, asked, ask.seed, watch, gap)
     parts = (replace(apart, report={}),)
-    result = replace(result, objective=result.objective | {"unit": model.unit}, parts=parts)
+    result = replace(result, objective=result.objective | {"unit": box.unit}, parts=parts)
     if result.value is None or outcome.x is None:
         spent = sum(p.seconds for p in parts)
         return replace(result, name="drive", seconds=result.seconds + spent, **_why(result, apart))
-    if isinstance(model.problem, Problem) and real:
+    if real:
         slabs = _start(scene, apart)[0]
-        return _real_valued_design(
-            scene, train, result, outcome.x, sized, model.problem, slabs, events
-        )
+        return _real_valued_design(scene, train, result, outcome.x, sized, problem, slabs, events)
     box, angles, order = together.laid_out(train, scene.gearbox, outcome.x)
     own, pairs = teeth.problem(train), together.pairs(train, outcome.x)
     point = outcome.x[: sum(v.size for v in own.variables)]
@@ -233,9 +231,12 @@ def posed(scene: Scene, method: str, sized: Result) -> Model:
     assert scene.layout is not None
     if sized.value is None:
         raise SolveError("there are no gears to lay out: gearopt explain shows why")
-    if scene.layout.together:
-        return _posed_at_once(scene, scene.train(), method, _laid_out(scene, Ask(), sized))
     box = scene.gearbox(scene.pairs(drive_design(sized.design)))
+    if scene.layout.together:
+        apart = _laid_out(scene, Ask(), sized)
+        problem = _problem_at_once(scene, scene.train(), method, apart)
+        words = "Gears and box at once" + (", real-valued teeth" if method in REAL else "")
+        return Model(problem, words, box.unit)
     if wrong := faults(box):
         raise SolveError(" ".join(wrong))
     layout.ready()  # what is compared is machine code
@@ -243,10 +244,9 @@ def posed(scene: Scene, method: str, sized: Result) -> Model:
     return Model(layout.problem(box, method), f"{words}, of gears that were chosen first", box.unit)
 
 
-def _posed_at_once(scene: Scene, train: Train, method: str, apart: Result) -> Model:
+def _problem_at_once(scene: Scene, train: Train, method: str, apart: Result) -> Problem:
     """Problem that a method gets; apart: the layout of gears sized first, a start."""
     make = scene.gearbox
-    unit = make(scene.pairs(drive_design(apart.parts[0].design))).unit
     if method == "exact":
         import numpy as np
 
@@ -255,8 +255,7 @@ def _posed_at_once(scene: Scene, train: Train, method: str, apart: Result) -> Mo
             slabs, pairs, angles = _start(scene, apart)
             gears = pairs, _options(train, drive_design(apart.design))
             known = (gears, arrange(make(pairs), slabs), np.array(angles))
-        problem = together.problem(train, make, known)
-        return Model(problem, "Gears and box at once", unit)
+        return together.problem(train, make, known)
     if method not in REAL:
         raise SolveError(f"together = true is for exact and {' and '.join(REAL)}, not for {method}")
     if scene.by_ratings:
@@ -264,8 +263,7 @@ def _posed_at_once(scene: Scene, train: Train, method: str, apart: Result) -> Mo
     if apart.value is None:
         raise SolveError(f"{method} needs a start: {apart.message}")
     slabs, pairs, angles = _start(scene, apart)
-    smooth = continuous(train, make, slabs, (pairs, angles))
-    return Model(smooth, "Gears and box at once, real-valued teeth", unit)
+    return continuous(train, make, slabs, (pairs, angles))
 
 
 def _start(scene: Scene, apart: Result) -> Start:

@@ -6,9 +6,9 @@ from gearopt.errors import SolveError
 from gearopt.formulations.drive import teeth
 from gearopt.formulations.drive.design import describe
 from gearopt.optimise.certificate import reconcile
+from gearopt.optimise.certified import run
 from gearopt.optimise.clock import in_part
 from gearopt.optimise.result import Result
-from gearopt.optimise.solve import run
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.rating.rated import with_rating
 from gearopt.scenes.drive.scene import PROCESSES, Scene

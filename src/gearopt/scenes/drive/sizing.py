@@ -10,10 +10,10 @@ from gearopt.formulations.drive.design import describe
 from gearopt.formulations.drive.processes import methods
 from gearopt.formulations.drive.train import MASSES, Train
 from gearopt.optimise.certificate import reconcile
+from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result
-from gearopt.optimise.solve import run
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.counts import best_count
 from gearopt.scenes.drive.notes import notes

@@ -13,11 +13,11 @@ from gearopt.formulations.dynamics.orbit.least_vibration import (
     response_over_speed,
 )
 from gearopt.formulations.dynamics.orbit.task import MICRO, VARIABLES, Task
+from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.explaining.explanation import Remedies
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Outcome, Result
-from gearopt.optimise.solve import run
 from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.scenes.dynamics.scene import Scene
 from gearopt.scenes.explaining.explanations import remedies as each_alone

@@ -27,13 +27,14 @@ from gearopt.formulations.packing.plan import (
 )
 from gearopt.formulations.packing.sa import lateness, ready
 from gearopt.optimise.certificate import reconcile
+from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.explaining.repair import CERTAIN
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result
-from gearopt.optimise.solve import run, solve_within
+from gearopt.optimise.solve import solve_within
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.explaining.explanations import at_point, eases, of_design
 from gearopt.scenes.explaining.numbers import rounded

@@ -13,6 +13,7 @@ from gearopt.formulations.pair.relief.meshing import Mesh, Relief
 from gearopt.formulations.pair.relief.parametric import Ranges
 from gearopt.formulations.pair.relief.relief_tolerance import Tolerance, robust_problem
 from gearopt.formulations.pair.relief_map import Removed, as_made, described
+from gearopt.optimise.certified import run
 from gearopt.optimise.clock import in_part
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.pareto.epsilon import Limiting
@@ -20,7 +21,7 @@ from gearopt.optimise.pareto.front import Objective
 from gearopt.optimise.pareto.tradeoff import Tradeoff
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
-from gearopt.optimise.solve import evaluate, run
+from gearopt.optimise.solve import evaluate
 from gearopt.optimise.terms import Array, Terms, Var
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.pair.relief_tables import ReliefTable

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field, replace
 
 from gearopt.errors import SolveError
+from gearopt.optimise.certified import GAP
 from gearopt.optimise.result import Budget, Watch
-from gearopt.optimise.solve import GAP
 
 LEAST_PRICES = 2.0  # s, for sensitivities that may take a share of the answer's seconds
 # Back ends that another seed leads elsewhere.

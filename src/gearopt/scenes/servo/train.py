@@ -36,9 +36,10 @@ from gearopt.formulations.servo.split.servo_train import (
     pairs,
     pinion_torques,
 )
+from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.result import Result
-from gearopt.optimise.solve import run, solve
+from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair

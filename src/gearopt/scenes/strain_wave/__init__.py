@@ -31,6 +31,7 @@ from gearopt.formulations.strain_wave.swept_report import (
     swept_gearing,
     used_by_law,
 )
+from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explain import binding
@@ -39,7 +40,6 @@ from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
 from gearopt.optimise.pareto.tradeoff import Tradeoff
 from gearopt.optimise.result import FEASIBLE, Budget, Result, versions
-from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.physics.strain_wave.conjugate import Flank

@@ -8,7 +8,7 @@ import numpy as np
 
 from gearopt.formulations.servo.ratio.duty import ServoDuty
 from gearopt.formulations.servo.servo_design import KG_M2, Achieved, RatioCurve
-from gearopt.optimise.solve import run
+from gearopt.optimise.certified import run
 from gearopt.physics.servo_drive import largest_acceleration, mean_ramp
 
 RPM = 30.0 / math.pi  # of a rad/s

@@ -3,10 +3,10 @@
 import math
 from dataclasses import replace
 
+from gearopt.optimise.certified import GAP
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.result import Result
-from gearopt.optimise.solve import GAP
 from gearopt.scenes.drive.explain import box_remedies
 from gearopt.scenes.drive.explain.counts import remedies_of_counts
 from gearopt.scenes.drive.explain.influences import explained

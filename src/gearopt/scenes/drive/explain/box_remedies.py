@@ -12,12 +12,13 @@ from gearopt.formulations.drive.layout.faults import faults, possible
 from gearopt.formulations.drive.layout.gearbox import Gearbox
 from gearopt.formulations.drive.layout.layout_text import placed, read
 from gearopt.formulations.drive.layout.slabs import arrangements
+from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import STEP
 from gearopt.optimise.explaining.explanation import Explanation, Remedies, Remedy
 from gearopt.optimise.explaining.repair import CERTAIN, FACTOR_TOLERANCE
 from gearopt.optimise.result import Result
-from gearopt.optimise.solve import run, solve
+from gearopt.optimise.solve import solve
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.explain.box_moves import (

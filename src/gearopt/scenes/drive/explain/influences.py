@@ -5,6 +5,7 @@ from typing import Any
 
 from gearopt.formulations.drive import sizing
 from gearopt.formulations.drive.train import MASSES
+from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import EASE, STEP, binding
 from gearopt.optimise.explaining.explanation import Explanation
@@ -12,7 +13,6 @@ from gearopt.optimise.explaining.repair import CERTAIN, value_within
 from gearopt.optimise.explaining.sensitivity import sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
-from gearopt.optimise.solve import run
 from gearopt.scenes.drive.explain.moves import fields, next_module
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.blanks import HUBS, RIM, WEB

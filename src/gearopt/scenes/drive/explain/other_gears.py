@@ -6,10 +6,10 @@ from dataclasses import replace
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import together
 from gearopt.formulations.drive.layout.faults import of_any_gears
+from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.optimise.result import Event
-from gearopt.optimise.solve import run
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.explain.box_moves import switched, switches
 from gearopt.scenes.drive.scene import Scene
