@@ -380,13 +380,15 @@ def test_the_drive_is_read_once_for_all_its_boxes(small, monkeypatch):
 
 @pytest.mark.slow
 def test_together_stopped_at_once_gives_the_gears_chosen_first(small):
-    from gearopt.scenes.drive.layout import at_once
+    from gearopt.scenes.drive.layout import steps
     from gearopt.scenes.drive.sizing import sized
     from gearopt.scenes.drive.without import without
+    from gearopt.scenes.plan import carried_out
     from gearopt.scenes.reading.ask import Ask
 
     gears = sized(without(small, "layout"), Ask())
-    result = at_once(small, Ask(budget=gearopt.Budget(seconds=0.0)), gears)
+    ask = Ask(budget=gearopt.Budget(seconds=0.0))
+    result = carried_out(steps(small), small, ask, gears)
     whole = gearopt.solve(small)
     assert result.status == "limit" and result.value is not None
     assert whole.status == "optimal" and whole.value <= result.value
@@ -395,14 +397,16 @@ def test_together_stopped_at_once_gives_the_gears_chosen_first(small):
 
 def test_a_stop_is_heard_while_the_gears_chosen_first_are_laid_out(small):
     """And their box, which is not the answer's, is not told as the best one so far."""
-    from gearopt.scenes.drive.layout import at_once
+    from gearopt.scenes.drive.layout import steps
     from gearopt.scenes.drive.sizing import sized
     from gearopt.scenes.drive.without import without
+    from gearopt.scenes.plan import carried_out
     from gearopt.scenes.reading.ask import Ask
 
     seen = []
     gears = sized(without(small, "layout"), Ask())
-    result = at_once(small, Ask(watch=lambda event: bool(seen.append(event))), gears)
+    ask = Ask(watch=lambda event: bool(seen.append(event)))
+    result = carried_out(steps(small), small, ask, gears)
     assert result.parts[0].status == "limit" and seen[0].best is None
     assert "real-valued" not in [part.name for part in result.parts]  # a start is no answer
 

@@ -7,16 +7,15 @@ without one, or by the method ipopt, sizes are continuous and proven by a dual b
 from dataclasses import replace
 
 from gearopt.errors import SolveError
-from gearopt.formulations.drive import sizing as continuous
+from gearopt.formulations.drive.sizing import problem as real_valued
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.result import Result
-from gearopt.scenes.drive import layout
+from gearopt.scenes.drive import layout, processes, sizing
 from gearopt.scenes.drive.explain.answers import influences, possible, remedies
 from gearopt.scenes.drive.notes import assumptions
-from gearopt.scenes.drive.processes import by_processes
 from gearopt.scenes.drive.rating.rated import check_safe, rate, rated_afterwards, with_rating
 from gearopt.scenes.drive.scene import PROCESSES, Scene
-from gearopt.scenes.drive.sizing import SMOOTH, sized, takes_real_values, whole_teeth
+from gearopt.scenes.drive.sizing import SMOOTH, drive_of, takes_real_values, whole_teeth
 from gearopt.scenes.drive.trades import advice, objectives, to_choose, traded
 from gearopt.scenes.drive.without import without
 from gearopt.scenes.kind import Kind, Trades, examples_in
@@ -29,29 +28,12 @@ METHODS = ("exact", "process-one", "process-two", "sa", "sa-polish", "sa-paper",
 def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
     """Gears, designs by the processes, their layout; then assumptions and the rating."""
     to_choose(scene)
-    last = (Step(with_assumptions, always=True), Step(rated, always=True))
-    if scene.layout is None:
-        return Step(gears), Step(processes, always=True), *last
-    if scene.several and scene.layout.together:
+    last: tuple[Step[Scene], ...] = (Step(with_assumptions, always=True), Step(rated, always=True))
+    if scene.layout is not None and scene.layout.together and scene.several:
         return Step(layout.of_best_count), *last
-    boxed = layout.at_once if scene.layout.together else layout.lay_out
-    return (
-        Step(gears, own=False),
-        Step(processes, own=False, always=True),
-        Step(boxed),
-        *last,
-    )
-
-
-def gears(scene: Scene, ask: Ask, known: Result | None) -> Result:
-    """Gears, without their layout."""
-    return sized(without(scene, "layout"), ask)
-
-
-def processes(scene: Scene, ask: Ask, known: Result | None) -> Result:
-    """Designs by the processes as parts."""
-    assert known is not None
-    return by_processes(without(scene, "layout"), ask, known)
+    own = scene.layout is None
+    gears = *sizing.steps(scene, ask, own), *processes.steps(scene, ask, own)
+    return (*gears, *(() if scene.layout is None else layout.steps(scene)), *last)
 
 
 def with_assumptions(scene: Scene, ask: Ask, known: Result | None) -> Result:
@@ -108,10 +90,11 @@ def posed(scene: Scene, method: str) -> Model:
     if scene.layout is not None:
         bare = without(scene, "layout")
         return layout.posed(scene, method, carried_out(steps(bare, Ask()), bare, Ask()))
-    train = scene.train()
+    drive = drive_of(scene)
     if takes_real_values(scene, method):
-        return Model(continuous.problem(train), "Real-valued teeth and modules", train.unit)
-    return Model(whole_teeth(scene, train), "Whole teeth and standard modules", train.unit)
+        train = drive.train
+        return Model(real_valued(train), "Real-valued teeth and modules", train.unit)
+    return Model(whole_teeth(drive), "Whole teeth and standard modules", drive.train.unit)
 
 
 ABOUT = {  # files in examples, that of the kind first

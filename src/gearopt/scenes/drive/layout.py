@@ -35,8 +35,9 @@ from gearopt.scenes.drive.layout_design import (
     reached,
 )
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.drive.sizing import of_count, real_valued
+from gearopt.scenes.drive.sizing import Drive, drive_of, ideal_of_count, noted, of_count
 from gearopt.scenes.drive.without import without
+from gearopt.scenes.plan import Step, carried_out
 from gearopt.scenes.reading.ask import Ask
 
 REAL_VALUED = "real-valued"  # the part with real-valued sizes
@@ -47,30 +48,37 @@ UNFIT = "These gears cannot be arranged with these clearances and positions."
 Start = tuple[Slabs, tuple[GearPair, ...], tuple[float, ...]]
 
 
+def steps(scene: Scene) -> tuple[Step[Scene], ...]:
+    """Steps to the layout of a sized drive; of gears and box at once it is the start."""
+    if scene.layout is None or not scene.layout.together:
+        return (Step(lay_out),)
+    return Step(lay_out, own=False), Step(at_once, drive_to_box, always=True)
+
+
+def drive_to_box(scene: Scene) -> Drive:
+    """The drive whose gears and box are sought at once."""
+    return drive_of(without(scene, "processes"))
+
+
 def lay_out(scene: Scene, ask: Ask, gears: Result | None) -> Result:
     """Layout of a sized drive; the sizing is kept as its part `gears`."""
     assert gears is not None
     return _laid_out(_with_gears(scene, gears), ask, gears)
 
 
-def at_once(scene: Scene, ask: Ask, gears: Result | None) -> Result:
-    """Smallest box over gears and places; parts: gears sized first; real-valued."""
-    assert gears is not None
-    return _at_once(_with_gears(scene, gears), ask, gears)
-
-
 def of_best_count(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Smallest box over gears and places, with the best number of stages."""
-    return best_count(scene, ask, real_valued, at_once_of_count)
+    return best_count(scene, ask, ideal_of_count, at_once_of_count)
 
 
 def at_once_of_count(scene: Scene, ask: Ask, ideal: Result | None = None) -> Result:
     """Gears and box at once of a drive with one number of stages; ideal: in real-valued sizes."""
     gears = of_count(without(scene, "layout"), replace(ask, method=None), ideal)
+    gears = noted(scene, replace(ask, method=None), gears)
     if gears.value is None:  # a bound of the gears is none of the box
         return replace(gears, bound=None)
     left = replace(ask, budget=ask.budget.less(gears.seconds))
-    return _at_once(without(scene, "processes"), left, gears)
+    return carried_out(steps(scene), scene, left, gears)
 
 
 def _with_gears(scene: Scene, gears: Result) -> Scene:
@@ -183,10 +191,20 @@ def others_may_fit(scene: Scene, box: Gearbox) -> bool:
     return not scene.given and not of_any_gears(box)
 
 
-def _at_once(scene: Scene, ask: Ask, sized: Result) -> Result:
-    clock, train = Clock(ask.budget), scene.train()
+def at_once(drive: Drive, ask: Ask, known: Result | None) -> Result:
+    """Smallest box over gears and places; known: the layout of gears sized first.
+
+    Parts: gears sized first; real-valued.
+    """
+    assert known is not None
+    sized = next((part for part in known.parts if part.name == "gears"), None)
+    if sized is None:  # no gears to lay out
+        return known
+    clock = Clock(ask.budget)
+    scene = drive.scene
+    train = drive.train
     together.ready(ask.watch)
-    apart = replace(_laid_out(scene, replace(ask, method=None), sized), name=APART)
+    apart = replace(known, name=APART)
     box = scene.gearbox(scene.pairs(drive_design(sized.design)))
     if apart.status == "infeasible" and not others_may_fit(scene, box):
         return replace(apart, name="drive")

@@ -2,17 +2,20 @@
 
 from dataclasses import replace
 
-from gearopt.formulations.drive.design import STEEL_DENSITY
+from gearopt.formulations.drive.design import STEEL_DENSITY, drive_design
+from gearopt.optimise.result import Result
 from gearopt.physics.gears import ISO_53_A, MEMBERS
 from gearopt.scenes.drive.rating.assumptions import every_gear, rating_assumptions, unused_materials
 from gearopt.scenes.drive.scene import Scene
-from gearopt.scenes.drive.tables.blanks import blank
+from gearopt.scenes.drive.tables.blanks import blank, body_flaws
 from gearopt.scenes.drive.tables.drive import ORIGINS
 from gearopt.scenes.drive.tables.layout import Layout
 from gearopt.scenes.drive.tables.rating import with_shared
 from gearopt.scenes.drive.tables.teeth import toothing
+from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.module_series import unverified
 
+WEAKER = " Its contact ratio is less than the one given, its root is weaker."
 CLEARANCES = {
     "gear_clearance": "between gears that do not mesh",
     "shaft_clearance": "between a shaft and what is not on it",
@@ -39,6 +42,26 @@ def notes(scene: Scene, exact: bool) -> list[str]:
     if scene.objective.density is None and not _dense(scene):
         found.append(f"The density is that of steel, {1e9 * STEEL_DENSITY:g} kg/dm³ (assumed).")
     return found + unused_materials(scene)
+
+
+def with_notes(scene: Scene, result: Result, exact: bool) -> Result:
+    """Sized gears with notes on them; those with real-valued sizes are a part with their own.
+
+    exact: the gears have whole teeth.
+    """
+    parts = (_noted(scene, p, False) if p.name == "sizing" else p for p in result.parts)
+    return replace(_noted(scene, result, exact), parts=tuple(parts))
+
+
+def _noted(scene: Scene, result: Result, exact: bool) -> Result:
+    if not result.design:
+        return result
+    design = drive_design(result.design)
+    held = scene.held(len(design.stages))
+    pairs = held.pairs(design)
+    bodies = [flaw.sentence for flaw in body_flaws(held.blanks, pairs)]
+    remarks = [*notes(held, exact), *bodies, *tooth_warnings(pairs, WEAKER)]
+    return replace(result, report=result.report | ({"notes": remarks} if remarks else {}))
 
 
 def _dense(scene: Scene) -> bool:

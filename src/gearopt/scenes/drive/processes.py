@@ -12,19 +12,30 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.rating.rated import with_rating
 from gearopt.scenes.drive.scene import PROCESSES, Scene
-from gearopt.scenes.drive.sizing import whole_teeth
+from gearopt.scenes.drive.sizing import Drive, bare_drive, whole_teeth
+from gearopt.scenes.plan import Step
 from gearopt.scenes.reading.ask import Ask
 
 
-def by_processes(scene: Scene, ask: Ask, best: Result) -> Result:
+def steps(scene: Scene, ask: Ask, own: bool = True) -> tuple[Step[Scene], ...]:
+    """Steps to the designs by the processes beside an exact answer; own: as of `Step`."""
+    if not _asked(scene) or (own and ask.method not in (None, "exact")):
+        return ()
+    return Step(by_processes, bare_drive, own, always=True), Step(rated, own=own, always=True)
+
+
+def _asked(scene: Scene) -> list[str]:
+    return [name for name in PROCESSES if getattr(scene, name) is not None]
+
+
+def by_processes(drive: Drive, ask: Ask, best: Result | None) -> Result:
     """The exact answer with the designs of the processes as parts, under its bound."""
-    asked = [name for name in PROCESSES if getattr(scene, name) is not None]
-    if not asked or best.status == "infeasible" or ask.method not in (None, "exact"):
+    assert best is not None
+    if best.status == "infeasible":
         return best
-    train = scene.train()
-    problem = whole_teeth(scene, train)
+    train, problem = drive.train, whole_teeth(drive)
     parts, remarks = [], list(best.report.get("notes", []))
-    for name in asked:
+    for name in _asked(drive.scene):
         words, method = name.replace("_", " "), name.replace("_", "-")
         try:
             watch = in_part(ask.watch, train.unit, words)
@@ -36,5 +47,13 @@ def by_processes(scene: Scene, ask: Ask, best: Result) -> Result:
             {} if outcome.x is None else untyped(describe(train, teeth.pairs(train, outcome.x)))
         )
         part = replace(part, objective=part.objective | {"unit": train.unit}, design=design)
-        parts.append(with_rating(scene, reconcile(replace(part, name=words), best, ask.gap)))
+        parts.append(reconcile(replace(part, name=words), best, ask.gap))
     return replace(best, parts=(*best.parts, *parts), report=best.report | {"notes": remarks})
+
+
+def rated(scene: Scene, ask: Ask, best: Result | None) -> Result:
+    """The answer whose designs by the processes are rated."""
+    assert best is not None
+    words = [name.replace("_", " ") for name in PROCESSES]
+    parts = [with_rating(scene, part) if part.name in words else part for part in best.parts]
+    return replace(best, parts=tuple(parts))

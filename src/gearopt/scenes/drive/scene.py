@@ -380,6 +380,11 @@ class Scene(Table):
             for own, s in zip(tables, design.stages, strict=True)
         )
 
+    @property
+    def blanks(self) -> tuple[tuple[Blank, Blank], ...]:
+        """Blanks of pinion and wheel of every stage."""
+        return tuple(self._blanks(own) for own in self.stage_tables)
+
     def gearbox(self, pairs: tuple[GearPair, ...]) -> Gearbox:
         """Drive of gear pairs with its [layout], to be laid out."""
         assert self.layout is not None

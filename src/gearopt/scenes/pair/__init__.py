@@ -37,9 +37,11 @@ def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
 
     With a table [relief] that is what the answer is about, and a sized pair is its part "gears".
     """
-    gears = Step(sized_or_given, own=scene.relief is None)
-    relief = () if scene.relief is None else (Step(with_relief),)
-    return (gears, Step(with_contact), *relief)
+    contact: tuple[Step[Scene], ...] = (
+        Step(sized_or_given, own=scene.relief is None),
+        Step(with_contact),
+    )
+    return contact if scene.relief is None else (*contact, Step(with_relief))
 
 
 def sized_or_given(scene: Scene, ask: Ask, known: Result | None) -> Result:
