@@ -3,7 +3,7 @@
 `solve` takes problems of cvxpy text, too.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from difflib import get_close_matches
 from importlib import import_module
@@ -153,6 +153,11 @@ def design(problem: Problem | Conic, x: Array) -> dict[str, Any]:
         else:
             values[key] = number
     return values
+
+
+def point_of(values: Mapping[str, Any]) -> Array:
+    """Point (n,) of values by name, all of them in order, as `design` gives them."""
+    return np.concatenate([np.ravel(np.asarray(v, float)) for v in values.values()])
 
 
 def head_of(variable: Var, name: str) -> str:

@@ -120,7 +120,7 @@ def test_the_best_material_is_that_of_all_of_them(objective):
     batch = teeth.problem(train).batch(np.stack([point, point]))
     assert batch.F[:, 0] == pytest.approx(found.found[0][0], rel=1e-12)
     assert batch.G.max() <= 1.0 + 1e-11
-    names = [(o + 1) for o in teeth.options(train, point)]
+    names = [(o + 1) for o in teeth.gears(train, point)[1]]
     assert names == [alone.index(min(alone)) // 3 + 1, alone.index(min(alone)) % 3 + 1]
 
 

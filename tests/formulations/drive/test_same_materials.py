@@ -77,7 +77,7 @@ def test_the_best_of_the_same_materials_are_the_best_of_each():
     pairs, options = choices.best_choices(alike, made)
     assert options == (alone.index(min(alone)),) * 2
     point = teeth.point(alike, pairs, options)
-    assert teeth.options(alike, point) == options
+    assert teeth.gears(alike, point)[1] == options
     batch = teeth.problem(alike).batch(np.stack([point, point]))
     assert batch.F[:, 0] == pytest.approx(value, rel=1e-12)
     assert batch.G.max() <= 1.0 + 1e-11
@@ -105,7 +105,7 @@ def test_samplers_take_the_same_materials(method):
     result, outcome = run(teeth.problem(train), method, Budget(evaluations=150), 0)
     best, _ = best_of_the_same()
     assert result.value is None or result.value >= best * (1.0 - 1e-9)
-    assert outcome.x is None or len(set(teeth.options(train, outcome.x))) == 1
+    assert outcome.x is None or len(set(teeth.gears(train, outcome.x)[1])) == 1
 
 
 def test_options_of_other_materials_are_refused():

@@ -465,7 +465,7 @@ def test_real_valued_layouts_keep_clearances_and_bounds():
     rows = continuous._apart(box, [], ([0.0, 100.0, 80.0], [10.0, 30.0, 70.0]))
     need = 60.0 + 30.0 + box.clearances.shafts
     assert rows == {"motor_to_output": pytest.approx(2.0 - (80.0**2 + 60.0**2) / need**2)}
-    posed = continuous.continuous(train, make, ((0,), (1,)), (pairs, (-0.7, -1.5)))
+    posed = continuous.problem(train, make, ((0,), (1,)), (pairs, (-0.7, -1.5)))
     (slab,) = (v for v in posed.variables if v.name == "slab")
     assert slab.guess == (25.0, 50.0) and slab.lower == pytest.approx(1e-4 * slab.upper)
     start = posed.batch(posed.bounds()[2][None])

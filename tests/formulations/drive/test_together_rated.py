@@ -118,7 +118,7 @@ def test_materials_as_by_brute_force(seed, same):
     train = replace(some_train(seed, options=3), same_option=same)
     result, outcome = same_as_brute_force(train, some_frame(seed, train), 1e-3)
     if result.value is not None and same:
-        assert len(set(together.options(train, outcome.x))) == 1
+        assert len(set(teeth.gears(train, outcome.x)[1])) == 1
 
 
 @pytest.mark.slow

@@ -17,14 +17,13 @@ from gearopt.formulations.drive.layout.faults import faults, of_any_gears
 from gearopt.formulations.drive.layout.gearbox import Gearbox
 from gearopt.formulations.drive.layout.layout_text import read
 from gearopt.formulations.drive.layout.slabs import Arrangement, Slabs, arrange, arrangements
-from gearopt.formulations.drive.together.continuous import angles_of, continuous
+from gearopt.formulations.drive.together import continuous
 from gearopt.formulations.drive.train import Train
-from gearopt.optimise.certified import limits, run
+from gearopt.optimise.certified import limits, point_of, run
 from gearopt.optimise.clock import Clock, following, in_part
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
-from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.counts import best_count
@@ -42,6 +41,7 @@ from gearopt.scenes.reading.ask import Ask
 
 REAL_VALUED = "real-valued"  # the part with real-valued sizes
 REAL = ("ipopt", "multistart")  # methods that take real-valued teeth
+IN_BOX = "gears in the box"  # the part of the gears of a box that is not drawn yet
 APART = "apart"  # the part of gears that are laid out after they are sized
 UNFIT = "These gears cannot be arranged with these clearances and positions."
 
@@ -52,7 +52,13 @@ def steps(scene: Scene) -> tuple[Step[Scene], ...]:
     """Steps to the layout of a sized drive; of gears and box at once it is the start."""
     if scene.layout is None or not scene.layout.together:
         return (Step(lay_out),)
-    return Step(lay_out, own=False), Step(at_once, drive_to_box, always=True)
+    return (
+        Step(lay_out, own=False),
+        Step(at_once, drive_to_box, always=True),
+        Step(with_gears, drive_to_box),
+        Step(with_real_values, drive_to_box),
+        Step(drawn, drive_to_box),
+    )
 
 
 def drive_to_box(scene: Scene) -> Drive:
@@ -192,47 +198,88 @@ def others_may_fit(scene: Scene, box: Gearbox) -> bool:
 
 
 def at_once(drive: Drive, ask: Ask, known: Result | None) -> Result:
-    """Smallest box over gears and places; known: the layout of gears sized first.
+    """Smallest box over gears and places, as values of its variables.
 
-    Parts: gears sized first; real-valued.
+    known: the layout of gears sized first, which is a part of the result.
     """
     assert known is not None
-    sized = next((part for part in known.parts if part.name == "gears"), None)
+    sized = _sized_first(known)
     if sized is None:  # no gears to lay out
         return known
     clock = Clock(ask.budget)
     scene = drive.scene
-    train = drive.train
     together.ready(ask.watch)
     apart = replace(known, name=APART)
     box = scene.gearbox(scene.pairs(drive_design(sized.design)))
     if apart.status == "infeasible" and not others_may_fit(scene, box):
         return replace(apart, name="drive")
-    real = ask.method in REAL
-    problem = _problem_at_once(scene, train, ask.method or "exact", apart)
+    problem = _problem_at_once(scene, drive.train, ask.method or "exact", apart)
     watch, events = following(in_part(ask.watch, box.unit))
-    asked = clock.left
-    gap = ask.gap if ask.budget.gap or real else together.GAP
-    result, outcome = run(problem, ask.method, asked, ask.seed, watch, gap)
-    parts = (replace(apart, report={}),)
-    result = replace(result, objective=result.objective | {"unit": box.unit}, parts=parts)
-    if result.value is None or outcome.x is None:
-        spent = sum(p.seconds for p in parts)
-        return replace(result, name="drive", seconds=result.seconds + spent, **_why(result, apart))
-    if real:
+    gap = ask.gap if ask.budget.gap or ask.method in REAL else together.GAP
+    result, _ = run(problem, ask.method, clock.left, ask.seed, watch, gap)
+    objective, first = result.objective | {"unit": box.unit}, replace(apart, report={})
+    result = replace(result, objective=objective, parts=(first,))
+    if result.value is not None:
+        return replace(result, report={"progress": events})
+    spent = result.seconds + apart.seconds
+    return replace(result, name="drive", seconds=spent, **_why(result, apart))
+
+
+def _sized_first(result: Result) -> Result | None:
+    """Gears sized first, of their layout; None where there was nothing to lay out."""
+    return next((part for part in result.parts if part.name == "gears"), None)
+
+
+def with_gears(drive: Drive, ask: Ask, box: Result | None) -> Result:
+    """The smallest box, whose gears are a part until it is drawn."""
+    assert box is not None
+    train = drive.train
+    whole = ask.method not in REAL
+    own = teeth.problem(train) if whole else sizing.problem(train)
+    point = point_of(box.design)[: sum(v.size for v in own.variables)]
+    pairs, options = teeth.gears(train, point) if whole else (sizing_text.pairs(train, point), ())
+    design = describe(train, pairs, options)
+    sized = _sized_first(box.parts[0])
+    assert sized is not None
+    gears = replace(sized, name=IN_BOX, design=untyped(design), limits=limits(own, point))
+    return replace(box, parts=(*box.parts, replace(gears, report={})))
+
+
+def with_real_values(drive: Drive, ask: Ask, box: Result | None) -> Result:
+    """The smallest box of whole teeth with one of real-valued teeth, which begins at it, as a part.
+
+    There is none unless Ipopt improves the box.
+    """
+    assert box is not None
+    scene = drive.scene
+    train = drive.train
+    if ask.method in REAL or scene.by_ratings:
+        return box
+    whole, angles, order = together.laid_out(train, scene.gearbox, point_of(box.design))
+    problem = continuous.problem(train, scene.gearbox, order.slabs, (whole.pairs, angles))
+    watch = in_part(ask.watch, whole.unit, REAL_VALUED)
+    result, _ = run(problem, "ipopt", ask.budget, watch=watch)
+    if result.value is None or result.status == "limit":  # a start is no answer
+        return box
+    objective = result.objective | {"unit": whole.unit}
+    return replace(box, parts=(*box.parts, replace(result, name=REAL_VALUED, objective=objective)))
+
+
+def drawn(drive: Drive, ask: Ask, box: Result | None) -> Result:
+    """The smallest box in the words of a drawing."""
+    assert box is not None
+    scene = drive.scene
+    apart, gears, *others = box.parts
+    train = drive.train
+    x = point_of(box.design)
+    if ask.method in REAL:
         slabs = _start(scene, apart)[0]
-        return _real_valued_design(scene, train, result, outcome.x, sized, problem, slabs, events)
-    box, angles, order = together.laid_out(train, scene.gearbox, outcome.x)
-    own, pairs = teeth.problem(train), together.pairs(train, outcome.x)
-    point = outcome.x[: sum(v.size for v in own.variables)]
-    design = untyped(describe(train, pairs, together.options(train, outcome.x)))
-    gears = replace(sized, design=design, limits=limits(own, point), report={})
-    whole = _with_layout(scene, result, events, gears, box, angles, order)
-    if scene.by_ratings:
-        return whole
-    left = replace(ask, budget=asked.less(result.seconds))
-    smooth = _real_valued_part(scene, train, (order.slabs, pairs, angles), left)
-    return replace(whole, parts=(*whole.parts, *smooth))
+        placed = continuous.laid_out(train, scene.gearbox, slabs, x)
+    else:
+        placed = together.laid_out(train, scene.gearbox, x)
+    events, first = box.report["progress"], replace(box, parts=(apart,))
+    whole = _with_layout(scene, first, events, gears, *placed)
+    return replace(whole, parts=(*whole.parts, *others))
 
 
 def _why(result: Result, apart: Result) -> dict[str, Any]:
@@ -281,7 +328,7 @@ def _problem_at_once(scene: Scene, train: Train, method: str, apart: Result) -> 
     if apart.value is None:
         raise SolveError(f"{method} needs a start: {apart.message}")
     slabs, pairs, angles = _start(scene, apart)
-    return continuous(train, make, slabs, (pairs, angles))
+    return continuous.problem(train, make, slabs, (pairs, angles))
 
 
 def _start(scene: Scene, apart: Result) -> Start:
@@ -301,36 +348,3 @@ def _options(train: Train, design: DriveDesign) -> tuple[int, ...]:
         for stage, n in zip(train.stages, names, strict=True)
     ]
     return tuple(own.index(n) for own, n in zip(known, names, strict=True))
-
-
-def _real_valued_part(scene: Scene, train: Train, start: Start, ask: Ask) -> tuple[Result, ...]:
-    """Real-valued part, started from an exact answer; none unless Ipopt improves it."""
-    slabs, pairs, angles = start
-    problem = continuous(train, scene.gearbox, slabs, (pairs, angles))
-    unit = scene.gearbox(pairs).unit
-    watch = in_part(ask.watch, unit, REAL_VALUED)
-    result, _ = run(problem, "ipopt", ask.budget, watch=watch)
-    if result.value is None or result.status == "limit":  # a start is no answer
-        return ()
-    return (replace(result, name=REAL_VALUED, objective=result.objective | {"unit": unit}),)
-
-
-def _real_valued_design(
-    scene: Scene,
-    train: Train,
-    result: Result,
-    x: Array,
-    sized: Result,
-    problem: Problem,
-    slabs: Slabs,
-    events: list[dict[str, Any]],
-) -> Result:
-    """Result with real-valued teeth in the words of a drawing."""
-    own = sizing.problem(train)
-    point = x[: sum(v.size for v in own.variables)]
-    pairs = sizing_text.pairs(train, point)
-    design = untyped(describe(train, pairs))
-    gears = replace(sized, design=design, limits=limits(own, point), report={})
-    box = scene.gearbox(pairs)
-    angles = angles_of(problem, x)
-    return _with_layout(scene, result, events, gears, box, angles, arrange(box, slabs))

@@ -211,10 +211,11 @@ def _solved(train: Train, ask: Ask, problem: Problem) -> Result:
         return result
     points, exact = (outcome.x, *outcome.others), problem.name == "teeth"
     if exact:
-        gears = [(teeth.pairs(train, x), teeth.options(train, x)) for x in points]
+        gears = [teeth.gears(train, x) for x in points]
     else:
         gears = [(sizing_text.pairs(train, x), ()) for x in points]
-    designs = [untyped(describe(train, pairs, options)) for pairs, options in gears]
+    described = [describe(train, pairs, options) for pairs, options in gears]
+    designs = [untyped(design) for design in described]
     values = [float(problem.batch(x[None]).F[0, 0]) for x in points]
     trains = [
         {"objective": value, "ratio": design["ratio"], "stages": design["stages"]}

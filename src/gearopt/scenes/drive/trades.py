@@ -123,6 +123,5 @@ def _real(train: Train, x: Array) -> Mapping[str, Any]:
 
 
 def _whole(train: Train, x: Array) -> Mapping[str, Any]:
-    chosen = teeth.options(train, x) if train.several_options else ()
-    design: Mapping[str, Any] = untyped(describe(train, teeth.pairs(train, x), chosen))
+    design: Mapping[str, Any] = untyped(describe(train, *teeth.gears(train, x)))
     return design

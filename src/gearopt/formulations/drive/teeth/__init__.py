@@ -99,14 +99,16 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
 
 
 def pairs(train: Train, x: Array) -> tuple[GearPair, ...]:
-    """Return the gear pairs of a point of `problem`."""
-    return _pairs(train, namespace(_variables(train), [float(v) for v in x]))
+    """Gear pairs of a point of `problem`."""
+    return gears(train, x)[0]
 
 
-def options(train: Train, x: Array) -> tuple[int, ...]:
-    """Return the option of every stage at a point of `problem`, counted from 0."""
-    variables = namespace(_variables(train), [float(v) for v in x])
-    return tuple(round(option) for option in _options(train, variables)) or (0,) * len(train.stages)
+def gears(train: Train, x: Array) -> tuple[tuple[GearPair, ...], tuple[int, ...]]:
+    """Gear pairs of a point of `problem`, and the option of every stage, counted from 0."""
+    variables = _variables(train)
+    named = namespace(variables, [float(v) for v in x])
+    options = tuple(round(option) for option in _options(train, named))
+    return _pairs(train, named), options or (0,) * len(train.stages)
 
 
 def _options(train: Train, x: Any) -> list[Any]:

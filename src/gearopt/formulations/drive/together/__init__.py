@@ -254,11 +254,6 @@ def pairs(train: Train, x: Array) -> tuple[GearPair, ...]:
     return teeth.pairs(train, x[:count])
 
 
-def options(train: Train, x: Array) -> tuple[int, ...]:
-    """Return the option of every stage at a point of `text`, counted from 0."""
-    return teeth.options(train, x[: sum(v.size for v in teeth.problem(train).variables)])
-
-
 def laid_out(train: Train, make: Make, x: Array) -> tuple[Gearbox, tuple[float, ...], Arrangement]:
     """Return the gearbox of a point of `text`, its link angles [rad] and arrangement of slabs."""
     box = make(pairs(train, x))

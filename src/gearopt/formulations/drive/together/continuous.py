@@ -36,7 +36,7 @@ ANGLES_SPAN = 0.6
 Facing = list[tuple[int, int, Body, Body]]
 
 
-def continuous(
+def problem(
     train: Train, make: Make, slabs: Slabs, start: tuple[tuple[GearPair, ...], tuple[float, ...]]
 ) -> Problem:
     """Pose the smallest box over real-valued sizes and link angles: a smooth problem.
@@ -190,7 +190,11 @@ def _objective(box: Gearbox, sides: dict[str, Any], x: Any) -> Any:
     }[box.objective]
 
 
-def angles_of(problem: Problem, x: Array) -> tuple[float, ...]:
-    """Return the link angles [rad] of a point of `continuous`."""
-    names = [variable.name for variable, _ in problem.columns]
-    return tuple(float(v) for v, name in zip(x, names, strict=True) if name == "angle")
+def laid_out(
+    train: Train, make: Make, slabs: Slabs, x: Array
+) -> tuple[Gearbox, tuple[float, ...], Arrangement]:
+    """Gearbox of a point of `problem`, its link angles [rad] and arrangement of slabs."""
+    count = sum(v.size for v in sizing_text.exact_text(train).variables)
+    box = make(sizing_text.pairs(train, x[:count]))
+    angles = x[count : count + len(train.stages)]
+    return box, tuple(float(t) for t in angles), arrange(box, slabs)
