@@ -14,79 +14,80 @@ from gearopt.formulations.servo.impossible import nearest
 from gearopt.formulations.servo.servo_design import (
     GOALS,
     OBJECTIVES,
-    ServoDesign,
     ServoReport,
     train_figures,
 )
-from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
-from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import disc_mass
 from gearopt.scenes.explaining.explanations import explained
 from gearopt.scenes.explaining.possible import Verdict, of_status
 from gearopt.scenes.kind import Kind, Trades, examples_in
-from gearopt.scenes.plan import one_step
+from gearopt.scenes.plan import Run, Step
 from gearopt.scenes.reading.ask import Ask, unseeded
 from gearopt.scenes.servo.explain import moves
 from gearopt.scenes.servo.explain import remedies as of_train
 from gearopt.scenes.servo.notes import assumptions, notes
 from gearopt.scenes.servo.reach import some_train
 from gearopt.scenes.servo.scene import Scene
-from gearopt.scenes.servo.tolerances import by_every_rule, named, old, tolerance_part
+from gearopt.scenes.servo.tolerances import by_every_rule, named, old, with_tolerances
 from gearopt.scenes.servo.tolerances import problem as tolerance_problem
 from gearopt.scenes.servo.trades import objectives, traded
 from gearopt.scenes.servo.train import (
-    Found,
-    backlashes,
-    beside,
-    box_part,
+    added,
     described,
-    errors,
+    design_of,
     given_gears,
-    lightest_part,
-    neighbours,
-    ratio_part,
-    train_part,
+    with_box,
+    with_errors,
+    with_lightest,
+    with_other_trains,
+    with_ratio,
+    with_train,
 )
 
 METHODS = ("exact", "enumeration")  # its own
-COUNTS = {"combinations": "trains_looked_at", "feasible_trains": "feasible_trains"}
 
 
-def axis(scene: Scene, ask: Ask, known: Result | None) -> Result:
-    """Every part of the file; the answer is the train, else the ratio, else the tolerances.
+def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
+    """Every part that the file asks for, the answer first: it takes the method that is asked for.
 
-    A method that is asked for is that of the answer; parts are solved by their own.
+    The train, its box, the ratio, the tolerances and the lightest train; then what follows.
     """
-    clock = Clock(ask.budget, of_others(ask.watch))
-    gears, found = given_gears(scene), Found()
-    if scene.train is not None:
-        gears, found = _trained(scene, ask, clock)
-    if scene.duty is not None:
-        found += ratio_part(scene, found.design.train, _part(ask, clock, found))
-    if gears is not None:
-        found += _geared(scene, _part(ask, clock, found), gears)
-    if scene.lightest is not None:
-        found += lightest_part(scene, _part(ask, clock, found))
-    found += Found(report=_key_figures(scene, found))
-    answer, *parts = found.results
+    asked: dict[Run, Any] = {
+        with_train: scene.train,
+        with_other_trains: scene.train,
+        with_ratio: scene.duty,
+        with_box: scene.space,
+        with_tolerances: scene.tolerances,
+        with_lightest: scene.lightest,
+    }
+    first, *others = (part for part, table in asked.items() if table is not None)
+    others += [with_errors, with_key_figures, with_notes]
+    others += [with_nearest] if scene.train is not None else []
+    return Step(first), *(Step(part, own=False, always=True) for part in others)
+
+
+def with_notes(scene: Scene, ask: Ask, axis: Result | None) -> Result:
+    """The axis with assumptions and notes."""
+    assert axis is not None
     texts: dict[str, Any] = {"assumptions": assumptions(scene)}
-    if said := notes(scene, found.results, found.design, found.report):
+    report = ServoReport.from_dict(axis.report)
+    if said := notes(scene, (axis, *axis.parts), design_of(axis), report):
         texts["notes"] = said
-    if answer.status == "infeasible" and scene.train is not None:
-        if violated := nearest(scene.servo_train(), clock):
-            texts["nearest"] = violated
-    return replace(
-        answer,
-        design=untyped(found.design),
-        report=found.report.to_dict() | texts,
-        parts=tuple(parts),
-        seconds=clock.seconds,
-    )
+    return replace(axis, report=axis.report | texts)
+
+
+def with_nearest(scene: Scene, ask: Ask, axis: Result | None) -> Result:
+    """The axis with what every limit uses where an impossible train exceeds them least."""
+    assert axis is not None
+    if axis.status != "infeasible":
+        return axis
+    used = nearest(scene.servo_train(), Clock(ask.budget, of_others(ask.watch)))
+    return replace(axis, report=axis.report | ({"nearest": used} if used else {}))
 
 
 def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies:
@@ -101,53 +102,14 @@ def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies
         return Remedies(conflict, message=f"no remedy is known: {reason}")
 
 
-def _part(ask: Ask, clock: Clock, found: Found) -> Ask:
-    """Return what is asked of the next part: the method if it is the first, and the time left."""
-    method = None if found.results else ask.method
-    return replace(ask, method=method, budget=clock.left)
-
-
-def _trained(scene: Scene, ask: Ask, clock: Clock) -> tuple[Pairs | None, Found]:
-    """Solve the train; add what is known beside it and the trains of its Pareto front."""
-    result, gears = train_part(scene, ask)
-    report = beside(scene, gears)
-    counts = {k: result.proof[v] for k, v in COUNTS.items() if "feasible_trains" in result.proof}
-    report |= ServoReport(figures=counts)
-    if gears is None:
-        return None, Found((result,), report=report)
-    report |= ServoReport(trains=neighbours(scene, clock))
-    return gears, Found((result,), ServoDesign(train=described(scene, gears)), report)
-
-
-def _geared(scene: Scene, ask: Ask, gears: Pairs) -> Found:
-    """Compute what follows from chosen or given gears: errors, stiffness, box, tolerances."""
-    rows, springs = errors(scene, gears), scene.springs
-    sums = {
-        f"{kind}_deg": sum(row.error_deg for row in rows if row.kind == kind)
-        for kind in ("backlash", "pitch")
-        if rows
-    }
-    design = ServoDesign(
-        train=described(scene, gears),
-        errors=rows,
-        backlash=backlashes(scene),
-        stiffness=None if springs is None else springs.design(gears),
-    )
-    found = Found((), design, ServoReport(figures=sums))
-    if scene.space is not None:
-        found += box_part(scene, gears, ask)
-    if scene.tolerances is not None:
-        found += tolerance_part(scene, gears, ask)
-    return found
-
-
-def _key_figures(scene: Scene, found: Found) -> ServoReport:
-    """Return chosen and given train, minimum values and room by the names of docs/servo.md."""
-    design, figures = found.design, {}
-    for one in found.report.trains or ():
-        if one.best_of in OBJECTIVES:
-            key = GOALS[one.best_of].key
-            figures[f"least_{key}"] = getattr(one, key)
+def with_key_figures(scene: Scene, ask: Ask, axis: Result | None) -> Result:
+    """The axis with chosen and given train, minimum values and room, by names of docs/servo.md."""
+    assert axis is not None
+    design, figures = design_of(axis), {}
+    for train in ServoReport.from_dict(axis.report).trains or ():
+        if train.best_of in OBJECTIVES:
+            key = GOALS[train.best_of].key
+            figures[f"least_{key}"] = getattr(train, key)
     if design.box is not None:
         figures["needed_width_mm"] = design.box.needed_width_mm
         figures["needed_height_mm"] = design.box.needed_height_mm
@@ -155,18 +117,19 @@ def _key_figures(scene: Scene, found: Found) -> ServoReport:
         chosen = train_figures(design.train, design.stiffness)
         figures |= {f"chosen_{key}": value for key, value in chosen.items()}
     if (gears := given_gears(scene)) is None:
-        return ServoReport(figures=figures)
+        return added(axis, None, report=ServoReport(figures=figures))
     springs = scene.springs
-    train = described(scene, gears)
+    given = described(scene, gears)
     stiffness = None if springs is None else springs.design(gears)
-    figures |= {f"given_{key}": v for key, v in train_figures(train, stiffness).items()}
+    figures |= {f"given_{key}": v for key, v in train_figures(given, stiffness).items()}
     if scene.sources:
         figures |= by_every_rule(scene, gears, old(scene), "given")
-    if scene.lightest is not None and springs is not None and train.mass_kg is not None:
+    if scene.lightest is not None and springs is not None and given.mass_kg is not None:
         thick, long = springs.shaft
         shaft = 1000.0 * float(disc_mass(scene.servo_train().density, long, thick))
-        figures["given_mass_with_shaft_kg"] = train.mass_kg + shaft
-    return ServoReport(given_train=train, given_stiffness=stiffness, figures=figures)
+        figures["given_mass_with_shaft_kg"] = given.mass_kg + shaft
+    report = ServoReport(given_train=given, given_stiffness=stiffness, figures=figures)
+    return added(axis, None, report=report)
 
 
 def possible(scene: Scene, clock: Clock) -> Verdict:
@@ -181,7 +144,7 @@ def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
     clock = Clock(ask.budget, of_others(ask.watch))
 
     def answer(other: Scene) -> Result:
-        return axis(other, replace(ask, budget=clock.left, watch=clock.watch), None)
+        return KIND.solve(other, replace(ask, budget=clock.left, watch=clock.watch))
 
     found = explained(scene, result, clock, answer, lambda other: _posed(other, boxed=True)[0])
     if scene.train is None and scene.duty is None:
@@ -229,7 +192,7 @@ ABOUT = {  # files in examples, that of the kind first
 KIND = Kind(
     scene=Scene,
     examples=examples_in(__file__, ABOUT),
-    steps=one_step(axis),
+    steps=steps,
     posed=posed,
     compared=compared,
     methods=METHODS,

@@ -27,7 +27,7 @@ from gearopt.optimise.typed import untyped
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import BudgetTable, Price, Source
-from gearopt.scenes.servo.train import Found, sensitivity
+from gearopt.scenes.servo.train import added, gears_of, sensitivity
 
 RULES: tuple[tuple[str, Any, float], ...] = (  # name, rule and kappa
     ("worst_case", "worst_case", 0.0),
@@ -172,10 +172,14 @@ def spent(scene: Scene, gears: Pairs) -> Outcome | None:
     return Outcome(None, infeasible=True, proof=proof, message=text)
 
 
-def tolerance_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
-    """Solve the tolerances; add their costs and the errors they give."""
+def with_tolerances(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The tolerances of the gears, with their costs and the errors they give."""
     import numpy as np
 
+    gears = gears_of(scene, known)
+    if gears is None:
+        assert known is not None
+        return known
     posed, table = problem(scene, gears), scene.tolerances
     assert table is not None
     watch = in_part(ask.watch, part="tolerances")
@@ -184,7 +188,7 @@ def tolerance_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
     figures: dict[str, Any] = by_every_rule(scene, gears, old(scene), "old")
     if result.value is None or outcome.x is None:
         proof = {k: v for k, v in result.proof.items() if k != "conflict"}
-        return Found((replace(result, proof=proof),), report=ServoReport(figures=figures))
+        return added(known, replace(result, proof=proof), report=ServoReport(figures=figures))
     t, own, lost = np.array(outcome.x, float), stack(scene, gears), start(scene, gears)
     t = widths(scene, t, old(scene))
     allotted = _allocation(own, t, result, scene, lost)
@@ -200,7 +204,7 @@ def tolerance_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
     }
     limits = {named(name, own.components): used for name, used in result.limits.items()}
     result = replace(result, design=untyped(design), limits=limits)
-    return Found((result,), design, ServoReport(figures=figures))
+    return added(known, result, design, ServoReport(figures=figures))
 
 
 def named(limit: str, parts: Sequence[Component | Source]) -> str:

@@ -1,7 +1,7 @@
 """The parts of a servo axis's answer: train, ratio and box, with bounds beside them."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from gearopt.formulations.servo import servo_box, split
 from gearopt.formulations.servo.choice import train_problem
@@ -37,32 +37,61 @@ from gearopt.formulations.servo.split.servo_train import (
     pinion_torques,
 )
 from gearopt.optimise.certified import run
-from gearopt.optimise.clock import Clock, in_part
+from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Array
-from gearopt.optimise.typed import untyped
+from gearopt.optimise.typed import typed, untyped
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import Source
 
 STAGES = 6  # that a ratio is split into, at most, for comparison
+COUNTS = {"combinations": "trains_looked_at", "feasible_trains": "feasible_trains"}
 LISTED = 400  # trains that are shown
 PATIENCE = 10.0  # seconds, for the Pareto front
+NO_DESIGN, NO_REPORT = ServoDesign(), ServoReport()
 
 
-@dataclass(frozen=True)
-class Found:
-    """Some results with their parts of the answer's design and report."""
+def added(
+    known: Result | None,
+    result: Result | None,
+    design: ServoDesign = NO_DESIGN,
+    report: ServoReport = NO_REPORT,
+) -> Result:
+    """What is known of an axis, with a part more; the first result is the answer to it.
 
-    results: tuple[Result, ...] = ()
-    design: ServoDesign = ServoDesign()
-    report: ServoReport = ServoReport()
+    result: of the part, where it has one. design, report: what it adds to those of the answer.
+    """
+    if known is None:
+        assert result is not None
+        return replace(result, design=untyped(design), report=report.to_dict())
+    return replace(
+        known,
+        design=known.design | untyped(design),
+        report=known.report | report.to_dict(),
+        parts=known.parts if result is None else (*known.parts, result),
+    )
 
-    def __add__(self, other: "Found") -> "Found":
-        results = self.results + other.results
-        return Found(results, self.design | other.design, self.report | other.report)
+
+def gears_of(scene: Scene, known: Result | None) -> Pairs | None:
+    """Gear pairs of the train that was chosen, or that the file gives; None: there are none."""
+    if scene.train is None:
+        return given_gears(scene)
+    train = None if known is None else design_of(known).train
+    if train is None:
+        return None
+    one, two = train.stages
+    teeth = one.pinion_teeth, two.pinion_teeth, one.wheel_teeth, two.wheel_teeth
+    modules = one.normal_module_mm, two.normal_module_mm
+    return pairs((*teeth, *modules), scene.servo_train().face_width)
+
+
+def design_of(known: Result) -> ServoDesign:
+    """Design of an axis that a result holds."""
+    design: ServoDesign = typed(ServoDesign, known.design)
+    return design
 
 
 def sensitivity(pairs: Pairs, source: Source) -> float:
@@ -173,18 +202,29 @@ def described(scene: Scene, gears: Pairs) -> TrainDesign:
     )
 
 
-def train_part(scene: Scene, ask: Ask) -> tuple[Result, Pairs | None]:
-    """Solve the train; return the result and its gears."""
+def with_train(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The best train."""
     choice = scene.choice()
     unit = GOALS[choice.goal].shown
     problem, watch = train_problem(choice), in_part(ask.watch, unit)
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = replace(result, objective=result.objective | {"unit": unit})
+    counts = {k: result.proof[v] for k, v in COUNTS.items() if "feasible_trains" in result.proof}
+    report = ServoReport(figures=counts)
     if result.value is None or outcome.x is None:
-        return result, None
+        return added(known, result, report=report)
     gears = of_point(scene, outcome.x)
-    design = ServoDesign(train=described(scene, gears))
-    return replace(result, design=untyped(design)), gears
+    return added(known, result, ServoDesign(train=described(scene, gears)), report)
+
+
+def with_other_trains(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The best train with bounds, figures of other numbers of stages and the Pareto front."""
+    assert known is not None
+    report, train = beside(scene, gears_of(scene, known)), known.value is not None
+    if train:
+        clock = Clock(ask.budget, of_others(ask.watch))
+        report |= ServoReport(trains=neighbours(scene, clock))
+    return added(known, None, report=report)
 
 
 def neighbours(scene: Scene, clock: Clock) -> tuple[ListedTrain, ...]:
@@ -280,16 +320,16 @@ def candidates(scene: Scene, chosen: TrainDesign | None) -> dict[str, Candidate]
     return found
 
 
-def ratio_part(scene: Scene, chosen: TrainDesign | None, ask: Ask) -> Found:
-    """Solve the best total ratio; judge the chosen train and the given one beside it."""
-    duty = scene.servo_duty()
+def with_ratio(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The best total ratio, with the chosen train and the given one judged beside it."""
+    duty, chosen = scene.servo_duty(), None if known is None else design_of(known).train
     assert duty is not None
     goal = GOALS[duty.goal]
     watch = in_part(ask.watch, goal.shown, factor=goal.factor)
     result, outcome = run(duty.problem(), ask.method, ask.budget, ask.seed, watch, ask.gap)
     result = scaled(result, goal.factor, goal.shown)
     if result.value is None or outcome.x is None:
-        return Found((result,))
+        return added(known, result)
     best = float(outcome.x[0])
     reached, own = float(judged(duty, best)), candidates(scene, chosen)
     figures = {"best_total_ratio": best, f"best_{goal.key}": reached} | landmarks(duty)
@@ -315,8 +355,8 @@ def ratio_part(scene: Scene, chosen: TrainDesign | None, ask: Ask) -> Found:
         **({"given": None} | others),
     )
     design = ServoDesign(ratio=ratio)
-    told = ServoReport(figures=figures)
-    return Found((replace(result, design=untyped(design)),), design, told)
+    result = replace(result, design=untyped(design))
+    return added(known, result, design, ServoReport(figures=figures))
 
 
 def scaled(result: Result, factor: float, unit: str) -> Result:
@@ -326,26 +366,52 @@ def scaled(result: Result, factor: float, unit: str) -> Result:
     return replace(result, objective=result.objective | {"value": found, "unit": unit}, bound=bound)
 
 
-def lightest_part(scene: Scene, ask: Ask) -> Found:
-    """Solve the lightest real-valued train that is stiff enough."""
+def with_lightest(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The lightest real-valued train that is stiff enough."""
     watch = in_part(ask.watch, "kg", "stiff")
     result = solve(split.stiff(scene.stiff_train()), None, ask.budget, ask.seed, watch, ask.gap)
     result = replace(scaled(result, 1.0, "kg"), name="stiff")
     if result.value is None:
-        return Found((result,))
+        return added(known, result)
     mass = {"lightest_mass_kg": result.value}
-    return Found((result,), report=ServoReport(lightest_train=result.design, figures=mass))
+    report = ServoReport(lightest_train=result.design, figures=mass)
+    return added(known, result, report=report)
 
 
-def box_part(scene: Scene, gears: Pairs, ask: Ask) -> Found:
-    """Solve the smallest box of the train, of the proportions that are asked for."""
-    box, bodies = scene.box(gears), scene.servo_train().bodies
+def with_box(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The smallest box of the train, of the proportions that are asked for."""
+    gears, bodies = gears_of(scene, known), scene.servo_train().bodies
     assert bodies is not None
+    if gears is None:
+        assert known is not None
+        return known
+    box = scene.box(gears)
     watch, gap = in_part(ask.watch, part="box"), max(ask.gap, servo_box.GAP)
     result, outcome = run(servo_box.problem(box), None, ask.budget, ask.seed, watch, gap)
     result = replace(result, name="box", objective=result.objective | {"unit": ""})
     if outcome.x is None or result.value is None:
-        return Found((result,))
+        return added(known, result)
     radii = 0.5 * float(bodies.motor), 0.5 * float(bodies.shaft)
-    found = servo_box.box_design(box, result, outcome.x, *radii)
-    return Found((result,), ServoDesign(box=found))
+    design = servo_box.box_design(box, result, outcome.x, *radii)
+    return added(known, result, ServoDesign(box=design))
+
+
+def with_errors(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The axis with errors, backlash and stiffness of its gears, chosen or given."""
+    assert known is not None
+    gears = gears_of(scene, known)
+    if gears is None:
+        return known
+    rows, springs = errors(scene, gears), scene.springs
+    sums = {
+        f"{kind}_deg": sum(row.error_deg for row in rows if row.kind == kind)
+        for kind in ("backlash", "pitch")
+        if rows
+    }
+    design = ServoDesign(
+        train=described(scene, gears),
+        errors=rows,
+        backlash=backlashes(scene),
+        stiffness=None if springs is None else springs.design(gears),
+    )
+    return added(known, None, design, ServoReport(figures=sums))
