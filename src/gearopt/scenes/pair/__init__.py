@@ -16,6 +16,7 @@ from gearopt.optimise.typed import untyped
 from gearopt.scenes import drive
 from gearopt.scenes.drive.explain import answers as of_drive
 from gearopt.scenes.drive.rating import rated
+from gearopt.scenes.drive.scene import Scene as Drive
 from gearopt.scenes.drive.tables.blanks import body_flaws
 from gearopt.scenes.explaining.explanations import by_solving
 from gearopt.scenes.kind import Kind, Trades, examples_in
@@ -33,20 +34,34 @@ NOTHING = "the gears are given, so that nothing is chosen"
 
 
 def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
-    """Gears, given or sized by their rating; their contact; their relief.
+    """Gears, given or sized, with their rating; their contact; their relief.
 
     With a table [relief] that is what the answer is about, and a sized pair is its part "gears".
     """
-    contact: tuple[Step[Scene], ...] = (
-        Step(sized_or_given, own=scene.relief is None),
-        Step(with_contact),
-    )
-    return contact if scene.relief is None else (*contact, Step(with_relief))
+    own = scene.relief is None
+    gears: tuple[Step[Scene], ...]
+    if not scene.given:
+        gears = (Step(sized, own=own),)
+    elif scene.rating is None:
+        gears = (Step(given, own=own),)
+    else:
+        gears = tuple(
+            Step(run, _as_drive, own) for run in (rated.with_given_rating, rated.with_given_gears)
+        )
+    if scene.given and own:
+        without_method(ask, NOTHING)
+    relief: tuple[Step[Scene], ...] = () if own else (Step(with_relief),)
+    return (*gears, Step(with_contact), *relief)
 
 
-def sized_or_given(scene: Scene, ask: Ask, known: Result | None) -> Result:
-    """Gears, given or sized, and rated where the file asks for it."""
-    return _evaluated(scene, ask) if scene.given else drive.KIND.solve(scene.drive, ask)
+def _as_drive(scene: Scene) -> Drive:
+    """The pair as a drive of one stage."""
+    return scene.drive
+
+
+def sized(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """Gears sized by their limits or rating, and rated where the file asks for it."""
+    return drive.KIND.solve(scene.drive, ask)
 
 
 def _mesh(scene: Scene, result: Result) -> tuple[DriveDesign, PairMesh]:
@@ -80,12 +95,12 @@ def with_relief(scene: Scene, ask: Ask, gears: Result | None) -> Result:
     Limits of gears that are given are those of their part: no relief changes them.
     """
     assert gears is not None
-    found, relief = relieved(scene, _mesh(scene, gears)[1], ask)
+    design, mesh = _mesh(scene, gears)
+    found, relief = relieved(scene, mesh, ask)
     sized = gears.value is not None
     told = sized or bool(gears.limits)
     parts = (replace(gears, name="gears", design={}, report={}),) if told else ()
     notes = [note for one in (gears, found) for note in one.report.get("notes", [])]
-    design = drive_design(gears.design)
     return replace(
         found,
         name="pair",
@@ -96,32 +111,22 @@ def with_relief(scene: Scene, ask: Ask, gears: Result | None) -> Result:
     )
 
 
-def _evaluated(scene: Scene, ask: Ask) -> Result:
-    """Result of gears that are given, rated where the file asks for it."""
-    without_method(ask, NOTHING)
-    clock = Clock(ask.budget, ask.watch)
-    if scene.rating is not None:
-        found = rated.rate(scene.drive, ask)
-    else:
-        design, blanks = rated.given_design(scene.drive, (scene.given_pair,))
-        found = Result(
-            name="pair",
-            status="evaluated",
-            method="evaluation",
-            objective={},
-            certificate={"feasibility": 0.0},
-            design=untyped(design),
-            report={
-                "notes": [
-                    *rated.off_ratio(scene.drive, design),
-                    *(flaw.sentence for flaw in body_flaws(blanks, (scene.given_pair,))),
-                ]
-            },
-            evaluations=1,
-            seed=ask.seed,
-            versions=versions("numpy"),
-        )
-    return replace(found, seconds=clock.seconds)
+def given(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """Gears that are given and not to be rated."""
+    design, blanks = rated.given_design(scene.drive, (scene.given_pair,))
+    flaws = [flaw.sentence for flaw in body_flaws(blanks, (scene.given_pair,))]
+    return Result(
+        name="pair",
+        status="evaluated",
+        method="evaluation",
+        objective={},
+        certificate={"feasibility": 0.0},
+        design=untyped(design),
+        report={"notes": [*rated.off_ratio(scene.drive, design), *flaws]},
+        evaluations=1,
+        seed=ask.seed,
+        versions=versions("numpy"),
+    )
 
 
 def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies | None:

@@ -47,20 +47,21 @@ def loads_of(scene: Scene) -> tuple[float, ...]:
 
 def relieved(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, PairRelief | None]:
     """Return the result of the search for the best relief, and the relief that it found."""
-    asked = scene.relief
+    asked, loads = scene.relief, loads_of(scene)
     assert asked
+    mesh = made.of_loads(loads)
     if asked.free:
-        result, removed = _free(asked, made.of_loads(loads_of(scene)), ask)
+        result, removed = _free(asked, mesh, ask)
     else:
-        result, removed = _parametric(scene, made, ask)
+        result, removed = _parametric(asked, mesh, ask)
     if removed is None:
         return result, None
-    relief = described(made, removed, asked.minimise, loads_of(scene))
-    if asked.tolerance is not None:
-        mesh, nominal = made.of_loads(loads_of(scene)), _nominal(relief)
-        within = replace(ask.budget, gap=WORST)
+    tolerance = None if asked.tolerance is None else _tolerance(asked, mesh)
+    relief = described(made, removed, asked.minimise, loads)
+    if tolerance is not None:
+        nominal, within = _nominal(relief), replace(ask.budget, gap=WORST)
         watch = in_part(ask.watch, part="worst case within tolerances")
-        kept = as_made(mesh, nominal, _tolerance(asked, mesh), within, ask.seed, watch)
+        kept = as_made(mesh, nominal, tolerance, within, ask.seed, watch)
         relief = replace(relief, made=kept)
     return result, relief
 
@@ -81,11 +82,9 @@ def _tolerance(asked: ReliefTable, mesh: Mesh) -> Tolerance:
     return Tolerance(asked.tolerance.value, part * float(mesh.cycle.path.base_pitch))
 
 
-def _parametric(scene: Scene, made: PairMesh, ask: Ask) -> tuple[Result, Removed | None]:
-    """Return the best amounts and lengths; where they are given, what these do."""
-    asked = scene.relief
-    assert asked
-    mesh, ranges = _meshed(scene, made)
+def _parametric(asked: ReliefTable, mesh: Mesh, ask: Ask) -> tuple[Result, Removed | None]:
+    """Result with the best amounts and lengths; where they are given, what these do."""
+    ranges = _ranges(asked, mesh)
     problem = _posed(asked, mesh, ranges)
     if asked.given:
         point = problem.bounds()[0]
@@ -157,18 +156,15 @@ def _united(result: Result, minimise: str) -> Result:
     return replace(result, objective=result.objective | {"unit": _unit(minimise)})
 
 
-def _meshed(scene: Scene, made: PairMesh) -> tuple[Mesh, Ranges]:
-    """Return the mesh at the loads of the relief, and what the relief may be."""
-    asked = scene.relief
-    assert asked
-    mesh = made.of_loads(loads_of(scene))
+def _ranges(asked: ReliefTable, mesh: Mesh) -> Ranges:
+    """What the relief of a mesh at its loads may be."""
     low, high = (end.value for end in asked.amount)
     ranges = Ranges.of(mesh, asked.exponent, high)
     if asked.length is not None:
         pitch = float(mesh.cycle.path.base_pitch)
         lengths = float(asked.length[0]) * pitch, float(asked.length[1]) * pitch
         ranges = replace(ranges, lengths=lengths)
-    return mesh, replace(ranges, amounts=(low, high))
+    return replace(ranges, amounts=(low, high))
 
 
 def _posed(asked: ReliefTable, mesh: Mesh, ranges: Ranges) -> Problem:
@@ -213,7 +209,8 @@ def model(scene: Scene, made: PairMesh) -> Model:
     if scene.relief.free:
         problem = _free_problem(scene.relief, made.of_loads(loads_of(scene)))
         return Model(problem, "Relief of any convex shape, at computed positions", unit)
-    problem = _posed(scene.relief, *_meshed(scene, made))
+    mesh = made.of_loads(loads_of(scene))
+    problem = _posed(scene.relief, mesh, _ranges(scene.relief, mesh))
     return Model(problem, "Amounts and lengths of relief, at computed positions", unit)
 
 
@@ -242,7 +239,8 @@ def traded(scene: Scene, made: PairMesh, names: Sequence[str]) -> Tradeoff:
     """Return the problem of a front of reliefs; of transmission errors every point is proven."""
     asked = scene.relief
     assert asked
-    mesh, ranges = _meshed(scene, made)
+    mesh = made.of_loads(loads_of(scene))
+    ranges = _ranges(asked, mesh)
     units, known = objectives(scene), _named(scene)
 
     def drawn(x: Array) -> dict[str, Any]:

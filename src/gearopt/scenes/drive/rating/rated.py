@@ -1,19 +1,17 @@
 """The rating of a drive: of gears that are all given, and of those that were chosen."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import CertificateError, SolveError
 from gearopt.formulations.drive.design import DriveDesign, drive_design, of_pairs
 from gearopt.formulations.drive.rating import DriveRating, MeshRating
-from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Result, versions
-from gearopt.optimise.typed import untyped
+from gearopt.optimise.typed import typed, untyped
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import GearPair
-from gearopt.physics.geometry.flaws import Flaw
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
 from gearopt.scenes.drive.rating.assumptions import rating_assumptions, unused_materials
@@ -38,6 +36,7 @@ from gearopt.scenes.drive.rating.rows import (
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.blanks import body_flaws
 from gearopt.scenes.parts import tooth_flaws
+from gearopt.scenes.plan import Step, carried_out
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.toml import dotted
 
@@ -45,7 +44,7 @@ FULL_CONTACT = 2.0  # K_Hbeta up to which the whole face width carries load
 
 
 def rate(scene: Scene, ask: Ask) -> Result:
-    """Return the rating of gears that are all given, status `evaluated`; SolveError why not."""
+    """Rating of gears that are all given, status `evaluated`; SolveError why not."""
     if scene.rating is None:
         raise SolveError("there is no table [rating]: write one; gearopt new rating shows how")
     if missing := [dotted(place) for place in not_given(scene.gears, scene.stage)]:
@@ -53,40 +52,54 @@ def rate(scene: Scene, ask: Ask) -> Result:
             f"the gears are not all given, which a rating needs: write {', '.join(missing)}; or "
             "gearopt solve FILE, which sizes them and rates what it finds"
         )
-    clock = Clock(ask.budget, ask.watch)
-    pairs = given_pairs(scene.stage, scene.gears)
-    rated = rating(scene, pairs)
-    design, bodies = given_design(scene, pairs)
-    bored = [(s.pinion.bore is not None, s.wheel.bore is not None) for s in scene.stage]
-    geometric = (*tooth_flaws(pairs), *body_flaws(bodies, pairs, bored))
-    rated = fitted(rated, geometric)
-    accepted = (flaw.sentence for flaw in geometric if not flaw.misfit)
-    told = replace(rated, flaws=(*off_ratio(scene, design), *accepted, *rated.flaws))
+    return carried_out((Step(with_given_rating), Step(with_given_gears)), scene, ask)
+
+
+def with_given_rating(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """Rating of gears that are all given; SolveError where they have none."""
+    assert scene.rating is not None
+    rated = rating(scene, given_pairs(scene.stage, scene.gears))
     limits, remarks = utilisations(rated), unused_materials(scene)
-    excess = [*(used - 1.0 for used in limits.values()), *(flaw.misfit for flaw in geometric)]
     return Result(
         name="rating",
         status="evaluated",
         method=scene.rating.standard,
         objective={},
-        certificate={"feasibility": max(0.0, *excess)},
-        design=untyped(replace(design, rating=told)),
+        certificate={"feasibility": max(0.0, *(used - 1.0 for used in limits.values()))},
+        design={"rating": untyped(rated)},
         limits=limits,
         report={"assumptions": rating_assumptions(scene)} | ({"notes": remarks} if remarks else {}),
         evaluations=1,
-        seconds=clock.seconds,
         seed=ask.seed,
         versions=versions("numpy"),
     )
 
 
-def fitted(rated: DriveRating, geometric: Iterable[Flaw]) -> DriveRating:
-    """Return a rating that knows which gears do not fit, and is not safe then, by any standard."""
-    misfits = tuple(flaw.sentence for flaw in geometric if flaw.misfit)
+def with_given_gears(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The rating with its gears and their flaws: by some it is not safe, others may be accepted."""
+    assert known is not None
+    pairs = given_pairs(scene.stage, scene.gears)
+    design, bodies = given_design(scene, pairs)
+    bored = [(s.pinion.bore is not None, s.wheel.bore is not None) for s in scene.stage]
+    geometric = (*tooth_flaws(pairs), *body_flaws(bodies, pairs, bored))
+    accepted = (flaw.sentence for flaw in geometric if not flaw.misfit)
+    rated: DriveRating = typed(DriveRating, known.design["rating"])
+    rated = fitted(rated, [flaw.sentence for flaw in geometric if flaw.misfit])
+    rated = replace(rated, flaws=(*off_ratio(scene, design), *accepted, *rated.flaws))
+    beyond = max([known.certificate["feasibility"] or 0.0, *(flaw.misfit for flaw in geometric)])
+    return replace(
+        known,
+        certificate={"feasibility": beyond},
+        design=untyped(replace(design, rating=rated)),
+    )
+
+
+def fitted(rated: DriveRating, misfits: Sequence[str]) -> DriveRating:
+    """Rating that knows which gears do not fit, and is not safe then, by any standard."""
     if not misfits:
         return rated
     beside = replace(rated.beside, safe=False) if rated.beside else None
-    return replace(rated, safe=False, misfits=misfits, beside=beside)
+    return replace(rated, safe=False, misfits=tuple(misfits), beside=beside)
 
 
 def given_design(
@@ -132,15 +145,15 @@ def with_rating(scene: Scene, result: Result) -> Result:
         return result
     design = drive_design(result.design)
     held, pairs = scene.held(len(design.stages)), scene.pairs(design)
-    geometric, notes = tuple(tooth_flaws(pairs)), result.report.get("notes", [])
-    if misfits := [flaw.sentence for flaw in geometric if flaw.misfit]:
+    notes = result.report.get("notes", [])
+    if misfits := [flaw.sentence for flaw in tooth_flaws(pairs) if flaw.misfit]:
         notes = [note for note in notes if note not in misfits]
         result = replace(result, report=result.report | {"misfits": misfits, "notes": notes})
     if scene.rating is None:
         return result
     try:
         materials = [(s.pinion_material, s.wheel_material) for s in design.stages]
-        rated = fitted(rating(held, pairs, materials), geometric)
+        rated = fitted(rating(held, pairs, materials), misfits)
     except SolveError as reason:
         report = result.report | {"notes": [*notes, f"There is no rating: {reason}."]}
         return replace(result, report=report)
