@@ -291,8 +291,12 @@ def _traded(
     names = None if names is None else [name.strip() for name in names]
     if isinstance(what, Problem | Conic):
         _unchanged(what, changes)
-        own = traded(what, names)
-        return lambda method: own, tuple(o.name for o in own.objectives), {"title": what.name}
+        tradeoff = traded(what, names)
+        return (
+            lambda method: tradeoff,
+            tuple(o.name for o in tradeoff.objectives),
+            {"title": what.name},
+        )
     scene, kind, about = _opened(what, changes)
     known = kind.trades.objectives(scene)
     left = [name for name in names or () if name not in known]

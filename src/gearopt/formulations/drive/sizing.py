@@ -104,9 +104,10 @@ def smooth_problem(train: Train, choice: Choice) -> Problem:
                     extra[part] |= {f"{n}{suffix}[{k + 1}]": v for n, v in found}
             return rows
 
-        found = sizing_text.terms(train, p, sizing_text.text_pairs(train, x, p), rated=rated)
-        equal = {**found.equal, **extra["equal"]}
-        return Terms(found.minimise, found.limits, extra["defines"], equal)
+        pairs = sizing_text.text_pairs(train, x, p)
+        terms = sizing_text.terms(train, p, pairs, rated=rated)
+        equal = {**terms.equal, **extra["equal"]}
+        return Terms(terms.minimise, terms.limits, extra["defines"], equal)
 
     columns = (*sizing_text.variables(train), *unknowns)
     trim = Param("trim", "", (1.0,) * size, size)

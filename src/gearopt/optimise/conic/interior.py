@@ -320,13 +320,13 @@ def _surfaces(A: Any, s: Array, surface: list[slice], factors: Array) -> tuple[A
         return None, None, np.empty(0)
     count, start = len(surface), np.array([block.start for block in surface])
     rest = [np.arange(block.start + 1, block.stop) for block in surface]
-    norms = np.array([np.linalg.norm(s[own]) for own in rest])
-    units = [s[own] / norm for own, norm in zip(rest, norms, strict=True)]
+    norms = np.array([np.linalg.norm(s[rows]) for rows in rest])
+    units = [s[rows] / norm for rows, norm in zip(rest, norms, strict=True)]
     shapes = [
         (np.eye(len(unit)) - np.outer(unit, unit)) * (max(factor, 0.0) / norm)
         for unit, factor, norm in zip(units, factors, norms, strict=True)
     ]
-    owner = np.repeat(np.arange(count), [len(own) for own in rest])
+    owner = np.repeat(np.arange(count), [len(rows) for rows in rest])
     places = np.concatenate([np.arange(count), owner]), np.concatenate([start, *rest])
     values = np.concatenate([np.ones(count), *(-unit for unit in units)])
     normals = sp.csr_array((values, places), shape=(count, len(s))) @ A

@@ -80,7 +80,7 @@ class Builder:
     name: str
     width: int = 0
     whole: list[bool] = field(default_factory=list)
-    made: dict[Any, int] = field(default_factory=dict)
+    known: dict[Any, int] = field(default_factory=dict)
     relations: list[tuple[int, int, int, int]] = field(default_factory=list)
     exponents: list[float] = field(default_factory=list)
     sums: dict[int, Affine] = field(default_factory=dict)
@@ -115,24 +115,24 @@ class Builder:
             if factor == (1.0, 0.0):
                 return j
         key = tuple(sorted(reading.terms.items())), reading.constant, reading.doubt
-        if key not in self.made:
+        if key not in self.known:
             parts = [*reading.terms.values(), (reading.constant, reading.doubt)]
             exact = all(e == 0.0 and f == int(f) and abs(f) < EXACT for f, e in parts)
-            self.made[key] = w = self.new(exact and all(self.whole[j] for j in reading.terms))
+            self.known[key] = w = self.new(exact and all(self.whole[j] for j in reading.terms))
             self.of[w] = self.sum_of(reading, w)
-        return self.made[key]
+        return self.known[key]
 
     def operation(self, kind: int, u: int, v: int = -1, p: float = 0.0) -> Affine:
         """Reading of op(u, v)."""
         if kind in (PRODUCT, MAXIMUM, MINIMUM) and v < u:
             u, v = v, u
         key = kind, u, v, p
-        if key not in self.made:
+        if key not in self.known:
             kept = kind in (PRODUCT, ABS, MAXIMUM, MINIMUM) or kind == POWER and p > 0.0
             whole = kept and self.whole[u] and (v < 0 or self.whole[v]) or kind == FLOOR
-            self.made[key] = w = self.new(whole)
+            self.known[key] = w = self.new(whole)
             self.of[w] = self.relation(kind, w, u, v, p)
-        return Affine({self.made[key]: (1.0, 0.0)})
+        return Affine({self.known[key]: (1.0, 0.0)})
 
     def maker(self, j: int) -> tuple[int, int, float]:
         """Kind, argument and exponent of the relation that makes a column; -1: a variable."""
@@ -190,8 +190,8 @@ def multiplied(builder: Builder, a: Affine, b: Affine) -> Affine:
     base, p = as_power(builder, u)
     other, q = as_power(builder, v)
     same = base == other and exact_sum(p, q)
-    found = powered_column(builder, base, p + q) if same else builder.operation(PRODUCT, u, v)
-    return scaled(scaled(found, f, e), g, d)
+    product = powered_column(builder, base, p + q) if same else builder.operation(PRODUCT, u, v)
+    return scaled(scaled(product, f, e), g, d)
 
 
 def exact_sum(p: float, q: float) -> bool:
@@ -256,11 +256,11 @@ def divided(builder: Builder, a: Affine, b: Affine) -> Affine:
     base, p = as_power(builder, u)
     other, q = as_power(builder, v)
     same = base == other and exact_sum(p, -q)
-    found = powered_column(builder, base, p - q) if same else builder.operation(QUOTIENT, u, v)
+    ratio = powered_column(builder, base, p - q) if same else builder.operation(QUOTIENT, u, v)
     return (
-        divided(builder, scaled(found, f, e), Affine({}, g))
+        divided(builder, scaled(ratio, f, e), Affine({}, g))
         if d == 0.0
-        else scaled(scaled(found, f, e), 1.0 / g, (2.0 * ROUNDED + 1.1 * d / abs(g)) / abs(g))
+        else scaled(scaled(ratio, f, e), 1.0 / g, (2.0 * ROUNDED + 1.1 * d / abs(g)) / abs(g))
     )
 
 
@@ -372,10 +372,10 @@ def _outputs(problem: Problem, builder: Builder) -> tuple[Affine, list[Affine], 
     for block in problem.traced().blocks:
         repeat = block.repeat
         for row in range(repeat.count if repeat else 1):
-            own = repeat.width if repeat else 0
+            width = repeat.width if repeat else 0
             inputs = [
                 [Affine({j: (1.0, 0.0)}) for j in range(shared)],
-                [Affine({start + j: (1.0, 0.0)}) for j in range(own)],
+                [Affine({start + j: (1.0, 0.0)}) for j in range(width)],
                 [constant(v) for v in problem.parameter_values()],
                 [constant(v[row]) for v in repeat.data.values()] if repeat else [],
             ]
@@ -384,7 +384,7 @@ def _outputs(problem: Problem, builder: Builder) -> tuple[Affine, list[Affine], 
                 objective = added(objective, value)
             inequalities += g
             equalities += h
-            start += own
+            start += width
     return objective, inequalities, equalities
 
 

@@ -67,8 +67,8 @@ class Incumbent:
             return
         try:
             effort = Budget(self.clock.left.seconds, ITERATIONS)
-            found = ipopt.run(problem.holding(x), effort, 0, None, start=x)
+            outcome = ipopt.run(problem.holding(x), effort, 0, None, start=x)
         except SolveError:  # no derivatives at this text
             return
-        if found.x is not None:
-            self.judge(found.x)
+        if outcome.x is not None:
+            self.judge(outcome.x)

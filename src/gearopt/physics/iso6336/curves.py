@@ -42,11 +42,12 @@ class Curve:
     def factor(self, cycles: Any) -> Any:
         """Return the strength at a number of cycles."""
         at, logs, knots = np.log(np.maximum(cycles, self.cycles[0])), self._logs, self._knots
-        found = logs[0]
+        log_strength = logs[0]
         for k in range(len(knots) - 1):
             share = (at - knots[k]) / (knots[k + 1] - knots[k])
-            found = found + (logs[k + 1] - logs[k]) * np.minimum(np.maximum(share, 0.0), 1.0)
-        return np.exp(found)
+            part = np.minimum(np.maximum(share, 0.0), 1.0)
+            log_strength = log_strength + (logs[k + 1] - logs[k]) * part
+        return np.exp(log_strength)
 
     def take(self, place: Any) -> "Curve":
         """Return the curves of some rows of arrays."""

@@ -235,13 +235,13 @@ def with_gears(drive: Drive, ask: Ask, box: Result | None) -> Result:
     assert box is not None
     train = drive.train
     whole = ask.method not in REAL
-    own = teeth.problem(train) if whole else sizing.problem(train)
-    point = point_of(box.design)[: sum(v.size for v in own.variables)]
+    problem = teeth.problem(train) if whole else sizing.problem(train)
+    point = point_of(box.design)[: sum(v.size for v in problem.variables)]
     pairs, options = teeth.gears(train, point) if whole else (sizing_text.pairs(train, point), ())
     design = describe(train, pairs, options)
     sized = _sized_first(box.parts[0])
     assert sized is not None
-    gears = replace(sized, name=IN_BOX, design=untyped(design), limits=limits(own, point))
+    gears = replace(sized, name=IN_BOX, design=untyped(design), limits=limits(problem, point))
     return replace(box, parts=(*box.parts, replace(gears, report={})))
 
 

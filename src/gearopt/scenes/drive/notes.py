@@ -129,22 +129,24 @@ def _loads(scene: Scene, angle: str, assumed: str) -> list[str]:
 def _teeth(scene: Scene) -> list[str]:
     """Assumptions on the teeth: shifts, tools, backlash."""
     each = [toothing(own, scene.gears) for own in scene.stage_tables]
-    shifted = any(any(one.profile_shifts) for one in each)
+    shifted = any(any(cut.profile_shifts) for cut in each)
     shifts = "with the profile shifts of the file" if shifted else "without profile shift"
     ends = "losses in mesh and bearings are neglected"
-    found = [f"The gears are external cylindrical ones {shifts}; {ends}."]
-    usual = {replace(ISO_53_A, pressure_angle=r.pressure_angle) for one in each for r in one.racks}
-    if {rack for one in each for rack in one.racks} <= usual:
-        found.append(
+    sentences = [f"The gears are external cylindrical ones {shifts}; {ends}."]
+    usual = {replace(ISO_53_A, pressure_angle=r.pressure_angle) for cut in each for r in cut.racks}
+    if {rack for cut in each for rack in cut.racks} <= usual:
+        sentences.append(
             "Tip and root circles follow from the basic rack ISO 53 profile A: addendum "
             f"{ISO_53_A.addendum:g} m_n, dedendum {ISO_53_A.dedendum:g} m_n; sizes are nominal, "
             "without backlash."
         )
     else:
-        found.append("Tip and root circles follow from the tools of the file; sizes are nominal.")
+        sentences.append(
+            "Tip and root circles follow from the tools of the file; sizes are nominal."
+        )
     if shifted and scene.limits.loaded:
-        found.append(f"{scene.limits.LAW.title} are those of the reference circles.")
-    return found
+        sentences.append(f"{scene.limits.LAW.title} are those of the reference circles.")
+    return sentences
 
 
 def _layout_assumptions(layout: Layout) -> list[str]:

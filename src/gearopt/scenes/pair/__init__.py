@@ -96,17 +96,17 @@ def with_relief(scene: Scene, ask: Ask, gears: Result | None) -> Result:
     """
     assert gears is not None
     design, mesh = _mesh(scene, gears)
-    found, relief = relieved(scene, mesh, ask)
+    best, relief = relieved(scene, mesh, ask)
     sized = gears.value is not None
-    told = sized or bool(gears.limits)
-    parts = (replace(gears, name="gears", design={}, report={}),) if told else ()
-    notes = [note for one in (gears, found) for note in one.report.get("notes", [])]
+    limited = sized or bool(gears.limits)
+    parts = (replace(gears, name="gears", design={}, report={}),) if limited else ()
+    notes = [note for one in (gears, best) for note in one.report.get("notes", [])]
     return replace(
-        found,
+        best,
         name="pair",
         design=untyped(replace(design, relief=relief)),
         limits=gears.limits if sized else {},
-        report=gears.report | found.report | ({"notes": notes} if notes else {}),
+        report=gears.report | best.report | ({"notes": notes} if notes else {}),
         parts=parts,
     )
 

@@ -104,9 +104,9 @@ def level_of(scene: Scene, elastic: ElasticPair) -> str:
 
 def elastic_pair(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> ElasticPair:
     """Return a pair with its bores, materials and plane state."""
-    tables, made = _tables(scene, materials), blanks_of(scene, pair, materials)
+    tables, bodies = _tables(scene, materials), blanks_of(scene, pair, materials)
     bores = [
-        bore_of(blank, float(g.root_diameter)) for blank, g in zip(made, pair.gears, strict=True)
+        bore_of(blank, float(g.root_diameter)) for blank, g in zip(bodies, pair.gears, strict=True)
     ]
     moduli = [t.elastic_modulus.value if t.elastic_modulus else STEEL for t in tables]
     poissons = [float(t.poisson_ratio) if t.poisson_ratio is not None else POISSON for t in tables]

@@ -82,9 +82,9 @@ def gears_of(scene: Scene, known: Result | None) -> Pairs | None:
     train = None if known is None else design_of(known).train
     if train is None:
         return None
-    one, two = train.stages
-    teeth = one.pinion_teeth, two.pinion_teeth, one.wheel_teeth, two.wheel_teeth
-    modules = one.normal_module_mm, two.normal_module_mm
+    first, second = train.stages
+    teeth = first.pinion_teeth, second.pinion_teeth, first.wheel_teeth, second.wheel_teeth
+    modules = first.normal_module_mm, second.normal_module_mm
     return pairs((*teeth, *modules), scene.servo_train().face_width)
 
 

@@ -67,11 +67,11 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
     def evaluate(x: Any, p: Any) -> Terms:
         if train.rated and not _is_plain(each(x.module)[0]):
             raise SolveError(RATED)
-        found = sizing_text.terms(train, numbers, _pairs(train, x), _options(train, x))
+        terms = sizing_text.terms(train, numbers, _pairs(train, x), _options(train, x))
         # A module is one of a set: the ends of the set are no limits of their own here.
-        limits = {n: v for n, v in found.limits.items() if not n.startswith("module_")}
+        limits = {n: v for n, v in terms.limits.items() if not n.startswith("module_")}
         if not train.coprime:
-            return Terms(found.minimise, limits, equal=found.equal)
+            return Terms(terms.minimise, limits, equal=terms.equal)
         teeth = zip(each(x.pinion_teeth), each(x.wheel_teeth), strict=True)
         if not _is_plain(each(x.pinion_teeth)[0]):
             raise SolveError("hunting teeth (coprime) are for exact, annealing and nsga2 only")
@@ -79,7 +79,7 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
             f"common_divisor[{k}]": np.gcd(np.rint(a).astype(int), np.rint(b).astype(int))
             for k, (a, b) in enumerate(teeth, 1)
         }
-        return Terms(found.minimise, {**limits, **divisors}, equal=found.equal)
+        return Terms(terms.minimise, {**limits, **divisors}, equal=terms.equal)
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Branch and bound over the teeth; the seed changes nothing."""

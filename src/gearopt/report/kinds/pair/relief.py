@@ -69,13 +69,13 @@ def binding_limit(relief: PairRelief) -> str:
     """Amounts of the relief and its gain."""
     first, second = (amount(f.amount_mm, "um", METRIC) for f in (relief.pinion, relief.wheel))
     none, best = relief.rows[0], relief.rows[-1]
-    said = f"{_value(relief, none.value)} to {_value(relief, best.value)}{_strays(relief)}"
+    values = f"{_value(relief, none.value)} to {_value(relief, best.value)}{_strays(relief)}"
     at = f"{100.0 * relief.loads[0]:g} % of the torque"
     if len(relief.loads) > 1:
         at = f"the worst of {len(relief.loads)} loads"
     return (
         f"tip relief of {first} on the pinion and {second} on the wheel changes the "
-        f"{CRITERIA[relief.minimise]} from {said} at {at}"
+        f"{CRITERIA[relief.minimise]} from {values} at {at}"
     )
 
 

@@ -207,16 +207,16 @@ class Mesh(Table):
 
     def sources(self, stage: int, pressure_angle: float) -> tuple[Source, ...]:
         """Return the deviations above zero of a stage (from 1); pressure_angle [rad]."""
-        laws, found = angles_per_mm(pressure_angle), []
+        laws, sources = angles_per_mm(pressure_angle), []
         for name, words in WORDS.items():
             tolerance = self._tolerance(name)
             if tolerance <= 0.0:
                 continue
             kind = "pitch" if name in PITCH else "backlash"
             law = RUN_OUT if name.endswith("run_out") else UNIFORM
-            own = f"{words} {stage}", name, kind, stage, tolerance, laws[name], law
-            found.append(Source(*own, start=self.opening(name)[0]))
-        return tuple(found)
+            deviation = f"{words} {stage}", name, kind, stage, tolerance, laws[name], law
+            sources.append(Source(*deviation, start=self.opening(name)[0]))
+        return tuple(sources)
 
     def _tolerance(self, name: str) -> float:
         if self.grade is None or name not in ("pinion_pitch", "wheel_pitch"):
