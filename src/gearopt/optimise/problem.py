@@ -30,6 +30,8 @@ from gearopt.optimise.terms import (
 )
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from gearopt.optimise.tape import Compiled, Traced
 
 
@@ -296,6 +298,34 @@ class Problem:
         from gearopt.optimise.tape import Compiled
 
         return Compiled(self)
+
+    def check_units(self) -> dict[str, str]:
+        """Return the units of objectives and reports; SolveError names what has the wrong one.
+
+        The text is run once by pint (`exchange.units`).
+        """
+        from gearopt.optimise.exchange.units import check
+
+        return check(self)
+
+    def to_nl(self, file: "str | Path") -> None:
+        """Write AMPL's .nl file, with FILE.col and FILE.row beside it (`exchange.nl`)."""
+        from gearopt.optimise.exchange.nl import write
+
+        write(self, file)
+
+    def to_pymoo(self) -> Any:
+        """Return the problem as a `pymoo.core.problem.Problem` (`exchange.pymoo`)."""
+        from gearopt.optimise.exchange.pymoo import exported
+
+        return exported(self)
+
+    @staticmethod
+    def from_pymoo(problem: Any, name: str = "") -> "Problem":
+        """Return a pymoo problem as a `Problem` without derivatives (`exchange.pymoo`)."""
+        from gearopt.optimise.exchange.pymoo import imported
+
+        return imported(problem, name)
 
 
 def one_objective(name: str, objectives: tuple[str, ...]) -> None:
