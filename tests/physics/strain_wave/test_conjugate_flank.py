@@ -192,6 +192,9 @@ def test_arcs_and_angles_are_inverse_all_round():
     place, normal = whole_curve(curve, np.array([0.3, 0.3 + np.pi, 0.3 + 2 * np.pi]))
     assert place.x == pytest.approx(place.x[0] * np.array([1, -1, 1]), abs=1e-12)
     assert normal - normal[0] == pytest.approx([0.0, np.pi, 2 * np.pi], abs=1e-12)
+    many = np.linspace(-7.0, 7.0, 1000)  # these are interpolated
+    few = whole_curve(curve, many[::7])[0]
+    assert whole_curve(curve, many)[0].x[::7] == pytest.approx(few.x, abs=1e-7)
 
 
 def test_first_order_ring_theory_is_good_near_the_major_axis_alone():

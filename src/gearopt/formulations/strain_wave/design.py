@@ -42,6 +42,7 @@ from gearopt.physics.strain_wave.tooth_motion import motion
 
 T = TypeVar("T")
 Columns = tuple[float, ...]
+REPLACED = 0.3  # s that line and arc in place of a cutter's edge take
 INVOLUTE = "involute"  # law of the circular spline's teeth, to which the flexspline's are conjugate
 WITHIN = (1.0, 2.0, 5.0, 10.0, 20.0)  # um
 ROWS = 21  # of the flank's table
@@ -197,9 +198,10 @@ class Extras:
     clock: Clock
     left_out: list[str] = field(default_factory=list)
 
-    def of(self, name: str, compute: Callable[[], T], without: T) -> T:
-        """A computed part, or `without` it where the time is over."""
-        if not self.clock.over:
+    def of(self, name: str, compute: Callable[[], T], without: T, lasts: float = 0.0) -> T:
+        """A computed part, or `without` it where the time is over; lasts: s that it takes."""
+        left = self.clock.left.seconds
+        if not self.clock.over and (left is None or left >= lasts):
             return compute()
         self.left_out.append(name)
         return without
@@ -255,7 +257,7 @@ def other_deflections(extras: Extras, at: Callable[[float], Deflected]) -> tuple
 def _cutter(made: Flank, asked: Cutter, extras: Extras) -> CutterDesign:
     """Return the cutter, while there is time with a line and an arc that replace its edge."""
     name = "straight and circular edges of the cutter"
-    asked = extras.of(name, lambda: asked, replace(asked, replaced=False))
+    asked = extras.of(name, lambda: asked, replace(asked, replaced=False), REPLACED)
     return cutter_of(made.gearing, blank_profile(made), asked)
 
 

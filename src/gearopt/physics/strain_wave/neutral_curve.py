@@ -17,6 +17,7 @@ from gearopt.physics.strain_wave.vectors import Vector, polar
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(14)  # perimeters to 1e-14 for w_0/R_m up to 0.05
 CHORDS = 8  # steps of one slope: each divides the error by 100 or more
 AT_ONCE = 2000  # places of which all nodes are computed at once: more do not fit into fast memory
+TABLE = 721  # places of half a curve: every quarter of a degree
 INVERSIONS = 7  # Newton steps from an arc to its polar angle
 
 
@@ -207,9 +208,23 @@ def curvature(curve: NeutralCurve, angle: Any) -> tuple[Any, Any]:
 
 
 def whole_curve(curve: NeutralCurve, arc: Any) -> tuple[Vector, Any]:
-    """Return place [mm] and normal angle [rad] at phi [rad] anywhere round the curve (arrays)."""
+    """Return place [mm] and normal angle [rad] at phi [rad] anywhere round the curve (arrays).
+
+    Of more than TABLE places polar angles are interpolated between as many: within 1e-9 rad.
+    """
     turns = np.rint(np.asarray(arc) / math.pi) * math.pi
-    angle = angle_of_arc(curve, arc - turns)
+    rest = arc - turns
+    angle = angle_of_arc(curve, rest) if np.size(rest) <= TABLE else _between(curve, rest)
     rho, slope, _, _ = radii(curve, angle)
     normal = angle - np.arctan2(slope, rho)
     return polar(rho, angle + turns), normal + turns
+
+
+def _between(curve: NeutralCurve, arc: Any) -> Any:
+    """Polar angles by Hermite's cubic through those of a table and their slopes."""
+    from scipy.interpolate import CubicHermiteSpline  # for a page alone
+
+    known = np.linspace(-0.5 * math.pi, 0.5 * math.pi, TABLE)
+    angle = angle_of_arc(curve, known)
+    rho, slope, _, _ = radii(curve, angle)
+    return CubicHermiteSpline(known, angle, curve.radius / np.hypot(rho, slope))(arc)
