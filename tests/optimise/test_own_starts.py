@@ -1,7 +1,6 @@
 """A problem of one's own: starts, the method that is taken, and what its message says of proofs."""
 
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -152,6 +151,8 @@ def test_a_maximum_is_promised_a_proof_by_logarithms_alone():
         found = solve(bent, method="ipopt", budget=Budget(evaluations=300))
         assert (found.status == "optimal") == log
         assert ("declare log=True for x: then" in found.message) != log
+    open_ = solve(box(lower=0.0, upper=np.inf), method="ipopt").message
+    assert "a lower bound above 0 for a, b, a finite upper bound for a, b: then" in open_
 
 
 @pytest.mark.parametrize(
