@@ -12,6 +12,7 @@ from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.quadratic import curvature, natural
 from gearopt.optimise.result import Outcome
+from gearopt.optimise.solve import solve
 from gearopt.optimise.stationarity import evaluated
 from gearopt.optimise.terms import Terms, Var
 
@@ -228,3 +229,45 @@ def test_a_proof_of_emptiness_needs_only_the_bounds_that_slopes_point_to():
     for lam, status in (((1.0, 1.0), "failed"), ((1.0, 0.9), "failed")):
         claim = Outcome(np.ones(2), lam_g=np.array(lam), lam_h=np.empty(0), infeasible=True)
         assert certify(problem, claim, 1e-6).status == status  # a doubt of the slope to infinity
+
+
+def endless(seed, size):
+    """A random geometric program of `size` variables above 1e-9: monomials of three of them."""
+    rng = np.random.default_rng(seed)
+
+    def monomial():
+        columns, powers = rng.choice(size, 3, replace=False), rng.choice([-2, -1, -0.5, 1, 2], 3)
+        return lambda w: math.prod(w[k] ** e for k, e in zip(columns, powers, strict=True))
+
+    inside, costs = np.exp(rng.normal(size=size)), [monomial() for _ in range(3)]
+    rows = [(monomial(), monomial()) for _ in range(size)]
+    tops = [(a(inside) + b(inside)) / 0.9 for a, b in rows]
+
+    def text(x, p):
+        cost = sum(x.w) + sum(0.1 / v for v in x.w) + sum(term(x.w) for term in costs)
+        used = tuple((a(x.w) + b(x.w)) / top for (a, b), top in zip(rows, tops, strict=True))
+        return Terms({"cost": cost}, {"row": used})
+
+    return text
+
+
+@pytest.mark.parametrize(("seed", "size"), [(1, 3), (2, 10), (0, 20)])
+def test_a_geometric_program_without_upper_bounds_is_proven(seed, size):
+    results = []
+    for top in (math.inf, 1e9):
+        w = Var("w", "", 1e-9, top, 1.0, size=size, log=True)
+        results.append(solve(Problem("endless", (w,), (), endless(seed, size)), "ipopt"))
+    open_, boxed = results
+    assert open_.status == boxed.status == "optimal" and open_.gap < 1e-8
+    assert open_.bound <= boxed.value * (1.0 + 1e-12) and boxed.bound <= open_.value
+
+
+def test_a_minimum_that_lies_at_infinity_is_not_proven_nor_one_at_a_lower_end_lost():
+    """a b + c/a + 1/c: a grows without end as b falls to its lower end."""
+    a, b, c = (Var(n, "", 1e-6, math.inf, 1.0, log=True) for n in "abc")
+    text = lambda x, p: Terms({"f": 2.0 * x.a * x.b + 1.0 / x.c}, {"g": 1.0 / (x.a * x.b * x.c)})  # noqa: E731
+    result = solve(Problem("flat", (a, b, c), (), text), "ipopt")
+    assert result.bound is None or result.bound <= result.value
+    vanishing = Problem("vanishing", (a,), (), lambda x, p: Terms({"f": 1.0 + 1.0 / x.a}))
+    result = solve(vanishing, "ipopt")
+    assert result.bound is None or result.bound <= 1.0

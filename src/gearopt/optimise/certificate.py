@@ -15,7 +15,7 @@ import numpy as np
 
 from gearopt.errors import CertificateError, SolveError
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.dual import ROUNDING, farkas, multipliers
+from gearopt.optimise.dual import ROUNDING, farkas, multipliers, risen
 from gearopt.optimise.dual import bound as dual_bound
 from gearopt.optimise.epigraphs import epigraph, raised
 from gearopt.optimise.form import Form, form
@@ -225,7 +225,8 @@ def _local(
         message = f"{doubt.words}. {before.message}".strip() if doubt.words else before.message
         status = "feasible" if doubt.words else "stationary"
         before = replace(before, status=status, message=message, lower=doubt.lower)
-    bounds = [dual_bound(point) for point in points] if shape.convex else []
+    both = [*points, *map(risen, points)] if np.isinf(points[0].high).any() else points
+    bounds = [dual_bound(point) for point in both] if shape.convex else []
     known = [pair for pair in bounds if math.isfinite(pair[0])]
     if not known:
         return before

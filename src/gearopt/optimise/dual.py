@@ -18,7 +18,7 @@ from gearopt.optimise.form import Form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.quadratic import box, curvature, hessian_of, least
 from gearopt.optimise.result import Outcome
-from gearopt.optimise.stationarity import ACTIVE_WITHIN, Point, evaluated
+from gearopt.optimise.stationarity import ACTIVE_WITHIN, Point, evaluated, hessian
 from gearopt.optimise.terms import Array
 
 # entries of the dense system; larger problems keep their method's multipliers
@@ -118,6 +118,9 @@ def _least_squares(columns: Any, target: Array) -> Array:
     return x
 
 
+RISE = 1e-12  # slope towards an infinite end: above the rounding of slopes, and cheap
+RANK = 1e-9  # of the largest singular value: a direction that is flat
+MAX_RISEN = 200  # variables: its system is dense
 ROUNDING = 1e-14  # 50 units in the last place of every term that is added up in a bound
 
 
@@ -137,6 +140,47 @@ def bound(point: Point) -> tuple[float, float]:
         doubt = doubt + ROUNDING * (along + np.abs(linear))
         drop = least(point.gradient, doubt, y, point.low, point.high, curvature(hessian))
     return float(lagrangian + drop - slack), slack
+
+
+def risen(point: Point) -> Point:
+    """Return the point of a log form, moved so that slopes towards infinite ends are above 0.
+
+    By the least change of the variables and of the multipliers above 0; then those ends cost
+    nothing (Lemma 3 holds at any point). The point itself where there is no such end.
+    """
+    problem, shape, count = point.problem, point.shape, len(point.y)
+    endless = np.isinf(point.high)
+    if not endless.any() or count > MAX_RISEN or shape.hessian is not None:
+        return point
+    firm, p = np.flatnonzero(point.lam_g > 0.0), problem.parameter_values()
+    of_g, of_h = (np.array(j).reshape(-1, count) for j in shape.jacobians(point.y, p))
+    off = point.y > point.low + ACTIVE_WITHIN  # at its lower end a slope above 0 costs nothing
+    system = np.hstack([np.array(hessian(point))[:, off], of_g[firm].T, of_h.T])[off]
+    if not np.isfinite(system).all():
+        return point
+    aim = RISE * max(1.0, float(point.pull.max())) * _reachable(system, endless[off])
+    step = np.linalg.lstsq(system, aim - point.gradient[off], rcond=RANK)[0]
+    of_y, more_g, more_h = np.split(step, np.cumsum([off.sum(), len(firm)]))
+    y, lam_g, lam_h = point.y.copy(), point.lam_g.copy(), point.lam_h + more_h
+    y[off] += of_y
+    lam_g[firm] = np.maximum(lam_g[firm] + more_g, 0.0)
+    return evaluated(problem, shape, y, point.low, point.high, lam_g, lam_h)
+
+
+def _reachable(system: Array, endless: Any) -> Array:
+    """Return slopes, at least 1 towards infinite ends, that the columns of a system add up to.
+
+    Across its flat directions they are 0, as far as that goes.
+    """
+    from scipy.optimize import nnls
+
+    left, sizes, _ = np.linalg.svd(system)
+    flat = left[:, int((sizes > RANK * sizes.max(initial=0.0)).sum()) :].T
+    either = np.hstack([flat, -flat[:, ~endless]])
+    more, _ = nnls(either, -flat @ endless)
+    slopes = endless + more[: len(endless)]
+    slopes[~endless] -= more[len(endless) :]
+    return np.asarray(slopes, float)
 
 
 def farkas(
