@@ -8,6 +8,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 from gearopt.formulations.drive.toothing import Toothing
@@ -238,12 +239,12 @@ class Train:
         """Whether every stage has the centre distance of its reference circles."""
         return all(stage.toothing.on_reference for stage in self.stages)
 
-    @property
+    @cached_property
     def lowest_ratio(self) -> Fraction:
         """Minimum total ratio."""
         return self.ratio * (1 - self.tolerance)
 
-    @property
+    @cached_property
     def highest_ratio(self) -> Fraction:
         """Maximum total ratio."""
         return self.ratio * (1 + self.tolerance)

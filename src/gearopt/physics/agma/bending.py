@@ -15,6 +15,7 @@ from gearopt.physics.agma.mesh import Mesh, mesh_of, virtual_gear
 from gearopt.physics.choosing import choose
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.geometry.fillet import (
+    ToolTip,
     base_half_angle,
     fillet_point,
     least_fillet_radius,
@@ -111,14 +112,15 @@ def loaded_tooth(mesh: Mesh, load: str = "highest single") -> LoadedTooth:
     )
 
 
-def tangency(tooth: LoadedTooth, theta: Any) -> Any:
+def tangency(tooth: LoadedTooth, theta: Any, tip: ToolTip | None = None) -> Any:
     """Return 2 h_F sin(tau) - (s_F/2) cos(tau) [normal modules], 0 where the parabola is tangent.
 
-    theta: tool angle of the point of the fillet; tau: slope of the fillet there. It is the
-    stationarity of h_F/s_F^2 in theta, without its derivative: positive at the root circle,
-    negative at the end of the fillet. Source: AGMA 908-B89, clause 5, y = 2 h_F tan(tau) - s_F/2.
+    theta: tool angle of the point of the fillet; tip: `tool_tip` of the gear, if known; tau: slope
+    of the fillet there. It is the stationarity of h_F/s_F^2 in theta, without its derivative:
+    positive at the root circle, negative at the end of the fillet. Source: AGMA 908-B89, clause 5,
+    y = 2 h_F tan(tau) - s_F/2.
     """
-    point = fillet_point(tooth.gear, theta)
+    point = fillet_point(tooth.gear, theta, tip)
     height = tooth.apex - point.y
     return 2.0 * height * np.sin(point.slope) - point.x * np.cos(point.slope)
 
@@ -136,16 +138,16 @@ def critical_theta(tooth: LoadedTooth) -> Any:
     angle = tooth.gear.rack.pressure_angle
     shape = np.shape(tooth.apex + angle)
     low, high = np.broadcast_to(angle, shape), np.full(shape, 0.5 * np.pi)
-    start = low
-    above, below = tangency(tooth, low) >= 0.0, tangency(tooth, high) <= 0.0
+    start, tip = low, tool_tip(tooth.gear)
+    above, below = tangency(tooth, low, tip) >= 0.0, tangency(tooth, high, tip) <= 0.0
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        past = tangency(tooth, middle) > 0.0
+        past = tangency(tooth, middle, tip) > 0.0
         low, high = np.where(past, low, middle), np.where(past, middle, high)
     before, here = low, high
-    f_before = tangency(tooth, before)
+    f_before = tangency(tooth, before, tip)
     for _ in range(SECANTS):
-        f_here = tangency(tooth, here)
+        f_here = tangency(tooth, here, tip)
         change = f_here - f_before
         step = np.where(change == 0.0, 0.0, f_here * (here - before) / change)
         before, f_before = here, f_here
