@@ -56,7 +56,7 @@ def widened(name, standard):
         )
     asked = file(standard, tables)
     asked["duty"] = asked["duty"] | {"ratio_tolerance": "2 %"}
-    found = gearopt.solve(asked)
+    found = gearopt.solve(asked, remedies=False)
     return None if found.status == "infeasible" else found.value
 
 

@@ -4,6 +4,7 @@ import re
 
 from mutations import DEPTH, mutation
 
+DOTS = 2000  # of a key, twice as deep as Python recurses: tomllib takes the square of them
 SCRAMBLES = {}  # name -> Mutation, as in mutations.MUTATIONS
 
 
@@ -122,7 +123,7 @@ def deep_inline_tables(rng, text):
 def deep_dotted_key(rng, text):
     lines = text.split("\n")
     k = _entry(rng, lines)
-    lines[k] = re.sub(r"^([a-z_0-9]+) *=", lambda m: m[1] + ".a" * DEPTH + " =", lines[k])
+    lines[k] = re.sub(r"^([a-z_0-9]+) *=", lambda m: m[1] + ".a" * DOTS + " =", lines[k])
     return "\n".join(lines).encode()
 
 
@@ -133,7 +134,7 @@ def deep_arrays_of_ones_own(rng, text):
 
 @scramble()
 def deep_keys_of_ones_own(rng, text):
-    key = b"a" + b".a" * (DEPTH - 1)
+    key = b"a" + b".a" * (DOTS - 1)
     return text.encode() + rng.choice([b"\n[x-deep]\n" + key + b" = 1", b"\n[x-deep." + key + b"]"])
 
 

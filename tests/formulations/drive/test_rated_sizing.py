@@ -199,6 +199,7 @@ def test_the_smooth_form_is_the_rating_of_its_regime():
 @pytest.mark.parametrize("helix", [0.0, 0.4363])
 def test_two_stages_are_below_whole_teeth_and_above_the_bound(helix, monkeypatch):
     monkeypatch.setattr(sizing, "SEARCH", 5.0)
+    monkeypatch.setattr(sizing, "REFINED", 1)
     train = rated_drive(20, [FREE, FREE], helix=helix)
     found, whole = solve(sizing.problem(train)), solve(teeth.problem(train))
     assert found.status in ("stationary", "feasible") and max(found.limits.values()) <= 1.0 + 1e-8

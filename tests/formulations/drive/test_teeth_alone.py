@@ -18,7 +18,7 @@ from gearopt.physics.iso6336 import tooth_form as form
 
 RACKS = {"0.38": Rack(tip_radius=0.38), "0.25": Rack(tip_radius=0.25)}
 TANGENT = form.tangent_theta
-FEWEST, MOST, WIDEST = 17.0, 120.0, 0.004
+FEWEST, MOST, WIDEST = 17.0, 120.0, 0.008
 
 
 def cells():

@@ -146,16 +146,6 @@ def test_gears_and_box_as_by_brute_force(seed, stages, gap):
 
 
 @pytest.mark.slow
-def test_anchor_in_order():
-    """Below 44,506,647 mm3, the best of a scan with fixed slabs; 47,483,118 when sized first."""
-    train = three()
-    make = frame(train, (8.0, 15.0, 22.5, 35.0), slabs=IN_ORDER)
-    result = certified(train, make, 1e-2)
-    assert result.status == "optimal"
-    assert result.value <= 44_506_647 * (1 + 1e-8)
-
-
-@pytest.mark.slow
 def test_anchor_with_a_shared_slab():
     """The first and third stage side by side: a box that no sizing for volume alone finds."""
     train = three()

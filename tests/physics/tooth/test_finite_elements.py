@@ -113,13 +113,12 @@ def test_without_scikit_fem_the_extra_is_named(monkeypatch):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "plane"), ELEMENTS)
-def test_two_programs_agree_and_halved_elements_change_nothing(name, plane):
+def test_two_programs_agree(name, plane):
+    """That halved elements change nothing, the bench of stiffness says of the same pairs."""
     pair = elastic(name, plane)
     found = stiffness(pair_compliance(pair, five(pair), force(name)), pair)
-    halved = stiffness(pair_compliance(pair, five(pair), force(name), halvings=1), pair)
     finite_elements.body.cache_clear()
     assert found == pytest.approx(ELEMENTS[name, plane], rel=1e-3)
-    assert halved == pytest.approx(found, rel=1e-3)
 
 
 @pytest.mark.slow
