@@ -164,8 +164,8 @@ def gearopt(*words):
     )
 
 
-def refused(path):
-    done = gearopt("solve", path)
+def refused(command, path):
+    done = command("solve", path)
     assert done.returncode == 2 and done.stdout == ""
     assert done.stderr.endswith("\n") and "Traceback" not in done.stderr
     lines = done.stderr[:-1].split("\n")
@@ -176,10 +176,10 @@ def refused(path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in VALID])
-def test_the_command_refuses_in_a_line_for_each_mistake(kind, tmp_path):
+def test_the_command_refuses_in_a_line_for_each_mistake(kind, tmp_path, here):
     path = tmp_path / "my.toml"
     refused_file(kind, path)
-    lines = refused(path)
+    lines = refused(here, path)
     assert lines == [f"gearopt: {line}" for line in str(refusal_of(path)).splitlines()]
 
 
@@ -194,16 +194,16 @@ def test_the_command_takes_what_editors_add(kind, tmp_path):
 
 
 @pytest.mark.slow
-def test_the_command_refuses_what_is_no_file(tmp_path):
+def test_the_command_refuses_what_is_no_file(tmp_path, here):
     (tmp_path / "mine.toml").write_text(ELEVATOR)
-    assert refused(tmp_path)
-    assert refused(tmp_path / "nine.toml")
-    assert refused(tmp_path / "none" / "mine.toml")
-    assert refused(tmp_path / "mine.toml" / "mine.toml")
-    assert refused(tmp_path / ("long" * 100))
+    assert refused(here, tmp_path)
+    assert refused(here, tmp_path / "nine.toml")
+    assert refused(here, tmp_path / "none" / "mine.toml")
+    assert refused(here, tmp_path / "mine.toml" / "mine.toml")
+    assert refused(here, tmp_path / ("long" * 100))
     if os.geteuid() != 0:  # root reads everything
         (tmp_path / "mine.toml").chmod(0)
-        assert refused(tmp_path / "mine.toml")
+        assert refused(here, tmp_path / "mine.toml")
 
 
 def test_paths_that_are_no_file_name_one(tmp_path):

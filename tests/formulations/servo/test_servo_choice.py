@@ -65,11 +65,12 @@ def asked(train, points, rng):
 def brute_force(chosen, points):
     """The least objective of the trains that keep stiffness and box, by other code."""
     worth = split.problem(chosen.train, chosen.goal).batch(points).F[:, 0]
-    for k in np.argsort(worth, kind="stable"):
+    order = np.argsort(worth, kind="stable")
+    if least := chosen.minimum_stiffness:
+        made = pairs(points[order].T, chosen.train.face_width)
+        order = order[chosen.springs.output_stiffness(made) >= least * (1.0 - 1e-12)]
+    for k in order:
         made = pairs(points[k], chosen.train.face_width)
-        least = chosen.minimum_stiffness or 0.0
-        if least and chosen.springs.output_stiffness(made) < least * (1.0 - 1e-12):
-            continue
         if chosen.room is None or first_that_fits([of_train(made, chosen.room)]):
             return float(worth[k])
     return None

@@ -20,6 +20,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.explained import remedy_words
 from gearopt.scenes.drive.explain import box_remedies as ways
+from gearopt.scenes.drive.explain import other_gears
 from gearopt.scenes.drive.explain.box_moves import LARGER, SMALLER
 from gearopt.scenes.drive.explain.box_remedies import BRIEF
 from gearopt.scenes.drive.without import without
@@ -139,8 +140,9 @@ BLOCK = 'y = ["-5000 mm", "5000 mm"]\nz = ["-5000 mm", "5000 mm"]\n'
 
 
 @pytest.mark.slow
-def test_what_cannot_be_decided_near_the_border_is_moved_all_the_same():
+def test_what_cannot_be_decided_near_the_border_is_moved_all_the_same(monkeypatch):
     """Beside the border no proof ends in time; the move is told, and it is the least."""
+    monkeypatch.setattr(other_gears, "SECONDS", 1.0)
     found, content = told(HIGH)
     assert {("place[1].z",), ("keep_out[2].z",), ("keep_out[2]",)} <= set(keys(found))
     (way,) = (r for r in found.remedies if keys_of(r) == ("place[1].z",))
@@ -213,6 +215,7 @@ def test_a_change_that_stays_undecided_is_named(monkeypatch):
 @pytest.mark.slow
 def test_what_was_tried_is_said_where_nothing_helps(monkeypatch):
     """50 times the stress would do; moves end at 3 times."""
+    monkeypatch.setattr(other_gears, "SECONDS", 1.0)
     text = ELEVATOR.replace('"25 MPa"', '"0.5 MPa"')
     ways, _ = ways_by(monkeypatch, text, lambda box: False)
     assert not ways["remedies"]
