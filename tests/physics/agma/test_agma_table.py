@@ -242,9 +242,10 @@ def test_random_points_have_an_answer_or_a_name():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(10))
-def test_a_million_random_points_have_an_answer_or_a_name(seed):
-    found = check(random_pairs(100_000, seed))
-    assert sum(found.values()) == 100_000 and found[0] > 10_000
+def test_many_random_points_have_an_answer_or_a_name(seed):
+    """Of each of the rarest names there is a point among them."""
+    found = check(random_pairs(40_000, seed))
+    assert sum(found.values()) == 40_000 and found[0] > 4_000
 
 
 # Teeth that are known to be refused: digest, section 10, and closed forms
