@@ -207,45 +207,49 @@ class Extras:
         return without
 
 
-def described(
-    demand: Demand,
-    made: Flank,
-    cutter: Cutter | None,
-    clock: Clock,
-    rounds: Sequence[RoundRow] = (),
-) -> WaveDesign:
-    """Return all that is told of a gearing and its flank; cutter: the tool that is asked for.
-
-    Once the clock is over, what no other number needs is left out.
-    """
-    gearing, duty = made.gearing, demand.duty
-    turned = _carried(duty, made)
-    found, extras = interference(made, STEP_DEG), Extras(clock)
-    deflections = other_deflections(extras, lambda by: _deflected(made, by))
-    addendum = extras.of("the largest addendum", lambda: largest_addendum(gearing), None)
-    none: tuple[ShiftRow, ...] = ()
-    shifts = extras.of("the curve over profile shifts", lambda: _shifts(gearing, duty), none)
-    return WaveDesign(
-        **_sizes(demand, made),
-        **_columns(made),
+def loads_and_pressures(demand: Demand, made: Flank) -> dict[str, Any]:
+    """Fields of a `WaveDesign`: loads of its teeth, and pressures by each way of sharing them."""
+    turned = _carried(demand.duty, made)
+    return {
         **load_columns(turned, LOADS_LISTED),
         **shares(turned[0]),
-        equal_pressure_MPa=equal_pressure(duty, made),
-        whole_pairs_pressure_MPa=equal_pressure(duty, made, whole=True),
-        shared_pressure_MPa=shared_pressure(duty, made),
-        least_clearance_mm=gap_of(found.gap),
-        least_clearance_at_deg=math.degrees(found.angle),
-        least_deflection=least_deflection(gearing),
-        shift_of_one_pair=last_shift_of_one_pair(gearing),
-        largest_addendum=addendum,
-        within_um=WITHIN,
-        teeth_within=floats(teeth_within(made, 1e-3 * np.array(WITHIN))),
-        shifts=shifts,
-        deflections=deflections,
-        cutter=_cutter(made, cutter, extras) if cutter else None,
-        rounds=tuple(rounds),
-        left_out=tuple(extras.left_out),
-    )
+        "equal_pressure_MPa": equal_pressure(demand.duty, made),
+        "whole_pairs_pressure_MPa": equal_pressure(demand.duty, made, whole=True),
+        "shared_pressure_MPa": shared_pressure(demand.duty, made),
+    }
+
+
+def sizes_and_clearances(demand: Demand, made: Flank) -> dict[str, Any]:
+    """Fields of a `WaveDesign`: sizes, contacts along the flank, clearances of its teeth."""
+    least = interference(made, STEP_DEG)
+    return {
+        **_sizes(demand, made),
+        **_columns(made),
+        "least_clearance_mm": gap_of(least.gap),
+        "least_clearance_at_deg": math.degrees(least.angle),
+        "within_um": WITHIN,
+        "teeth_within": floats(teeth_within(made, 1e-3 * np.array(WITHIN))),
+    }
+
+
+def deflections_and_ends(made: Flank, extras: Extras) -> dict[str, Any]:
+    """Fields of a `WaveDesign`: ends of deflection, shift and addendum, and other deflections."""
+    gearing = made.gearing
+    deflections = other_deflections(extras, lambda by: _deflected(made, by))
+    addendum = extras.of("the largest addendum", lambda: largest_addendum(gearing), None)
+    return {
+        "deflections": deflections,
+        "largest_addendum": addendum,
+        "least_deflection": least_deflection(gearing),
+        "shift_of_one_pair": last_shift_of_one_pair(gearing),
+    }
+
+
+def profile_shifts(duty: Duty, made: Flank, extras: Extras) -> dict[str, Any]:
+    """Fields of a `WaveDesign`: the curve over profile shifts, if there is time."""
+    none: tuple[ShiftRow, ...] = ()
+    name = "the curve over profile shifts"
+    return {"shifts": extras.of(name, lambda: _shifts(made.gearing, duty), none)}
 
 
 def other_deflections(extras: Extras, at: Callable[[float], Deflected]) -> tuple[Deflected, ...]:
@@ -254,8 +258,8 @@ def other_deflections(extras: Extras, at: Callable[[float], Deflected]) -> tuple
     return extras.of("other deflections", lambda: tuple(map(at, OTHER_DEFLECTIONS)), none)
 
 
-def _cutter(made: Flank, asked: Cutter, extras: Extras) -> CutterDesign:
-    """Return the cutter, while there is time with a line and an arc that replace its edge."""
+def cutter_design(made: Flank, asked: Cutter, extras: Extras) -> CutterDesign:
+    """The cutter, while there is time with a line and an arc that replace its edge."""
     name = "straight and circular edges of the cutter"
     asked = extras.of(name, lambda: asked, replace(asked, replaced=False), REPLACED)
     return cutter_of(made.gearing, blank_profile(made), asked)

@@ -138,8 +138,9 @@ def _searched(
 
 
 def design_of(demand: Demand, numbers: Sequence[float] | Array) -> Flank:
-    """Return gearing and flank of the free numbers (6,)."""
-    return flank(demand.gearing(dict(zip(FREE, map(float, numbers), strict=True))), POINTS)
+    """Gearing and flank of the free numbers (6,)."""
+    gearing = demand.gearing(dict(zip(FREE, map(float, numbers), strict=True)))
+    return flank(gearing, POINTS)
 
 
 def _cutting(least: Sequence[Least], known: Sequence[Passage]) -> tuple[Passage, ...]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.strain_wave.cutter_report import Cutter, cutter_of
+from gearopt.formulations.strain_wave.cutter_report import Cutter, CutterDesign, cutter_of
 from gearopt.formulations.strain_wave.demand import SHIFTS, Demand, Duty, common_limits
 from gearopt.formulations.strain_wave.design import (
     ROWS,
@@ -16,7 +16,6 @@ from gearopt.formulations.strain_wave.design import (
     Carried,
     Deflected,
     Extras,
-    WaveDesign,
     clearance_columns,
     floats,
     gap_of,
@@ -27,7 +26,6 @@ from gearopt.formulations.strain_wave.design import (
 )
 from gearopt.formulations.strain_wave.exchange import STEP_DEG
 from gearopt.formulations.strain_wave.sharing import compliance_of, shared
-from gearopt.optimise.clock import Clock
 from gearopt.physics.strain_wave.circular_arc import DoubleArc, half_locus_tooth, tooth_heights
 from gearopt.physics.strain_wave.cutter import Profile
 from gearopt.physics.strain_wave.gearing import StrainWave
@@ -149,43 +147,54 @@ def _nearest(found: Touching, arcs: Any) -> tuple[Any, Any]:
     return found.arms[hardest], found.gap_curvature[hardest]
 
 
-def described_by_law(
-    demand: Demand, made: SweptGearing, law: Law, cutter: Cutter | None, clock: Clock
-) -> WaveDesign:
-    """Return all that is told of a gearing by its law, as `report.described`."""
-    mesh, duty = made.mesh, demand.duty
-    gearing = mesh.gearing
+def loads_by_law(demand: Demand, made: SweptGearing) -> dict[str, Any]:
+    """Fields of a `WaveDesign`: loads of its teeth, and pressures by each way of sharing them."""
+    duty = demand.duty
     turned = [carried(duty, made, k / TURNS) for k in range(TURNS)]
-    (least, at), extras = _least(mesh), Extras(clock)
+    shared_by_shift = (float(carried(duty, made, shift).stresses.max()) for shift in SHIFTS)
+    return {
+        **load_columns(turned),
+        **shares(turned[0]),
+        "pairs_in_contact": made.pairs,
+        "equal_pressure_MPa": _equal(duty, made, made.pairs),
+        "whole_pairs_pressure_MPa": _equal(duty, made, max(1.0, math.floor(made.pairs))),
+        "shared_pressure_MPa": max(shared_by_shift),
+    }
+
+
+def sizes_by_law(demand: Demand, made: SweptGearing, law: Law) -> dict[str, Any]:
+    """Fields of a `WaveDesign`: law, sizes, contacts along the flank, clearances of its teeth."""
+    mesh = made.mesh
+    gearing = mesh.gearing
+    least, at = _least(mesh)
     arcs = np.linspace(-0.499 * math.pi, 0.499 * math.pi, ARCS)
     clear = tooth_gaps(mesh, arcs)
     each = (arcs[1] - arcs[0]) * float(gearing.teeth) / (2.0 * math.pi)
     within = [float((clear <= 1e-3 * v).sum() * each) for v in WITHIN]
-    return WaveDesign(
-        law=law.name,
-        thickness_mm=law.thickness,
-        arc_radii_mm=law.radii if law.name == DOUBLE_ARC else (),
-        tangent_mm=law.tangent if law.name == DOUBLE_ARC else None,
+    return {
+        "law": law.name,
+        "thickness_mm": law.thickness,
+        "arc_radii_mm": law.radii if law.name == DOUBLE_ARC else (),
+        "tangent_mm": law.tangent if law.name == DOUBLE_ARC else None,
         **sizes_of(demand, gearing, mesh.curve),
         **_columns(made),
         **clearance_columns(arcs[::SHOWN], clear[::SHOWN]),
-        **load_columns(turned),
-        **shares(turned[0]),
-        pairs_in_contact=made.pairs,
-        ratcheting_torque_Nm=1e-3 * float(_ratcheting_torque(demand, gearing)),
-        equal_pressure_MPa=_equal(duty, made, made.pairs),
-        whole_pairs_pressure_MPa=_equal(duty, made, max(1.0, math.floor(made.pairs))),
-        shared_pressure_MPa=max(
-            float(carried(duty, made, shift).stresses.max()) for shift in SHIFTS
-        ),
-        least_clearance_mm=0.0 if abs(least) < TOUCH else gap_of(least),
-        least_clearance_at_deg=at,
-        within_um=WITHIN,
-        teeth_within=tuple(within),
-        deflections=other_deflections(extras, lambda by: _deflected(mesh, by)),
-        cutter=cutter_of(gearing, _blank(mesh), cutter) if cutter else None,
-        left_out=tuple(extras.left_out),
-    )
+        "ratcheting_torque_Nm": 1e-3 * float(_ratcheting_torque(demand, gearing)),
+        "least_clearance_mm": 0.0 if abs(least) < TOUCH else gap_of(least),
+        "least_clearance_at_deg": at,
+        "within_um": WITHIN,
+        "teeth_within": tuple(within),
+    }
+
+
+def deflections_by_law(made: SweptGearing, extras: Extras) -> dict[str, Any]:
+    """Fields of a `WaveDesign`: other deflections of a gearing, while there is time."""
+    return {"deflections": other_deflections(extras, lambda by: _deflected(made.mesh, by))}
+
+
+def cutter_by_law(made: SweptGearing, asked: Cutter) -> CutterDesign:
+    """The cutter of a gearing's flexspline."""
+    return cutter_of(made.mesh.gearing, _blank(made.mesh), asked)
 
 
 def used_by_law(demand: Demand, made: SweptGearing) -> dict[str, float]:

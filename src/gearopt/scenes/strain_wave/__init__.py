@@ -3,16 +3,20 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from types import MappingProxyType
 from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.strain_wave import sampled
-from gearopt.formulations.strain_wave.demand import FREE, PRESSURE, VOLUME
+from gearopt.formulations.strain_wave.demand import FREE, PRESSURE, VOLUME, Demand
 from gearopt.formulations.strain_wave.design import (
+    Extras,
     RoundRow,
     WaveDesign,
-    described,
+    cutter_design,
+    deflections_and_ends,
+    loads_and_pressures,
+    profile_shifts,
+    sizes_and_clearances,
     sketched,
     used,
 )
@@ -27,11 +31,15 @@ from gearopt.formulations.strain_wave.exchange import (
 from gearopt.formulations.strain_wave.impossible import told
 from gearopt.formulations.strain_wave.sampled import SHARE
 from gearopt.formulations.strain_wave.swept_report import (
-    described_by_law,
+    SweptGearing,
+    cutter_by_law,
+    deflections_by_law,
+    loads_by_law,
+    sizes_by_law,
     swept_gearing,
     used_by_law,
 )
-from gearopt.optimise.certified import run
+from gearopt.optimise.certified import point_of, run
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.runs import Model
 from gearopt.optimise.explaining.explain import binding
@@ -44,7 +52,7 @@ from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.physics.strain_wave.conjugate import Flank
 from gearopt.scenes.kind import Kind, Trades, examples_in
-from gearopt.scenes.plan import one_step
+from gearopt.scenes.plan import Step
 from gearopt.scenes.reading.ask import Ask, unseeded, without_method
 from gearopt.scenes.strain_wave.explain import MOVES, of_pressure, possible, remedies
 from gearopt.scenes.strain_wave.notes import assumptions, notes, range_notes
@@ -55,29 +63,47 @@ SAMPLERS = ("annealing", "nsga2")
 NOTHING = "the gearing is given, so that nothing is chosen"
 UNPROVEN = "sensitivities need a design that is certified as locally optimal, and this one is not"
 NEAREST = "The nearest design of this size that was found reaches: {}."
+INTERFERING = "Stopped before the interference was removed."
+NUMBERS = "numbers"  # the part of a gearing's numbers, until they are described
 TELLING_SECONDS = 0.5  # that a description may take beyond a budget that is spent
 NO_FLANK = (
     "No gearing was found whose flanks are conjugate from root to tip. "
     "Increase the deflection or the pressure angle."
 )
-NO_SLOPES: Mapping[str, float] = MappingProxyType({})
 HIDDEN = (
     "Interference: the teeth of the best design found overlap by {:.3g} µm, between the positions "
     "that this method checks. --method exchange checks all positions."
 )
 
 
-def gearing(scene: Scene, ask: Ask, known: Result | None) -> Result:
-    """Choose what the file leaves open, without interference; describe the gearing."""
+def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
+    """The numbers of a gearing, given or chosen; then its description, part by part.
+
+    Each part adds fields to the design, of which `described` makes the answer's.
+    """
+    last: list[Step[Scene]] = [Step(described), Step(with_limits)]
+    if not scene.involute:
+        without_method(ask, NOTHING)
+        by_law = given_law, with_law_loads, with_law_sizes, with_law_deflections, with_law_cutter
+        return *(Step(step) for step in by_law), last[0], Step(with_law_limits)
     if not scene.has_free_sizes:
-        return _evaluated(scene, ask)
-    if ask.method in SAMPLERS:
-        return _sampled(scene, ask)
-    if ask.method not in (None, *METHODS):
+        without_method(ask, NOTHING)
+        numbers = given
+    elif ask.method in SAMPLERS:
+        numbers = sampled_numbers
+    elif ask.method in (None, *METHODS):
+        numbers = exchanged
+    else:
         names = ", ".join((*METHODS, *SAMPLERS))
         raise SolveError(f"no method {ask.method!r} for a strain wave gearing: {names}")
-    clock = Clock(ask.budget, ask.watch)
-    found = exchange(scene.demand(), scene.start(), clock, ask.gap)
+    parts = numbers, with_loads, with_sizes, with_deflections, with_shifts, with_cutter
+    return *(Step(step) for step in parts), *last
+
+
+def exchanged(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """Numbers of least pressure by equal sharing, without interference at any pose."""
+    clock, demand = Clock(ask.budget, ask.watch), scene.demand()
+    found = exchange(demand, scene.start(), clock, ask.gap)
     result = replace(found.result, seconds=clock.seconds, evaluations=clock.evaluations)
     result = replace(result, method="exchange", seed=ask.seed)
     numbers = found.outcome.x
@@ -86,13 +112,20 @@ def gearing(scene: Scene, ask: Ask, known: Result | None) -> Result:
     if result.status == "stationary":  # what Ipopt says of itself is certified
         result = replace(result, message="")
     slopes = slopes_of(found.problem, numbers) if result.status == "stationary" else {}
-    shown = _with(scene, result, found.design, numbers, clock, slopes, _rounds(found))
-    if found.clear:
-        return shown
-    message = f"Stopped before the interference was removed. {shown.message}".strip()
-    excess = max(shown.limits.values()) - 1.0
-    certificate = {**shown.certificate, "feasibility": excess}
-    return replace(shown, status="limit", certificate=certificate, message=message)
+    if not found.clear:
+        message = f"{INTERFERING} {result.message}".strip()
+        result = replace(result, status="limit", message=message)
+    return _begun(
+        result,
+        rounds=_rounds(found),
+        range_ends=ends_of(demand.ranges, numbers[: len(FREE)], slopes),
+    )
+
+
+def _begun(result: Result, **design: Any) -> Result:
+    """A result with fields of its design, whose numbers are a part until they are described."""
+    numbers = replace(result, name=NUMBERS)
+    return replace(result, parts=(numbers,), design={"left_out": (), **design})
 
 
 def _without_design(scene: Scene, found: Exchanged, result: Result, clock: Clock) -> Result:
@@ -107,8 +140,8 @@ def _without_design(scene: Scene, found: Exchanged, result: Result, clock: Clock
     return replace(result, report=report, seconds=clock.seconds)
 
 
-def _rounds(found: Exchanged) -> list[RoundRow]:
-    return [
+def _rounds(found: Exchanged) -> tuple[RoundRow, ...]:
+    return tuple(
         RoundRow(
             cuts=r.cuts,
             pressure_MPa=r.pressure,
@@ -116,80 +149,137 @@ def _rounds(found: Exchanged) -> list[RoundRow]:
             iterations=r.iterations,
         )
         for r in found.rounds
-    ]
+    )
 
 
-def _sampled(scene: Scene, ask: Ask) -> Result:
-    """Choose by annealing or NSGA-II, which look at some poses; the answer is judged at all."""
-    clock = Clock(ask.budget, ask.watch)
-    problem = sampled.problem(scene.demand(), scene.start())
+def sampled_numbers(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """Numbers by annealing or NSGA-II, which look at some poses; the answer is judged at all."""
+    demand = scene.demand()
+    problem = sampled.problem(demand, scene.start())
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
     if outcome.x is None:
         return result
-    least = sampled.least_clearance(scene.demand(), outcome.x[: len(FREE)])
+    numbers = outcome.x[: len(FREE)]
     if result.value is None:
+        least = sampled.least_clearance(demand, numbers)
         return replace(result, message=HIDDEN.format(-1e3 * least)) if least < CUTTING else result
-    made = design_of(scene.demand(), outcome.x[: len(FREE)])
-    return _with(scene, replace(result, message=""), made, outcome.x, clock)
+    return _begun(replace(result, message=""), range_ends=ends_of(demand.ranges, numbers, {}))
 
 
-def _evaluated(scene: Scene, ask: Ask) -> Result:
-    """Return what is to be known of a gearing that is given."""
-    without_method(ask, NOTHING)
-    clock = Clock(ask.budget, ask.watch)
-    design, limits = _given(scene, clock)
-    excess = max(0.0, max(limits.values()) - 1.0)
-    over = [name for name, value in limits.items() if value > 1.0 + FEASIBLE]
-    found = Result(
+def given(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """Numbers of a gearing that is given."""
+    numbers = dict(zip(FREE, scene.start(), strict=True))
+    return _begun(replace(_evaluated(ask), design=numbers))
+
+
+def given_law(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """A gearing that is given by the law of its teeth."""
+    return replace(_evaluated(ask), design={"left_out": ()})
+
+
+def _evaluated(ask: Ask) -> Result:
+    return Result(
         name="strain wave gearing",
         status="evaluated",
         method="closed form",
         objective={},
-        certificate={"feasibility": excess},
-        message=f"{', '.join(over)}: limits are exceeded" if over else "",
+        certificate={"feasibility": 0.0},
         evaluations=1,
         seed=ask.seed,
         versions=versions("numpy"),
     )
-    return replace(_shown(scene, found, design, limits), seconds=clock.seconds)
 
 
-def _given(scene: Scene, clock: Clock) -> tuple[WaveDesign, dict[str, float]]:
-    """Return the design of a gearing that is given, and what it uses of every limit."""
+def _flank(demand: Demand, known: Result | None) -> Flank:
+    """Gearing and flank of the numbers of a result."""
+    assert known is not None
+    return design_of(demand, point_of(known.parts[0].design)[: len(FREE)])
+
+
+def _with(known: Result | None, fields: Mapping[str, Any], left_out: Sequence[str] = ()) -> Result:
+    """A result with fields of its design more; left_out: of those that time was short for."""
+    assert known is not None
+    left = *known.design["left_out"], *left_out
+    return replace(known, design={**known.design, **fields, "left_out": left})
+
+
+def _swept(scene: Scene) -> SweptGearing:
+    gearing = scene.gearing()
+    return swept_gearing(gearing, scene.law())
+
+
+def with_loads(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The gearing with the loads of its teeth."""
     demand = scene.demand()
-    if not scene.involute:
-        swept = swept_gearing(scene.gearing(), scene.law())
-        design = described_by_law(demand, swept, scene.law(), scene.tool(), _spare(clock))
-        return design, used_by_law(demand, swept)
-    made = design_of(demand, scene.start())
-    return described(demand, made, scene.tool(), _spare(clock)), used(demand, made)
+    flank = _flank(demand, known)
+    return _with(known, loads_and_pressures(demand, flank))
 
 
-def _spare(clock: Clock) -> Clock:
-    """Return the time for what a description may do without."""
-    left = clock.left.seconds
-    return Clock(Budget(None if left is None else max(left, TELLING_SECONDS)))
-
-
-def _with(
-    scene: Scene,
-    result: Result,
-    made: Flank,
-    numbers: Array,
-    clock: Clock,
-    slopes: Mapping[str, float] = NO_SLOPES,
-    rounds: Sequence[RoundRow] = (),
-) -> Result:
-    """Return a result with the design that was chosen and what it uses of every limit."""
+def with_sizes(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The gearing with its sizes and clearances."""
     demand = scene.demand()
-    ends = ends_of(demand.ranges, numbers[: len(FREE)], slopes)
-    design = described(demand, made, scene.tool(), _spare(clock), rounds)
-    design = replace(design, range_ends=ends)
-    return _shown(scene, result, design, _interference_used(result) | used(demand, made))
+    flank = _flank(demand, known)
+    return _with(known, sizes_and_clearances(demand, flank))
 
 
-def _shown(scene: Scene, result: Result, design: WaveDesign, limits: dict[str, float]) -> Result:
-    """Return a result with a design and all that is told of it."""
+def with_deflections(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The gearing with ends of its numbers and other deflections, while there is time."""
+    flank, extras = _flank(scene.demand(), known), _extras(ask)
+    fields = deflections_and_ends(flank, extras)
+    return _with(known, fields, extras.left_out)
+
+
+def with_shifts(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The gearing with other profile shifts, while there is time."""
+    demand, extras = scene.demand(), _extras(ask)
+    flank = _flank(demand, known)
+    fields = profile_shifts(demand.duty, flank, extras)
+    return _with(known, fields, extras.left_out)
+
+
+def with_cutter(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The gearing with the cutter that the file asks for."""
+    tool, extras = scene.tool(), _extras(ask)
+    if tool is None:
+        return _with(known, {})
+    flank = _flank(scene.demand(), known)
+    return _with(known, {"cutter": cutter_design(flank, tool, extras)}, extras.left_out)
+
+
+def with_law_loads(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The gearing of a law with the loads of its teeth."""
+    swept = _swept(scene)
+    return _with(known, loads_by_law(scene.demand(), swept))
+
+
+def with_law_sizes(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The gearing of a law with its sizes and clearances."""
+    swept = _swept(scene)
+    return _with(known, sizes_by_law(scene.demand(), swept, scene.law()))
+
+
+def with_law_deflections(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The gearing of a law with other deflections, while there is time."""
+    extras = _extras(ask)
+    return _with(known, deflections_by_law(_swept(scene), extras), extras.left_out)
+
+
+def with_law_cutter(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The gearing of a law with the cutter that the file asks for."""
+    tool = scene.tool()
+    return _with(known, {} if tool is None else {"cutter": cutter_by_law(_swept(scene), tool)})
+
+
+def _extras(ask: Ask) -> Extras:
+    """Parts that a description may do without, and the time for them."""
+    left = ask.budget.seconds
+    return Extras(Clock(Budget(None if left is None else max(left, TELLING_SECONDS))))
+
+
+def described(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The gearing with its whole design, and all that is told of it."""
+    assert known is not None
+    design = WaveDesign(**known.design)
     told: dict[str, Any] = {
         "assumptions": assumptions(scene),
         "notes": [*notes(design), *range_notes(scene, design.range_ends)],
@@ -202,14 +292,40 @@ def _shown(scene: Scene, result: Result, design: WaveDesign, limits: dict[str, f
             "grid_mm": grid,
         }
     return replace(
-        result,
+        known,
         name="strain wave gearing",
-        objective=result.objective | ({"unit": "MPa"} if result.objective else {}),
+        objective=known.objective | ({"unit": "MPa"} if known.objective else {}),
         design=untyped(design),
-        limits=limits,
-        multipliers={k: v for k, v in result.multipliers.items() if "[" not in k},
-        report=result.report | told,
+        multipliers={k: v for k, v in known.multipliers.items() if "[" not in k},
+        report=known.report | told,
     )
+
+
+def with_limits(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The gearing with what it uses of every limit."""
+    assert known is not None
+    demand = scene.demand()
+    flank = _flank(demand, known)
+    limits = _interference_used(known) | used(demand, flank)
+    return _limited(replace(known, parts=()), limits)
+
+
+def with_law_limits(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The gearing of a law with what it uses of every limit."""
+    assert known is not None
+    return _limited(known, used_by_law(scene.demand(), _swept(scene)))
+
+
+def _limited(known: Result, limits: dict[str, float]) -> Result:
+    """A result that is judged by its limits, where it is given or its teeth interfere."""
+    excess, certificate, message = max(limits.values()) - 1.0, known.certificate, known.message
+    if known.status == "evaluated":
+        certificate = {"feasibility": max(0.0, excess)}
+        over = [name for name, value in limits.items() if value > 1.0 + FEASIBLE]
+        message = f"{', '.join(over)}: limits are exceeded" if over else ""
+    elif message.startswith(INTERFERING):
+        certificate = {**certificate, "feasibility": excess}
+    return replace(known, limits=limits, certificate=certificate, message=message)
 
 
 def _interference_used(result: Result) -> dict[str, float]:
@@ -290,7 +406,7 @@ ABOUT = {  # files in examples, that of the kind first
 KIND = Kind(
     scene=Scene,
     examples=examples_in(__file__, ABOUT),
-    steps=one_step(gearing),
+    steps=steps,
     posed=posed,
     compared=compared,
     methods=METHODS,
