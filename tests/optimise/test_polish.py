@@ -2,6 +2,7 @@
 
 import math
 import re
+import time
 from itertools import product
 
 import numpy as np
@@ -221,6 +222,23 @@ def test_a_simulation_is_polished_without_derivatives_and_its_failed_points_are_
     assert result.status == "feasible" and result.value < 1e-6 and result.evaluations <= 200
     assert "polished by cobyqa: the text of ode cannot be traced" in result.message
     assert re.search(r"\d+ of \d+ points failed: OverflowError: no step at a = ", result.message)
+
+
+@pytest.mark.parametrize("method", SAMPLERS)
+def test_seconds_end_between_two_points_of_a_population_and_slow_points_are_kept(method):
+    asked = []
+
+    def slow(x, p):
+        asked.append(float(x.x))
+        time.sleep(0.02)
+        return Terms({"f": (float(x.x) - 1.3) ** 2})
+
+    problem = Problem("slow", (Var("x", "", 0.0, 10.0, 8.0),), (), slow)
+    began = time.perf_counter()
+    result = gearopt.solve(problem, method=method, budget=Budget(seconds=0.6))
+    assert result.status == "limit" and result.evaluations <= len(asked)
+    assert asked.count(result.design["x"]) == 1 and result.value < 0.5
+    assert time.perf_counter() - began < 1.9
 
 
 @pytest.mark.parametrize("method", SAMPLERS)

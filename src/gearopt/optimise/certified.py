@@ -51,6 +51,7 @@ def run(
     with until(budget.seconds), counting(budget.seconds) as points:
         outcome = run_method(call, problem, name, budget, seed, follow)
         points.end = None
+        outcome = replace(outcome, evaluations=max(outcome.evaluations - points.skipped, 0))
         verdict = certify(problem, outcome, gap, exact=name in problem.methods)
         if verdict.lower is not None and name in FOLLOWING and name not in problem.methods:
             left = Clock(budget, follow, clock.start)

@@ -112,6 +112,8 @@ if TYPE_CHECKING:
     from gearopt.optimise.problem import Problem
 
 logger = logging.getLogger("gearopt")
+SLOW = 0.01  # s, of a point whose terms are kept: judging and describing it ask for them again
+KEPT_POINTS = 1000  # at most
 TRIED = 20  # points at which a text may raise before it has none
 ELEMENTWISE = (np.where, np.clip, np.round, np.select, np.zeros_like, np.ones_like, np.full_like)
 
@@ -207,7 +209,26 @@ def _above(problem: "Problem") -> dict[str, bool]:
 
 
 def at(problem: "Problem", repeat: Repeat | None, shared: Any, own: Any, row: int) -> Terms:
-    """Terms of a text on floats; SolveError names its fault."""
+    """Terms of a text on floats; SolveError names its fault. Those of a slow text are kept."""
+    known: dict[Any, Terms] = problem.memo.get("slow points", {})
+    key: Any = None
+    if known:
+        numbers = np.hstack([shared, own, problem.parameter_values()]).astype(float)
+        key = repeat and repeat.name, row, numbers.tobytes()
+        if key in known:
+            return known[key]
+    began = time.perf_counter()
+    terms = _at(problem, repeat, shared, own, row)
+    if time.perf_counter() - began > SLOW:
+        if len(known) >= KEPT_POINTS:
+            known.clear()
+        known[key] = terms  # the first of all under no key: it makes the others be kept
+        problem.memo["slow points"] = known
+    return terms
+
+
+def _at(problem: "Problem", repeat: Repeat | None, shared: Any, own: Any, row: int) -> Terms:
+    """Terms of a text on floats, computed anew."""
     data = {k: np.float64(v[row]) for k, v in repeat.data.items()} if repeat else {}
     key = "compares", repeat and repeat.name
     with blaming(*text_of(problem, repeat), "evaluated"):
@@ -340,7 +361,7 @@ def seconds(problem: "Problem", repeat: Repeat | None) -> float:
     guess = sample(problem, 1)[0]
     width = repeat.width if repeat else 0
     began = time.perf_counter()
-    at(problem, repeat, guess[:start], guess[start : start + width], 0)
+    _at(problem, repeat, guess[:start], guess[start : start + width], 0)
     return time.perf_counter() - began
 
 
@@ -354,6 +375,7 @@ def _one_by_one(problem: "Problem", repeat: Repeat | None, shared: Array, own: A
     values = np.full((len(shared), len(rows), sum(map(len, names.values()))), np.nan)
     for k, (x, y) in enumerate(zip(shared, own, strict=True)):
         if k and run.late:
+            run.skipped += len(shared) - k
             break
         for row in rows:
             values[k, row], failure = _numbers(problem, repeat, x, y[row : row + 1], row, names)

@@ -14,12 +14,14 @@ from dataclasses import dataclass
 class Points:
     """The points of a run so far; it has state because they are counted as they come.
 
-    end: when its seconds end (`time.perf_counter`), None: never. first: the first failure in words.
+    end: when its seconds end (`time.perf_counter`), None: never. skipped: points that came later.
+    first: the first failure in words.
     """
 
     end: float | None = None
     count: int = 0
     failed: int = 0
+    skipped: int = 0
     first: str = ""
 
     @property

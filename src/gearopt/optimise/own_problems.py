@@ -11,6 +11,7 @@ from gearopt.errors import SolveError
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.deadline import until
+from gearopt.optimise.failures import counting
 from gearopt.optimise.maximised import as_asked
 from gearopt.optimise.own_methods import back_ends
 from gearopt.optimise.polish import TRACED
@@ -105,7 +106,7 @@ def _without_derivatives(problem: Problem, budget: Budget) -> bool:
     """Return whether a text has no tape; SolveError where a sampler does not take it, either."""
     seconds = None if budget.seconds is None else TRACED * budget.seconds
     try:
-        with until(seconds):
+        with until(seconds), counting(seconds):
             problem.traced()
     except SolveError:
         if not np.isfinite(problem.bounds()[:2]).all():

@@ -19,6 +19,7 @@ from gearopt.optimise.box import allowed_values, box
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.deadline import until
 from gearopt.optimise.evaluation import elementwise
+from gearopt.optimise.failures import current
 from gearopt.optimise.form import form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome
@@ -59,7 +60,10 @@ class Polish:
     def sampling(self) -> tuple[Clock, int | None]:
         """Return the clock of the sampling, and the evaluations at which it ends (`sampling`)."""
         variables = len(self.problem.columns) if self.blind else 0
-        return sampling(self.clock, self.skipped is None, variables)
+        own, most = sampling(self.clock, self.skipped is None, variables)
+        if own.budget.seconds is not None:
+            current().end = own.start + own.budget.seconds
+        return own, most
 
 
 def sampling(clock: Clock, polished: bool, blind: int = 0) -> tuple[Clock, int | None]:
@@ -109,6 +113,8 @@ def polished(polish: Polish, sampled: Outcome, starts: Array) -> Outcome:
     problem, most = polish.problem, polish.clock.budget.evaluations
     if polish.skipped is not None:
         return replace(sampled, message=sampled.message or polish.skipped)
+    if polish.clock.budget.seconds is not None:
+        current().end = polish.clock.start + polish.clock.budget.seconds
     sampled = replace(sampled, message=sampled.message or polish.blind)
     best, least, done = sampled, _value(problem, sampled.x), True
     planned = ITERATIONS if most is None else most - sampled.evaluations

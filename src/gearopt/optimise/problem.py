@@ -281,14 +281,14 @@ class Problem:
         """Return the text as casadi functions, traced once; SolveError where it cannot be."""
         from gearopt.optimise.tape import trace
 
-        if (refused := self.memo.get("not traced")) is not None:
+        key = "not traced", self.parameter_values().tobytes()
+        if (refused := self.memo.get(key)) is not None:
             raise SolveError(str(refused)) from refused.__cause__
         if "traced" not in self.memo:
             try:
                 self.memo["traced"] = trace(self)
             except SolveError as reason:
-                if isinstance(reason.__cause__, TimeoutError):  # not to wait once more
-                    self.memo["not traced"] = reason
+                self.memo[key] = reason  # not to wait once more
                 raise
         found: Traced = self.memo["traced"]
         return found

@@ -19,7 +19,6 @@ from gearopt.optimise.result import Budget, Outcome, Watch
 
 POPULATION = 100
 GENERATIONS = 300  # where the budget names no evaluations; within seconds again, twice as many
-MAX_GENERATIONS = 1_000_000  # of a front that ends by its seconds
 EQUAL = 1e-6  # an equality counts as met within this, before the polish
 
 RANDOM = True
@@ -41,13 +40,13 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     last = polish.prepared(problem, clock)
     own, most = last.sampling()
     size = min(POPULATION, most or POPULATION)
-    timed = most is None and own.budget.seconds is not None
-    generations = GENERATIONS if most is None else most // size
     several = len(problem.rows.objectives) > 1
+    timed = most is None and own.budget.seconds is not None and not several
+    generations = GENERATIONS if most is None else most // size
     algorithm, found, spent = None, Outcome(None, False), 0
     while algorithm is None or (timed and not own.stopped):  # again until the seconds end
         algorithm = NSGA2(pop_size=size)
-        ending = ("n_gen", MAX_GENERATIONS if timed and several else max(1, generations))
+        ending = ("n_gen", max(1, generations))
         algorithm.setup(posed(problem, space), seed=seed, termination=ending)
         least = own.best
         while algorithm.has_next() and not own.stopped:
