@@ -84,6 +84,12 @@ def test_the_first_number_that_is_none_is_named():
     assert of(posed, 4.0) == (3.0, "fine")
 
 
+def test_an_infinite_row_is_violated():
+    posed = problem(Var("a", "", -9, 9, 1.0), limits={"inverse": lambda x: -1.0 / x.a})
+    assert of(posed, 0.0) == (INF, "inverse") and of(posed, -0.0) == (INF, "inverse")
+    assert of(posed, 1.0)[0] == 0.0
+
+
 @pytest.mark.parametrize(
     ("lower", "upper", "guess", "x", "named"),
     [

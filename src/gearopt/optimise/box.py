@@ -125,12 +125,13 @@ def box(problem: Problem) -> Box:
 
 
 def violation(problem: Problem, points: Array) -> tuple[Array, Array]:
-    """Return first objective (N,) and total violation (N,) >= 0 of points; NaN counts as inf."""
+    """First objective (N,) and total violation (N,) >= 0 of points.
+
+    inf where the objective or a row is infinite, of either sign, or no number.
+    """
     with np.errstate(all="ignore"):
         batch = problem.batch(points)
         excess = np.maximum(batch.G - 1.0, 0.0).sum(axis=1) + np.abs(batch.H - 1.0).sum(axis=1)
     value = batch.F[:, 0]
-    return (
-        np.where(np.isnan(value), np.inf, value),
-        np.where(np.isnan(excess) | np.isnan(value), np.inf, excess),
-    )
+    known = np.isfinite(np.hstack([batch.F[:, :1], batch.G, batch.H])).all(axis=1)
+    return np.where(np.isfinite(value), value, np.inf), np.where(known, excess, np.inf)

@@ -299,13 +299,35 @@ def same_way(problem: "Problem", other: "Problem") -> None:
             problem.memo[_key(problem, repeat)] = known
 
 
-def _obstacle(problem: "Problem", repeat: Repeat | None) -> str:
+def functions_of(problem: "Problem") -> set[str] | None:
+    """Names of numpy's functions that the texts call on scalars; None where they do not pass."""
+    names = set[str]()
+
+    class Heard(Scalar):
+        """Keeps the name of a function that it passes through."""
+
+        def __array_ufunc__(self, function: Any, method: str, *inputs: Any, **more: Any) -> Any:
+            names.add(function.__name__)
+            found = super().__array_ufunc__(function, method, *inputs, **more)
+            return tuple(Heard() for _ in found) if isinstance(found, tuple) else Heard()
+
+        def __array_function__(self, function: Any, types: Any, inputs: Any, more: Any) -> Any:
+            super().__array_function__(function, types, inputs, more)
+            return Heard()
+
+    passed = [not _obstacle(problem, r, Heard) for r in (None, *problem.repeats)]
+    return names if all(passed) else None
+
+
+def _obstacle(
+    problem: "Problem", repeat: Repeat | None, scalar: Callable[[], Scalar] = Scalar
+) -> str:
     """First operation of a text that is not elementwise; "" for none."""
     shared, own = (
-        [Scalar() for v in variables for _ in range(v.size)]
+        [scalar() for v in variables for _ in range(v.size)]
         for variables in (problem.variables, repeat.variables if repeat else ())
     )
-    row = {k: Scalar() for k in repeat.data} if repeat else {}
+    row = {k: scalar() for k in repeat.data} if repeat else {}
     try:
         with np.errstate(all="ignore"):
             terms = called(problem, repeat, shared, own, row)
@@ -352,7 +374,7 @@ def sample(problem: "Problem", count: int) -> Array:
             points[:, k] = allowed[np.abs(allowed - points[:, k, None]).argmin(axis=1)]
         elif variable.integer:
             points[:, k] = np.rint(points[:, k])
-    return points
+    return points + 0.0  # no zero is -0.0
 
 
 def seconds(problem: "Problem", repeat: Repeat | None) -> float:

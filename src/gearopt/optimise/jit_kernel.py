@@ -8,7 +8,8 @@ compiling.
 
 `inlined` is for small functions that a kernel calls millions of times and that make no array (numba
 refuses one that does): they become part of their callers, references to arrays are not counted, and
-a division by zero gives infinity. Steps of motions are three to four times as fast by it.
+a division by zero gives infinity. Steps of motions are three to four times as fast by it. `light`
+is the same for larger ones, which stay functions of their own.
 """
 
 import hashlib
@@ -107,4 +108,5 @@ def _kernel(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
 entry = _kernel()
 inner = _kernel(no_cpython_wrapper=True)
+light = _kernel(no_cpython_wrapper=True, error_model="numpy", _nrt=False)
 inlined = _kernel(no_cpython_wrapper=True, forceinline=True, error_model="numpy", _nrt=False)

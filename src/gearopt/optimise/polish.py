@@ -200,4 +200,4 @@ def _value(problem: Problem, x: Array | None) -> float:
         batch = problem.batch(x[None])
         excess, _ = violation(problem, x, batch)
     value = float(batch.F[0, 0])
-    return value if excess <= FEASIBLE and not math.isnan(value) else math.inf
+    return value if excess <= FEASIBLE and math.isfinite(value) else math.inf

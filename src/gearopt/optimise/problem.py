@@ -205,7 +205,7 @@ class Problem:
 
     def batch(self, points: Array) -> Batch:
         """Evaluate the text on points (N, n) with numpy."""
-        points = np.asarray(points, float)
+        points = np.asarray(points, float) + 0.0  # so that no zero is -0.0
         if points.ndim != 2 or points.shape[1] != len(self.columns):
             raise ValueError(
                 f"{self.name}: points are (N, {len(self.columns)}), not {points.shape}"

@@ -142,7 +142,8 @@ RUNAWAY = 1e9  # a variable without a bound that moves this factor from its gues
 def violation(problem: Problem | Conic, x: Array, batch: Batch) -> tuple[float, str]:
     """Return the largest violation of rows, bounds and discreteness, and the name of its row.
 
-    Of rows and of the limits that the problem looks at more closely (`exact_limits`).
+    Of rows and of the limits that the problem looks at more closely (`exact_limits`). A row that
+    is infinite, of either sign, or no number is violated.
     That of a bound is relative to the variable's own scale, of a value to that or to 1.
     """
     lower, upper, _ = problem.bounds()
@@ -154,7 +155,7 @@ def violation(problem: Problem | Conic, x: Array, batch: Batch) -> tuple[float, 
     discrete = [_distance(v, value, unit) for (v, _), value, unit in columns]
     amounts = np.concatenate(
         [
-            batch.G[0] - 1.0,
+            np.where(np.isneginf(batch.G[0]), np.inf, batch.G[0] - 1.0),
             np.abs(batch.H[0] - 1.0),
             np.maximum(lower - x, x - upper) / np.minimum(size, np.maximum(1.0, np.abs(x))),
             np.array(discrete),

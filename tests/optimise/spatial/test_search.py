@@ -1,6 +1,7 @@
 """Spatial branch and bound on problems with known optima, and against liars and forgers."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -61,6 +62,46 @@ def test_listed_values_are_kept_to():
 def test_ends_of_the_floats_lose_no_point(box, text, guess, best):
     result = solve(posed([box], lambda x: (text(x[0]), [], []), [guess]), "spatial")
     assert result.status == "optimal" and result.value == pytest.approx(best, rel=1e-6)
+
+
+POLES = {  # texts that divide by 0, or take a logarithm of 0, at whole numbers
+    "limit": lambda n, m: (n + 1.0, -1.0 / n),
+    "inverse": lambda n, m: (n**-1 + m, m / (n - 1.0)),
+    "exp": lambda n, m: (1.0 + np.exp(-1.0 / n) + 0.1 * m, n),
+    "arctan": lambda n, m: (np.arctan(m / n) + 0.01 * n, m),
+    "extremes": lambda n, m: (np.maximum(m - 1.0, (2.0 * m - 2.0) / n), np.minimum(1.0 / n, 0.9)),
+    "twice": lambda n, m: (-((n**-1) ** -2) * m, 1.0 / (2.0 + 1.0 / (n * m))),
+    "logarithm": lambda n, m: (np.log(n) + m, np.log(abs(m))),
+    "of a logarithm": lambda n, m: (1.0 / np.log(abs(n)) - 0.2 * m, np.exp(-((m - 1.0) ** -3))),
+    "tangent": lambda n, m: (np.tan(1.0 / n) + m, np.tanh(m**-1)),
+}
+
+
+@pytest.mark.parametrize("name", POLES)
+@pytest.mark.parametrize("ends", [((0, 3), (-2, 2)), ((-3, 0), (0, 2)), ((-2, 2), (-3, 1))])
+def test_a_point_counts_where_all_rows_are_finite(name, ends):
+    def text(x):
+        f, g = POLES[name](*x)
+        return f, [g - 1.0], []
+
+    problem = posed([(*e, "whole") for e in ends], text, [e[0] for e in ends])
+    points = np.array(list(product(*(range(a, b + 1) for a, b in ends))), float)
+    with np.errstate(all="ignore"):
+        batch = problem.batch(points)
+    met = np.isfinite(batch.G[:, 0]) & (batch.G[:, 0] <= 1.0) & np.isfinite(batch.F[:, 0])
+    best = batch.F[met, 0].min(initial=np.inf)
+    result = solve(problem, "spatial")
+    if np.isinf(best):
+        assert result.status == "infeasible"
+    else:
+        assert result.status == "optimal" and result.value == pytest.approx(best, rel=1e-6)
+
+
+def test_a_number_that_follows_from_none_is_refused():
+    for f in (lambda x: np.fmax(np.log(x[0]), 0.3), lambda x: np.log(x[0]) ** (x[1] + 2.0)):
+        problem = posed([(-2, 3, "whole"), (-2, 3, "whole")], lambda x, f=f: (f(x) + x[1], [], []))
+        with pytest.raises(SolveError, match="may be no number|may be negative"):
+            solve(problem, "spatial")
 
 
 @pytest.mark.parametrize("text", [lambda x: x[0] ** x[1], lambda x: (-2.0) ** x[1]])

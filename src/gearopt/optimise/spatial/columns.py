@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -86,6 +86,8 @@ class Builder:
     sums: dict[int, Affine] = field(default_factory=dict)
     of: dict[int, int] = field(default_factory=dict)  # the relation that makes a column
     bases: set[int] = field(default_factory=set)  # of powers whose exponent is no constant
+    raised: set[int] = field(default_factory=set)  # these, and exponents that are no constants
+    rooted: set[int] = field(default_factory=set)  # of roots of quotients, read as one power
 
     def new(self, whole: bool) -> int:
         """A further column."""
@@ -133,6 +135,21 @@ class Builder:
             self.known[key] = w = self.new(whole)
             self.of[w] = self.relation(kind, w, u, v, p)
         return Affine({self.known[key]: (1.0, 0.0)})
+
+    def keep(self, needed: list[int]) -> None:
+        """Drop relations that no needed column depends on, as of what was read as another."""
+        used, kept = set(needed), list[int]()
+        for r in range(len(self.relations) - 1, -1, -1):
+            kind, w, u, v = self.relations[r]
+            if w in used:
+                kept.append(r)
+                used.update(self.sums[r].terms if kind == LINEAR else (u, v))
+        kept.reverse()
+        self.sums = {k: self.sums[r] for k, r in enumerate(kept) if r in self.sums}
+        self.relations = [self.relations[r] for r in kept]
+        self.exponents = [self.exponents[r] for r in kept]
+        self.of = {relation[1]: r for r, relation in enumerate(self.relations)}
+        self.made = {key: w for key, w in self.made.items() if w in self.of}
 
     def maker(self, j: int) -> tuple[int, int, float]:
         """Kind, argument and exponent of the relation that makes a column; -1: a variable."""
@@ -220,6 +237,8 @@ def powered(builder: Builder, a: Affine, p: float) -> Affine:
     exact = Fraction(p) * Fraction(q) == Fraction(p * q)
     of_size = q % 2.0 == 0.0 and p % 1.0 != 0.0  # (u^2)^p is a power of |u|
     if exact and not of_size:
+        if q < 0.0 and p % 1.0 != 0.0:
+            builder.rooted.add(base)
         return scaled(powered_column(builder, base, p * q), factor, doubt)
     if exact and p * q == 1.0:
         return scaled(builder.operation(ABS, base), factor, doubt)
@@ -294,7 +313,9 @@ def raised(builder: Builder, a: Affine, b: Affine) -> Affine:
         logarithm = Affine({}, log, 8.0 * ROUNDED * abs(log))
     else:
         builder.bases.add(builder.column(a))
+        builder.raised.add(builder.column(a))
         logarithm = of_column(builder, LOG, a)
+    builder.raised.add(builder.column(b))
     return of_column(builder, EXP, multiplied(builder, b, logarithm))
 
 
@@ -393,6 +414,8 @@ def columns(problem: Problem) -> Columns:
 
     SolveError names the operation that has no relaxation, or a text that cannot be traced.
     """
+    from gearopt.optimise.spatial.partial import open_at_zero, partial_relations  # needs these
+
     one_objective(problem.name, problem.rows.objectives)
     builder = Builder(problem.name)
     for variable, _ in problem.columns:
@@ -404,6 +427,7 @@ def columns(problem: Problem) -> Columns:
         raise SolveError(f"{problem.name}: no relaxation of its text is known: {refused}") from None
     aim = builder.column(f)
     limits, equal = [builder.column(a) for a in g], [builder.column(a) for a in h]
+    builder.keep([aim, *limits, *equal])
     lower, upper = np.full(builder.width, -np.inf), np.full(builder.width, np.inf)
     lower[:count], upper[:count] = problem.bounds()[:2]
     for j in (*limits, *equal):
@@ -412,6 +436,9 @@ def columns(problem: Problem) -> Columns:
         lower[j] = max(lower[j], 1.0)
     first = _assembled(problem, builder, count, lower, upper, aim)
     _check_bases(problem.name, builder, first)
+    if (partial := partial_relations(first)).any():
+        open_at_zero(problem, builder, partial)
+        first = _assembled(problem, builder, count, lower, upper, aim)
     low, high = first.lower.copy(), first.upper.copy()
     if not first.propagated(low, high, ROOT_SWEEPS):
         return first
@@ -431,10 +458,16 @@ def _check_bases(name: str, builder: Builder, form: Columns) -> None:
     low, high = form.lower.copy(), form.upper.copy()
     inside = replace(form, relations=relations).propagated(low, high, ROOT_SWEEPS)
     if inside and any(low[j] < 0.0 for j in builder.bases):
-        raise SolveError(
-            f"{name}: no relaxation of its text is known: a variable power of what may be "
-            "negative; write np.exp(v * np.log(u)) for u**v where u is positive"
+        refuse(
+            name,
+            "a variable power of what may be negative; write np.exp(v * np.log(u)) for u**v where "
+            "u is positive",
         )
+
+
+def refuse(name: str, words: str) -> NoReturn:
+    """Raise SolveError: a text has no relaxation here."""
+    raise SolveError(f"{name}: no relaxation of its text is known: {words}")
 
 
 def _logarithms(builder: Builder, low: Array) -> None:

@@ -1,20 +1,22 @@
 """Intervals of the columns of a text, rounded outwards, and their propagation (Lemmas 74 and 75).
 
 A relation is `kind, w, u, v` with an exponent p: w = op(u, v), or a sum of columns that is a
-constant. Sums, products and quotients go outwards by more than one unit in the last place, library
-functions, taken as right to two, by four or more. Propagation (Messine, RAIRO 38, 2004) narrows w
-by u and v in the order of the text, and u and v by w in reverse order.
+constant. p of a quotient and v of a power say what their values are at 0 (`opens`). Sums, products
+and quotients go outwards by more than one unit in the last place, library functions, taken as right
+to two, by four or more. Propagation (Messine, RAIRO 38, 2004) narrows w by u and v in the order of
+the text, and u and v by w in reverse order.
 """
 
 import math
 
 import numpy as np
 
-from gearopt.optimise.jit_kernel import entry, inlined, inner
+from gearopt.optimise.jit_kernel import entry, inlined, light
 
 LINEAR, PRODUCT, QUOTIENT, POWER, ROOT, EXP, LOG, SINE, COSINE, TANH, ATAN, ASIN = range(12)
 ABS, MAXIMUM, MINIMUM, FLOOR = range(12, 16)
 CONTINUOUS, WHOLE, LISTED = 0, 1, 2
+CLOSED, OPEN, UNSIGNED = 0, 1, 2
 UNIT = 2.3e-16  # more than the spacing of doubles, relative
 LIBRARY = 4.0  # such units for a function of the C library
 LEAST = 1e-320  # added to what is not 0, as small numbers have a spacing of their own
@@ -283,7 +285,7 @@ def narrow(sets, lo, hi, j, low, high):
     return lo[j] <= hi[j]
 
 
-@inner
+@light
 def narrow_sum(sums, sets, r, lo, hi):
     """Narrow the columns of a sum; False where it cannot be its constant."""
     start, index, factor, error, constant, doubt = sums
@@ -344,8 +346,23 @@ def unscaled(least, most, factor, error, low, high):
 
 
 @inlined
+def opens(kind, p, u, v, lo, hi):
+    """Whether a quotient or a negative power is any infinity there, as a point of the text counts.
+
+    p of a quotient, -1 - v of a power: CLOSED, OPEN, or UNSIGNED where its 0 is never -0.
+    """
+    if kind == QUOTIENT and p > CLOSED:
+        return lo[v] <= 0.0 <= hi[v] and not (p == UNSIGNED and lo[v] == 0.0 < hi[v])
+    if kind == POWER and v < -1:
+        return lo[u] <= 0.0 <= hi[u] and not (v == -1 - UNSIGNED and lo[u] == 0.0 < hi[u])
+    return False
+
+
+@inlined
 def forward(kind, p, u, v, lo, hi):
     """Range of an operation on columns u and v."""
+    if opens(kind, p, u, v, lo, hi):
+        return -math.inf, math.inf
     if kind == PRODUCT:
         return product(lo[u], hi[u], lo[v], hi[v])
     if kind == QUOTIENT:
@@ -380,9 +397,13 @@ def solved_factor(a, b, c, d, low, high):
     return quotient(a, b, c, d)
 
 
-@inner
+@light
 def backward(kind, p, w, u, v, sets, lo, hi):
     """Narrow the arguments of an operation by its value; False where nothing is left."""
+    if (kind == QUOTIENT and p > CLOSED or kind == POWER and v < -1) and (
+        lo[w] <= 0.0 <= hi[w] or opens(kind, p, u, v, lo, hi)
+    ):
+        return True  # a value of 0 may be that of either infinity
     if kind == PRODUCT:
         low, high = solved_factor(lo[w], hi[w], lo[v], hi[v], lo[u], hi[u])
         if not narrow(sets, lo, hi, u, low, high):
@@ -391,7 +412,8 @@ def backward(kind, p, w, u, v, sets, lo, hi):
         return narrow(sets, lo, hi, v, low, high)
     if kind == QUOTIENT:
         low, high = product(lo[w], hi[w], lo[v], hi[v])
-        if not narrow(sets, lo, hi, u, low, high):
+        infinite = p > CLOSED and lo[v] <= 0.0 <= hi[v]  # then u is any, not 0 times infinity
+        if not infinite and not narrow(sets, lo, hi, u, low, high):
             return False
         low, high = solved_factor(lo[u], hi[u], lo[w], hi[w], lo[v], hi[v])
         return narrow(sets, lo, hi, v, low, high)
@@ -411,7 +433,7 @@ def backward(kind, p, w, u, v, sets, lo, hi):
     return narrow(sets, lo, hi, u, low, high)
 
 
-@inner
+@light
 def sweep(relations, exponent, sums, sets, lo, hi):
     """One pass forwards and one backwards; False where the box holds no point."""
     count = len(relations)

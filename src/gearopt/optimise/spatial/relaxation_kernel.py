@@ -8,7 +8,7 @@ and Shcherbina, Math. Program. 99, 2004).
 
 import math
 
-from gearopt.optimise.jit_kernel import entry, inlined, inner
+from gearopt.optimise.jit_kernel import entry, inlined, light
 from gearopt.optimise.spatial.interval_kernel import (
     ABS,
     ASIN,
@@ -29,6 +29,7 @@ from gearopt.optimise.spatial.interval_kernel import (
     UNIT,
     down,
     narrow,
+    opens,
     times,
     up,
     value,
@@ -87,7 +88,7 @@ def bend(kind, p, low, high):
     return sign if low >= 0.0 else -sign if high <= 0.0 else 0
 
 
-@inner
+@light
 def put(rows, slot, w, u, factor, low, high):
     """Write the row low <= w - factor u <= high into a slot."""
     start, count, index, entry_of, least, most = rows
@@ -100,7 +101,7 @@ def put(rows, slot, w, u, factor, low, high):
     least[slot], most[slot] = low, high
 
 
-@inner
+@light
 def chord(rows, slot, w, u, low, high, a, b, sign):
     """Chord above a convex function (sign 1) or below a concave one, of values a and b."""
     if not (high > low and abs(a) < LARGE and abs(b) < LARGE):
@@ -114,7 +115,7 @@ def chord(rows, slot, w, u, low, high, a, b, sign):
         put(rows, slot, w, u, s, min(one, two) - e, math.inf)
 
 
-@inner
+@light
 def tangent(rows, slot, kind, p, w, u, x, low, high, sign):
     """Tangent at x below a convex function (sign 1) or above a concave one."""
     f, s = value(kind, p, x), slope(kind, p, x)
@@ -143,7 +144,7 @@ def touching(kind, p, low, high, x):
     return first, middle, last
 
 
-@inner
+@light
 def bent_rows(rows, slot, kind, p, w, u, low, high, x, sign):
     """Chord and three tangents of a function of one curvature."""
     first, middle, last = touching(kind, p, low, high, x)
@@ -155,7 +156,7 @@ def bent_rows(rows, slot, kind, p, w, u, low, high, x, sign):
             tangent(rows, slot + 3, kind, p, w, u, middle, low, high, sign)
 
 
-@inner
+@light
 def wavy_rows(rows, slot, kind, p, w, u, low, high):
     """Chord and tangent, moved by M width^2/8, of a function of curvature at most M in size."""
     most = 1.0 if kind == SINE or kind == COSINE else 0.77 if kind == TANH else 0.65
@@ -172,7 +173,7 @@ def wavy_rows(rows, slot, kind, p, w, u, low, high):
     put(rows, slot + 1, w, u, s, f - s * middle - shift, f - s * middle + shift)
 
 
-@inner
+@light
 def odd_rows(rows, slot, n, w, u, low, high):
     """Rows of an odd power across 0: two slopes below, two above (as -(-u)^n)."""
     if not (abs(low**n) < LARGE and abs(high**n) < LARGE):
@@ -198,7 +199,7 @@ def odd_rows(rows, slot, n, w, u, low, high):
                 put(rows, slot + 2 + k, w, u, s, -math.inf, -r)
 
 
-@inner
+@light
 def put_product(rows, slot, w, u, v, fu, fv, low, high):
     """Write the row low <= w - fu u - fv v <= high into a slot."""
     start, count, index, entry_of, least, most = rows
@@ -211,7 +212,7 @@ def put_product(rows, slot, w, u, v, fu, fv, low, high):
     least[slot], most[slot] = low, high
 
 
-@inner
+@light
 def product_rows(rows, slot, w, u, v, lo, hi):
     """Rows of w = u v (McCormick, Math. Program. 10, 1976)."""
     a, b, c, d = lo[u], hi[u], lo[v], hi[v]
@@ -221,7 +222,7 @@ def product_rows(rows, slot, w, u, v, lo, hi):
     put_product(rows, slot + 3, w, u, v, d, a, -math.inf, up(-times(a, d), 1.0))
 
 
-@inner
+@light
 def extreme_rows(rows, slot, kind, w, u, v, lo, hi):
     """Rows of a maximum or a minimum, by t = u - v in [d, e]."""
     d, e = lo[u] - hi[v], hi[u] - lo[v]
@@ -242,7 +243,7 @@ def extreme_rows(rows, slot, kind, w, u, v, lo, hi):
     put_product(rows, slot + 2, w, u, v, s, 1.0 - s, low, high)
 
 
-@inner
+@light
 def sum_row(rows, slot, sums, r, lo, hi):
     """Row of a sum; what its factors may be off by is charged over the box."""
     start, count, index, entry_of, least, most = rows
@@ -285,7 +286,8 @@ def fill(relations, exponent, sums, lo, hi, at, rows):
         if kind == PRODUCT:
             product_rows(rows, slot, w, u, v, lo, hi)
         elif kind == QUOTIENT:
-            product_rows(rows, slot, u, w, v, lo, hi)
+            if not opens(kind, exponent[r], u, v, lo, hi):
+                product_rows(rows, slot, u, w, v, lo, hi)
         elif kind == MAXIMUM or kind == MINIMUM:
             extreme_rows(rows, slot, kind, w, u, v, lo, hi)
         elif kind == FLOOR:
