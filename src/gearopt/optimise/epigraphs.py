@@ -24,10 +24,13 @@ def epigraph(problem: Problem) -> Problem | None:
     """
     if problem.repeats or not all(v.log and not v.discrete for v in problem.variables):
         return None
+    if "maxima" not in problem.memo:
+        problem.memo["maxima"] = _takes_maxima(problem)
+    if not problem.memo["maxima"] or not kinds(problem).log_convex:
+        return None
     key = "epigraph", *(a.tobytes() for a in (*problem.bounds(), problem.parameter_values()))
     if key not in problem.memo:
-        takes = _takes_maxima(problem) and kinds(problem).log_convex
-        problem.memo[key] = _lifted(problem) if takes else None
+        problem.memo[key] = _lifted(problem)
     lifted: Problem | None = problem.memo[key]
     return lifted
 
@@ -39,6 +42,7 @@ def raised(problem: Problem, x: Array) -> Array:
 
 
 def _takes_maxima(problem: Problem) -> bool:
+    """Return whether the tape of a text takes the larger of two numbers."""
     import casadi as ca
 
     f = problem.traced().blocks[0].function
@@ -46,6 +50,7 @@ def _takes_maxima(problem: Problem) -> bool:
 
 
 def _lifted(problem: Problem) -> Problem | None:
+    """Return the epigraph form of a log-convex text with maxima, whose names are the text's."""
     lower, upper, guess = problem.bounds()
     ends, _ = _run(problem, list(np.column_stack([lower, upper])), problem.parameter_values(), None)
     low, high = (np.array(ends) * OUTWARD).T
@@ -71,6 +76,7 @@ def _lifted(problem: Problem) -> Problem | None:
 
 
 def _scalars(block: Any, size: int) -> Any:
+    """Return the components of a variable or parameter."""
     return (block,) if size == 1 else block
 
 
