@@ -16,12 +16,12 @@ from gearopt.optimise.pareto.front import Front, FrontPoint, Objective
 from gearopt.optimise.pareto.gaps import (
     Gap,
     Tried,
-    boxed_error,
     curve_error,
     gaps,
     met,
     ranked,
     spread,
+    strips,
 )
 from gearopt.optimise.pareto.judged import status, united
 from gearopt.optimise.pareto.measures import (
@@ -36,7 +36,7 @@ from gearopt.optimise.pareto.measures import (
     unbeaten,
 )
 from gearopt.optimise.pareto.posed import Limit, caps, moved, posed, violation_scale
-from gearopt.optimise.result import Event
+from gearopt.optimise.result import Event, Result
 
 
 def point(f, g, slope=None, proven=True, bound=None):
@@ -72,6 +72,16 @@ def test_picks_are_scaled_by_ideal_and_nadir():
     assert [neighbours(values, k) for k in range(4)] == [[1], [0, 2], [1, 3], [2]]
 
 
+def test_an_objective_of_many_decades_is_measured_in_them():
+    """An error from 1e-9 to 1: in numbers all but the first are alike, and 0 is as good as 1e-9."""
+    front = np.array([[12.0, 1.0], [20.0, 1e-3], [24.0, 1e-8], [49.0, 1e-9], [60.0, 0.0]])
+    assert scaled(front)[:, 1] == pytest.approx([1.0, 2 / 3, 1 / 9, 0.0, 0.0])
+    found = picks(front, ["gear", "error"], None)
+    assert [p.place for p in found] == [2, 2] and found[0].reason.endswith("error in decades")
+    noise = np.array([[0.0, 1e-17], [1.0, 0.5], [2.0, 1.0]])  # a zero but for rounding
+    assert scaled(noise)[:, 1] == pytest.approx([0.0, 0.5, 1.0])
+
+
 def test_measures_of_ties_and_flat_fronts():
     tied = np.array([[1.0, 2.0], [1.0 + 1e-10, 2.0], [1.0, 2.0 + 1e-8], [2.0, 1.0]])
     assert unbeaten(tied).tolist() == [0, 3]
@@ -100,36 +110,42 @@ def test_a_gap_is_narrowed_by_what_steps_found():
     low, high = gaps(line, [], ranges)
     assert (low.floor, low.top, high.floor, high.top) == (0.0, 3.0, 3.0, 10.0)
     assert low.whole and not low.shut and low.area == 24.0 and high.area == 7.0
-    tried = [Tried(2.0, 9.0, True), Tried(1.0, 9.0, True), Tried(6.5, None, False)]
+    tried = [Tried(2.0, 9.0, 9.0), Tried(1.0, 9.0, 9.0), Tried(6.5, None)]
     low, high = gaps(line, tried, ranges)
     assert (low.floor, low.area, low.whole, low.refused) == (2.0, 8.0, False, ())
     assert (high.floor, high.refused) == (3.0, (6.5,))
     assert low.limit(0.25) == 2.25 and high.limit(0.1) in (4.75, 8.25)
     assert Gap(line[0], line[1], 3.0, (5.0,)).limit(0.1) == 7.5  # the middle of the larger part
-    (shut, _) = gaps(line, [Tried(3.0 - 9e-6, 9.0 - 8e-6, True)], ranges)
+    (shut, _) = gaps(line, [Tried(3.0 - 9e-6, 9.0, 9.0 - 8e-6)], ranges)
     assert shut.shut and shut.floor == shut.top
-    (still, _) = gaps(line, [Tried(3.0 - 2e-5, 9.0, True)], ranges)
+    (still, _) = gaps(line, [Tried(3.0 - 2e-5, 9.0, 9.0)], ranges)
     assert not still.shut
-    (other, _) = gaps(line, [Tried(2.0, 8.9, True)], ranges)  # of no neighbour
-    assert other.whole
-    (passed, _) = gaps(line, [Tried(1.0, None, False), Tried(2.0, 9.0, True)], ranges)
+    (other, _) = gaps(line, [Tried(2.0, 9.0)], ranges)  # a step that leads back, but proves nothing
+    assert other.whole and other.refused == (2.0,)
+    (passed, _) = gaps(line, [Tried(1.0, None), Tried(2.0, 9.0, 9.0)], ranges)
     assert passed.refused == ()  # below what is known to be empty
     assert ranked([]) == []
 
 
-def test_errors_are_those_of_tangents_or_of_boxes():
-    line = [point(9, 0), point(1, 3), point(0, 10)]
-    ranges = np.array([9.0, 10.0])
-    every = gaps(line, [], ranges)
-    sides = [(8 / 9, 0.3), (1 / 9, 0.7)]
-    assert boxed_error(every, ranges) == pytest.approx(
-        max(a * b / math.hypot(a, b) for a, b in sides)
-    )
-    some = gaps(line, [Tried(3.0 - 1e-6, 9.0, True)], ranges)
-    a, b = sides[1]
-    assert boxed_error(some, ranges) == pytest.approx(a * b / math.hypot(a, b))
-    narrow, half = [point(0.5, 0), point(0, 0.5)], np.full(2, 0.5)
-    assert boxed_error(gaps(narrow, [], half), half) == pytest.approx(math.sqrt(0.5))
+def test_strips_are_what_the_bounds_of_steps_leave_open():
+    """Of points (9, 0), (1, 3), (0, 10) as (f, g), in ranges 9 and 10."""
+    values, ranges = np.array([[9.0, 0.0], [1.0, 3.0], [0.0, 10.0]]), np.array([9.0, 10.0])
+    tried = [Tried(math.inf, 0.0, 0.0), Tried(0.1, 9.0, 9.0), Tried(3.0, 1.0, 1.0)]
+    left = strips(tried, 0.0, math.inf, values, ranges)
+    assert [(s.low, s.high, s.bound) for s in left] == [(0, 0.1, 9), (0.1, 3, 1), (3, math.inf, 0)]
+    # (9, 0) for the corner (9, 0); (1, 3) for (1, 0.1), and for (0, 3): f is worse by 1
+    assert [s.worse for s in left] == pytest.approx([0.0, 0.29, 1 / 9])
+    assert [s.missing for s in left] == [0.0, 0.0, 0.0]
+    looser = strips([*tried, Tried(2.0, 9.0, 5.0)], 0.0, math.inf, values, ranges)
+    assert [s.worse for s in looser] == pytest.approx([0.0, 0.29, 0.1, 1 / 9])
+    assert looser[1].missing == pytest.approx(4 / 9)
+    assert strips(tried[1:], 0.0, 20.0, values, ranges)[-1].worse == math.inf  # no step above 3
+    assert strips(tried, -math.inf, 9.0, values, ranges)[0].worse == math.inf  # least g not known
+    empty = strips([Tried(5.0, None, math.inf), *tried], 0.0, math.inf, values, ranges)
+    assert [s.worse for s in empty] == pytest.approx([0.0, 0.0, 0.0, 1 / 9])
+
+
+def test_errors_are_those_of_tangents():
     # f = 1/g between (1, 1) and (4, 1/4): tangents -1 and -16 meet at g = 0.4, f = 1.6
     hyperbola = [point(1.0, 1.0, -1.0), point(4.0, 0.25, -16.0)]
     u, v = (1.6 - 1.0) / 3.0, (0.4 - 0.25) / 0.75
@@ -152,7 +168,7 @@ def test_limits_are_spread_where_the_curve_is_long():
     assert sorted(limits) == pytest.approx([2 / 3, 4 / 3])  # a box of 6 against one of 1
     assert len(spread(gaps(straight, [], np.array([4.0, 3.0])), 7)) == 7
     assert spread([], 3) == []
-    narrowed = gaps(straight[:2], [Tried(1.0, 4.0, True)], np.array([4.0, 3.0]))
+    narrowed = gaps(straight[:2], [Tried(1.0, 4.0, 4.0)], np.array([4.0, 3.0]))
     assert spread(narrowed, 1) == pytest.approx([1.5])
 
 
@@ -207,16 +223,19 @@ def test_steps_without_a_result_leave_their_gap_open_and_named(monkeypatch):
     """Of a + b = 1 no step between b = 0.4 and 0.8 has a result."""
     own = epsilon._attempt
 
-    def attempt(run, name, most, near):
+    def attempt(run, name, most, near, method):
         if 0.4 < most.get("b", 0.0) < 0.8:
-            return SimpleNamespace(status="failed", value=None, message=""), None
-        return own(run, name, most, near)
+            return SimpleNamespace(status="failed", value=None, bound=None, message=""), None
+        return own(run, name, most, near, method)
 
     monkeypatch.setattr(epsilon, "_attempt", attempt)
     front = gearopt.pareto(segment(), points=6)
-    assert front.message.startswith("1 part of the front is open, where steps had no result: b 0.")
+    assert front.message.startswith(
+        "1 part of the front is not known, as steps there are not proven"
+    )
+    assert front.status == "proven" and front.epsilon > 0.15 and not front.error
     low, high = (float(word) for word in front.message.rsplit(" ", 3)[1::2])
-    assert 0.0 <= low <= 0.4 and 0.8 <= high <= 1.0
+    assert 0.0 <= low <= 0.4 and 0.7 <= high <= 1.0
     second = np.array([p.values[1] for p in front.points])
     assert not ((second > 0.4001) & (second < 0.8)).any() and len(second) == 6
 
@@ -228,7 +247,7 @@ def test_steps_start_from_neighbours_and_from_evolution_and_the_better_answer_co
     assert run.within({"b": 2.0}) == [run.sample[0]] and run.within({"b": 1.9}) == []
     answers = [point(1, 1), point(2, 1), point(1, 1), None, point(2, 1), point(1, 1)]
     replies = iter(answers)
-    reply = lambda *_: (SimpleNamespace(status="feasible"), next(replies))  # noqa: E731
+    reply = lambda *_: (Result("segment", "feasible", "ipopt", {}), next(replies))  # noqa: E731
     monkeypatch.setattr(epsilon, "_attempt", reply)
     for best in (answers[0], answers[2], answers[5]):
         assert epsilon._solved(run, "a", {"b": 2.0}) is best
@@ -251,7 +270,10 @@ def test_a_point_that_breaks_its_limits_is_no_point_of_the_front(monkeypatch):
     solve = lambda *_, **__: (failed, SimpleNamespace(x=np.array([0.5])))  # noqa: E731
     monkeypatch.setattr(epsilon, "solve_raw", solve)
     run = steps_of(segment())
-    assert epsilon._attempt(run, "a", {}, None) == (failed, None) and run.clock.evaluations == 3
+    assert (
+        epsilon._attempt(run, "a", {}, None, "ipopt") == (failed, None)
+        and run.clock.evaluations == 3
+    )
 
 
 @pytest.mark.parametrize(("most", "spent"), [(1000, 300), (100_000, 2000)])

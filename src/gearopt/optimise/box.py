@@ -12,13 +12,14 @@ from typing import NoReturn
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array
 
 ROUNDING = 1e-12  # relative; a bound that is computed (3 x 0.1) still holds the value it stands for
 
 
-def allowed_values(problem: Problem, column: int) -> Sequence[float]:
+def allowed_values(problem: Problem | Conic, column: int) -> Sequence[float]:
     """Return values of one component of a point in order: those of its set, or its whole numbers.
 
     SolveError where its bounds hold none, or where an integer has no finite bounds.
@@ -43,7 +44,7 @@ def check_discrete(problem: Problem) -> None:
             whole_ends(problem, column)
 
 
-def whole_ends(problem: Problem, column: int) -> tuple[float, float]:
+def whole_ends(problem: Problem | Conic, column: int) -> tuple[float, float]:
     """Return minimum and maximum whole number within the bounds of an integer, or infinities."""
     low, high = _widened(problem, column)
     minimum = float(math.ceil(low)) if math.isfinite(low) else low
@@ -51,12 +52,12 @@ def whole_ends(problem: Problem, column: int) -> tuple[float, float]:
     return (minimum, maximum) if minimum <= maximum else _nothing(problem, column, "whole number")
 
 
-def _widened(problem: Problem, column: int) -> tuple[float, float]:
+def _widened(problem: Problem | Conic, column: int) -> tuple[float, float]:
     low, high = (float(b[column]) for b in problem.bounds()[:2])
     return low - ROUNDING * abs(low), high + ROUNDING * abs(high)
 
 
-def _nothing(problem: Problem, column: int, what: str) -> NoReturn:
+def _nothing(problem: Problem | Conic, column: int, what: str) -> NoReturn:
     low, high = (float(b[column]) for b in problem.bounds()[:2])
     name = problem.columns[column][1]
     raise SolveError(f"{problem.name}: no {what} lies between {low:g} and {high:g} for {name}")

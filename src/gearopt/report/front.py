@@ -62,8 +62,13 @@ def decided(front: Front, measures: Measures = METRIC) -> list[str]:
     if front.error is not None:
         part = f"{100.0 * front.error:.2g} % of the ranges of its objectives"
         sentences.append(f"The true front lies within {part} of the line through these points.")
-        if front.error > COARSE_ERROR:
-            sentences.append("A better pick may lie between them.")
+    elif front.epsilon is not None:
+        part = f"{100.0 * front.epsilon:.2g} % of the ranges of the objectives"
+        sentences.append(
+            f"Proven: beside every possible design one of these is worse by at most {part} in each."
+        )
+    if max(front.error or 0.0, 0.0 if front.error else front.epsilon or 0.0) > COARSE_ERROR:
+        sentences.append("A better pick may lie between them.")
     if front.impossible:
         count, proven = len(front.impossible), sum(step.proven for step in front.impossible)
         steps = "1 step was" if count == 1 else f"{count} steps were"

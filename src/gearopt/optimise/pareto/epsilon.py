@@ -1,10 +1,11 @@
 """Fronts by epsilon constraints: one objective is minimised, others limited.
 
 The ends of the front come first. A few more follow where the tangents of two neighbours meet, in
-the largest gap first; the others are spread so that the least hypervolume is missing. Where every
-point is proven and the problem convex, tangents are below the front and chords above it, which
-gives its error. Where steps are not proven they start from points of evolution, too, so that no
-piece of the front depends on the guess alone; of what is discrete, gaps are shut by proven steps.
+the largest gap first; the others are spread so that the least hypervolume is missing. Each step is
+proven where it can be: by duals of a convex form, else by spatial branch and bound. What the bounds
+of all steps leave open is the epsilon of the front; where every point is that of a convex problem,
+tangents are below the front and chords above it, which gives its error. Steps that are not proven
+start from points of evolution, too, so that no piece depends on the guess alone.
 """
 
 import math
@@ -18,18 +19,21 @@ from gearopt.optimise.certified import GAP
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.form import form
+from gearopt.optimise.own_problems import PROVEN, PROVER
 from gearopt.optimise.pareto import evolution
 from gearopt.optimise.pareto.found import Found, Point, Skipped, Step, sifted
 from gearopt.optimise.pareto.gaps import (
     POINT_TIE,
     TRIALS,
     Gap,
+    Strip,
     Tried,
-    boxed_error,
     curve_error,
     gaps,
     met,
+    ranked,
     spread,
+    strips,
 )
 from gearopt.optimise.pareto.posed import (
     LIMIT_PREFIX,
@@ -41,7 +45,7 @@ from gearopt.optimise.pareto.posed import (
     violation_scale,
 )
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import FEASIBLE, Budget, Result, Watch
+from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch
 from gearopt.optimise.solve import run as solve_raw
 from gearopt.optimise.terms import Array
 
@@ -54,6 +58,13 @@ SHARE = 0.3  # of a budget at most, for it
 TWICE = 2  # steps at most for each point that is sought
 CORNER = 0.1  # part of a chord next to its ends where none of the first limits is put
 FIRST_POINTS = 5  # points at least before others are spread by them
+BOXES, ALL_BOXES = 1000, 20_000  # of the prover: a step's, a front's, where no seconds are named
+ITERATIONS = 300  # of ipopt in a step whose proof is another method's
+ALL_POINTS = 10_000  # where their number is open
+AHEAD = 10  # further steps at least that seconds are kept for: ends are worth more than a point
+CLOSE = 2.0 * POINT_TIE  # an epsilon up to which a front is complete
+OPEN = 0.02  # part of the range of the first objective: steps that miss more of it are named
+SHARES = 3.0  # even shares of what is left that one step may take
 
 SETTINGS = {
     "of three objectives": "slices at even limits of the third",
@@ -82,8 +93,10 @@ class Run:
     """The problems of a front, the points found so far, and the clock; it has state to fill.
 
     sample: points that evolution found, which steps start from; None: it was not asked, as all
-    steps are proven. sure: the ends are proven. blur: what feasibility alone leaves open of an
-    objective, in parts of its range, where that is more than POINT_TIE.
+    steps are proven. wanted: points that are sought, 0: all. tried: steps by the objective that
+    they minimise and by what they limit beside the other one. boxes: that the prover has spent.
+    refused: why it takes no step of this problem. convex: so are all forms, as duals have proven;
+    logarithmic: in logarithms.
     """
 
     problem: Problem | Conic
@@ -92,22 +105,29 @@ class Run:
     clock: Clock
     method: str | None
     limiting: "Limiting | None" = None
+    wanted: int = 0
     built: Built = field(default_factory=dict)
     points: list[Point] = field(default_factory=list)
     skipped: list[Skipped] = field(default_factory=list)
     steps: list[Step] = field(default_factory=list)
     widths: dict[str, float] = field(default_factory=dict)
     lines: list["Line"] = field(default_factory=list)
+    tried: dict[tuple[str, object], list[Tried]] = field(default_factory=dict)
     sample: tuple[Point, ...] | None = None
+    boxes: int = 0
+    refused: str = ""
+    convex: bool = True
     logarithmic: bool = True
-    sure: bool = True
-    blur: float = 0.0
     none: Result | None = None
 
     @property
     def discrete(self) -> bool:
         """Return whether some variable is, so that the front may have jumps."""
         return any(v.discrete for v, _ in self.problem.columns)
+
+    def steps_of(self, name: str, others: Caps) -> list[Tried]:
+        """Steps that minimise one of the first two objectives under the same limits on others."""
+        return self.tried.setdefault((name, tuple(sorted(others.items()))), [])
 
     def within(self, most: Caps) -> list[Point]:
         """Return the points of evolution within limits on objectives."""
@@ -139,14 +159,14 @@ def front(
     """
     if limiting is not None:
         _limitable(limiting, (*names[1:], *caps))
-    own = Run(problem, tuple(names), caps, Clock(budget, watch), method, limiting)
+    own = Run(problem, tuple(names), caps, Clock(budget, watch), method, limiting, points)
     if limiting is not None and limiting.whole and len(names) == 2:
         return concluded(own, _stairs(own, points))
     ends = _ends(own, own.names, own.caps)
     if ends is None:
         return concluded(own)
     if len(names) == 2:
-        _between(own, ends, points, own.caps)
+        _between(own, ends, points or ALL_POINTS, own.caps)
     else:
         _slices(own, ends, points)
     return concluded(own)
@@ -171,7 +191,6 @@ def _ends(run: Run, names: tuple[str, ...], caps: Caps) -> list[Point] | None:
         if first is None:
             run.points += ends if run.clock.stopped else []
             return None
-        run.sure = run.sure and first.proven
         least.append(float(first.values[k]))
         ends.append(_end(run, names, k, caps, first, least[k] + SLACK * abs(least[k])))
     near = POINT_TIE * np.ptp([p.values for p in ends], axis=0)
@@ -179,9 +198,6 @@ def _ends(run: Run, names: tuple[str, ...], caps: Caps) -> list[Point] | None:
         if SLACK * abs(at) > near[k]:
             most = at + max(float(near[k]), FEASIBLE * abs(at))
             ends[k] = _end(run, names, k, caps, ends[k], most)
-    for at, width in zip(least, np.ptp([p.values for p in ends], axis=0), strict=False):
-        blur = 2.0 * FEASIBLE * abs(at)
-        run.blur = max(run.blur, blur / width if blur > POINT_TIE * width > 0.0 else 0.0)
     if len(names) == len(run.names):
         values = np.array([p.values for p in ends])
         run.widths = dict(zip(run.names, np.ptp(values, axis=0).tolist(), strict=True))
@@ -199,7 +215,6 @@ def _end(run: Run, names: tuple[str, ...], k: int, caps: Caps, first: Point, mos
         return first
     for other in (*names[:k], *names[k + 1 :]):
         again = _solved(run, other, _least(caps, {names[k]: most}), first.x)
-        run.sure = run.sure and again is not None and again.proven
         first = again if again is not None else first
     return first
 
@@ -245,11 +260,8 @@ def _between(run: Run, ends: list[Point], points: int, caps: Caps) -> None:
         line.step(most)
     line.fill(points)
     run.lines.append(line)
-
-
-def _tight(point: Point, near: float) -> bool:
-    """Return whether a point is proven to so much of its first objective."""
-    return point.bound is not None and bool(point.values[0] - point.bound <= near)
+    if len(run.names) == 2 and run.limiting is None and run.clock.budget.seconds is not None:
+        line.repeat()
 
 
 @dataclass
@@ -260,17 +272,12 @@ class Line:
     caps: Caps
     points: list[Point]
     ranges: Array
-    tried: list[Tried] = field(default_factory=list)
-
-    @property
-    def gaps(self) -> list[Gap]:
-        """Return the gaps between the points."""
-        return gaps(self.points, self.tried, self.ranges)
 
     @property
     def open(self) -> list[Gap]:
-        """Return the gaps that are not shut."""
-        return [gap for gap in self.gaps if not gap.shut]
+        """Return the gaps between the points that are not shut."""
+        tried = self.run.steps_of(self.run.names[0], _but(self.caps, self.run.names[1]))
+        return [gap for gap in gaps(self.points, tried, self.ranges) if not gap.shut]
 
     def fill(self, count: int) -> None:
         """Step into the largest gap until there are so many points, or no gap is left to try."""
@@ -292,18 +299,30 @@ class Line:
         if gap is None or run.clock.over:
             return
         point = _solved(run, run.names[0], _least(self.caps, {run.names[1]: most}), gap.right.x)
-        f = float(gap.left.values[0])
-        back = point is not None and point.values[1] >= gap.top - 0.1 * near[1]
-        if point is None or back or point.values[0] > f + near[0]:
-            self.tried.append(Tried(most, None, False))
+        if point is None or point.values[1] >= gap.top - 0.1 * near[1]:
             return
-        proven = _tight(point, near[0])
-        if point.values[0] >= f - near[0]:
-            self.tried.append(Tried(most, f, proven))
-            return
-        self.tried.append(Tried(most, float(point.values[0]), proven))
+        if point.values[0] < gap.left.values[0] - near[0]:
+            self._add(point)
+
+    def repeat(self) -> None:
+        """Take steps again whose bounds miss much, the worst first, in what is left of the time."""
+        run = self.run
+        left = [s for s in _strips(run, sifted(run.points)[0]) if s.missing > OPEN]
+        for strip in sorted(left, key=lambda s: -s.missing):
+            under = [p for p in ranked(self.points) if p.values[1] <= strip.high]
+            if not under or run.clock.over:
+                return
+            most = {run.names[1]: strip.high} if strip.high < math.inf else {}
+            point = _solved(run, run.names[0], _least(self.caps, most), under[-1].x)
+            if (
+                point is not None
+                and point.values[0] < under[-1].values[0] - POINT_TIE * self.ranges[0]
+            ):
+                self._add(point)
+
+    def _add(self, point: Point) -> None:
         self.points.append(point)
-        _keep(run, point)
+        _keep(self.run, point)
 
 
 def _slices(run: Run, ends: list[Point], points: int) -> None:
@@ -322,24 +341,40 @@ def _solved(run: Run, name: str, most: Caps, near: Array | None = None) -> Point
     """Return the point of least value of one objective under limits on others; None: none found.
 
     Where a step is not proven, the best point that evolution found within the limits is another
-    start, and the better of both answers counts.
+    start of a local method, and the better of both answers counts, with the bound of the first.
     """
     if run.clock.stopped:
         return None
-    result, point = _attempt(run, name, most, near)
-    unsure = result.status not in ("optimal", "infeasible")
-    if unsure and run.limiting is None and isinstance(run.problem, Problem):
+    result, point = _attempt(run, name, most, near, run.method)
+    place, problem = run.names.index(name), run.problem
+    if result.status not in PROVEN and run.limiting is None and isinstance(problem, Problem):
         if run.sample is None:
-            run.sample = _sampled(run, run.problem)
-        start, place = run.started(name, most), run.names.index(name)
-        if start is not None and not run.clock.over:
-            _, other = _attempt(run, name, most, start)
-            if point is None or (other is not None and other.values[place] < point.values[place]):
-                point = other
+            run.sample = _sampled(run, problem)
+        start = run.started(name, most)
+        if start is not None and not run.clock.over and not run.discrete:
+            again, other = _attempt(run, name, most, start, run.method or "ipopt")
+            if other is not None and (point is None or other.values[place] < point.values[place]):
+                bound = again.bound if again.status == "optimal" else result.bound
+                result, point = replace(again, bound=bound), other
+    _noted(run, name, most, result, None if point is None else float(point.values[place]))
     if point is None:
         run.skipped.append(Skipped(most, result.status == "infeasible"))
         run.none = run.none or result
     return point
+
+
+def _noted(run: Run, name: str, most: Caps, result: Result, least: float | None) -> None:
+    """Keep what a step proves, of the first two objectives."""
+    if name in run.names[:2]:
+        other = run.names[1 - run.names.index(name)]
+        bound = -math.inf if result.bound is None else result.bound
+        bound = math.inf if result.status == "infeasible" else bound
+        steps = run.steps_of(name, _but(most, other))
+        steps.append(Tried(most.get(other, math.inf), least, bound))
+
+
+def _but(caps: Caps, name: str) -> Caps:
+    return {n: value for n, value in caps.items() if n != name}
 
 
 def _sampled(run: Run, problem: Problem) -> tuple[Point, ...]:
@@ -357,12 +392,16 @@ def _sampled(run: Run, problem: Problem) -> tuple[Point, ...]:
     return sample.points
 
 
-def _attempt(run: Run, name: str, most: Caps, near: Array | None) -> tuple[Result, Point | None]:
-    """Return the result of one step from a start, and its point."""
+def _attempt(
+    run: Run, name: str, most: Caps, near: Array | None, method: str | None
+) -> tuple[Result, Point | None]:
+    """Return the result of one step from a start, and its point; method: None for the proof."""
     at = _posed(run, name, most, near)
-    before = run.clock.evaluations
-    result, outcome = solve_raw(at, run.method, run.clock.left, watch=run.clock.inner(values=False))
-    run.clock.evaluations = before + result.evaluations
+    direct = method is not None or run.limiting is not None
+    if direct or isinstance(at, Conic):
+        result, outcome = _answered(run, at, method)
+    else:
+        result, outcome = _proven(run, at)
     run.clock.tell()
     if result.value is None or outcome.x is None:
         return result, None
@@ -374,12 +413,70 @@ def _attempt(run: Run, name: str, most: Caps, near: Array | None) -> tuple[Resul
         scales = [violation_scale(at, n) for n in run.names[1:]]
         slopes = np.array([result.multipliers[r] / s for r, s in zip(rows, scales, strict=True)])
     proven = result.status == "optimal"
-    if isinstance(at, Problem) and proven and run.limiting is None:
+    by_duals = isinstance(at, Conic) or result.proof.get("method") == "dual"
+    run.convex = run.convex and proven and by_duals and run.limiting is None
+    if isinstance(at, Problem) and run.convex:
         shape = form(at)
         run.logarithmic = run.logarithmic and shape.convex and shape.log_objective
     else:
         run.logarithmic = False
-    return result, Point(outcome.x, values, proven, result.bound if proven else None, slopes)
+    bound = result.bound if name == run.names[0] else None
+    return result, Point(outcome.x, values, proven, bound, slopes)
+
+
+def _answered(
+    run: Run, at: Problem | Conic, method: str | None, most: int | None = None
+) -> tuple[Result, Outcome]:
+    """Answer of a method to a step within its share of the seconds that are left."""
+    clock, budget = run.clock, run.clock.left
+    if budget.seconds is not None and run.limiting is None:
+        ahead = max(AHEAD, run.wanted - len(run.points) if run.widths and run.wanted else 0)
+        budget = replace(budget, seconds=min(1.0, SHARES / ahead) * budget.seconds)
+    if most is not None and (budget.seconds is None or method != PROVER):
+        budget = replace(budget, evaluations=min(most, budget.evaluations or most))
+    before = clock.evaluations
+    inner = clock.inner(values=False)
+    result, outcome = solve_raw(at, method, budget, watch=inner)
+    clock.evaluations = before + result.evaluations
+    return result, outcome
+
+
+def _proven(run: Run, at: Problem) -> tuple[Result, Outcome]:
+    """Answer of ipopt where its duals prove it, else that of spatial branch and bound beside it.
+
+    Where the text has no relaxation it is ipopt's; SolveError where there is no other one.
+    """
+    first = None
+    if not run.discrete and (run.convex or run.refused):
+        first = _answered(run, at, "ipopt", None if run.refused else ITERATIONS)
+        if first[0].status in PROVEN or run.refused or run.clock.over:
+            return first
+        if first[0].value is not None and first[1].x is not None and not at.repeats:
+            at = at.starting(first[1].x)
+    boxes = min(BOXES, ALL_BOXES - run.boxes)
+    if first is not None and boxes <= 0:
+        return first
+    try:
+        second = _answered(run, at, PROVER, max(1, boxes))
+    except SolveError as refusal:
+        if run.discrete:
+            raise
+        run.refused = str(refusal)
+        return first or _answered(run, at, "ipopt")
+    run.boxes += second[0].evaluations
+    return _better(first, second) if first is not None else second
+
+
+def _better(
+    first: tuple[Result, Outcome], second: tuple[Result, Outcome]
+) -> tuple[Result, Outcome]:
+    """The answer of less value, with the second one's bound."""
+    (local, _), (proof, _) = first, second
+    if proof.status in PROVEN or local.value is None:
+        return second
+    if proof.value is not None and proof.value <= local.value:
+        return second
+    return replace(local, bound=proof.bound), first[1]
 
 
 def _posed(run: Run, name: str, most: Caps, near: Array | None) -> Problem | Conic:
@@ -400,78 +497,94 @@ def _values(run: Run, result: Result, x: Array) -> Array:
     return np.array([values[rows.index(name)] for name in run.names])
 
 
-NAMED = 3  # gaps left open, by their places
+NAMED = 3  # pieces left open, by their places
 STAIRS = (
     "Proof: exhausted searches, one per design, each for a smaller {name} than the design before; "
     "the last search found no design."
 )
 SHUT = (
-    "Proof: between two neighbours, searches under limits on the {name} end at the one of smaller "
-    "{name}. Designs nearer than {close:g} of the ranges of the objectives count as one."
+    "Proof: searches under limits on the {name} leave no design that is better than one of these, "
+    "in any objective, by more than {close:g} of the ranges of the objectives."
 )
 
 
 def concluded(run: Run, complete: bool = False) -> Found:
-    """Return the front of all points, with its error where it is proven."""
+    """Return the front of all points, with what its steps prove of the designs between them."""
     points, beaten = sifted(run.points)
-    all_proven = bool(points) and all(p.proven for p in points)
-    line = run.lines[0] if len(run.names) == 2 and run.lines else None
-    if line is not None and all_proven:
-        complete = run.sure and not run.blur and not line.open and all(t.proven for t in line.tried)
-    error = _error(run, points, line) if all_proven and line and not complete else None
+    left = [] if complete or len(run.names) > 2 or not points else _strips(run, points)
+    epsilon = max((strip.worse for strip in left), default=math.inf)
+    complete = complete or epsilon <= CLOSE
+    bent = run.convex and not run.discrete and all(p.proven for p in points)
+    curved = len(points) > 1 and bent and len(run.names) == 2 and not complete
+    curved = curved and all(p.slopes is not None for p in points)
     none = None if points else run.none
     return Found(
         points,
         complete=complete and bool(points),
-        error=error,
+        error=curve_error(points, run.logarithmic) if curved else None,
+        epsilon=epsilon if epsilon < 1.0 and not complete else None,
         beaten=beaten,
-        skipped=tuple(run.skipped[:-1] if complete and line is None else run.skipped),
+        skipped=tuple(run.skipped[:-1] if complete and not left else run.skipped),
         infeasible=not points and bool(run.skipped) and run.skipped[0].proven,
         finished=not run.clock.stopped,
         steps=tuple(run.steps),
-        proof={"method": "epsilon constraints", "sentence": _sentence(run, points, complete)}
+        proof={"method": "epsilon constraints", "sentence": _sentence(run, points, complete, left)}
         if none is None
         else none.proof,
         evaluations=run.clock.evaluations,
-        message=_left_open(run) if none is None else none.message or "no design meets all limits",
+        message=_left_open(run, left) if none is None else none.message or NO_DESIGN,
     )
 
 
-def _sentence(run: Run, points: tuple[Point, ...], complete: bool) -> str:
+NO_DESIGN = "no design meets all limits"
+
+
+def _strips(run: Run, points: tuple[Point, ...]) -> list[Strip]:
+    """What the steps of a front of two objectives leave open."""
+    (first, second), caps = run.names, run.caps
+    values = np.array([p.values for p in points])
+    width, size = np.ptp(values, axis=0), np.abs(values).max(axis=0)
+    ranges = np.where(width > 0.0, width, np.where(size > 0.0, size, 1.0))
+    ends = run.steps_of(second, _but(caps, first))
+    held = caps.get(first, math.inf)
+    least = max((t.bound for t in ends if t.most >= held), default=-math.inf)
+    tried = run.steps_of(first, _but(caps, second))
+    return strips(tried, least, caps.get(second, math.inf), values, ranges)
+
+
+def _sentence(run: Run, points: tuple[Point, ...], complete: bool, left: list[Strip]) -> str:
     """Sentence on the proof of the points."""
     if complete and points:
-        return (STAIRS if not run.lines else SHUT).format(name=run.names[1], close=POINT_TIE)
+        return (SHUT if left else STAIRS).format(name=run.names[1], close=CLOSE)
     count = sum(p.proven for p in points)
     if not count:
         starts = len(run.sample or ())
         many = f", also from {starts:,} points of evolution" if starts else ""
         return f"Not proven: every point is the best one found under its limits{many}."
     which = "Every point" if count == len(points) else f"{count} of {len(points)} points"
-    verb = "is" if count == len(points) else "are"
+    verb = "is" if count in (1, len(points)) else "are"
     by = f"by more than {GAP:g} of its first objective"
     return f"{which} {verb} proven: no design dominates it {by}."
 
 
-def _left_open(run: Run) -> str:
-    """Return where steps between two neighbours had no result."""
-    parts = [gap for line in run.lines for gap in line.open if gap.refused]
-    if not parts:
-        return ""
+def _left_open(run: Run, left: list[Strip]) -> str:
+    """Pieces of the front that are not known: limits of the second objective between them."""
+    known = any(math.isfinite(strip.worse) for strip in left)
+    pieces = list[tuple[float, float]]()
+    for strip in left:
+        if strip.missing > OPEN or strip.low == -math.inf:
+            joined = pieces and pieces[-1][1] == strip.low
+            pieces.append((pieces.pop()[0] if joined else strip.low, strip.high))
+    if not known:
+        every = [gap for line in run.lines for gap in line.open if gap.refused]
+        pieces = [(gap.floor, gap.top) for gap in every]
+    if not pieces:
+        return run.refused
     name = run.names[1].replace("_", " ")
-    places = ", ".join(f"{gap.floor:.6g} to {gap.top:.6g}" for gap in parts[:NAMED])
-    more = f" and {len(parts) - NAMED} others" if len(parts) > NAMED else ""
-    what = "part of the front is" if len(parts) == 1 else "parts of the front are"
-    return f"{len(parts)} {what} open, where steps had no result: {name} {places}{more}"
-
-
-def _error(run: Run, points: tuple[Point, ...], line: Line) -> float | None:
-    """Return the error of a front of proven points: of tangents where it is convex, else of gaps.
-
-    None of a single point.
-    """
-    if len(points) < 2:
-        return None
-    convex = run.limiting is None and not run.discrete
-    if convex and all(p.slopes is not None for p in points):
-        return curve_error(points, run.logarithmic)
-    return boxed_error(line.gaps, np.ptp([p.values for p in points], axis=0)) + run.blur
+    places = ", ".join(f"{low:.6g} to {high:.6g}" for low, high in pieces[:NAMED])
+    more = f" and {len(pieces) - NAMED} others" if len(pieces) > NAMED else ""
+    what = "part of the front is" if len(pieces) == 1 else "parts of the front are"
+    why = f". {run.refused}" if run.refused else ""
+    return (
+        f"{len(pieces)} {what} not known, as steps there are not proven: {name} {places}{more}{why}"
+    )

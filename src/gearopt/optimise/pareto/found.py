@@ -48,6 +48,8 @@ class Found:
 
     complete: every design that none beats is among them, proven. error: largest distance of the
     true front to the line through the points, in the ranges of the objectives; None: not known.
+    epsilon: how much worse than any design one of the points is at most, in the objective in which
+    it is more so, in the same ranges; None: not proven.
     beaten (N, k): values of feasible points that others beat. infeasible: there is no point at all,
     proven. steps: how the front grew. proof["sentence"] says it for a reader.
     """
@@ -55,6 +57,7 @@ class Found:
     points: tuple[Point, ...]
     complete: bool = False
     error: float | None = None
+    epsilon: float | None = None
     beaten: Array = field(default_factory=lambda: np.empty((0, 0)))
     skipped: tuple[Skipped, ...] = ()
     infeasible: bool = False

@@ -60,10 +60,12 @@ class Front:
     """The Pareto-optimal designs, by the first objective.
 
     status: complete (proven: there is no other), proven (every point is; the front between them is
-    known to `error`), not proven, infeasible (proven: no design at all), limit (stopped early).
-    error: largest distance of the true front to the line through its points, in the ranges of the
-    objectives. beaten: values of dominated feasible designs. corner: the point from which
-    the hypervolume is measured. picks: the designs that rules take.
+    known to `epsilon`), not proven, infeasible (proven: no design at all), limit (stopped early).
+    epsilon: additive epsilon indicator, proven: of every design, one of the points is at most this
+    part of the ranges of the objectives worse in each of them. error, of a convex problem: largest
+    distance of the true front to the line through its points, in the same ranges. beaten: values
+    of dominated feasible designs. corner: the point from which the hypervolume is measured. picks:
+    the designs that rules take.
     """
 
     name: str
@@ -72,6 +74,7 @@ class Front:
     objectives: tuple[Objective, ...]
     points: tuple[FrontPoint, ...] = ()
     error: float | None = None
+    epsilon: float | None = None
     picks: tuple[Pick, ...] = ()
     beaten: tuple[tuple[float, ...], ...] = ()
     impossible: tuple[Impossible, ...] = ()
@@ -101,8 +104,9 @@ class Front:
 
     @property
     def whole(self) -> bool:
-        """Return whether no part is missing: complete, or known to its error."""
-        return self.status == "complete" or self.error is not None
+        """Return whether no part is missing: complete, or proven to its epsilon."""
+        known = self.error is not None or self.epsilon is not None
+        return self.status == "complete" or (known and all(p.proven for p in self.points))
 
     def __repr__(self) -> str:
         return str(shown("front_lines", self))

@@ -1,8 +1,8 @@
-"""Open gaps between neighbours along a front of two objectives, where to step, and their error.
+"""Gaps between neighbours along a front of two objectives, where to step, what steps leave open.
 
 A step finds the least first objective f of designs whose second one, g, is at most a limit. Below a
-limit whose step leads back to the neighbour of smaller g nothing is left: from there on the gap is
-open. A step that finds nothing leaves its gap open at both sides of its limit.
+limit whose step is proven to lead back to the neighbour of smaller g nothing is left: from there on
+the gap is open. A step without a proof leaves its gap open at both sides of its limit.
 """
 
 import math
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearopt.optimise.certified import GAP
 from gearopt.optimise.pareto.found import Point
 from gearopt.optimise.pareto.measures import unbeaten
 from gearopt.optimise.terms import Array
@@ -22,18 +23,37 @@ SAMPLES = 65  # of a curve between two neighbours
 
 @dataclass(frozen=True)
 class Tried:
-    """A limit of g, and the least f found under it (None: no result); proven: nothing is less."""
+    """A step: its limit of g, the least f found under it (None: no design), and a bound of f there.
+
+    bound: inf where no design meets the limit, -inf where nothing is proven.
+    """
 
     most: float
     least: float | None
-    proven: bool
+    bound: float = -math.inf
+
+
+@dataclass(frozen=True)
+class Strip:
+    """The designs with g between two limits: their f is at least `bound`.
+
+    missing: how much of f no proof covers, from the bound to the least f of points whose g is at
+    most `high`, in the range of f. worse: how much worse than any of these designs the best point
+    for it is, at most, in the objective in which it is more so, in the ranges; inf: not known.
+    """
+
+    low: float
+    high: float
+    bound: float
+    missing: float
+    worse: float
 
 
 @dataclass(frozen=True)
 class Gap:
     """Two neighbours, left of smaller g; a design between them needs more g than `floor`.
 
-    refused: limits above it whose steps had no result.
+    refused: limits above it whose steps proved nothing.
     """
 
     left: Point
@@ -82,11 +102,10 @@ def gaps(points: Sequence[Point], tried: Sequence[Tried], ranges: Array) -> list
     line, every = ranked(points), []
     for left, right in zip(line, line[1:], strict=False):
         f, low, top = float(left.values[0]), float(left.values[1]), float(right.values[1])
-        within = [t for t in tried if low < t.most < top]
-        same = [t for t in within if t.least is not None and abs(t.least - f) <= near_f]
-        empty = [t.most for t in same if t.most > low + near_g]
-        floor = max(empty, default=low)
-        refused = tuple(t.most for t in within if t.least is None and t.most > floor)
+        within = [t for t in tried if low + near_g < t.most < top]
+        back = f - near_f - 2.0 * GAP * abs(f)
+        floor = max((t.most for t in within if t.bound >= back), default=low)
+        refused = tuple(t.most for t in within if t.most > floor)
         every.append(Gap(left, right, top if top - floor <= near_g else floor, refused))
     return every
 
@@ -154,17 +173,24 @@ def curve_error(points: Sequence[Point], logarithmic: bool) -> float:
     return worst
 
 
-def boxed_error(open_: Sequence[Gap], ranges: Array) -> float:
-    """Return the largest distance from the chord of a gap that is not shut to a corner of its box.
+def strips(
+    tried: Sequence[Tried], least: float, most: float, values: Array, ranges: Array
+) -> list[Strip]:
+    """Strips of all designs by their g, between the limits of steps (Lemma 66).
 
-    Between two proven points no other is below both of them.
+    least: bound of g of all designs; most: the largest g of interest. values (N, k): of points.
     """
-    worst, width = 0.0, np.where(ranges > 0.0, ranges, 1.0)[:2]
-    for gap in open_:
-        sides = np.abs(gap.left.values - gap.right.values)[:2] / width
-        if not gap.shut:
-            worst = max(worst, float(sides.prod() / np.hypot(*sides)))
-    return worst
+    every, low = list[Strip](), least
+    limits = sorted({t.most for t in tried} | {most})
+    for high in (e for e in limits if low < e <= most):
+        bound = max((t.bound for t in tried if t.most >= high), default=-math.inf)
+        under = values[values[:, 1] <= high + POINT_TIE * ranges[1], 0].min(initial=math.inf)
+        missing = 0.0 if bound == math.inf else max(0.0, float(under - bound) / ranges[0])
+        worse = np.maximum((values[:, 0] - bound) / ranges[0], (values[:, 1] - low) / ranges[1])
+        nearest = 0.0 if bound == math.inf else float(worse.min(initial=math.inf))
+        every.append(Strip(low, high, bound, missing, max(0.0, nearest)))
+        low = high
+    return every
 
 
 def _meet(df: float, dg: float, first: float, second: float) -> tuple[float, float]:

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from gearopt.optimise.terms import Array
 
 TIE = 1e-9  # relative; objectives that differ by less are equal
+DECADES = 2.0  # that an objective spans from which on picks measure it by its logarithm
+ZERO = 1e-6  # of the next larger value of an objective along a front: no more than a rounding
 REFERENCE_AT = 1.05  # of the way from the ideal point to the nadir point: the reference point
 
 
@@ -102,25 +104,50 @@ def picks(values: Array, names: Sequence[str], weights: Mapping[str, float] | No
     if not len(values):
         return []
     unit = scaled(values)
+    wide = [n.replace("_", " ") for n, log in zip(names, by_decades(values), strict=True) if log]
+    by = f", {' and '.join(wide)} in decades" if wide else ""
     found = []
     if weights is not None:
         w = np.array([float(weights.get(name, 0.0)) for name in names])
         words = ", ".join(f"{n.replace('_', ' ')} {v:g}" for n, v in zip(names, w, strict=True))
-        reason = f"the minimum weighted sum of the normalised objectives: {words}"
+        reason = f"the minimum weighted sum of the normalised objectives{by}: {words}"
         found.append(Pick(int((unit @ w).argmin()), WEIGHTS, reason))
     if (k := knee(unit)) is not None:
-        reason = "the point furthest below the straight line between the ends of the front"
+        reason = f"the point furthest below the straight line between the ends of the front{by}"
         found.append(Pick(k, KNEE, reason))
     near = int(np.linalg.norm(unit, axis=1).argmin())
-    reason = "the point nearest to the ideal point, in normalised objectives"
+    reason = f"the point nearest to the ideal point, in normalised objectives{by}"
     found.append(Pick(near, COMPROMISE, reason))
     return found
 
 
 def scaled(values: Array) -> Array:
-    """Return values (N, k) from 0, the least of an objective on the front, to 1, its largest."""
+    """Return values (N, k) from 0, the least of an objective on the front, to 1, its largest.
+
+    Of an objective that spans more than two decades, its logarithms, zeros as its least value.
+    """
+    floors, values = least_sizes(values), values.astype(float)
+    some = by_decades(values)
+    values[:, some] = np.log10(np.maximum(values, floors)[:, some])
     width = nadir(values) - ideal(values)
     return np.asarray((values - ideal(values)) / np.where(width > 0.0, width, 1.0))
+
+
+def by_decades(values: Array) -> NDArray[np.bool_]:
+    """Which objectives (k,) of a front (N, k) span more than DECADES, none of them negative."""
+    floors = least_sizes(values)
+    return np.asarray((ideal(values) >= 0.0) & (nadir(values) > 10.0**DECADES * floors))
+
+
+def least_sizes(values: Array) -> Array:
+    """Least value above zero of every objective (k,): what is ZERO beside the next one is zero."""
+    floors = np.full(values.shape[1], np.inf)
+    for k, column in enumerate(values.T):
+        sizes = np.sort(column[column > 0.0])
+        far = np.flatnonzero(sizes[:-1] < ZERO * sizes[1:])
+        if len(sizes):
+            floors[k] = sizes[far[-1] + 1 if len(far) else 0]
+    return floors
 
 
 def knee(unit: Array) -> int | None:

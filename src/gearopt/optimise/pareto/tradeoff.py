@@ -10,7 +10,7 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.pareto import epsilon, evolution, scalarised
+from gearopt.optimise.pareto import enumerated, epsilon, evolution, scalarised
 from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.found import Found, Point, sifted
 from gearopt.optimise.pareto.front import Front, Objective
@@ -19,6 +19,7 @@ from gearopt.optimise.pareto.posed import Limit, posed
 from gearopt.optimise.problem import Batch, Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Watch
 from gearopt.optimise.scale import violation
+from gearopt.optimise.spatial.columns import columns
 from gearopt.optimise.terms import Array, Terms, Var
 
 EXACT, EPSILON, NSGA, ANNEALING, HYBRID = "exact", "epsilon", "nsga2", "annealing", "hybrid"
@@ -47,15 +48,20 @@ def found(
 
     names: two or three objectives, the first minimised where others are limited. most: largest
     values of interest, by name. method: one of METHODS; by default the problem's own exact one,
-    else epsilon constraints; nsga2 of discrete variables, and of a text that is declared
-    vectorised, which no solver traces. points: sought, where a method has a choice. limiting: how
-    the kind of problem limits objectives. SolveError where the method does
+    else epsilon constraints; nsga2 of discrete variables whose text has no relaxation, and of a
+    text that is declared vectorised, which no solver traces. points: sought, where a method has a
+    choice. limiting: how the kind of problem limits objectives. SolveError where the method does
     not fit the problem.
     """
     budget, chosen = budget or Budget(), method or default_method(problem, limiting)
-    whole = limiting is not None and limiting.whole
-    count = points or (0 if whole else POINTS[len(names)])
+    whole = all(v.discrete for v, _ in problem.columns) if limiting is None else limiting.whole
+    count = points or (0 if whole and len(names) == 2 else POINTS[len(names)])
     if chosen == EPSILON:
+        clock = Clock(budget, watch)
+        few = enumerated.front(problem, names, dict(most), clock) if limiting is None else None
+        if few is not None:
+            return few
+        budget = clock.left
         return epsilon.front(problem, names, dict(most), count, budget, watch, limiting=limiting)
     if isinstance(problem, Conic):
         raise SolveError(f"{chosen} takes a Problem; the front of a Conic is for {EPSILON}")
@@ -78,8 +84,20 @@ def default_method(problem: Problem | Conic, limiting: Limiting | None = None) -
         return EXACT
     if not isinstance(problem, Problem):
         return EPSILON
-    untraced = problem.vectorised or any(v.discrete for v, _ in problem.columns)
-    return NSGA if untraced else EPSILON
+    if any(v.discrete for v, _ in problem.columns):
+        return EPSILON if _relaxed(problem) else NSGA
+    return NSGA if problem.vectorised else EPSILON
+
+
+def _relaxed(problem: Problem) -> bool:
+    """Whether spatial branch and bound takes a problem."""
+    one = posed(problem, problem.rows.objectives[:1], {})
+    assert isinstance(one, Problem)
+    try:
+        columns(one)
+    except SolveError:
+        return False
+    return True
 
 
 def compared_methods(problem: Problem | Conic, limiting: Limiting | None = None) -> tuple[str, ...]:
