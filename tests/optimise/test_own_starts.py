@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import gearopt
-from gearopt import Budget, Param, Problem, Repeat, SolveError, Terms, Var, solve
+from gearopt import Budget, Conic, Param, Problem, Repeat, SolveError, Terms, Var, solve
 
 PAGE = Path(__file__).parents[2] / "docs" / "own_problem.md"
 
@@ -185,3 +185,24 @@ def test_a_method_of_ones_own_may_not_lie():
 
     with pytest.raises(gearopt.CertificateError, match="below the claimed bound"):
         solve(pair(methods={"lies": lies}))
+
+
+def knapsack(x, p):
+    weights, gains = np.array([5.0, 7.0, 4.0, 3.0, 6.5]), np.array([8.0, 11.0, 6.0, 4.0, 10.1])
+    limits = {"weight": x.n @ weights + x.y <= 14.3, "spare": x.y >= 0.1}
+    return Terms(maximise={"gain": x.n @ gains - 0.01 * x.y}, limits=limits)
+
+
+def test_a_conic_start_is_the_first_design_of_branch_and_bound():
+    """One out of reach is no design; its whole numbers may still lead to none."""
+    items = (Var("n", "", 0, 2, 0, size=5, integer=True), Var("y", "", 0.0, 9.0, 1.0))
+    problem = Conic("knapsack", items, (), knapsack)
+    best = solve(problem)
+    assert best.status == "optimal"
+    known = {"n": best.design["n"], "y": 0.5}
+    early = solve(problem, start=known, budget=Budget(evaluations=1))
+    assert early.value == pytest.approx(best.value, rel=1e-9) and early.feasible
+    wrong = solve(problem, start={"n": [2, 2, 2, 2, 2]})
+    assert wrong.value == pytest.approx(best.value, rel=1e-9) and wrong.status == "optimal"
+    with pytest.raises(SolveError, match="a start changes nothing"):
+        solve(Conic("one", items[1:], (), lambda x, p: Terms({"y": x.y**2})), start={"y": 2.0})

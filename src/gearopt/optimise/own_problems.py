@@ -172,12 +172,19 @@ def _provable(problem: Problem | Conic, result: Result) -> str:
     return f"{steps}: then this is a geometric program, whose optimum is proven"
 
 
-def _started(problem: Problem | Conic, method: str, start: Mapping[str, Any]) -> Problem:
+def _started(problem: Problem | Conic, method: str, start: Mapping[str, Any]) -> Problem | Conic:
     """Return the problem with a start as its guess; variables that it leaves out keep theirs."""
+    if isinstance(problem, Conic):
+        if not any(v.discrete for v, _ in problem.columns):
+            raise SolveError(
+                f"a start changes nothing: {problem.name} is convex and continuous, and {method} "
+                "finds its optimum from anywhere; leave start out"
+            )
+        return problem.starting(_point(problem, start))
     known = [n for n in back_ends() if getattr(_module(n), "FROM_GUESS", False)]
     own = method in problem.methods
-    if isinstance(problem, Conic) or not (own or method in known):
-        takes = "" if isinstance(problem, Conic) else f"; these do: {', '.join(known)}"
+    if not (own or method in known):
+        takes = f"; these do: {', '.join(known)}"
         raise SolveError(f"{method} takes no start{takes}; leave start out")
     return problem.starting(_point(problem, start))
 
@@ -186,7 +193,7 @@ def _module(name: str) -> Any:
     return import_module(f"gearopt.optimise.solvers.{name}")
 
 
-def _point(problem: Problem, start: Mapping[str, Any]) -> Array:
+def _point(problem: Problem | Conic, start: Mapping[str, Any]) -> Array:
     """Return the guess (n,) with the values of a start by name, as declared or as a design has it.
 
     ValueError names a value that is none, or lies outside the bounds or the values of its variable.
@@ -218,7 +225,7 @@ def _point(problem: Problem, start: Mapping[str, Any]) -> Array:
     return x
 
 
-def _places(problem: Problem) -> dict[str, list[int]]:
+def _places(problem: Problem | Conic) -> dict[str, list[int]]:
     """Return the columns of every name: of a variable, of a key of a design, of one component."""
     found: dict[str, list[int]] = {}
     for k, (variable, name) in enumerate(problem.columns):

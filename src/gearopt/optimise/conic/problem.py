@@ -66,6 +66,7 @@ class Conic:
     parameters: tuple[Param, ...]
     evaluate: Callable[[Any, Any], Terms]
     memo: dict[Any, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
+    start: Array | None = field(default=None, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         _ = self._declared
@@ -88,6 +89,13 @@ class Conic:
         """The same problem with other parameter values; its canonical data are kept."""
         other = replace(self, parameters=self._declared.at(**values).parameters)
         object.__setattr__(other, "memo", self.memo)
+        return other
+
+    def starting(self, point: Array) -> "Conic":
+        """Return the same problem with a first design (n,) for branch and bound, `start`."""
+        other = replace(self)
+        object.__setattr__(other, "memo", self.memo)
+        object.__setattr__(other, "start", point)
         return other
 
     @property

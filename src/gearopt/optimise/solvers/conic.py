@@ -219,6 +219,8 @@ def branch(problem: Conic, data: Canonical, root: Found, clock: Clock) -> Outcom
     search = _Search(problem, data, scaled(data, root.scale), clock)
     if clock.budget.evaluations is None:
         clock.budget = replace(clock.budget, evaluations=NODES)
+    if problem.start is not None:
+        _begin(search, root.z, problem.start)
     first, least = _closed(search, root.leaf.lower, root.leaf.upper)
     if root.leaf.y is not None and root.least > least:
         first, least = root.leaf, root.least
@@ -252,6 +254,15 @@ def branch(problem: Conic, data: Canonical, root: Found, clock: Clock) -> Outcom
         evaluations=clock.evaluations,
         message="" if finished else "branch and bound stopped early",
     )
+
+
+def _begin(search: _Search, z: Array, start: Array) -> None:
+    """Take the user's design (n,), and the best one of its discrete values."""
+    data, known = search.data, z.copy()
+    known[data.user] = start
+    _take(search, known)
+    if len(data.user) > len(data.allowed):
+        _fixed(search, known, data.lower, data.upper)
 
 
 def _inherited(child: Leaf, parent: Leaf) -> Leaf:
