@@ -149,7 +149,7 @@ class Builder:
         self.relations = [self.relations[r] for r in kept]
         self.exponents = [self.exponents[r] for r in kept]
         self.of = {relation[1]: r for r, relation in enumerate(self.relations)}
-        self.made = {key: w for key, w in self.made.items() if w in self.of}
+        self.known = {key: w for key, w in self.known.items() if w in self.of}
 
     def maker(self, j: int) -> tuple[int, int, float]:
         """Kind, argument and exponent of the relation that makes a column; -1: a variable."""
