@@ -36,10 +36,10 @@ from gearopt.optimise.pareto.gaps import (
     strips,
 )
 from gearopt.optimise.pareto.posed import (
-    LIMIT_PREFIX,
     Built,
     Limit,
     kept,
+    limit_of,
     posed,
     valued,
     violation_scale,
@@ -407,7 +407,7 @@ def _attempt(
         return result, None
     values = _values(run, result, outcome.x)
     slopes = None
-    rows = [f"{LIMIT_PREFIX}_{n}" for n in run.names[1:]]
+    rows = [limit_of(n) for n in run.names[1:]]
     priced = name == run.names[0] and not run.discrete
     if priced and all(row in result.multipliers for row in rows):
         scales = [violation_scale(at, n) for n in run.names[1:]]

@@ -1,5 +1,6 @@
 """Problems made of one with several objectives: one is minimised, others are limited."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -13,6 +14,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.tape import same_kinds
 from gearopt.optimise.terms import Array, Param, Terms
 
+NO_IDENTIFIER = re.compile(r"\W")
 LIMIT_PREFIX = "most"  # most_cost: the largest cost that is allowed
 SCALE = "scale"  # scale_cost: what its excess is measured by
 VALUE = "value"  # value_cost: the cost of a point, whatever is minimised
@@ -34,6 +36,16 @@ class Limit:
         return cls(most, most if most > 0.0 else max(width, abs(most)) or 1.0)
 
 
+def limit_of(name: str) -> str:
+    """The row, and the parameter, that limit an objective; names are made identifiers."""
+    return f"{LIMIT_PREFIX}_{NO_IDENTIFIER.sub('_', name)}"
+
+
+def scale_of(name: str) -> str:
+    """The parameter by which the row of a limited objective is scaled."""
+    return f"{SCALE}_{NO_IDENTIFIER.sub('_', name)}"
+
+
 def posed(
     problem: Problem | Conic, minimise: Sequence[str], limits: Mapping[str, Limit]
 ) -> Problem | Conic:
@@ -50,7 +62,7 @@ def posed(
     def evaluate(x: Any, p: Any) -> Terms:
         found = problem.text(x, p)
         rows = {
-            f"{LIMIT_PREFIX}_{name}": _row(found.minimise[name], p, name, whole, fixed.get(name))
+            limit_of(name): _row(found.minimise[name], p, name, whole, fixed.get(name))
             for name, whole in quotient.items()
         }
         kept = {name: found.minimise[name] for name in minimise}
@@ -62,9 +74,9 @@ def posed(
             report={**found.report, **shown},
         )
 
-    parameters = [Param(f"{LIMIT_PREFIX}_{name}", "", 1.0) for name in limits]
+    parameters = [Param(limit_of(name), "", 1.0) for name in limits]
     parameters += [
-        Param(f"{SCALE}_{name}", "", limit.scale)
+        Param(scale_of(name), "", limit.scale)
         for name, limit in limits.items()
         if conic or not quotient[name]
     ]
@@ -111,11 +123,11 @@ def moved(problem: Problem | Conic, limits: Mapping[str, Limit]) -> Problem | Co
     """
     known, values = _numbers(problem), {}
     for name, limit in limits.items():
-        values[f"{LIMIT_PREFIX}_{name}"] = limit.most
+        values[limit_of(name)] = limit.most
         if isinstance(problem, Conic):
-            values[f"{LIMIT_PREFIX}_{name}"] = limit.most / known[f"{SCALE}_{name}"]
-        elif f"{SCALE}_{name}" in known:
-            values[f"{SCALE}_{name}"] = limit.scale
+            values[limit_of(name)] = limit.most / known[scale_of(name)]
+        elif scale_of(name) in known:
+            values[scale_of(name)] = limit.scale
     found: Problem | Conic = problem.at(**values)
     return found
 
@@ -123,7 +135,7 @@ def moved(problem: Problem | Conic, limits: Mapping[str, Limit]) -> Problem | Co
 def violation_scale(problem: Problem | Conic, name: str) -> float:
     """Scale of the violation of an objective's limit."""
     known = _numbers(problem)
-    return known.get(f"{SCALE}_{name}", known[f"{LIMIT_PREFIX}_{name}"])
+    return known.get(scale_of(name), known[limit_of(name)])
 
 
 def _numbers(problem: Problem | Conic) -> dict[str, float]:
@@ -133,7 +145,7 @@ def _numbers(problem: Problem | Conic) -> dict[str, float]:
 def caps(problem: Problem) -> dict[str, float]:
     """Return the largest values of objectives that `posed` was given, by name."""
     known = _numbers(problem)
-    limited = {name: known.get(f"{LIMIT_PREFIX}_{name}") for name in problem.rows.objectives}
+    limited = {name: known.get(limit_of(name)) for name in problem.rows.objectives}
     return {name: most for name, most in limited.items() if most is not None}
 
 
@@ -144,7 +156,7 @@ def valued(result: Result, names: Sequence[str]) -> Array:
 
 def _row(value: Any, p: Any, name: str, quotient: bool, fixed: float | None) -> Any:
     """Return the utilisation of a limit; fixed: its scale in cvxpy text, a constant there."""
-    most = getattr(p, f"{LIMIT_PREFIX}_{name}")
+    most = getattr(p, limit_of(name))
     if fixed is not None:
         return 1.0 + value * (1.0 / fixed) - most
-    return value / most if quotient else 1.0 + (value - most) / getattr(p, f"{SCALE}_{name}")
+    return value / most if quotient else 1.0 + (value - most) / getattr(p, scale_of(name))
