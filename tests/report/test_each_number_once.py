@@ -15,7 +15,7 @@ from read_numbers import figures, repeated
 import gearopt
 from gearopt.optimise.result import Result
 from gearopt.report.answer import opening
-from gearopt.report.deciding import lead
+from gearopt.report.headline import lead
 from gearopt.report.measures import INCH, METRIC, gap_percent, rounded
 from gearopt.report.pages.result import page, tables
 

@@ -14,8 +14,8 @@ import gearopt
 from gearopt.api import idle_options
 from gearopt.optimise.result import Result
 from gearopt.report import answer, kinds
-from gearopt.report.deciding import lead
 from gearopt.report.explained import remedy_words
+from gearopt.report.headline import lead
 from gearopt.report.kinds import generic, pages_of
 from gearopt.report.measures import INCH
 from gearopt.report.pages.result import page, sections, tables

@@ -1,4 +1,7 @@
-"""Judges an outcome from the problem's own terms, never from a method's word.
+"""Judges an outcome from the problem's own terms, not from the word of a solver.
+
+A bound and an exhausted search are taken from a problem's own exact method alone, with its proof;
+a feasible point that contradicts them refuses both.
 
 Tolerances: a row may exceed its limit by FEASIBLE (the unit of a row is 1); a stationary point has
 stationarity and complementarity below STATIONARY and no direction along which the objective falls;

@@ -7,8 +7,8 @@ from typing import Any
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
 from gearopt.optimise.scale import gap
-from gearopt.report.deciding import lead
 from gearopt.report.explained import remedy_words
+from gearopt.report.headline import lead
 from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, Measures, gap_percent
 from gearopt.report.plots import TEXT, Figure, axis, layout, lines

@@ -8,7 +8,7 @@ from impossible_drives import has_a_design, some_file
 import gearopt
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
-from gearopt.report.deciding import lead
+from gearopt.report.headline import lead
 from gearopt.scenes.drive.explain import rated
 from gearopt.scenes.drive.explain.rated_conflict import conflict
 from gearopt.scenes.drive.explain.requirements import requirements, without

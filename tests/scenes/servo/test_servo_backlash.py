@@ -11,8 +11,8 @@ import gearopt
 from gearopt.errors import SceneError
 from gearopt.formulations.servo.choice import train_problem
 from gearopt.optimise.clock import Clock
-from gearopt.report.deciding import lead
 from gearopt.report.explained import remedy_words
+from gearopt.report.headline import lead
 from gearopt.scenes.servo.backlash import binds
 
 TAN = math.tan(math.radians(20.0))

@@ -453,5 +453,5 @@ def gap_of(value: float) -> float:
 
 
 def floats(values: Any) -> Columns:
-    """Return a column."""
+    """Numbers of an array as a column of a result."""
     return tuple(map(float, values))

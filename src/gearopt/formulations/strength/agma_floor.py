@@ -57,7 +57,7 @@ class Monomial:
     exponent: float
 
     def at(self, value: Any) -> Any:
-        """Return the bound."""
+        """The upper bound factor x^exponent at a value of x."""
         return self.factor * value**self.exponent if self.exponent else self.factor
 
 

@@ -58,7 +58,7 @@ class IsoCells:
 
     @cached_property
     def line(self) -> Array:
-        """W0 [N/mm]."""
+        """Line load F_t K_A K_gamma/b [N/mm] of every cell, its least and its greatest."""
         force = 2.0 * self.found["K_A"] * self.found["K_gamma"] * self.cells.torque
         load = self.standard.loads[0]
         area = self.cells.diameter * self.cells.width

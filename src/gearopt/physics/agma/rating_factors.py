@@ -43,7 +43,7 @@ class Steel:
 
 @dataclass(frozen=True)
 class Practice:
-    """How it is made and rated.
+    """What AGMA 2101 asks for beside geometry and load: quality, mounting, crowning, rims, service.
 
     quality Q_v; curve, crowned, offset, adjusted: of `factors.load_distribution_factor`; backup:
     ratios m_B of both rims, or None for solid blanks; size: whether K_s is Shigley's; service: of

@@ -94,7 +94,7 @@ class DriveDuty(Duty):
 
 
 class Scene(Table):
-    """A drive."""
+    """The tables of a file of kind "drive", which are checked against each other."""
 
     UNRATED: ClassVar[tuple[str, ...]] = ()  # keys of gears that another kind uses without rating
     model_config = ConfigDict(

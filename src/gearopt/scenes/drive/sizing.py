@@ -81,7 +81,7 @@ def sized(scene: Scene, ask: Ask) -> Result:
 
 
 def noted(scene: Scene, ask: Ask, gears: Result | None) -> Result:
-    """The gears with notes on them."""
+    """Gears with what a reader should know of them: presets, teeth that are not standard, flaws."""
     assert gears is not None
     return with_notes(scene, gears, not takes_real_values(scene, ask.method))
 

@@ -201,7 +201,7 @@ def _add_teeth(run: Search, teeth: Teeth) -> None:
 
 
 def _root(run: Search) -> Nodes:
-    """Return the node of no choice."""
+    """The root of the search: no teeth of any stage are chosen."""
     none, zero = np.empty((1, 0)), np.zeros((1, len(run.train.objectives) + len(run.weights)))
     places = np.empty((1, 0), dtype=np.int64)
     return Nodes(0, zero, zero, np.zeros(1), Choice(places, none, none, places))

@@ -1,4 +1,4 @@
-"""The table of a stage, of the kind that its limits ask for."""
+"""Pairs of teeth that a stage may have: by load limits (`Table`) or by ratings (`RatedTable`)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -8,7 +8,6 @@ from gearopt.formulations.drive.design import drive_design
 from gearopt.formulations.drive.layout.layout_design import LayoutDesign
 from gearopt.optimise.result import Result
 from gearopt.report.answer import asked, assumptions, limits, summary
-from gearopt.report.deciding import of_limits
 from gearopt.report.design_tables import (
     ratio_tile,
     teeth_head,
@@ -17,6 +16,7 @@ from gearopt.report.design_tables import (
 )
 from gearopt.report.drawing import layout_views, mesh_view, train_views
 from gearopt.report.drawing.bodies import layout_of
+from gearopt.report.headline import of_limits
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.drive import (
     impossible_layout,

@@ -3,8 +3,8 @@
 from gearopt.formulations.servo.servo_design import GOALS, RatioDesign, TrainDesign
 from gearopt.optimise.result import Result
 from gearopt.report import answer, explained
-from gearopt.report.deciding import PROVEN
 from gearopt.report.drawing import impossible_views
+from gearopt.report.headline import PROVEN
 from gearopt.report.kinds import MakeSection, Pages
 from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, REQUEST
 from gearopt.report.kinds.servo import accuracy as axis_accuracy

@@ -11,8 +11,8 @@ from gearopt.formulations.strain_wave.exchange import CUTTING
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.answer import asked, assumptions, limits, summary
-from gearopt.report.deciding import of_limits
 from gearopt.report.drawing.sheet import series
+from gearopt.report.headline import of_limits
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
 from gearopt.report.kinds.strain_wave import tables

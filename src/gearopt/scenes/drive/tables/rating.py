@@ -167,7 +167,7 @@ class GearKeys(BlankKeys, IsoGearKeys):
 
 
 class GearTable(GearKeys):
-    """One gear of a stage."""
+    """Keys of one gear, [stage.pinion] or [stage.wheel]: shift, tool, material, body."""
 
     profile_shift: Annotated[Fraction | None, SHIFT] = Field(
         None, description="Profile shift coefficient x; by default 0"
@@ -323,7 +323,7 @@ class RatingTable(Table):
 
     @property
     def by_iso6336(self) -> bool:
-        """Return whether ISO 6336 is."""
+        """Whether ISO 6336 is a standard, or the only one, that rates."""
         return self.standard != "agma"
 
     @model_validator(mode="after")
