@@ -191,7 +191,7 @@ def _searched(
         before = _local(problem, outcome, before, tolerance, worst)
     if not math.isfinite(bound) or (before.bound is not None and before.bound >= bound):
         return before
-    proof = {"method": "spatial", "boxes": len(outcome.records), "sentence": SEARCHED}
+    proof = {"method": "spatial", "boxes": records.boxes(outcome.records), "sentence": SEARCHED}
     return bounded(problem, outcome.x, replace(before, proof=proof), bound, tolerance, worst)
 
 
@@ -293,7 +293,7 @@ def _infeasible(problem: Problem, outcome: Outcome) -> Verdict:
         if records.proven(problem, outcome.records) < math.inf:
             return Verdict("failed", message="no feasible point found; impossibility is not proven")
         words = "no point of the box meets all limits"
-        proof = {"method": "spatial", "boxes": len(outcome.records), "sentence": EMPTY}
+        proof = {"method": "spatial", "boxes": records.boxes(outcome.records), "sentence": EMPTY}
         return Verdict("infeasible", proof=proof, message=words)
     shape = _shape(problem)
     low, high = (shape.to_y(a) for a in problem.bounds()[:2])

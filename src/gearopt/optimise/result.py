@@ -18,6 +18,7 @@ from gearopt.optimise.typed import SINGLE
 
 if TYPE_CHECKING:
     from gearopt.optimise.conic.cone_bound import Leaf
+    from gearopt.optimise.spatial.enumeration import Enumerated
     from gearopt.optimise.spatial.step import Record
 
 FORMAT = 1
@@ -117,7 +118,7 @@ class Outcome:
     evaluations: int = 0
     message: str = ""
     stationary: bool | None = None
-    records: tuple["Record", ...] = ()
+    records: tuple["Record | Enumerated", ...] = ()
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,8 @@
 Continuous, whole and listed variables alike. Its records are the claim, judged by the certificate.
 """
 
+import math
+
 import numpy as np
 
 from gearopt.optimise.certified import GAP
@@ -10,11 +12,18 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import compiling_aside, kernel
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
+from gearopt.optimise.spatial import enumeration
 from gearopt.optimise.spatial.columns import ROOM, Columns, columns
+from gearopt.optimise.spatial.enumeration import Boxes, Enumerated, enumerated
 from gearopt.optimise.spatial.incumbent import Incumbent
-from gearopt.optimise.spatial.step import Stepper
+from gearopt.optimise.spatial.step import Record, Stepper
 from gearopt.optimise.spatial.tree import Tree, searched
+from gearopt.optimise.terms import Array
 
+ENUMERATED = 0.5  # of a budget is for boxes of whole and listed values by intervals alone
+BOXES = 200_000  # of these where the budget names no end
+TRIED, CLOSING = 20_000, 0.4  # boxes after which no larger share of them may wait
+PER_EVALUATION = 100  # such boxes count as one: they take a hundredth of the time of others
 STARTS = 3  # random points from which Ipopt begins beside the guess
 
 FROM_GUESS = True  # it begins at the guess, or where a caller starts it
@@ -41,21 +50,66 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
         if not clock.tell():
             break
         incumbent.seek(point)
+    claim = _enumerated(problem, clock, incumbent) if clock.tell() else None
+    if claim is not None and (claim.least >= incumbent.cutoff or clock.stopped):
+        done = claim.least >= incumbent.cutoff
+        return Outcome(
+            incumbent.x,
+            done or not clock.stopped,
+            infeasible=done and incumbent.x is None,
+            evaluations=clock.evaluations,
+            records=(claim,),
+        )
     tree = Tree(problem, form, clock, incumbent)
 
     def watched(bound: float) -> bool:
-        clock.bound = bound
+        clock.bound = max(bound, claim.least if claim else bound)
         return clock.tell()
 
     left = searched(tree, watched) if not clock.stopped else None
+    records: tuple[Record | Enumerated, ...] = tuple(tree.records)
+    if claim is not None and (left is None or claim.least > min(left.least, tree.unsplit)):
+        records = (claim,)
     done = left is not None and min(left.least, tree.unsplit) >= incumbent.cutoff
     return Outcome(
         incumbent.x,
         done or not clock.stopped,
         infeasible=done and incumbent.x is None,
         evaluations=clock.evaluations,
-        records=tuple(tree.records),
+        records=records,
     )
+
+
+def _enumerated(problem: Problem, clock: Clock, incumbent: Incumbent) -> Enumerated | None:
+    """What an enumeration proves where all variables are whole or listed; None of others.
+
+    It may take ENUMERATED of the budget, as the certificate needs as long again.
+    """
+    form = enumeration.columns(problem)
+    if not enumeration.takes(form):
+        return None
+    boxes = Boxes(form)
+    before, seconds, evaluations = clock.evaluations, clock.left.seconds, clock.left.evaluations
+    late = math.inf if seconds is None else clock.seconds + ENUMERATED * seconds
+    most = BOXES if evaluations is None else ENUMERATED * evaluations * PER_EVALUATION
+
+    def judge(points: Array) -> None:
+        clock.evaluations = before + math.ceil(boxes.made / PER_EVALUATION)
+        tried = np.vstack([points, boxes.middles()])
+        value, x = enumeration.best_of(problem, tried, incumbent.value)
+        if x is not None:
+            incumbent.judge(x)
+        clock.bound = min(boxes.least, incumbent.cutoff)
+
+    def goes_on() -> bool:
+        hopeless = boxes.made > TRIED and len(boxes.bound) > CLOSING * boxes.made
+        return clock.tell() and clock.seconds < late and boxes.made < most and not hopeless
+
+    first = Boxes(form)
+    if not compiling_aside(clock, first.kernel.halved, lambda: first.halve(math.inf)):
+        return None
+    enumerated(boxes, lambda: incumbent.cutoff, judge, goes_on)
+    return Enumerated(min(boxes.least, incumbent.cutoff), boxes.made)
 
 
 def _ready(problem: Problem, clock: Clock) -> Columns | None:

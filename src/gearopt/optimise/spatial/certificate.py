@@ -14,7 +14,9 @@ import numpy as np
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE
 from gearopt.optimise.scale import violation
+from gearopt.optimise.spatial import enumeration
 from gearopt.optimise.spatial.columns import LISTED, WHOLE, Columns, columns
+from gearopt.optimise.spatial.enumeration import Enumerated
 from gearopt.optimise.spatial.step import (
     ROOT_SWEEPS,
     SWEEPS,
@@ -25,11 +27,24 @@ from gearopt.optimise.spatial.step import (
 from gearopt.optimise.terms import Array
 
 
-def proven(problem: Problem, records: Sequence[Record]) -> float:
+def proven(problem: Problem, records: Sequence[Record | Enumerated]) -> float:
     """Bound of the objective at all feasible points, inf where there are none.
 
     -inf where the records prove nothing.
     """
+    of_tree = [r for r in records if isinstance(r, Record)]
+    claims = [r for r in records if isinstance(r, Enumerated)]
+    bounds = [enumeration.proven(problem, claim) for claim in claims]
+    return max([*bounds, _replayed(problem, of_tree)])
+
+
+def boxes(records: Sequence[Record | Enumerated]) -> int:
+    """Number of boxes that records are of."""
+    return sum(r.boxes if isinstance(r, Enumerated) else 1 for r in records)
+
+
+def _replayed(problem: Problem, records: Sequence[Record]) -> float:
+    """Bound by the records of the tree."""
     if not records or records[0].parent != -1:
         return -math.inf
     form = columns(problem)

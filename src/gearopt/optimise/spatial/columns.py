@@ -409,9 +409,10 @@ def _outputs(problem: Problem, builder: Builder) -> tuple[Affine, list[Affine], 
     return objective, inequalities, equalities
 
 
-def columns(problem: Problem) -> Columns:
+def columns(problem: Problem, slack: float = 0.0, logarithms: bool = True) -> Columns:
     """Columns of a problem at its present parameters.
 
+    slack: by which rows may exceed 1. logarithms: with those of positive products and powers.
     SolveError names the operation that has no relaxation, or a text that cannot be traced.
     """
     from gearopt.optimise.spatial.partial import open_at_zero, partial_relations  # needs these
@@ -431,16 +432,16 @@ def columns(problem: Problem) -> Columns:
     lower, upper = np.full(builder.width, -np.inf), np.full(builder.width, np.inf)
     lower[:count], upper[:count] = problem.bounds()[:2]
     for j in (*limits, *equal):
-        upper[j] = min(upper[j], 1.0)
+        upper[j] = min(upper[j], 1.0 + slack)
     for j in equal:
-        lower[j] = max(lower[j], 1.0)
+        lower[j] = max(lower[j], 1.0 - slack)
     first = _assembled(problem, builder, count, lower, upper, aim)
     _check_bases(problem.name, builder, first)
     if (partial := partial_relations(first)).any():
         open_at_zero(problem, builder, partial)
         first = _assembled(problem, builder, count, lower, upper, aim)
     low, high = first.lower.copy(), first.upper.copy()
-    if not first.propagated(low, high, ROOT_SWEEPS):
+    if not (logarithms and first.propagated(low, high, ROOT_SWEEPS)):
         return first
     _logarithms(builder, low)
     more = builder.width - len(lower)
@@ -509,6 +510,11 @@ def _assembled(
         else:
             continue
         lower[j], upper[j] = max(lower[j], ends[0]), min(upper[j], ends[1])
+        if variable.values is None:  # a limit of the variable itself may end between whole numbers
+            lower[j], upper[j] = np.ceil(lower[j]), np.floor(upper[j])
+        else:
+            inside = [v for v in values if lower[j] <= v <= upper[j]] or [np.inf, -np.inf]
+            lower[j], upper[j] = inside[0], inside[-1]
     start, terms = [0], list[tuple[int, tuple[float, float]]]()
     for r in range(len(builder.relations)):
         terms += builder.sums[r].terms.items() if r in builder.sums else []

@@ -1,0 +1,179 @@
+"""Enumeration with interval pruning: boxes of whole and listed values, halved until none is left.
+
+A box is narrowed by the intervals of its columns and goes where its objective cannot be below the
+cutoff. What is left of it in the end are single points, which the text itself judges. The number of
+points of the whole box does not matter, only that of the boxes that intervals cannot close.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from gearopt.optimise.kernels import kernel
+from gearopt.optimise.problem import Problem
+from gearopt.optimise.result import FEASIBLE
+from gearopt.optimise.scale import violation
+from gearopt.optimise.spatial.columns import CONTINUOUS, EXACT, ROOM, ROOT_SWEEPS, Columns
+from gearopt.optimise.spatial.columns import columns as columns_of
+from gearopt.optimise.terms import Array
+
+SWEEPS = 2
+CHUNK = 2600  # boxes times relations that are halved at once: 0.05 s
+DEPTH = 5  # times in succession
+KEPT = 1_000_000  # boxes that wait; beyond, the last ones are halved first, so that fewer wait
+MIDDLES = 64  # of the boxes of the least bounds are tried as points
+
+
+def columns(problem: Problem) -> Columns:
+    """Columns of a problem whose rows may exceed 1 by what the contract allows."""
+    return columns_of(problem, slack=FEASIBLE, logarithms=False)
+
+
+def takes(form: Columns) -> bool:
+    """Whether all variables are whole or listed, and finite."""
+    count = form.variables
+    ends = np.concatenate([form.lower[:count], form.upper[:count]])
+    return bool((form.sets[0][:count] != CONTINUOUS).all() and (np.abs(ends) < EXACT).all())
+
+
+@dataclass(frozen=True)
+class Enumerated:
+    """What an enumeration claims: that no feasible point is below a value; its number of boxes."""
+
+    least: float
+    boxes: int
+
+
+@dataclass
+class Boxes:
+    """Boxes that wait, by the ends of the variables; it has state because they are halved.
+
+    low, high (N, n), bound (N,) of the objective; made: number of boxes so far; chunk: how many
+    are halved next.
+    """
+
+    form: Columns
+    low: Array = field(init=False)
+    high: Array = field(init=False)
+    bound: Array = field(init=False)
+    made: int = 1
+    chunk: int = 4
+
+    def __post_init__(self) -> None:
+        form, n = self.form, self.form.variables
+        self.kernel = kernel(f"{ROOM}.enumeration_kernel")
+        self.root = form.lower.copy(), form.upper.copy()
+        inside = not form.empty and form.propagated(*self.root, ROOT_SWEEPS)
+        self.low, self.high = (np.array(end[None, :n][:inside]) for end in self.root)
+        self.bound = self.root[0][[form.objective]][:inside]
+        ends = (np.empty((DEPTH + 1, len(form.lower))) for _ in range(2))
+        whole = (np.zeros(DEPTH, np.int64) for _ in range(2))
+        parts = (np.empty(DEPTH) for _ in range(2))
+        self.work = (*ends, *whole, *parts, np.zeros(len(form.lower), bool))
+
+    @property
+    def least(self) -> float:
+        """Least bound of the boxes that wait, inf where none does."""
+        return float(self.bound.min()) if len(self.bound) else math.inf
+
+    def points(self) -> Array:
+        """Boxes of a single point (N, n), which wait no longer."""
+        single = (self.low == self.high).all(axis=1)
+        found: Array = self.low[single]
+        self.low, self.high, self.bound = (a[~single] for a in (self.low, self.high, self.bound))
+        return found
+
+    def middles(self) -> Array:
+        """Allowed values near the middles of the boxes of the least bounds (N, n)."""
+        some = np.arange(len(self.bound))
+        if len(some) > MIDDLES:
+            some = np.argpartition(self.bound, MIDDLES)[:MIDDLES]
+        low, high = self.low[some], self.high[some]
+        middle = np.floor(0.5 * (low + high))
+        sort, first, last, values = self.form.sets
+        for j in np.flatnonzero(last[: middle.shape[1]] > first[: middle.shape[1]]):
+            of_j = values[first[j] : last[j]]
+            at = np.searchsorted(of_j, low[:, j]) + np.searchsorted(of_j, high[:, j])
+            middle[:, j] = of_j[at // 2]
+        return middle
+
+    def halve(self, cutoff: float) -> bool:
+        """Halve the boxes of the least bounds, and drop all that is not below a cutoff; True."""
+        kept = self.bound < cutoff
+        if not kept.all():
+            self.low, self.high, self.bound = (a[kept] for a in (self.low, self.high, self.bound))
+        count, form = len(self.bound), self.form
+        some = min(self.chunk, count)
+        if not some:
+            return True
+        taken = np.arange(count - some, count)
+        if some < count <= KEPT:
+            taken = np.argpartition(self.bound, some)[:some]
+        out = tuple(
+            np.empty((some << DEPTH, *a.shape[1:])) for a in (self.low, self.high, self.bound)
+        )
+        left, made = self.kernel.halved(
+            form.relations, form.exponent, form.sums, form.sets, self.root, form.objective, cutoff,
+            SWEEPS, self.low[taken], self.high[taken], self.bound[taken], self.work, out,
+        )  # fmt: skip
+        self.chunk = min(2 * some, max(1, CHUNK // (1 + len(form.relations))))
+        self.made += made
+        stays = np.ones(count, bool)
+        stays[taken] = False
+        self.low, self.high, self.bound = (
+            np.concatenate([a[stays], b[:left]])
+            for a, b in zip((self.low, self.high, self.bound), out, strict=True)
+        )
+        return True
+
+
+def best_of(problem: Problem, points: Array, below: float) -> tuple[float, Array | None]:
+    """Least value of feasible points (N, n) below a value, and its point; inf, None for none."""
+    if not len(points):
+        return math.inf, None
+    with np.errstate(all="ignore"):
+        batch = problem.batch(points)
+        value = batch.F[:, 0]
+        rows = np.hstack([batch.G - 1.0, np.abs(batch.H - 1.0)])
+        met = (np.isfinite(batch.G) & (batch.G <= 1.0 + FEASIBLE)).all(axis=1)
+        met &= (rows <= FEASIBLE).all(axis=1) & np.isfinite(value) & (value < below)
+        order = np.flatnonzero(met)[np.argsort(value[met], kind="stable")]
+        for k in order:
+            alone = type(batch)(batch.F[[k]], batch.G[[k]], batch.H[[k]], {})
+            if violation(problem, points[k], alone)[0] <= FEASIBLE:
+                return float(value[k]), points[k]
+    return math.inf, None
+
+
+def enumerated(
+    boxes: Boxes,
+    cutoff: Callable[[], float],
+    judge: Callable[[Array], None],
+    goes_on: Callable[[], bool],
+) -> None:
+    """Halve boxes until none is left below the cutoff, or it does not go on.
+
+    judge(points): of single points, which wait no longer, and of middles, which may be any.
+    """
+    judge(boxes.points())
+    while len(boxes.bound) and goes_on():
+        boxes.halve(cutoff())
+        judge(boxes.points())
+
+
+def proven(problem: Problem, claim: Enumerated) -> float:
+    """Bound of all feasible points, by boxes halved anew below what is claimed (Lemma 79)."""
+    form = columns(problem)
+    if not takes(form) or math.isnan(claim.least):
+        return -math.inf
+    boxes, least = Boxes(form), claim.least
+    most = 2 * claim.boxes + 1000
+
+    def judge(points: Array) -> None:
+        nonlocal least
+        least = min(least, best_of(problem, points, least)[0])
+
+    enumerated(boxes, lambda: claim.least, judge, lambda: boxes.made < most)
+    return min(least, boxes.least)

@@ -1,0 +1,67 @@
+"""Boxes of whole and listed values, held against all their points."""
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+from global_cases import case, posed
+
+from gearopt.optimise.result import Budget
+from gearopt.optimise.solve import run, solve
+from gearopt.optimise.spatial import certificate
+from gearopt.optimise.terms import Var
+
+FAMILIES = {
+    "sum": lambda a, b, c: (a**2 - 3.0 * b + c * a, a + b + c - 9.0),
+    "product": lambda a, b, c: (a * b * c - b**3, 2.0 - a * b),
+    "quotient": lambda a, b, c: (abs(a / (b + 0.5) - 0.37 * c), c - a * b),
+    "power": lambda a, b, c: ((a + 1.0) ** 1.7 - b**3 + c**2, a**2 + b**2 - 20.0),
+    "kinks": lambda a, b, c: (np.maximum(a - b, c) - np.minimum(a, b * c), abs(a - c) - 3.0),
+    "floor": lambda a, b, c: (a - b + 0.1 * c, 0.01 + a * b / 3.0 - np.floor(a * b / 3.0) - 0.1),
+    "waves": lambda a, b, c: (np.sin(a * b) + np.cos(c - a) + np.tan(0.2 * b), np.sin(a + c)),
+    "exp": lambda a, b, c: (np.exp(0.2 * a - b) * c + np.log(a + 1.0), np.exp(b - c) - 4.0),
+    "roots": lambda a, b, c: (np.sqrt(a) * b - np.hypot(b, c), 1.0 - a - np.sqrt(b + 1.0)),
+    "angles": lambda a, b, c: (np.arctan(a / b) + np.tanh(c - a), np.arccos(b / 9.0) - 1.5),
+    "met exactly": lambda a, b, c: (-a - b - c, 0.1 * (a + b + c) - 0.3),
+}
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_whole_numbers_agree_with_brute_force(name):
+    rng = np.random.default_rng(len(name))
+    for _ in range(3):
+        low = rng.integers(-4, 3, 3)
+        high = low + rng.integers(1, 9, 3)
+
+        def text(x):
+            f, g = FAMILIES[name](*x)
+            return f, [g], []
+
+        ends = [(int(a), int(b), "whole") for a, b in zip(low, high, strict=True)]
+        problem = posed(ends, text, [a for a, _, _ in ends])
+        points = np.array(list(product(*(range(a, b + 1) for a, b, _ in ends))), float)
+        with np.errstate(all="ignore"):
+            batch = problem.batch(points)
+        met = np.isfinite(batch.F[:, 0]) & (batch.G[:, 0] <= 1.0 + 1e-8)
+        best = batch.F[met, 0].min(initial=np.inf)
+        result, outcome = run(problem, "spatial")
+        if np.isinf(best):
+            assert result.status == "infeasible"
+            continue
+        assert result.status == "optimal" and result.value == pytest.approx(best, rel=1e-6)
+        claim = outcome.records[0]
+        forged = replace(claim, least=best + 0.1)
+        assert certificate.proven(problem, (forged,)) <= best
+        assert certificate.proven(problem, (replace(claim, boxes=-900),)) <= best
+
+
+def test_listed_values_and_stops():
+    best, problem = case("gears")
+    assert solve(problem, "spatial").value == pytest.approx(best, rel=1e-6)
+    short = solve(problem, "spatial", Budget(evaluations=3))
+    assert short.status == "limit" and (short.bound is None or short.bound <= best)
+    listed = tuple(Var(f"x{k}", "", 0.5, 4.0, 1.0, values=(0.5, 1.25, 1.6, 4.0)) for k in (1, 2))
+    free = posed([(0.5, 4.0)] * 2, lambda x: ((x[0] - 1.3) ** 2 + (x[1] - x[0] ** 2) ** 2, [], []))
+    result = solve(replace(free, variables=listed), "spatial")
+    assert result.status == "optimal" and result.design == {"x1": 1.25, "x2": 1.6}
