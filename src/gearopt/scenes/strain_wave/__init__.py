@@ -65,7 +65,7 @@ UNPROVEN = "sensitivities need a design that is certified as locally optimal, an
 NEAREST = "The nearest design of this size that was found reaches: {}."
 INTERFERING = "Stopped before the interference was removed."
 NUMBERS = "numbers"  # the part of a gearing's numbers, until they are described
-TELLING_SECONDS = 0.5  # that a description may take beyond a budget that is spent
+TELLING_SECONDS = 0.15  # that each step of a description may take beyond a spent budget
 NO_FLANK = (
     "No gearing was found whose flanks are conjugate from root to tip. "
     "Increase the deflection or the pressure angle."
