@@ -35,7 +35,7 @@ def posed(text, **changes):
 
 
 def test_comparisons_of_positive_sides_are_their_quotients():
-    """A geometric program stays one; what is maximised is told by its own name and signs."""
+    """Rows are the same bit by bit; what is maximised is told by its own name and signs."""
     by_hand, ours = posed(written), posed(compared)
     points = np.random.default_rng(1).uniform(0.1, 50.0, (50, 3))
     assert np.array_equal(by_hand.batch(points).G, ours.batch(points).G)
