@@ -253,9 +253,14 @@ def profile_shifts(duty: Duty, made: Flank, extras: Extras) -> dict[str, Any]:
 
 
 def other_deflections(extras: Extras, at: Callable[[float], Deflected]) -> tuple[Deflected, ...]:
-    """Return the gearing on wave generators of OTHER_DEFLECTIONS, while there is time."""
+    """The gearing on wave generators of OTHER_DEFLECTIONS where teeth meet, while there is time."""
     none: tuple[Deflected, ...] = ()
-    return extras.of("other deflections", lambda: tuple(map(at, OTHER_DEFLECTIONS)), none)
+
+    def meeting() -> tuple[Deflected, ...]:
+        others = map(at, OTHER_DEFLECTIONS)
+        return tuple(other for other in others if math.isfinite(other.least_clearance_mm))
+
+    return extras.of("other deflections", meeting, none)
 
 
 def cutter_design(made: Flank, asked: Cutter, extras: Extras) -> CutterDesign:

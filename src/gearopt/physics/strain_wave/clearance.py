@@ -129,8 +129,11 @@ class Least:
 
 
 def interference(flank: Flank, step_deg: float = 0.05, points: int = 51) -> Least:
-    """Return the least clearance of one gearing over the whole wave, the first of `least_gaps`."""
-    return least_gaps(flank, step_deg, points)[0]
+    """Return the least clearance of one gearing over the whole wave, the first of `least_gaps`.
+
+    Infinite where the teeth do not reach each other.
+    """
+    return next(iter(least_gaps(flank, step_deg, points)), Least(math.inf, 0.0, None, False))
 
 
 @np.errstate(invalid="ignore", divide="ignore")

@@ -199,7 +199,7 @@ def _likely_thousands(text: str, usual: Quantity) -> bool:
 
 def number(
     example: Any,
-    minimum: int,
+    minimum: int | Fraction,
     maximum: int | Fraction,
     percent: bool = False,
     zero: bool = False,
@@ -209,7 +209,7 @@ def number(
 
     percent: "1 %" is read too; fraction: "127/120" too.
     """
-    above = f"between {minimum} and" if minimum or zero else "greater than 0 and at most"
+    above = f"between {float(minimum):.7g} and" if minimum or zero else "greater than 0 and at most"
     sort = 'a number or a percentage such as "1 %"' if percent else "a number"
     sort += ' or a fraction such as "127/120"' if fraction else ""
 
@@ -247,7 +247,8 @@ def number(
             return f"{value} %"
         return -value if _is_number(value) and inside(-found) else None
 
-    schema: dict[str, Any] = {"type": "number", "minimum": minimum, "maximum": float(maximum)}
+    schema: dict[str, Any] = {"type": "number", "maximum": float(maximum)}
+    schema["minimum"] = minimum if isinstance(minimum, int) else float(minimum)
     if percent:
         text = {"type": "string", "pattern": r"^\s*[0-9.]+([eE][+-]?[0-9]+)?\s*%?\s*$"}
         schema = {"anyOf": [schema, text]}

@@ -18,6 +18,7 @@ RANGES = {  # of what a design may choose, beside modules of the size asked for
     "deflection": (0.97, 1.25),
     "addendum": (0.4, 0.9),
 }
+LEAST_ADDENDUM = Fraction(1, 20)  # modules; shorter teeth do not reach each other
 SPLINE, OUTPUT = "circular spline", "output"  # where the torque that the teeth carry is taken
 MODULES = (0.8, 1.1)  # of the module that fits the outer diameter
 RIMS = (4.0 / 900.0, 14.0 / 900.0)  # of the outer diameter
@@ -49,7 +50,7 @@ class WaveGears(Table):
     profile_shift: Annotated[Fraction | None, number(0.9, -2, 5, zero=True)] = Field(
         None, description="Profile shift of the circular spline in modules"
     )
-    addendum: Annotated[Fraction | None, number(0.6, 0, 2)] = Field(
+    addendum: Annotated[Fraction | None, number(0.6, LEAST_ADDENDUM, 2)] = Field(
         None, description="Half the working depth of the circular spline in modules"
     )
     deflection: Annotated[Fraction | None, number(1, 0, 2)] = Field(
@@ -182,7 +183,7 @@ class WaveLimits(Table):
     profile_shift: Annotated[
         tuple[Fraction, Fraction] | None, span(number(0.9, -2, 5, zero=True), [0, 2])
     ] = Field(None, description="Range of the profile shift; by default 0 to 2")
-    addendum: Annotated[tuple[Fraction, Fraction] | None, span(number(0.6, 0, 2), [0.4, 0.9])] = (
+    addendum: Annotated[tuple[Fraction, Fraction] | None, span(number(0.6, LEAST_ADDENDUM, 2), [0.4, 0.9])] = (
         Field(None, description="Range of the addendum; by default 0.4 to 0.9")
     )
     deflection: Annotated[tuple[Fraction, Fraction] | None, span(number(1, 0, 2), [0.97, 1.25])] = (
