@@ -144,7 +144,7 @@ def explain(
     changes: of a file, as in `load`. Possible: the limits that bind, and the sensitivity to every
     number of the file (to every parameter, and bound with a key, of a problem). Impossible: the
     limits in conflict, and remedies that were tried: what to write instead. SceneError and
-    SolveError as in `solve`; a problem with discrete variables needs an exact method of its own.
+    SolveError as in `solve`.
     """
     from gearopt.optimise.explaining.explain import explain as explain_problem
 

@@ -109,17 +109,16 @@ def test_least_repair_is_sparse_and_its_product_is_proven():
 
 
 def test_signed_rows_and_bounds_below_zero():
-    """x >= 2 is asked of x <= -1: no logarithms, so nothing is proven, but a repair is found."""
+    """x >= 2 is asked of x <= -1: no logarithms, so branch and bound proves what suffices."""
 
     def evaluate(x, p):
         return Terms({"square": x.x**2}, {"reach": 1 + (2.0 - x.x) / 4.0})
 
-    problem = Problem("signed", (Var("x", "", -5.0, -1.0, -2.0),), (), evaluate)
-    found = explain(problem)
-    assert found.result.value is None and found.conflict == ()
-    assert {"reach", "x upper"} >= {r.what for r in found.remedies if r.kind == "even"} != set()
-    for remedy in found.remedies:
-        assert remedy.bound is None  # not convex in logarithms
+    explained = explain(Problem("signed", (Var("x", "", -5.0, -1.0, -2.0),), (), evaluate))
+    assert explained.result.value is None and explained.conflict == ("reach", "x upper")
+    written = {r.what: float(r.changes[0].write) for r in explained.remedies}
+    assert written == {"reach": pytest.approx(1.75, 1e-5), "x upper": pytest.approx(2.0, 1e-5)}
+    assert {r.verified["with_less"] for r in explained.remedies} == {"infeasible"}
 
 
 def test_repeats_share_one_factor():

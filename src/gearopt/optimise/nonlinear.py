@@ -290,7 +290,8 @@ def program(z: Any, p: Any, f: Any, g: Any, size: int) -> tuple[Any, Any]:
     }
     if size > DENSE_VARIABLES:
         options |= dense_hessian(z, p, f, g)
-    return ca.nlpsol("ipopt", "ipopt", {"x": z, "p": p, "f": f, "g": g}, options), monitor
+    dense = ca.densify(f)  # of an objective that is constant, too
+    return ca.nlpsol("ipopt", "ipopt", {"x": z, "p": p, "f": dense, "g": g}, options), monitor
 
 
 def dense_hessian(z: Any, p: Any, f: Any, g: Any) -> dict[str, Any]:

@@ -9,23 +9,25 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.optimise.certificate import reconcile
+from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.deadline import until
+from gearopt.optimise.explaining.exclusion import exclusion, named
 from gearopt.optimise.failures import counting
 from gearopt.optimise.maximised import as_asked
 from gearopt.optimise.own_methods import back_ends
 from gearopt.optimise.polish import TRACED
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Result, Watch
-from gearopt.optimise.solve import default_method, solve
+from gearopt.optimise.solve import PROVER, default_method, solve
 from gearopt.optimise.tape import log_convex_in_logarithms
 from gearopt.optimise.terms import Array
 
 SAMPLER = "annealing"  # taken where variables are discrete and nothing is proven
-PROVER = "spatial"
 PROVEN = ("optimal", "infeasible")
 FIRST = 0.8  # of a budget is the prover's, where the sampler follows
 BOXES = 3000  # of the prover, where the budget names no end
+NAMING = 2.0  # s to find the limits that exclude each other
 
 
 def solve_own(
@@ -47,8 +49,22 @@ def solve_own(
     name = method or default_method(problem)
     posed = problem if start is None else _started(problem, name, start)
     if method is None and name == "ipopt" and isinstance(posed, Problem):
-        return as_asked(_by_default(posed, budget, seed, watch, gap))
-    return as_asked(_saying(solve(posed, name, budget, seed, watch, gap), problem))
+        answer = _by_default(posed, budget, seed, watch, gap)
+    else:
+        answer = _saying(solve(posed, name, budget, seed, watch, gap), problem)
+    proven = answer.method == PROVER and answer.status == "infeasible"
+    if proven and isinstance(posed, Problem):
+        answer = _naming(posed, answer, budget, watch)
+    return as_asked(answer)
+
+
+def _naming(problem: Problem, result: Result, budget: Budget, watch: Watch | None) -> Result:
+    """An impossible answer with the limits that exclude each other, where there is time."""
+    left = budget.less(result.seconds, result.evaluations)
+    clock = Clock(replace(left, seconds=Clock(left).within(NAMING)), of_others(watch))
+    result = named(result, exclusion(problem, clock))
+    seconds, evaluations = result.seconds + clock.seconds, result.evaluations + clock.evaluations
+    return replace(result, seconds=seconds, evaluations=evaluations)
 
 
 def _saying(result: Result, problem: Problem | Conic, *words: str) -> Result:

@@ -168,6 +168,12 @@ class Problem:
         other.__dict__["_bounds"] = lower, upper, np.clip(point, lower, upper)
         return other
 
+    def bounded(self, lower: Array, upper: Array) -> "Problem":
+        """Return the same problem with other bounds (n,) of all variables."""
+        other = self._sharing()
+        other.__dict__["_bounds"] = lower, upper, np.clip(self.bounds()[2], lower, upper)
+        return other
+
     def holding(self, point: Array) -> "Problem":
         """Return the same problem with its discrete variables fixed at a point's."""
         discrete = np.array([v.discrete for v, _ in self.columns])

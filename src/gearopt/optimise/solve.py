@@ -3,6 +3,7 @@
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,9 @@ from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch
 from gearopt.optimise.scale import violation
 from gearopt.optimise.terms import Array
+
+PROVER = "spatial"
+BOXES = 2000  # of a run of branch and bound within others, where the budget names no end
 
 
 def solve(
@@ -117,9 +121,15 @@ def _values(problem: str, name: str, value: Any, count: int) -> Array:
 
 
 def solve_within(clock: Clock, problem: Problem | Conic, method: str | None = None) -> Result:
-    """Solve within the rest of a clock; a run that is stopped ends the rest too."""
-    result = solve(problem, method, clock.left, watch=clock.watch)
-    clock.stopped = clock.stopped or result.status == "limit"
+    """Solve within the rest of a clock; a run that is stopped ends the rest too.
+
+    Branch and bound takes BOXES at most, which end no rest.
+    """
+    budget = clock.left
+    if capped := method == PROVER and budget.evaluations is None:
+        budget = replace(budget, evaluations=BOXES)
+    result = solve(problem, method, budget, watch=clock.watch)
+    clock.stopped = clock.stopped or (result.status == "limit" and (clock.over or not capped))
     return result
 
 

@@ -23,7 +23,8 @@ class Param:
     name: an identifier; unit: text for reports ("" for a pure number); value: a float, or `size`
     floats; key: its place in the problem file, if it has one. role: "data" stays as it is, a
     "limit" may be relaxed by `explain`, what is "given" (a duty, a fixed size) only where relaxing
-    limits does not help. Of key and role one word, or one a component.
+    limits does not help; by default it is data, or a limit where it stands only as the number that
+    limits are divided by. Of key and role one word, or one a component.
     """
 
     name: str
@@ -31,12 +32,12 @@ class Param:
     value: Number
     size: int = 1
     key: str | tuple[str, ...] = ""
-    role: str | tuple[str, ...] = "data"
+    role: str | tuple[str, ...] = ""
 
     def __post_init__(self) -> None:
         _check_numbers("parameter", self, ("value",))
         words = (self.role,) if isinstance(self.role, str) else self.role
-        if unknown := set(words) - {"data", "limit", "given"}:
+        if unknown := set(words) - {"", "data", "limit", "given"}:
             raise ValueError(
                 f"parameter {self.name}: no role {unknown.pop()!r}; data, limit, given"
             )

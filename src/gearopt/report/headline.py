@@ -47,7 +47,9 @@ def _impossible(result: Result) -> str:
     names = ways.get("conflict") or result.proof.get("conflict") or ()
     if not names:
         return (result.message or "no design meets all limits").rstrip(".")
-    unsure = [name for name in ways.get("unsure") or () if name in names]
+    unsure = [
+        name for name in ways.get("unsure") or result.proof.get("unsure") or () if name in names
+    ]
     names = [name for name in names if name not in unsure]
     together = _on(grouped(names, has_stages(result)), len(names))
     ratio = {*RATIO_ENDS} & ({*(result.proof.get("conflict") or ())} - {*names})

@@ -8,8 +8,18 @@ from functools import cache
 
 import numpy as np
 
+from gearopt.errors import SolveError
 from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock, of_others
+from gearopt.optimise.explaining.exclusion import (
+    VERDICTS,
+    Exclusion,
+    each_resolves,
+    eased,
+    exclusion,
+    named,
+    possible,
+)
 from gearopt.optimise.explaining.explanation import Change, Explanation, Influence, Remedy
 from gearopt.optimise.explaining.halving import Bracket, middles, take
 from gearopt.optimise.explaining.handles import (
@@ -21,6 +31,7 @@ from gearopt.optimise.explaining.handles import (
     each_word,
     effective,
     handles,
+    numbered,
 )
 from gearopt.optimise.explaining.repair import (
     FACTOR_TOLERANCE,
@@ -28,13 +39,14 @@ from gearopt.optimise.explaining.repair import (
     Repair,
     any_resolves,
     elastic,
+    even,
     impossible,
     value_within,
 )
 from gearopt.optimise.explaining.sensitivity import BINDS, sensitivities
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Result, Watch
-from gearopt.optimise.solve import solve_within
+from gearopt.optimise.result import Budget, Outcome, Result, Watch
+from gearopt.optimise.solve import BOXES, PROVER, solve_within
 from gearopt.optimise.terms import Array, spread
 
 THERE = ("optimal", "stationary", "feasible")  # a design exists
@@ -50,40 +62,80 @@ FEASIBILITY_MARGIN = 2e-7
 def explain(
     problem: Problem, budget: Budget | None = None, watch: Watch | None = None
 ) -> Explanation:
-    """Explain the answer to a problem: one without discrete variables, or with an exact method.
+    """Explain the answer to a problem.
 
-    Impossible: the conflict and its remedies; with discrete variables, each number that alone
-    suffices. Possible: the limits that bind, and for every parameter and every bound with a key its
-    sensitivity (discrete variables held), checked by re-solving, and the gain of easing it by 1 %
-    if it is a limit. SolveError for discrete variables without an exact method.
+    Impossible: the conflict and its remedies; of a problem that is not convex in logarithms, or
+    discrete, each number that alone suffices. Possible: the limits that bind, and for every
+    parameter and every bound with a key its sensitivity (discrete variables held), checked by
+    re-solving, and the gain of easing it by 1 % if it is a limit. SolveError where a text without
+    an exact method is neither smooth nor has a relaxation.
     """
     clock = Clock(budget or Budget(), of_others(watch))
-    discrete = any(variable.discrete for variable, _ in problem.columns)
-    method = next(iter(problem.methods), "ipopt") if discrete else "ipopt"
-    result, outcome = run(problem, method, clock.left, watch=watch)
+    problem = numbered(problem)
+    method, result, outcome = _answered(problem, clock, watch)
     if result.status in ("infeasible", "failed"):
-        known = handles(problem)
-        blamed: tuple[Handle, ...] = ()
-        if discrete:
-            found_ = [r for h in known if (r := _alone(problem, h, method, clock)) is not None]
-        else:
-            limits = [h for h in known if not h.given]
-            blamed, repairs = impossible(problem, clock, known, limits)
-            found_ = [_remedy(problem, r, clock) for r in repairs]
-        found = Explanation(
-            result,
-            tuple(h.name for h in blamed),
-            tuple(r for r in found_ if r.verified["with"] in THERE),
-            message="the budget ended before all remedies were tried" if clock.over else "",
-            any_resolves=any_resolves(problem, known, blamed, clock),
-        )
+        explanation = _impossible(problem, method, result, clock)
     elif result.value is None or outcome.x is None:
-        found = Explanation(result, message="no design was found in time")
+        explanation = Explanation(result, message="no design was found in time")
     else:
         influences = tuple(_influences(problem, result, outcome.x, method, clock))
         message = "stopped before all numbers were examined" if clock.over else ""
-        found = Explanation(result, (), (), binding(result), influences, message)
-    return replace(found, seconds=clock.seconds)
+        explanation = Explanation(result, (), (), binding(result), influences, message)
+    return replace(explanation, seconds=clock.seconds)
+
+
+def _answered(problem: Problem, clock: Clock, watch: Watch | None) -> tuple[str, Result, Outcome]:
+    """The method that answers a problem, and its answer: of its own, Ipopt, or branch and bound."""
+    discrete = any(variable.discrete for variable, _ in problem.columns)
+    method = next(iter(problem.methods), PROVER if discrete else "ipopt")
+    result, outcome = run(problem, method, _ending(method, clock.left), watch=watch)
+    if method == "ipopt" and result.status == "failed" and not clock.over:
+        try:
+            proven = run(problem, PROVER, _ending(PROVER, clock.left), watch=watch)
+        except SolveError:  # no relaxation
+            return method, result, outcome
+        return PROVER, *proven
+    return method, result, outcome
+
+
+def _ending(method: str, budget: Budget) -> Budget:
+    """A budget with an end where the method has none of its own."""
+    endless = method == PROVER and budget.seconds is None and budget.evaluations is None
+    return replace(budget, evaluations=BOXES) if endless else budget
+
+
+def _impossible(problem: Problem, method: str, result: Result, clock: Clock) -> Explanation:
+    """Conflict and remedies of a problem without a design."""
+    known = handles(problem)
+    excluding, resolves, remedies = Exclusion(), False, list[Remedy | None]()
+    if method == "ipopt":
+        blamed, repairs = impossible(problem, clock, known, [h for h in known if not h.given])
+        remedies = [_remedy(problem, r, clock) for r in repairs]
+        excluding = Exclusion(tuple(h.name for h in blamed))
+        resolves = any_resolves(problem, known, blamed, clock)
+        if not blamed and _relaxes(problem, clock):  # not convex in logarithms
+            method = PROVER
+    if method != "ipopt":
+        if method == PROVER and result.status == "infeasible":
+            excluding = exclusion(problem, clock)
+            resolves = each_resolves(problem, excluding, clock)
+        remedies = [_alone(problem, h, method, clock) for h in known]
+    return Explanation(
+        named(result, excluding) if method == PROVER else result,
+        excluding.names,
+        tuple(r for r in remedies if r is not None and r.verified["with"] in THERE),
+        message="the budget ended before all remedies were tried" if clock.over else "",
+        any_resolves=resolves,
+        unsure=excluding.unsure,
+    )
+
+
+def _relaxes(problem: Problem, clock: Clock) -> bool:
+    """Whether branch and bound, too, finds that a problem is impossible."""
+    try:
+        return not clock.over and possible(problem, clock) is False
+    except SolveError:  # no relaxation
+        return False
 
 
 def binding(result: Result) -> tuple[str, ...]:
@@ -171,6 +223,8 @@ def _moved(problem: Problem, handle: Handle, factor: float) -> Problem:
         values = problem.parameter_values()
         values[handle.place] = handle.relaxed(factor)
         return _with(problem, values)
+    if handle.kind == ROW:
+        return eased(problem, {handle.name: factor})
     bounds = [end.copy() for end in problem.bounds()[:2]]
     bounds[handle.kind == UPPER][handle.place] = handle.relaxed(factor)
     variable, start = problem.columns[handle.place][0], 0
@@ -184,10 +238,12 @@ def _moved(problem: Problem, handle: Handle, factor: float) -> Problem:
 
 def _alone(problem: Problem, handle: Handle, method: str, clock: Clock) -> Remedy | None:
     """Return the smallest change of one number that makes a problem possible; None: none does."""
-    if handle.kind == ROW or handle.value <= 0.0:
+    bound = handle.kind in (LOWER, UPPER)
+    variable = problem.columns[handle.place][0] if bound else None
+    whole = variable is not None and variable.integer
+    listed = variable is not None and variable.values is not None
+    if listed or (handle.value <= 0.0 and (whole or not bound)):
         return None
-    answers = dict.fromkeys(THERE, True) | {"infeasible": False}
-    whole = handle.kind in (LOWER, UPPER) and problem.columns[handle.place][0].integer
     handle = replace(handle, whole=whole)
 
     def asked(factor: float) -> float:
@@ -197,19 +253,28 @@ def _alone(problem: Problem, handle: Handle, method: str, clock: Clock) -> Remed
     def status(factor: float) -> str:
         return solve_within(clock, _moved(problem, handle, factor), method).status
 
-    down = whole and handle.direction < 0  # to 1 at the most
+    def suffices(factor: float) -> bool | None:
+        return VERDICTS.get(status(asked(factor)))
+
     known = Bracket(1.0, 1.0)
-    for high in (f for f in FACTORS_IN_TURN if not down or f <= handle.value):
-        if answers.get(status(asked(high))):
-            known.high = high
-            break
-        known.low = high
-    else:
-        return None
+    if (
+        not any(v.discrete for v, _ in problem.columns)
+        and (near := even(problem, [handle], clock)) is not None
+    ):
+        known = _around(near.factor, suffices)
+    if known.high == 1.0:
+        down = whole and handle.direction < 0  # to 1 at the most
+        for high in (f for f in FACTORS_IN_TURN if not down or f <= handle.value):
+            if suffices(high):
+                known.high = high
+                break
+            known.low = high
+        else:
+            return None
     for middle in middles(known, FACTOR_TOLERANCE):
         if clock.over:
             break
-        take(known, middle, answers.get(status(asked(middle))))
+        take(known, middle, suffices(middle))
     factor = asked(known.high)
     less = handle.one_back(factor) if whole else factor * (1.0 - SLACK_TRIED)
     number = f"{handle.relaxed(factor):.{DIGITS + 2}g}"
@@ -218,6 +283,14 @@ def _alone(problem: Problem, handle: Handle, method: str, clock: Clock) -> Remed
     return Remedy(
         "less" if handle.given else "alone", handle.name, (change,), factor, None, verified
     )
+
+
+def _around(factor: float, suffices: Callable[[float], bool | None]) -> Bracket:
+    """Ends close to a factor that a local method has found, [1, 1] where it does not suffice."""
+    if not suffices(factor):
+        return Bracket(1.0, 1.0)
+    less = max(1.0, factor / FACTOR_TOLERANCE)
+    return Bracket(1.0, less) if suffices(less) else Bracket(less, factor)
 
 
 def _with(problem: Problem, values: Array) -> Problem:

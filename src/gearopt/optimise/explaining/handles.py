@@ -6,7 +6,7 @@ in the row itself.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,9 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, spread
 
 REACH = 1e6  # the largest factor by which a limit may be relaxed; finite, for the dual bound
+DIVIDES = 1e-12  # relative, to which a row falls as a number grows that it is divided by
 POINTS = 8  # around the guess at which the direction of a parameter is sampled
+DATA = ("", "data")  # roles of a parameter that stays as it is
 PARAM, ROW, LOWER, UPPER = "parameter", "row", "lower bound", "upper bound"
 
 
@@ -98,10 +100,10 @@ def _limit(problem: Problem, row: str) -> str:
 
 def _parameters(problem: Problem) -> tuple[list[Handle], set[int]]:
     """Return parameters that may move, and the rows they govern."""
-    acts, signs, elsewhere = _slopes(problem)
+    acts, signs, elsewhere, _ = _slopes(problem)
     rows = problem.rows.inequalities
     roles = [each_word(q.role, q.size) for q in problem.parameters]
-    movers = np.array([role != "data" for own in roles for role in own], bool)
+    movers = np.array([role not in DATA for own in roles for role in own], bool)
     found: list[Handle] = []
     governed: set[int] = set()
     start = 0
@@ -114,7 +116,7 @@ def _parameters(problem: Problem) -> tuple[list[Handle], set[int]]:
             ways = {int(s) for s in signs[touched, place]}
             only = all(rows[r].kind == "limits" for r in touched) and not elsewhere[place]
             movable = only and len(ways) == 1 and value > 0 and math.isfinite(value)
-            if role == "data" or not movable:
+            if role in DATA or not movable:
                 continue
             names = tuple(rows[r].name for r in touched)
             label = parameter.name if parameter.size == 1 else f"{parameter.name}[{k + 1}]"
@@ -130,37 +132,69 @@ def _parameters(problem: Problem) -> tuple[list[Handle], set[int]]:
     return found, governed
 
 
+def numbered(problem: Problem) -> Problem:
+    """The problem whose parameters of no role are limits where limits alone are divided by them.
+
+    Not where such a row has another one, or a parameter with a role that may move.
+    """
+    roles = [each_word(q.role, q.size) for q in problem.parameters]
+    words = np.array([role for own in roles for role in own])
+    if not (words == "").any():
+        return problem
+    acts, _, elsewhere, divides = (part.astype(bool) for part in _slopes(problem))
+    limits = np.array([row.kind == "limits" for row in problem.rows.inequalities], bool)
+    numbers = np.array(
+        [
+            word == "" and not other and here.any() and limits[here].all() and by[here].all()
+            for word, other, here, by in zip(words, elsewhere, acts.T, divides.T, strict=True)
+        ],
+        bool,
+    )
+    crowded = acts[:, numbers | ~np.isin(words, DATA)].sum(axis=1) > 1
+    words = np.where(numbers & ~acts[crowded].any(axis=0), "limit", words)
+    ends = np.cumsum([q.size for q in problem.parameters])[:-1]
+    parts = [tuple(map(str, part)) for part in np.split(words, ends)]
+    parameters = (replace(q, role=w) for q, w in zip(problem.parameters, parts, strict=True))
+    return replace(problem, parameters=tuple(parameters))
+
+
 def each_word(words: str | tuple[str, ...], size: int) -> tuple[str, ...]:
     """Return a word of a parameter for each of its components."""
     return tuple(map(str, np.broadcast_to(np.asarray(words), (size,))))
 
 
-def _slopes(problem: Problem) -> tuple[Array, Array, Array]:
-    """Return how rows depend on parameters: acts (ng, np), signs (ng, np), elsewhere (np,).
+def _slopes(problem: Problem) -> tuple[Array, Array, Array, Array]:
+    """How rows depend on parameters: acts, signs (ng, np), elsewhere (np,), divides (ng, np).
 
     acts: a parameter stands in the row; signs: the one sign of its derivative at points of the box,
-    0 where it changes; elsewhere: it acts on the objective or an equality.
+    0 where it changes; elsewhere: it acts on the objective or an equality; divides: the row is
+    divided by it, at these points.
     """
     import casadi as ca
 
     x, p, (f, g, h) = _symbols(problem)
     slopes = ca.jacobian(g, p)
     acts = np.array(ca.DM(slopes.sparsity(), 1.0), float).reshape(g.numel(), p.numel()) != 0
-    at = ca.Function("slopes", [x, p], [slopes])
+    at = ca.Function("slopes", [x, p], [slopes, g])
     lower, upper, guess = problem.bounds()
     logarithmic = np.array([v.log for v, _ in problem.columns])
     draw = np.random.default_rng(0)
     signs = np.zeros(acts.shape)
     mixed = np.zeros(acts.shape, bool)
+    divides = acts.copy()
+    numbers = problem.parameter_values()
     for spread_ in (0.0, *[0.1] * POINTS):
         step = spread_ * draw.standard_normal(len(guess))
         point = np.where(logarithmic, guess * np.exp(step), guess + step * (1.0 + np.abs(guess)))
-        values = np.array(at(np.clip(point, lower, upper), problem.parameter_values()), float)
-        here = np.sign(np.nan_to_num(values)).reshape(acts.shape)
+        values, used = (np.array(a, float) for a in at(np.clip(point, lower, upper), numbers))
+        values = values.reshape(acts.shape)
+        here = np.sign(np.nan_to_num(values))
         mixed |= (signs * here) < 0
         signs = np.where(signs == 0, here, signs)
+        off = np.abs(values * numbers + used.reshape(-1, 1))
+        divides &= ~(off > DIVIDES * np.abs(used.reshape(-1, 1)))
     other = ca.which_depends(ca.vertcat(f, h), p, 1, False) if p.numel() else []
-    return acts, np.where(mixed, 0.0, signs), np.array(other, bool)
+    return acts, np.where(mixed, 0.0, signs), np.array(other, bool), divides
 
 
 def effective(problem: Problem) -> Array:

@@ -19,7 +19,7 @@ from gearopt.optimise.certified import GAP
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.form import form
-from gearopt.optimise.own_problems import PROVEN, PROVER
+from gearopt.optimise.own_problems import PROVEN
 from gearopt.optimise.pareto import evolution
 from gearopt.optimise.pareto.found import Found, Point, Skipped, Step, sifted
 from gearopt.optimise.pareto.gaps import (
@@ -46,6 +46,7 @@ from gearopt.optimise.pareto.posed import (
 )
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch
+from gearopt.optimise.solve import PROVER
 from gearopt.optimise.solve import run as solve_raw
 from gearopt.optimise.terms import Array
 

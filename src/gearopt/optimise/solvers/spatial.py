@@ -41,15 +41,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     if not clock.tell() or (form := _ready(problem, clock)) is None:
         return Outcome(None, False)
     incumbent = Incumbent(problem, clock, max(budget.gap, GAP))
-    rng = np.random.default_rng(seed)
-    low, high, guess = problem.bounds()
-    incumbent.seek(guess)
-    wide = np.isfinite(high - low)
-    for _ in range(STARTS):
-        point = np.where(wide, low + rng.random(len(low)) * np.where(wide, high - low, 0.0), guess)
-        if not clock.tell():
-            break
-        incumbent.seek(point)
+    incumbent.seek(problem.bounds()[2])
     claim = _enumerated(problem, clock, incumbent) if clock.tell() else None
     if claim is not None and (claim.least >= incumbent.cutoff or clock.stopped):
         done = claim.least >= incumbent.cutoff
@@ -60,13 +52,17 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
             evaluations=clock.evaluations,
             records=(claim,),
         )
-    tree = Tree(problem, form, clock, incumbent)
 
     def watched(bound: float) -> bool:
         clock.bound = max(bound, claim.least if claim else bound)
         return clock.tell()
 
-    left = searched(tree, watched) if not clock.stopped else None
+    tree = Tree(problem, form, clock, incumbent)
+    opened = list(tree.root()) if not clock.stopped else []
+    if opened and _improved(problem, incumbent, seed):
+        tree = Tree(problem, form, clock, incumbent)
+        opened = list(tree.root())
+    left = searched(tree, opened, watched) if not clock.stopped else None
     records: tuple[Record | Enumerated, ...] = tuple(tree.records)
     if claim is not None and (left is None or claim.least > min(left.least, tree.unsplit)):
         records = (claim,)
@@ -78,6 +74,19 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
         evaluations=clock.evaluations,
         records=records,
     )
+
+
+def _improved(problem: Problem, incumbent: Incumbent, seed: int) -> bool:
+    """Whether a better point is found from random ones."""
+    rng, before = np.random.default_rng(seed), incumbent.value
+    low, high, guess = problem.bounds()
+    wide = np.isfinite(high - low)
+    for _ in range(STARTS):
+        if not incumbent.clock.tell():
+            break
+        point = np.where(wide, low + rng.random(len(low)) * np.where(wide, high - low, 0.0), guess)
+        incumbent.seek(point)
+    return incumbent.value < before
 
 
 def _enumerated(problem: Problem, clock: Clock, incumbent: Incumbent) -> Enumerated | None:

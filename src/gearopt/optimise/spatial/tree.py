@@ -5,7 +5,7 @@ and listed variables are branched on first, then the variable below which the re
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -300,11 +300,16 @@ def _inside(at: float, low: float, high: float) -> float:
     return min(max(LP_SHARE * at + (1.0 - LP_SHARE) * middle, low + off), high - off)
 
 
-def searched(tree: Tree, watched: Callable[[float], bool]) -> Open[Node]:
-    """Run a search; what it leaves open. watched(bound): whether it goes on, told the bound."""
+def searched(
+    tree: Tree, opened: Iterable[tuple[float, Node]], watched: Callable[[float], bool]
+) -> Open[Node]:
+    """Search from nodes with their bounds on; what is left open.
+
+    watched(bound): whether it goes on, told the bound.
+    """
 
     def goes_on(bound: float, node: Node) -> bool:
         return bound < tree.cutoff and watched(min(bound, tree.unsplit))
 
     with np.errstate(invalid="ignore"):  # widths of what is infinite at both ends
-        return best_first(tree.root(), goes_on, tree.branch)
+        return best_first(opened, goes_on, tree.branch)

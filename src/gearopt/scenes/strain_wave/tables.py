@@ -183,9 +183,9 @@ class WaveLimits(Table):
     profile_shift: Annotated[
         tuple[Fraction, Fraction] | None, span(number(0.9, -2, 5, zero=True), [0, 2])
     ] = Field(None, description="Range of the profile shift; by default 0 to 2")
-    addendum: Annotated[tuple[Fraction, Fraction] | None, span(number(0.6, LEAST_ADDENDUM, 2), [0.4, 0.9])] = (
-        Field(None, description="Range of the addendum; by default 0.4 to 0.9")
-    )
+    addendum: Annotated[
+        tuple[Fraction, Fraction] | None, span(number(0.6, LEAST_ADDENDUM, 2), [0.4, 0.9])
+    ] = Field(None, description="Range of the addendum; by default 0.4 to 0.9")
     deflection: Annotated[tuple[Fraction, Fraction] | None, span(number(1, 0, 2), [0.97, 1.25])] = (
         Field(None, description="Range of the deflection; by default 0.97 to 1.25")
     )
