@@ -20,6 +20,7 @@ from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.comparing.fronts import compare_fronts
 from gearopt.optimise.comparing.runs import EVALUATIONS, SECONDS, SEEDS, Follow, Model, Plan
 from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.evaluation import elementwise
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.maximised import explained_as_asked
 from gearopt.optimise.options import check, in_turn, named
@@ -30,6 +31,7 @@ from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch, plain  # noqa: F401
 from gearopt.optimise.solve import evaluate  # noqa: F401
 from gearopt.optimise.terms import Param, Repeat, Terms, Var  # noqa: F401
+from gearopt.optimise.workers import working
 from gearopt.scenes.explaining.explanations import explanation, without_design
 from gearopt.scenes.kind import Kind
 from gearopt.scenes.reading.ask import Ask
@@ -68,6 +70,7 @@ def solve(
     prices: bool | float = False,
     start: Mapping[str, Any] | None = None,
     remedies: bool = True,
+    workers: int = 1,
 ) -> Result:
     """Return the certified answer to a problem file, its tables or scene, or a problem of your own.
 
@@ -79,13 +82,15 @@ def solve(
     of the file, as `explain` does; a number: in so many times the seconds of the answer, at most,
     and 2 s. start: of a Problem, values by name of the variable from which
     ipopt, multistart and annealing begin instead of the guess. remedies: of an impossible file
-    report["ways_out"] holds what to write instead; False: its proof alone. SceneError for a wrong
+    report["ways_out"] holds what to write instead; False: its proof alone. workers: of a Problem
+    whose text is run point by point, such as a simulation, processes that annealing and nsga2 share
+    their points among. SceneError for a wrong
     file or change, SolveError where the method does not fit, or an option changes nothing,
     ValueError for an option of another sort. Of several threads one solves at a time; its budget
     begins then.
     """
     check(method=method, budget=budget, seed=seed, watch=watch, gap=gap, top=top, prices=prices)
-    check(start=start, remedies=remedies)
+    check(start=start, remedies=remedies, workers=workers)
     budget, watch = replace(budget or Budget(), gap=gap or 0.0), whole(watch)
     asked = {"method": method, "seconds": budget.seconds, "evaluations": budget.evaluations}
     asked |= {"gap": gap, "seed": seed, "top": top, "prices": prices}
@@ -93,7 +98,9 @@ def solve(
     if isinstance(what, Problem | Conic):
         _unchanged(what, changes)
         _only_of_files(what.name, top, prices)
-        return solve_own(what, method, budget, seed, watch, gap, start)
+        with working(_slow(what, workers), workers):
+            return solve_own(what, method, budget, seed, watch, gap, start)
+    _slow(what, workers)
     if start is not None:
         raise SolveError("start changes nothing here: it is for a Problem; leave it out")
     ask = Ask(method, budget, seed, watch, gap, top)
@@ -188,6 +195,16 @@ def idle_options(what: File, method: str | None) -> dict[str, str]:
     """Return the options of `solve` that change nothing for a file, each with the reason."""
     scene, kind, _ = _opened(what, None)
     return kind.idle(scene, method)
+
+
+def _slow(what: Any, workers: int) -> Any:
+    """What may have workers; SolveError where it is no text that is run point by point."""
+    if workers > 1 and not (isinstance(what, Problem) and not elementwise(what, None)):
+        raise SolveError(
+            f"workers={workers} changes nothing here: it is for a Problem whose text is run point "
+            "by point, such as a simulation; leave it out"
+        )
+    return what
 
 
 def _only_of_files(name: str, top: int, prices: bool | float) -> None:
@@ -321,6 +338,7 @@ def pareto(
     budget: Budget | None = None,
     seed: int = 0,
     watch: Watch | None = None,
+    workers: int = 1,
 ) -> Front:
     """Return the Pareto front of two or three objectives: the designs that none dominates.
 
@@ -330,17 +348,19 @@ def pareto(
     most: largest values of interest by name, in the units of the objectives. method: exact (all
     designs of whole teeth, proven), epsilon (real-valued sizes, point by point), nsga2, annealing
     or hybrid; by default the one that proves most. points: sought, where a method has a choice: 60,
-    of three objectives 400. weights: by name, of the design to pick. SceneError for a wrong file,
-    SolveError where objectives or method do not fit.
+    of three objectives 400. weights: by name, of the design to pick. workers: as in `solve`, of
+    nsga2, annealing and hybrid. SceneError for a wrong file, SolveError where objectives or method
+    do not fit.
     """
-    check(method=method, budget=budget, seed=seed, watch=watch, points=points)
+    check(method=method, budget=budget, seed=seed, watch=watch, points=points, workers=workers)
     check(most=most, weights=weights)
     budget, watch, most = budget or Budget(), whole(watch), dict(most or {})
     pose, _, about = _traded(what, changes, objectives)
     options: dict[str, Any] = {"method": method, "seconds": budget.seconds, "points": points}
     options |= {"most": most, "weights": weights, "seed": seed}
     about["options"] = options | about.get("options", {})
-    return solved(pose(method), most, method, points, weights, budget, seed, watch, **about)
+    with working(_slow(what, workers), workers):
+        return solved(pose(method), most, method, points, weights, budget, seed, watch, **about)
 
 
 def _unchanged(problem: Problem | Conic, changes: Changes) -> None:

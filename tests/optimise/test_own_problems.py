@@ -1,6 +1,9 @@
 """Wrong declarations and texts of users: one clear error each, nothing on the standard error."""
 
 import math
+import multiprocessing
+import os
+import re
 
 import numpy as np
 import pytest
@@ -257,3 +260,29 @@ def test_methods_take_whole_numbers_and_finite_sets_or_name_the_first():
     for method in ("ipopt", "multistart", "gp", "qp"):
         with pytest.raises(SolveError, match="count is discrete"):
             solve(problem, method)
+
+
+def test_workers_share_points_and_change_no_answer():
+    """A text that raises beyond a = 2.9 and knows no symbols; its points in one or two processes."""
+    pids = set()
+
+    def simulated(x, p):
+        if x.a > 2.9:
+            raise RuntimeError(f"too stiff {os.getpid()}")
+        return Terms({"f": float((x.a - 1) ** 2 + (x.b - 2) ** 2)}, {"l": float(x.a * x.b / 3)})
+
+    two = (Var("a", "", 0.1, 3.0, 1.5), Var("b", "", 0.5, 3.0, 1.0))
+    answers = []
+    for workers in (1, 2):
+        problem = Problem("simulated", two, (), simulated)
+        budget = Budget(evaluations=400)
+        result = gearopt.solve(problem, method="nsga2", budget=budget, seed=3, workers=workers)
+        words = r"(\d+) of \d+ points failed.*too stiff (\d+)"
+        failed, where = re.search(words, result.message).groups()
+        answers.append((result.design, result.value, result.evaluations, failed))
+        pids.add(int(where) == os.getpid())
+    assert answers[0] == answers[1] and pids == {True, False}
+    assert not multiprocessing.active_children()
+    smooth = Problem("smooth", two, (), lambda x, p: Terms({"f": x.a + x.b}))
+    with pytest.raises(SolveError, match="workers=2 changes nothing here"):
+        gearopt.solve(smooth, workers=2)

@@ -22,7 +22,7 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from gearopt.errors import GearoptError, SolveError
 from gearopt.optimise import comparisons
-from gearopt.optimise.failures import current
+from gearopt.optimise.failures import Points, current
 from gearopt.optimise.terms import (
     SECTIONS,
     Array,
@@ -35,6 +35,7 @@ from gearopt.optimise.terms import (
     namespace,
     spread,
 )
+from gearopt.optimise.workers import shared_out
 
 SYMBOLS = (  # what exceptions of texts run on symbols say, and the remedy
     (
@@ -395,26 +396,52 @@ def _one_by_one(problem: "Problem", repeat: Repeat | None, shared: Array, own: A
     rows, run = range(repeat.count if repeat else 1), current()
     names = problem.names(repeat)
     values = np.full((len(shared), len(rows), sum(map(len, names.values()))), np.nan)
-    for k, (x, y) in enumerate(zip(shared, own, strict=True)):
-        if k and run.late:
-            run.skipped += len(shared) - k
-            break
-        for row in rows:
-            values[k, row], failure = _numbers(problem, repeat, x, y[row : row + 1], row, names)
-            run.note(failure)
+    tasks = [
+        (repeat and repeat.name, x, y[row : row + 1], row, names)
+        for x, y in zip(shared, own, strict=True)
+        for row in rows
+    ]
+    for k, (numbers, failure) in enumerate(_each(problem, tasks, len(rows), run)):
+        values[divmod(k, len(rows))] = numbers
+        run.note(failure)
     columns = iter(np.moveaxis(values if repeat else values[:, 0], -1, 0))
     return Terms(**{part: {name: next(columns) for name in names[part]} for part in SECTIONS})
 
 
+def _each(
+    problem: "Problem", tasks: list[tuple[Any, ...]], rows: int, run: Points
+) -> Iterator[tuple[list[float], str]]:
+    """Values and failures of a text, point by point, while the run has time; by its processes."""
+    together = shared_out(problem, _numbers, tasks, lambda: run.late)
+    left = len(tasks)
+    for values in together or _alone(problem, tasks, rows, run):
+        left -= 1
+        yield values
+    run.skipped += left // rows
+
+
+def _alone(
+    problem: "Problem", tasks: list[tuple[Any, ...]], rows: int, run: Points
+) -> Iterator[tuple[list[float], str]]:
+    for k, task in enumerate(tasks):
+        if k and k % rows == 0 and run.late:
+            return
+        yield _numbers(problem, *task)
+
+
 def _numbers(
     problem: "Problem",
-    repeat: Repeat | None,
+    name: str | None,
     shared: Array,
     own: Array,
     row: int,
     names: dict[str, list[str]],
 ) -> tuple[list[float], str]:
-    """Return all values of a text at one point; NaN and what it raised there in words."""
+    """Return all values of a text at one point; NaN and what it raised there in words.
+
+    name: of the repeat whose text it is.
+    """
+    repeat = next((r for r in problem.repeats if r.name == name), None)
     try:
         terms = at(problem, repeat, shared, own.ravel(), row)
     except SolveError as refused:

@@ -32,6 +32,7 @@ SORTS: dict[str, tuple[Callable[[Any], bool], str]] = {  # of options: what each
     "top": (lambda v: _whole(v, 1), "a whole number of at least 1"),
     "prices": (lambda v: isinstance(v, bool | float) and v >= 0.0, "True, False or a share"),
     "remedies": (lambda v: isinstance(v, bool), "True or False"),
+    "workers": (lambda v: _whole(v, 1), "a whole number of processes, of at least 1"),
     "seeds": (lambda v: _whole(v, 1), "a whole number of at least 1: so many seeds, from 0"),
     "evaluations": (lambda v: _whole(v, 1), "a whole number of at least 1"),
     "seconds": (lambda v: is_number(v) and v > 0, "a number above 0"),
