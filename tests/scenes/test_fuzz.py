@@ -1,4 +1,4 @@
-"""Thousands of wrong problem files: each loads, or every mistake has a line that mends it."""
+"""Wrong problem files at random: each loads, or every mistake has a line that mends it."""
 
 import faulthandler
 import json
@@ -33,7 +33,7 @@ VALID = (  # mutations that leave a file right
     "windows_line_ends",
     "deep_keys_of_ones_own",
 )
-BLOCKS, SIZE = 20, 500
+BLOCKS, SIZE = 20, 200
 HANG = 300  # s for a block of files that takes some seconds
 NO_FIX = (
     "is not valid TOML",
@@ -115,7 +115,7 @@ def test_the_bases_load_and_survive_our_own_writer(base):
     assert judge("byte_order_mark", base, 0) == "loaded"
 
 
-EVERY = [(kind, seed) for kind in KINDS for seed in range(2 if kind in SLOW else 3)]
+EVERY = [(kind, seed) for kind in KINDS for seed in range(1 if kind in SLOW else 3)]
 SOME = list(BASES)[::3]  # for the default tests, of seed 0; case 2 is seed 0 of all bases
 
 
@@ -123,13 +123,14 @@ SOME = list(BASES)[::3]  # for the default tests, of seed 0; case 2 is seed 0 of
     ("kind", "seed"), few(EVERY, [(kind, 0) for kind in KINDS if kind not in SLOW])
 )
 def test_every_mutation_of_every_base(kind, seed):
-    found = {judge(kind, base, seed % 2) for base in (BASES if seed else SOME)}
+    bases = BASES if seed else SOME[:2] if kind in SLOW else SOME
+    found = {judge(kind, base, seed % 2) for base in bases}
     assert (found == {"loaded"}) == (kind in VALID)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("block", range(BLOCKS))
-def test_ten_thousand_files(block):
+def test_thousands_of_files(block):
     fast = [kind for kind in KINDS if kind not in SLOW]
     found = Counter()
     for seed in range(block * SIZE, (block + 1) * SIZE):

@@ -112,7 +112,7 @@ def test_nothing_is_claimed_least_where_time_ran_out():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [1, 4, *range(20, 28)])
+@pytest.mark.parametrize("seed", [1, 4, *range(20, 25)])
 def test_ways_out_of_drives_with_given_numbers(seed):
     """Each way out was edited into the file; so was each step less, and each single number."""
     text = given_drive(seed)
@@ -201,9 +201,9 @@ def test_the_nearest_ratio_is_that_of_listing_all_trains():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", range(113, 338, 25))
+@pytest.mark.parametrize("first", range(113, 221, 12))
 def test_the_nearest_ratio_of_more_drives_is_that_of_listing_all_trains(first):
-    assert any([check_nearest(seed) for seed in range(first, first + 25)])
+    assert any([check_nearest(seed) for seed in range(first, first + 12)])
 
 
 def test_no_ratio_is_told_where_none_is_written_or_time_ran_out():

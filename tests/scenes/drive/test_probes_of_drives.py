@@ -40,25 +40,26 @@ def at_an_end(end, whole=""):
     return scene_of("\n".join([*heads, whole]))[0]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("end", ["ratio 1", "equal speeds", "largest pinion", "close modules"])
-def test_a_probe_that_the_file_would_refuse_counts_as_no_design_there(end):
-    scene = at_an_end(end)
-    found = {i.key: i for i in explain(scene).influences}
-    written = {n.key for n in numbers(scene)}
-    assert set(found) == written
-    key = {"ratio 1": "duty.ratio", "equal speeds": "duty.output_speed"}.get(end)
-    assert key is None or found[key].sensitivity is None and None in found[key].resolved
-    if end == "close modules":  # 2 mm times 1.001 is above 2.001 mm: the other end is no substitute
-        assert found["limits.module[1]"].resolved[1] is None
+WHOLE = "[teeth]\nmodules = ['2 mm', '50 mm']"
+OF_WHOLE_TEETH = ("ratio 1", "largest ratio", "both teeth", "one module of the list")
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("whole", ["", "[teeth]\nmodules = ['2 mm', '50 mm']"])
-@pytest.mark.parametrize("end", ENDS)
+@pytest.mark.parametrize(
+    ("end", "whole"), [*((end, "") for end in ENDS), *((end, WHOLE) for end in OF_WHOLE_TEETH)]
+)
 def test_numbers_at_the_ends_of_their_ranges_are_explained(end, whole):
-    found = explain(at_an_end(end, whole))
+    """A probe that the file would refuse counts as no design there."""
+    scene = at_an_end(end, whole)
+    found = explain(scene)
     vast = end == "largest ratio" and whole  # more pairs than are listed: no price, and said so
     assert found.result.status == ("limit" if vast else "optimal")
     assert bool(found.message) == bool(vast)
     assert any(i.sensitivity is not None for i in found.influences)
+    by = {i.key: i for i in found.influences}
+    assert whole or set(by) == {n.key for n in numbers(scene)}
+    key = {"ratio 1": "duty.ratio", "equal speeds": "duty.output_speed"}.get(end)
+    if key and not whole:
+        assert by[key].sensitivity is None and None in by[key].resolved
+    if end == "close modules":  # 2 mm times 1.001 is above 2.001 mm: the other end is no substitute
+        assert by["limits.module[1]"].resolved[1] is None

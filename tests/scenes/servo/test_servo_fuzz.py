@@ -98,7 +98,7 @@ def answer(kind, base, seed):
 def test_what_loads_is_solved(block):
     """Within little time, and without another error than one that names the file's limits."""
     found = Counter()
-    for seed in range(block * 12, (block + 1) * 12):
+    for seed in range(block * 6, (block + 1) * 6):
         kind, base = KINDS[seed % len(KINDS)], list(BASES)[seed % len(BASES)]
         found[answer(kind, base, seed)] += 1
     assert found.keys() <= {"", "optimal", "feasible", "infeasible", "limit"}, found
@@ -107,8 +107,8 @@ def test_what_loads_is_solved(block):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("block", range(8))
-def test_two_thousand_files(block):
+def test_hundreds_of_files(block):
     found = Counter()
-    for seed in range(block * 250, (block + 1) * 250):
+    for seed in range(block * 100, (block + 1) * 100):
         found[fate(KINDS[seed % len(KINDS)], list(BASES)[seed % len(BASES)], seed)] += 1
-    assert found["mended"] > 125, found
+    assert found["mended"] > 50, found
