@@ -270,6 +270,17 @@ def catalogue(cost, error):
     return Conic("catalogue", (y,), (), evaluate)
 
 
+def test_a_limit_that_is_infinite_is_not_met():
+    n = Var("n", "", -2, 3, 1, integer=True)
+    problem = Problem(
+        "pole", (n,), (), lambda x, p: Terms({"f": x.n, "g": (x.n - 2) ** 2}, {"a": 1 - 1 / x.n})
+    )
+    front = gearopt.pareto(problem)
+    assert front.status == "complete" and [p.values for p in front.points] == [(1, 1), (2, 0)]
+    one = Problem("pole", (n,), (), lambda x, p: Terms({"f": x.n}, {"a": 1 - 1 / x.n}))
+    assert gearopt.solve(one, method="nsga2", budget=Budget(evaluations=500)).value == 1.0
+
+
 @pytest.mark.parametrize(
     ("cost", "error", "unbeaten_ones"),
     [

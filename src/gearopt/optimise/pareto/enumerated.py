@@ -78,7 +78,7 @@ def _designs(own: Problem | Conic, names: Sequence[str], points: Array) -> tuple
         if isinstance(own, Conic):
             columns = [np.reshape(batch.report[f"{VALUE}_{name}"], -1) for name in names]
             values = np.column_stack(columns)
-        met = (batch.G - 1.0 <= FEASIBLE).all(axis=1)
+        met = (np.isfinite(batch.G) & (batch.G - 1.0 <= FEASIBLE)).all(axis=1)
         met &= (np.abs(batch.H - 1.0) <= FEASIBLE).all(axis=1)
     met &= np.isfinite(values).all(axis=1)
     return points[met], values[met]

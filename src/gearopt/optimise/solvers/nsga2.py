@@ -85,8 +85,10 @@ def posed(problem: Problem, space: Box) -> Any:
             with np.errstate(all="ignore"):
                 found = problem.batch(space.points(unit))
             equal = np.abs(found.H - 1.0) - EQUAL
-            out["F"] = np.nan_to_num(found.F, nan=1e300, posinf=1e300)
-            out["G"] = np.nan_to_num(np.hstack([found.G - 1.0, equal]), nan=1e300, posinf=1e300)
+            out["F"], out["G"] = (
+                np.nan_to_num(values, nan=1e300, posinf=1e300, neginf=1e300)
+                for values in (found.F, np.hstack([found.G - 1.0, equal]))
+            )
 
     return Batch()
 
