@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 from global_cases import case, posed
 
+from gearopt.optimise.failures import Points, counting
 from gearopt.optimise.result import Budget
-from gearopt.optimise.solve import run, solve
+from gearopt.optimise.solve import method_of, run, solve
 from gearopt.optimise.spatial import certificate
+from gearopt.optimise.spatial.enumeration import Enumerated
 from gearopt.optimise.terms import Var
 
 FAMILIES = {
@@ -65,3 +67,16 @@ def test_listed_values_and_stops():
     free = posed([(0.5, 4.0)] * 2, lambda x: ((x[0] - 1.3) ** 2 + (x[1] - x[0] ** 2) ** 2, [], []))
     result = solve(replace(free, variables=listed), "spatial")
     assert result.status == "optimal" and result.design == {"x1": 1.25, "x2": 1.6}
+
+
+def test_points_for_which_no_time_was_left_are_not_taken_for_judged(monkeypatch):
+    def text(x):
+        return np.sum(x), [0.95 - np.sin(3.0 * x[0] + x[1] ** 2)], []
+
+    problem = posed([(-6, 6, "whole")] * 2, text, [0, 0])
+    best = solve(problem, "spatial").value
+    monkeypatch.setattr(Points, "late", property(lambda points: points.count > 5))
+    with counting(1.0):
+        outcome = method_of(problem, "spatial")(problem, Budget(), 0, None)
+    assert not any(isinstance(r, Enumerated) for r in outcome.records)
+    assert np.sum(outcome.x) == best

@@ -7,7 +7,7 @@ from graph import OPERATIONS, boxes, graph
 
 from gearopt.errors import SolveError
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.spatial.columns import columns
+from gearopt.optimise.spatial.columns import Affine, Builder, columns, divided, powered
 from gearopt.optimise.spatial.step import Stepper
 from gearopt.optimise.terms import Param, Repeat, Terms, Var
 
@@ -126,6 +126,51 @@ def test_folded_factors_enclose_the_text(x):
     truth = a * (d(0.1) * x) ** 3
     assert lower[form.objective] <= truth <= upper[form.objective]
     assert upper[form.objective] - lower[form.objective] < 1e-11 * max(1.0, abs(truth))
+
+
+def test_factors_that_are_hardly_known_stay_in_their_columns():
+    x, hardly, one = (
+        {j: pair} for j, pair in enumerate([(1.0, 0.0), (2e-18, 3e-18), (1.0, 1e-16)])
+    )
+    (pair,) = divided(Builder("p", 3, [False] * 3), Affine(x), Affine(hardly)).terms.values()
+    assert pair == (1.0, 0.0)
+    (pair,) = powered(Builder("p", 3, [False] * 3), Affine(one), 3.0).terms.values()
+    assert pair[0] == 1.0 and pair[1] > 3e-16
+    constant = Affine({}, 2e-18, 3e-18)
+    assert not powered(Builder("p"), constant, -1.0).fixed
+
+
+def test_numbers_beyond_the_doubles_are_kept_apart_or_refused():
+    x = Var("x", "", 1e-200, 1e-150, 1e-170)
+    form = columns(Problem("p", (x,), (), lambda x, p: Terms({"f": (1e180 * x.x) ** 2})))
+    lower, upper = form.lower.copy(), form.upper.copy()
+    assert form.propagated(lower, upper, 2)
+    assert 0.99e60 < upper[form.objective] < 1.01e60
+    y = Var("y", "", 1.0, 2.0, 1.0)
+    product = Problem("p", (x, y), (), lambda x, p: Terms({"f": 1e200 * x.x * (1e200 * x.y)}))
+    with pytest.raises(SolveError, match="beyond the numbers"):
+        columns(product)
+
+
+def test_what_underflows_makes_no_row_and_no_bound_false():
+    x = Var("x", "", 1e169, 1e171, 1e170)
+    inverse = Problem("p", (x,), (), lambda x, p: Terms({"f": 1.0 / x.x}))
+    form = columns(inverse, logarithms=False)
+    stepper = Stepper(form)
+    stepper.fill(form.lower, form.upper, form.lower)  # slopes of -1e-338 and less
+    first, count, index, factor, least, most = stepper.rows
+    for value in ([mp.mpf(at), 1 / mp.mpf(at)] for at in (1e169, 1e170, 1e171)):
+        for i in range(len(count)):
+            terms = range(first[i], first[i] + count[i])
+            total = sum((mp.mpf(factor[k]) * value[index[k]] for k in terms), mp.mpf(0))
+            assert least[i] <= total <= most[i]
+    of_line = columns(Problem("p", (x,), (), lambda x, p: Terms({"f": 3.0 * x.x - 1.0})))
+    line = Stepper(of_line)
+    line.fill(of_line.lower, of_line.upper, of_line.lower)
+    low, high = np.array([-1e-99, 0.0]), np.array([-1e-100, 0.0])
+    for y in (1e-250, -1e-250):
+        line.rows[4][:], line.rows[5][:] = -3e-99, 3e-99  # which the box meets
+        assert not line.safe(np.array([y]), -1, 0.0, low, high) > 0.0
 
 
 def test_equal_operations_are_one_column_and_powers_are_simplified():

@@ -9,6 +9,7 @@ import numpy as np
 
 from gearopt.optimise.certified import GAP
 from gearopt.optimise.clock import Clock
+from gearopt.optimise.failures import current
 from gearopt.optimise.kernels import compiling_aside, kernel
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
@@ -117,7 +118,10 @@ def _enumerated(problem: Problem, clock: Clock, incumbent: Incumbent) -> Enumera
     first = Boxes(form)
     if not compiling_aside(clock, first.kernel.halved, lambda: first.halve(math.inf)):
         return None
+    skipped = current().skipped
     enumerated(boxes, lambda: incumbent.cutoff, judge, goes_on)
+    if current().skipped > skipped:  # of the last points, for which no time was left
+        return None
     return Enumerated(min(boxes.least, incumbent.cutoff), boxes.made)
 
 

@@ -23,6 +23,8 @@ from gearopt.optimise.tape import walk
 from gearopt.optimise.terms import Array
 
 ROOM = "gearopt.optimise.spatial"
+SURE = 1e-6  # of a factor: what it is off by for its powers and its inverse to be taken
+SMALLEST, LEAST = 1e-290, 1e-320  # factor that is rounded relative to itself; what others lose
 ROUNDED = 2.3e-16  # of a factor, twice what one rounding moves it by
 ROOT_SWEEPS, SHARE = 20, 0.05
 EXACT = 2.0**53
@@ -157,17 +159,21 @@ class Builder:
         return (-1, -1, 0.0) if r is None else (*self.relations[r][::2], self.exponents[r])
 
 
+class Refused(Exception):
+    """An operation that has no relaxation here; the caller says of which text."""
+
+
 def added(a: Affine, b: Affine, sign: float = 1.0) -> Affine:
     """A + sign b."""
     terms = dict(a.terms)
     for j, (factor, error) in b.terms.items():
         before, doubt = terms.pop(j, (0.0, 0.0))
-        total = before + sign * factor
+        total = finite(before + sign * factor)
         exact = Fraction(before) + Fraction(sign * factor) == Fraction(total)
         error += doubt + (0.0 if exact else ROUNDED * abs(total))
         if total != 0.0 or error > 0.0:
             terms[j] = (total, error)
-    constant = a.constant + sign * b.constant
+    constant = finite(a.constant + sign * b.constant)
     if a.fixed and b.fixed:  # as the text itself adds
         return Affine({}, constant)
     exact = Fraction(a.constant) + Fraction(sign * b.constant) == Fraction(constant)
@@ -175,13 +181,20 @@ def added(a: Affine, b: Affine, sign: float = 1.0) -> Affine:
     return Affine(terms, constant, a.doubt + b.doubt + rounding)
 
 
+def finite(number: float) -> float:
+    """A factor or constant that was made here; Refused where it is beyond the doubles."""
+    if not math.isfinite(number):
+        raise Refused("factors whose product or sum is beyond the numbers that a computer holds")
+    return number
+
+
 def scaled(a: Affine, factor: float, doubt: float = 0.0) -> Affine:
     """A times a number that is known to within a doubt."""
 
     def moved(value: float, error: float) -> tuple[float, float]:
-        product = value * factor
+        product = finite(value * factor)
         exact = Fraction(value) * Fraction(factor) == Fraction(product)
-        rounding = 0.0 if exact else ROUNDED * abs(product)
+        rounding = 0.0 if exact else ROUNDED * abs(product) + LEAST
         return product, error * (abs(factor) + doubt) + abs(value) * doubt + rounding
 
     if a.fixed and doubt == 0.0:
@@ -224,14 +237,14 @@ def as_power(builder: Builder, j: int) -> tuple[int, float]:
 
 def powered(builder: Builder, a: Affine, p: float) -> Affine:
     """Reading of a power with a constant exponent."""
-    if a.fixed:
+    if a.fixed and a.doubt == 0.0:
         return Affine({}, float(np.float64(a.constant) ** p))
     f, e, u = monomial(builder, a)
-    if f < 0.0 and p % 1.0 != 0.0:
-        u, f, e = builder.column(a), 1.0, 0.0
-    factor = f**p
-    doubt = 0.0 if factor == 1.0 else (8.0 * ROUNDED + abs(p) * 1.1 * e / abs(f)) * abs(factor)
-    if not (math.isfinite(factor) and e < 1e-6 * abs(f)):
+    factor = float(np.float64(f) ** p)  # no number of f < 0 where p is not whole
+    if SMALLEST < abs(factor) < math.inf and abs(p) * e < SURE * abs(f):
+        rounding = 0.0 if abs(f) == 1.0 else 8.0 * ROUNDED
+        doubt = (rounding + abs(p) * 1.1 * e / abs(f)) * abs(factor)
+    else:
         u, factor, doubt = builder.column(a), 1.0, 0.0
     base, q = as_power(builder, u)
     exact = Fraction(p) * Fraction(q) == Fraction(p * q)
@@ -259,10 +272,10 @@ def powered_column(builder: Builder, u: int, p: float) -> Affine:
 
 def divided(builder: Builder, a: Affine, b: Affine) -> Affine:
     """Reading of a quotient."""
-    if b.fixed:
+    if b.fixed and b.doubt == 0.0:
         if b.constant == 0.0:
             raise Refused("division by a constant 0")
-        if a.fixed:
+        if a.fixed and a.doubt == 0.0:
             return Affine({}, a.constant / b.constant)
         inverse = 1.0 / b.constant
         if math.isinf(inverse):
@@ -272,6 +285,8 @@ def divided(builder: Builder, a: Affine, b: Affine) -> Affine:
     if a.fixed:
         return scaled(powered(builder, b, -1.0), a.constant, a.doubt)
     (f, e, u), (g, d, v) = monomial(builder, a), monomial(builder, b)
+    if not d < SURE * abs(g):
+        g, d, v = 1.0, 0.0, builder.column(b)
     base, p = as_power(builder, u)
     other, q = as_power(builder, v)
     same = base == other and exact_sum(p, -q)
@@ -281,10 +296,6 @@ def divided(builder: Builder, a: Affine, b: Affine) -> Affine:
         if d == 0.0
         else scaled(scaled(ratio, f, e), 1.0 / g, (2.0 * ROUNDED + 1.1 * d / abs(g)) / abs(g))
     )
-
-
-class Refused(Exception):
-    """An operation that has no relaxation here; the caller says of which text."""
 
 
 def of_column(builder: Builder, kind: int, a: Affine) -> Affine:
@@ -306,9 +317,9 @@ def of_two(builder: Builder, kind: int, a: Affine, b: Affine) -> Affine:
 
 def raised(builder: Builder, a: Affine, b: Affine) -> Affine:
     """Reading of a**b; with a variable b of exp(b log a), for which a may not be negative."""
-    if b.fixed:
+    if b.fixed and b.doubt == 0.0:
         return powered(builder, a, b.constant)
-    if a.fixed and a.constant > 0.0:
+    if a.fixed and a.doubt == 0.0 and a.constant > 0.0:
         log = math.log(a.constant)
         logarithm = Affine({}, log, 8.0 * ROUNDED * abs(log))
     else:

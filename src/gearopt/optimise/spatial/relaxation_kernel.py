@@ -16,6 +16,7 @@ from gearopt.optimise.spatial.interval_kernel import (
     COSINE,
     EXP,
     FLOOR,
+    LEAST,
     LINEAR,
     LOG,
     MAXIMUM,
@@ -40,6 +41,7 @@ SLOTS = 4
 SLACK = 16.0 * UNIT  # of the terms of a tangent or chord
 NEWTON = 60  # steps, each safe: any slope gives a row that holds
 LARGE = 1e20  # an end beyond it makes no row
+HUGE = 1e280  # a dual times an entry beyond it, or below its inverse, makes no bound
 
 
 @inlined
@@ -108,7 +110,7 @@ def chord(rows, slot, w, u, low, high, a, b, sign):
         return
     s = (b - a) / (high - low)
     one, two = a - s * low, b - s * high
-    e = SLACK * (abs(a) + abs(b) + abs(s) * max(abs(low), abs(high)))
+    e = SLACK * (abs(a) + abs(b) + abs(s) * max(abs(low), abs(high))) + LEAST
     if sign > 0:
         put(rows, slot, w, u, s, -math.inf, max(one, two) + e)
     else:
@@ -121,7 +123,8 @@ def tangent(rows, slot, kind, p, w, u, x, low, high, sign):
     f, s = value(kind, p, x), slope(kind, p, x)
     if not (abs(f) < LARGE and abs(s) < LARGE):
         return
-    e = SLACK * (abs(f) + abs(s) * (abs(x) + (high - low)))
+    reach = abs(x) + (high - low)
+    e = SLACK * (abs(f) + abs(s) * reach) + LEAST * (1.0 + reach)  # of a slope that underflows
     if sign > 0:
         put(rows, slot, w, u, s, f - s * x - e, math.inf)
     else:
@@ -191,7 +194,7 @@ def odd_rows(rows, slot, n, w, u, low, high):
             if k == 0:
                 s = n * t ** (n - 1.0) if t < near else (near**n - far**n) / (near - far)
             x = min(near, (s / n) ** (1.0 / (n - 1.0)))
-            e = SLACK * n * (abs(far**n) + near**n + s * max(-far, near))
+            e = SLACK * n * (abs(far**n) + near**n + s * max(-far, near)) + LEAST
             r = min(min(far**n - s * far, near**n - s * near), x**n - s * x) - e
             if side == 0:
                 put(rows, slot + k, w, u, s, r, math.inf)
@@ -304,6 +307,16 @@ def fill(relations, exponent, sums, lo, hi, at, rows):
         slot += SLOTS
 
 
+@light
+def moderate(rows, i, y):
+    """Whether a row's dual times its entries neither underflows nor overflows."""
+    start, count, index, entry_of, least, most = rows
+    for k in range(start[i], start[i] + count[i]):
+        if entry_of[k] != 0.0 and not 1.0 / HUGE < abs(y * entry_of[k]) < HUGE:
+            return False
+    return True
+
+
 @entry
 def safe_bound(rows, y, aim, sign, lo, hi, slopes, doubts):
     """Bound from below of sign times column aim (0 where aim < 0) over the rows and the box.
@@ -320,7 +333,7 @@ def safe_bound(rows, y, aim, sign, lo, hi, slopes, doubts):
         if count[i] == 0 or not abs(y[i]) < LARGE:
             continue
         end = least[i] if y[i] > 0.0 else most[i]
-        if y[i] == 0.0 or abs(end) == math.inf:
+        if y[i] == 0.0 or abs(end) == math.inf or not moderate(rows, i, y[i]):
             continue
         total += y[i] * end
         size += abs(y[i] * end)
@@ -340,7 +353,7 @@ def safe_bound(rows, y, aim, sign, lo, hi, slopes, doubts):
             return -math.inf
         total += part
         size += abs(part)
-    total -= (len(count) + len(lo) + 4.0) * UNIT * size
+    total -= (len(count) + len(lo) + 4.0) * (UNIT * size + LEAST)
     return total if total == total else -math.inf
 
 
