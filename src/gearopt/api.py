@@ -84,10 +84,9 @@ def solve(
     ipopt, multistart and annealing begin instead of the guess. remedies: of an impossible file
     report["ways_out"] holds what to write instead; False: its proof alone. workers: of a Problem
     whose text is run point by point, such as a simulation, processes that annealing and nsga2 share
-    their points among. SceneError for a wrong
-    file or change, SolveError where the method does not fit, or an option changes nothing,
-    ValueError for an option of another sort. Of several threads one solves at a time; its budget
-    begins then.
+    their points among. SceneError for a wrong file or change, SolveError where the method does not
+    fit, or an option changes nothing, ValueError for an option of another sort. Of several threads
+    one solves at a time; its budget begins then.
     """
     check(method=method, budget=budget, seed=seed, watch=watch, gap=gap, top=top, prices=prices)
     check(start=start, remedies=remedies, workers=workers)
@@ -112,9 +111,7 @@ def solve(
     begun = time.perf_counter()
     result = kind.solve(scene, ask)
     if prices and result.value is not None and result.status != "evaluated":
-        left = ask.for_prices(prices, result.seconds)
-        found = explanation(kind, scene, left, result)
-        result = replace(result, report=result.report | {"prices": found.prices})
+        result = _with_prices(result, scene, kind, ask.for_prices(prices, result.seconds))
     if remedies and without_design(result):
         result = _with_remedies(result, what, changes, scene, kind, ask, begun)
     if inputs := inputs_of(scene):
@@ -168,6 +165,12 @@ def explain(
     scene, kind, names = _opened(what, changes)
     found = explanation(kind, scene, ask)
     return replace(found, result=_named(found.result, **names))
+
+
+def _with_prices(result: Result, scene: BaseModel, kind: Kind[Any], ask: Ask) -> Result:
+    """A result with the sensitivities to every number of the file."""
+    explained = explanation(kind, scene, ask, result)
+    return replace(result, report=result.report | {"prices": explained.prices})
 
 
 def _with_remedies(

@@ -224,15 +224,13 @@ def compare(
     from gearopt.api import compare as compare_file
 
     files = checked(html, csv, "metric", file)
-    named = None
-    if methods is not None:
-        named = [name.strip() for name in methods.split(",") if name.strip()]
+    named = [name.strip() for name in (methods or "").split(",") if name.strip()]
     with following(_words, quiet=as_json, kept=lambda now: now.done > 0) as watch:
         found = compare_file(
             file,
             objectives=objectives,
             most=numbers("--most", most) if most else None,
-            methods=named,
+            methods=None if methods is None else named,
             seeds=seeds,
             evaluations=evaluations,
             seconds=seconds,

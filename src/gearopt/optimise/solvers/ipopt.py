@@ -112,12 +112,10 @@ def run(
         if variable.discrete:
             raise SolveError(f"ipopt takes continuous variables only; {name} is discrete")
     if (smooth := epigraph(problem)) is not None:
-        begin = None if start is None else raised(problem, start)
-        lifted = run(smooth, budget, seed, watch, begin)
-        own = None if lifted.x is None else lifted.x[: len(problem.columns)]
-        if not lifted.infeasible:
-            return replace(lifted, x=own, lam_g=None, lam_h=None)
-        clock.evaluations = lifted.evaluations
+        lowered = _by_epigraph(problem, smooth, budget, watch, start)
+        if not lowered.infeasible:
+            return lowered
+        clock.evaluations = lowered.evaluations
     shape = form(problem)
     lower, upper, guess = problem.bounds()
     y0 = shape.to_y(np.clip(guess if start is None else start, lower, upper))
@@ -157,6 +155,16 @@ def run(
         evaluations=clock.evaluations,
         message="Ipopt ended higher than a point it passed, which is kept" if lost else message,
     )
+
+
+def _by_epigraph(
+    problem: Problem, smooth: Problem, budget: Budget, watch: Watch | None, start: Array | None
+) -> Outcome:
+    """Outcome of the epigraph form of a text with maxima, in the variables of the text."""
+    begin = None if start is None else raised(problem, start)
+    lifted = run(smooth, budget, 0, watch, begin)
+    x = None if lifted.x is None else lifted.x[: len(problem.columns)]
+    return replace(lifted, x=x, lam_g=None, lam_h=None)
 
 
 def _split(problem: Problem, shape: Form) -> Split:
