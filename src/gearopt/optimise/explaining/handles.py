@@ -181,12 +181,13 @@ def _slopes(problem: Problem) -> tuple[Array, Array, Array, Array]:
     draw = np.random.default_rng(0)
     signs = np.zeros(acts.shape)
     mixed = np.zeros(acts.shape, bool)
-    divides = acts.copy()
-    numbers = problem.parameter_values()
+    given = problem.parameter_values()
+    numbers = np.where(np.isfinite(given), given, 0.0)  # a row is divided by no infinite number
+    divides = acts & np.isfinite(given)
     for spread_ in (0.0, *[0.1] * POINTS):
         step = spread_ * draw.standard_normal(len(guess))
         point = np.where(logarithmic, guess * np.exp(step), guess + step * (1.0 + np.abs(guess)))
-        values, used = (np.array(a, float) for a in at(np.clip(point, lower, upper), numbers))
+        values, used = (np.array(a, float) for a in at(np.clip(point, lower, upper), given))
         values = values.reshape(acts.shape)
         here = np.sign(np.nan_to_num(values))
         mixed |= (signs * here) < 0
