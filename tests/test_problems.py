@@ -88,6 +88,13 @@ LONG = (
     "six_stages",
     "five_stages",
     "paper_program",
+    "how_many_stages",
+    "four_stages",
+    "four_stage_box",
+    "three_stage_free_width",
+    "three_stage_both_series",
+    "three_stage_fine_ratio_coprime",
+    "six_cylinders_two_layers",
 )
 SI = {  # of numbers as a source prints them: their suffix, its value, the suffix of a result
     "_ft_per_min": (0.3048 / 60, "_m_per_s"),

@@ -147,8 +147,8 @@ def test_a_ratio_tolerance_is_used_as_far_as_its_error_goes(solved):
     assert isinstance(result, gearopt.Result)
 
 
-def test_a_ratio_out_of_reach_is_not_blamed_on_whole_numbers():
+def test_a_ratio_out_of_reach_is_not_blamed_on_whole_numbers(solved):
     result = gearopt.solve("problems/sandgren_train.toml", {"train.ratio": 4000})
     words = opening(result)
     assert words.endswith("the allowed numbers of teeth do not reach the ratio.")
-    assert "no train of the allowed" in opening(gearopt.solve("problems/sandgren_train.toml"))
+    assert "no train of the allowed" in opening(solved("sandgren_train"))

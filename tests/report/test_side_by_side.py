@@ -20,8 +20,8 @@ PROBLEMS = Path(__file__).parents[2] / "problems"
 
 
 @pytest.fixture(scope="module")
-def three():
-    return gearopt.solve(PROBLEMS / "three_stage_processes.toml")
+def three(solved):
+    return solved("three_stage_processes")
 
 
 def read(cell):
@@ -70,8 +70,8 @@ def test_terminal_and_page_show_the_same_cells(three):
     assert {cell.text for row in rows for cell in row} <= set(text)
 
 
-def test_without_processes_nothing_is_added():
-    plain = gearopt.solve(PROBLEMS / "elevator.toml")
+def test_without_processes_nothing_is_added(solved):
+    plain = solved("elevator")
     assert processes(plain, METRIC) is None and side_by_side(plain) == ([], [], [])
     assert "above the bound" not in printed(plain)
 

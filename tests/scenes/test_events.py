@@ -208,8 +208,8 @@ def test_changed_problems_tell_no_values(file):
     assert events[-1] is others[-1]
 
 
-def test_the_progress_of_a_layout_is_on_one_clock():
-    result = gearopt.solve(PROBLEMS / "elevator_box.toml")
+def test_the_progress_of_a_layout_is_on_one_clock(solved):
+    result = solved("elevator_box")
     steps = result.report["progress"]
     assert all(set(s) == {"seconds", "evaluations", "best", "bound"} for s in steps)
     for a, b in pairwise(steps):

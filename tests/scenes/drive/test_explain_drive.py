@@ -345,6 +345,7 @@ def test_a_tolerance_of_zero_can_be_eased():
     assert ease.changes[0].was == '"0 %"' and verify(content, ease)
 
 
+@pytest.mark.slow
 def test_a_tolerance_is_written_in_few_digits():
     """A stage ratio of 3.96604 instead of 5: 20.6792 % is missing."""
     sizes = "stage_ratio = [1, 3.96604]\nmodule = ['2 mm', '8 mm']"

@@ -39,8 +39,8 @@ NONE = ("shaft_clearance", "wall_clearance", "axial_clearance")
 
 
 @pytest.fixture(scope="module")
-def table4():
-    return gearopt.solve(scene(TABLE4))
+def table4(solved):
+    return solved("table4_process_one_layout")
 
 
 def test_the_given_train_is_only_laid_out(table4):
@@ -125,7 +125,7 @@ def train_file(rows, span):
     return text.replace("[layout]\n", f'[layout]\nspan = "{span}"\n')
 
 
-@pytest.mark.parametrize("name", few(TRAINS, 1))
+@pytest.mark.parametrize("name", few(TRAINS, ["elevator, optimum"]))
 def test_published_trains(name):
     """Boxes found before by a grid and SLSQP."""
     rows, values = TRAINS[name]
@@ -254,8 +254,8 @@ def test_a_place_below_the_input_is_kept():
     assert result.design["layout"]["shafts"][3]["z_mm"] == pytest.approx(-150, abs=0.5 + 1e-5)
 
 
-def test_keep_outs_and_the_motor_are_kept_clear():
-    layout = gearopt.solve(scene(BOX)).design["layout"]
+def test_keep_outs_and_the_motor_are_kept_clear(solved):
+    layout = solved("elevator_box").design["layout"]
     named = [g["between"] for g in layout["gaps"]]
     apart = {tuple(g["between"]): g["axes_mm"] for g in layout["gaps"]}
     assert max(apart.values()) > 130 + 0.5 * layout["shafts"][2]["diameter_mm"] + 2
