@@ -2,6 +2,7 @@
 
 import math
 import re
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -25,11 +26,7 @@ def check(problem: Problem) -> dict[str, str]:
     converted, as mm and cm in a sum, are found by what numbers alone give. The extra gearopt[units]
     installs pint.
     """
-    try:
-        import pint
-    except ImportError as missing:
-        raise SolveError('units are checked by pint: pip install "gearopt[units]"') from missing
-    registry: Any = pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
+    registry = _registry()
     units: dict[str, str] = {}
     for repeat in (None, *problem.repeats):
         where = text_of(problem, repeat)[1]
@@ -41,6 +38,16 @@ def check(problem: Problem) -> dict[str, str]:
                 unit = _unit_of(place, registry, value, number, part in ROWS)
                 units |= {} if part in ROWS else {name: unit}
     return units
+
+
+@cache
+def _registry() -> Any:
+    """The units of pint, which it takes longer to read than to check most problems."""
+    try:
+        import pint
+    except ImportError as missing:
+        raise SolveError('units are checked by pint: pip install "gearopt[units]"') from missing
+    return pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
 
 
 def _terms(problem: Problem, repeat: Repeat | None, registry: Any) -> Any:
