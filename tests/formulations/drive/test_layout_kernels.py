@@ -105,7 +105,7 @@ def some_cell(rng, links):
     return low, low + size
 
 
-MANY = [(range(k, k + 3), 150) for k in range(5, 26, 3)]
+MANY = [(range(k, k + 3), 150) for k in (5, 14, 23)]
 
 
 @pytest.mark.parametrize(("seeds", "cells"), few([(range(4, 5), 60), *MANY], 1))
@@ -142,7 +142,7 @@ def test_no_layout_of_a_cell_is_below_its_bounds(seeds, cells):
 def test_the_cut_of_a_distance_holds_for_every_layout_that_keeps_it():
     rng = np.random.default_rng(5)
     cuts = 0
-    for seed in range(40):
+    for seed in range(20):
         shape = (box := some_box(seed)) and chain(box, arrangements(box))
         links = shape.link.size
         for _ in range(50):
@@ -155,7 +155,7 @@ def test_the_cut_of_a_distance_holds_for_every_layout_that_keeps_it():
             cuts += b > 0.0
             far = there >= need
             assert b == 0.0 or (p * dy[far] + q * dz[far] >= b).all()
-    assert cuts > 100
+    assert cuts > 50
 
 
 @pytest.mark.parametrize(

@@ -44,7 +44,7 @@ def random_blanks(train, seed):
     return with_blanks(train, [(some_blank(rng, m), some_blank(rng, m)) for m in middle])
 
 
-OTHERS = (3, 4, 7, 10, 11, 12, 13, 14, 18, 19)
+OTHERS = (3, 7, 11, 13, 18)
 
 
 @pytest.mark.parametrize("number", few([8, 6, *OTHERS], 1))
@@ -54,7 +54,7 @@ def test_the_lightest_drive_is_that_of_all_trains(number):
 
 
 @pytest.mark.parametrize("standard", [agma, some_iso], ids=["agma", "iso"])
-@pytest.mark.parametrize("block", [0, *(pytest.param(b, marks=SLOW) for b in range(1, 11))])
+@pytest.mark.parametrize("block", [0, *(pytest.param(b, marks=SLOW) for b in range(1, 6))])
 def test_the_lightest_rated_stage_is_that_of_all_candidates(standard, block):
     """Rims set K_B, Y_B and C_R of what is rated, one candidate at a time."""
     kinds = ("tied", "stepped", "fixed")
@@ -66,7 +66,7 @@ def test_the_lightest_rated_stage_is_that_of_all_candidates(standard, block):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(0, 6, 2))
 def test_the_lightest_rated_drive_is_that_of_all_candidates(seed):
     train = random_blanks(some_rated_drive(seed, 2, ("tied", "stepped", "fixed")), seed)
     found = search(train, 1, Budget()).found

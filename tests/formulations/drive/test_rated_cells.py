@@ -208,7 +208,7 @@ def test_what_no_cell_allows_is_impossible(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("names", [("agma",), ("iso",), ("agma", "iso")])
+@pytest.mark.parametrize("names", [("agma",), ("agma", "iso")])
 @pytest.mark.parametrize("helix", [0.0, 0.4363])
 def test_the_bound_is_below_whole_teeth_and_designs_that_are_found(names, helix):
     train = rated_drive(20, [FREE, FREE], options=by(*names), helix=helix)
@@ -220,7 +220,7 @@ def test_the_bound_is_below_whole_teeth_and_designs_that_are_found(names, helix)
 
 @pytest.mark.slow
 @pytest.mark.parametrize("standard", [agma, some_iso])
-@pytest.mark.parametrize("block", range(4))
+@pytest.mark.parametrize("block", range(2))
 def test_random_small_drives_are_not_better_than_their_bound(standard, block):
     """Whole teeth by the exact search; designs that are found are accepted by the exact text."""
     seen = 0

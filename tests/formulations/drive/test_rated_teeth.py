@@ -126,7 +126,7 @@ def test_the_best_material_is_that_of_all_of_them(objective):
 
 def test_index_limits_beside_ratings():
     """Each alone is a relaxation; where one of them does not bind, it changes nothing."""
-    rated = rated_drive(F(9), [FREE, FREE], pinion_teeth=(20, 20), modules=MODULES[1:5])
+    rated = rated_drive(F(9), [FREE, FREE], pinion_teeth=(20, 20), modules=MODULES[2:5])
     loose, tight = (1e3, 1e3), (2.0, 48.0)
     values = {}
     for name, limits, options in (

@@ -69,7 +69,7 @@ def test_the_best_of_the_same_materials_are_the_best_of_each():
     """Trains of equal teeth count once, with the materials that are best for them."""
     train = small()
     alike = replace(train, same_option=True)
-    each = [search(one, 6, Budget()).found for one in of_each(train)]
+    each = [search(one, 3, Budget()).found for one in of_each(train)]
     value, made = best_of_the_same()
     alone = [found[0][0] for found in each]
     assert value == pytest.approx(min(alone), rel=1e-12)
@@ -84,14 +84,14 @@ def test_the_best_of_the_same_materials_are_the_best_of_each():
     by_teeth = {}
     for value, made in (row for found in each for row in found):
         by_teeth[made] = min(value, by_teeth.get(made, np.inf))
-    six = search(alike, 6, Budget()).found
-    assert [value for value, _ in six] == pytest.approx(sorted(by_teeth.values())[:6], rel=1e-12)
+    three = search(alike, 3, Budget()).found
+    assert [value for value, _ in three] == pytest.approx(sorted(by_teeth.values())[:3], rel=1e-12)
 
 
 def test_a_stop_leaves_a_bound_of_all_materials():
     """Whenever it ends, its bound is below the best drive of every material."""
     train, (best, _) = replace(small(), same_option=True), best_of_the_same()
-    for most in (3, 6, 12, 25):
+    for most in (3, 12):
         asked = []
         stopped = search(train, 1, Budget(), lambda e, n=most, a=asked: a.append(e) or len(a) < n)
         assert stopped.bound <= best * (1.0 + 1e-12)
@@ -137,7 +137,7 @@ def random_drive(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [23, 36, 51, 1, 2, 4, 7])  # three cost more than free
+@pytest.mark.parametrize("seed", [23, 36, 1, 2])  # two cost more than free
 def test_random_drives_of_the_same_materials_as_by_brute_force(seed):
     train = random_drive(seed)
     free, alike = (search(t, 1, Budget()) for t in (train, replace(train, same_option=True)))
@@ -175,7 +175,7 @@ def test_more_effort_never_finds_a_worse_train():
     steels = (Steel(hardness=250.0), HARD)
     options = made_of(7.0, *product(steels, repeat=2))
     train = rated_drive(F(15), [TIED] * 2, options=options)
-    efforts = Budget(seconds=0.0), Budget(evaluations=1), Budget(evaluations=3000)
+    efforts = Budget(seconds=0.0), Budget(evaluations=1), Budget(evaluations=800)
     found = [search(train, 1, budget).found[0] for budget in efforts]
     values = [valued(train, chosen)[0] for _, chosen in found]
     assert [value for value, _ in found] == pytest.approx(values, rel=1e-12)

@@ -75,7 +75,7 @@ def certain(ranges, signs):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("ratio", [1.2, 1.6, 1.9])
+@pytest.mark.parametrize("ratio", [1.2, 1.9])
 @pytest.mark.parametrize("rack", RACKS)
 def test_form_factors_of_iso(rack, ratio, monkeypatch):
     """Y_F falls with z and eps_alpha, Y_S rises with both, q_s with z; Y_F Y_S does not fall."""
@@ -115,7 +115,7 @@ def agma_tangent(rack, z, mate):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("mate", [None, 0.6, 0.8])
+@pytest.mark.parametrize("mate", [None, 0.8])
 @pytest.mark.parametrize("rack", RACKS)
 def test_bending_factors_of_agma(rack, mate):
     """J rises with z and, of loads at the highest point of single contact, with the mate."""

@@ -116,7 +116,7 @@ def test_a_search_that_is_stopped_keeps_to_the_largest_values(evaluations):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(15))
 def test_fronts_of_random_drives_equal_brute_force(seed):
     rng = np.random.default_rng(seed)
     face = str(rng.choice(["tied", "free", "open", "stepped", "fixed"]))
@@ -136,8 +136,8 @@ def test_fronts_of_random_drives_equal_brute_force(seed):
     assert same(train, found) == len(found.values)
 
 
-RATED_SEEDS = [(1, seed) for seed in range(20)] + [
-    (2, seed) for seed in (43, 44, 46, 40)
+RATED_SEEDS = [(1, seed) for seed in range(12)] + [
+    (2, seed) for seed in (43, 44, 46)
 ]  # stages and seed; of two stages those of few candidates
 
 

@@ -237,7 +237,7 @@ def test_grids_are_halved_while_they_fit(stages, number, first, monkeypatch):
 
 
 @pytest.mark.parametrize(("stages", "number"), few([(2, 3), (3, 2), (2, 6), (3, 8)], 2))
-@pytest.mark.parametrize("tolerance", [F(0), F(1, 1000), None])
+@pytest.mark.parametrize("tolerance", [F(0), None])
 def test_what_is_near_an_end_of_the_ratio_is_decided_in_whole_numbers(
     stages, number, tolerance, monkeypatch
 ):
@@ -252,7 +252,7 @@ def test_what_is_near_an_end_of_the_ratio_is_decided_in_whole_numbers(
 
 
 @pytest.mark.parametrize(
-    ("stages", "number"), few([(2, n) for n in range(0, 24, 2)] + [(3, 2), (3, 8)], 6)
+    ("stages", "number"), few([(2, n) for n in range(0, 24, 2)] + [(3, 2), (3, 8)], 3)
 )
 def test_some_random_drives_by_brute_force(stages, number):
     train = some_drive(number, stages)
@@ -276,7 +276,7 @@ def test_a_search_may_stop_at_every_look_at_the_clock(monkeypatch):
     value = best.found[0][0]
     assert all(e.best is None or e.best >= value for e in seen)
     assert all(e.bound is None or e.bound <= value for e in seen)
-    for stop in (1, 2, *np.linspace(3, len(seen), 4).astype(int).tolist()):
+    for stop in (1, 2, *np.linspace(3, len(seen), 3).astype(int).tolist()):
         told = []
         progress = search(train, 1, Budget(), lambda e, t=told, n=stop: t.append(e) or len(t) < n)
         assert progress.clock.stopped and len(told) == stop

@@ -25,7 +25,7 @@ CASES = [(face, objective) for face in FACES for objective in OBJECTIVES]
 CASES += [pytest.param(f, "gear_volume", id=f"limited {n}") for n, f in LIMITED.items()]
 
 
-@pytest.mark.parametrize(("face", "objective"), few(CASES, CASES[::5]))
+@pytest.mark.parametrize(("face", "objective"), few(CASES, CASES[::8]))
 def test_the_best_module_and_width_of_every_pair(face, objective):
     train = drive(3, face, F(30), objective=objective, wheel_diameter=F(150), helix_angle=0.2)
     for k, own in enumerate(table(train, k, F(5, 2)) for k in range(3)):
@@ -40,7 +40,7 @@ def test_the_best_module_and_width_of_every_pair(face, objective):
             assert (own.cost(np.full(len(index), torque), index) == found[0]).all()
 
 
-@pytest.mark.parametrize(("face", "objective"), few(CASES, CASES[1::5]))
+@pytest.mark.parametrize(("face", "objective"), few(CASES, CASES[1::8]))
 def test_capacity_floor_and_slope_of_every_module(face, objective):
     """Of one module alone: what it carries at most, and what it costs at least."""
     whole = drive(2, face, objective=objective, wheel_diameter=F(120), helix_angle=0.2)

@@ -60,7 +60,7 @@ def test_so_few_pinions_that_their_pairs_are_few(stages, limits, monkeypatch):
         for a in range(15, 31)
     ]
     pairs = np.cumsum(each)
-    for limit in (pairs[0] - 1, pairs[0], pairs[4] - 1, pairs[4], pairs[5], pairs[-1] - 1):
+    for limit in (pairs[0] - 1, pairs[0], pairs[4] - 1, pairs[4], pairs[-1] - 1):
         monkeypatch.setattr(wide, "PAIRS_AT_ONCE", limit)
         last = max(15, 14 + int((pairs <= limit).sum()))
         assert {s.pinion_teeth for s in wide.narrowed(train).stages} == {(15, last)}

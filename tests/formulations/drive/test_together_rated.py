@@ -96,7 +96,7 @@ def same_as_brute_force(train, make, gap):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(5))
 def test_two_stages_by_agma_as_by_brute_force(seed):
     train = some_train(seed)
     result, _ = same_as_brute_force(train, some_frame(seed, train), 1e-3)
@@ -104,7 +104,7 @@ def test_two_stages_by_agma_as_by_brute_force(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [1, 3, 4])
+@pytest.mark.parametrize("seed", [1, 4])
 def test_two_stages_by_iso_as_by_brute_force(seed):
     train = some_train(seed, some_iso)
     result, _ = same_as_brute_force(train, some_frame(seed, train), 1e-3)
@@ -146,7 +146,7 @@ def test_widths_of_cells_are_below_those_of_every_torque(standard, monkeypatch):
         drive = narrower(search.tables, drive, step, lambda: True)
         for stage, table in enumerate(search.tables):
             assert_least_at_cells(table, drive, stage)
-        for _ in range(40):
+        for _ in range(20):
             stage = int(rng.integers(3))
             table = search.tables[stage]
             pair = int(rng.integers(len(table.z1)))

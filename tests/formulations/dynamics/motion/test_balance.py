@@ -28,7 +28,7 @@ def test_linear_oscillator():
     assert low.rms == pytest.approx(0.0336533382, rel=1e-8)
 
 
-@pytest.mark.parametrize("level", ["fixed", "line", "plane"])
+@pytest.mark.parametrize("level", ["fixed", "plane"])
 def test_linear_orbits_are_where_simulations_end(level):
     wave = trapezoid(2e5, 0.5, 0.6, 0.1)
     pair = paper_pair(

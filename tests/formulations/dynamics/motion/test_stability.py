@@ -33,7 +33,7 @@ MAPS = {  # model: unstable share of the map [%] without damping, with 1 and 5 %
 def test_meissner():
     """Trace and determinant of random rectangles."""
     rng = np.random.default_rng(1)
-    for _ in range(40):
+    for _ in range(15):
         k1, k2, duty = rng.uniform(0.2, 3.0), rng.uniform(0.2, 3.0), rng.uniform(0.1, 0.9)
         period = rng.uniform(0.5, 20.0)
         mean = duty * k1 + (1.0 - duty) * k2

@@ -40,7 +40,7 @@ def test_impossible_limits_are_proven_at_once(name):
     task = replace(TASK, **changes)
     made = solve(problem(task, methods(task)), "screened")
     assert made.status == "infeasible" and made.proof["conflict"] == conflict
-    points = box(reduced(task)).points(np.random.default_rng(1).random((400, 5)))
+    points = box(reduced(task)).points(np.random.default_rng(1).random((100, 5)))
     rows = [row.name for row in reduced(task).rows.inequalities]
     for limit in conflict:
         columns = [k for k, row in enumerate(rows) if row.startswith(limit)]
@@ -56,7 +56,7 @@ def test_limits_that_can_just_be_met():
 
 
 def test_designs_are_moved_into_the_limits():
-    points = box(reduced(TASK)).points(np.random.default_rng(2).random((300, 5)))
+    points = box(reduced(TASK)).points(np.random.default_rng(2).random((100, 5)))
     before, after = (reduced(TASK).batch(p).G.max(axis=1) for p in (points, within(TASK, points)))
     assert (before > 1.0).mean() > 0.5 and after.max() < 1.0 + 1e-9
     kept = points[before <= 1.0]

@@ -132,7 +132,7 @@ def test_a_limit_of_the_multiplier_that_no_start_meets():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_screening_and_ipopt_find_the_published_optimum(seed):
     made = solve(problem(TASK, methods(TASK)), "screened", seed=seed)
     assert made.status == "stationary"
