@@ -109,6 +109,6 @@ def test_problems_go_to_pymoo_and_back():
     again = problem.to_pymoo()
     assert np.allclose(again.evaluate(points)[0], F) and (again.xu == theirs.xu).all()
     one = Problem.from_pymoo(get_problem("g6"))
-    assert solve(one, method="nsga2", budget=Budget(evaluations=4000)).value < -6000.0
+    assert solve(one, method="nsga2", budget=Budget(evaluations=2000)).value < -6000.0
     with pytest.raises(SolveError, match="a has none"):
         posed().to_pymoo()

@@ -229,7 +229,7 @@ def test_steps_without_a_result_leave_their_gap_open_and_named(monkeypatch):
         return own(run, name, most, near, method)
 
     monkeypatch.setattr(epsilon, "_attempt", attempt)
-    front = gearopt.pareto(segment(), points=6)
+    front = gearopt.pareto(segment(), points=5)
     assert front.message.startswith(
         "1 part of the front is not known, as steps there are not proven"
     )
@@ -237,7 +237,7 @@ def test_steps_without_a_result_leave_their_gap_open_and_named(monkeypatch):
     low, high = (float(word) for word in front.message.rsplit(" ", 3)[1::2])
     assert 0.0 <= low <= 0.4 and 0.7 <= high <= 1.0
     second = np.array([p.values[1] for p in front.points])
-    assert not ((second > 0.4001) & (second < 0.8)).any() and len(second) == 6
+    assert not ((second > 0.4001) & (second < 0.8)).any() and len(second) == 5
 
 
 def test_steps_start_from_neighbours_and_from_evolution_and_the_better_answer_counts(monkeypatch):
@@ -334,6 +334,6 @@ def test_objectives_may_have_names_of_several_words():
     def text(x, p):
         return Terms(minimise={"near 0": x.a**2, "near 2 (m)": (x.a - 2.0) ** 2})
 
-    front = gearopt.pareto(Problem("two", (Var("a", "m", -1.0, 3.0, 1.0),), (), text), points=4)
-    assert len(front.points) == 4
+    front = gearopt.pareto(Problem("two", (Var("a", "m", -1.0, 3.0, 1.0),), (), text), points=2)
+    assert len(front.points) == 2
     assert front.points[0].values[0] == pytest.approx(0.0, abs=1e-6)

@@ -100,7 +100,7 @@ def pair(text=None, **more):
 
 
 def test_discrete_variables_are_proven_or_take_a_sampler_and_it_says_so():
-    few = Budget(evaluations=8000)
+    few = Budget(evaluations=4000)
     proven = solve(pair(), budget=few)
     found = solve(pair(lambda x: np.sign(x.z1) * abs(x.z2 / x.z1 / 3.14 - 1.0)), budget=few)
     assert proven.status == "optimal" and proven.value == found.value

@@ -65,17 +65,17 @@ def shares(front, exact):
 
 def test_epsilon_constraints_reach_the_known_front_of_a_plain_problem():
     """So spread that little hypervolume is missing."""
-    front = gearopt.pareto(discs(), points=15)
-    assert len(front.points) == 15
+    front = gearopt.pareto(discs(), points=11)
+    assert len(front.points) == 11
     assert np.sqrt(values(front)).sum(axis=1) == pytest.approx(math.sqrt(5.0), abs=1e-5)
     assert values(front)[0] == pytest.approx([0.0, 5.0], abs=1e-5)
     # not a convex form of ours: no tangents, but boxes prove each step
     assert front.status == "proven" and front.error is None and 0.02 < front.epsilon < 0.1
     t = np.linspace(0.0, 1.0, 20_001)
     exact = 5.0 * np.column_stack([t**2, (1.0 - t) ** 2])
-    best = []  # of 15 points with even roots of the first, even values, and between
+    best = []  # of 11 points with even roots of the first, even values, and between
     for power in (1.0, 0.5, 0.75):
-        u = np.linspace(0.0, 1.0, 15) ** power
+        u = np.linspace(0.0, 1.0, 11) ** power
         points = 5.0 * np.column_stack([u**2, (1.0 - u) ** 2])
         best.append(hypervolume(points, reference(exact)))
     assert shares(front, exact) > max(best) / hypervolume(exact, reference(exact)) - 1e-3
@@ -92,7 +92,7 @@ def test_a_geometric_program_is_proven_point_by_point_with_the_error_between():
 
 
 def test_the_front_of_a_conic_problem_is_proven_and_its_error_holds():
-    front = gearopt.pareto(cone(), points=9, most={"error": 12.0, "cost": 9.0})
+    front = gearopt.pareto(cone(), points=7, most={"error": 12.0, "cost": 9.0})
     found = values(front)
     inside = found[:, 1] < 12.0 - 1e-6
     assert front.status == "proven"
@@ -111,7 +111,7 @@ def test_the_front_of_a_conic_problem_is_proven_and_its_error_holds():
 
 @pytest.mark.parametrize("method", few(["nsga2", "annealing", "hybrid"], 2))
 def test_samplers_come_near_the_known_front(method):
-    points, most = (8, 1500) if method == "hybrid" else (None, 3000)
+    points, most = (8, 1500) if method == "hybrid" else (None, 2000)
     budget = Budget(evaluations=most)
     front = gearopt.pareto(discs(), method=method, points=points, budget=budget, seed=1)
     excess = np.sqrt(values(front)).sum(axis=1) - math.sqrt(5.0)
@@ -144,14 +144,14 @@ def test_three_objectives_by_a_grid_lie_on_the_known_surface():
         return Terms({"a": 1.0 / (x.x * x.y), "b": x.x, "c": x.y})
 
     grid = tuple(Var(n, "", 0.5, 2.0, 1.0, log=True) for n in "xy")
-    front = gearopt.pareto(Problem("three", grid, (), evaluate), points=36)
+    front = gearopt.pareto(Problem("three", grid, (), evaluate), points=20)
     assert values(front).prod(axis=1) == pytest.approx(1.0, abs=1e-6)
-    assert front.status == "proven" and len(front.points) >= 30 and not front.impossible
+    assert front.status == "proven" and len(front.points) >= 17 and not front.impossible
     assert all(p.slopes is None or len(p.slopes) == 2 for p in front.points)
 
 
 def test_a_front_comes_back_from_its_json():
-    front = gearopt.pareto(product(), points=4)
+    front = gearopt.pareto(product(), points=2)
     again = Front.from_json(front.to_json())
     assert again.to_json() == front.to_json() and again.points == front.points
     with pytest.raises(ValueError, match="not a Pareto front"):
@@ -248,9 +248,9 @@ def known_front(f):
 
 
 def test_the_known_front_of_binh_and_korn_is_found():
-    front = gearopt.pareto(binh_and_korn(), points=15)
+    front = gearopt.pareto(binh_and_korn(), points=12)
     found = values(front)
-    assert len(found) == 15
+    assert len(found) == 12
     assert found[:, 1] == pytest.approx(known_front(found[:, 0]), abs=1e-4)
     assert found[0] == pytest.approx([0.0, 50.0], abs=1e-4)
     # the end is flat: an allowance of 1e-7 in g moves f by 2e-4
@@ -349,7 +349,7 @@ PIECES = {  # text, bounds, guess, pieces of the first objective
 def test_all_pieces_of_a_front_are_found_whatever_the_guess(name):
     text, ends, variables, pieces = PIECES[name]
     own = Problem(name, tuple(Var(n, "", *ends) for n in variables), (), text)
-    front = gearopt.pareto(own, points=20 if name == "zdt3" else 12)
+    front = gearopt.pareto(own, points=20 if name == "zdt3" else 10)
     first = values(front)[:, 0]
     there = [(first >= a - 1e-3) & (first <= b * 1.001 + 1e-3) for a, b in pieces]
     assert np.any(there, axis=0).all() and all(one.sum() >= 2 for one in there)
@@ -378,7 +378,7 @@ def whole_text(seed, count):
     )
 
 
-@pytest.mark.parametrize("seed", few(range(40), 6))
+@pytest.mark.parametrize("seed", few(range(24), 4))
 def test_fronts_of_whole_numbers_equal_brute_force(seed, monkeypatch):
     """By all points, and by steps, whose bounds hold to 1e-6 of a value, not of the range."""
     problem = whole_text(seed, 1 + seed % 3)
@@ -404,8 +404,8 @@ def srn(x, p):
 def test_no_sampled_design_is_better_than_a_proven_front_says():
     """Nor is any below a proven point. Srinivas and Deb's problem: its guess is no design."""
     problem = Problem("srn", tuple(Var(n, "", -20.0, 20.0, 0.0) for n in "ab"), (), srn)
-    front = gearopt.pareto(problem, points=10)
-    batch = problem.batch(np.random.default_rng(0).uniform(-20.0, 20.0, (200_000, 2)))
+    front = gearopt.pareto(problem, points=9)
+    batch = problem.batch(np.random.default_rng(0).uniform(-20.0, 20.0, (100_000, 2)))
     sampled = batch.F[(batch.G <= 1.0).all(axis=1)]
     found = values(front)
     worse = (found[:, None] - sampled[unbeaten(sampled)][None]) / np.ptp(found, axis=0)
@@ -420,7 +420,7 @@ def test_no_sampled_design_is_better_than_a_proven_front_says():
 def test_samplers_come_near_the_front_of_binh_and_korn(method):
     f = np.linspace(0.0, 136.0, 5001)
     exact = np.column_stack([f, known_front(f)])
-    budget, points = Budget(evaluations=8000), 40 if method == "hybrid" else None
+    budget, points = Budget(evaluations=6000), 40 if method == "hybrid" else None
     found = gearopt.pareto(binh_and_korn(), method=method, points=points, budget=budget)
     assert (values(found)[:, 1] >= known_front(values(found)[:, 0]) - 1e-4).all()
     assert shares(found, exact) > 0.97 and igd(values(found), exact) < 0.02

@@ -50,11 +50,11 @@ def vessel():
 
 @pytest.mark.parametrize(("method", "seed"), few(product(SAMPLERS, (0, 1)), [("annealing", 0)]))
 def test_the_pressure_vessel(method, seed):
-    result = solve(vessel(), method, Budget(evaluations=6_000), seed=seed)
+    result = solve(vessel(), method, Budget(evaluations=4_000), seed=seed)
     assert result.value == pytest.approx(6059.714335048436, rel=1e-9)
     assert (result.design["shell_in"], result.design["head_in"]) == (0.8125, 0.4375)
     assert result.design["radius_in"] == pytest.approx(42.0984455958549, rel=1e-6)
-    assert result.evaluations <= 6_000
+    assert result.evaluations <= 4_000
 
 
 def whole(low, high, guess=None, **kind):
@@ -71,7 +71,7 @@ def whole(low, high, guess=None, **kind):
     ("low", "high", "best"),
     few(
         [(0.3, 3.7, 1), (-2.5, 0.2, 0), (1.5, 2.5, 2), (0.7, 60.5, 1)],
-        [(-2.5, 0.2, 0), (0.7, 60.5, 1)],
+        [(0.7, 60.5, 1)],
     ),
 )
 def test_whole_numbers_between_fractions(method, low, high, best):

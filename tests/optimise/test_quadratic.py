@@ -84,7 +84,7 @@ def exact_energy(k, e, load):
 def test_load_sharing_is_the_closed_form(pairs):
     """Open bounds above: the proof rests on the curvature alone."""
     problem = sharing(pairs)
-    for k, e, load in positions(pairs, 100):
+    for k, e, load in positions(pairs, 30):
         result = solve(problem.at(k=tuple(k), e=tuple(e), W=load), "qp", gap=1e-9)
         assert result.status == "optimal" and result.gap <= 1e-12
         assert np.abs(result.design["F_N"] - shared(k, e, load)).max() <= 1e-12 * load

@@ -82,11 +82,11 @@ def held(name, seed, count):
 
 @pytest.mark.parametrize("name", OPERATIONS)
 def test_intervals_rows_and_bounds_hold_on_random_boxes(name):
-    assert held(name, 0, 12) > 15
+    assert held(name, 0, 6) > 7
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(1, 6))
+@pytest.mark.parametrize("seed", range(1, 4))
 @pytest.mark.parametrize("name", OPERATIONS)
 def test_intervals_rows_and_bounds_hold_on_many_boxes(name, seed):
     assert held(name, seed, 120) > 150
@@ -97,7 +97,7 @@ def test_a_cutoff_takes_only_points_above_it():
     for name in ("powers", "waves", "kinks", "exp"):
         form = columns(text(name))
         stepper = Stepper(form)
-        for box in boxes(name, rng, 15):
+        for box in boxes(name, rng, 10):
             lower, upper = start(form, box)
             if not form.propagated(lower, upper, 5):
                 continue

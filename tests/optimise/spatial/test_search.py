@@ -78,7 +78,7 @@ POLES = {  # texts that divide by 0, or take a logarithm of 0, at whole numbers
 
 
 @pytest.mark.parametrize("name", POLES)
-@pytest.mark.parametrize("ends", [((0, 3), (-2, 2)), ((-3, 0), (0, 2)), ((-2, 2), (-3, 1))])
+@pytest.mark.parametrize("ends", [((0, 3), (-2, 2)), ((-2, 2), (-3, 1))])
 def test_a_point_counts_where_all_rows_are_finite(name, ends):
     def text(x):
         f, g = POLES[name](*x)
@@ -133,7 +133,7 @@ def test_an_infinite_box_is_closed_where_limits_close_it():
 def test_budget_and_watcher_give_the_best_point_with_the_bound_so_far():
     best, problem = case("spring")
     seen = []
-    stopped = solve(problem, "spatial", watch=lambda e: seen.append(e) or len(seen) < 20)
+    stopped = solve(problem, "spatial", watch=lambda e: seen.append(e) or len(seen) < 12)
     assert stopped.status == "limit"
     assert 0.0 < stopped.bound <= best * (1 + 1e-6) <= stopped.value * (1 + 2e-6)
     bounds = [e.bound for e in seen if e.bound is not None]
@@ -151,9 +151,9 @@ def test_a_lying_linear_solver_makes_no_false_bound(monkeypatch):
         return replace(hint, y=y, x=None if rng.random() < 0.2 else hint.x, ray=rng.random() < 0.15)
 
     monkeypatch.setattr(linear.Linear, "solved", lied)
-    for name in ("threebar", "hs5", "hs15", "vessel", "nvs16"):
+    for name in ("threebar", "hs5", "hs15", "vessel"):
         best, problem = case(name)
-        result = solve(problem, "spatial", Budget(evaluations=60))
+        result = solve(problem, "spatial", Budget(evaluations=40))
         assert result.status in ("optimal", "limit", "stationary", "feasible")
         assert result.bound is None or result.bound <= best + 1e-6 * abs(best)
 
@@ -164,7 +164,7 @@ def test_forged_records_prove_less_or_nothing():
     claim = certificate.proven(problem, records)
     assert best - 2e-6 * abs(best) < claim <= best
     rng = np.random.default_rng(1)
-    for _ in range(60):
+    for _ in range(40):
         forged, k = records.copy(), int(rng.integers(len(records)))
         kept = records[k]
         sort = int(rng.integers(4))
