@@ -73,7 +73,7 @@ def test_samplers_are_held_against_epsilon_constraints(monkeypatch):
     monkeypatch.setattr(
         fronts, "REFERENCE_POINTS", {2: 60}
     )  # points of the reference, which take long
-    found = gearopt.compare(discs(), objectives="a,b", evaluations=3000, seconds=0.5, seeds=1)
+    found = gearopt.compare(discs(), objectives="a,b", evaluations=3000, seconds=1.0, seeds=1)
     assert list(rows(found)) == ["epsilon", "nsga2", "annealing", "hybrid"]
     epsilon, nsga = (rows(found)[m].equal_evaluations for m in ("epsilon", "nsga2"))
     assert epsilon.summary.worst_gap < 0.01 and nsga.summary.worst_gap < 0.01

@@ -328,12 +328,3 @@ def test_fronts_of_several_problems_are_one(statuses, status):
     assert [p.values for p in front.points] == [(1.0, 5.0), (2.0, 4.0), (3.0, 3.0)]
     assert front.beaten == ((3.0, 4.0),) and front.status == status and front.evaluations == 8
     assert {p.proven for p in front.points} == {status == "complete"}
-
-
-def test_objectives_may_have_names_of_several_words():
-    def text(x, p):
-        return Terms(minimise={"near 0": x.a**2, "near 2 (m)": (x.a - 2.0) ** 2})
-
-    front = gearopt.pareto(Problem("two", (Var("a", "m", -1.0, 3.0, 1.0),), (), text), points=2)
-    assert len(front.points) == 2
-    assert front.points[0].values[0] == pytest.approx(0.0, abs=1e-6)

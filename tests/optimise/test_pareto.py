@@ -247,6 +247,7 @@ def known_front(f):
     return (bent - 5.0) ** 2 + (np.minimum(x, 3.0) - 5.0) ** 2
 
 
+@pytest.mark.slow
 def test_the_known_front_of_binh_and_korn_is_found():
     front = gearopt.pareto(binh_and_korn(), points=12)
     found = values(front)
@@ -397,12 +398,18 @@ def test_fronts_of_whole_numbers_equal_brute_force(seed, monkeypatch):
 
 def srn(x, p):
     """Srinivas and Deb (1994): on the front a = -2.5, b from 2.5 to 14.79."""
-    goals = {"f": 2.0 + (x.a - 2.0) ** 2 + (x.b - 1.0) ** 2, "g": 9.0 * x.a - (x.b - 1.0) ** 2}
+    goals = {
+        "f": 2.0 + (x.a - 2.0) ** 2 + (x.b - 1.0) ** 2,
+        "g of b (m)": 9.0 * x.a - (x.b - 1.0) ** 2,
+    }
     return Terms(goals, {"disc": (x.a**2 + x.b**2) / 225.0, "line": 2.0 + (x.a - 3.0 * x.b) / 10.0})
 
 
 def test_no_sampled_design_is_better_than_a_proven_front_says():
-    """Nor is any below a proven point. Srinivas and Deb's problem: its guess is no design."""
+    """Nor is any below a proven point. Srinivas and Deb's problem: its guess is no design.
+
+    One of its objectives has a name of several words.
+    """
     problem = Problem("srn", tuple(Var(n, "", -20.0, 20.0, 0.0) for n in "ab"), (), srn)
     front = gearopt.pareto(problem, points=9)
     batch = problem.batch(np.random.default_rng(0).uniform(-20.0, 20.0, (100_000, 2)))
