@@ -27,7 +27,7 @@ SAMPLER = "annealing"  # taken where variables are discrete and nothing is prove
 PROVEN = ("optimal", "infeasible")
 FIRST = 0.8  # of a budget is the prover's, where the sampler follows
 BOXES = 3000  # of the prover, where the budget names no end
-NAMING = 2.0  # s to find the limits that exclude each other
+NAMING = 5.0  # s at most to find the limits that exclude each other
 
 
 def solve_own(

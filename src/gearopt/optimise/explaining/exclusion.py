@@ -20,6 +20,7 @@ from gearopt.optimise.terms import Repeat, Terms, flat, inequalities
 
 VERDICTS = {"infeasible": False, "optimal": True, "stationary": True, "feasible": True}
 NEAR = 4.0  # times its size a bound is moved first, before REACH
+BOUNDS = "bounds of variables"  # named where time was too short to try each
 COLUMNS = 60  # of problems with more variables no bound is left out
 
 
@@ -34,38 +35,44 @@ class Exclusion:
 def exclusion(problem: Problem, clock: Clock) -> Exclusion:
     """Limits of an impossible problem that exclude each other, all others dropped.
 
-    Rows of a repeat are one limit. Bounds are tried after the rows; a
-    variable that is above 0 stays there.
+    Rows of a repeat are one limit. Bounds are tried after the rows; a variable that is above 0
+    stays there.
     """
     limits = _limits(problem)
-    rows = _needed(limits, lambda spare, _: eased(problem, spare, anywhere=True), clock)
+    rows = _needed(limits, lambda spare, _: eased(problem, spare, anywhere=True), (REACH,), clock)
     rest = eased(problem, [n for n in limits if n not in rows.names], anywhere=True)
-    ends = _ends(problem) if len(problem.columns) <= COLUMNS else {}
+    ends = _ends(problem)
 
     def wider(spare: Sequence[str], by: float) -> Problem:
         return _wider(rest, [ends[name] for name in spare], by)
 
-    bounds = _needed(list(ends), wider, clock)
+    bounds = Exclusion()
+    if len(problem.columns) <= COLUMNS:
+        bounds = _needed(list(ends), wider, (NEAR, REACH), clock)
+    if ends and (clock.over or len(problem.columns) > COLUMNS):
+        bounds = Exclusion((BOUNDS,), (BOUNDS,))
     return Exclusion((*rows.names, *bounds.names), (*rows.unsure, *bounds.unsure))
 
 
 def _needed(
-    names: Sequence[str], without: Callable[[Sequence[str], float], Problem], clock: Clock
+    names: Sequence[str],
+    without: Callable[[Sequence[str], float], Problem],
+    factors: Sequence[float],
+    clock: Clock,
 ) -> Exclusion:
     """Names that cannot be left out, all at once or one after the other.
 
-    without(spare, by): the problem without some of them, or with these moved by a factor.
+    without(spare, by): the problem without some of them, or with these moved by a factor; the
+    factors are tried until a design is possible.
     """
-
-    def makes_possible(spare: Sequence[str]) -> bool | None:
-        near = possible(without(spare, NEAR), clock)
-        return near or possible(without(spare, REACH), clock)
-
     if not names or possible(without(names, REACH), clock) is False:
         return Exclusion()
     needed, spare, unsure = list(names), list[str](), list[str]()
     for name in names:
-        answer = makes_possible([*spare, name])
+        answer = None
+        for by in factors:
+            if answer := possible(without([*spare, name], by), clock):
+                break
         if answer is False:
             spare.append(name)
             needed.remove(name)

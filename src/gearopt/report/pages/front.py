@@ -98,7 +98,7 @@ def _summary(front: Front, measures: Measures) -> Section:
         values = [p.values[k] for p in front.points]
         low, high = (measures.amount(v, unit_of(objective)) for v in (min(values), max(values)))
         tiles.append(Tile(words(objective.name), low, f"to {high}" if high != low else ""))
-    lines = front_words.decided(front, measures)
+    lines = front_words.decided(front, measures)[bool(count) :]  # the tiles say the first
     if front.status == "infeasible" and front.file:
         lines.append(f"Which limits are in conflict: gearopt explain {front.file}.")
     limited = [
