@@ -97,9 +97,10 @@ def solve(
     if isinstance(what, Problem | Conic):
         _unchanged(what, changes)
         _only_of_files(what.name, top, prices)
-        with working(_slow(what, workers), workers):
+        _check_slow(what, workers)
+        with working(workers):
             return solve_own(what, method, budget, seed, watch, gap, start)
-    _slow(what, workers)
+    _check_slow(what, workers)
     if start is not None:
         raise SolveError("start changes nothing here: it is for a Problem; leave it out")
     ask = Ask(method, budget, seed, watch, gap, top)
@@ -200,14 +201,13 @@ def idle_options(what: File, method: str | None) -> dict[str, str]:
     return kind.idle(scene, method)
 
 
-def _slow(what: Any, workers: int) -> Any:
-    """What may have workers; SolveError where it is no text that is run point by point."""
+def _check_slow(what: Any, workers: int) -> None:
+    """Raise SolveError for workers of what is no text that is run point by point."""
     if workers > 1 and not (isinstance(what, Problem) and not elementwise(what, None)):
         raise SolveError(
             f"workers={workers} changes nothing here: it is for a Problem whose text is run point "
             "by point, such as a simulation; leave it out"
         )
-    return what
 
 
 def _only_of_files(name: str, top: int, prices: bool | float) -> None:
@@ -352,7 +352,7 @@ def pareto(
     designs of whole teeth, proven), epsilon (real-valued sizes, point by point), nsga2, annealing
     or hybrid; by default the one that proves most. points: sought, where a method has a choice: 60,
     of three objectives 400. weights: by name, of the design to pick. workers: as in `solve`, of
-    nsga2, annealing and hybrid. SceneError for a wrong file, SolveError where objectives or method
+    nsga2 and annealing. SceneError for a wrong file, SolveError where objectives or method
     do not fit.
     """
     check(method=method, budget=budget, seed=seed, watch=watch, points=points, workers=workers)
@@ -362,7 +362,8 @@ def pareto(
     options: dict[str, Any] = {"method": method, "seconds": budget.seconds, "points": points}
     options |= {"most": most, "weights": weights, "seed": seed}
     about["options"] = options | about.get("options", {})
-    with working(_slow(what, workers), workers):
+    _check_slow(what, workers)
+    with working(workers):
         return solved(pose(method), most, method, points, weights, budget, seed, watch, **about)
 
 

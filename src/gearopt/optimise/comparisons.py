@@ -37,11 +37,11 @@ class Quantity(NDArrayOperatorsMixin):
             return NotImplemented
         if function in KEPT:
             return Comparison(inputs[0], inputs[1], KEPT[function])
-        found = function(*map(plain, inputs), **more)
+        values = function(*map(plain, inputs), **more)
         above = function is np.exp or function in POSITIVE and all(map(positive, inputs))
-        if isinstance(found, tuple):
-            return tuple(map(Quantity, found))
-        return Quantity(found, above)
+        if isinstance(values, tuple):
+            return tuple(map(Quantity, values))
+        return Quantity(values, above)
 
     def __array_function__(self, function: Any, types: Any, inputs: Any, more: Any) -> Any:
         return Quantity(function(*_plain(inputs), **more))
@@ -95,12 +95,12 @@ class Comparison:
 
 def quantities(scalars: Named, above: Mapping[str, bool]) -> Named:
     """Scalars by name, to be compared; above: those known to be above 0."""
-    made: dict[str, Any] = {}
+    compared: dict[str, Any] = {}
     for name, value in vars(scalars).items():
         known = above.get(name, False)
         block = [Quantity(v, known) for v in value] if isinstance(value, Block) else None
-        made[name] = Quantity(value, known) if block is None else Block(block)
-    return Named(**made)
+        compared[name] = Quantity(value, known) if block is None else Block(block)
+    return Named(**compared)
 
 
 def plain(value: Any) -> Any:
@@ -138,8 +138,8 @@ def rows(terms: Terms, scales: dict[str, float]) -> Terms:
         for name, value in getattr(terms, part).items():
             block = value if isinstance(value, tuple | list) else (value,)
             balance = any(isinstance(v, Comparison) and v.equal for v in block)
-            made = tuple(_row(v, f"{name}[{k}]", scales) for k, v in enumerate(block, 1))
-            parts["equal" if balance else part][name] = made if block is value else made[0]
+            rows = tuple(_row(v, f"{name}[{k}]", scales) for k, v in enumerate(block, 1))
+            parts["equal" if balance else part][name] = rows if block is value else rows[0]
     shown = [{k: _plain(v) for k, v in getattr(terms, p).items()} for p in ("minimise", "report")]
     return replace(terms, minimise=shown[0], report=shown[1], **parts)
 

@@ -11,7 +11,9 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from multiprocessing.process import BaseProcess
+from typing import Any
 
 from gearopt.errors import SolveError
 
@@ -19,56 +21,61 @@ PAUSE = 0.05  # s between two looks at the time that is left
 _problem: Any = None  # of a worker
 
 
-class Workers(NamedTuple):
-    """The processes of a run, and the problem whose text they know."""
+@dataclass
+class Workers:
+    """The processes of a run; it has state because they begin with the first text they are for."""
 
-    pool: ProcessPoolExecutor
-    problem: Any
+    count: int
+    pool: ProcessPoolExecutor | None = None
+    problem: Any = None
+    children: tuple[BaseProcess, ...] = ()
 
-    def know(self, problem: Any) -> bool:
-        """Whether a problem has the text that they know, at the same parameters."""
-        own = self.problem
-        texts = (
-            (p.evaluate, *(v for r in p.repeats for v in (r.evaluate, r.data)))
-            for p in (own, problem)
+    def of(self, problem: Any) -> ProcessPoolExecutor:
+        """Processes that know the text of a problem; begun anew where they know another one."""
+        if self.pool is None or not _same_text(self.problem, problem):
+            self.end()
+            self.begin(problem)
+        assert self.pool is not None
+        return self.pool
+
+    def begin(self, problem: Any) -> None:
+        """Fork them, so that any text goes; where that is impossible, it must be importable."""
+        forked = "fork" in multiprocessing.get_all_start_methods()
+        if not forked:
+            _check_importable(problem)
+        before = set(multiprocessing.active_children())
+        context = multiprocessing.get_context("fork" if forked else None)
+        self.pool = ProcessPoolExecutor(
+            self.count, context, initializer=_begin, initargs=(problem,)
         )
-        same = all(a is b for a, b in zip(*texts, strict=False))
-        return (
-            same
-            and len(own.repeats) == len(problem.repeats)
-            and own.parameters == problem.parameters
-        )
+        self.problem = problem
+        self.pool.submit(int).result()
+        self.children = tuple(set(multiprocessing.active_children()) - before)
+
+    def end(self) -> None:
+        """End them, whatever they do."""
+        if self.pool is not None:
+            self.pool.shutdown(wait=False, cancel_futures=True)
+        for child in self.children:
+            child.kill()
+            child.join()
+        self.pool, self.children = None, ()
 
 
 _WORKERS: ContextVar[Workers | None] = ContextVar("processes of the run", default=None)
 
 
 @contextmanager
-def working(problem: Any, count: int) -> Iterator[None]:
-    """Have so many processes run the text of a problem within; 1: this process alone.
-
-    They are forked, and know the text as it is. Where processes cannot be forked it must be a
-    function that others can import: SolveError.
-    """
-    if count == 1:
-        yield
-        return
-    forked = "fork" in multiprocessing.get_all_start_methods()
-    if not forked:
-        _check_importable(problem)
-    before = set(multiprocessing.active_children())
-    context = multiprocessing.get_context("fork" if forked else None)
-    pool = ProcessPoolExecutor(count, context, initializer=_begin, initargs=(problem,))
-    token = _WORKERS.set(Workers(pool, problem))
+def working(count: int) -> Iterator[None]:
+    """Have so many processes run slow texts within; 1: this process alone."""
+    workers = Workers(count) if count > 1 else None
+    token = _WORKERS.set(workers)
     try:
-        pool.submit(int).result()  # all of them begin, before this process has threads
         yield
     finally:
         _WORKERS.reset(token)
-        pool.shutdown(wait=False, cancel_futures=True)
-        for child in set(multiprocessing.active_children()) - before:
-            child.kill()
-            child.join()
+        if workers is not None:
+            workers.end()
 
 
 def shared_out(
@@ -77,23 +84,24 @@ def shared_out(
     tasks: Sequence[tuple[Any, ...]],
     late: Callable[[], bool],
 ) -> Iterator[Any] | None:
-    """Results of work(problem, *task) in order, by processes that know the problem; None: by none.
+    """Results of work(problem, *task) in order, by processes; None where the run has none.
 
     They end where no time is left, but for one.
     """
     workers = _WORKERS.get()
-    if workers is None or len(tasks) < 2 or not workers.know(problem):
+    if workers is None or len(tasks) < 2:
         return None
-    futures = [workers.pool.submit(_work, work, task) for task in tasks]
-    return _in_order(futures, late)
+    pool = workers.of(problem)
+    values = {q.name: q.value for q in problem.parameters}
+    return _in_order([pool.submit(_work, work, values, task) for task in tasks], late)
 
 
 def _in_order(futures: Sequence[Future[Any]], late: Callable[[], bool]) -> Iterator[Any]:
     for k, future in enumerate(futures):
         while not future.done():
             if k and late():
-                for left in futures[k:]:
-                    left.cancel()
+                for waiting in futures[k:]:
+                    waiting.cancel()
                 return
             try:
                 future.exception(timeout=PAUSE)
@@ -108,8 +116,17 @@ def _begin(problem: Any) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the run itself ends them
 
 
-def _work(work: Callable[..., Any], task: tuple[Any, ...]) -> Any:
-    return work(_problem, *task)
+def _work(work: Callable[..., Any], values: dict[str, Any], task: tuple[Any, ...]) -> Any:
+    return work(_problem.at(**values), *task)
+
+
+def _same_text(own: Any, other: Any) -> bool:
+    """Whether two problems differ in bounds and numbers alone."""
+    texts = [
+        (p.evaluate, *(part for r in p.repeats for part in (r.evaluate, r.data)))
+        for p in (own, other)
+    ]
+    return len(texts[0]) == len(texts[1]) and all(a is b for a, b in zip(*texts, strict=True))
 
 
 def _check_importable(problem: Any) -> None:

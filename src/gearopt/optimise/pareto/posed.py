@@ -60,18 +60,18 @@ def posed(
     fixed = {name: limit.scale for name, limit in limits.items()} if conic else {}
 
     def evaluate(x: Any, p: Any) -> Terms:
-        found = problem.text(x, p)
+        terms = problem.text(x, p)
         rows = {
-            limit_of(name): _row(found.minimise[name], p, name, whole, fixed.get(name))
+            limit_of(name): _row(terms.minimise[name], p, name, whole, fixed.get(name))
             for name, whole in quotient.items()
         }
-        kept = {name: found.minimise[name] for name in minimise}
-        shown = {f"{VALUE}_{name}": value for name, value in found.minimise.items()}
+        kept = {name: terms.minimise[name] for name in minimise}
+        shown = {f"{VALUE}_{name}": value for name, value in terms.minimise.items()}
         return replace(
-            found,
+            terms,
             minimise=kept,
-            limits={**found.limits, **rows},
-            report={**found.report, **shown},
+            limits={**terms.limits, **rows},
+            report={**terms.report, **shown},
         )
 
     parameters = [Param(limit_of(name), "", 1.0) for name in limits]
@@ -81,11 +81,11 @@ def posed(
         if conic or not quotient[name]
     ]
     every = (*problem.parameters, *parameters)
-    made: Problem | Conic
+    limited: Problem | Conic
     if isinstance(problem, Conic):
-        made = Conic(problem.name, problem.variables, every, evaluate)
+        limited = Conic(problem.name, problem.variables, every, evaluate)
     else:
-        made = Problem(
+        limited = Problem(
             problem.name,
             problem.variables,
             every,
@@ -95,7 +95,7 @@ def posed(
             vectorised=problem.vectorised,
             exact_limits=problem.exact_limits,
         )
-    return moved(made, limits)
+    return moved(limited, limits)
 
 
 Built = dict[tuple[str, ...], "Problem | Conic"]
@@ -108,12 +108,12 @@ def kept(
     key = (*minimise, *(f"{n} {one.most == one.scale}" for n, one in sorted(limits.items())))
     if key not in built:
         built[key] = posed(problem, minimise, limits)
-    first, found = built[key], moved(built[key], limits)
-    if isinstance(found, Problem) and isinstance(first, Problem):
-        same_way(found, first)
-        if all(one.most == one.scale for one in limits.values()):  # positive factors of quotients
-            same_kinds(found, first)
-    return found
+    first, now = built[key], moved(built[key], limits)
+    if isinstance(now, Problem) and isinstance(first, Problem):
+        same_way(now, first)
+        if all(limit.most == limit.scale for limit in limits.values()):  # factors of quotients
+            same_kinds(now, first)
+    return now
 
 
 def moved(problem: Problem | Conic, limits: Mapping[str, Limit]) -> Problem | Conic:
@@ -128,8 +128,8 @@ def moved(problem: Problem | Conic, limits: Mapping[str, Limit]) -> Problem | Co
             values[limit_of(name)] = limit.most / known[scale_of(name)]
         elif scale_of(name) in known:
             values[scale_of(name)] = limit.scale
-    found: Problem | Conic = problem.at(**values)
-    return found
+    at: Problem | Conic = problem.at(**values)
+    return at
 
 
 def violation_scale(problem: Problem | Conic, name: str) -> float:
