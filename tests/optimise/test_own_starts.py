@@ -143,6 +143,19 @@ def test_what_only_lacks_logarithms_is_told():
     assert declared.value == pytest.approx(2.0 * 12.0**0.5, rel=1e-6)
 
 
+def test_what_only_lacks_logarithms_is_proven_by_them():
+    """The answer is that of the text as it stands: its rows and their prices are."""
+
+    def text(x, p):
+        return Terms({"sum": x.a + x.b}, {"area": x.a * x.b >= p.least, "a": x.a**2 <= 90 / x.b})
+
+    plain, declared = (solve(box(log, text=text)) for log in (False, True))
+    assert plain.status == declared.status == "optimal" and plain.method == "ipopt"
+    assert plain.proof == declared.proof and plain.value == pytest.approx(2.0 * 12.0**0.5)
+    assert plain.multipliers["area"] == pytest.approx(-81.0 / 12.0**0.5)
+    assert plain.limits["area"] == pytest.approx(1.0)
+
+
 def test_a_maximum_is_promised_a_proof_by_logarithms_alone():
     """max(x, 4/x) is least at 2, at its kink."""
     for log in (False, True):

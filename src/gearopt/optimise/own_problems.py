@@ -18,8 +18,10 @@ from gearopt.optimise.maximised import as_asked
 from gearopt.optimise.own_methods import back_ends
 from gearopt.optimise.polish import TRACED
 from gearopt.optimise.problem import Problem, one_objective
-from gearopt.optimise.result import Budget, Event, Result, Watch
-from gearopt.optimise.solve import PROVER, default_method, solve
+from gearopt.optimise.result import FEASIBLE, Budget, Event, Result, Watch
+from gearopt.optimise.scale import gap as gap_of
+from gearopt.optimise.solve import PROVER, default_method, run, solve
+from gearopt.optimise.spatial.incumbent import LOCAL
 from gearopt.optimise.tape import log_convex_in_logarithms
 from gearopt.optimise.terms import Array
 
@@ -100,7 +102,8 @@ def _by_default(
         if name == PROVER and share.seconds is None and share.evaluations is None:
             share = replace(share, evaluations=BOXES)
         try:
-            results.append(solve(problem, name, share, seed, follow, gap))
+            solved = _local if name == "ipopt" else solve
+            results.append(solved(problem, name, share, seed, follow, gap))
         except SolveError as refused:
             if name != PROVER:
                 raise
@@ -109,13 +112,70 @@ def _by_default(
         left = budget.less(sum(r.seconds for r in results), sum(r.evaluations for r in results))
         if results[-1].status in PROVEN or refusals or 0 in (left.seconds, left.evaluations):
             break
+    problem.memo.pop(LOCAL, None)
     result = results[0] if len(results) == 1 else _joined(results[0], results[1], gap)
+    words += _unproven(results, result)
     if result.method == SAMPLER and result.bound is None:
         why = "the text has no derivatives" if blind else f"{discrete[0]} is discrete"
         words.append(f"{SAMPLER} was taken, because {why}, and proves nothing")
     if result.status == "limit" and budget.seconds is None and budget.evaluations is None:
         result = replace(result, status="limit" if refusals else "feasible")
     return _saying(result, problem, *words)
+
+
+def _local(
+    problem: Problem, method: str, budget: Budget, seed: int, watch: Watch, gap: float
+) -> Result:
+    """Answer of ipopt, whose point is left for the prover; proven where logarithms prove it."""
+    result, outcome = run(problem, method, budget, seed, watch, gap)
+    problem.memo[LOCAL] = outcome.x
+    left = budget.less(result.seconds, result.evaluations)
+    if result.status in (*PROVEN, "limit") or 0 in (left.seconds, left.evaluations):
+        return result
+    logged = _logged(problem)
+    return (
+        result
+        if logged is None
+        else _held(result, solve(logged, method, left, seed, watch, gap), gap)
+    )
+
+
+def _unproven(results: list[Result], result: Result) -> list[str]:
+    """Why the prover, if it ran, closed no gap: where it ended, by its own word or its budget."""
+    proofs = [r for r in results if r.method == PROVER]
+    if not proofs or result.status in PROVEN:
+        return []
+    (of_boxes,) = proofs
+    if of_boxes.message:
+        return [of_boxes.message] if of_boxes.message not in result.message else []
+    open_ = "" if result.gap is None else f", a gap of {result.gap:.2g} left"
+    return [f"{PROVER} ended after {of_boxes.evaluations:,} boxes{open_}"]
+
+
+def _logged(problem: Problem) -> Problem | None:
+    """The problem with all variables declared log, where it then is a geometric program."""
+    low, high, _ = problem.bounds()
+    variables, repeats = problem.variables, problem.repeats
+    if repeats or all(v.log for v in variables) or not ((low > 0.0) & np.isfinite(high)).all():
+        return None
+    logged = replace(problem, variables=tuple(replace(v, log=True) for v in variables))
+    return logged if log_convex_in_logarithms(logged) else None
+
+
+def _held(result: Result, logged: Result, gap: float) -> Result:
+    """An answer with the bound of the same problem in logarithms, with the effort of both.
+
+    The rows of the two may differ, so that the answer is kept where it does not gain from an
+    excess of its own.
+    """
+    seconds, evaluations = result.seconds + logged.seconds, result.evaluations + logged.evaluations
+    best = logged
+    if logged.bound is not None and result.value is not None:
+        if gap_of(result.value, logged.bound, 0.0) >= -FEASIBLE:
+            best = reconcile(result, logged, gap)
+    elif result.value is not None:
+        best = result
+    return replace(best, seconds=seconds, evaluations=evaluations)
 
 
 def _without_derivatives(problem: Problem, budget: Budget) -> bool:

@@ -25,7 +25,12 @@ ENUMERATED = 0.5  # of a budget is for boxes of whole and listed values by inter
 BOXES = 200_000  # of these where the budget names no end
 TRIED, CLOSING = 20_000, 0.4  # boxes after which no larger share of them may wait
 PER_EVALUATION = 100  # such boxes count as one: they take a hundredth of the time of others
+NARROW = (
+    "boxes too narrow to be split are left, in which no point that meets all limits was found: a "
+    "value down to {:.10g} is not excluded"
+)
 STARTS = 3  # random points from which Ipopt begins beside the guess
+EASY = 16  # boxes within which they are not needed, where a point is known
 
 FROM_GUESS = True  # it begins at the guess, or where a caller starts it
 RANDOM = True
@@ -42,7 +47,8 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     if not clock.tell() or (form := _ready(problem, clock)) is None:
         return Outcome(None, False)
     incumbent = Incumbent(problem, clock, max(budget.gap, GAP))
-    incumbent.seek(problem.bounds()[2])
+    incumbent.begin(problem.bounds()[2])
+    starts = _random_points(problem, seed)
     claim = _enumerated(problem, clock, incumbent) if clock.tell() else None
     if claim is not None and (claim.least >= incumbent.cutoff or clock.stopped):
         done = claim.least >= incumbent.cutoff
@@ -55,39 +61,47 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
         )
 
     def watched(bound: float) -> bool:
+        if len(tree.records) >= EASY:
+            _tried(incumbent, starts)
         clock.bound = max(bound, claim.least if claim else bound)
         return clock.tell()
 
     tree = Tree(problem, form, clock, incumbent)
     opened = list(tree.root()) if not clock.stopped else []
-    if opened and _improved(problem, incumbent, seed):
-        tree = Tree(problem, form, clock, incumbent)
-        opened = list(tree.root())
+    if opened and incumbent.x is None:
+        _tried(incumbent, starts)
+        if incumbent.x is not None:
+            tree = Tree(problem, form, clock, incumbent)
+            opened = list(tree.root())
     left = searched(tree, opened, watched) if not clock.stopped else None
     records: tuple[Record | Enumerated, ...] = tuple(tree.records)
     if claim is not None and (left is None or claim.least > min(left.least, tree.unsplit)):
         records = (claim,)
     done = left is not None and min(left.least, tree.unsplit) >= incumbent.cutoff
+    narrow = not done and left is not None and left.least >= incumbent.cutoff
     return Outcome(
         incumbent.x,
         done or not clock.stopped,
         infeasible=done and incumbent.x is None,
         evaluations=clock.evaluations,
         records=records,
+        message=NARROW.format(tree.unsplit) if narrow else "",
     )
 
 
-def _improved(problem: Problem, incumbent: Incumbent, seed: int) -> bool:
-    """Whether a better point is found from random ones."""
-    rng, before = np.random.default_rng(seed), incumbent.value
+def _random_points(problem: Problem, seed: int) -> list[Array]:
+    """Points of the box, STARTS of them; where it is infinite, the guess."""
+    rng = np.random.default_rng(seed)
     low, high, guess = problem.bounds()
     wide = np.isfinite(high - low)
-    for _ in range(STARTS):
-        if not incumbent.clock.tell():
-            break
-        point = np.where(wide, low + rng.random(len(low)) * np.where(wide, high - low, 0.0), guess)
-        incumbent.seek(point)
-    return incumbent.value < before
+    ways = np.where(wide, high - low, 0.0)
+    return [np.where(wide, low + rng.random(len(low)) * ways, guess) for _ in range(STARTS)]
+
+
+def _tried(incumbent: Incumbent, starts: list[Array]) -> None:
+    """Seek better points from those that are left of some, which are taken."""
+    while starts and incumbent.clock.tell():
+        incumbent.seek(starts.pop(0))
 
 
 def _enumerated(problem: Problem, clock: Clock, incumbent: Incumbent) -> Enumerated | None:

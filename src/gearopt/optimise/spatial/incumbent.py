@@ -15,6 +15,7 @@ from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Array
 
 ITERATIONS = 200  # of Ipopt from one point
+LOCAL = "what Ipopt reached from the guess"  # in the memo of a problem
 SPARE = 0.9  # of the gap that is asked for; the rest is for rounding
 
 
@@ -46,6 +47,15 @@ class Incumbent:
             enough = SPARE * self.gap * unit(value, zero_scale(self.problem, x))
             self.cutoff = value - enough
         return value
+
+    def begin(self, guess: Array) -> None:
+        """Judge the guess and what Ipopt reached from it, which a caller may have left as LOCAL."""
+        known = self.problem.memo.get(LOCAL)
+        if known is None:
+            self.seek(guess)
+        else:
+            self.judge(np.clip(guess, *self.problem.bounds()[:2]))
+            self.judge(known)
 
     def seek(self, x: Array) -> None:
         """Judge a point with its whole values rounded, and where Ipopt comes from there."""

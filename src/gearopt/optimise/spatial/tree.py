@@ -153,6 +153,7 @@ class Tree:
             if after.bound < self.cutoff:
                 split = self.split(hint.x, y, lower, upper)
                 if split is None:
+                    self.incumbent.seek(_middle(lower[: len(self.score)], upper[: len(self.score)]))
                     self.unsplit = min(self.unsplit, after.bound)
         place = len(self.records)
         self.records.append(
