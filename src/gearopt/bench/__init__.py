@@ -11,8 +11,8 @@ T = TypeVar("T")
 
 
 def names() -> tuple[str, ...]:
-    """Return names of the benches: the modules of this folder."""
-    return tuple(sorted(m.name for m in iter_modules(__path__)))
+    """Return names of the benches: the modules of this folder, not its folders of cases."""
+    return tuple(sorted(m.name for m in iter_modules(__path__) if not m.ispkg))
 
 
 def timed(call: Callable[[], T], repeat: int) -> tuple[T, dict[str, float]]:

@@ -59,7 +59,7 @@ def test_whole_numbers_agree_with_brute_force(name):
 
 
 def test_listed_values_and_stops():
-    best, problem = case("gears")
+    best, problem = case("gear, Sandgren")
     assert solve(problem, "spatial").value == pytest.approx(best, rel=1e-6)
     short = solve(problem, "spatial", Budget(evaluations=3))
     assert short.status == "limit" and (short.bound is None or short.bound <= best)

@@ -1,0 +1,1 @@
+"""Public problems with known optima, posed as a user poses a problem of their own."""
