@@ -9,6 +9,8 @@ from campaigns import few
 
 import gearopt
 from gearopt import Budget, Conic, Front, Param, Problem, SolveError, Terms, Var
+from gearopt.optimise import polish
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.pareto import enumerated
 from gearopt.optimise.pareto.corners import corners, useful, weighed
 from gearopt.optimise.pareto.measures import (
@@ -269,6 +271,14 @@ def catalogue(cost, error):
 
     y = Var("y", "", 0.0, 1.0, 0.0, size=len(cost), integer=True)
     return Conic("catalogue", (y,), (), evaluate)
+
+
+def test_whole_numbers_of_a_huge_range_are_not_listed():
+    n = Var("n", "", 0, 1e20, 1, integer=True)
+    problem = Problem("huge", (n,), (), lambda x, p: Terms({"f": x.n, "g": (x.n - 2) ** 2}))
+    assert enumerated.front(problem, ("f", "g"), {}, Clock(Budget(seconds=1.0))) is None
+    there, beside = np.array([9e14]), [9e14 - 1, 9e14 + 1]
+    assert [x[0] for x in polish._beside(problem, there)] == beside  # and at once
 
 
 def test_a_limit_that_is_infinite_is_not_met():

@@ -173,7 +173,8 @@ def _beside(problem: Problem, x: Array) -> list[Array]:
     found = []
     for k in np.flatnonzero([v.discrete for v, _ in problem.columns]):
         given = allowed_values(problem, int(k))
-        at = given.index(float(x[k]))
+        value = int(x[k]) if isinstance(given, range) else float(x[k])  # of floats all are asked
+        at = given.index(value)
         for place in (at - 1, at + 1):
             if 0 <= place <= given.index(given[-1]):
                 found.append(x.copy())

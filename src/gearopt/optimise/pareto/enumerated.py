@@ -30,10 +30,11 @@ def front(
     caps: largest values of objectives that are of interest, by name. A value that is no number is
     no design. Points are judged as `violation` does, exact values among allowed ones.
     """
-    sets = _sets(problem)
-    count = math.prod(map(len, sets)) if sets else 0
+    every = _values(problem)
+    count = math.prod(v.index(v[-1]) + 1 for v in every) if every else 0  # some have no len()
     if not 0 < count <= MAX_POINTS:
         return None
+    sets = [np.asarray(values, float) for values in every]
     limits = {name: Limit.of(value, 0.0) for name, value in caps.items()}
     own = posed(problem, names[:1] if isinstance(problem, Conic) else names, limits)
     x, values = np.empty((0, len(sets))), np.empty((0, len(names)))
@@ -52,16 +53,15 @@ def front(
     return _found(x, values, caps, done, count, clock)
 
 
-def _sets(problem: Problem | Conic) -> list[Array]:
+def _values(problem: Problem | Conic) -> list[Sequence[float]]:
     """Allowed values of every variable; [] where one is continuous or has infinitely many."""
     exact = isinstance(problem, Problem) and problem.exact_limits is not None
     if exact or not all(v.discrete for v, _ in problem.columns):
         return []
     try:
-        every = [allowed_values(problem, k) for k in range(len(problem.columns))]
+        return [allowed_values(problem, k) for k in range(len(problem.columns))]
     except SolveError:  # an integer without ends, a set of no value
         return []
-    return [np.asarray(values, float) for values in every]
 
 
 def _points(sets: list[Array], start: int, end: int) -> Array:
