@@ -65,6 +65,7 @@ def shares(front, exact):
     return hypervolume(values(front), corner) / hypervolume(exact, corner)
 
 
+@pytest.mark.slow
 def test_epsilon_constraints_reach_the_known_front_of_a_plain_problem():
     """So spread that little hypervolume is missing."""
     front = gearopt.pareto(discs(), points=11)
@@ -249,7 +250,6 @@ def known_front(f):
     return (bent - 5.0) ** 2 + (np.minimum(x, 3.0) - 5.0) ** 2
 
 
-@pytest.mark.slow
 def test_the_known_front_of_binh_and_korn_is_found():
     front = gearopt.pareto(binh_and_korn(), points=12)
     found = values(front)

@@ -68,6 +68,7 @@ def test_a_published_pair_of_least_volume(monkeypatch):
     assert found.gap < 0.05
 
 
+@pytest.mark.slow
 def test_with_the_constants_of_the_inch_form_that_pair_is_smaller():
     """0.2 % each by K_v and s_ac; its whole teeth are others, as b/m = 14 is no longer in the way.
 

@@ -171,6 +171,7 @@ def test_a_search_of_lists_cut_short_has_a_design_and_a_bound():
     assert all(e.bound <= best * (1.0 + 1e-12) for e in seen if e.bound is not None)
 
 
+@pytest.mark.slow
 def test_more_effort_never_finds_a_worse_train():
     steels = (Steel(hardness=250.0), HARD)
     options = made_of(7.0, *product(steels, repeat=2))

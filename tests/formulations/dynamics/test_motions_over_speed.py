@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from campaigns import few
 from moving_pairs import oscillator, paper_pair
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
@@ -199,7 +200,7 @@ def law(t, y, f, depth, error):
 
 @pytest.mark.parametrize(
     ("depth", "error", "frequencies"),
-    [(0.5, 0.0, (2500.0, 5200.0)), (0.0, 0.004, (5750.0, 5000.0))],
+    few([(0.5, 0.0, (2500.0, 5200.0)), (0.0, 0.004, (5750.0, 5000.0))], 1),
 )
 def test_a_motion_is_one_by_the_law_written_by_hand(depth, error, frequencies):
     """scipy's DOP853 over a period, from the state told: it comes back, with the RMS told."""

@@ -285,6 +285,7 @@ def scene(**limits):
     )
 
 
+@pytest.mark.slow
 def test_explain_knows_the_limits_of_a_law_from_its_declaration():
     found = explanation(drives.KIND, scene(), Ask())
     own = {i.key: i for i in found.influences}["limits.pressure"]
