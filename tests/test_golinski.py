@@ -46,7 +46,7 @@ def reducer():
     return scope["reducer"]
 
 
-@pytest.mark.parametrize(("a", "b", "least"), few(OPTIMA, 3))
+@pytest.mark.parametrize(("a", "b", "least"), few(OPTIMA, 1))
 def test_optimum(a, b, least, capsys):
     result = solve(reducer().at(A=a, B=b, x5_least=least))
     assert result.status == "optimal" and result.method == "spatial"  # a signomial

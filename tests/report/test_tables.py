@@ -158,19 +158,29 @@ def test_no_text_of_a_csv_is_a_formula():
     assert [row[1] for row in found] == [*(f"'{text}" for text in texts), *map(str, kept)]
 
 
-def test_every_table_has_its_csv_and_names_do_not_meet(elevator):
-    for result in (elevator, cases.three_stage(), cases.packing()):
-        made = [table for section in sections(result) for table in section.tables]
-        assert len(tables(result)) == len(made) >= 4
-        links = [a for t, a in Reader(page(result, "x")).tags if t == "a"]
-        assert len(links) == len(made)
-        for link, table in zip(links, made, strict=True):
-            assert link["download"] == f"{table.stem}.csv"
-            assert linked(link["href"]) == table.csv()
+def check_links(result):
+    """Every table of the page is linked as a CSV file of its own name."""
+    made = [table for section in sections(result) for table in section.tables]
+    assert len(tables(result)) == len(made) >= 4
+    links = [a for t, a in Reader(page(result, "x")).tags if t == "a"]
+    assert len(links) == len(made)
+    for link, table in zip(links, made, strict=True):
+        assert link["download"] == f"{table.stem}.csv"
+        assert linked(link["href"]) == table.csv()
 
 
-def test_inch_tables_are_the_metric_ones_converted(elevator):
-    metric, inch = tables(elevator), tables(elevator, INCH)
+def test_every_table_has_its_csv_and_names_do_not_meet(solved):
+    for result in (solved("elevator"), cases.three_stage(), cases.packing()):
+        check_links(result)
+
+
+@pytest.mark.slow
+def test_best_trains_and_prices_have_csv_files_of_their_own(elevator):
+    check_links(elevator)
+
+
+def test_inch_tables_are_the_metric_ones_converted(solved):
+    metric, inch = tables(solved("elevator")), tables(solved("elevator"), INCH)
     assert set(metric) == set(inch)
     mm = {row[0]: row[1:] for row in rows(metric["stages.csv"])}
     inches = {row[0]: row[1:] for row in rows(inch["stages.csv"])}

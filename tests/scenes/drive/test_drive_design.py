@@ -109,6 +109,7 @@ def test_assumptions_name_preset_rating_and_rack(result):
     assert "learances" not in words and set(ORIGINS) == set(PRESETS)
 
 
+@pytest.mark.slow
 def test_assumptions_of_a_layout_tell_defaults_from_what_the_file_gives(tmp_path):
     table = '[layout]\nshaft_stress = "40 MPa"\nwall_clearance = "8 mm"\n'
     found = solved(tmp_path, FILE + table)

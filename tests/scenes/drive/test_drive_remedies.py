@@ -206,6 +206,7 @@ def test_the_nearest_ratio_of_more_drives_is_that_of_listing_all_trains(first):
     assert any([check_nearest(seed) for seed in range(first, first + 12)])
 
 
+@pytest.mark.slow
 def test_no_ratio_is_told_where_none_is_written_or_time_ran_out():
     """63/22 is no decimal number, so a file without a tolerance cannot ask for it; 63/20 is."""
     near = nearest_ratio(Case(read(GIVEN_PAIR.encode())[1], Clock(Budget(seconds=60.0))), None)

@@ -86,7 +86,7 @@ def test_the_design_is_a_drawing(table4):
             dict(shaft_clearance='"0 mm"', wall_clearance='"0 mm"', axial_clearance='"0 mm"'),
             56826192,
         ),
-        (dict(span='"partial"'), 55_654_946),
+        pytest.param(dict(span='"partial"'), 55_654_946, marks=pytest.mark.slow),
     ],
 )
 def test_other_clearances_and_spans(keys, value):

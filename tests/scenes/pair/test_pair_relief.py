@@ -74,6 +74,7 @@ def test_a_relief_that_is_given_is_evaluated():
     assert result.design["relief"]["pinion"]["amount_mm"] == pytest.approx(0.01134)
 
 
+@pytest.mark.slow
 def test_any_convex_shape_reaches_less_and_is_proven_too(solved):
     """Published for such shapes, symmetric in contact: 1.0615 um on 48 positions."""
     tables = with_relief(shape="free") | {"sharing": FILE["sharing"] | {"positions": 24}}

@@ -140,6 +140,7 @@ def test_the_utilisation_is_required_over_actual():
     assert found.limits["minimum_backlash[1]"] == pytest.approx(16 / (35 - 15 * TAN), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_both_stages_are_moved_together():
     both = [(("mesh", k, "minimum_backlash"), "0.08 mm") for k in (0, 1)]
     found = binds(changed(FILE, *both), Clock())

@@ -152,6 +152,7 @@ def swung():
     return gearopt.solve(told)
 
 
+@pytest.mark.slow
 def test_torque_of_a_swing_is_rms_and_peak(swung):
     one = swung.design["ratio"]["chosen"]
     n, rotor = one["total_ratio"], 8.6e-6 + one["gear_inertia_kg_m2"]
@@ -261,6 +262,7 @@ def test_why_no_train_does_the_duty_is_said(edits, words, blamed):
     assert words in " ".join(shown(explained.result).split()) or explained.conflict
 
 
+@pytest.mark.slow
 def test_a_train_that_the_motor_cannot_drive_is_noted():
     """Least inertia at 20:1 and more, but 50 rad/s of the load are 1000 rad/s of the motor."""
     told = scene(
