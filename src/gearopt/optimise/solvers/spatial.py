@@ -4,6 +4,7 @@ Continuous, whole and listed variables alike. Its records are the claim, judged 
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -51,14 +52,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     starts = _random_points(problem, seed)
     claim = _enumerated(problem, clock, incumbent) if clock.tell() else None
     if claim is not None and (claim.least >= incumbent.cutoff or clock.stopped):
-        done = claim.least >= incumbent.cutoff
-        return Outcome(
-            incumbent.x,
-            done or not clock.stopped,
-            infeasible=done and incumbent.x is None,
-            evaluations=clock.evaluations,
-            records=(claim,),
-        )
+        return _outcome(incumbent, claim.least >= incumbent.cutoff, (claim,))
 
     def watched(bound: float) -> bool:
         if len(tree.records) >= EASY:
@@ -79,13 +73,18 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
         records = (claim,)
     done = left is not None and min(left.least, tree.unsplit) >= incumbent.cutoff
     narrow = not done and left is not None and left.least >= incumbent.cutoff
+    message = NARROW.format(tree.unsplit) if narrow else ""
+    return replace(_outcome(incumbent, done, records), message=message)
+
+
+def _outcome(incumbent: Incumbent, done: bool, records: tuple[Record | Enumerated, ...]) -> Outcome:
+    """Claim of a search that is done, or was stopped, with its records."""
     return Outcome(
         incumbent.x,
-        done or not clock.stopped,
+        done or not incumbent.clock.stopped,
         infeasible=done and incumbent.x is None,
-        evaluations=clock.evaluations,
+        evaluations=incumbent.clock.evaluations,
         records=records,
-        message=NARROW.format(tree.unsplit) if narrow else "",
     )
 
 
