@@ -7,7 +7,7 @@ are. Else it is 1 + (lesser - greater)/scale, the scale being the larger of both
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -59,6 +59,20 @@ class Quantity(NDArrayOperatorsMixin):
         return bool(self.value)
 
 
+@dataclass(frozen=True)
+class Number:
+    """The number that a limit is compared with, a literal of the text or a parameter by its name.
+
+    sign: +1 where a larger one is easier, -1 where a smaller one is. scale: of the row where it is
+    a difference, 0 where it is a quotient.
+    """
+
+    value: float
+    sign: int
+    scale: float
+    parameter: str = ""
+
+
 class Comparison:
     """Two sides of a limit; what np.where takes it for is whether it holds."""
 
@@ -91,6 +105,16 @@ class Comparison:
             return 0.0
         larger = max(abs(float(plain(side))) for side in (self.lesser, self.greater))
         return larger if 0.0 < larger < np.inf else 1.0
+
+    def number(self, scale: float, parameters: Mapping[str, Any]) -> Number | None:
+        """The number on one of its sides, None where there is none, or it is a balance."""
+        if self.equal:
+            return None
+        for side, sign in ((self.greater, 1), (self.lesser, -1)):
+            names = [name for name, value in parameters.items() if value is side]
+            if names or not isinstance(side, Quantity):
+                return Number(float(plain(side)), sign, scale, "".join(names))
+        return None
 
 
 def quantities(scalars: Named, above: Mapping[str, bool]) -> Named:
@@ -128,25 +152,38 @@ def compares(terms: Any) -> bool:
     return any(isinstance(v, bool | np.bool_) for v in rows)
 
 
-def rows(terms: Terms, scales: dict[str, float]) -> Terms:
+def rows(
+    terms: Terms, scales: dict[str, float], numbers: dict[str, Number], parameters: Named
+) -> Terms:
     """Terms with comparisons made rows; those with == stand among the equal rows.
 
-    scales: by name, as the first run on floats, at the guess, finds them; they are kept there.
+    scales, numbers: by name, as the first run on floats, at the guess, finds them; they are kept
+    there. parameters: as the text was given them.
     """
+    known = scales, numbers, vars(parameters)
     parts: dict[str, dict[str, Any]] = {part: {} for part in ROWS}
     for part in ROWS:
         for name, value in getattr(terms, part).items():
             block = value if isinstance(value, tuple | list) else (value,)
             balance = any(isinstance(v, Comparison) and v.equal for v in block)
-            rows = tuple(_row(v, f"{name}[{k}]", scales) for k, v in enumerate(block, 1))
+            names = [f"{name}[{k}]" if block is value else name for k in range(1, len(block) + 1)]
+            rows = tuple(_row(v, n, *known) for v, n in zip(block, names, strict=True))
             parts["equal" if balance else part][name] = rows if block is value else rows[0]
     shown = [{k: _plain(v) for k, v in getattr(terms, p).items()} for p in ("minimise", "report")]
     return replace(terms, minimise=shown[0], report=shown[1], **parts)
 
 
-def _row(value: Any, name: str, scales: dict[str, float]) -> Any:
+def _row(
+    value: Any,
+    name: str,
+    scales: dict[str, float],
+    numbers: dict[str, Number],
+    parameters: Mapping[str, Any],
+) -> Any:
     if not isinstance(value, Comparison):
         return plain(value)
     if name not in scales:
         scales[name] = value.scale()
+        if (number := value.number(scales[name], parameters)) is not None:
+            numbers[name] = number
     return value.row(scales[name])

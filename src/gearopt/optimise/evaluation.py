@@ -194,7 +194,8 @@ def evaluated(
     terms = minimised(own)
     if scales is None or not isinstance(terms, Terms):
         return terms
-    return comparisons.rows(terms, scales)
+    numbers = problem.memo.setdefault(("numbers", repeat and repeat.name), {})
+    return comparisons.rows(terms, scales, numbers, p)
 
 
 def _above(problem: "Problem") -> dict[str, bool]:

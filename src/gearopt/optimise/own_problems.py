@@ -99,7 +99,8 @@ def _by_default(
     results, words, left = list[Result](), list[str](), budget
     for name in order:
         share = left if name == order[-1] else _share(left, discrete)
-        if name == PROVER and share.seconds is None and share.evaluations is None:
+        endless = share.seconds is None and share.evaluations is None
+        if name == PROVER and endless:
             share = replace(share, evaluations=BOXES)
         try:
             solved = _local if name == "ipopt" else solve
@@ -109,6 +110,8 @@ def _by_default(
                 raise
             words.append(str(refused))
             continue
+        if name == PROVER and endless and results[-1].status == "limit":
+            words.append(f"{BOXES:,} boxes did not suffice: budget=Budget(seconds=60) goes on")
         left = budget.less(sum(r.seconds for r in results), sum(r.evaluations for r in results))
         if results[-1].status in PROVEN or refusals or 0 in (left.seconds, left.evaluations):
             break

@@ -16,6 +16,7 @@ from gearopt.errors import SolveError
 from gearopt.optimise.evaluation import at, evaluated, first_terms, terms_of
 from gearopt.optimise.own_methods import check_methods
 from gearopt.optimise.terms import (
+    FALLING,
     SECTIONS,
     Array,
     Number,
@@ -337,11 +338,15 @@ class Problem:
 def one_objective(name: str, objectives: tuple[str, ...]) -> None:
     """Raise SolveError where a problem has several objectives."""
     if len(objectives) != 1:
-        first, second = objectives[:2]
+        first, second = sorted(objectives[:2], key=lambda n: not n.startswith(FALLING))
+        names = [n.removeprefix(FALLING) for n in (*objectives, first, second)]
+        way = "maximise" if first.startswith(FALLING) else "minimise"
+        limit = " >= p.least" if second.startswith(FALLING) else " / p.most"
         raise SolveError(
-            f"{name} has {len(objectives)} objectives ({', '.join(objectives)}), and one is "
-            "minimised: weigh them in one term, or make one a limit, such as "
-            f"limits={{'{second}': {second} / p.most}} beside minimise={{'{first}': {first}}}"
+            f"{name} has {len(objectives)} objectives ({', '.join(names[:-2])}), and solve takes "
+            "one: ask gearopt.pareto for their front, weigh them in one term, or make one a limit, "
+            f"such as limits={{'{names[-1]}': {names[-1]}{limit}}} beside "
+            f"{way}={{'{names[-2]}': {names[-2]}}}"
         )
 
 

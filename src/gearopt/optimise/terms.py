@@ -246,6 +246,9 @@ class Named(SimpleNamespace):
     def __getattr__(self, name: str) -> Any:
         raise AttributeError(f"nothing is named {name!r} here; declared: {', '.join(vars(self))}")
 
+    def __getitem__(self, name: Any) -> Any:
+        raise TypeError(f"scalars are attributes: write .{name} instead of [{name!r}]")
+
 
 def namespace(declared: tuple[Any, ...], scalars: list[Any]) -> Named:
     """Return scalars by name: one for size 1, a `Block` for more."""
@@ -290,7 +293,10 @@ def checked(terms: Any, where: str, numbers: bool = False) -> Terms:
     numbers: the text was run on floats, so every term is a real number.
     """
     if not isinstance(terms, Terms):
-        raise SolveError(f"the text of {where} returns {type(terms).__name__}, not Terms(...)")
+        hint = "; is a `return` missing?" if terms is None else ""
+        raise SolveError(
+            f"the text of {where} returns {type(terms).__name__}, not Terms(...){hint}"
+        )
     found: dict[str, dict[str, Any]] = {}
     for part in SECTIONS:
         block = getattr(terms, part)

@@ -13,7 +13,7 @@ from typing import Any
 from rich.text import Text
 
 from gearopt.optimise.comparing.comparison import Comparison
-from gearopt.optimise.explaining.explanation import Explanation, Remedies
+from gearopt.optimise.explaining.explanation import Change, Explanation, Remedies
 from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
 from gearopt.report import comparison as comparison_words
@@ -47,6 +47,7 @@ from gearopt.scenes.reading.toml import cut
 
 WIDTH = 90  # characters of a line of numbers
 LINE_LENGTH = 900  # of a line of words
+MAX_SLOPES = 12  # sensitivities that are listed
 MAX_LISTED = 5  # numbers of a design, numbers of a file, or remedies that are listed
 Block = str | Text | Table
 
@@ -59,7 +60,9 @@ def lines(result: Result) -> str:
         gap = "" if result.gap is None else f", gap {gap_percent(result.gap)}"
         rows.append(f"bound {METRIC.amount(bound, unit, WAYS[side])}{gap}")
     rows += _design(result)
-    if result.status != "optimal" or leading(result):
+    if "conflict" in result.proof and result.status == "infeasible":
+        pass  # the first line names it
+    elif result.status != "optimal" or leading(result):
         proof = result.proof.get("sentence", "") if result.status == "infeasible" else ""
         rows += filter(None, [result.message or proof])
     for remedy in result.report.get("ways_out", {}).get("remedies", ())[:1]:
@@ -131,17 +134,27 @@ def _values(part: Mapping[str, Any], goal: Any) -> list[str]:
 def explained_lines(explanation: Explanation) -> str:
     """The answer, the limits that bind and the largest sensitivities, or the remedies."""
     rows = [lines(explanation.result)]
-    if explanation.conflict:
+    named = {*explanation.conflict} == {*(explanation.result.proof.get("conflict") or ())}
+    if explanation.conflict and not named:
         rows.append(f"in conflict: {_names(explanation, explanation.conflict)}")
     for remedy in explanation.remedies[:MAX_LISTED]:
-        rows.append(f"possible with {' and '.join(edit(asdict(c)) for c in remedy.changes)}")
+        rows.append(f"possible with {' and '.join(map(_instead, remedy.changes))}")
     rows += _reached(explanation)
     slopes = {i.key: i.sensitivity for i in explanation.influences if i.sensitivity is not None}
     if slopes:
-        largest = sorted(slopes, key=lambda key: -abs(slopes[key]))[:MAX_LISTED]
-        words = ", ".join(f"{key} {slopes[key]:+.4g}" for key in largest)
-        rows.append(f"sensitivities: {words}")
+        largest = sorted(slopes, key=lambda key: -abs(slopes[key]))
+        words = [f"{key} {slopes[key]:+.4g}" for key in largest[:MAX_SLOPES]]
+        more = ["..."] if len(largest) > MAX_SLOPES else []
+        rows.append(f"sensitivities, % per %: {', '.join([*words, *more])}")
+    if explanation.message not in ("", explanation.result.message):
+        rows.append(explanation.message)
     return _joined(rows)
+
+
+def _instead(change: Change) -> str:
+    """A change with what it takes the place of."""
+    was = f" instead of {change.was}" if change.was and change.write else ""
+    return f"{edit(asdict(change))}{was}"
 
 
 def _names(explanation: Explanation, limits: Sequence[str]) -> str:

@@ -242,7 +242,7 @@ def _alone(problem: Problem, handle: Handle, method: str, clock: Clock) -> Remed
     variable = problem.columns[handle.place][0] if bound else None
     whole = variable is not None and variable.integer
     listed = variable is not None and variable.values is not None
-    if listed or (handle.value <= 0.0 and (whole or not bound)):
+    if listed or (handle.value <= 0.0 and (whole or not handle.shift)):
         return None
     handle = replace(handle, whole=whole)
 
@@ -333,6 +333,4 @@ def _asked(handle: Handle, factor: float) -> float:
     needed = handle.relaxed(factor * (1.0 + FEASIBILITY_MARGIN))
     rounding = ROUND_CEILING if handle.direction > 0 else ROUND_FLOOR
     number = float(Context(prec=DIGITS, rounding=rounding).plus(Decimal(needed)))
-    if handle.value <= 0:
-        return factor * (1.0 + FEASIBILITY_MARGIN)
-    return float((number / handle.value) ** handle.direction)
+    return max(1.0, handle.factor(number))

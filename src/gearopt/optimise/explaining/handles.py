@@ -30,6 +30,7 @@ class Handle:
     now. direction: +1 where a larger value is easier, -1 where a smaller one is. rows: names of
     the rows it governs. given: a value that the user fixed, no limit. reach: the largest factor by
     which it may move. whole: it is written as an integer. parameter: its name, of a row's number.
+    shift: the unit in which it moves, of a number that moves by differences.
     """
 
     name: str
@@ -44,6 +45,7 @@ class Handle:
     reach: float = REACH
     whole: bool = False
     parameter: str = ""
+    shift: float = 0.0
 
     @property
     def family(self) -> str:
@@ -57,9 +59,15 @@ class Handle:
 
     def relaxed(self, factor: float) -> float:
         """Return the value to write for a factor >= 1."""
-        if self.kind in (LOWER, UPPER) and self.value <= 0:
-            return self.value + self.direction * (factor - 1.0) * scale(self.value)
+        if self.shift:
+            return self.value + self.direction * (factor - 1.0) * self.shift
         return self.value * factor**self.direction
+
+    def factor(self, number: float) -> float:
+        """The factor of a value to write, the inverse of `relaxed`."""
+        if self.shift:
+            return 1.0 + (number - self.value) * self.direction / self.shift
+        return float((number / self.value) ** self.direction)
 
     def eased(self, factor: float) -> float:
         """Return the factor that is asked for a needed one: of a whole number the next easier."""
@@ -87,7 +95,12 @@ def handles(problem: Problem) -> tuple[Handle, ...]:
             own.setdefault(_limit(problem, row.name), []).append(k)
     for name, places in own.items():
         rows = tuple(problem.rows.inequalities[k].name for k in places)
-        found.append(Handle(name, ROW, places[0], 1.0, 1, rows=rows))
+        limit = Handle(name, ROW, places[0], 1.0, 1, rows=rows)
+        number = problem.memo.get(("numbers", None), {}).get(name)
+        if number is not None and not number.parameter and (number.value or number.scale):
+            moves = number.value, number.sign
+            limit = replace(limit, value=moves[0], direction=moves[1], shift=number.scale)
+        found.append(limit)
     found += _bounds(problem)
     return tuple(sorted(found, key=lambda h: h.given))
 
@@ -133,29 +146,44 @@ def _parameters(problem: Problem) -> tuple[list[Handle], set[int]]:
 
 
 def numbered(problem: Problem) -> Problem:
-    """The problem whose parameters of no role are limits where limits alone are divided by them.
+    """The problem whose parameters of no role are limits where they are numbers of limits alone.
 
-    Not where such a row has another one, or a parameter with a role that may move.
+    That is what limits are compared with, and else what they are divided by, if no other parameter
+    of theirs is.
     """
     roles = [each_word(q.role, q.size) for q in problem.parameters]
     words = np.array([role for own in roles for role in own])
     if not (words == "").any():
         return problem
-    acts, _, elsewhere, divides = (part.astype(bool) for part in _slopes(problem))
+    parts: list[Any] = [part.astype(bool) for part in _slopes(problem)]
+    acts, _, elsewhere, divides = parts
     limits = np.array([row.kind == "limits" for row in problem.rows.inequalities], bool)
-    numbers = np.array(
-        [
-            word == "" and not other and here.any() and limits[here].all() and by[here].all()
-            for word, other, here, by in zip(words, elsewhere, acts.T, divides.T, strict=True)
-        ],
-        bool,
-    )
-    crowded = acts[:, numbers | ~np.isin(words, DATA)].sum(axis=1) > 1
-    words = np.where(numbers & ~acts[crowded].any(axis=0), "limit", words)
+    free = (words == "") & ~elsewhere & acts.any(axis=0)
+    free &= np.array([limits[here].all() for here in acts.T], bool)
+    compared = free & np.isin(_names(problem), list(_compared(problem)))
+    dividing = free & np.array([by[here].all() for here, by in zip(acts.T, divides.T, strict=True)])
+    movers = compared | (~np.isin(words, DATA))
+    words = np.where(compared | _alone(acts, dividing & ~compared, movers), "limit", words)
     ends = np.cumsum([q.size for q in problem.parameters])[:-1]
-    parts = [tuple(map(str, part)) for part in np.split(words, ends)]
-    parameters = (replace(q, role=w) for q, w in zip(problem.parameters, parts, strict=True))
+    said = [tuple(map(str, part)) for part in np.split(words, ends)]
+    parameters = (replace(q, role=w) for q, w in zip(problem.parameters, said, strict=True))
     return replace(problem, parameters=tuple(parameters))
+
+
+def _alone(acts: Any, some: Any, movers: Any) -> Any:
+    """Those of some parameters (np,) in whose rows no other of them and no mover stands."""
+    crowded = acts[:, some | movers].sum(axis=1) > 1
+    return some & ~acts[crowded].any(axis=0)
+
+
+def _names(problem: Problem) -> list[str]:
+    """Name of the parameter that every component is of."""
+    return [q.name for q in problem.parameters for _ in range(q.size)]
+
+
+def _compared(problem: Problem) -> set[str]:
+    """Names of the parameters that limits are compared with, as they are."""
+    return {number.parameter for number in problem.memo.get(("numbers", None), {}).values()}
 
 
 def each_word(words: str | tuple[str, ...], size: int) -> tuple[str, ...]:
@@ -232,9 +260,9 @@ def _bounds(problem: Problem) -> list[Handle]:
                 word = name if given else f"{name} {kind.split()[0]}"
                 own = (f"{name} {kind}",)
                 key = _end(variable.key, kind, given)
-                found.append(
-                    Handle(word, kind, k, float(value), sign, variable.unit, key, own, given)
-                )
+                shift = scale(value) if value <= 0.0 else 0.0
+                bound = Handle(word, kind, k, float(value), sign, variable.unit, key, own, given)
+                found.append(replace(bound, shift=shift))
     return found
 
 
