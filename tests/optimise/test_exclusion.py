@@ -77,6 +77,7 @@ def test_a_conflict_is_one_by_trying_all_points_and_every_row_is_needed(seed):
         assert there_is([r for other, r in kept.items() if other != k], box)
 
 
+@pytest.mark.slow
 def test_numbers_that_limits_are_divided_by_are_what_is_changed():
     """x y <= A, 2/(x^2 + y) <= 1 and |x - y| small: A from 0.2 to 0.62508, as x = y = 1 at least.
 

@@ -44,7 +44,12 @@ ROWS = (
 )
 
 
-@pytest.mark.parametrize("rows", ROWS)
+SLOW = [pytest.mark.slow]
+
+
+@pytest.mark.parametrize(
+    "rows", [pytest.param(r, marks=SLOW * (r is rated.rated_rows)) for r in ROWS]
+)
 def test_every_row_of_every_table_is_recomputed(rows):
     """All rows of a table stand in the page, together, and no other row is among them."""
     assert "|---|\n" + "\n".join(rows()) + "\n\n" in PAGE

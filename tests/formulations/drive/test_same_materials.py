@@ -65,6 +65,7 @@ def best_of_the_same():
     return search(replace(small(), same_option=True), 1, Budget()).found[0]
 
 
+@pytest.mark.slow
 def test_the_best_of_the_same_materials_are_the_best_of_each():
     """Trains of equal teeth count once, with the materials that are best for them."""
     train = small()
