@@ -96,10 +96,10 @@ def _by_default(
     blind = _without_derivatives(problem, budget)
     order = [PROVER, SAMPLER] if discrete else ["ipopt", PROVER]
     order = [SAMPLER] if blind else order
+    endless = budget.seconds is None and budget.evaluations is None
     results, words, left = list[Result](), list[str](), budget
     for name in order:
         share = left if name == order[-1] else _share(left, discrete)
-        endless = share.seconds is None and share.evaluations is None
         if name == PROVER and endless:
             share = replace(share, evaluations=BOXES)
         try:
@@ -110,18 +110,16 @@ def _by_default(
                 raise
             words.append(str(refused))
             continue
-        if name == PROVER and endless and results[-1].status == "limit":
-            words.append(f"{BOXES:,} boxes did not suffice: budget=Budget(seconds=60) goes on")
         left = budget.less(sum(r.seconds for r in results), sum(r.evaluations for r in results))
         if results[-1].status in PROVEN or refusals or 0 in (left.seconds, left.evaluations):
             break
     problem.memo.pop(LOCAL, None)
     result = results[0] if len(results) == 1 else _joined(results[0], results[1], gap)
-    words += _unproven(results, result)
+    words += _unproven(results, result, endless)
     if result.method == SAMPLER and result.bound is None:
         why = "the text has no derivatives" if blind else f"{discrete[0]} is discrete"
         words.append(f"{SAMPLER} was taken, because {why}, and proves nothing")
-    if result.status == "limit" and budget.seconds is None and budget.evaluations is None:
+    if result.status == "limit" and endless:
         result = replace(result, status="limit" if refusals else "feasible")
     return _saying(result, problem, *words)
 
@@ -143,8 +141,11 @@ def _local(
     )
 
 
-def _unproven(results: list[Result], result: Result) -> list[str]:
-    """Why the prover, if it ran, closed no gap: where it ended, by its own word or its budget."""
+def _unproven(results: list[Result], result: Result, endless: bool) -> list[str]:
+    """Why the prover, if it ran, closed no gap: where it ended, by its own word or its budget.
+
+    endless: the user named no end, so that it was given one.
+    """
     proofs = [r for r in results if r.method == PROVER]
     if not proofs or result.status in PROVEN:
         return []
@@ -152,7 +153,8 @@ def _unproven(results: list[Result], result: Result) -> list[str]:
     if of_boxes.message:
         return [of_boxes.message] if of_boxes.message not in result.message else []
     open_ = "" if result.gap is None else f", a gap of {result.gap:.2g} left"
-    return [f"{PROVER} ended after {of_boxes.evaluations:,} boxes{open_}"]
+    longer = ", and goes on with budget=Budget(seconds=60)" if endless else ""
+    return [f"{PROVER} ended after {of_boxes.evaluations:,} boxes{open_}{longer}"]
 
 
 def _logged(problem: Problem) -> Problem | None:
