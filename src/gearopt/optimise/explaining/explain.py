@@ -253,8 +253,12 @@ def _alone(problem: Problem, handle: Handle, method: str, clock: Clock) -> Remed
     def status(factor: float) -> str:
         return solve_within(clock, _moved(problem, handle, factor), method).status
 
+    @cache
     def suffices(factor: float) -> bool | None:
-        return VERDICTS.get(status(asked(factor)))
+        moved = _moved(problem, handle, asked(factor))
+        if method == PROVER:
+            return possible(eased(moved, {}, anywhere=True), clock)
+        return VERDICTS.get(solve_within(clock, moved, method).status)
 
     known = Bracket(1.0, 1.0)
     if (
@@ -264,7 +268,10 @@ def _alone(problem: Problem, handle: Handle, method: str, clock: Clock) -> Remed
         known = _around(near.factor, suffices)
     if known.high == 1.0:
         down = whole and handle.direction < 0  # to 1 at the most
-        for high in (f for f in FACTORS_IN_TURN if not down or f <= handle.value):
+        factors = [f for f in FACTORS_IN_TURN if not down or f <= handle.value]
+        if method == PROVER and factors and suffices(factors[-1]) is False:
+            return None  # as far as it may move
+        for high in factors:
             if suffices(high):
                 known.high = high
                 break
