@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from gearopt.formulations.servo.servo_design import (
     GOALS,
     MOTIONS,
@@ -313,12 +315,12 @@ def _caption(result: Result, trains: Sequence[ListedTrain], goal: Goal) -> str:
     if goal.name == "mass":  # the second plot, of the same trains
         return "The same trains by mass."
     goals = _weighed(result)
-    worth = [
-        tuple((-1.0 if g is MAXIMISED else 1.0) * getattr(t, g.key) for g in goals) for t in trains
-    ]
-    dominated = any(
-        a != b and all(x <= y for x, y in zip(a, b, strict=True)) for a in worth for b in worth
+    signs = [-1.0 if g is MAXIMISED else 1.0 for g in goals]
+    worth = np.array(
+        [[s * getattr(t, g.key) for s, g in zip(signs, goals, strict=True)] for t in trains]
     )
+    each, other = worth[:, None], worth[None]
+    dominated = ((each <= other).all(axis=-1) & (each != other).any(axis=-1)).any()
     which = f"{len(trains)} of the best trains"
     if not dominated:
         *names, last = (goal.label for goal in goals)
