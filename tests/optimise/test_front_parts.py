@@ -328,3 +328,8 @@ def test_fronts_of_several_problems_are_one(statuses, status):
     assert [p.values for p in front.points] == [(1.0, 5.0), (2.0, 4.0), (3.0, 3.0)]
     assert front.beaten == ((3.0, 4.0),) and front.status == status and front.evaluations == 8
     assert {p.proven for p in front.points} == {status == "complete"}
+
+
+def test_the_knee_of_three_points_is_the_middle_one():
+    assert knee(np.array([[0.0, 1.0], [0.2, 0.2], [1.0, 0.0]])) == 1
+    assert knee(np.array([[0.0, 1.0], [1.0, 0.0]])) is None

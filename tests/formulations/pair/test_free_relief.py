@@ -114,6 +114,17 @@ def test_no_convex_relief_that_ends_at_the_middle_is_below_the_bound():
     assert found.bound <= reached == pytest.approx(found.value, rel=1e-6)
 
 
+def test_a_shape_that_rises_along_the_path_breaks_the_rows_before_its_middle():
+    """By 1 um from point to point, which is the unit of the rows: 2 there, 0 behind; all <= 30."""
+    made = mesh((1.0,), COUPLING, 12)
+    shape = Shape(convex=False)
+    posed, profile = free_problem(made, shape), Profile(made, shape)
+    rises = 1e-3 * np.arange(len(profile.points))
+    expected = np.where(np.arange(len(rises) - 1) < profile.middle, 2.0, 0.0)
+    assert posed.batch(rises[None]).G[0] == pytest.approx(expected, abs=1e-9)
+    assert posed.bounds()[1] == pytest.approx(30e-3)
+
+
 def test_more_than_two_pairs_are_refused():
     from test_relief_search import wide
 

@@ -1,11 +1,19 @@
 """The local method for relief: conditions of the sharing as constraints, against the search."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from relief_pairs import COUPLING, mesh
 
 from gearopt.formulations.pair.relief.parametric import Ranges, at_point, problem
-from gearopt.formulations.pair.relief.relief_mpec import HOMOTOPY, MICRO, _point, complementarity
+from gearopt.formulations.pair.relief.relief_mpec import (
+    HOMOTOPY,
+    MICRO,
+    _point,
+    _removed,
+    complementarity,
+)
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 
@@ -27,6 +35,15 @@ def test_the_exact_sharing_meets_the_constraints(exponent):
         lower = whole.copy()
         lower[6] -= 1e-3  # a smaller peak breaks a row
         assert posed.batch(lower[None]).G.max() > 1.0 + 5e-4
+
+
+def test_the_rounded_beginning_of_a_relief():
+    """Where it begins half the rounding to the exponent is removed; far from there it is exact."""
+    x = SimpleNamespace(amount=(8.0, 3.0), length=(2.0, 5.0))
+    p = SimpleNamespace(smoothing=1e-3)
+    row = SimpleNamespace(tip00=2.0, tip10=0.0, tip01=0.0, tip11=5.0)
+    assert _removed(x, p, row, 0, (1.0, 2.0)) == pytest.approx(8.0 * 5e-4 + 3.0, abs=2e-6)
+    assert _removed(x, p, row, 1, (1.0, 2.0)) == pytest.approx(8.0 + 3.0 * 2.5e-7, abs=3e-6)
 
 
 @pytest.mark.slow

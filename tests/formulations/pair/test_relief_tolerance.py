@@ -44,6 +44,11 @@ def test_the_worst_case_is_reached_and_never_exceeded(tolerance, exponent):
     assert found.value > value(x, exponent) and sample.min() > 0.0
 
 
+def test_lengths_stay_at_a_thousandth_of_their_own_nominal():
+    found = Tolerance(20e-3, 5.0).moved([11.7e-3, 13.5e-3, 4.16, 4.75], -1.0)
+    assert found == pytest.approx([0.0, 0.0, 4.16e-3, 4.75e-3], rel=1e-12)
+
+
 def test_no_tolerance_is_the_nominal_value():
     found = worst(MADE, NOMINAL, Tolerance(0.0))
     x = [11.7e-3, 13.5e-3, 4.16, 4.75]

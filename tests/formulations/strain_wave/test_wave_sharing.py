@@ -113,6 +113,17 @@ def test_random_matrices_against_conditions():
         assert arms @ found.forces == pytest.approx(moment, rel=1e-10)
 
 
+def test_the_posed_energy_is_that_of_loads_and_clearances():
+    """Over M/L: 1/2 P'CP + g'P of any loads, and M = L'P."""
+    matrix, gaps, arms, moment = given(True, 100)
+    shares = np.random.default_rng(0).random(len(gaps))
+    forces = shares * moment / arms[0]
+    found = problem(matrix, gaps, arms, moment).batch(shares[None])
+    energy = 0.5 * forces @ matrix @ forces + gaps @ forces
+    assert found.F[0, 0] == pytest.approx(energy * arms[0] / moment, rel=1e-12)
+    assert found.H[0, 0] == pytest.approx(arms @ forces / moment, rel=1e-12)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("torque", [20, 100])
 def test_other_solvers_give_the_same_and_all_are_proven(torque):

@@ -20,7 +20,7 @@ from gearopt.formulations.drive.layout.gearbox import Gearbox, Shaft
 from gearopt.formulations.drive.processes import ProcessOne
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength import Law, Limit, laws
+from gearopt.formulations.strength import Law, Limit, agma_floor, laws
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.strength.lewis import LEWIS
 from gearopt.optimise import tape
@@ -307,3 +307,16 @@ def test_a_conflict_and_remedies_of_a_law():
     for pressure, status in ((least, "optimal"), (0.999 * least, "infeasible")):
         other = scene(wheel_diameter="200 mm", pressure=f"{pressure} MPa")
         assert solve(sizing.problem(other.train())).status == status
+
+
+def test_a_limit_is_called_by_its_words_else_by_its_name():
+    assert Limit("unit_load").label == "unit load" and Limit("a_b", words="c").label == "c"
+
+
+@pytest.mark.parametrize("count", (1, 4))
+def test_a_line_lies_above_the_values_it_bounds(count):
+    teeth = np.linspace(20.0, 80.0, count)
+    values, gain = np.linspace(2.0, 3.0, count), np.linspace(1.2, 1.0, count)
+    line = agma_floor._line(teeth, values, gain)
+    above = line.constant - line.slope / teeth
+    assert (above >= values * gain).all() and above[0] <= 1.3 * values[0] * gain[0]
