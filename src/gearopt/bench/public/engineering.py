@@ -138,16 +138,16 @@ def compressor(a: Any, b: Any, c: Any, d: Any) -> tuple[Any, list[Any]]:
 
 def himmelblau(a: Any, b: Any, c: Any, d: Any, e: Any) -> tuple[Any, list[Any]]:
     """Himmelblau's function, 31."""
-    one = 85.334407 + 0.0056858 * b * e + 0.0006262 * a * d - 0.0022053 * c * e
-    two = 80.51249 + 0.0071317 * b * e + 0.0029955 * a * b + 0.0021813 * c**2
-    three = 9.300961 + 0.0047026 * c * e + 0.0012547 * a * c + 0.0019085 * c * d
+    first = 85.334407 + 0.0056858 * b * e + 0.0006262 * a * d - 0.0022053 * c * e
+    second = 80.51249 + 0.0071317 * b * e + 0.0029955 * a * b + 0.0021813 * c**2
+    third = 9.300961 + 0.0047026 * c * e + 0.0012547 * a * c + 0.0019085 * c * d
     return 5.3578547 * c**2 + 0.8356891 * a * e + 37.293239 * a - 40792.141, [
-        one >= 0,
-        one <= 92,
-        two >= 90,
-        two <= 110,
-        three >= 20,
-        three <= 25,
+        first >= 0,
+        first <= 92,
+        second >= 90,
+        second <= 110,
+        third >= 20,
+        third <= 25,
     ]
 
 

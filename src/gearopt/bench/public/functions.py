@@ -18,9 +18,9 @@ def camel(x: Any, y: Any) -> tuple[Any, list[Any]]:
 
 def goldstein(x: Any, y: Any) -> tuple[Any, list[Any]]:
     """Function of Goldstein and Price."""
-    one = 19 - 14 * x + 3 * x**2 - 14 * y + 6 * x * y + 3 * y**2
-    two = 18 - 32 * x + 12 * x**2 + 48 * y - 36 * x * y + 27 * y**2
-    return (1 + (x + y + 1) ** 2 * one) * (30 + (2 * x - 3 * y) ** 2 * two), []
+    first = 19 - 14 * x + 3 * x**2 - 14 * y + 6 * x * y + 3 * y**2
+    second = 18 - 32 * x + 12 * x**2 + 48 * y - 36 * x * y + 27 * y**2
+    return (1 + (x + y + 1) ** 2 * first) * (30 + (2 * x - 3 * y) ** 2 * second), []
 
 
 def branin(x: Any, y: Any) -> tuple[Any, list[Any]]:

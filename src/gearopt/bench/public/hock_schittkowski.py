@@ -107,15 +107,15 @@ def ten(*x: Any) -> tuple[Any, list[Any]]:
 def alkylation(*x: Any) -> tuple[Any, list[Any]]:
     """Problem 114."""
     a, b, c, d, e, f, g, h, i, j = x
-    one, two = 35.82 - 0.222 * j - 0.9 * i, -133 + 3 * g - 0.99 * j
+    first, second = 35.82 - 0.222 * j - 0.9 * i, -133 + 3 * g - 0.99 * j
     five = 1.12 * a + 0.13167 * a * h - 0.00667 * a * h**2 - 0.99 * d
     six = 57.425 + 1.098 * h - 0.038 * h**2 + 0.325 * f - 0.99 * g
     wide, narrow = 1 / 0.9 - 0.9, 1 / 0.99 - 0.99
     return 5.04 * a + 0.035 * b + 10 * c + 3.36 * e - 0.063 * d * g, [
-        one >= 0,
-        two >= 0,
-        one <= wide * i,
-        two <= narrow * j,
+        first >= 0,
+        second >= 0,
+        first <= wide * i,
+        second <= narrow * j,
         five >= 0,
         six >= 0,
         five <= narrow * d,

@@ -114,11 +114,11 @@ def alloys(a: Any, b: Any, c: Any, d: Any, e: Any) -> tuple[Any, list[Any]]:
 
 def whole_himmelblau(a: Any, b: Any, c: Any, d: Any, e: Any) -> tuple[Any, list[Any]]:
     """Instance nvs02."""
-    one = 85.334407 + 0.0056858 * b * e + 0.0006262 * a * d - 0.0022053 * c * e
-    two = 80.51249 + 0.0071317 * b * e + 0.0029955 * a * b + 0.0021813 * c**2
-    three = 9.300961 + 0.0047026 * c * e + 0.0012547 * a * c + 0.0019085 * c * d
+    first = 85.334407 + 0.0056858 * b * e + 0.0006262 * a * d - 0.0022053 * c * e
+    second = 80.51249 + 0.0071317 * b * e + 0.0029955 * a * b + 0.0021813 * c**2
+    third = 9.300961 + 0.0047026 * c * e + 0.0012547 * a * c + 0.0019085 * c * d
     cost = 1e-4 * (5.3578547 * c**2 + 0.8356891 * a * e + 37.293239 * a) + 5.9207859
-    rows = [one >= 0, one <= 92, two >= 90, two <= 110, three >= 20, three <= 25]
+    rows = [first >= 0, first <= 92, second >= 90, second <= 110, third >= 20, third <= 25]
     return cost, rows
 
 
@@ -251,14 +251,14 @@ def weld(t: Any, b: Any, h: Any, l: Any, stiff: float, bent: float) -> tuple[Any
 def four_squares(a: Any, b: Any, c: Any, d: Any) -> tuple[Any, list[Any]]:
     """Instance nvs12."""
     cost = 7 * a**2 + 6 * b**2 - 20 * a - 93.2 * b + 8 * c**2 - 6 * c * a + 4 * c * b - 67.2 * c
-    one = 9 * a**2 + 10 * a * b + 8 * b**2 + 5 * c**2 + 6 * c * a + 10 * c * b + 7 * d**2
-    two = 6 * a**2 + 8 * a * b + 6 * b**2 + 4 * c**2 + 2 * c * a + 2 * c * b + 8 * d**2
-    three = 9 * a**2 + 6 * b**2 + 8 * c**2 - 2 * b * a - 2 * c * b + 6 * d**2
+    first = 9 * a**2 + 10 * a * b + 8 * b**2 + 5 * c**2 + 6 * c * a + 10 * c * b + 7 * d**2
+    second = 6 * a**2 + 8 * a * b + 6 * b**2 + 4 * c**2 + 2 * c * a + 2 * c * b + 8 * d**2
+    third = 9 * a**2 + 6 * b**2 + 8 * c**2 - 2 * b * a - 2 * c * b + 6 * d**2
     four = 8 * a**2 + 4 * b**2 + 9 * c**2 + 7 * d**2 + 2 * b * a + 2 * c * a + 4 * c * b
     return cost + 6 * d**2 + 2 * d * a + 2 * d * c - 36.6 * d, [
-        one + 10 * d * a + 6 * d * b + 2 * d * c <= 1100,
-        two - 2 * d * a - 10 * d * b <= 440,
-        three - 4 * d * a - 4 * d * b + 2 * d * c <= 310,
+        first + 10 * d * a + 6 * d * b + 2 * d * c <= 1100,
+        second - 2 * d * a - 10 * d * b <= 440,
+        third - 4 * d * a - 4 * d * b + 2 * d * c <= 310,
         four - 6 * d * a - 2 * d * b + 2 * d * c <= 460,
     ]
 
