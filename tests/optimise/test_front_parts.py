@@ -15,6 +15,7 @@ from gearopt.optimise.pareto.found import Found, Point, sifted
 from gearopt.optimise.pareto.front import Front, FrontPoint, Objective
 from gearopt.optimise.pareto.gaps import (
     Gap,
+    Strip,
     Tried,
     curve_error,
     gaps,
@@ -28,6 +29,7 @@ from gearopt.optimise.pareto.measures import (
     hypervolume,
     igd,
     knee,
+    least_sizes,
     nadir,
     neighbours,
     picks,
@@ -35,8 +37,11 @@ from gearopt.optimise.pareto.measures import (
     scaled,
     unbeaten,
 )
-from gearopt.optimise.pareto.posed import Limit, caps, moved, posed, violation_scale
-from gearopt.optimise.result import Event, Result
+from gearopt.optimise.pareto.posed import Limit, caps, kept, moved, posed, violation_scale
+from gearopt.optimise.pareto.tradeoff import found, impossible
+from gearopt.optimise.result import Event, Outcome, Result
+from gearopt.optimise.solve import PROVER
+from gearopt.optimise.tape import kinds
 
 
 def point(f, g, slope=None, proven=True, bound=None):
@@ -70,6 +75,8 @@ def test_picks_are_scaled_by_ideal_and_nadir():
     flat = scaled(np.array([[1.0, 7.0], [3.0, 7.0]]))
     assert flat == pytest.approx(np.array([[0.0, 0.0], [1.0, 0.0]]))
     assert [neighbours(values, k) for k in range(4)] == [[1], [0, 2], [1, 3], [2]]
+    circle = np.array([[0.0, 2.0, 1.0], [1.0, 0.0, 2.0], [2.0, 1.0, 0.0], [3.0, 3.0, 3.0]])
+    assert [neighbours(circle, k) for k in range(4)] == [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]
 
 
 def test_an_objective_of_many_decades_is_measured_in_them():
@@ -80,6 +87,7 @@ def test_an_objective_of_many_decades_is_measured_in_them():
     assert [p.place for p in found] == [2, 2] and found[0].reason.endswith("error in decades")
     noise = np.array([[0.0, 1e-17], [1.0, 0.5], [2.0, 1.0]])  # a zero but for rounding
     assert scaled(noise)[:, 1] == pytest.approx([0.0, 0.5, 1.0])
+    assert least_sizes(noise).tolist() == [1.0, 0.5]
 
 
 def test_measures_of_ties_and_flat_fronts():
@@ -143,6 +151,7 @@ def test_strips_are_what_the_bounds_of_steps_leave_open():
     assert strips(tried, -math.inf, 9.0, values, ranges)[0].worse == math.inf  # least g not known
     empty = strips([Tried(5.0, None, math.inf), *tried], 0.0, math.inf, values, ranges)
     assert [s.worse for s in empty] == pytest.approx([0.0, 0.0, 0.0, 1 / 9])
+    assert [s.missing for s in empty] == [0.0, 0.0, 0.0, 0.0]
 
 
 def test_errors_are_those_of_tangents():
@@ -191,6 +200,26 @@ def test_limits_of_objectives_are_quotients_or_differences():
     )
 
 
+def test_limits_of_one_kind_are_one_text_and_quotients_are_log_convex_at_every_limit():
+    text = lambda x, p: Terms({"a": x.x, "b": 1.0 / x.x})  # noqa: E731
+    methods = {"exact": lambda problem, budget, seed, watch: Outcome(None)}
+    own = Problem("two", (Var("x", "", 1.0, 4.0, 2.0, log=True),), (), text, methods=methods)
+    built = {}
+    steps = [kept(built, own, ["a"], {"b": Limit(*m)}) for m in ((1, 1), (-1, 2), (0, 2))]
+    assert len(built) == 2 and [kinds(one).log_convex for one in steps] == [True, False, False]
+    again = kept(built, own, ["a"], {"b": Limit(3, 3)})
+    assert kinds(again) is kinds(steps[0])  # not read again
+    assert not steps[0].methods and posed(own, ["a", "b"], {}).methods == methods
+
+
+def test_a_front_that_is_known_to_be_empty_has_no_point_by_any_method():
+    none = Outcome(None, infeasible=True, message="why")
+    problem = impossible("layout", ("a", "b"), none)
+    front = found(problem, ("a", "b"), {})
+    assert front.infeasible and front.message == "why"
+    assert (problem.batch(np.array([[0.0], [0.5], [1.0]])).G > 1.0).all()
+
+
 def test_corners_below_which_a_point_may_lie():
     left = corners(np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([[4.0, 4.0]]))
     assert sorted(map(tuple, left)) == [(1.0, 4.0), (2.0, 2.0), (4.0, 1.0)]
@@ -230,14 +259,114 @@ def test_steps_without_a_result_leave_their_gap_open_and_named(monkeypatch):
 
     monkeypatch.setattr(epsilon, "_attempt", attempt)
     front = gearopt.pareto(segment(), points=5)
-    assert front.message.startswith(
-        "1 part of the front is not known, as steps there are not proven"
-    )
+    assert front.message.startswith("1 part of the front is not known, as steps")
     assert front.status == "proven" and front.epsilon > 0.15 and not front.error
     low, high = (float(word) for word in front.message.rsplit(" ", 3)[1::2])
     assert 0.0 <= low <= 0.4 and 0.7 <= high <= 1.0
     second = np.array([p.values[1] for p in front.points])
     assert not ((second > 0.4001) & (second < 0.8)).any() and len(second) == 5
+
+
+UNKNOWN = "of the front {} not known, as steps there are not proven: b of it "
+
+
+@pytest.mark.parametrize(
+    ("left", "refused", "said"),
+    [
+        ([(0.0, 1.0, epsilon.OPEN)], "", ""),  # no more than that is missing
+        ([(0.0, 1.0, 0.1), (1.0, 2.0, 0.1)], "", "1 part " + UNKNOWN.format("is") + "0 to 2"),
+        ([(-math.inf, 1.0, 0.0), (2.0, 3.0, 0.1)], "", "2 parts {}-inf to 1, 2 to 3"),
+        (
+            [(2.0 * k, 2.0 * k + 1.0, 0.1) for k in range(5)],
+            "No bounds.",
+            "5 parts {}0 to 1, 2 to 3, 4 to 5 and 2 others. No bounds.",
+        ),
+    ],
+)
+def test_pieces_that_are_not_known_are_named_by_their_places(left, refused, said):
+    run = steps_of(segment())
+    run.names, run.refused = ("a", "b_of_it"), refused
+    strips = [Strip(low, high, 0.0, missing, 0.5) for low, high, missing in left]
+    assert epsilon._left_open(run, strips) == said.format(UNKNOWN.format("are"))
+
+
+BEST_FOUND = "Not proven: every point is the best one found under its limits"
+
+
+@pytest.mark.parametrize(
+    ("proven", "sample", "said"),
+    [
+        ((False, False), None, BEST_FOUND + "."),
+        ((False,), (point(1, 1),) * 2, BEST_FOUND + ", also from 2 points of evolution."),
+        ((True, True), None, "Every point is"),
+        ((True, False), None, "1 of 2 points is"),
+        ((True, True, False), None, "2 of 3 points are"),
+    ],
+)
+def test_the_proof_of_points_is_one_sentence(proven, sample, said):
+    run = steps_of(segment())
+    run.sample = sample
+    points = tuple(point(k, -k, proven=one) for k, one in enumerate(proven))
+    dominates = " proven: no design dominates it by more than 1e-06 of its first objective."
+    more = dominates if any(proven) else ""
+    assert epsilon._sentence(run, points, False, []) == said + more
+
+
+@pytest.mark.parametrize(
+    ("found", "count"), [((0.25, 0.25), 3), ((0.0, 1.0 - 3e-8), 2), ((1.0 - 1e-7, 0.5), 2)]
+)
+def test_a_step_adds_no_point_that_is_a_neighbour_of_its_gap(found, count, monkeypatch):
+    monkeypatch.setattr(epsilon, "_solved", lambda *_: point(*found))
+    line = epsilon.Line(steps_of(segment()), {}, [point(0, 1), point(1, 0)], np.ones(2))
+    line.step(0.5)
+    assert len(line.points) == count
+
+
+@pytest.mark.parametrize(
+    ("budget", "wanted", "method", "spent"),
+    [
+        ({}, 0, "ipopt", (None, 300)),
+        ({"evaluations": 100}, 0, "ipopt", (None, 100)),
+        ({"evaluations": 1000}, 0, "ipopt", (None, 300)),
+        ({"seconds": 1e4}, 0, PROVER, (3e3, None)),
+        ({"seconds": 1e4}, 60, "ipopt", (500.0, 300)),
+    ],
+)
+def test_a_step_has_three_even_shares_of_the_seconds(budget, wanted, method, spent, monkeypatch):
+    """Of ten steps at least, or of the points sought; boxes count where no seconds are named."""
+    given = []
+
+    def solve(problem, method, budget, watch):
+        given.append(budget)
+        return SimpleNamespace(evaluations=7), None
+
+    monkeypatch.setattr(epsilon, "solve_raw", solve)
+    run = steps_of(segment(), **budget)
+    run.wanted, run.widths = wanted, {"a": 1.0, "b": 1.0}
+    epsilon._answered(run, segment(), method, 300)
+    seconds, most = spent
+    assert given[0].seconds == (seconds and pytest.approx(seconds, rel=1e-3))
+    assert given[0].evaluations == most and run.clock.evaluations == 7
+
+
+@pytest.mark.parametrize(
+    ("value", "x", "start"), [(1.0, 0.25, 0.25), (None, 0.25, 0.5), (None, None, 0.5)]
+)
+def test_a_proof_begins_at_a_point_that_meets_the_limits(value, x, start, monkeypatch):
+    """Of its point and that of Ipopt the better one counts, with the bound of the proof."""
+    asked = []
+
+    def answer(run, at, method, most):
+        asked.append((method, float(at.bounds()[2][0])))
+        if method == PROVER:
+            return Result("segment", "limit", PROVER, {"value": 2.0}, bound=0.5), Outcome(None)
+        place = None if x is None else np.array([x])
+        return Result("segment", "feasible", method, {"value": value}), Outcome(place)
+
+    monkeypatch.setattr(epsilon, "_answered", answer)
+    result, _ = epsilon._proven(steps_of(segment()), segment())
+    assert asked == [("ipopt", 0.5), (PROVER, start)]
+    assert result.value == (value or 2.0) and result.bound == 0.5
 
 
 def test_steps_start_from_neighbours_and_from_evolution_and_the_better_answer_counts(monkeypatch):
