@@ -25,9 +25,10 @@ def test_the_kind_is_guessed_from_the_tables(kind, line):
 def test_a_kind_that_cannot_be_imported_is_named_and_leaves_the_others_alone(tmp_path, monkeypatch):
     (tmp_path / "broken.py").write_text("from gearopt.units import nothing\n")
     monkeypatch.setattr(gearopt.scenes, "__path__", [*gearopt.scenes.__path__, str(tmp_path)])
-    with pytest.raises(SceneError) as wrong:
-        read(re.sub(r"(?m)^kind = .*$", "", kind_named("compound").example.text).encode())
-    assert wrong.value.fix.value == '"compound"'
+    for text in (kind_named("compound").example.text, "gearopt = 1\n"):  # and of no kind's tables
+        with pytest.raises(SceneError) as wrong:
+            read(re.sub(r"(?m)^kind = .*$", "", text).encode())
+        assert wrong.value.fix.value == '"compound"'
     with pytest.raises(SolveError, match="kind 'broken' cannot be imported: .*nothing"):
         read(b'gearopt = 1\nkind = "broken"\n')
     assert "gearopt.scenes.broken" not in sys.modules

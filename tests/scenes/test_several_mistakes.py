@@ -98,14 +98,20 @@ def test_python_holds_all_mistakes():
 
 
 def test_the_head_is_reported_with_the_rest():
-    wrong = mistakes('gearopt = 2\nkind = "driv"\n[duty]\npower = "7.5 kW"\ninput_speed = 3\n')
-    assert [e.key for e in wrong.errors] == ["gearopt", "kind", "duty.input_speed", "limits"]
+    duty = '[duty]\npower = "7.5 kW"\ninput_speed = 3\n'
+    wrong = mistakes(f'gearopt = 2\nkind = "driv"\nstage = [3]\n{duty}')
+    keys = ["gearopt", "kind", "stage[1]", "duty.input_speed", "limits"]
+    assert [e.key for e in wrong.errors] == keys
+    way = "Write a table [[stage]] with face_width_over_diameter = 0.6"
+    assert str(wrong.errors[2]) == f"my.toml: stage[1] = 3: is not a table. {way}"
 
 
 def test_more_than_twenty_mistakes_are_counted():
     text = BASES["elevator"] + "".join(f"[bolt{k}]\nx = 1\n" for k in range(30))
     wrong = mistakes(text)
     assert len(wrong.errors) == 30
+    remedy = "Remove it (tables of your own are named [x-...])"
+    assert {e.remedy for e in wrong.errors} == {remedy}
     lines = str(wrong).splitlines()
     assert len(lines) == 21 and lines[-1] == "my.toml: and 10 more"
 
@@ -259,6 +265,7 @@ def test_weight_is_mass_and_volume_is_asked_back():
         ("[[stage]]", 'pressure_angle = "50 deg"', "is above 45 deg"),
         ("[gears]", "poisson_ratio = 2", "Write, for example, poisson_ratio = 0.3"),
         ("[gears]", 'treatment = "carburizing"', '. Write treatment = "carburised"'),
+        ("[gears]", 'treatment = "2.5 %"', '. Write treatment = "2.5 % chrome"'),
         ("[[stage]]", "pinion_teeth = [20]", "Write pinion_teeth = [20, 20]"),
         ("[[stage]]", 'pinion_teeth = "20-30"', "Write pinion_teeth = [20, 30]"),
         ("[[stage]]", 'module = "2 to 4 mm"', 'Write module = ["2 mm", "4 mm"]'),
@@ -329,10 +336,17 @@ def test_files_of_other_formats_are_named():
         assert mistakes(text).rule == f"is {form}, not a problem file"
 
 
-def test_a_comma_in_a_bare_number_is_named():
-    (wrong,) = mistakes(BASES["elevator"].replace('"1 %"', "0,5")).errors
+@pytest.mark.parametrize(
+    ("right", "written", "remedy"),
+    [
+        ('"1 %"', "0,5", "The decimal sign is a point: 0.5"),
+        ("[[stage]]", "[stage]", "Each of several tables [[stage]] has double brackets"),
+    ],
+)
+def test_a_decimal_comma_and_single_brackets_are_named(right, written, remedy):
+    (wrong,) = mistakes(BASES["elevator"].replace(right, written)).errors
     assert wrong.rule.startswith("is not valid TOML: ")
-    assert wrong.remedy == "The decimal sign is a point: 0.5" and wrong.fix is None
+    assert wrong.remedy == remedy and wrong.fix is None
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from rated_drives import TREATMENTS, agma, some_iso, some_rated_drive
 from gearopt.formulations.drive import layout, teeth, together
 from gearopt.formulations.drive.layout.gearbox import Clearances, Gearbox, Shaft
 from gearopt.formulations.drive.layout.slabs import arrangements, clashes
+from gearopt.formulations.drive.teeth.rated import RatedTable
 from gearopt.formulations.drive.together import search as together_search
 from gearopt.formulations.drive.together.search import CELL_WIDTHS, Search, narrower
 from gearopt.formulations.drive.together.tables import numbers
@@ -146,27 +147,35 @@ def test_widths_of_cells_are_below_those_of_every_torque(standard, monkeypatch):
         drive = narrower(search.tables, drive, step, lambda: True)
         for stage, table in enumerate(search.tables):
             assert_least_at_cells(table, drive, stage)
-        for _ in range(20):
-            stage = int(rng.integers(3))
-            table = search.tables[stage]
-            pair = int(rng.integers(len(table.z1)))
-            others = [t.log_ratio for t in search.tables]
-            reached = sum(float(rng.choice(o)) for o in others[:stage])
-            there, later = reached + table.log_ratio[pair], others[stage + 1 :]
-            low = math.log(train.lowest_ratio) - sum(o.max() for o in later)
-            if not low <= there <= math.log(train.highest_ratio) - sum(o.min() for o in later):
-                continue
-            torque = train.torque * math.exp(reached)
+        for table, pair, torque, row in some_torques(train, search.tables, drive, rng):
+            for module in range(len(table.modules)):
+                width = table.width(np.array([torque]), np.array([pair]), module).item()
+                assert drive.bisected[row, module] <= width * (1.0 + 1e-9)
+    assert np.isfinite(drive.bisected).any()
+    for end in range(2):  # of a cell, which holds the torques that are looked up in it
+        monkeypatch.setattr(RatedTable, "least_width", lambda *args, end=end: args[1][end])
+        ends = narrower(search.tables, drive, drive.step, lambda: True).bisected
+        for _, _, torque, row in some_torques(train, search.tables, drive, rng):
+            over = ends[row][np.isfinite(ends[row])] / torque
+            assert (over >= 1.0 - 1e-12).all() if end else (over <= 1.0 + 1e-12).all()
+    monkeypatch.setattr(together_search, "ENTRIES", drive.bisected.size - 1)
+    assert narrower(search.tables, drive, drive.step, lambda: True) is drive  # too many
+
+
+def some_torques(train, tables, drive, rng):
+    """Tables, pairs, torques [N mm] of trains with them, and rows where kernels look for these."""
+    for _ in range(20):
+        stage = int(rng.integers(len(tables)))
+        table, others = tables[stage], [t.log_ratio for t in tables]
+        pair = int(rng.integers(len(table.z1)))
+        reached = sum(float(rng.choice(o)) for o in others[:stage])
+        there, later = reached + table.log_ratio[pair], others[stage + 1 :]
+        low = math.log(train.lowest_ratio) - sum(o.max() for o in later)
+        if low <= there <= math.log(train.highest_ratio) - sum(o.min() for o in later):
             own = drive.start[stage] + pair
             cell = max(int(max(reached - 1e-9, 0.0) / drive.step) - drive.cell[own], 0)
             row = min(drive.row[own] + cell, drive.row[own + 1] - 1)
-            for module in range(len(table.modules)):
-                width = table.width(np.array([torque]), np.array([pair]), module).item()
-                bound = drive.bisected[row, module]
-                assert bound <= width * (1.0 + 1e-9)
-    assert np.isfinite(drive.bisected).any()
-    monkeypatch.setattr(together_search, "ENTRIES", drive.bisected.size - 1)
-    assert narrower(search.tables, drive, drive.step, lambda: True) is drive  # too many
+            yield table, pair, train.torque * math.exp(reached), row
 
 
 def assert_least_at_cells(table, drive, stage):
