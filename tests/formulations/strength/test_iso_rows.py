@@ -9,11 +9,13 @@ from campaigns import few
 from rated_drives import RACK, iso
 
 from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.strength.iso6336_rows import Box
 from gearopt.formulations.strength.rated import Load
 from gearopt.formulations.strength.widths import first_width
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.geometry.contact import usable_path
 from gearopt.physics.iso6336.case import Practice
+from gearopt.physics.iso6336.load_factors import limited, root_exponent, transverse_load_factor
 from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.iso6336.rating import rate
 from gearopt.physics.rating import Operation
@@ -130,6 +132,39 @@ def test_no_width_and_torque_of_a_box_use_less(kind, wide):
     assert wide != 1.01 or 1e6 * loose == pytest.approx(LOOSE.get(kind), abs=2.0)  # as measured
 
 
+def test_no_width_uses_less_near_the_main_resonance_at_one_torque():
+    """Light loads, of which the stiffness falls with the width, and with it N and its ranges."""
+    standard, helix = KINDS["spur"]
+    pair, width, torque, power, rng = pairs(helix, 6)
+    torque, wide = 0.1 * torque, 1.1
+    box = Box(standard, rows(standard, pair, (torque, torque), power).levels[0], (width, width))
+    power = power * rng.uniform(0.5, 1.2, COUNT) / box.resonance(0, box.singles[0])
+    found = rows(standard, pair, (torque, torque), power).used(width, width * wide)
+    for share in (0.0, 1.0, *rng.uniform(0.0, 1.0, (2, COUNT))):
+        one = exact(standard, pair, width * wide**share, torque, power)
+        assert np.all(found <= one * (1.0 + 1e-12))
+
+
+def test_the_least_root_load_may_be_within_a_box():
+    """W2^N_F K_alpha(W2) on a grid of line loads: least above the least one for some pairs."""
+    standard = iso((EH, EH), practice=replace(NEW, grades=(9.0, 9.0)))
+    pair, _, torque, power, rng = pairs(0.78, 7)
+    width = pair.normal_module * rng.uniform(5.0, 9.0, COUNT)
+    at = rows(standard, pair, (1e-3 * torque, 2e-3 * torque), 1e-3 * power).levels[0]
+    box = Box(standard, at, (width, 1.5 * width))
+    before = box.dynamic(0)
+    after = box.spread(0, before)
+    most = np.maximum(box.spread(1, box.dynamic(1)), after)
+    line = np.geomspace(after, most, 1001)
+    share = transverse_load_factor(box.mesh(box.singles[0]), at["deviation0"], line, box.total[0])
+    limit = box.total[0] / (at["contact"] * (0.25 + 0.75 / at["virtual"]))
+    loads = (line / before) ** root_exponent(width, at["depth"]) * limited(share, limit) * before
+    found = box.bent(before, after, box._transverse(after))
+    np.testing.assert_allclose(found, loads.min(axis=0), rtol=2e-8)
+    assert (found <= loads.min(axis=0) * (1.0 + 1e-12)).all()
+    assert (loads.argmin(axis=0) > 0).sum() > 30
+
+
 def test_it_is_the_rating_of_one_pair():
     """Against `rate`, the text of floats."""
     standard, helix = KINDS["tempered"]
@@ -191,6 +226,24 @@ def test_the_first_width_may_be_where_a_refusal_ends():
     np.testing.assert_allclose(pair.of_width(found).overlap_ratio, least, rtol=1e-11)
     assert (exact(iso(), pair, found, torque, power) < 1.0).all()
     assert np.isinf(exact(iso(), pair, found * (1.0 - 1e-9), torque, power)).all()
+
+
+@pytest.mark.parametrize("name", ["diameter", "wheel", "module", "width"])
+def test_sizes_at_which_deviations_jump_are_its_steps(name):
+    """One size of a pair is changed, from below the ranges of ISO 1328-1 to above them."""
+    standard = iso(practice=Practice(grades=(9.0, 9.0)))
+    size = np.geomspace(*{"module": (0.3, 80.0), "width": (2.0, 1500.0)}.get(name, (3, 2e4)), 2000)
+    sizes = {n: np.full(2000, 60.0) for n in ("diameter", "wheel", "width")}
+    sizes |= {"module": np.full(2000, 3.0), name: size}
+    racks = Toothing(0.0, (RACK, RACK))
+    pair = racks.of_diameter(sizes["module"], 20.0, sizes["diameter"], 1.0, sizes["width"])
+    wheel = replace(pair.wheel, reference_diameter=sizes["wheel"])
+    made = standard.case(replace(pair, wheel=wheel), 1.0, 1.0).deviations
+    rounded = np.array([made.base_pitch, made.profile_form, made.alignment]).round(12)
+    jumps = np.flatnonzero((np.diff(rounded) != 0.0).any(axis=0))
+    steps = np.array(standard.steps[name])
+    np.testing.assert_array_equal(np.searchsorted(size, steps) - 1, jumps)
+    assert iso(practice=NEW).steps == {}
 
 
 def test_thin_rims_are_refused():
