@@ -90,6 +90,10 @@ class Blank:
         hub = self.hub + HUB_TOLERANCE * d
         return choose(hub < root, choose(hub < d, yes, no), no)
 
+    def where(self, gear: Gear, rim: Any, bored: Any, solid: Any) -> Any:
+        """Return the value of the body that a gear has: with a rim, else bored, else solid."""
+        return self.where_rim(gear, rim, self.where_bore(gear, bored, solid))
+
     def volume(self, gear: Gear) -> Any:
         """Return (pi/4) b (d^2 - (1 - b_s/b)((d_f - 2 s_R)^2 - (h d_i)^2) - d_i^2) [mm3].
 
@@ -143,16 +147,19 @@ class Blank:
         return depth if depth >= 0.0 else None
 
     def backup(self, gear: Gear) -> Any:
-        """Backup ratio of the rim below the root: m_B = t_R/h_t; None of solid gears.
+        """Backup ratio of the rim below the root: m_B = t_R/h_t; None of solid gears."""
+        if not (self.has_rim or self.bore):
+            return None
+        return self.where(gear, *self.backups(gear))
+
+    def backups(self, gear: Gear) -> tuple[Any, Any, Any]:
+        """Backup ratios t_R/h_t of the bodies of `where`, whether they fit or not.
 
         t_R: the rim, or the wall around a bore; h_t: the whole depth of the teeth.
         """
-        if not (self.has_rim or self.bore):
-            return None
         depth = 0.5 * (gear.tip_diameter - gear.root_diameter)
         wall = 0.5 * (gear.root_diameter - self.bore) / depth
-        found = self.where_bore(gear, wall, THICK)
-        return self.where_rim(gear, self.rim(gear) / depth, found) if self.has_rim else found
+        return self.rim(gear) / depth if self.has_rim else wall, wall, THICK
 
     def web(self, gear: Gear) -> tuple[Any, Any] | None:
         """Return b_s/b and s_R/m_n, b_s/b being 1 where the rim does not fit; None: no web."""
@@ -162,8 +169,11 @@ class Blank:
 
     def inner_diameter(self, gear: Gear) -> Any:
         """Return the diameter [mm] inside which no mass moves with the teeth: of rim, or bore."""
-        found = self.where_bore(gear, self.bore, 0.0)
-        return self.where_rim(gear, self.inside(gear), found) if self.has_web else found
+        return self.where(gear, *self.inner_diameters(gear))
+
+    def inner_diameters(self, gear: Gear) -> tuple[Any, Any, Any]:
+        """Inner diameters [mm] of the bodies of `where`, whether they fit or not."""
+        return self.inside(gear) if self.has_web else self.bore, self.bore, 0.0
 
     def body(self, gear: Gear) -> Body:
         """Return the dimensions of one gear, of floats."""

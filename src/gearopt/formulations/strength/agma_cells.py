@@ -59,13 +59,10 @@ def needed(standard: "Agma", cells: Cells, safety: tuple[float, float]) -> tuple
 
 def _rims(standard: "Agma", cells: Cells) -> tuple[Any, Any]:
     """Return the least K_B, which falls with the backup ratio."""
-    ratios: list[Any] = [
-        standard.case(pair, 1.0, 1.0, {}).practice.backup for pair in cells.blanks()
-    ]
     law = factors.rim_factor if standard.practice.edition == "D04" else factors.rim_factor_b88
     first, second = (
-        1.0 if ratios[0][k] is None else law(np.maximum.reduce([r[k] for r in ratios]))
-        for k in (0, 1)
+        law(cells.of_bodies(blank, k, blank.backups)[UPPER])
+        for k, blank in enumerate(standard.blanks)
     )
     return first, second
 

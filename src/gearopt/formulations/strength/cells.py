@@ -9,8 +9,10 @@ import numpy as np
 
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.optimise.terms import Array
-from gearopt.physics.gears import GearPair
+from gearopt.physics.blanks import Blank
+from gearopt.physics.gears import Gear, GearPair
 
+Law = Callable[[Gear], tuple[Any, Any, Any]]
 LOWER, UPPER = 0, 1
 NUDGE = 1e-11  # relative
 
@@ -52,16 +54,31 @@ class Cells:
         wheel = replace(made.wheel, reference_diameter=self.wheel[end] * inside)
         return replace(made, wheel=wheel)
 
-    def blanks(self) -> list[GearPair]:
-        """Pairs of all ends of modules and diameters: a quantity monotone in both is within."""
-        found = []
-        for module in self.module:
-            for end in (LOWER, UPPER):
-                d, ratio = self.diameter[end], self.ratio[end]
-                made = self.toothing.of_diameter(module, self.teeth[end], d, ratio, 1.0)
-                wheel = replace(made.wheel, reference_diameter=self.wheel[end])
-                found.append(replace(made, wheel=wheel))
-        return found
+    def of_bodies(self, blank: Blank, member: int, law: Law) -> tuple[Any, Any]:
+        """Least and greatest value (n,) of a law of the blanks of a gear.
+
+        law(gear): of the bodies of `Blank.where`, each monotone in module and diameter, so that its
+        ends are at theirs; NaN: none. Bodies that no gear of a cell has are left out. As gears grow
+        and modules fall, what fits goes on to fit.
+        """
+        gears = []
+        for module, end in product(self.module, (LOWER, UPPER)):
+            d, ratio = self.diameter[end], self.ratio[end]
+            made = self.toothing.of_diameter(module, self.teeth[end], d, ratio, 1.0)
+            wheel = replace(made.wheel, reference_diameter=self.wheel[end])
+            gears.append((made.pinion, wheel)[member])
+        rims, bores = (
+            np.array([np.broadcast_to(where(g, True, False), self.module[0].shape) for g in gears])
+            for where in (blank.where_rim, blank.where_bore)
+        )
+        others = ~rims.all(axis=0)
+        there = rims.any(axis=0), others & bores.any(axis=0), others & ~bores.all(axis=0)
+        values = [
+            np.where(some, value, np.nan)
+            for gear in gears
+            for some, value in zip(there, law(gear), strict=True)
+        ]
+        return np.fmin.reduce(values), np.fmax.reduce(values)
 
     def teeth_alone(self, law: Callable[[GearPair], dict[str, Any]]) -> dict[str, Array]:
         """Ranges (2, n) by name of quantities that follow from the teeth alone.

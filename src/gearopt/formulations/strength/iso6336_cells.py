@@ -4,28 +4,29 @@ With s = W0/c', V1 = W1/c', V2 = W2/c' of the line loads W0 = F_t K_A K_gamma/b,
 W2 = W1 K_Hbeta [N/mm] all is a matter of lengths [mm]: deviations and deflections.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gearopt.formulations.strength.cells import LOWER, UPPER, Cells
 from gearopt.optimise.terms import Array
-from gearopt.physics.gears import GearPair
+from gearopt.physics.blanks import Blank
+from gearopt.physics.gears import Gear
 from gearopt.physics.iso6336 import bending_factors as bending
 from gearopt.physics.iso6336 import contact_factors as contact
 from gearopt.physics.iso6336 import load_factors as loads
 from gearopt.physics.iso6336 import running_in, stiffness
 from gearopt.physics.iso6336.accuracy import Deviations
-from gearopt.physics.iso6336.case import Case, Practice
+from gearopt.physics.iso6336.case import Case
 from gearopt.physics.iso6336.tooth_form import load_sharing
 
 if TYPE_CHECKING:
     from gearopt.formulations.strength.iso6336 import Iso6336
 
 GEARS = (0, 1)
-PICK = np.minimum, np.maximum
 ENDLESS = 1e9  # mm: of a deviation whose allowance is the greatest one
 
 
@@ -75,9 +76,23 @@ class IsoCells:
 
     @cached_property
     def _blank(self) -> tuple[Any, Any]:
-        """The least and the greatest C_R: monotone in d and in m_n, so at corners."""
-        made = [stiffness.mean_blank_factor(self._practice(p).webs) for p in self.cells.blanks()]
-        return np.minimum.reduce(made), np.maximum.reduce(made)
+        """The least and the greatest C_R, the mean of both gears."""
+
+        def law(blank: Blank, gear: Gear) -> tuple[Any, Any, Any]:
+            if not blank.has_rim:
+                return 1.0, 1.0, 1.0
+            part = blank.rim(gear) / gear.normal_module
+            return stiffness.blank_factor(blank.web_over_width, part), 1.0, 1.0
+
+        (low1, high1), (low2, high2) = self._bodies(law)
+        return 0.5 * (low1 + low2), 0.5 * (high1 + high2)
+
+    def _bodies(self, law: Callable[[Blank, Gear], tuple[Any, Any, Any]]) -> list[tuple[Any, Any]]:
+        """Least and greatest value of a law of bodies (`Cells.of_bodies`) of pinion and wheel."""
+        return [
+            self.cells.of_bodies(blank, k, partial(law, blank))
+            for k, blank in enumerate(self.standard.blanks)
+        ]
 
     @cached_property
     def deflection(self) -> tuple[Any, Any]:
@@ -132,27 +147,24 @@ class IsoCells:
             z, d = cells.teeth[end], cells.diameter[end]
             module = d * cells.toothing.cosine / z
             pair = cells.toothing.of_diameter(module, z, d, cells.ratio[end], 1.0)
-            rows = zip(inner[1 - end], pair.gears, strict=True)
-            first, second = (part * stiffness.mean_diameter(gear) for part, gear in rows)
+            rows = zip(inner, pair.gears, strict=True)
+            first, second = (part[1 - end] * stiffness.mean_diameter(gear) for part, gear in rows)
             mass = stiffness.reduced_mass(pair, densities, (first, second))
             stiff = self.mesh(1 - end) * self.single(1 - end, 1 - end)
             speed = standard.loads[0].speed * cells.speed[end]
-            pace = speed * z * np.sqrt(np.maximum(mass, 0.0) / stiff)
+            pace = speed * z * np.sqrt(mass / stiff)
             found.append(np.where(np.isfinite(pace), pace, 0.0 if end == LOWER else np.inf))
         return found[0], found[1]
 
-    def _practice(self, pair: GearPair) -> Practice:
-        return self.standard.case(pair, 1.0, 1.0).practice
+    def _inner_parts(self) -> list[tuple[Any, Any]]:
+        """Return d_i/d_m of pinion and wheel, at least and at most."""
 
-    def _inner_parts(self) -> tuple[list[Any], list[Any]]:
-        """Return d_i/d_m of pinion and wheel, at least and at most; monotone in d and in m_n."""
-        made = []
-        for pair in self.cells.blanks():
-            bores = self._practice(pair).bores
-            rows = zip(bores, pair.gears, strict=True)
-            made.append([bore / stiffness.mean_diameter(gear) for bore, gear in rows])
-        least, most = ([pick.reduce([m[k] for m in made]) for k in GEARS] for pick in PICK)
-        return least, most
+        def law(blank: Blank, gear: Gear) -> tuple[Any, Any, Any]:
+            mean = stiffness.mean_diameter(gear)
+            rim, bored, solid = (np.clip(d / mean, 0.0, 1.0) for d in blank.inner_diameters(gear))
+            return rim, bored, solid
+
+        return self._bodies(law)
 
     @cached_property
     def dynamic(self) -> Any:
@@ -364,12 +376,9 @@ class IsoCells:
         """Return the least Y_B, which falls with the backup ratio."""
         if "Y_B" in self.given:
             return _of(self.given["Y_B"], member)
-        pairs = self.cells.blanks()
-        backups: list[Any] = [self._practice(p).backup[member] for p in pairs]
-        if backups[0] is None:
-            return 1.0
-        found = bending.rim_factor(np.fmax.reduce(backups))
-        return np.where(np.isfinite(found), found, 1.0)
+        blank = self.standard.blanks[member]
+        backup = self.cells.of_bodies(blank, member, blank.backups)[UPPER]
+        return np.where(backup > 0.5, bending.rim_factor(backup), 1.0)
 
 
 def _of(value: Any, member: int) -> Any:
