@@ -75,8 +75,10 @@ def test_picks_are_scaled_by_ideal_and_nadir():
     flat = scaled(np.array([[1.0, 7.0], [3.0, 7.0]]))
     assert flat == pytest.approx(np.array([[0.0, 0.0], [1.0, 0.0]]))
     assert [neighbours(values, k) for k in range(4)] == [[1], [0, 2], [1, 3], [2]]
-    circle = np.array([[0.0, 2.0, 1.0], [1.0, 0.0, 2.0], [2.0, 1.0, 0.0], [3.0, 3.0, 3.0]])
-    assert [neighbours(circle, k) for k in range(4)] == [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]
+    cloud = np.random.default_rng(1).random((12, 3))
+    places = cloud.argsort(axis=0).argsort(axis=0)
+    beside = (np.abs(places[:, None] - places) == 1).any(axis=2)
+    assert [neighbours(cloud, k) for k in range(12)] == [np.flatnonzero(b).tolist() for b in beside]
 
 
 def test_an_objective_of_many_decades_is_measured_in_them():

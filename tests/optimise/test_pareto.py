@@ -11,8 +11,9 @@ import gearopt
 from gearopt import Budget, Conic, Front, Param, Problem, SolveError, Terms, Var
 from gearopt.optimise import polish
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.pareto import enumerated
+from gearopt.optimise.pareto import enumerated, evolution
 from gearopt.optimise.pareto.corners import corners, useful, weighed
+from gearopt.optimise.pareto.found import Found, Point
 from gearopt.optimise.pareto.measures import (
     hypervolume,
     igd,
@@ -132,11 +133,21 @@ def test_evolution_ends_with_its_watcher():
     assert front.status == "limit" and front.evaluations == 8
 
 
+def test_points_of_evolution_are_improved_at_their_other_objectives(monkeypatch):
+    x = np.array([1.5, 0.2])
+    first = Point(x, discs().batch(x[None]).F[0])
+    monkeypatch.setattr(evolution, "front", lambda *_: Found((first,), evaluations=90))
+    (best,) = gearopt.pareto(discs(), method="hybrid", points=4).points
+    assert best.values[1] == pytest.approx(first.values[1], rel=1e-6)
+    assert best.values[0] == pytest.approx((math.sqrt(5.0) - first.values[1] ** 0.5) ** 2, rel=1e-6)
+
+
 def test_a_limit_on_an_objective_cuts_the_front_and_an_impossible_one_is_proven():
     front = gearopt.pareto(product(), points=5, most={"a": 2.0})
     assert values(front)[:, 0].max() == pytest.approx(2.0, rel=1e-6)
     nothing = gearopt.pareto(product(), points=5, most={"a": 2.0, "b": 0.4})
     assert nothing.status == "infeasible" and not nothing.points
+    assert nothing.message == "no design meets these together: most_b, most_a"
     assert nothing.impossible[0].proven and nothing.hypervolume is None and nothing.corner == ()
 
 

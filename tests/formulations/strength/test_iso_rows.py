@@ -9,8 +9,9 @@ from campaigns import few
 from rated_drives import RACK, iso
 
 from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.strength import ALLOWANCE
 from gearopt.formulations.strength.iso6336_rows import Box
-from gearopt.formulations.strength.rated import Load
+from gearopt.formulations.strength.rated import IndexRows, Load
 from gearopt.formulations.strength.widths import first_width
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.geometry.contact import usable_path
@@ -194,6 +195,7 @@ def test_borders_are_where_another_law_begins():
     stepped = np.isin(ends, (10.0, 20.0, 40.0, 80.0, 160.0, 250.0, 400.0, 650.0, np.inf))
     assert (~stepped).sum() > 50
     np.testing.assert_allclose(ratio[~stepped], 2.0)
+    assert (ratio[~stepped] <= 2.0).all()  # the law before still holds there
 
 
 def undercut():
@@ -213,6 +215,12 @@ def test_a_narrow_pair_is_refused_until_its_overlap_suffices():
         expected = exact(iso(), pair, at, torque, power)
         np.testing.assert_allclose(made.used(at, at), expected, rtol=1e-12)
         assert np.isinf(expected).any() == (width < 40.0)
+
+
+def test_a_width_carries_whose_excess_is_rounding():
+    rows = [IndexRows(np.array([1.0, 1.0 + ALLOWANCE, 1.5, 3.0]))]
+    found = first_width(rows, np.ones(4), np.full(4, 2.0))
+    assert found.tolist() == [1.0, 1.0, pytest.approx(1.5, rel=1e-11), np.inf]
 
 
 def test_the_first_width_may_be_where_a_refusal_ends():

@@ -320,3 +320,7 @@ def test_a_line_lies_above_the_values_it_bounds(count):
     line = agma_floor._line(teeth, values, gain)
     above = line.constant - line.slope / teeth
     assert (above >= values * gain).all() and above[0] <= 1.3 * values[0] * gain[0]
+    inverse = line.inverse(teeth)
+    assert (inverse <= (1.0 + 1e-15) / above).all() and inverse == pytest.approx(
+        1.0 / above, rel=1e-3
+    )
