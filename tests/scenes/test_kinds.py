@@ -4,6 +4,7 @@ import re
 import sys
 
 import pytest
+from pydantic import ValidationError
 
 import gearopt.scenes
 from gearopt.errors import SceneError, SolveError
@@ -32,6 +33,13 @@ def test_a_kind_that_cannot_be_imported_is_named_and_leaves_the_others_alone(tmp
     with pytest.raises(SolveError, match="kind 'broken' cannot be imported: .*nothing"):
         read(b'gearopt = 1\nkind = "broken"\n')
     assert "gearopt.scenes.broken" not in sys.modules
+
+
+def test_a_scene_and_its_tables_are_frozen():
+    _, scene = read(kind_named("drive").example.text.encode())
+    for table, key in ((scene, "duty"), (scene.duty, "power")):
+        with pytest.raises(ValidationError, match="frozen"):
+            setattr(table, key, None)
 
 
 def test_every_reader_takes_its_example_and_what_it_returned():

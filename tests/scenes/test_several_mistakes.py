@@ -285,6 +285,7 @@ def test_terms_of_the_field_are_answered_by_their_meaning(head, line, said):
         ('input_speed = "1.450 U/min"', 'Write "1450 rpm" or "1.45 rpm"'),
         ('input_speed = "1.450,5 U/min"', 'Write input_speed = "1450.5 rpm"'),
         ('input_speed = "1\'450 rpm"', 'Write input_speed = "1450 rpm"'),
+        ("power = 750", 'power needs a unit (W, kW, MW, hp, PS). Write power = "750 W"'),
         ("ratio = 0.333", "input and output exchanged. Write ratio = 3.003"),
         ('ratio = "1:20"', "input and output exchanged. Write ratio = 20"),
         ('ratio = "20:1"', "is written with a colon. Write ratio = 20"),
@@ -354,7 +355,7 @@ def test_a_decimal_comma_and_single_brackets_are_named(right, written, remedy):
     [
         ("time", "20000 h", "20.000 h", ("20000 h", "20 h")),
         ("speed", "1450 rpm", "1.450 rpm", ("1450 rpm", "1.45 rpm")),
-        ("power", "7.5 kW", "7.500 W", ("7500 W", "7.5 W")),
+        ("power", "7.5 kW", "75.000 W", ("75000 W", "75 W")),
         ("speed", "1450 rpm", "1.457 rpm", None),
         ("time", "20000 h", "20.5 h", None),
         ("power", "7.5 kW", "1.450 kW", None),

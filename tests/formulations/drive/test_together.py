@@ -229,7 +229,9 @@ def test_bearings_longer_than_the_gap_may_reach_past_a_narrow_gear_and_are_refus
         shafts = tuple(Shaft(r, r + 5.0, wide) for r in (8.0, 15.0, 22.5, 35.0))
         return lambda pairs: Gearbox(pairs, shafts, slabs=IN_ORDER, partial=True)
 
-    numbers(train, make(gap))
+    for wide in (0.0, 0.5, gap):
+        bearings = numbers(train, make(wide))[0].bearing[:, 0]
+        assert bearings.tolist() == ([13.0, 20.0, 27.5, 40.0] if wide else [0.0] * 4)
     with pytest.raises(SolveError, match="bearings beside gears"):
         numbers(train, make(gap + 1.0))
 
@@ -470,21 +472,36 @@ def test_widths_by_cells_of_torque_are_those_of_their_lower_ends(monkeypatch):
     )
     monkeypatch.setattr(tables, "ENTRIES", 2)
     assert tables._loads(train, [table])[1] == pytest.approx(np.full((3, 1), 1e-3 * train.torque))
+    table.z1 = np.ones(0)  # no pair is possible
+    assert tables._loads(train, [table])[1].shape == (0, 1)
+
+
+def test_widths_of_a_cell_are_the_least_of_it_and_those_behind_it_of_its_pair():
+    cells = np.array([1, 4, 2])
+    row = np.concatenate([[0], np.cumsum(cells)])
+    widths = np.random.default_rng(0).random((row[-1], 3))
+    ends = np.repeat(row[1:], cells)
+    least = [widths[start:stop].min(axis=0) for start, stop in enumerate(ends)]
+    search._hold_stronger(widths, row, cells)
+    assert np.array_equal(widths, least)
 
 
 def test_real_valued_layouts_keep_clearances_and_bounds():
     train = elevator()
-    make = frame(train, (10.0, 17.5, 30.0), motor=60.0)
+    make = frame(train, (10.0, 17.5, 30.0), motor=60.0, width=200.0)
     pairs = train.pair(0, 2.0, 21, 128, 25.0), train.pair(1, 3.0, 24, 85, 50.0)
     box = make(pairs)
     rows = continuous._apart(box, [], ([0.0, 100.0, 80.0], [10.0, 30.0, 70.0]))
     need = 60.0 + 30.0 + box.clearances.shafts
     assert rows == {"motor_to_output": pytest.approx(2.0 - (80.0**2 + 60.0**2) / need**2)}
     posed = continuous.problem(train, make, ((0,), (1,)), (pairs, (-0.7, -1.5)))
-    (slab,) = (v for v in posed.variables if v.name == "slab")
+    slab, wide = (next(v for v in posed.variables if v.name == n) for n in ("slab", "width"))
     assert slab.guess == (25.0, 50.0) and slab.lower == pytest.approx(1e-4 * slab.upper)
     start = posed.batch(posed.bounds()[2][None])
     walls = {r.name: start.G[0, k] for k, r in enumerate(posed.rows.inequalities)}
+    assert walls["given_width"] == pytest.approx(wide.guess / 200.0)
+    tied = np.array([0.6 * 42.0 / 25.0, 0.75 * 72.0 / 50.0]) / train.stages[0].toothing.cosine
+    assert [v for n, v in walls.items() if n.startswith("slab[")] == pytest.approx(tied)
     for side in ("low_y", "high_y", "low_z", "high_z"):  # each touches a body
         there = [v for n, v in walls.items() if n.startswith(side)]
         assert max(there) == pytest.approx(1.0) and min(there) < 0.9

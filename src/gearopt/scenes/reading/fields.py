@@ -43,7 +43,7 @@ _SLIP = re.compile(rf"\s*{_NUMBER}\s*((?![eE][+-]?[0-9])[^\s\d.,].*?|1/\S+)?\s*"
 class Table(BaseModel):
     """A table of a problem file: frozen, unknown keys refused."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
+    model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 @dataclass(frozen=True)
