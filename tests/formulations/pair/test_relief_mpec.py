@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from relief_pairs import COUPLING, mesh
 
+from gearopt.formulations.pair.relief import relief_mpec
 from gearopt.formulations.pair.relief.parametric import Ranges, at_point, problem
 from gearopt.formulations.pair.relief.relief_mpec import (
     HOMOTOPY,
     MICRO,
+    STARTS,
     _point,
     _removed,
     complementarity,
@@ -44,6 +46,20 @@ def test_the_rounded_beginning_of_a_relief():
     row = SimpleNamespace(tip00=2.0, tip10=0.0, tip01=0.0, tip11=5.0)
     assert _removed(x, p, row, 0, (1.0, 2.0)) == pytest.approx(8.0 * 5e-4 + 3.0, abs=2e-6)
     assert _removed(x, p, row, 1, (1.0, 2.0)) == pytest.approx(8.0 + 3.0 * 2.5e-7, abs=3e-6)
+
+
+def test_the_best_of_several_starts_is_kept(monkeypatch):
+    made = mesh((1.0,), COUPLING, 12)
+    ranges = Ranges.of(made, 1.0)
+    posed = problem(made, ranges)
+    low, high, _ = posed.bounds()
+    starts = low + (high - low) * np.random.default_rng(0).uniform(0.1, 0.9, (STARTS, 4))
+    values = posed.batch(starts).F[:, 0]
+    starts = starts[values.argsort()[[2, 0, 3, 1]]]
+    monkeypatch.setattr(relief_mpec, "_followed", lambda posed, x, clock: x)
+    monkeypatch.setattr(relief_mpec, "_starts", lambda *_: iter([*starts, None]))
+    found = relief_mpec.local(made, ranges.exponents)(posed, Budget(), 0, None)
+    assert found.x == pytest.approx(starts[1], rel=1e-12)
 
 
 @pytest.mark.slow
