@@ -132,6 +132,8 @@ def test_a_gap_is_narrowed_by_what_steps_found():
     assert not still.shut
     (other, _) = gaps(line, [Tried(2.0, 9.0)], ranges)  # a step that leads back, but proves nothing
     assert other.whole and other.refused == (2.0,)
+    (less, _) = gaps(line, [Tried(2.0, 9.0, 8.0)], ranges)  # a bound that leaves room
+    assert less.whole and less.refused == (2.0,)
     (passed, _) = gaps(line, [Tried(1.0, None), Tried(2.0, 9.0, 9.0)], ranges)
     assert passed.refused == ()  # below what is known to be empty
     assert ranked([]) == []
@@ -149,6 +151,8 @@ def test_strips_are_what_the_bounds_of_steps_leave_open():
     looser = strips([*tried, Tried(2.0, 9.0, 5.0)], 0.0, math.inf, values, ranges)
     assert [s.worse for s in looser] == pytest.approx([0.0, 0.29, 0.1, 1 / 9])
     assert looser[1].missing == pytest.approx(4 / 9)
+    near = np.array([[9.0, 2.0 + 5e-6], [1.0, 2.0 + 2e-5]])  # up to 1e-5 counts as at most 2
+    assert strips([Tried(2.0, 9.0, 0.0)], 0.0, 2.0, near, ranges)[0].missing == 1.0
     assert strips(tried[1:], 0.0, 20.0, values, ranges)[-1].worse == math.inf  # no step above 3
     assert strips(tried, -math.inf, 9.0, values, ranges)[0].worse == math.inf  # least g not known
     empty = strips([Tried(5.0, None, math.inf), *tried], 0.0, math.inf, values, ranges)

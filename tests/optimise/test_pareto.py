@@ -160,6 +160,7 @@ def test_three_objectives_by_a_grid_lie_on_the_known_surface():
     grid = tuple(Var(n, "", 0.5, 2.0, 1.0, log=True) for n in "xy")
     front = gearopt.pareto(Problem("three", grid, (), evaluate), points=20)
     assert values(front).prod(axis=1) == pytest.approx(1.0, abs=1e-6)
+    assert np.unique(values(front)[:, 2].round(5)) == pytest.approx([0.5, 1.0, 1.5, 2.0], abs=1e-4)
     assert front.status == "proven" and len(front.points) >= 17 and not front.impossible
     assert all(p.slopes is None or len(p.slopes) == 2 for p in front.points)
 
@@ -299,6 +300,9 @@ def test_a_limit_that_is_infinite_is_not_met():
     )
     front = gearopt.pareto(problem)
     assert front.status == "complete" and [p.values for p in front.points] == [(1, 1), (2, 0)]
+    assert front.proof["method"] == "enumeration" and front.evaluations == 6
+    empty = gearopt.pareto(problem, most={"f": 0.5})
+    assert empty.status == "infeasible" and empty.message == "no design meets all limits"
     one = Problem("pole", (n,), (), lambda x, p: Terms({"f": x.n}, {"a": 1 - 1 / x.n}))
     assert gearopt.solve(one, method="nsga2", budget=Budget(evaluations=500)).value == 1.0
 

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
 import pytest
@@ -12,13 +13,13 @@ from gearopt.formulations.drive import sizing, sizing_text, teeth
 from gearopt.formulations.drive.rated import bound as rated_bound
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength import RATED
+from gearopt.formulations.strength import RATED, agma_smooth
 from gearopt.formulations.strength.rated import Box, Load, Option
 from gearopt.optimise.form import form
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 from gearopt.physics.agma import factors
-from gearopt.physics.agma.rating_factors import Practice, Steel
+from gearopt.physics.agma.rating_factors import Practice, Steel, distribution
 from gearopt.physics.gears import Rack
 
 F = Fraction
@@ -194,6 +195,16 @@ def test_the_smooth_form_is_the_rating_of_its_regime():
         assert np.max(made, axis=0) == pytest.approx(exact, rel=1e-9)
         seen.add(regime)
     assert seen == {"spur", "low", "conventional"}
+
+
+@pytest.mark.parametrize("practice", [Practice(7.0), Practice(7.0, "precision", True, 0.175, True)])
+def test_the_largest_branch_of_load_distribution_is_the_factor(practice):
+    """Of narrow widths, to 17 inches, above, and above 40 inches, of slim pinions and wide ones."""
+    for diameter, width in product((40.0, 1200.0), (20.0, 300.0, 600.0, 1000.0, 1200.0)):
+        pair = Toothing(0.0, (SHARP, SHARP)).of_diameter(2.0, diameter / 2.0, diameter, 3.0, width)
+        spread = distribution(practice, width, pair.working_diameters[0])
+        branches = agma_smooth._distributions(practice, pair, spread)
+        assert max(branches.values()) == pytest.approx(1.0, rel=1e-9)
 
 
 @pytest.mark.slow

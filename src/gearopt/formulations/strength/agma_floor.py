@@ -326,7 +326,7 @@ def _line(teeth: Array, values: Array, gain: Array | float = 1.0) -> Line:
     """
     values, gain = (np.broadcast_to(x, teeth.shape) for x in (values, gain))
     product = values * gain
-    if len(teeth) < 2 or teeth[-1] <= teeth[0] * (1.0 + MARGIN):
+    if teeth[-1] <= teeth[0] * (1.0 + MARGIN):
         return Line(float(np.max(product)) * (1.0 + MARGIN), 0.0)
     slope = max(0.0, float((product[-1] - product[0]) / (1.0 / teeth[0] - 1.0 / teeth[-1])))
     above = values[1:] * gain[:-1] + slope / teeth[:-1]
