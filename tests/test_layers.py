@@ -138,17 +138,23 @@ def test_files_are_one_idea_long():
 
 
 HEAVY = ("pint", "numba", "cvxpy", "pymoo", "scipy", "plotly", "jinja2", "matplotlib")
-SERVO = tuple(f"gearopt.{name}" for name in ("scenes.servo", "formulations.servo"))
+OTHERS = tuple(
+    f"gearopt.{name}"
+    for name in (
+        *("scenes.servo", "formulations.servo", "scenes.drive.layout", "scenes.drive.explain"),
+        *("optimise.comparing.runs", "optimise.pareto.tradeoff", "optimise.spatial"),
+    )
+)
 
 
 def test_sizing_path_stays_light():
-    """`gearopt solve` of a drive imports none of the heavy libraries, and nothing of servo axes."""
+    """`gearopt solve` of a drive imports nothing heavy, and nothing of other questions."""
     problem = SRC.parents[1] / "problems" / "elevator.toml"
     code = (
         "import sys; sys.argv = ['gearopt', 'solve', sys.argv[1], '--json']\n"
         "from gearopt.__main__ import main\n"
         "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
-        f"print([m for m in {(*HEAVY, *SERVO)!r} if m in sys.modules], file=sys.stderr)"
+        f"print([m for m in {(*HEAVY, *OTHERS)!r} if m in sys.modules], file=sys.stderr)"
     )
     done = subprocess.run(
         [sys.executable, "-c", code, str(problem)], capture_output=True, text=True, check=True

@@ -44,8 +44,21 @@ __all__ = [
 ]
 
 
+_PLACES = {  # modules that hold names of `__all__`; `api` holds the others
+    "errors": ("CertificateError", "GearoptError", "SceneError", "SolveError"),
+    "optimise.comparing.comparison": ("Comparison",),
+    "optimise.conic.problem": ("Conic",),
+    "optimise.explaining.explanation": ("Explanation",),
+    "optimise.pareto.front": ("Front",),
+    "optimise.problem": ("Problem",),
+    "optimise.result": ("Budget", "Event", "Outcome", "Result"),
+    "optimise.solve": ("evaluate",),
+    "optimise.terms": ("Param", "Repeat", "Terms", "Var"),
+}
+
+
 def __getattr__(name: str) -> object:
-    """The version, or a name of `__all__`, from `gearopt.api`, which holds them all."""
+    """The version, or a name of `__all__`, from the module that holds it."""
     if name == "__version__":
         from importlib.metadata import version
 
@@ -54,7 +67,8 @@ def __getattr__(name: str) -> object:
         raise AttributeError(f"module 'gearopt' has no attribute {name!r}")
     from importlib import import_module
 
-    return getattr(import_module("gearopt.api"), name)
+    place = next((place for place, names in _PLACES.items() if name in names), "api")
+    return getattr(import_module(f"gearopt.{place}"), name)
 
 
 def __dir__() -> list[str]:

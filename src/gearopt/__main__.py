@@ -5,7 +5,7 @@ import io
 import os
 import sys
 
-LOADED = 50_000  # objects between two collections: what is loaded is kept, looking at it takes time
+LOADED = 200_000  # objects between two collections: what is loaded is kept, looking takes time
 
 
 def main() -> None:
@@ -21,6 +21,7 @@ def main() -> None:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # an ASCII terminal has no cubic millimetre
     gc.set_threshold(LOADED)
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # sought in all that is installed
     try:
         from gearopt.cli import run
 

@@ -1,6 +1,6 @@
 """The way in from Python: `load` a problem file; `solve` or `compare` a file, scene or problem.
 
-All that `import gearopt` offers is to be found here, imported or defined.
+What only some of these need is imported inside them: the command answers sooner.
 """
 
 import time
@@ -8,36 +8,32 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import NoneType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel
 
-from gearopt.errors import CertificateError, GearoptError, SceneError, SolveError  # noqa: F401
+from gearopt.errors import SolveError
 from gearopt.optimise.certified import GAP
 from gearopt.optimise.clock import Clock, of_others, tell_known, whole
-from gearopt.optimise.comparing.compare import compare as compare_methods
-from gearopt.optimise.comparing.comparison import Comparison
-from gearopt.optimise.comparing.fronts import compare_fronts
-from gearopt.optimise.comparing.runs import EVALUATIONS, SECONDS, SEEDS, Follow, Model, Plan
+from gearopt.optimise.comparing.plan import EVALUATIONS, SECONDS, SEEDS, Follow, Model, Plan
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.evaluation import elementwise
 from gearopt.optimise.explaining.explanation import Explanation
-from gearopt.optimise.maximised import explained_as_asked
 from gearopt.optimise.options import check, in_turn, named
-from gearopt.optimise.own_problems import solve_own
-from gearopt.optimise.pareto.front import Front
-from gearopt.optimise.pareto.tradeoff import Tradeoff, chosen_of, compared_methods, solved, traded
+from gearopt.optimise.pareto.objectives import Tradeoff, chosen_of, traded
 from gearopt.optimise.problem import Problem, one_objective
-from gearopt.optimise.result import Budget, Event, Outcome, Result, Watch, plain  # noqa: F401
-from gearopt.optimise.solve import evaluate  # noqa: F401
-from gearopt.optimise.terms import Param, Repeat, Terms, Var  # noqa: F401
+from gearopt.optimise.result import Budget, Result, Watch, plain
 from gearopt.optimise.workers import working
-from gearopt.scenes.explaining.explanations import explanation, without_design
+from gearopt.scenes.explaining.possible import without_design
 from gearopt.scenes.kind import Kind
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.inputs import inputs_of
 from gearopt.scenes.reading.load import FORMAT, bare, kind_named, kind_of
 from gearopt.scenes.reading.load import load as load_file
+
+if TYPE_CHECKING:
+    from gearopt.optimise.comparing.comparison import Comparison
+    from gearopt.optimise.pareto.front import Front
 
 File = str | Path | Mapping[str, Any] | BaseModel  # its path, its tables, or what `load` returns
 Changes = Mapping[str, Any] | None  # {key of a file: value}
@@ -98,6 +94,8 @@ def solve(
         _unchanged(what, changes)
         _only_of_files(what.name, top, prices)
         _check_slow(what, workers)
+        from gearopt.optimise.own_problems import solve_own
+
         with working(workers):
             return solve_own(what, method, budget, seed, watch, gap, start)
     _check_slow(what, workers)
@@ -152,6 +150,8 @@ def explain(
     SolveError as in `solve`.
     """
     from gearopt.optimise.explaining.explain import explain as explain_problem
+    from gearopt.optimise.maximised import explained_as_asked
+    from gearopt.scenes.explaining.explanations import explanation
 
     check(budget=budget, watch=watch)
     budget, watch = budget or Budget(), whole(watch)
@@ -170,6 +170,8 @@ def explain(
 
 def _with_prices(result: Result, scene: BaseModel, kind: Kind[Any], ask: Ask) -> Result:
     """A result with the sensitivities to every number of the file."""
+    from gearopt.scenes.explaining.explanations import explanation
+
     explained = explanation(kind, scene, ask, result)
     return replace(result, report=result.report | {"prices": explained.prices})
 
@@ -234,7 +236,7 @@ def compare(
     seconds: float = SECONDS,
     bound_from: str | None = None,
     watch: Follow | None = None,
-) -> Comparison:
+) -> "Comparison":
     """Compare methods on a problem file, its tables or scene, or a problem of your own.
 
     changes: of a file, as in `load`.
@@ -248,6 +250,8 @@ def compare(
     a method is unknown or none takes the problem, ValueError for a budget or number of seeds below
     1.
     """
+    from gearopt.optimise.comparing.compare import compare as compare_methods
+
     check(seeds=seeds, evaluations=evaluations, seconds=seconds, bound_from=bound_from, watch=watch)
     check(most=most)
     plan = Plan(evaluations, seconds, seeds)
@@ -287,8 +291,11 @@ def _fronts(
     plan: Plan,
     watch: Follow | None,
     bound_from: str | None,
-) -> Comparison:
+) -> "Comparison":
     """Compare methods of fronts, as `compare` does those of one objective."""
+    from gearopt.optimise.comparing.fronts import compare_fronts
+    from gearopt.optimise.pareto.tradeoff import compared_methods
+
     words = f"Front of {', '.join(name.replace('_', ' ') for name in names)}"
     first = pose(None)
     if first.others:
@@ -342,7 +349,7 @@ def pareto(
     seed: int = 0,
     watch: Watch | None = None,
     workers: int = 1,
-) -> Front:
+) -> "Front":
     """Return the Pareto front of two or three objectives: the designs that none dominates.
 
     changes: of a file, as in `load`.
@@ -355,6 +362,8 @@ def pareto(
     nsga2 and annealing. SceneError for a wrong file, SolveError where objectives or method
     do not fit.
     """
+    from gearopt.optimise.pareto.tradeoff import solved
+
     check(method=method, budget=budget, seed=seed, watch=watch, points=points, workers=workers)
     check(most=most, weights=weights)
     budget, watch, most = budget or Budget(), whole(watch), dict(most or {})

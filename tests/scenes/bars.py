@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from gearopt import Param, Problem, Terms, Var
-from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.result import Outcome
 from gearopt.optimise.solve import solve as solve_problem
 from gearopt.scenes.reading.fields import Table, number, quantity, whole

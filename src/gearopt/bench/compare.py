@@ -16,7 +16,7 @@ from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.optimise.comparing.compare import compare
 from gearopt.optimise.comparing.comparison import Comparison
-from gearopt.optimise.comparing.runs import Model, Plan
+from gearopt.optimise.comparing.plan import Model, Plan
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.gears import SERIES_I

@@ -26,8 +26,8 @@ from gearopt.cli.names import method_lists, method_words
 from gearopt.cli.reporting import answer, checked, compared, written
 from gearopt.cli.watching import following, reached, watching
 from gearopt.errors import GearoptError
-from gearopt.optimise.comparing.runs import EVALUATIONS, SEEDS, Progress
-from gearopt.optimise.comparing.runs import SECONDS as EACH
+from gearopt.optimise.comparing.plan import EVALUATIONS, SEEDS, Progress
+from gearopt.optimise.comparing.plan import SECONDS as EACH
 from gearopt.optimise.result import Budget, Result
 from gearopt.report.words import SECONDS, TOP_ON_PAGE
 

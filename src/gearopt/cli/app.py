@@ -2,7 +2,7 @@
 
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -10,9 +10,11 @@ from rich.console import Console
 from gearopt.cli.names import problem_files, system_words
 from gearopt.cli.watching import unbroken
 from gearopt.errors import GearoptError
-from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
 from gearopt.report.screen import Screen, harmless
+
+if TYPE_CHECKING:
+    from gearopt.optimise.pareto.front import Front
 
 HELP = "\n\n".join(
     (
@@ -97,7 +99,7 @@ def exit_code(result: Result) -> int:
     return EXIT[result.status]
 
 
-def front_code(front: Front) -> int:
+def front_code(front: "Front") -> int:
     """Return exit code of a Pareto front: without a design that of an impossible or open result."""
     if front.status == "infeasible":
         return EXIT[front.status]

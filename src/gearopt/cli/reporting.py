@@ -5,7 +5,7 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -24,15 +24,18 @@ from gearopt.cli.app import (
 from gearopt.cli.names import result_files
 from gearopt.cli.writing import Written, check_csv, check_html, write
 from gearopt.errors import GearoptError
-from gearopt.optimise.comparing.comparison import Comparison
-from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result, loads
 from gearopt.report.measures import METRIC, SYSTEMS, Measures
 from gearopt.report.words import again
 from gearopt.scenes.reading.files import LARGEST_KEPT, first_bytes
 
+if TYPE_CHECKING:
+    from gearopt.optimise.comparing.comparison import Comparison
+    from gearopt.optimise.pareto.front import Front
+
+    Kept = Result | Comparison | Front
+
 REASON_LENGTH = 200  # characters shown of what is wrong with a file
-Kept = Result | Comparison | Front
 HOW = "write one with `gearopt solve FILE --json > result.json`"
 
 
@@ -60,6 +63,8 @@ def report(
     units: Units = "metric",
 ) -> None:
     """Show a kept result, comparison or Pareto front again: on the terminal, as a page, as CSV."""
+    from gearopt.optimise.pareto.front import Front
+
     files = checked(html, csv, units, file)
     kept = _read(file)
     screen = console()
@@ -95,8 +100,11 @@ def _fault(odd: Exception) -> str:
     return "holds a value of the wrong type, or one that no result has"
 
 
-def _again(kept: Kept, screen: Console, files: Files) -> list[str]:
+def _again(kept: "Kept", screen: Console, files: Files) -> list[str]:
     """Show what was kept, write its files (never over its source); return lines about them."""
+    from gearopt.optimise.comparing.comparison import Comparison
+    from gearopt.optimise.pareto.front import Front
+
     if kept.file is not None:
         checked(files.html, files.csv, files.measures.name, Path(kept.file))
     if isinstance(kept, Comparison) and files.measures is not METRIC:
@@ -107,7 +115,8 @@ def _again(kept: Kept, screen: Console, files: Files) -> list[str]:
     return written(kept, files) if isinstance(kept, Result) else compared(kept, files)
 
 
-def _show(found: Kept, screen: Console, measures: Measures) -> None:
+def _show(found: "Kept", screen: Console, measures: Measures) -> None:
+    from gearopt.optimise.pareto.front import Front
     from gearopt.report.terminal import show, show_comparison, show_front
 
     if isinstance(found, Result):
@@ -118,7 +127,7 @@ def _show(found: Kept, screen: Console, measures: Measures) -> None:
         show_comparison(found, screen)
 
 
-def answer(found: Kept, as_json: bool, lines: list[str], measures: Measures = METRIC) -> None:
+def answer(found: "Kept", as_json: bool, lines: list[str], measures: Measures = METRIC) -> None:
     """Print an answer as JSON, or show it with lines about what was written."""
     if as_json:
         print_whole(found.to_json())
@@ -128,7 +137,7 @@ def answer(found: Kept, as_json: bool, lines: list[str], measures: Measures = ME
         print(line)
 
 
-def compared(found: Comparison, files: Files) -> list[str]:
+def compared(found: "Comparison", files: Files) -> list[str]:
     """Write the page and the table of a comparison, once both are made; a line for each."""
     from gearopt.report.pages.comparison import page, tables
 
@@ -136,7 +145,7 @@ def compared(found: Comparison, files: Files) -> list[str]:
     return _kept(files, made, {} if files.csv is None else tables(found))
 
 
-def traded(front: Front, files: Files) -> list[str]:
+def traded(front: "Front", files: Files) -> list[str]:
     """Write the page and the tables of a Pareto front, once all are made; a line for each."""
     from gearopt.report.pages.front import page, tables
 
@@ -201,8 +210,11 @@ def _make(folder: Path) -> None:
         raise GearoptError(f"--csv {folder}: {refused.strerror}") from refused
 
 
-def _read(file: Path) -> Kept:
+def _read(file: Path) -> "Kept":
     """Result, comparison or front that a file keeps; GearoptError for anything else."""
+    from gearopt.optimise.comparing.comparison import Comparison
+    from gearopt.optimise.pareto.front import Front
+
     try:
         text = first_bytes(file, LARGEST_KEPT)
         if len(text) > LARGEST_KEPT:

@@ -48,11 +48,11 @@ def watching(seconds: float, quiet: bool, measures: Measures = METRIC) -> Iterat
 
 def _tell(known: Result, seconds: float) -> None:
     """Print what is proven while its remedies are sought, for so many seconds, on stderr."""
-    from gearopt.report.answer import opening
+    from gearopt.report.headline import headline
 
     screen = Console(stderr=True, highlight=False)
     of_stages = replace(known, scene=known.scene or known.name)
-    screen.print(Text(opening(of_stages)))
+    screen.print(Text(headline(of_stages)))
     most = f" (at most {max(seconds, 1.0):.0f} s)" if seconds < LONGEST_SECONDS else ""
     words = f"Looking for changes with which a design exists{most}; Ctrl-C ends it."
     screen.print(Text(words), style="dim")

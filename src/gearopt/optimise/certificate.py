@@ -27,7 +27,6 @@ from gearopt.optimise.quadratic import natural
 from gearopt.optimise.result import FEASIBLE, Outcome, Result
 from gearopt.optimise.scale import gap as gap_of
 from gearopt.optimise.scale import is_known, measured, runaway, violation, way
-from gearopt.optimise.spatial import certificate as records
 from gearopt.optimise.stationarity import (
     ACTIVE_WITHIN,
     STATIONARY,
@@ -185,6 +184,8 @@ def _searched(
     problem: Problem, outcome: Outcome, before: Verdict, tolerance: float, worst: str
 ) -> Verdict:
     """Judge a point of spatial branch and bound: its records are gone through anew."""
+    from gearopt.optimise.spatial import certificate as records  # of this method alone
+
     assert outcome.x is not None
     bound = records.proven(problem, outcome.records)
     if not any(v.discrete for v, _ in problem.columns):
@@ -290,6 +291,8 @@ def _infeasible(problem: Problem, outcome: Outcome) -> Verdict:
     if outcome.proof:
         return Verdict("infeasible", proof=outcome.proof, message=outcome.message)
     if outcome.records:
+        from gearopt.optimise.spatial import certificate as records
+
         if records.proven(problem, outcome.records) < math.inf:
             return Verdict("failed", message="no feasible point found; impossibility is not proven")
         words = "no point of the box meets all limits"

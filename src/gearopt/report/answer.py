@@ -8,7 +8,7 @@ from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
 from gearopt.optimise.scale import gap
 from gearopt.report.explained import remedy_words
-from gearopt.report.headline import lead
+from gearopt.report.headline import headline, lead
 from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, Measures, gap_percent
 from gearopt.report.plots import TEXT, Figure, axis, layout, lines
@@ -31,7 +31,6 @@ from gearopt.report.words import (
     of_gears_first,
     sentence,
     series_of,
-    verdict,
 )
 from gearopt.scenes.reading.toml import toml_text
 
@@ -73,9 +72,7 @@ def decided(result: Result) -> str:
 
 def opening(result: Result) -> str:
     """The status and what decides the answer, in one sentence."""
-    return sentence(
-        f"{verdict(result)[0]}: {lead(result, pages_of_result(result).binding_limit(result))}"
-    )
+    return headline(result, pages_of_result(result).binding_limit(result))
 
 
 def summary(result: Result, measures: Measures) -> Section | None:

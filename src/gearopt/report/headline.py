@@ -12,7 +12,9 @@ from gearopt.report.words import (
     has_stages,
     limit_words,
     objective,
+    sentence,
     series_of,
+    verdict,
 )
 
 PROVEN = ("optimal", "stationary")  # where a limit that is reached decides
@@ -20,6 +22,11 @@ NAMED_FROM = 0.95  # of a limit; one used so far is named
 NAMED = 3  # limits that a sentence names, where more are reached it counts them
 RATIO_ENDS = ("ratio_low", "ratio_high")  # limits of one range
 GIVEN = ("common_divisor",)  # rules that every design of the file is at the end of
+
+
+def headline(result: Result, text: str = "") -> str:
+    """The status and what decides the answer, in one sentence; text: as of `lead`."""
+    return sentence(f"{verdict(result)[0]}: {lead(result, text)}")
 
 
 def lead(result: Result, text: str = "") -> str:

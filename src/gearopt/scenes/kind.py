@@ -13,9 +13,9 @@ from pydantic import BaseModel
 
 from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
-from gearopt.optimise.pareto.tradeoff import Tradeoff
+from gearopt.optimise.pareto.objectives import Tradeoff
 from gearopt.optimise.result import Result
 from gearopt.scenes.explaining.moves import Move
 from gearopt.scenes.explaining.possible import Possible

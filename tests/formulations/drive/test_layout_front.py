@@ -10,8 +10,8 @@ from gearboxes import gearbox
 from gearopt.errors import SolveError
 from gearopt.formulations.drive.layout import layout_front
 from gearopt.formulations.drive.layout.gearbox import SIDES, KeepOut
-from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.measures import unbeaten
+from gearopt.optimise.pareto.objectives import Limiting
 from gearopt.optimise.pareto.tradeoff import found
 
 FLOOR = KeepOut("floor", (-1e3, 1e3), (-1e3, -140.0))

@@ -15,7 +15,7 @@ from small_drives import drive
 
 from gearopt.formulations.drive import teeth
 from gearopt.formulations.drive.teeth import load_front
-from gearopt.optimise.pareto.epsilon import Limiting
+from gearopt.optimise.pareto.objectives import Limiting
 from gearopt.optimise.pareto.tradeoff import found
 from gearopt.optimise.result import Budget
 

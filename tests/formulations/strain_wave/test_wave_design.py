@@ -20,7 +20,7 @@ from gearopt.formulations.strain_wave.sharing import teeth_turned
 from gearopt.formulations.strain_wave.sizing import Passage, problem, variables
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.compare import compare
-from gearopt.optimise.comparing.runs import Model, Plan
+from gearopt.optimise.comparing.plan import Model, Plan
 from gearopt.optimise.pareto.tradeoff import found
 from gearopt.optimise.result import Budget, Outcome
 from gearopt.optimise.solve import run

@@ -14,7 +14,7 @@ from pydantic import Field
 from gearopt.formulations.drive import teeth
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.lewis import LEWIS
-from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.solve import run, solve
 from gearopt.physics.gears import MODULES, GearPair
 from gearopt.scenes.explaining.explanations import explanation

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from gearopt.formulations.drive.layout.layout_design import LayoutDesign
 from gearopt.formulations.drive.rating import DriveRating
-from gearopt.formulations.drive.train import Train
+from gearopt.formulations.drive.train import STEEL_DENSITY, Train
 from gearopt.formulations.pair.design import PairContact, PairRelief
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
@@ -19,7 +19,6 @@ from gearopt.physics.loads import pitch_line_velocity
 
 TOOL = ("addendum", "tool_addendum", "tool_tip_radius", "tool_protuberance")  # as in a `Rack`
 TEETH = ("profile_shift", "tip_alteration", "thickness_allowance_mm")  # as in a `Gear`
-STEEL_DENSITY = 7.85e-9  # t/mm3: EN 1991-1-1 table A.4 (to 78.5 kN/m3), Steel for Life Blue Book
 
 
 def gears_first(objective: str) -> str:

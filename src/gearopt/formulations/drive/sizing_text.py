@@ -244,8 +244,9 @@ def terms(
     for k, pair in enumerate(pairs):
         own = {name: each(getattr(numbers, name))[k] for name in train.by_stage}
         stage, option = train.stages[k], options[k] if options else 0
-        asked = np.unique(np.rint(option)).astype(int)
-        option = np.searchsorted(asked, np.rint(option))
+        chosen = np.rint(option).astype(int)
+        asked = np.flatnonzero(np.bincount(chosen.ravel()))  # np.unique would load numpy.ma
+        option = np.searchsorted(asked, chosen)
         for name in totals:
             worth = [shares(train, k, pair, numbers.density, one, name) for one in asked]
             totals[name] = totals[name] + _chosen(worth, option)

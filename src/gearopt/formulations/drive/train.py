@@ -28,6 +28,7 @@ OBJECTIVES = {  # name -> unit
 WEIGHTED = "weighted sum"  # of objectives, by the train's weights
 LENGTHS = ("sum_of_centre_distances", "total_length")  # objectives along the line of centres
 MASSES = ("mass", "cost")  # objectives of gears as heavy as their blanks
+STEEL_DENSITY = 7.85e-9  # t/mm3: EN 1991-1-1 table A.4 (to 78.5 kN/m3), Steel for Life Blue Book
 BY_WIDTH = ("gear_volume", *MASSES)  # objectives whose shares are proportional to b
 CHOICES = (  # of `Train.numbers`, those that limit what a stage may choose
     "width_low",

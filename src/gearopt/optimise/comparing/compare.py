@@ -14,15 +14,12 @@ from gearopt.optimise.certificate import Verdict
 from gearopt.optimise.certified import GAP
 from gearopt.optimise.clock import Clock, following, in_part, of_problem
 from gearopt.optimise.comparing.comparison import Comparison, Group, Row, Run, sample
+from gearopt.optimise.comparing.plan import Follow, Model, Plan, Progress
 from gearopt.optimise.comparing.runs import (
     KINDS,
     PATIENCE,
     WARM,
     Entry,
-    Follow,
-    Model,
-    Plan,
-    Progress,
     by_model,
     entered,
     warmed,

@@ -16,14 +16,11 @@ from gearopt.errors import GearoptError, SolveError
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.comparing.compare import BOUND_SECONDS, clipped, compared
 from gearopt.optimise.comparing.comparison import POINTS, Comparison, Group, Row, Run, sample
+from gearopt.optimise.comparing.plan import Follow, Model, Plan, Progress
 from gearopt.optimise.comparing.runs import (
     KINDS,
     WARM,
     Entry,
-    Follow,
-    Model,
-    Plan,
-    Progress,
     Runs,
     by_model,
     entered,
@@ -32,12 +29,12 @@ from gearopt.optimise.comparing.runs import (
 )
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.pareto import epsilon
-from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.found import Found, Step
 from gearopt.optimise.pareto.judged import status
 from gearopt.optimise.pareto.measures import hypervolume, igd, reference, unbeaten
+from gearopt.optimise.pareto.objectives import EPSILON, Limiting
 from gearopt.optimise.pareto.posed import posed
-from gearopt.optimise.pareto.tradeoff import EPSILON, METHODS, NSGA, SAMPLERS, default_method, found
+from gearopt.optimise.pareto.tradeoff import METHODS, NSGA, SAMPLERS, default_method, found
 from gearopt.optimise.problem import Batch, Problem
 from gearopt.optimise.result import Budget, Event
 from gearopt.optimise.scale import violation

@@ -12,24 +12,15 @@ from typing import Any, Protocol, TypeVar
 
 from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock
+from gearopt.optimise.comparing.plan import Follow, Model, Plan, Progress
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.pareto.found import Found
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome
 
 WARM = Budget(seconds=1.0, evaluations=256)  # two generations, eight moves of every chain
-EVALUATIONS, SECONDS, SEEDS = 20_000, 2.0, 25
 PATIENCE = 10.0  # times the seconds: the end of a run by evaluations whose evaluations are slow
 KINDS = ("equal_evaluations", "equal_time")
-
-
-@dataclass(frozen=True)
-class Model:
-    """A problem with its name for a reader, and the unit of its objective."""
-
-    problem: Problem | Conic
-    words: str = ""
-    unit: str = ""
 
 
 @dataclass(frozen=True)
@@ -94,30 +85,6 @@ def _own(method: str, declared: Any) -> Any:
     """Declaration of a module for a method: the same for all of them, or by name."""
     by_name = isinstance(declared, Mapping) and method in declared
     return declared[method] if by_name else declared
-
-
-@dataclass(frozen=True)
-class Plan:
-    """The budget of every run, and the number of seeds of random methods."""
-
-    evaluations: int = EVALUATIONS
-    seconds: float = SECONDS
-    seeds: int = SEEDS
-
-
-@dataclass(frozen=True)
-class Progress:
-    """Where a comparison is: runs done and in all, the present one, and the time left [s]."""
-
-    done: int
-    total: int
-    method: str
-    seed: int
-    left: float
-    event: Event | None = None
-
-
-Follow = Callable[[Progress], bool]
 
 
 @dataclass(frozen=True)

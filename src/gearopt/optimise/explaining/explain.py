@@ -20,7 +20,15 @@ from gearopt.optimise.explaining.exclusion import (
     named,
     possible,
 )
-from gearopt.optimise.explaining.explanation import Change, Explanation, Influence, Remedy
+from gearopt.optimise.explaining.explanation import (
+    DIGITS,
+    FEASIBILITY_MARGIN,
+    THERE,
+    Change,
+    Explanation,
+    Influence,
+    Remedy,
+)
 from gearopt.optimise.explaining.halving import Bracket, middles, take
 from gearopt.optimise.explaining.handles import (
     LOWER,
@@ -49,14 +57,10 @@ from gearopt.optimise.result import Budget, Outcome, Result, Watch
 from gearopt.optimise.solve import BOXES, PROVER, solve_within
 from gearopt.optimise.terms import Array, spread
 
-THERE = ("optimal", "stationary", "feasible")  # a design exists
 STEP = 1e-3  # relative, of the re-solves that check a sensitivity
 ZERO = 1e-9  # of the objective at the guess
 EASE = 0.01  # relative, of the step whose effect is reported
 FACTORS_IN_TURN = (1.02, 1.1, 1.3, 2.0, 4.0, 16.0, 256.0, 1e6)  # up to the first that suffices
-DIGITS = 6  # of a number that is proposed; rounded to relax the limit
-# a proposal asks for this much more than the factor found, to be feasible in doubles
-FEASIBILITY_MARGIN = 2e-7
 
 
 def explain(

@@ -9,7 +9,7 @@ start from points of evolution, too, so that no piece depends on the guess alone
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -35,6 +35,7 @@ from gearopt.optimise.pareto.gaps import (
     spread,
     strips,
 )
+from gearopt.optimise.pareto.objectives import Caps, Limiting
 from gearopt.optimise.pareto.posed import (
     Built,
     Limit,
@@ -72,22 +73,6 @@ SETTINGS = {
     "starts where nothing is proven": f"a neighbour, and {SAMPLED} evaluations of evolution",
 }
 
-Caps = dict[str, float]  # largest values of objectives that the user states
-
-
-@dataclass(frozen=True)
-class Limiting:
-    """How a kind of problem poses one objective under limits on others, for a method of its own.
-
-    problem(name, most): minimise one objective, others at most as large; variables are those of the
-    whole problem. names: objectives that may be limited. whole: there are finitely many designs, so
-    that steps from one to the next end where there is none.
-    """
-
-    problem: Callable[[str, Caps], Problem]
-    names: tuple[str, ...]
-    whole: bool = False
-
 
 @dataclass
 class Run:
@@ -105,7 +90,7 @@ class Run:
     caps: Caps
     clock: Clock
     method: str | None
-    limiting: "Limiting | None" = None
+    limiting: Limiting | None = None
     wanted: int = 0
     built: Built = field(default_factory=dict)
     points: list[Point] = field(default_factory=list)

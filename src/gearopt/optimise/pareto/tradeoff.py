@@ -1,8 +1,7 @@
-"""Several objectives of one problem, as a file or a user poses them, to their front by a method."""
+"""The front of several objectives of a problem, by a method, judged and measured."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from difflib import get_close_matches
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,18 +10,17 @@ from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.pareto import enumerated, epsilon, evolution, scalarised
-from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.found import Found, Point, sifted
-from gearopt.optimise.pareto.front import Front, Objective
+from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.pareto.judged import judged, united
+from gearopt.optimise.pareto.objectives import EPSILON, EXACT, Limiting, Tradeoff
 from gearopt.optimise.pareto.posed import Limit, posed
 from gearopt.optimise.problem import Batch, Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Watch
 from gearopt.optimise.scale import violation
 from gearopt.optimise.spatial.columns import columns
-from gearopt.optimise.terms import Array, Terms, Var
 
-EXACT, EPSILON, NSGA, ANNEALING, HYBRID = "exact", "epsilon", "nsga2", "annealing", "hybrid"
+NSGA, ANNEALING, HYBRID = "nsga2", "annealing", "hybrid"
 SAMPLERS: Mapping[str, Callable[..., Found]] = {
     NSGA: evolution.front,
     ANNEALING: scalarised.annealed,
@@ -133,61 +131,6 @@ def _feasible(problem: Problem, outcome: Outcome) -> list[Point]:
         if excess > FEASIBLE:
             raise SolveError(f"{problem.name}: a design of the front violates {worst}")
     return [Point(*both, proven=outcome.finished) for both in zip(x, batch.F, strict=True)]
-
-
-@dataclass(frozen=True)
-class Tradeoff:
-    """A problem, its objectives in order, and the design of a point as its file shows it.
-
-    limiting: how it is posed with one objective under limits on others, by a method of its own.
-    others: the same with other numbers of stages; the front is of all together. scope: the designs
-    that it is a front of, where these are not all.
-    """
-
-    problem: Problem | Conic
-    objectives: tuple[Objective, ...]
-    drawn: Callable[[Array], Mapping[str, Any]] | None = None
-    limiting: Limiting | None = None
-    others: tuple["Tradeoff", ...] = ()
-    scope: str = ""
-
-
-def impossible(of: str, names: Sequence[str], none: Outcome) -> Problem:
-    """Problem whose exact method claims a known fact: that there is no design."""
-    return Problem(
-        of,
-        (Var("x", "", 0.0, 1.0, 0.5),),
-        (),
-        lambda x, p: Terms(dict.fromkeys(names, x.x), {"none": 2.0 + x.x}),
-        methods={EXACT: lambda problem, budget, seed, watch: none},
-    )
-
-
-def traded(problem: Problem | Conic, names: Sequence[str] | None) -> Tradeoff:
-    """Return the objectives of a problem of one's own; by default all that it minimises."""
-    known = problem.objectives if isinstance(problem, Conic) else problem.rows.objectives
-    chosen = chosen_of(names or known, known, problem.name)
-    return Tradeoff(problem, tuple(Objective(name) for name in chosen))
-
-
-def chosen_of(names: Sequence[str] | None, known: Sequence[str], of: str) -> tuple[str, ...]:
-    """Return names of two or three objectives; SolveError lists those that there are."""
-    listed = ", ".join(known)
-    if not known:
-        raise SolveError(f"{of} has no objectives to weigh against each other: solve it instead")
-    if not names:
-        raise SolveError(f"name two or three objectives of {of}: {listed}")
-    for name in names:
-        if name not in known:
-            close = get_close_matches(name, known, 1)
-            meant = f" (did you mean {close[0]}?)" if close else ""
-            raise SolveError(f"{of} has no objective {name!r}{meant}; objectives: {listed}")
-    if len(set(names)) != len(names) or not 2 <= len(names) <= 3:
-        raise SolveError(
-            f"a front has two or three objectives, each once, not {', '.join(names)}; "
-            f"objectives of {of}: {listed}"
-        )
-    return tuple(names)
 
 
 def solved(

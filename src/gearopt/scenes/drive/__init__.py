@@ -1,23 +1,25 @@
 """kind = "drive": a multi-stage drive of cylindrical gears of minimum volume, mass or length.
 
 With a [teeth] table the answer has whole teeth and standard modules and is proven by exhaustion;
-without one, or by the method ipopt, sizes are continuous and proven by a dual bound.
+without one, or by the method ipopt, sizes are continuous and proven by a dual bound. What few files
+need (layout, rating, remedies) is imported where it is asked for: the command answers sooner.
 """
 
 from dataclasses import replace
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive.sizing import problem as real_valued
-from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.clock import Clock
+from gearopt.optimise.comparing.plan import Model
+from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.result import Result
-from gearopt.scenes.drive import layout, processes, sizing
-from gearopt.scenes.drive.explain.answers import influences, possible, remedies
+from gearopt.scenes.drive import processes, sizing
 from gearopt.scenes.drive.notes import assumptions
-from gearopt.scenes.drive.rating.rated import check_safe, rate, rated_afterwards, with_rating
 from gearopt.scenes.drive.scene import PROCESSES, Scene
 from gearopt.scenes.drive.sizing import SMOOTH, drive_of, takes_real_values, whole_teeth
 from gearopt.scenes.drive.trades import advice, objectives, to_choose, traded
 from gearopt.scenes.drive.without import without
+from gearopt.scenes.explaining.possible import Verdict
 from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.plan import Step, carried_out
 from gearopt.scenes.reading.ask import Ask, unseeded
@@ -29,11 +31,14 @@ def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
     """Gears, designs by the processes, their layout; then assumptions and the rating."""
     to_choose(scene)
     last: tuple[Step[Scene], ...] = (Step(with_assumptions, always=True), Step(rated, always=True))
-    if scene.layout is not None and scene.layout.together and scene.several:
+    if scene.layout is None:
+        return *sizing.steps(scene, ask), *processes.steps(scene, ask), *last
+    from gearopt.scenes.drive import layout
+
+    if scene.layout.together and scene.several:
         return Step(layout.of_best_count), *last
-    own = scene.layout is None
-    gears = *sizing.steps(scene, ask, own), *processes.steps(scene, ask, own)
-    return (*gears, *(() if scene.layout is None else layout.steps(scene)), *last)
+    gears = *sizing.steps(scene, ask, False), *processes.steps(scene, ask, False)
+    return *gears, *layout.steps(scene), *last
 
 
 def with_assumptions(scene: Scene, ask: Ask, known: Result | None) -> Result:
@@ -45,6 +50,10 @@ def with_assumptions(scene: Scene, ask: Ask, known: Result | None) -> Result:
 def rated(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Rating of the gears; CertificateError where it was to limit them and finds them unsafe."""
     assert known is not None
+    if known.value is None:
+        return known
+    from gearopt.scenes.drive.rating.rated import check_safe, rated_afterwards, with_rating
+
     result = with_rating(scene, known)
     check_safe(scene, result)
     return rated_afterwards(scene, result)
@@ -88,6 +97,8 @@ def posed(scene: Scene, method: str) -> Model:
         model = posed(scene.held(count), method)
         return replace(model, words=f"{model.words}, {count} stages (the best)")
     if scene.layout is not None:
+        from gearopt.scenes.drive import layout
+
         bare = without(scene, "layout")
         return layout.posed(scene, method, carried_out(steps(bare, Ask()), bare, Ask()))
     drive = drive_of(scene)
@@ -95,6 +106,34 @@ def posed(scene: Scene, method: str) -> Model:
         train = drive.train
         return Model(real_valued(train), "Real-valued teeth and modules", train.unit)
     return Model(whole_teeth(drive), "Whole teeth and standard modules", drive.train.unit)
+
+
+def rate(scene: Scene, ask: Ask) -> Result:
+    """Rating of gears that are all given: `rated.rate`."""
+    from gearopt.scenes.drive.rating.rated import rate as rate_given
+
+    return rate_given(scene, ask)
+
+
+def possible(scene: Scene, clock: Clock) -> Verdict:
+    """Whether a changed drive has a design: `answers.possible`."""
+    from gearopt.scenes.drive.explain import answers
+
+    return answers.possible(scene, clock)
+
+
+def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies | None:
+    """Remedies of an impossible drive: `answers.remedies`."""
+    from gearopt.scenes.drive.explain import answers
+
+    return answers.remedies(scene, clock, result, soon)
+
+
+def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
+    """Sensitivities of a possible drive: `answers.influences`."""
+    from gearopt.scenes.drive.explain import answers
+
+    return answers.influences(scene, ask, result)
 
 
 ABOUT = {  # files in examples, that of the kind first

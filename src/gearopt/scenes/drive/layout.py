@@ -21,7 +21,7 @@ from gearopt.formulations.drive.together import continuous
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.certified import limits, point_of, run
 from gearopt.optimise.clock import Clock, following, in_part
-from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped

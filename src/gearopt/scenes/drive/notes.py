@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from gearopt.formulations.drive.design import STEEL_DENSITY, drive_design
+from gearopt.formulations.drive.train import STEEL_DENSITY
 from gearopt.optimise.result import Result
 from gearopt.physics.gears import ISO_53_A, MEMBERS
 from gearopt.scenes.drive.rating.assumptions import every_gear, rating_assumptions, unused_materials
@@ -56,6 +56,8 @@ def with_notes(scene: Scene, result: Result, exact: bool) -> Result:
 def _noted(scene: Scene, result: Result, exact: bool) -> Result:
     if not result.design:
         return result
+    from gearopt.formulations.drive.design import drive_design
+
     design = drive_design(result.design)
     held = scene.held(len(design.stages))
     pairs = held.pairs(design)

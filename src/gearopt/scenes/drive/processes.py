@@ -4,13 +4,11 @@ from dataclasses import replace
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import teeth
-from gearopt.formulations.drive.design import describe
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.certified import run
 from gearopt.optimise.clock import in_part
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
-from gearopt.scenes.drive.rating.rated import with_rating
 from gearopt.scenes.drive.scene import PROCESSES, Scene
 from gearopt.scenes.drive.sizing import Drive, bare_drive, whole_teeth
 from gearopt.scenes.plan import Step
@@ -30,6 +28,8 @@ def _asked(scene: Scene) -> list[str]:
 
 def by_processes(drive: Drive, ask: Ask, best: Result | None) -> Result:
     """The exact answer with the designs of the processes as parts, under its bound."""
+    from gearopt.formulations.drive.design import describe
+
     assert best is not None
     if best.status == "infeasible":
         return best
@@ -53,6 +53,8 @@ def by_processes(drive: Drive, ask: Ask, best: Result | None) -> Result:
 
 def rated(scene: Scene, ask: Ask, best: Result | None) -> Result:
     """The answer whose designs by the processes are rated."""
+    from gearopt.scenes.drive.rating.rated import with_rating
+
     assert best is not None
     words = [name.replace("_", " ") for name in PROCESSES]
     parts = [with_rating(scene, part) if part.name in words else part for part in best.parts]

@@ -3,11 +3,10 @@
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
-from gearopt.formulations.drive.design import DriveDesign
 from gearopt.formulations.drive.layout.gearbox import Gearbox
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength import RATED, Law
@@ -49,6 +48,9 @@ from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
 from gearopt.scenes.reading.lists import span
+
+if TYPE_CHECKING:
+    from gearopt.formulations.drive.design import DriveDesign
 
 KEYS: dict[
     str, str | tuple[str, ...]
@@ -370,7 +372,7 @@ class Scene(Table):
         ends = {name: (name, None) for name in self.law.names} | ENDS
         return {n: tuple(place(k, *ends[n]) for k in range(len(stages))) for n in ends}
 
-    def pairs(self, design: DriveDesign) -> tuple[GearPair, ...]:
+    def pairs(self, design: "DriveDesign") -> tuple[GearPair, ...]:
         """Gear pairs of a design, with shifts, tools and centre distances of the file."""
         tables = self.held(len(design.stages)).stage_tables
         return tuple(

@@ -12,9 +12,8 @@ from gearopt.formulations.drive.layout.faults import faults
 from gearopt.formulations.drive.layout.gearbox import SIDES
 from gearopt.formulations.drive.layout.layout_text import read
 from gearopt.formulations.drive.layout.slabs import arrangements
-from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.tradeoff import Tradeoff, impossible
+from gearopt.optimise.pareto.objectives import Limiting, Tradeoff, impossible
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.layout_design import described, handed

@@ -6,7 +6,6 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing, sizing_text, teeth
-from gearopt.formulations.drive.design import describe
 from gearopt.formulations.drive.processes import ProcessOne, ProcessTwo, methods
 from gearopt.formulations.drive.train import MASSES, Train
 from gearopt.optimise.certificate import reconcile
@@ -209,6 +208,8 @@ def _solved(train: Train, ask: Ask, problem: Problem) -> Result:
     result = replace(result, objective=result.objective | {"unit": train.unit})
     if result.value is None or outcome.x is None:
         return result
+    from gearopt.formulations.drive.design import describe  # a design was found
+
     points, exact = (outcome.x, *outcome.others), problem.name == "teeth"
     if exact:
         gears = [teeth.gears(train, x) for x in points]

@@ -6,15 +6,12 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing, sizing_text, teeth
-from gearopt.formulations.drive.design import describe
 from gearopt.formulations.drive.teeth import load_front
 from gearopt.formulations.drive.train import OBJECTIVES, Train
-from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.tradeoff import EPSILON, EXACT, Tradeoff
+from gearopt.optimise.pareto.objectives import EPSILON, EXACT, Limiting, Tradeoff
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
-from gearopt.scenes.drive import sides
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.sizing import sized
 from gearopt.scenes.drive.without import without
@@ -26,7 +23,16 @@ def objectives(scene: Scene) -> dict[str, str]:
     to_choose(scene)
     names = {name: unit for name, unit in OBJECTIVES.items() if not _lacking(scene, name)}
     used = {load_front.UTILISATION: ""} if scene.teeth is not None else {}
-    return names | used | sides.objectives(scene)
+    return names | used | _of_box(scene)
+
+
+def _of_box(scene: Scene) -> dict[str, str]:
+    """Objectives of a front of the box: name and unit."""
+    if scene.layout is None:
+        return {}
+    from gearopt.scenes.drive import sides
+
+    return sides.objectives(scene)
 
 
 def to_choose(scene: Scene) -> None:
@@ -61,8 +67,10 @@ def traded(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
     With a [teeth] table it is of whole teeth, but for epsilon constraints, which are for
     real-valued sizes. Objectives of a box are those of gears that are sized first.
     """
-    boxed = [name for name in names if name in sides.objectives(scene)]
+    boxed = [name for name in names if name in _of_box(scene)]
     if boxed:
+        from gearopt.scenes.drive import sides
+
         if len(boxed) < len(names):
             raise SolveError(
                 f"{', '.join(boxed)} of the box and objectives of the gears are no front together: "
@@ -118,10 +126,15 @@ def _train(scene: Scene) -> Train:
 
 
 def _real(train: Train, x: Array) -> Mapping[str, Any]:
-    design: Mapping[str, Any] = untyped(describe(train, sizing_text.pairs(train, x)))
-    return design
+    return _described(train, sizing_text.pairs(train, x))
 
 
 def _whole(train: Train, x: Array) -> Mapping[str, Any]:
-    design: Mapping[str, Any] = untyped(describe(train, *teeth.gears(train, x)))
+    return _described(train, *teeth.gears(train, x))
+
+
+def _described(train: Train, *gears: Any) -> Mapping[str, Any]:
+    from gearopt.formulations.drive.design import describe
+
+    design: Mapping[str, Any] = untyped(describe(train, *gears))
     return design

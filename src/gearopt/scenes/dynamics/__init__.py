@@ -10,7 +10,7 @@ from gearopt.formulations.dynamics.motion.stability import UNSTABLE
 from gearopt.formulations.dynamics.motions_over_speed import over_speeds, rms_limited_by_backlash
 from gearopt.formulations.dynamics.orbit.task import pair_of
 from gearopt.optimise.clock import Clock, of_others
-from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.result import Result, versions

@@ -25,7 +25,7 @@ from gearopt.scenes.explaining.engine import FeasibilityQuestions, Group, single
 from gearopt.scenes.explaining.influences import Basis, Solved, influences, stepped
 from gearopt.scenes.explaining.moves import DUTY, LIMIT, Move
 from gearopt.scenes.explaining.numbers import Number, numbers, one_at
-from gearopt.scenes.explaining.possible import Possible, possible_by_solving
+from gearopt.scenes.explaining.possible import Possible, possible_by_solving, without_design
 from gearopt.scenes.kind import Kind
 from gearopt.scenes.plan import S
 from gearopt.scenes.reading.ask import Ask
@@ -60,11 +60,6 @@ def _impossible_with(ways: Remedies, result: Result, clock: Clock) -> Explanatio
     shown = replace(result, report={**result.report, **ways.drawn})
     known = ways.conflict, ways.remedies, (), (), ways.message
     return Explanation(shown, *known, clock.seconds, "", ways.any_resolves, ways.unsure)
-
-
-def without_design(result: Result) -> bool:
-    """Whether no design meets the limits, or none was found and how near one came is told."""
-    return result.status == "infeasible" or bool("nearest" in result.report and not result.design)
 
 
 def by_solving(kind: Kind[S], scene: S, ask: Ask, result: Result) -> Explanation:

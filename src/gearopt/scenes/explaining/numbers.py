@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import PydanticCustomError
 
-from gearopt.optimise.explaining.explain import DIGITS, FEASIBILITY_MARGIN
+from gearopt.optimise.explaining.explanation import DIGITS, FEASIBILITY_MARGIN
 from gearopt.scenes.reading.fields import Reads
 from gearopt.scenes.reading.toml import dotted, exact, toml_text
 from gearopt.units import Quantity

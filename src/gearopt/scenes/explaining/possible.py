@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.explaining.explain import THERE
+from gearopt.optimise.explaining.explanation import THERE
 from gearopt.optimise.result import Result
 
 S = TypeVar("S", contravariant=True)
@@ -42,3 +42,8 @@ def of_status(status: str) -> Verdict:
 def possible_by_solving(answer: Callable[[Any], Result]) -> Possible[Any]:
     """Answers by solving each changed file: answer(scene)."""
     return lambda scene, clock: of_status(answer(scene).status)
+
+
+def without_design(result: Result) -> bool:
+    """Whether no design meets the limits, or none was found and how near one came is told."""
+    return result.status == "infeasible" or bool("nearest" in result.report and not result.design)

@@ -29,7 +29,7 @@ from gearopt.formulations.packing.sa import lateness, ready
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock, in_part, of_others
-from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.explaining.repair import CERTAIN
 from gearopt.optimise.problem import Problem

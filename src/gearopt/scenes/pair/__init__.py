@@ -8,9 +8,9 @@ from gearopt.formulations.drive.design import DriveDesign, drive_design
 from gearopt.formulations.pair.contact import PairMesh
 from gearopt.formulations.pair.relief import parametric
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
-from gearopt.optimise.pareto.tradeoff import Tradeoff
+from gearopt.optimise.pareto.objectives import Tradeoff
 from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
 from gearopt.scenes import drive

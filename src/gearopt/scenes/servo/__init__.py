@@ -18,7 +18,7 @@ from gearopt.formulations.servo.servo_design import (
     train_figures,
 )
 from gearopt.optimise.clock import Clock, of_others
-from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result

@@ -41,12 +41,11 @@ from gearopt.formulations.strain_wave.swept_report import (
 )
 from gearopt.optimise.certified import point_of, run
 from gearopt.optimise.clock import Clock, of_others
-from gearopt.optimise.comparing.runs import Model
+from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Explanation
-from gearopt.optimise.pareto.epsilon import Limiting
 from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.tradeoff import Tradeoff
+from gearopt.optimise.pareto.objectives import Limiting, Tradeoff
 from gearopt.optimise.result import FEASIBLE, Budget, Result, versions
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
