@@ -22,10 +22,10 @@ from gearopt.optimise.spatial.step import Record, Stepper
 from gearopt.optimise.spatial.tree import Tree, searched
 from gearopt.optimise.terms import Array
 
-ENUMERATED = 0.5  # of a budget is for boxes of whole and listed values by intervals alone
+ENUMERATED, COUNTED = 0.5, 0.8  # of the seconds, of the boxes of a budget, are for intervals alone
 BOXES = 200_000  # of these where the budget names no end
-TRIED, CLOSING = 20_000, 0.4  # boxes after which no larger share of them may wait
-PER_EVALUATION = 100  # such boxes count as one: they take a hundredth of the time of others
+TRIED, WAITING = 20_000, 0.8  # boxes after which no more may wait for each that was halved
+PER_EVALUATION = 200  # such boxes count as one: they take that part of the time of others
 NARROW = (
     "boxes too narrow to be split are left, in which no point that meets all limits was found: a "
     "value down to {:.10g} is not excluded"
@@ -106,7 +106,7 @@ def _tried(incumbent: Incumbent, starts: list[Array]) -> None:
 def _enumerated(problem: Problem, clock: Clock, incumbent: Incumbent) -> Enumerated | None:
     """What an enumeration proves where all variables are whole or listed; None of others.
 
-    It may take ENUMERATED of the budget, as the certificate needs as long again.
+    It may take ENUMERATED of the seconds, as the certificate needs as long again.
     """
     form = enumeration.columns(problem)
     if not enumeration.takes(form):
@@ -114,7 +114,7 @@ def _enumerated(problem: Problem, clock: Clock, incumbent: Incumbent) -> Enumera
     boxes = Boxes(form)
     before, seconds, evaluations = clock.evaluations, clock.left.seconds, clock.left.evaluations
     late = math.inf if seconds is None else clock.seconds + ENUMERATED * seconds
-    most = BOXES if evaluations is None else ENUMERATED * evaluations * PER_EVALUATION
+    most = BOXES if evaluations is None else COUNTED * evaluations * PER_EVALUATION
 
     def judge(points: Array) -> None:
         clock.evaluations = before + math.ceil(boxes.made / PER_EVALUATION)
@@ -125,7 +125,7 @@ def _enumerated(problem: Problem, clock: Clock, incumbent: Incumbent) -> Enumera
         clock.bound = min(boxes.least, incumbent.cutoff)
 
     def goes_on() -> bool:
-        hopeless = boxes.made > TRIED and len(boxes.bound) > CLOSING * boxes.made
+        hopeless = boxes.made > TRIED and boxes.waiting > WAITING
         return clock.tell() and clock.seconds < late and boxes.made < most and not hopeless
 
     first = Boxes(form)

@@ -20,6 +20,7 @@ from gearopt.optimise.spatial.columns import columns as columns_of
 from gearopt.optimise.terms import Array
 
 SWEEPS = 2
+EASY = 10_000  # boxes after which it begins again, and tries all variables at each, not the widest
 CHUNK = 2600  # boxes times relations that are halved at once: 0.05 s
 DEPTH = 5  # times in succession
 KEPT = 1_000_000  # boxes that wait; beyond, the last ones are halved first, so that fewer wait
@@ -50,8 +51,8 @@ class Enumerated:
 class Boxes:
     """Boxes that wait, by the ends of the variables; it has state because they are halved.
 
-    low, high (N, n), bound (N,) of the objective; made: number of boxes so far; chunk: how many
-    are halved next.
+    low, high (N, n), bound (N,) of the objective; made: number of boxes so far, since: when it
+    began; chunk: how many are halved next; trials: variables that are tried at each.
     """
 
     form: Columns
@@ -59,24 +60,36 @@ class Boxes:
     high: Array = field(init=False)
     bound: Array = field(init=False)
     made: int = 1
+    since: int = 0
     chunk: int = 4
+    trials: int = 1
 
     def __post_init__(self) -> None:
-        form, n = self.form, self.form.variables
+        form = self.form
         self.kernel = kernel(f"{ROOM}.enumeration_kernel")
-        self.root = form.lower.copy(), form.upper.copy()
-        inside = not form.empty and form.propagated(*self.root, ROOT_SWEEPS)
-        self.low, self.high = (np.array(end[None, :n][:inside]) for end in self.root)
-        self.bound = self.root[0][[form.objective]][:inside]
-        ends = (np.empty((DEPTH + 1, len(form.lower))) for _ in range(2))
-        whole = (np.zeros(DEPTH, np.int64) for _ in range(2))
-        parts = (np.empty(DEPTH) for _ in range(2))
-        self.work = (*ends, *whole, *parts, np.zeros(len(form.lower), bool))
+        self.root = np.array([form.lower, form.upper])
+        inside = not form.empty and form.propagated(self.root[0], self.root[1], ROOT_SWEEPS)
+        self.begin(int(inside), self.root[0, form.objective])
+        width, levels = len(form.lower), np.zeros(DEPTH + 2, np.int64)
+        boxes, parts = (np.empty((k, 2, width)) for k in (len(levels), 4))
+        self.work = boxes, levels, parts, np.zeros(width, bool), np.zeros(width, bool)
+
+    def begin(self, count: int, bound: float) -> None:
+        """Let the whole box wait, or none, with its bound."""
+        self.low, self.high = (
+            np.array(end[None, : self.form.variables][:count]) for end in self.root
+        )
+        self.bound = np.full(count, bound)
 
     @property
     def least(self) -> float:
         """Least bound of the boxes that wait, inf where none does."""
         return float(self.bound.min()) if len(self.bound) else math.inf
+
+    @property
+    def waiting(self) -> float:
+        """How many boxes wait for each that was halved."""
+        return len(self.bound) * 2 * self.trials / max(1, self.made - self.since)
 
     def points(self) -> Array:
         """Boxes of a single point (N, n), which wait no longer."""
@@ -104,7 +117,11 @@ class Boxes:
         kept = self.bound < cutoff
         if not kept.all():
             self.low, self.high, self.bound = (a[kept] for a in (self.low, self.high, self.bound))
-        count, form = len(self.bound), self.form
+        form = self.form
+        if self.made > EASY and self.trials < form.variables:
+            self.trials, self.chunk, self.since = form.variables, 1, self.made
+            self.begin(min(1, len(self.bound)), self.least)
+        count = len(self.bound)
         some = min(self.chunk, count)
         if not some:
             return True
@@ -114,11 +131,12 @@ class Boxes:
         out = tuple(
             np.empty((some << DEPTH, *a.shape[1:])) for a in (self.low, self.high, self.bound)
         )
+        columns = form.relations, form.exponent, form.sums, form.sets
         left, made = self.kernel.halved(
-            form.relations, form.exponent, form.sums, form.sets, self.root, form.objective, cutoff,
-            SWEEPS, self.low[taken], self.high[taken], self.bound[taken], self.work, out,
+            columns, self.root, form.objective, cutoff, SWEEPS, self.trials,
+            self.low[taken], self.high[taken], self.bound[taken], self.work, out,
         )  # fmt: skip
-        self.chunk = min(2 * some, max(1, CHUNK // (1 + len(form.relations))))
+        self.chunk = min(2 * some, max(1, CHUNK // (1 + len(form.relations)) // self.trials))
         self.made += made
         stays = np.ones(count, bool)
         stays[taken] = False

@@ -14,17 +14,7 @@ from gearopt.optimise.spatial.interval_kernel import (
     propagate,
 )
 
-
-@light
-def widest(lo, hi, count):
-    """The variable of the largest relative width, -1 where all are fixed."""
-    wide, k = 0.0, -1
-    for j in range(count):
-        if hi[j] > lo[j]:
-            part = (hi[j] - lo[j]) / max(abs(lo[j]), abs(hi[j]))
-            if part > wide:
-                wide, k = part, j
-    return k
+EMPTY, POINT, HALVED = -1, 0, 1  # what a box is: without a point, left as it is, or in parts
 
 
 @light
@@ -105,67 +95,137 @@ def follow(relations, exponent, sums, sets, lo, hi, touched):
     return True
 
 
+@light
+def copy(box, into):
+    """Write one box (2, C) over another."""
+    for j in range(box.shape[1]):
+        into[0, j], into[1, j] = box[0, j], box[1, j]
+
+
+@light
+def share(sets, width, aim, lo, hi, low, high):
+    """What a part [low, high] holds of a box [lo, hi]: of its points, and of its objective's width.
+
+    It chooses a variable and proves nothing.
+    """
+    rest = hi[aim] - lo[aim]
+    part = (high[aim] - low[aim]) / rest if 0.0 < rest < np.inf else 1.0
+    for j in range(width):
+        if hi[j] > lo[j]:
+            listed = sets[0][j] == LISTED
+            step = (hi[j] - lo[j]) / (sets[2][j] - sets[1][j]) if listed else 1.0
+            part *= (high[j] - low[j] + step) / (hi[j] - lo[j] + step)
+    return part
+
+
+@light
+def narrowed(form, aim, cutoff, sweeps, lo, hi, touched):
+    """Narrow a box of which some columns were, below a cutoff; False: it holds no point."""
+    relations, exponent, sums, sets = form
+    for _ in range(sweeps):
+        if not follow(relations, exponent, sums, sets, lo, hi, touched):
+            return False
+    return lo[aim] < cutoff
+
+
+@light
+def part(form, aim, cutoff, sweeps, box, j, side, end, into, touched):
+    """Narrow the half of a box below (side 0) or above an end of a variable, elsewhere."""
+    copy(box, into)
+    into[1 - side, j] = end
+    touched[:] = False
+    touched[j] = True
+    return narrowed(form, aim, cutoff, sweeps, into[0], into[1], touched)
+
+
+@light
+def widest(width, lo, hi, done):
+    """The variable of the largest relative width that is not done, -1 where none is free."""
+    wide, k = 0.0, -1
+    for j in range(width):
+        if hi[j] > lo[j] and not done[j]:
+            part = (hi[j] - lo[j]) / max(abs(lo[j]), abs(hi[j]))
+            if part > wide:
+                wide, k = part, j
+    return k
+
+
+@light
+def split(form, aim, cutoff, sweeps, trials, width, box, parts, touched, tried):
+    """Halve a box (2, C) at that variable, of the widest ones, whose halves hold least (Lemma 79).
+
+    trials: how many; a half that holds no point is cut off, in place. Returns EMPTY, POINT or
+    HALVED, how many halves there were, and where the two are in parts (4, 2, C).
+    """
+    sets, lo, hi = form[3], box[0], box[1]
+    count, spare, left, least = 0, 0, trials, np.inf
+    tried[:] = False
+    while True:
+        j = widest(width, lo, hi, tried) if left > 0 else -1
+        if j < 0 and least < np.inf:
+            return HALVED, count, 2 - spare
+        if j < 0:  # all are tried, and the last one was cut
+            tried[:] = False
+            j = widest(width, lo, hi, tried)
+            if j < 0:
+                return POINT, count, spare
+        tried[j] = True
+        a, b = parts[spare], parts[spare + 1]
+        below, above = halves(sets, j, lo[j], hi[j])
+        lower = part(form, aim, cutoff, sweeps, box, j, 0, below, a, touched)
+        upper = part(form, aim, cutoff, sweeps, box, j, 1, above, b, touched)
+        count, left = count + 2, left - 1
+        if not (lower or upper):
+            return EMPTY, count, spare
+        if not (lower and upper):
+            copy(a if lower else b, box)
+            tried[j], left, least = False, trials, np.inf
+            continue
+        held = share(sets, width, aim, lo, hi, a[0], a[1])
+        held += share(sets, width, aim, lo, hi, b[0], b[1])
+        if held < least - 1e-9:  # equal ones: the widest
+            least, spare = held, 2 - spare
+
+
 @entry
-def halved(relations, exponent, sums, sets, root, aim, cutoff, sweeps, low, high, bound, work, out):
+def halved(form, root, aim, cutoff, sweeps, trials, low, high, bound, work, out):
     """Boxes that are left below a cutoff where boxes are halved several times (Lemma 79).
 
-    low, high (N, n): ends of the variables, bound (N,) of the objective; root: ends of all columns
-    (C,) of the whole box. work: ends (D+1, C) for D times, variables, sides, ends of the parts
-    (D,), narrowed columns (C,). out: low, high (N 2^D, n), bound, written from the start. Returns
-    how many boxes are left, and how many there were.
+    form: relations, exponents, sums, sets of the columns; root (2, C): ends of the whole box.
+    trials: variables that are tried at each. low, high (N, n): ends of the variables, bound (N,) of
+    the objective. work: boxes (D+2, 2, C) for D times, how often each was halved (D+2,), parts (4,
+    2, C), columns that were narrowed, variables tried (C,). out: low, high (N 2^D, n), bound,
+    written from the start. Returns how many boxes are left, and how many halves there were.
     """
-    root_low, root_high = root
-    lows, highs, chosen, sides, belows, aboves, touched = work
+    boxes, levels, parts, touched, tried = work
     out_low, out_high, out_bound = out
-    width, depth = low.shape[1], len(chosen)
+    width, depth = low.shape[1], len(levels) - 2
     count = made = 0
     for i in range(len(low)):
-        lo, hi = lows[0], highs[0]
-        lo[:] = root_low
-        hi[:] = root_high
-        for j in range(width):
-            lo[j], hi[j] = low[i, j], high[i, j]
+        copy(root, boxes[0])
+        lo, hi = boxes[0, 0], boxes[0, 1]
+        lo[:width], hi[:width] = low[i], high[i]
         hi[aim] = min(hi[aim], cutoff)
         lo[aim] = max(lo[aim], bound[i])
-        if not lo[aim] <= hi[aim]:
+        if not lo[aim] <= hi[aim] or not propagate(*form, lo, hi, sweeps, 0.05):
             continue
-        if not propagate(relations, exponent, sums, sets, lo, hi, sweeps, 0.05):
-            continue
-        level, arrived = 0, True
-        while level >= 0:
-            lo, hi = lows[level], highs[level]
-            if arrived:
-                k = widest(lo, hi, width) if level < depth else -1
-                if k < 0:
-                    for j in range(width):
-                        out_low[count, j], out_high[count, j] = lo[j], hi[j]
-                    out_bound[count] = lo[aim]
-                    count += 1
-                    level, arrived = level - 1, False
-                    continue
-                chosen[level], sides[level] = k, 0
-                belows[level], aboves[level] = halves(sets, k, lo[k], hi[k])
-            k, side = chosen[level], sides[level]
-            if side == 2:
-                level, arrived = level - 1, False
-                continue
-            sides[level] = side + 1
-            made += 1
-            next_lo, next_hi = lows[level + 1], highs[level + 1]
-            next_lo[:] = lo
-            next_hi[:] = hi
-            if side == 0:
-                next_hi[k] = belows[level]
-            else:
-                next_lo[k] = aboves[level]
-            touched[:] = False
-            touched[k] = True
-            arrived = True
-            for _ in range(sweeps):
-                if arrived:
-                    arrived = follow(relations, exponent, sums, sets, next_lo, next_hi, touched)
-            if arrived and next_lo[aim] < cutoff:
-                level += 1
-            else:
-                arrived = False
+        levels[0], waiting = 0, 1
+        while waiting:
+            waiting -= 1
+            box, level = boxes[waiting], levels[waiting]
+            state = POINT
+            if level < depth:
+                state, some, k = split(
+                    form, aim, cutoff, sweeps, trials, width, box, parts, touched, tried
+                )
+                made += some
+            if state == HALVED:
+                for side in range(2):
+                    copy(parts[k + 1 - side], boxes[waiting + side])
+                    levels[waiting + side] = level + 1
+                waiting += 2
+            elif state == POINT:
+                out_low[count], out_high[count] = box[0, :width], box[1, :width]
+                out_bound[count] = box[0, aim]
+                count += 1
     return count, made
