@@ -58,6 +58,8 @@ def test_pitches_are_exact_and_ranges_rise_as_they_are_written():
     assert third.stages[0].modules == (Fraction(254, 120), Fraction(254, 30))
     coarse = scene(limits='module = ["4 1/in", "10 1/in"]').train().stages[0].modules
     assert coarse == tuple(Fraction("25.4") / p for p in (10, 8, 6, 4))
+    same = scene('["4 mm"]', 'module = ["4 mm", "0.4 cm"]').train().stages[0].modules
+    assert same == (Fraction(4),)
 
 
 def test_named_series_are_those_of_their_numbers():

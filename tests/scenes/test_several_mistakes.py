@@ -2,6 +2,7 @@
 
 import json
 import re
+from decimal import Decimal
 from pathlib import Path
 from random import Random
 
@@ -15,7 +16,7 @@ from gearopt import units
 from gearopt.errors import SceneError
 from gearopt.scenes.reading.absent import absent, option
 from gearopt.scenes.reading.called import CALLED
-from gearopt.scenes.reading.fields import quantity
+from gearopt.scenes.reading.fields import quantity, whole
 from gearopt.scenes.reading.load import kind_named, kinds, read
 from gearopt.scenes.reading.mistakes import tables
 from gearopt.scenes.reading.not_yet import NEAREST
@@ -292,6 +293,9 @@ def test_terms_of_the_field_are_answered_by_their_meaning(head, line, said):
         ('modules = ["7 in"]', 'Write modules = ["2 mm"]'),
         (f"ratio = 0x{'9' * 9999}", "is out of any sensible range"),
         ("ratio = 0.0000001", "is not between 1 and 1000000"),
+        ('ratio = "1:2000000"', "is not between 1 and 1000000. Write, for example, ratio = 20"),
+        ('ratio = "2000000:1"', "is not between 1 and 1000000. Write, for example, ratio = 20"),
+        ("modules = []", '= []: is neither one of "ISO 54 I", "ISO 54 I+II", "DP coarse", '),
     ],
 )
 def test_numbers_are_answered_as_they_were_meant(written, said):
@@ -357,6 +361,7 @@ def test_a_decimal_comma_and_single_brackets_are_named(right, written, remedy):
         ("speed", "1450 rpm", "1.450 rpm", ("1450 rpm", "1.45 rpm")),
         ("power", "7.5 kW", "75.000 W", ("75000 W", "75 W")),
         ("speed", "1450 rpm", "1.457 rpm", None),
+        ("speed", "1450 rpm", "50.000 rpm", None),
         ("time", "20000 h", "20.5 h", None),
         ("power", "7.5 kW", "1.450 kW", None),
         ("length", "20000 mm", "20.000 mm", None),
@@ -373,6 +378,13 @@ def test_a_point_of_thousands_is_asked_back_where_decimals_are_unlikely(
     with pytest.raises(PydanticCustomError, match="may separate thousands") as wrong:
         reads.reader(text, example)
     assert wrong.value.context["write"] == 'Write "{}" or "{}"'.format(*readings)
+
+
+@pytest.mark.parametrize("value", [Decimal("1.0"), Decimal("6.0"), "1", " 6 ", Decimal("7.0"), "7"])
+def test_a_whole_number_that_is_written_otherwise_is_told_where_it_is_in_range(value):
+    with pytest.raises(PydanticCustomError, match="not a whole number") as wrong:
+        whole(3, 1, 6).reader(value, 3)
+    assert wrong.value.context["write"] == (None if int(value) > 6 else int(value))
 
 
 def test_a_comma_of_thousands_is_asked_back():

@@ -312,20 +312,23 @@ def test_tables_of_the_rest_hold_ratios_at_the_edges_of_their_cells():
 
 
 def test_tables_of_the_rest_are_the_same_in_slices_of_any_size(monkeypatch):
-    train = elevator()
-    few = (replace(s, pinion_teeth=(20, 21), modules=(F(2), F(3))) for s in train.stages)
-    train = replace(train, stages=tuple(few))
-    drive, _ = numbers(train, frame(train, (10.0, 17.5, 30.0)))
+    train = three()
+    limited = (replace(s, pinion_teeth=(20, 21), modules=(F(2), F(3))) for s in train.stages)
+    train = replace(train, stages=tuple(limited))
+    drive, _ = numbers(train, frame(train, (8.0, 15.0, 22.5, 35.0)))
     drive = drive._replace(delta=drive.log_high / 6.0)
-    whole, size = rest(drive, lambda: True), drive.start[1] * drive.modules.shape[1]
+    whole, sizes = rest(drive, lambda: True), np.diff(drive.start)[:-1] * drive.modules.shape[1]
     filled = int(drive.log_high / drive.delta) + 2
-    for entries, cells in ((1, 1), (2 * size, 2)):
+    for entries in (1, 2 * sizes[0], 3 * sizes[1]):
         asked = []
         monkeypatch.setattr(tables, "SLICE", entries)
         sliced = rest(drive, lambda asked=asked: asked.append(0) or True)
         assert all(np.array_equal(a, b) for a, b in zip(whole, sliced, strict=True))
-        assert len(asked) == math.ceil(filled / cells)
+        cells = [max(1, entries // size) for size in sizes]
+        assert len(asked) == sum(math.ceil(filled / count) for count in cells)
     assert np.isfinite(whole.least[1]).any()
+    none = tables.useful(drive, 0.0)
+    assert not none.z1.size and np.isinf(rest(none, lambda: True).least).all()
     assert rest(drive, lambda: False) is None
 
 
@@ -445,6 +448,8 @@ def test_objectives_are_powers_of_sides_with_a_length(objective, width):
     powers, (constant, slope) = tables._objective(box)
     length, value = constant + slope * 300.0, 70.0 ** powers[0] * 40.0 ** powers[1]
     assert length * value == pytest.approx(MEASURES[objective](width or 70.0, 40.0, 300.0))
+    longest = replace(box, objective="longest_side")  # no less than the width that is given
+    assert tables._objective(longest) == ((1.0, 1.0), (width or 0.0, 0.0))
 
 
 def test_each_first_stage_has_a_chain_of_the_shafts_behind_it():

@@ -152,6 +152,9 @@ def test_widths_of_cells_are_below_those_of_every_torque(standard, monkeypatch):
                 width = table.width(np.array([torque]), np.array([pair]), module).item()
                 assert drive.bisected[row, module] <= width * (1.0 + 1e-9)
     assert np.isfinite(drive.bisected).any()
+    highest = np.concatenate([together_search._window(drive, k)[1] for k in range(3)])
+    last = (drive.cell + np.diff(drive.row) - 1) * drive.step
+    assert (last <= np.maximum(highest, drive.cell * drive.step) + 1e-9).all()
     for end in range(2):  # of a cell, which holds the torques that are looked up in it
         monkeypatch.setattr(RatedTable, "least_width", lambda *args, end=end: args[1][end])
         ends = narrower(search.tables, drive, drive.step, lambda: True).bisected

@@ -194,7 +194,7 @@ def _likely_thousands(text: str, usual: Quantity) -> bool:
         found = units.parse(text, usual.dimension).value
     except ValueError:
         return False
-    return 0.0 < found <= usual.value / FAR_OFF and 1000.0 * found < FAR_OFF * usual.value
+    return 0.0 < found <= usual.value / FAR_OFF
 
 
 def number(
@@ -285,6 +285,7 @@ def speed_ratio(example: Any, minimum: int, total: bool = False) -> Reads:
                 raise
             ratio = above / below
             write = ratio.numerator if ratio.denominator == 1 else str(ratio)
+            item.reader(write, example)
             raise refuse("is written with a colon", write) from None
         return ratio
 
