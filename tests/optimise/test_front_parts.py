@@ -37,8 +37,9 @@ from gearopt.optimise.pareto.measures import (
     scaled,
     unbeaten,
 )
+from gearopt.optimise.pareto.objectives import impossible
 from gearopt.optimise.pareto.posed import Limit, caps, kept, moved, posed, violation_scale
-from gearopt.optimise.pareto.tradeoff import found, impossible
+from gearopt.optimise.pareto.tradeoff import found
 from gearopt.optimise.result import Event, Outcome, Result
 from gearopt.optimise.solve import PROVER
 from gearopt.optimise.tape import kinds
