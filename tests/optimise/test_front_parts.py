@@ -381,6 +381,8 @@ def test_steps_start_from_neighbours_and_from_evolution_and_the_better_answer_co
     assert epsilon._posed(run, "a", {}, np.array([0.25])).bounds()[2].tolist() == [0.25]
     run.sample = (point(1, 2), point(0, 3))
     assert run.within({"b": 2.0}) == [run.sample[0]] and run.within({"b": 1.9}) == []
+    starts = run.started("a", {}), run.started("b", {}), run.started("a", {"b": 1.9})
+    assert starts[0] is run.sample[1].x and starts[1] is run.sample[0].x and starts[2] is None
     answers = [point(1, 1), point(2, 1), point(1, 1), None, point(2, 1), point(1, 1)]
     replies = iter(answers)
     reply = lambda *_: (Result("segment", "feasible", "ipopt", {}), next(replies))  # noqa: E731

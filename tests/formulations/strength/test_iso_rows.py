@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 from campaigns import few
-from rated_drives import RACK, iso
+from rated_drives import RACK, agma, iso
 
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.strength import ALLOWANCE
@@ -180,6 +180,14 @@ def test_it_is_the_rating_of_one_pair():
         parts = [ASKED[0] / s for s in made.bending_safety]
         parts += [(ASKED[1] / s) ** 2 for s in made.contact_safety]
         assert found[k] == pytest.approx(max(parts), rel=1e-12)
+
+
+@pytest.mark.parametrize("standard", [agma(), iso()])
+def test_a_stronger_torque_at_one_power_takes_more_by_agma_alone(standard):
+    """By ISO 6336 a slower pair may leave the main resonance."""
+    pair, width, torque, power, _ = pairs(0.4363, 1)
+    weak, strong = (exact(standard, pair, width, t, power) for t in (torque, 1.05 * torque))
+    assert standard.monotone == (strong >= weak * (1.0 - 1e-12)).all()
 
 
 def test_borders_are_where_another_law_begins():
