@@ -392,15 +392,43 @@ def test_steps_start_from_neighbours_and_from_evolution_and_the_better_answer_co
     assert not run.skipped
 
 
+@pytest.mark.parametrize(
+    ("statuses", "bound"),
+    [(("feasible", "feasible"), 0.25), (("feasible", "optimal"), 1.0), (("optimal",), 0.25)],
+)
+def test_a_step_keeps_the_bound_of_the_answer_that_proves_it(statuses, bound, monkeypatch):
+    """Started at the neighbour it is 2, with a bound of 0.25, at the point of evolution 1."""
+    asked = []
+
+    def attempt(run, name, most, near, method):
+        status, value = statuses[len(asked)], 2.0 - len(asked)
+        asked.append((float(near[0]), method))
+        found = Result("one", status, "ipopt", {"value": value}, bound=0.25 if value > 1.0 else 1.0)
+        return found, point(value, 0.5)
+
+    monkeypatch.setattr(epsilon, "_attempt", attempt)
+    run = steps_of(segment())
+    run.sample = (point(3, 0), point(4, 0))
+    best = epsilon._solved(run, "a", {"b": 0.5}, np.array([0.7]))
+    assert asked == [(0.7, None), (3.0, "ipopt")][: len(statuses)]
+    assert best.values[0] == 3.0 - len(statuses)
+    assert run.steps_of("a", {}) == [Tried(0.5, best.values[0], bound)]
+    assert not run.steps_of("b", {}) and not run.skipped
+
+
 @pytest.mark.parametrize(("limiting", "few"), [(None, 10), (object(), 40)])
 def test_a_quarter_of_the_points_come_before_others_are_spread(limiting, few, monkeypatch):
     counts, limits = [], []
     monkeypatch.setattr(epsilon.Line, "fill", lambda line, count: counts.append(count))
     monkeypatch.setattr(epsilon.Line, "step", lambda line, most: limits.append(most))
-    run = steps_of(segment())
-    run.limiting, run.widths = limiting, {"a": 1.0, "b": 1.0}
-    epsilon._between(run, [point(0, 1), point(1, 0)], 40, {})
-    assert counts == [few, 40] and len(limits) == 38 and len(run.lines) == 1
+    monkeypatch.setattr(epsilon.Line, "repeat", lambda line: repeated.append(line))
+    for seconds in (None, 10.0):
+        run, counts[:], limits[:], repeated = steps_of(segment(), seconds=seconds), [], [], []
+        run.limiting, run.widths = limiting, {"a": 1.0, "b": 1.0}
+        epsilon._between(run, [point(0, 1), point(1, 0)], 40, {})
+        assert counts == [few, 40][: 1 + (few < 40)] and len(limits) == 38 * (few < 40)
+        assert len(run.lines) == 1
+        assert len(repeated) == (seconds is not None and limiting is None)
 
 
 def test_a_point_that_breaks_its_limits_is_no_point_of_the_front(monkeypatch):

@@ -242,9 +242,10 @@ def _between(run: Run, ends: list[Point], points: int, caps: Caps) -> None:
         else min(points, max(FIRST_POINTS, points // 4))
     )
     line.fill(few)
-    for most in spread(line.open, points - len(line.points)):
-        line.step(most)
-    line.fill(points)
+    if few < points:
+        for most in spread(line.open, points - len(line.points)):
+            line.step(most)
+        line.fill(points)
     run.lines.append(line)
     if len(run.names) == 2 and run.limiting is None and run.clock.budget.seconds is not None:
         line.repeat()
