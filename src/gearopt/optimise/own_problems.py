@@ -27,7 +27,7 @@ from gearopt.optimise.terms import Array
 
 SAMPLER = "annealing"  # taken where variables are discrete and nothing is proven
 PROVEN = ("optimal", "infeasible")
-FIRST = 0.8  # of a budget is the prover's, where the sampler follows
+FIRST = 0.8  # of a budget is for the first method, where a second one follows
 BOXES = 3000  # of the prover, where the budget names no end
 NAMING = 5.0  # s at most to find the limits that exclude each other
 
@@ -99,7 +99,7 @@ def _by_default(
     endless = budget.seconds is None and budget.evaluations is None
     results, words, left = list[Result](), list[str](), budget
     for name in order:
-        share = left if name == order[-1] else _share(left, discrete)
+        share = left if name == order[-1] else _share(left)
         if name == PROVER and endless:
             share = replace(share, evaluations=BOXES)
         try:
@@ -196,11 +196,9 @@ def _without_derivatives(problem: Problem, budget: Budget) -> bool:
     return False
 
 
-def _share(budget: Budget, discrete: list[str]) -> Budget:
-    """Part of a budget for the first of two methods: of ipopt all, most of the prover."""
+def _share(budget: Budget) -> Budget:
+    """Part of a budget for the first of two methods, most of it."""
     seconds, evaluations = budget.seconds, budget.evaluations
-    if not discrete:
-        return budget
     return replace(
         budget,
         seconds=None if seconds is None else FIRST * seconds,

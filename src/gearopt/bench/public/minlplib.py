@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.bench.public.case import Case, real, whole
+from gearopt.bench.public.engineering import himmelblau
 
 RATIO = 0.14427932477276  # of a gear train, 1/6.931
 BIT = whole(0, 1)
@@ -112,14 +113,10 @@ def alloys(a: Any, b: Any, c: Any, d: Any, e: Any) -> tuple[Any, list[Any]]:
     ]
 
 
-def whole_himmelblau(a: Any, b: Any, c: Any, d: Any, e: Any) -> tuple[Any, list[Any]]:
+def whole_himmelblau(*x: Any) -> tuple[Any, list[Any]]:
     """Instance nvs02."""
-    first = 85.334407 + 0.0056858 * b * e + 0.0006262 * a * d - 0.0022053 * c * e
-    second = 80.51249 + 0.0071317 * b * e + 0.0029955 * a * b + 0.0021813 * c**2
-    third = 9.300961 + 0.0047026 * c * e + 0.0012547 * a * c + 0.0019085 * c * d
-    cost = 1e-4 * (5.3578547 * c**2 + 0.8356891 * a * e + 37.293239 * a) + 5.9207859
-    rows = [first >= 0, first <= 92, second >= 90, second <= 110, third >= 20, third <= 25]
-    return cost, rows
+    cost, rows = himmelblau(*x)
+    return 1e-4 * (cost + 40792.141) + 5.9207859, rows
 
 
 def parabolas(x: Any, y: Any) -> tuple[Any, list[Any]]:
