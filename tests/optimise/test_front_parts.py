@@ -39,7 +39,7 @@ from gearopt.optimise.pareto.measures import (
 )
 from gearopt.optimise.pareto.objectives import impossible
 from gearopt.optimise.pareto.posed import Limit, caps, kept, moved, posed, violation_scale
-from gearopt.optimise.pareto.tradeoff import found
+from gearopt.optimise.pareto.tradeoff import Tradeoff, found, solved
 from gearopt.optimise.result import Event, Outcome, Result
 from gearopt.optimise.solve import PROVER
 from gearopt.optimise.tape import kinds
@@ -98,6 +98,7 @@ def test_measures_of_ties_and_flat_fronts():
     assert unbeaten(tied).tolist() == [0, 3]
     assert unbeaten(tied, equal=True).tolist() == [0, 1, 3]
     assert unbeaten(np.array([[-1.0, 5.0], [-1.0 - 1e-8, 6.0]])).tolist() == [1, 0]
+    assert unbeaten(np.array([[-1e9, 3.0], [-1.0, 2.0], [-0.5, 1.0]])).tolist() == [0, 1, 2]
     assert len(unbeaten(np.empty((0, 2)))) == 0 and hypervolume(np.empty((0, 2)), np.ones(2)) == 0
     assert reference(np.array([[4.0, 0.0], [4.0, 0.0]])) == pytest.approx([8.0, 1.0])
     assert reference(np.array([[-3.0, 2.0], [-3.0, 4.0]])) == pytest.approx([0.0, 4.1])
@@ -371,9 +372,10 @@ def test_a_proof_begins_at_a_point_that_meets_the_limits(value, x, start, monkey
         return Result("segment", "feasible", method, {"value": value}), Outcome(place)
 
     monkeypatch.setattr(epsilon, "_answered", answer)
-    result, _ = epsilon._proven(steps_of(segment()), segment())
+    result, outcome = epsilon._proven(steps_of(segment()), segment())
     assert asked == [("ipopt", 0.5), (PROVER, start)]
     assert result.value == (value or 2.0) and result.bound == 0.5
+    assert outcome.x == (x if value else None)
 
 
 def test_steps_start_from_neighbours_and_from_evolution_and_the_better_answer_counts(monkeypatch):
@@ -487,13 +489,21 @@ def test_fronts_of_several_problems_are_one(statuses, status):
     goals = Objective("a"), Objective("b")
     first, second = ((1.0, 5.0), (3.0, 3.0)), ((2.0, 4.0), (3.0, 4.0))
     fronts = [
-        Front("two", s, "epsilon", goals, tuple(FrontPoint(v, True) for v in values), evaluations=4)
-        for s, values in zip(statuses, (first, second), strict=True)
+        Front(n, s, "epsilon", goals, tuple(FrontPoint(v, True) for v in values), evaluations=4)
+        for n, s, values in zip(("two", "three"), statuses, (first, second), strict=True)
     ]
     front = united(fronts, None)
+    assert front.name == "two" and [pick.place for pick in front.picks] == [1]
     assert [p.values for p in front.points] == [(1.0, 5.0), (2.0, 4.0), (3.0, 3.0)]
     assert front.beaten == ((3.0, 4.0),) and front.status == status and front.evaluations == 8
     assert {p.proven for p in front.points} == {status == "complete"}
+
+
+def test_events_of_a_front_are_of_its_first_objective():
+    events, goals = [], (Objective("a", "mm"), Objective("b", "kg"))
+    given = Tradeoff(segment(), goals), {}, "nsga2", 4, None, Budget(evaluations=8), 0
+    front = solved(*given, events.append)
+    assert {(e.part, e.unit) for e in events} == {("front", "mm")} and front.evaluations == 8
 
 
 def test_the_knee_of_three_points_is_the_middle_one():

@@ -206,6 +206,7 @@ def test_corners_are_what_points_leave_open(count):
     rng = np.random.default_rng(count)
     points = rng.random((40, count))
     found = corners(points, np.ones((1, count)))
+    assert (found[:, None] <= found).all(axis=2).sum() == len(found)  # none is below another
     for one in rng.random((500, count)):
         free = not (points <= one).all(axis=1).any()
         assert (one < found).all(axis=1).any() == free
