@@ -70,6 +70,13 @@ def test_listed_values_and_stops():
     assert result.status == "optimal" and result.design == {"x1": 1.25, "x2": 1.6}
 
 
+def test_whole_numbers_whose_middle_is_rounded_are_left_to_the_tree():
+    low = 2.0**53 - 3.0  # the middle of it and the next one is that one
+    problem = posed([(low, low + 1.0, "whole")], lambda x: (x[0] - low, [], []), [low])
+    assert not enumeration.takes(enumeration.columns(problem))
+    assert solve(problem, "spatial").value == 0.0
+
+
 def test_points_for_which_no_time_was_left_are_not_taken_for_judged(monkeypatch):
     def text(x):
         return np.sum(x), [0.95 - np.sin(3.0 * x[0] + x[1] ** 2)], []

@@ -33,10 +33,10 @@ def columns(problem: Problem) -> Columns:
 
 
 def takes(form: Columns) -> bool:
-    """Whether all variables are whole or listed, and finite."""
+    """Whether all variables are whole or listed, and small enough for sums of two to be exact."""
     count = form.variables
     ends = np.concatenate([form.lower[:count], form.upper[:count]])
-    return bool((form.sets[0][:count] != CONTINUOUS).all() and (np.abs(ends) < EXACT).all())
+    return bool((form.sets[0][:count] != CONTINUOUS).all() and (np.abs(ends) < 0.5 * EXACT).all())
 
 
 @dataclass(frozen=True)
