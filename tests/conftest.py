@@ -1,6 +1,7 @@
 """What tests share: the command within this process, results solved once, kernels compiled once."""
 
 import fcntl
+import gc
 import subprocess
 import sys
 import tomllib
@@ -13,6 +14,8 @@ import gearopt
 
 PROBLEMS = Path(__file__).parents[1] / "problems"
 MANY = 6  # slow cases of one test, of which all are run
+
+gc.set_threshold(50_000)  # modules and tests are kept: looking at them takes a tenth of a run
 
 
 def pytest_addoption(parser):
@@ -35,6 +38,20 @@ def pytest_collection_modifyitems(config, items):
     dropped = {id(k) for k in left} - kept
     config.hook.pytest_deselected(items=[k for k in items if id(k) in dropped])
     items[:] = [k for k in items if id(k) not in dropped]
+
+
+def pytest_pycollect_makeitem(collector, obj):
+    """No cases of a slow test where slow ones are left out and none is named."""
+    config = collector.config
+    if config.option.markexpr != "not slow" or any("::" in word for word in config.args):
+        return None
+    marks = getattr(obj, "pytestmark", ())
+    return [] if callable(obj) and any(m.name == "slow" for m in marks) else None
+
+
+def pytest_collection_finish():
+    """What is loaded now is kept to the end."""
+    gc.freeze()
 
 
 @pytest.hookimpl(wrapper=True)
