@@ -123,6 +123,11 @@ def test_a_variable_power_of_what_may_be_negative_is_refused(text):
     bounds = [(-3.0, 3.0), (1, 3, "whole")]
     with pytest.raises(SolveError, match="may be negative"):
         solve(posed(bounds, lambda x: (text(x), [], [])), "spatial")
+    negative = posed([(-2, 2, "whole")] * 2, lambda x: (x[1], [x[0] ** x[1] + 1.0], []))
+    with pytest.raises(SolveError, match="may be negative"):  # (-1)^1 meets the limit
+        solve(negative, "spatial")
+    nested = posed([(0.5, 2.0)] * 2, lambda x: (x[0] ** x[1] + (x[0] ** x[1]) ** x[1], [], []))
+    assert solve(nested, "spatial").value == pytest.approx(0.3125)
     limited = posed(bounds, lambda x: ((x[0] - 0.5) ** x[1], [1.0 - x[0]], []))
     assert solve(limited, "spatial").value == pytest.approx(0.5**3)
 

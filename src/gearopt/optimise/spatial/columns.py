@@ -87,7 +87,7 @@ class Builder:
     exponents: list[float] = field(default_factory=list)
     sums: dict[int, Affine] = field(default_factory=dict)
     of: dict[int, int] = field(default_factory=dict)  # the relation that makes a column
-    bases: set[int] = field(default_factory=set)  # of powers whose exponent is no constant
+    bases: dict[int, set[int]] = field(default_factory=dict)  # of variable exponent: their powers
     raised: set[int] = field(default_factory=set)  # these, and exponents that are no constants
     rooted: set[int] = field(default_factory=set)  # of roots of quotients, read as one power
 
@@ -319,15 +319,18 @@ def raised(builder: Builder, a: Affine, b: Affine) -> Affine:
     """Reading of a**b; with a variable b of exp(b log a), for which a may not be negative."""
     if b.fixed and b.doubt == 0.0:
         return powered(builder, a, b.constant)
-    if a.fixed and a.doubt == 0.0 and a.constant > 0.0:
+    positive = a.fixed and a.doubt == 0.0 and a.constant > 0.0
+    if positive:
         log = math.log(a.constant)
         logarithm = Affine({}, log, 8.0 * ROUNDED * abs(log))
     else:
-        builder.bases.add(builder.column(a))
         builder.raised.add(builder.column(a))
         logarithm = of_column(builder, LOG, a)
     builder.raised.add(builder.column(b))
-    return of_column(builder, EXP, multiplied(builder, b, logarithm))
+    power = of_column(builder, EXP, multiplied(builder, b, logarithm))
+    if not positive:
+        builder.bases.setdefault(builder.column(a), set()).update(power.terms)
+    return power
 
 
 def _reader(builder: Builder) -> Callable[[int, list[Affine]], Affine]:
@@ -463,18 +466,24 @@ def columns(problem: Problem, slack: float = 0.0, logarithms: bool = True) -> Co
 
 def _check_bases(name: str, builder: Builder, form: Columns) -> None:
     """Raise SolveError for u^v with u that may be negative: at whole v exp(v log u) is another."""
-    if not builder.bases:
-        return
-    relations = form.relations.copy()  # without the logarithms of bases, which cut them off at 0
-    relations[(relations[:, 0] == LOG) & np.isin(relations[:, 2], list(builder.bases)), 0] = LINEAR
-    low, high = form.lower.copy(), form.upper.copy()
-    inside = replace(form, relations=relations).propagated(low, high, ROOT_SWEEPS)
-    if inside and any(low[j] < 0.0 for j in builder.bases):
-        refuse(
-            name,
-            "a variable power of what may be negative; write np.exp(v * np.log(u)) for u**v where "
-            "u is positive",
-        )
+    doubtful = dict(builder.bases)
+    kinds, made, of = form.relations[:, :3].T
+    while doubtful:  # without their powers, which may be negative, and logarithms, cut off at 0
+        powers = [w for some in doubtful.values() for w in some]
+        left_out = (kinds == LOG) & np.isin(of, list(doubtful))
+        left_out |= (kinds == EXP) & np.isin(made, powers)
+        relations, low, high = form.relations.copy(), form.lower.copy(), form.upper.copy()
+        relations[left_out, 0] = LINEAR
+        if not replace(form, relations=relations).propagated(low, high, ROOT_SWEEPS):
+            return
+        if not (positive := [j for j in doubtful if low[j] >= 0.0]):
+            refuse(
+                name,
+                "a variable power of what may be negative; write np.exp(v * np.log(u)) for u**v "
+                "where u is positive",
+            )
+        for j in positive:
+            del doubtful[j]
 
 
 def refuse(name: str, words: str) -> NoReturn:
