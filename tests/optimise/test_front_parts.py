@@ -134,7 +134,7 @@ def test_a_gap_is_narrowed_by_what_steps_found():
     assert not still.shut
     (other, _) = gaps(line, [Tried(2.0, 9.0)], ranges)  # a step that leads back, but proves nothing
     assert other.whole and other.refused == (2.0,)
-    (less, _) = gaps(line, [Tried(2.0, 9.0, 8.0)], ranges)  # a bound that leaves room
+    (less, _) = gaps(line, [Tried(2.0, 9.0, 9.0 - 3e-5)], ranges)  # a bound that leaves room
     assert less.whole and less.refused == (2.0,)
     (passed, _) = gaps(line, [Tried(1.0, None), Tried(2.0, 9.0, 9.0)], ranges)
     assert passed.refused == ()  # below what is known to be empty

@@ -148,3 +148,37 @@ def test_weights_are_of_the_ranges_of_the_ends(monkeypatch):
     front = scalarised.annealed(segment(), 3, Budget())
     assert taken == [[0, 2], [2, 0], [2.0, 1.0]] and len(front.steps) == 3
     assert [tuple(p.values) for p in front.points] == [(0.0, 0.25)] and len(front.beaten) == 2
+
+
+@pytest.mark.parametrize(
+    ("problem", "most", "status", "proof", "slope", "convex"),
+    [
+        (segment, {"b": 0.25}, "optimal", "dual", -8.0, True),
+        (segment, {"b": 0.25}, "optimal", "spatial", -8.0, False),
+        (segment, {"b": 0.25}, "feasible", "dual", -8.0, False),
+        (segment, {"a": 0.25}, "optimal", "dual", None, True),
+        (segment, {}, "optimal", "dual", None, True),
+        (whole, {"b": 0.25}, "optimal", "dual", None, True),
+    ],
+)
+def test_prices_of_limits_are_slopes_of_the_front(
+    problem, most, status, proof, slope, convex, monkeypatch
+):
+    """d a/d b = -2/0.25, as the limit is a quotient; of the first objective alone."""
+    found = Result(
+        "one",
+        status,
+        "ipopt",
+        {"value": 0.25},
+        bound=0.2,
+        report={"value_a": 0.25, "value_b": 0.75},
+        multipliers={f"most_{name}": -2.0 for name in most},
+        proof={"method": proof},
+    )
+    monkeypatch.setattr(epsilon, "_answered", lambda *_: (found, Outcome(np.array([0.5]))))
+    run, name = steps_of(problem()), "b" if "a" in most else "a"
+    _, made = epsilon._attempt(run, name, most, None, "ipopt")
+    assert made.values.tolist() == [0.25, 0.75] and made.proven == (status == "optimal")
+    assert made.bound == (0.2 if name == "a" else None)
+    assert made.slopes == (slope and pytest.approx(slope))
+    assert run.convex == convex and not run.logarithmic
