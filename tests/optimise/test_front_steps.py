@@ -7,9 +7,11 @@ import pytest
 from test_front_parts import point, segment, steps_of
 
 from gearopt import Budget, Problem, Repeat, Terms, Var
-from gearopt.optimise.pareto import epsilon, evolution, scalarised
+from gearopt.optimise.pareto import enumerated, epsilon, evolution, scalarised
 from gearopt.optimise.pareto.epsilon import Limiting, Line
+from gearopt.optimise.pareto.front import Front, FrontPoint, Objective
 from gearopt.optimise.pareto.gaps import Strip, Tried
+from gearopt.optimise.pareto.tradeoff import found
 from gearopt.optimise.result import Outcome, Result
 
 
@@ -165,7 +167,7 @@ def test_prices_of_limits_are_slopes_of_the_front(
     problem, most, status, proof, slope, convex, monkeypatch
 ):
     """d a/d b = -2/0.25, as the limit is a quotient; of the first objective alone."""
-    found = Result(
+    result = Result(
         "one",
         status,
         "ipopt",
@@ -175,10 +177,48 @@ def test_prices_of_limits_are_slopes_of_the_front(
         multipliers={f"most_{name}": -2.0 for name in most},
         proof={"method": proof},
     )
-    monkeypatch.setattr(epsilon, "_answered", lambda *_: (found, Outcome(np.array([0.5]))))
+    monkeypatch.setattr(epsilon, "_answered", lambda *_: (result, Outcome(np.array([0.5]))))
     run, name = steps_of(problem()), "b" if "a" in most else "a"
     _, made = epsilon._attempt(run, name, most, None, "ipopt")
     assert made.values.tolist() == [0.25, 0.75] and made.proven == (status == "optimal")
     assert made.bound == (0.2 if name == "a" else None)
     assert made.slopes == (slope and pytest.approx(slope))
     assert run.convex == convex and not run.logarithmic
+
+
+@pytest.mark.parametrize(
+    ("problem", "names", "points", "count"),
+    [
+        (segment, "ab", None, 60),
+        (whole, "ab", None, 0),
+        (whole, "aba", None, 400),
+        (whole, "ab", 7, 7),
+    ],
+)
+def test_all_designs_are_sought_where_they_are_finitely_many(
+    problem, names, points, count, monkeypatch
+):
+    """Of three objectives 400, in slices; else so many as are asked for, by default 60."""
+    asked = []
+    monkeypatch.setattr(enumerated, "front", lambda *_: None)
+    monkeypatch.setattr(epsilon, "front", lambda *given, **_: asked.append(given[3]))
+    found(problem(), names, {}, points=points)
+    assert asked == [count]
+
+
+@pytest.mark.parametrize(
+    ("given", "proven", "whole_front"),
+    [
+        ({"status": "complete"}, False, True),
+        ({"status": "proven", "epsilon": 0.1}, True, True),
+        ({"status": "proven", "error": 0.1}, True, True),
+        ({"status": "proven"}, True, False),
+        ({"status": "not proven", "epsilon": 0.1}, False, False),
+    ],
+)
+def test_a_front_is_whole_that_is_complete_or_known_between_its_points(given, proven, whole_front):
+    points = FrontPoint((1.0, 2.0), True), FrontPoint((2.0, 1.0), proven)
+    goals = Objective("a"), Objective("b")
+    assert (
+        Front("f", method="epsilon", objectives=goals, points=points, **given).whole == whole_front
+    )

@@ -115,6 +115,19 @@ def test_no_design_needs_less_than_its_cell(name, toothing):
     assert found == pytest.approx(known.get(toothing, found), abs=1e-4) and min(found) > 0.9
 
 
+def test_corners_of_a_cell_lie_within_it():
+    """By so little that sizes at a border of a law count to the side on which the cell lies."""
+    cells = random_cells(np.random.default_rng(9), 50, TOOTHINGS["helical"], 0.02)
+    for end, inwards in ((0, 1.0), (1, -1.0)):
+        pair = cells.corner(end)
+        sizes = pair.normal_module, pair.face_width
+        sizes += tuple(gear.reference_diameter for gear in pair.gears)
+        ends = cells.module, cells.width, cells.diameter, cells.wheel
+        for size, of_cell in zip(sizes, ends, strict=True):
+            step = inwards * (size / of_cell[end] - 1.0)
+            assert (step > 0.0).all() and (step < 1e-10).all()
+
+
 @pytest.mark.parametrize(
     "blank",
     [

@@ -13,7 +13,7 @@ from gearopt.formulations.drive import sizing, sizing_text, teeth
 from gearopt.formulations.drive.rated import bound as rated_bound
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength import RATED, agma_smooth
+from gearopt.formulations.strength import RATED, agma_floor, agma_smooth
 from gearopt.formulations.strength.rated import Box, Load, Option
 from gearopt.optimise.form import form
 from gearopt.optimise.result import Budget
@@ -205,6 +205,21 @@ def test_the_largest_branch_of_load_distribution_is_the_factor(practice):
         spread = distribution(practice, width, pair.working_diameters[0])
         branches = agma_smooth._distributions(practice, pair, spread)
         assert max(branches.values()) == pytest.approx(1.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("widest", [25.0, 300.0, 431.0, 440.0, 456.0, 700.0, 1000.0, 1200.0])
+@pytest.mark.parametrize("practice", [Practice(7.0), Practice(7.0, "open", True, 0.3, True)])
+def test_lines_below_load_distribution_touch_it(practice, widest):
+    width = np.linspace(0.05 * widest, widest, 400)
+    rows = agma_floor._spreads(agma(practice=practice), widest)
+    left = []
+    for diameter in (30.0, 300.0, 3000.0):
+        exact = distribution(practice, width, diameter)
+        slender = np.maximum(0.1 * width / diameter, 0.05)
+        below = np.max([a + b * width + c * slender for a, b, c in rows], axis=0)
+        assert (below <= exact * (1.0 + 1e-12)).all()
+        left.append((exact - below).min())
+    assert min(left) < (1e-3 if widest <= factors.WIDEST else 0.04)
 
 
 @pytest.mark.slow
