@@ -24,7 +24,7 @@ from gearopt.optimise.terms import Array
 
 ENUMERATED, COUNTED = 0.5, 0.8  # of the seconds, of the boxes of a budget, are for intervals alone
 BOXES = 200_000  # of these where the budget names no end
-TRIED, WAITING = 20_000, 0.8  # boxes after which no more may wait for each that was halved
+TRIED, WAITING = 40_000, 0.6  # boxes after which no more may wait for each that was halved
 PER_EVALUATION = 200  # such boxes count as one: they take that part of the time of others
 NARROW = (
     "boxes too narrow to be split are left, in which no point that meets all limits was found: a "
@@ -114,7 +114,8 @@ def _enumerated(problem: Problem, clock: Clock, incumbent: Incumbent) -> Enumera
     boxes = Boxes(form)
     before, seconds, evaluations = clock.evaluations, clock.left.seconds, clock.left.evaluations
     late = math.inf if seconds is None else clock.seconds + ENUMERATED * seconds
-    most = BOXES if evaluations is None else COUNTED * evaluations * PER_EVALUATION
+    endless = BOXES if seconds is None else math.inf
+    most = endless if evaluations is None else COUNTED * evaluations * PER_EVALUATION
 
     def judge(points: Array) -> None:
         clock.evaluations = before + math.ceil(boxes.made / PER_EVALUATION)

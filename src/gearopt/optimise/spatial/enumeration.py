@@ -20,7 +20,9 @@ from gearopt.optimise.spatial.columns import columns as columns_of
 from gearopt.optimise.terms import Array
 
 SWEEPS = 2
-EASY = 10_000  # boxes after which it begins again, and tries all variables at each, not the widest
+# Boxes after which no more may wait for each that was halved: else it begins again, and tries all
+# variables at each, not the widest alone.
+EASY, GROWING = 20_000, 0.25
 CHUNK = 2600  # boxes times relations that are halved at once: 0.05 s
 DEPTH = 5  # times in succession
 KEPT = 1_000_000  # boxes that wait; beyond, the last ones are halved first, so that fewer wait
@@ -118,7 +120,7 @@ class Boxes:
         if not kept.all():
             self.low, self.high, self.bound = (a[kept] for a in (self.low, self.high, self.bound))
         form = self.form
-        if self.made > EASY and self.trials < form.variables:
+        if self.trials < form.variables and self.made > EASY and self.waiting > GROWING:
             self.trials, self.chunk, self.since = form.variables, 1, self.made
             self.begin(min(1, len(self.bound)), self.least)
         count = len(self.bound)
