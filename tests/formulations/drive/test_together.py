@@ -281,9 +281,12 @@ def test_a_train_whose_layouts_are_not_exhausted_leaves_the_search_unproven(monk
     )
     best, box = work.value, work.make(pairs)
     (order,) = search.orders_of(box)  # of its layouts `best` is the least
+    assert work.trains == 1
     for share, below in ((0.9, False), (1.2, False), (1.3, False), (1.5, True)):
         work.clock.best = share * best
         assert search._below(work, box, order, 0.3) == below
+    work.clock.best, work.clock.stopped = 0.9 * best, True
+    assert search._below(work, box, order, 0.3)  # nothing is known of it
     monkeypatch.setattr("gearopt.formulations.drive.layout.exact.DEEP", 3)
     fresh = search.Search(train, work.make, Clock(), 0)
     assert search._below(fresh, box, order, 0.3)  # any layout is better than none
@@ -403,7 +406,7 @@ def test_other_pairs_are_refused():
 
 def test_the_text_measures_a_layout_as_layout_does():
     train = elevator()
-    tank = KeepOut("tank", (50.0, 80.0), (0.0, 10.0))
+    tank = KeepOut("tank", (50.0, 160.0), (0.0, 10.0))
     make = frame(train, (10.0, 17.5, 30.0), keep_outs=(tank,))
     problem = together.problem(train, make)
     point = np.array([2.0, 3.0, 21, 24, 128, 85, -0.7, -1.5])
@@ -418,10 +421,16 @@ def test_the_text_measures_a_layout_as_layout_does():
     links = np.array([p.centre_distance for p in box.pairs])
     for row, angles in zip(found.G, (point[-2:], other[-2:]), strict=True):
         y, z = (np.append(0.0, np.cumsum(links * f(angles))) for f in (np.cos, np.sin))
-        past = np.maximum(np.maximum(50.0 - y, y - 80.0), 0.0)
+        past = np.maximum(np.maximum(50.0 - y, y - 160.0), 0.0)
         over = np.maximum(np.maximum(-z, z - 10.0), 0.0)
-        need, there = order.keep_apart[0] ** 2, past**2 + over**2
-        kept = [row[names.index(f"clear_of_keep_out[1,{k}]")] for k in (1, 2, 3)]
+        first, second = np.triu_indices(3, 1)
+        need = np.append(order.keep_apart[0], order.apart[first, second]) ** 2
+        there = np.append(
+            past**2 + over**2, (y[first] - y[second]) ** 2 + (z[first] - z[second]) ** 2
+        )
+        asked = [f"clear_of_keep_out[1,{k}]" for k in (1, 2, 3)]
+        asked += [f"shafts_apart[{i + 1},{j + 1}]" for i, j in zip(first, second, strict=True)]
+        kept = [row[names.index(name)] for name in asked]
         wanted = 1.0 + (need - there) / np.maximum(np.maximum(need, there), 1.0)
         assert kept == pytest.approx(wanted, rel=1e-12)
 
@@ -464,6 +473,19 @@ def test_each_first_stage_has_a_chain_of_the_shafts_behind_it():
     assert [c.level.tolist() for c in rows] == [[0, 2], []]
 
 
+def test_radii_of_shafts_are_the_least_of_every_cell_of_torque_to_the_highest():
+    train = elevator()
+
+    def make(pairs):
+        ratios = np.cumprod([1.0, *(p.ratio for p in pairs)])
+        return Gearbox(pairs, tuple(Shaft(10.0 * float(r)) for r in ratios))
+
+    radii = numbers(train, make)[0].shaft
+    ends = 10.0 * np.exp(tables.DELTA * np.arange(radii.shape[1]))
+    assert radii == pytest.approx(np.stack([np.full(len(ends), 10.0), ends, ends]))
+    assert 10.0 * train.highest_ratio < ends[-1]
+
+
 def test_widths_by_cells_of_torque_are_those_of_their_lower_ends(monkeypatch):
     """Of a law without loads: one cell where there may be few entries."""
     train = elevator()
@@ -477,6 +499,11 @@ def test_widths_by_cells_of_torque_are_those_of_their_lower_ends(monkeypatch):
     )
     monkeypatch.setattr(tables, "ENTRIES", 2)
     assert tables._loads(train, [table])[1] == pytest.approx(np.full((3, 1), 1e-3 * train.torque))
+    wider = SimpleNamespace(**{**vars(table), "z1": np.ones(1), "modules": (2.0, 3.0)})
+    monkeypatch.setattr(tables, "ENTRIES", 16)  # of four pairs and two modules
+    _, widths, rows, *_ = tables._loads(train, [table, wider])
+    assert widths.shape == (8, 2) and rows.tolist() == [0, 2, 4, 6, 8]
+    assert np.isinf(widths[:6, 1]).all() and np.isfinite(widths[6:]).all()
     table.z1 = np.ones(0)  # no pair is possible
     assert tables._loads(train, [table])[1].shape == (0, 1)
 
