@@ -76,13 +76,11 @@ def test_why_iso_takes_more_is_recomputed():
     assert by_rating.why_iso_is_larger() in PLAIN
 
 
-def test_every_sentence_with_numbers_is_recomputed():
-    missing = [
-        sentence
-        for sentence in words.sentences() + rated.rated_sentences()
-        if sentence not in PLAIN
-    ]
-    assert not missing
+@pytest.mark.parametrize(
+    "sentences", [words.sentences, pytest.param(rated.rated_sentences, marks=SLOW)]
+)
+def test_every_sentence_with_numbers_is_recomputed(sentences):
+    assert not [sentence for sentence in sentences() if sentence not in PLAIN]
 
 
 def test_the_totals_are_those_of_an_independent_computation():
