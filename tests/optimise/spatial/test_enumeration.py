@@ -71,6 +71,17 @@ def test_listed_values_and_stops():
     assert result.status == "optimal" and result.design == {"x1": 1.25, "x2": 1.6}
 
 
+def test_bounds_that_are_computed_hold_the_values_they_stand_for():
+    whole = Var("x1", "", 0.0, 3.0 - 4e-16, 0.0, integer=True)
+    listed = Var("x2", "", 0.1, 0.3, 0.1, values=(0.1, 3.0 * 0.1))
+    beside = Var("x2", "", 0.1, 0.2, 0.1)
+    problem = posed([(0, 1)] * 2, lambda x: (-x[0] - x[1], [], []))
+    assert solve(replace(problem, variables=(whole, listed)), "spatial").value == -3.0 - 3.0 * 0.1
+    assert solve(replace(problem, variables=(whole, beside)), "spatial").value == pytest.approx(
+        -3.2
+    )
+
+
 def test_whole_numbers_whose_middle_is_rounded_are_left_to_the_tree():
     low = 2.0**53 - 3.0  # the middle of it and the next one is that one
     problem = posed([(low, low + 1.0, "whole")], lambda x: (x[0] - low, [], []), [low])

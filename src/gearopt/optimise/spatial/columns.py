@@ -444,7 +444,7 @@ def columns(problem: Problem, slack: float = 0.0, logarithms: bool = True) -> Co
     limits, equal = [builder.column(a) for a in g], [builder.column(a) for a in h]
     builder.keep([aim, *limits, *equal])
     lower, upper = np.full(builder.width, -np.inf), np.full(builder.width, np.inf)
-    lower[:count], upper[:count] = problem.bounds()[:2]
+    lower[:count], upper[:count] = _allowed_ends(problem)
     for j in (*limits, *equal):
         upper[j] = min(upper[j], 1.0 + slack)
     for j in equal:
@@ -519,22 +519,15 @@ def _assembled(
     lower, upper, listed = lower.copy(), upper.copy(), list[float]()
     sort = np.where(builder.whole, WHOLE, CONTINUOUS).astype(np.int64)
     first, last = np.zeros(builder.width, np.int64), np.zeros(builder.width, np.int64)
-    for j, (variable, _) in enumerate(problem.columns):
+    for j, (variable, _) in enumerate(problem.columns):  # a row may limit a variable itself
         if variable.values is not None:
             values = allowed_values(problem, j)
             sort[j], first[j], last[j] = LISTED, len(listed), len(listed) + len(values)
             listed += values
-            ends = values[0], values[-1]
-        elif variable.integer:
-            ends = whole_ends(problem, j)
-        else:
-            continue
-        lower[j], upper[j] = max(lower[j], ends[0]), min(upper[j], ends[1])
-        if variable.values is None:  # a limit of the variable itself may end between whole numbers
-            lower[j], upper[j] = np.ceil(lower[j]), np.floor(upper[j])
-        else:
             inside = [v for v in values if lower[j] <= v <= upper[j]] or [np.inf, -np.inf]
             lower[j], upper[j] = inside[0], inside[-1]
+        elif variable.integer:
+            lower[j], upper[j] = np.ceil(lower[j]), np.floor(upper[j])
     start, terms = [0], list[tuple[int, tuple[float, float]]]()
     for r in range(len(builder.relations)):
         terms += builder.sums[r].terms.items() if r in builder.sums else []
@@ -562,6 +555,20 @@ def _assembled(
         bool((lower > upper).any()),
     )
     return columns
+
+
+def _allowed_ends(problem: Problem) -> tuple[Array, Array]:
+    """Least and greatest values (n,) of the variables; a discrete one may be a rounding outside."""
+    lower, upper = (bound.copy() for bound in problem.bounds()[:2])
+    for j, (variable, _) in enumerate(problem.columns):
+        if variable.values is not None:
+            values = allowed_values(problem, j)
+            lower[j], upper[j] = values[0], values[-1]
+        elif variable.integer:
+            least, greatest = whole_ends(problem, j)
+            lower[j] = max(least, np.ceil(lower[j] - 0.25))  # not by a part of a large number
+            upper[j] = min(greatest, np.floor(upper[j] + 0.25))
+    return lower, upper
 
 
 def _below(builder: Builder, count: int) -> Any:
