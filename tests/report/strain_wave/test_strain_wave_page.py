@@ -137,6 +137,12 @@ def test_a_cutter_never_shrinks_and_fits_a_sheet_by_default(result, found):
 
 
 @pytest.mark.slow
+def test_a_drawing_beyond_all_paper_is_left_out(result):
+    report = result.report | {"cutter_drawing": {"scale": 1e9, "grid_mm": 0.1}}
+    section = cutter(replace(result, report=report), METRIC)
+    assert not section.drawings and "No drawing: at 1e+09:1 it would be" in section.words[-1]
+
+
 def test_the_grid_of_a_high_or_wide_cutter_has_few_lines(found):
     """Edges 1 m high, or 10 km wide, on a grid of 0.05 mm: at most 62 lines either way."""
     for high, wide in ((1e3, 1.0), (1.0, 1e7)):

@@ -103,16 +103,16 @@ def compliance_of(
 def shared(compliance: Any, gaps: Any, arms: Any, moment: float) -> Loads:
     """Return the loads by an active set; compliance (n, n) symmetric positive definite.
 
-    gaps g (n,) >= 0 [mm], arms L (n,) > 0 [mm], moment M > 0 [N mm] of one lobe. Begins with the
-    tooth that touches first; takes in the tooth that lies deepest and goes as far towards the
-    solution of the closed set as loads stay positive, dropping those that reach 0. The energy falls
-    with every set, so none comes again (Lawson and Hanson's argument for least squares).
+    gaps g (n,) >= 0 [mm], arms L (n,) > 0 [mm], moment M > 0 [N mm] of one lobe. Begins with all
+    teeth and drops those that would pull until none does; then takes in the tooth that lies deepest
+    and goes as far towards the solution of the closed set as loads stay positive, dropping those
+    that reach 0. The energy falls with every set, so none comes again (Lawson and Hanson's argument
+    for least squares).
     """
     matrix, gap, arm = (np.asarray(v, float) for v in (compliance, gaps, arms))
-    own = int((gap / arm).argmin())
+    closed, aim = _begun(matrix, gap, arm, moment)
     forces = np.zeros(len(gap))
-    forces[own] = moment / arm[own]
-    closed: Any = forces > 0.0
+    forces[closed] = aim
     while True:
         windup, forces, closed = _towards(matrix, gap, arm, moment, forces, closed)
         left = matrix @ forces + gap - windup * arm
@@ -123,16 +123,27 @@ def shared(compliance: Any, gaps: Any, arms: Any, moment: float) -> Loads:
         closed[worst] = True
 
 
+def _begun(matrix: Array, gap: Array, arm: Array, moment: float) -> tuple[Any, Any]:
+    """Teeth that all push if they alone touch, and their loads."""
+    closed = np.ones(len(gap), bool)
+    while closed.any():
+        at = np.flatnonzero(closed)
+        _, aim = _solved(matrix, gap, arm, moment, at)
+        if (aim > 0.0).all():
+            return closed, aim
+        closed[at[~(aim > 0.0)]] = False
+    first = int((gap / arm).argmin())  # gaps so large that rounding left none
+    closed[first] = True
+    return closed, moment / arm[first]
+
+
 def _towards(
     matrix: Array, gap: Array, arm: Array, moment: float, forces: Array, closed: Any
 ) -> tuple[float, Array, Any]:
     """Return windup, loads and set after steps to the solution of a set, all loads positive."""
     while True:
         at = np.flatnonzero(closed)
-        sides = np.stack([arm[at], gap[at]], axis=1)
-        by_arm, by_gap = np.linalg.solve(matrix[np.ix_(at, at)], sides).T
-        windup = float((moment + arm[at] @ by_gap) / (arm[at] @ by_arm))
-        aim = windup * by_arm - by_gap
+        windup, aim = _solved(matrix, gap, arm, moment, at)
         if (aim > 0.0).all():
             found = np.zeros_like(forces)
             found[at] = aim
@@ -146,6 +157,17 @@ def _towards(
         out = at[falls[share <= step]]
         forces[out], closed = 0.0, closed.copy()
         closed[out] = False
+
+
+def _solved(matrix: Array, gap: Array, arm: Array, moment: float, at: Any) -> tuple[float, Array]:
+    """Windup and loads of teeth `at` that touch, which may pull; one alone carries all."""
+    if len(at) == 1:
+        load = moment / arm[at]
+        return float((matrix[at[0], at] @ load + gap[at[0]]) / arm[at[0]]), load
+    sides = np.stack([arm[at], gap[at]], axis=1)
+    by_arm, by_gap = np.linalg.solve(matrix[np.ix_(at, at)], sides).T
+    windup = float((moment + arm[at] @ by_gap) / (arm[at] @ by_arm))
+    return windup, windup * by_arm - by_gap
 
 
 def problem(compliance: Any, gaps: Any, arms: Any, moment: float) -> Problem:

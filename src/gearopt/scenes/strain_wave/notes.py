@@ -158,10 +158,10 @@ def range_notes(scene: Scene, ends: Sequence[RangeEnd]) -> list[str]:
 
 def notes(made: WaveDesign) -> list[str]:
     """Return what is to be known of this gearing, in sentences."""
-    carry = f"{made.carrying_teeth} {'tooth' if made.carrying_teeth == 1 else 'teeth'}"
+    carry = "1 tooth carries" if made.carrying_teeth == 1 else f"{made.carrying_teeth} teeth carry"
     found = [
         f"On average {made.pairs_in_contact:.3f} pairs of teeth per lobe and flank are conjugate; "
-        f"under load {carry} carry, equivalent to {made.effective_teeth:.2f} with equal loads.",
+        f"under load {carry}, equivalent to {made.effective_teeth:.2f} with equal loads.",
         _windup(made),
     ]
     if made.least_clearance_mm < CUTTING:

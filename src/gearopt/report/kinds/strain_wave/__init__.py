@@ -16,7 +16,7 @@ from gearopt.report.headline import of_limits
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
 from gearopt.report.kinds.strain_wave import tables
-from gearopt.report.kinds.strain_wave.cutter import drawing, usual_scale
+from gearopt.report.kinds.strain_wave.cutter import breadth, drawing, usual_scale
 from gearopt.report.kinds.strain_wave.motion import running
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.plots import Figure, axis, band, layout, lines, upright
@@ -26,6 +26,7 @@ from gearopt.report.words import amount, number, series_of
 RUNS = "strain wave gearing"  # the animation that plots follow
 ANGLE = "angle of the tooth on the wave [°]"
 NEAR_DEG = 25.0  # of the wave, that the plot of clearances shows at least on either side
+WIDEST = 1e4  # mm of a cutter's drawing
 BEYOND_DEG = 10.0  # and beyond the last contact
 
 
@@ -208,8 +209,8 @@ def cutter(result: Result, measures: Measures) -> Section | None:
     design = design_of(result)
     if design is None or (tool := design.cutter) is None:
         return None
+    words: tuple[str, ...] = (f"No such cutter: its edge would have a cusp. {_least(tool)}",)
     if not tool.regular:
-        words = (f"No such cutter: its edge would have a cusp. {_least(tool)}",)
         return Section("Cutter of the flexspline", words=words, terminal=words)
     words = (
         f"{_tool(tool)}, rolling on a pitch radius of "
@@ -217,12 +218,16 @@ def cutter(result: Result, measures: Measures) -> Section | None:
         f"to within {1e3 * tool.round_trip_mm:.0e} µm. {_least(tool)}",
     )
     shown, pitch = result.report["cutter_drawing"], math.pi * design.module_mm
-    scale = shown["scale"] or usual_scale(tool, pitch, shown["grid_mm"])
+    grid = shown["grid_mm"]
+    scale = shown["scale"] or usual_scale(tool, pitch, grid)
     edges = [tables.edges(tool, measures)] if tool.straight_deg else []
+    if (width := scale * breadth(tool, pitch, grid)) > WIDEST:
+        wide = amount(width, "mm", measures)
+        words = (*words, f"No drawing: at {scale:g}:1 it would be {wide} wide.")
     return Section(
         "Cutter of the flexspline",
         words=words,
-        drawings=[drawing(tool, pitch, scale, shown["grid_mm"], measures)],
+        drawings=[drawing(tool, pitch, scale, grid, measures)] if width <= WIDEST else [],
         tables=[*edges, tables.edge_points(tool, measures)],
         terminal=(words[0], *edges),
     )

@@ -60,10 +60,16 @@ def drawing(
 
 def usual_scale(tool: CutterDesign, pitch: float, grid: float) -> float:
     """The largest of 1, 2, 5, 10 ... to 5000 at which two teeth fit on a sheet of A4."""
-    (left, right, _, _), _ = _frame(_teeth(tool, pitch), grid)
+    width = breadth(tool, pitch, grid)
     room = (SHEET - MARGINS[0] - MARGINS[1]) / PX_PER_MM
     scales = (s * 10.0**k for k in range(4) for s in (1.0, 2.0, 5.0))
-    return max((s for s in scales if s * (right - left) <= room), default=1.0)
+    return max((s for s in scales if s * width <= room), default=1.0)
+
+
+def breadth(tool: CutterDesign, pitch: float, grid: float) -> float:
+    """Width [mm] of what a drawing shows, before its scale."""
+    (left, right, _, _), _ = _frame(_teeth(tool, pitch), grid)
+    return right - left
 
 
 def _teeth(tool: CutterDesign, pitch: float) -> list[Any]:
