@@ -110,8 +110,8 @@ def test_axes_move_on_the_page_as_they_did():
         time_ms=tuple(np.linspace(0.0, 20.0, 801)),
         deformation_mm=tuple(np.sin(turn)),
         axes_mm=axes,
-        frequency_Hz=(0.0,),
-        amplitude_mm=(0.0,),
+        frequency_Hz=(0.0, 1000.0),
+        amplitude_mm=(0.0, 1e-3),
     )
     made = dynamics_plots.orbit(found, METRIC)
     later = 2.0 * np.pi + np.pi * np.asarray(made.marks - 10.0) / 5.0
@@ -121,3 +121,6 @@ def test_axes_move_on_the_page_as_they_did():
         scale = 0.01 * np.array([a + 1, b + 1])
         law = (np.cos, np.sin) if a == 0 else (np.sin, np.cos)
         assert np.allclose(places[:, :2], np.stack([f(later) for f in law], axis=1) * scale)
+    marked = [dynamics_plots.spectrum(found, f, METRIC) for f in (300.0, 1e-8, 0.0)]
+    assert [len(plot.layout["shapes"]) for plot in marked] == [3, 0, 0]
+    assert ["multiples" in plot.caption for plot in marked] == [True, False, False]

@@ -61,11 +61,9 @@ def _slices(wave: Wave, steps: float) -> Iterator[tuple[float, Any]]:
         return
     for begin, length, low, high in zip(wave.edges, wave.lengths, wave.after, ends, strict=True):
         count = math.ceil(length * steps / SLICE)
-        shares = np.arange(count + 1) / count
-        levels = low + (high - low) * shares
-        for k, share in enumerate(shares[:-1]):
-            lengths = np.array([length / count])
-            yield float(begin + share * length), (lengths, levels[k : k + 1], levels[k + 1 : k + 2])
+        for k in range(count):  # one by one: a mesh of 1e-9 Hz has more than memory holds
+            first, last = (np.array([low + (high - low) * (j / count)]) for j in (k, k + 1))
+            yield float(begin + k / count * length), (np.array([length / count]), first, last)
 
 
 def ready(system: Linear, wave: Wave, clock: Clock) -> None:

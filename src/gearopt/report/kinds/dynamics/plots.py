@@ -21,6 +21,7 @@ SIZE = 300.0  # px of a view of an orbit
 AXIS_MARGIN = 1.15  # of the largest displacement that a view shows
 DOT, CORNERS = 5.0, 20  # px and corners of the point that moves
 HEIGHT = 320  # px of a plot
+ORDERS = 200  # of the mesh frequency that a spectrum marks; more would cover it
 QUIET, LOUD = "--card", "--series-1"  # ends of a map's colours
 Values = Sequence[Any]
 
@@ -55,10 +56,11 @@ def spectrum(motion: Response, mesh_frequency: float, measures: Measures) -> Fig
         HEIGHT,
         hovermode="x",
     )
-    orders = range(1, int(high / mesh_frequency) + 1) if mesh_frequency else range(0)
+    drawn = mesh_frequency > 0.0 and high <= ORDERS * mesh_frequency
+    orders = range(1, int(high / mesh_frequency) + 1) if drawn else range(0)
     plot["shapes"] = [upright(k * mesh_frequency) for k in orders]
     caption = "Spectrum of the second half of the motion"
-    caption += "; dotted: the mesh frequency and its multiples." if mesh_frequency else "."
+    caption += "; dotted: the mesh frequency and its multiples." if drawn else "."
     kept = [max(v, 1e-9) for v in micro]
     return Figure([line(motion.frequency_Hz, kept)], plot, caption)
 
