@@ -90,17 +90,15 @@ def solve(
     asked = {"method": method, "seconds": budget.seconds, "evaluations": budget.evaluations}
     asked |= {"gap": gap, "seed": seed, "top": top, "prices": prices}
     gap = GAP if gap is None else gap
+    _check_slow(what, workers)
     if isinstance(what, Problem | Conic):
         _unchanged(what, changes)
         _only_of_files(what.name, top, prices)
-        _check_slow(what, workers)
         from gearopt.optimise.own_problems import solve_own
 
         with working(workers):
             return solve_own(what, method, budget, seed, watch, gap, start)
-    _check_slow(what, workers)
-    if start is not None:
-        raise SolveError("start changes nothing here: it is for a Problem; leave it out")
+    _only_of_problems(start)
     ask = Ask(method, budget, seed, watch, gap, top)
     scene, kind, names = _opened(what, changes)
     if why := kind.idle(scene, method).get("top"):
@@ -210,6 +208,12 @@ def _check_slow(what: Any, workers: int) -> None:
             f"workers={workers} changes nothing here: it is for a Problem whose text is run point "
             "by point, such as a simulation; leave it out"
         )
+
+
+def _only_of_problems(start: Mapping[str, Any] | None) -> None:
+    """Raise SolveError for options of a problem of one's own that are asked of a file."""
+    if start is not None:
+        raise SolveError("start changes nothing here: it is for a Problem; leave it out")
 
 
 def _only_of_files(name: str, top: int, prices: bool | float) -> None:

@@ -64,9 +64,9 @@ class Cells:
         gears = []
         for module, end in product(self.module, (LOWER, UPPER)):
             d, ratio = self.diameter[end], self.ratio[end]
-            made = self.toothing.of_diameter(module, self.teeth[end], d, ratio, 1.0)
-            wheel = replace(made.wheel, reference_diameter=self.wheel[end])
-            gears.append((made.pinion, wheel)[member])
+            pair = self.toothing.of_diameter(module, self.teeth[end], d, ratio, 1.0)
+            wheel = replace(pair.wheel, reference_diameter=self.wheel[end])
+            gears.append((pair.pinion, wheel)[member])
         rims, bores = (
             np.array([np.broadcast_to(where(g, True, False), self.module[0].shape) for g in gears])
             for where in (blank.where_rim, blank.where_bore)
