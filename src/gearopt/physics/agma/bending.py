@@ -22,7 +22,7 @@ from gearopt.physics.geometry.fillet import (
     tool_tip,
 )
 
-HALVINGS, SECANTS = 12, 4  # of a tool angle of 1.2: 3e-4, then 1e-7, 3e-11, to the last digit
+NEWTON = 7  # steps from the middle of an interval of 1.2, halving where one leaves it: to rounding
 LOADS = ("highest single", "tip")
 
 
@@ -120,9 +120,7 @@ def tangency(tooth: LoadedTooth, theta: Any, tip: ToolTip | None = None) -> Any:
     positive at the root circle, negative at the end of the fillet. Source: AGMA 908-B89, clause 5,
     y = 2 h_F tan(tau) - s_F/2.
     """
-    point = fillet_point(tooth.gear, theta, tip)
-    height = tooth.apex - point.y
-    return 2.0 * height * np.sin(point.slope) - point.x * np.cos(point.slope)
+    return _tangency(tooth, theta, tool_tip(tooth.gear) if tip is None else tip)[0]
 
 
 @np.errstate(invalid="ignore", divide="ignore", over="ignore")
@@ -140,19 +138,29 @@ def critical_theta(tooth: LoadedTooth) -> Any:
     low, high = np.broadcast_to(angle, shape), np.full(shape, 0.5 * np.pi)
     start, tip = low, tool_tip(tooth.gear)
     above, below = tangency(tooth, low, tip) >= 0.0, tangency(tooth, high, tip) <= 0.0
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        past = tangency(tooth, middle, tip) > 0.0
-        low, high = np.where(past, low, middle), np.where(past, middle, high)
-    before, here = low, high
-    f_before = tangency(tooth, before, tip)
-    for _ in range(SECANTS):
-        f_here = tangency(tooth, here, tip)
-        change = f_here - f_before
-        step = np.where(change == 0.0, 0.0, f_here * (here - before) / change)
-        before, f_before = here, f_here
-        here = np.clip(here - step, low, high)
-    return np.where(below, np.nan, np.where(above, start, here))[()]
+    theta = 0.5 * (low + high)
+    for _ in range(NEWTON):
+        value, slope = _tangency(tooth, theta, tip)
+        past = value > 0.0
+        low, high = np.where(past, low, theta), np.where(past, theta, high)
+        step = theta - value / slope
+        theta = np.where((step < low) | (step > high), 0.5 * (low + high), step)
+    return np.where(below, np.nan, np.where(above, start, theta))[()]
+
+
+def _tangency(tooth: LoadedTooth, theta: Any, tip: ToolTip) -> tuple[Any, Any]:
+    """Return `tangency` and its derivative by theta.
+
+    The fillet turns by dtau = (1 + c/(r sin(theta)^2)) dtheta along ds = rho dtau + c^2/(r
+    sin(theta)^3) dtheta (Euler and Savary), with dx = ds sin(tau), dy = -ds cos(tau).
+    """
+    point, radius = fillet_point(tooth.gear, theta, tip), 0.5 * tooth.gear.reference_diameter
+    height, sine, cosine = tooth.apex - point.y, np.sin(point.slope), np.cos(point.slope)
+    across = np.sin(theta)
+    turn = 1.0 + tip.depth / (radius * across**2)
+    along = tip.radius * turn + tip.depth**2 / (radius * across**3)
+    value = 2.0 * height * sine - point.x * cosine
+    return value, along * sine * cosine + turn * (2.0 * height * cosine + point.x * sine)
 
 
 @np.errstate(invalid="ignore", divide="ignore", over="ignore")

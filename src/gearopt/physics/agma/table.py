@@ -9,13 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.physics.agma.bending import (
-    bending_factor,
-    critical_theta,
-    loaded_tooth,
-    seen_from_wheel,
-)
-from gearopt.physics.agma.mesh import mesh_of, pitting_factor
+from gearopt.physics.agma.mesh import mesh_of
 from gearopt.physics.agma.refusals import geometry_factors
 from gearopt.physics.choosing import choose
 from gearopt.physics.gears import GearPair
@@ -96,33 +90,25 @@ def factor_table(pair: GearPair, load: str = "highest single") -> FactorTable:
     if helix:
         axial = np.broadcast_to(np.pi * pair.normal_module / np.sin(helix), shape)
     unit = np.where(np.isfinite(axial), axial, pair.normal_module)
-    made = [pair.of_width(overlap * unit) for overlap in (LOW_OVERLAP, HIGH_OVERLAP)]
-    low, high = (_bare(one, load) for one in made)
-    mesh = mesh_of(made[0])
-    slope = (1.0 - mesh.overlap_factor) / LOW_OVERLAP if helix else np.zeros(shape)
-    codes = [np.asarray(geometry_factors(one, load).refusal) for one in made]
+    narrow = pair.of_width(LOW_OVERLAP * unit)
+    low = _bare(narrow, load)
+    high = _bare(pair.of_width(HIGH_OVERLAP * unit), load) if helix else low
+    mesh = mesh_of(narrow)
     return FactorTable(
-        _masked(low, codes[0]),
-        slope,
-        _masked(high, codes[1]),
+        low[0],
+        (1.0 - mesh.overlap_factor) / LOW_OVERLAP if helix else np.zeros(shape),
+        high[0],
         np.broadcast_to(mesh.path.transverse_ratio, shape),
         axial,
         float(np.cos(base_helix_angle(pair.pinion))),
-        (codes[0], codes[1]),
+        (low[1], high[1]),
     )
 
 
-def _masked(values: Three, codes: Any) -> Three:
-    first, second, third = (np.where(codes == 0, v, np.nan) for v in values)
-    return first, second, third
-
-
 @np.errstate(invalid="ignore", divide="ignore", over="ignore")
-def _bare(pair: GearPair, load: str) -> Three:
-    """Return I m_N/C_psi^2 and J m_N/C_psi."""
-    mesh = mesh_of(pair)
-    teeth = [loaded_tooth(m, load) for m in (mesh, seen_from_wheel(mesh))]
-    bare = mesh.sharing / mesh.overlap_factor
-    first, second = (bending_factor(tooth, critical_theta(tooth)).value for tooth in teeth)
+def _bare(pair: GearPair, load: str) -> tuple[Three, Any]:
+    """Return I m_N/C_psi^2 and J m_N/C_psi, NaN where refused, and the codes of refusal."""
+    mesh, made = mesh_of(pair), geometry_factors(pair, load)
     root = mesh.sharing / mesh.overlap_factor**0.5
-    return pitting_factor(mesh) * bare, first * root, second * root
+    pitting = made.pitting * (mesh.sharing / mesh.overlap_factor)
+    return (pitting, made.bending[0] * root, made.bending[1] * root), np.asarray(made.refusal)
