@@ -166,3 +166,14 @@ def test_pressures_of_single_teeth():
     expected = np.sqrt(loads.forces[middle] / 10.0 * DUTY.contact_modulus * gap / np.pi)
     assert found[middle] == pytest.approx(expected, rel=1e-4)
     assert (found[loads.forces == 0.0] == 0.0).all()
+
+
+@pytest.mark.parametrize("width", [10.0, 1e6, 1e13])
+def test_teeth_of_any_width_share_the_load(width):
+    """Of a cup beside whose softness pairs of teeth are rigid, loads balance and push."""
+    made = teeth_of(base(), 1e4 * width, (Cup(1.0, 3.0 * width), width))
+    found = shared(made.compliance, made.gaps, np.full(len(made.gaps), made.arm), 5e4)
+    assert np.linalg.eigvalsh(made.compliance)[0] > 0.0
+    assert found.forces.min() >= 0.0 and found.forces.sum() * made.arm == pytest.approx(5e4)
+    left = made.compliance @ found.forces + made.gaps - found.windup * made.arm
+    assert np.abs(left[found.forces > 0.0]).max() < 1e-9 * max(1.0, found.windup * made.arm)

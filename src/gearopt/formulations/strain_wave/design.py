@@ -43,6 +43,7 @@ from gearopt.physics.strain_wave.tooth_motion import motion
 T = TypeVar("T")
 Columns = tuple[float, ...]
 REPLACED = 0.3  # s that line and arc in place of a cutter's edge take
+SOUGHT = 0.2  # s that the largest addendum takes, and a curve over profile shifts
 INVOLUTE = "involute"  # law of the circular spline's teeth, to which the flexspline's are conjugate
 WITHIN = (1.0, 2.0, 5.0, 10.0, 20.0)  # um
 ROWS = 21  # of the flank's table
@@ -236,7 +237,8 @@ def deflections_and_ends(made: Flank, extras: Extras) -> dict[str, Any]:
     """Fields of a `WaveDesign`: ends of deflection, shift and addendum, and other deflections."""
     gearing = made.gearing
     deflections = other_deflections(extras, lambda by: _deflected(made, by))
-    addendum = extras.of("the largest addendum", lambda: largest_addendum(gearing), None)
+    name = "the largest addendum"
+    addendum = extras.of(name, lambda: largest_addendum(gearing), None, SOUGHT)
     return {
         "deflections": deflections,
         "largest_addendum": addendum,
@@ -249,7 +251,7 @@ def profile_shifts(duty: Duty, made: Flank, extras: Extras) -> dict[str, Any]:
     """Fields of a `WaveDesign`: the curve over profile shifts, if there is time."""
     none: tuple[ShiftRow, ...] = ()
     name = "the curve over profile shifts"
-    return {"shifts": extras.of(name, lambda: _shifts(made.gearing, duty), none)}
+    return {"shifts": extras.of(name, lambda: _shifts(made.gearing, duty), none, SOUGHT)}
 
 
 def other_deflections(extras: Extras, at: Callable[[float], Deflected]) -> tuple[Deflected, ...]:

@@ -27,6 +27,7 @@ RANDOM = False
 COUNTS = "set of loaded teeth"
 REACH = 0.25 * np.pi  # rad of the wave on either side of the arc of contact: teeth that may carry
 SHARE_SPAN = 2.0  # of a share's box, as in `sharing`
+RIGID = 1e-13  # of the rim's greatest compliance: a pair of teeth that counts as rigid
 SLACK = 1e-12  # of the largest separation or deflection: a tooth that is open by less touches
 
 
@@ -95,9 +96,15 @@ def teeth_turned(
 def compliance_of(
     gearing: StrainWave, numbers: Array, pair_stiffness: float, rim: tuple[Cup, float] | None
 ) -> Array:
-    """Return the compliance (n, n) [mm/N] of teeth by their numbers, I/K + S; rim as above."""
-    pairs: Array = np.eye(len(numbers)) / pair_stiffness
-    return pairs + rim_compliance(gearing, *rim, numbers) if rim else pairs
+    """Return the compliance (n, n) [mm/N] of teeth by their numbers, I/K + S; rim as above.
+
+    1/K is RIGID of S at least: of less, rounding leaves a matrix that is not positive definite.
+    """
+    own, every = 1.0 / pair_stiffness, np.eye(len(numbers))
+    if rim is None:
+        return own * every
+    behind: Array = rim_compliance(gearing, *rim, numbers)
+    return behind + max(own, RIGID * float(behind.max(initial=0.0))) * every
 
 
 def shared(compliance: Any, gaps: Any, arms: Any, moment: float) -> Loads:

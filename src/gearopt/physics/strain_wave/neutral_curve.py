@@ -18,7 +18,8 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(14)  # perimeters to 1e-14 for 
 CHORDS = 8  # steps of one slope: each divides the error by 100 or more
 AT_ONCE = 2000  # places of which all nodes are computed at once: more do not fit into fast memory
 TABLE = 721  # places of half a curve: every quarter of a degree
-INVERSIONS = 7  # Newton steps from an arc to its polar angle
+INVERSIONS = 7  # Newton steps from an arc to its polar angle, at most
+INVERTED = 1e-9  # rad of a step that leaves rounding alone, as each squares the error
 
 
 @dataclass(frozen=True)
@@ -193,7 +194,10 @@ def angle_of_arc(curve: NeutralCurve, arc: Any) -> Any:
     for _ in range(INVERSIONS):
         rho, slope, _, _ = radii(curve, angle)
         speed = np.sqrt(rho * rho + slope * slope) / curve.radius
-        angle = angle - (arc_angle(curve, angle) - arc) / speed
+        change = (arc_angle(curve, angle) - arc) / speed
+        angle = angle - change
+        if isinstance(change, float | np.ndarray) and np.all(np.abs(change) < INVERTED):
+            break
     return angle
 
 

@@ -12,6 +12,7 @@ from gearopt.physics.load_sharing import Sharing, share
 from gearopt.physics.mesh_cycle import Cycle
 
 HARMONICS = 3  # of the tooth mesh frequency, that criteria name
+TOUCHES = 1e-9  # of a load: a pair that carries less is open but for rounding
 
 
 @dataclass(frozen=True)
@@ -157,7 +158,7 @@ class Criteria:
     @property
     def contact_ratio(self) -> Array:
         """The mean number of pairs that carry, of positions that are evenly spaced or exact."""
-        carries = self._shares > 0.0
+        carries = self._shares > TOUCHES
         return np.asarray(carries.sum(axis=-1) @ self.mesh.weights)
 
     @property
