@@ -55,6 +55,7 @@ KEYS = {  # of [x-expected], as the tests below read them
 LONG = (
     *(
         "three_stage_by_agma",
+        "given_distance",
         "helical_unit",
         "elevator_by_both",
         "materials_by_cost",

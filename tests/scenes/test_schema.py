@@ -29,7 +29,7 @@ def test_every_shipped_file_fits(path):
     assert list(VALIDATORS[content["kind"]].iter_errors(content)) == []
 
 
-MORE = {"drive": [examples()["rating"]], "pair": [examples()["sized-pair"]]}
+MORE = {"drive": [examples()["rating"], examples()["sizing"]], "pair": [examples()["sized-pair"]]}
 
 
 @pytest.mark.parametrize("kind", kinds())

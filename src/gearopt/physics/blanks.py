@@ -106,7 +106,7 @@ class Blank:
         if self.has_web:
             recess = (1.0 - self.web_over_width) * (self.inside(gear) ** 2 - self.hub**2)
             off = off + self.where_rim(gear, recess, 0.0)
-        return 0.25 * np.pi * gear.face_width * (gear.reference_diameter**2 - off)
+        return 0.25 * np.pi * gear.face_width * (gear.body**2 - off)
 
     @property
     def _hub_part(self) -> float:

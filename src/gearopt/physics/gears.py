@@ -132,6 +132,7 @@ class Gear:
     face_width b [mm]; helix_angle beta [rad], |beta| < pi/2; rack: its basic rack. profile_shift x
     and tip_alteration k (negative: shorter teeth) in normal modules; thickness_allowance A_sn [mm]
     of the normal tooth thickness, negative: thinner. d is m_n z/cos(beta); `GearPair` sees to that.
+    body_diameter [mm]: of the cylinder that volume, mass and inertia count; None: d.
     Diameters are nominal: without backlash. Source: ISO 21771:2007.
     """
 
@@ -144,6 +145,12 @@ class Gear:
     profile_shift: Any = 0.0
     tip_alteration: Any = 0.0
     thickness_allowance: Any = 0.0
+    body_diameter: Any = None
+
+    @property
+    def body(self) -> Any:
+        """Diameter [mm] of the cylinder that counts as the gear."""
+        return self.reference_diameter if self.body_diameter is None else self.body_diameter
 
     @property
     def generating_shift(self) -> Any:
@@ -182,16 +189,16 @@ class Gear:
 
     @property
     def volume(self) -> Any:
-        """Volume (pi/4) b d^2 [mm3] as a solid reference cylinder."""
-        return 0.25 * np.pi * self.face_width * self.reference_diameter**2
+        """Volume (pi/4) b d^2 [mm3] as a solid cylinder, the reference one unless told."""
+        return 0.25 * np.pi * self.face_width * self.body**2
 
     def mass(self, density: Any) -> Any:
-        """Return the mass [t] as a solid reference cylinder; density [t/mm3]."""
-        return disc_mass(density, self.face_width, self.reference_diameter)
+        """Return the mass [t] as a solid cylinder, see `volume`; density [t/mm3]."""
+        return disc_mass(density, self.face_width, self.body)
 
     def inertia(self, density: Any) -> Any:
-        """Return the moment of inertia [t mm2] as a solid reference cylinder; density [t/mm3]."""
-        return disc_inertia(density, self.face_width, self.reference_diameter)
+        """Return the moment of inertia [t mm2] as a solid cylinder, see `volume`."""
+        return disc_inertia(density, self.face_width, self.body)
 
 
 @dataclass(frozen=True)
@@ -333,8 +340,11 @@ class GearPair:
     def volume(self) -> Any:
         """Volume (pi/4) b d1^2 (1 + u^2) [mm3] of both gears as solid reference cylinders.
 
-        Source: Chong and Lee, eq. (4), correct as printed.
+        Of other bodies the sum of their volumes. Source: Chong and Lee, eq. (4), correct as
+        printed.
         """
+        if self.pinion.body_diameter is not None:
+            return self.pinion.volume + self.wheel.volume
         d = self.pinion.reference_diameter
         return 0.25 * np.pi * self.face_width * d**2 * (1.0 + self.ratio**2)
 

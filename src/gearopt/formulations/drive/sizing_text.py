@@ -261,6 +261,8 @@ def terms(
                 made = [stage.options[o].utilisations(pair, *load, safety) for o in asked]
                 rows |= {name: _chosen([r[name] for r in made], option) for name in made[0]}
         rows |= _choices(stage, own, pair)
+        if stage.toothing.shifting is not None:
+            rows |= stage.toothing.shifting.used(pair)
         if stage.wheel_fixed and not stage.pinion_fixed:
             equal[f"wheel_teeth[{k + 1}]"] = pair.wheel_teeth / own["wheel_low"]
         limits |= {f"{name}[{k + 1}]": value for name, value in rows.items()}

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack, reference_diameter
+from gearopt.physics.geometry.profile_shift import Meshing, Shifting
 
 
 @dataclass(frozen=True)
@@ -14,7 +15,8 @@ class Toothing:
     helix_angle beta [rad] of both, below 60 degrees; racks: the basic rack of each, of one normal
     pressure angle; profile_shifts x and tip_alterations k in normal modules; thickness_allowances
     A_sn [mm]; working_distance: a given centre distance [mm], None: the one without backlash of
-    nominal teeth. ValueError for other angles. Source: ISO 21771:2007.
+    nominal teeth. shifting: how profile shifts and tip alterations follow from it, None: they are
+    given. ValueError for other angles. Source: ISO 21771:2007.
     """
 
     helix_angle: float = 0.0
@@ -23,6 +25,7 @@ class Toothing:
     tip_alterations: tuple[float, float] = (0.0, 0.0)
     thickness_allowances: tuple[float, float] = (0.0, 0.0)
     working_distance: float | None = None
+    shifting: Shifting | None = None
 
     def __post_init__(self) -> None:
         if not abs(self.helix_angle) < math.pi / 3.0:  # whose cosine is rational
@@ -69,7 +72,12 @@ class Toothing:
     def _made(
         self, module: Any, teeth: tuple[Any, Any], diameters: tuple[Any, Any], face_width: Any
     ) -> GearPair:
-        """Return the pair of these numbers of teeth and reference diameters [mm]."""
+        """Return the pair of these numbers of teeth and reference diameters [mm].
+
+        Where shifts are chosen a gear counts as a cylinder of d + 2 x m_n, for by reference circles
+        shifts would seem to spare more than they do.
+        """
+        shifts, alterations, bodies = self._shifted(module, teeth, diameters)
         first, second = (
             Gear(
                 module,
@@ -78,10 +86,24 @@ class Toothing:
                 face_width,
                 self.helix_angle,
                 self.racks[i],
-                self.profile_shifts[i],
-                self.tip_alterations[i],
+                shifts[i],
+                alterations[i],
                 self.thickness_allowances[i],
+                bodies[i],
             )
             for i in range(2)
         )
         return GearPair(first, second, self.working_distance)
+
+    def _shifted(
+        self, module: Any, teeth: tuple[Any, Any], diameters: tuple[Any, Any]
+    ) -> tuple[tuple[Any, Any], tuple[Any, Any], tuple[Any, Any]]:
+        """Return profile shifts, tip alterations and diameters of bodies [mm], None: d."""
+        if self.shifting is None:
+            return self.profile_shifts, self.tip_alterations, (None, None)
+        racks, distance = self.racks, self.working_distance
+        first, second, shorter = self.shifting.shifts(
+            Meshing(module, teeth, self.helix_angle, racks, distance)
+        )
+        bodies = diameters[0] + 2.0 * first * module, diameters[1] + 2.0 * second * module
+        return (first, second), (shorter, shorter), bodies

@@ -197,7 +197,7 @@ def _rows(gear: Gear, chosen: Any) -> Gear:
         return np.broadcast_to(value, chosen.shape)[chosen]
 
     rack = Rack(*(part(getattr(gear.rack, each.name)) for each in fields(Rack)))
-    names = [each.name for each in fields(gear) if each.name != "rack"]
+    names = [each.name for each in fields(gear) if each.name not in ("rack", "body_diameter")]
     return replace(gear, rack=rack, **{name: part(getattr(gear, name)) for name in names})
 
 

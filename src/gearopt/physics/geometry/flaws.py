@@ -22,7 +22,7 @@ from gearopt.physics.geometry.fillet import (
     tool_tip,
     undercut_depth,
 )
-from gearopt.physics.geometry.involute import involute
+from gearopt.physics.geometry.involute import shift_sum
 from gearopt.physics.geometry.tooth import (
     circumferential_backlash,
     normal_backlash,
@@ -169,14 +169,10 @@ def _backlash(pair: GearPair, of: str) -> list[Flaw]:
 
 
 def shifts_at(pair: GearPair) -> float:
-    """Return x1 + x2 of nominal teeth that have no backlash at the pair's centre distance.
-
-    (inv(alpha_wt) - inv(alpha_t)) (z1 + z2)/(2 tan(alpha_n)). Source: ISO 21771:2007.
-    """
-    first = pair.pinion
-    opened = involute(pair.working_angle) - involute(first.transverse_pressure_angle)
-    teeth = pair.pinion_teeth + pair.wheel_teeth
-    return float(opened * teeth / (2.0 * math.tan(first.rack.pressure_angle)))
+    """Return x1 + x2 of nominal teeth that have no backlash at the pair's centre distance."""
+    first, teeth = pair.pinion, pair.pinion_teeth + pair.wheel_teeth
+    angles = first.rack.pressure_angle, first.transverse_pressure_angle
+    return float(shift_sum(pair.working_angle, teeth, *angles))
 
 
 def least_backlash(pair: GearPair) -> float:

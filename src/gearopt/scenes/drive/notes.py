@@ -11,7 +11,6 @@ from gearopt.scenes.drive.tables.blanks import blank, body_flaws
 from gearopt.scenes.drive.tables.drive import ORIGINS
 from gearopt.scenes.drive.tables.layout import Layout
 from gearopt.scenes.drive.tables.rating import with_shared
-from gearopt.scenes.drive.tables.teeth import toothing
 from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.module_series import unverified
 
@@ -103,6 +102,11 @@ def _bodies(scene: Scene) -> str:
     stages = scene.stage_tables
     tables = [with_shared(getattr(own, m), scene.gears) for own in stages for m in MEMBERS]
     if all(blank(table, None).solid and not table.web_thickness for table in tables):
+        if any(map(scene.shifted, stages)):
+            return (
+                "Volumes are those of solid cylinders of face width; where shifts follow from a "
+                "centre distance their diameter is d + 2 x m_n, else the reference one"
+            )
         return "Volumes are those of solid cylinders of reference diameter and face width"
     return (
         "Volumes are those of solid cylinders of reference diameter; masses are those of rims, "
@@ -130,9 +134,15 @@ def _loads(scene: Scene, angle: str, assumed: str) -> list[str]:
 
 def _teeth(scene: Scene) -> list[str]:
     """Assumptions on the teeth: shifts, tools, backlash."""
-    each = [toothing(own, scene.gears) for own in scene.stage_tables]
+    each = [scene.toothing(own) for own in scene.stage_tables]
     shifted = any(any(cut.profile_shifts) for cut in each)
     shifts = "with the profile shifts of the file" if shifted else "without profile shift"
+    rule = next((cut.shifting for cut in each if cut.shifting is not None), None)
+    if rule is not None:
+        shifts = (
+            "whose profile shifts follow from the given centre distances, shared out by the rule "
+            f"{rule.rule}, with both tips shortened alike"
+        )
     ends = "losses in mesh and bearings are neglected"
     sentences = [f"The gears are external cylindrical ones {shifts}; {ends}."]
     usual = {replace(ISO_53_A, pressure_angle=r.pressure_angle) for cut in each for r in cut.racks}

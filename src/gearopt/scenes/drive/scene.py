@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
 from gearopt.formulations.drive.layout.gearbox import Gearbox
+from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength import RATED, Law
 from gearopt.physics.blanks import Blank
@@ -32,6 +33,7 @@ from gearopt.scenes.drive.tables.drive import (
     Objective,
     ProcessOneTable,
     ProcessTwoTable,
+    ShiftTable,
     StageTable,
     Teeth,
 )
@@ -43,7 +45,7 @@ from gearopt.scenes.drive.tables.layout import (
     gearbox,
 )
 from gearopt.scenes.drive.tables.rating import LoadTable, RatingTable, with_shared
-from gearopt.scenes.drive.tables.teeth import check_mesh, check_teeth, toothing
+from gearopt.scenes.drive.tables.teeth import check_follows, check_mesh, check_teeth, toothing
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
@@ -125,6 +127,7 @@ class Scene(Table):
         description="Needed unless all gears are given and [rating] rates them",
     )
     teeth: Teeth | None = None
+    shift: ShiftTable | None = None
     objective: Objective = Field(default_factory=Objective)
     layout: Layout | None = None
     place: tuple[PlaceTable, ...] = Field((), description="One table per place")
@@ -213,7 +216,8 @@ class Scene(Table):
     @property
     def rated_real(self) -> bool:
         """Return whether ratings can limit real-valued teeth: under one load, without a choice."""
-        return self.rating is not None and not (self.load or self.material)
+        chosen = self.load or self.material or any(map(self.shifted, self.stage))
+        return self.rating is not None and not chosen
 
     @property
     def law(self) -> Law:
@@ -274,9 +278,37 @@ class Scene(Table):
         aim = self.objective.minimise if "limits" in self.model_fields_set else ""
         asked = "together" if self.layout is not None and self.layout.together else ""
         asked = asked or ("process_two" if self.process_two is not None else "")
-        check_teeth(self.stage, self.gears, self.given, aim, asked)
+        lacks = "" if self.given else self._lacks
+        check_teeth(self.stage, self.gears, lacks, aim, asked)
+        shifted = [k for k, own in enumerate(self.stage) if self.shifted(own)]
+        for k in shifted:
+            check_follows(k, self.stage[k])
+        if self.shift is not None and not shifted:
+            rule = "changes nothing: no gears are chosen at a given centre_distance of a [[stage]]"
+            raise refuse(rule, at=("shift",), action="remove")
         for k, own in enumerate(self.stage if self.to_size else ()):  # else a rating refuses it
-            check_mesh(self._stage(own), k, own, self.gears)
+            if k not in shifted:
+                check_mesh(self._stage(own), k, own, self.gears)
+
+    @property
+    def _lacks(self) -> str:
+        """What the file lacks for gears that are chosen at a given centre distance."""
+        if self.teeth is None:
+            return "a table [teeth]: whole teeth are chosen at a given centre distance"
+        if self.rating is None or self.limits.loaded:
+            return "limits by [rating] alone: gears are chosen by them at a given centre distance"
+        return ""
+
+    def shifted(self, own: StageTable) -> bool:
+        """Whether profile shifts of a stage follow from its centre distance."""
+        return own.centre_distance is not None and not self.given
+
+    def toothing(self, own: StageTable) -> Toothing:
+        """Teeth of a stage."""
+        made = toothing(own, self.gears)
+        if not self.shifted(own):
+            return made
+        return replace(made, shifting=(self.shift or ShiftTable()).shifting)
 
     def _check_layout(self) -> None:
         """Check the tables of a layout against the drive and each other."""
@@ -376,7 +408,7 @@ class Scene(Table):
         """Gear pairs of a design, with shifts, tools and centre distances of the file."""
         tables = self.held(len(design.stages)).stage_tables
         return tuple(
-            toothing(own, self.gears).pair(
+            self.toothing(own).pair(
                 s.normal_module_mm, s.pinion_teeth, s.wheel_teeth, s.face_width_mm
             )
             for own, s in zip(tables, design.stages, strict=True)
@@ -405,7 +437,7 @@ class Scene(Table):
             wheel_teeth=own.wheel_teeth or limits.wheel_teeth or (1, None),
             ratio=own.stage_ratio or limits.stage_ratio or (Fraction(1), None),
             wheel_diameter=diameter.exact[0] if diameter else None,
-            toothing=toothing(own, self.gears),
+            toothing=self.toothing(own),
             blanks=self._blanks(own),
         )
 

@@ -30,10 +30,16 @@ def columns(train: Train, position: int, cut: Fraction, tick: Callable[[], None]
     cosine = stage.toothing.cosine
     z1, z2 = _pairs(train, position, cut)
     tick()
+    ends = None
+    if stage.toothing.shifting is not None:
+        z1, z2, ends = _meshing(stage, z1, z2)
+        tick()
     ratio = z2 / z1
     load, need, exponent, slope = closed(train, position, z1, ratio)
     tick()
     first, last = _allowed(stage, z1, z2, cosine)
+    if ends is not None:
+        first, last = np.maximum(first, ends[0]), np.minimum(last, ends[1])
     return (
         train,
         position,
@@ -135,6 +141,33 @@ def _allowed(stage: Stage, z1: Index, z2: Index, cosine: float) -> tuple[Index, 
     ends = [_modules(stage, face.proportions(int(z) / exact_cosine)) for z in pinions]
     first, end = np.array(ends, dtype=np.int64).reshape(-1, 2).T
     return first[place], np.minimum(last, end[place])
+
+
+def _shiftable(stage: Stage, z1: Index, z2: Index) -> NDArray[np.bool_]:
+    """Return whether shifts that a centre distance asks for are allowed: (modules, n)."""
+    shifting = stage.toothing.shifting
+    assert shifting is not None
+    found = []
+    for module in stage.modules:
+        pair = stage.toothing.pair(float(module), z1, z2, 1.0)
+        found.append(np.logical_and.reduce([u <= 1.0 for u in shifting.used(pair).values()]))
+    return np.array(found)
+
+
+def _meshing(stage: Stage, z1: Index, z2: Index) -> tuple[Index, Index, tuple[Index, Index]]:
+    """Return the pairs that a centre distance allows, and their first and last module index.
+
+    SolveError where one between them is not allowed: a sum of shifts from -1 to 2 leaves room for
+    few.
+    """
+    allowed = _shiftable(stage, z1, z2)
+    keep = allowed.any(axis=0)
+    allowed = allowed[:, keep]
+    first = allowed.argmax(axis=0).astype(np.int64)
+    last = len(allowed) - 1 - allowed[::-1].argmax(axis=0).astype(np.int64)
+    if np.any(allowed.sum(axis=0) != last - first + 1):
+        raise SolveError("modules so close to each other leave gaps at a given centre distance")
+    return z1[keep], z2[keep], (first, last)
 
 
 def _modules(stage: Stage, span: tuple[Fraction, Fraction | None]) -> tuple[int, int]:

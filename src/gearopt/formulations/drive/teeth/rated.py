@@ -324,6 +324,8 @@ class RatedTable(Table):
 
     def _floor(self, pair: GearPair, width: Array, option: int) -> Array:
         """Return a lower bound of `_worth` that larger modules do not fall below."""
+        if self.stage.toothing.shifting is not None:  # a larger module may be the lighter one
+            return np.zeros(np.shape(width))
         fewest = pair.pinion_teeth, pair.wheel_teeth
         one = pair.of_width(width)
         shares = least_share(self.train, self.position, one, option=option, fewest=fewest)

@@ -107,6 +107,9 @@ def trimmed(train: Train, maximum: float) -> Train:
     for k, stage in enumerate(train.stages):
         low, high = stage.pinion_teeth
         assert high is not None
+        if stage.toothing.shifting is not None:  # whose bodies are no reference cylinders
+            stages.append(stage)
+            continue
         teeth = np.arange(low, high + 1)
         useful = np.flatnonzero(_least(train, k, teeth) <= maximum * (1.0 + MARGIN))
         stages.append(replace(stage, pinion_teeth=(low, low + int(useful.max(initial=0)))))

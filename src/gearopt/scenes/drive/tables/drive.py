@@ -11,6 +11,7 @@ from gearopt.formulations.drive.processes import ProcessOne, ProcessTwo
 from gearopt.formulations.drive.train import OBJECTIVES
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.physics.geometry.profile_shift import RULES, Shifting
 from gearopt.scenes.drive.tables.iso6336 import IsoGiven
 from gearopt.scenes.drive.tables.rating import GearKeys, GearTable, GivenTable
 from gearopt.scenes.reading.fields import (
@@ -169,7 +170,9 @@ class StageTable(Loaded):
         "whose thrust opposes that of the wheel on the same shaft",
     )
     centre_distance: Length = Field(
-        None, description="Working centre distance; by default without backlash"
+        None,
+        description="Working centre distance; by default without backlash. Of gears that are "
+        "chosen by ratings profile shifts follow from it, see [shift]",
     )
     pinion: GearTable = Field(default_factory=GearTable, description="Data of the pinion alone")
     wheel: GearTable = Field(default_factory=GearTable, description="Data of the wheel alone")
@@ -252,6 +255,39 @@ class Limits(Loaded):
         """Return a limit of the strength law, from the file or the preset."""
         own: Quantity | None = getattr(self, name)
         return own or units.parse(PRESETS[str(self.preset)][name], "stress")
+
+
+class ShiftTable(Table):
+    """How profile shifts follow from a centre distance, and what teeth may become by them."""
+
+    rule: Annotated[str, choice(*RULES)] = Field(
+        Shifting.rule,
+        description="Distribution of the sum: equal sliding (specific sliding at both root ends "
+        "alike), after Roloff, after Henriot (both from memory: unverified)",
+    )
+    tip_thickness: Annotated[Fraction, number(0.4, 0, 1)] = Field(
+        Fraction(1, 5),
+        description="Smallest tooth thickness at the tip, in normal modules; 0.2 is usual, 0.4 of "
+        "case-hardened gears (books)",
+        json_schema_extra={"default": 0.2},
+    )
+    contact_ratio: Annotated[Fraction, number(1.2, 0, 3)] = Field(
+        Fraction(11, 10),
+        description="Smallest transverse contact ratio; 1.1 to 1.2 is usual (books)",
+        json_schema_extra={"default": 1.1},
+    )
+    specific_sliding: Annotated[Fraction, number(3, 0, 100)] = Field(
+        Fraction(3),
+        description="Largest specific sliding at the roots, without its sign; 3 to 4 is usual "
+        "(books): ratings do not limit it",
+        json_schema_extra={"default": 3},
+    )
+
+    @property
+    def shifting(self) -> Shifting:
+        """The rule and its limits in plain numbers."""
+        limits = self.tip_thickness, self.contact_ratio, self.specific_sliding
+        return Shifting(self.rule, *map(float, limits))
 
 
 class Teeth(Table):

@@ -53,26 +53,36 @@ def _allowance(gear: GearTable) -> float:
 
 
 def check_teeth(
-    stages: tuple[StageTable, ...], gears: Gears, given: bool, objective: str, asked: str
+    stages: tuple[StageTable, ...], gears: Gears, lacks: str, objective: str, asked: str
 ) -> None:
     """Refuse centre distances off the reference circles where the objective cannot take them.
 
-    given: whether all gears are; objective: what is minimised; asked: what else takes reference
-    circles, such as gears and box at once, or nothing.
+    lacks: what a file lacks for gears to be chosen at a given centre distance, or nothing;
+    objective: what is minimised; asked: what else takes reference circles, such as gears and box
+    at once, or nothing.
     """
     for k, own in enumerate(stages):
-        if own.centre_distance is not None and not given:
-            rule = "needs gears that are all given: of others it follows from teeth and shifts"
+        if own.centre_distance is not None and lacks:
+            rule = f"needs gears that are all given, or {lacks}"
             raise refuse(rule, at=("stage", k, "centre_distance"), action="remove")
         if toothing(own, gears).on_reference or not (objective in LENGTHS or asked):
             continue
-        place: tuple[str | int, ...] = ("stage", k, "centre_distance")
-        if own.centre_distance is None:
-            member = "wheel" if own.pinion.profile_shift is None else "pinion"
-            place = ("stage", k, member, "profile_shift")
         what = f"minimise = {objective}" if objective in LENGTHS else asked
         rule = f"moves the centre distance, which {what} takes from the reference circles"
+        if own.centre_distance is not None:
+            raise refuse(rule, at=("stage", k, "centre_distance"), action="remove")
+        member = "wheel" if own.pinion.profile_shift is None else "pinion"
+        place = ("stage", k, member, "profile_shift")
         raise refuse(rule, "Give shifts whose sum is 0, or none", place, "tell")
+
+
+def check_follows(k: int, own: StageTable) -> None:
+    """Refuse shifts and tips of a stage (from 0) whose centre distance they follow from."""
+    for member in MEMBERS:
+        for key in ("profile_shift", "tip_alteration"):
+            if getattr(getattr(own, member), key) is not None:
+                rule = f"follows from the centre distance of stage {k + 1} and [shift]"
+                raise refuse(rule, at=("stage", k, member, key), action="remove")
 
 
 def check_mesh(stage: Stage, k: int, own: StageTable, gears: Gears) -> None:

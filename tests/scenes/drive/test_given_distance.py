@@ -1,0 +1,177 @@
+"""Gears that are chosen at given centre distances: shifts follow; against looking at all pairs."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import gearopt
+from gearopt.errors import SceneError
+from gearopt.physics.gears import GearPair
+from gearopt.physics.geometry.contact import contact_path, specific_sliding
+from gearopt.physics.geometry.profile_shift import Meshing, equal_sliding
+from gearopt.physics.geometry.tooth import tip_thickness
+from gearopt.scenes.reading.load import load
+
+PAIR = """
+gearopt = 1
+kind = "drive"
+[duty]
+power = "15 kW"
+input_speed = "1480 rpm"
+ratio = 4
+ratio_tolerance = "3 %"
+[gears]
+helix_angle = "12 deg"
+treatment = "carburised"
+grade = 2
+iso_material = "Eh"
+iso_quality = "MQ"
+flank_rz = "4.8 um"
+root_rz = "20 um"
+face_width_over_diameter = [0.3, 1.0]
+[[stage]]
+centre_distance = "125 mm"
+[limits]
+pinion_teeth = [14, 40]
+[teeth]
+[rating]
+standard = "both"
+life = "20000 h"
+quality = 10
+overload_factor = 1.25
+mounting = "precision"
+minimum_bending_safety = 1.4
+minimum_contact_safety = 1.1
+oil_viscosity = "40 mPa s"
+[rating.iso6336]
+accuracy_grade = 6
+oil_grade = "220 mm^2/s"
+helix_modification = "helix corrected"
+"""
+SAFETY = 1.4, 1.1
+TWO = PAIR.replace("ratio = 4", "ratio = 14").replace(
+    '[[stage]]\ncentre_distance = "125 mm"',
+    '[[stage]]\ncentre_distance = "100 mm"\n[[stage]]\ncentre_distance = "160 mm"',
+)
+
+
+def written(tmp_path, text):
+    path = tmp_path / "pair.toml"
+    path.write_text(text)
+    return path
+
+
+def possible(train, k, module, z1, z2, limits):
+    """The pair of a distance, shifted by equal sliding, where it keeps the limits; else None."""
+    cut = train.stages[k].toothing
+    numbers = cut.helix_angle, cut.racks
+    made = Meshing(module, (z1, z2), *numbers, cut.working_distance)
+    if not -1.0 <= made.shift_sum <= 2.0:
+        return None
+    x1 = float(equal_sliding(made))
+    shifts = x1, float(made.shift_sum) - x1
+    bare = GearPair.of_teeth(module, z1, z2, 1.0, *(numbers[0], cut.racks[0]), shifts)
+    shorter = float(made.tip_alteration)
+    cut_gears = [
+        replace(g, tip_alteration=shorter, body_diameter=g.reference_diameter + 2.0 * x * module)
+        for g, x in zip(bare.gears, shifts, strict=True)
+    ]
+    pair = GearPair(*cut_gears, cut.working_distance)
+    path = contact_path(pair)
+    slides = [specific_sliding(path, z2 / z1, s)[i] for i, s in ((0, path.start), (1, path.end))]
+    sharp, contact, sliding = limits
+    thin = min(float(tip_thickness(g)) for g in pair.gears)
+    rack, sine = cut.racks[0], np.sin(pair.pinion.transverse_pressure_angle)
+    straight = rack.dedendum - rack.tip_radius * (1.0 - np.sin(rack.pressure_angle))
+    rows = zip((z1, z2), shifts, strict=True)
+    deep = max(straight - x - z * sine**2 / np.cos(numbers[0]) / 2.0 for z, x in rows)
+    good = thin >= sharp * module and path.transverse_ratio >= contact and deep <= 0.01
+    return pair if good and min(slides) >= -sliding else None
+
+
+def narrowest(train, k, pair, torque):
+    """The least width that carries a torque: on a hundred widths, and between two of them again."""
+    face, d = train.stages[k].face_width, float(pair.pinion.reference_diameter)
+    option, low, high = train.stages[k].options[0], float(face.low) * d, float(face.high) * d
+    for _ in range(7):
+        widths = np.linspace(low, high, 100)
+        rows = option.utilisations(pair.of_width(widths), torque, train.speed_at(torque), SAFETY)
+        good = np.flatnonzero(np.maximum.reduce(np.broadcast_arrays(*rows.values())) <= 1.0)
+        if not len(good):
+            return np.inf
+        if good[0] == 0:
+            return low
+        low, high = widths[good[0] - 1], widths[good[0]]
+    return high
+
+
+def shares(train, k, torque, ratios, limits=(0.2, 1.1, 3.0)):
+    """Volume and teeth of every pair of a stage that carries, of ratios between two."""
+    for module in map(float, train.stages[k].modules):
+        low, high = train.stages[k].pinion_teeth
+        for z1 in range(low, high + 1):
+            first, last = int(np.ceil(ratios[0] * z1)), int(np.floor(ratios[1] * z1))
+            for z2 in range(first, last + 1):
+                pair = possible(train, k, module, z1, z2, limits)
+                if pair is not None:
+                    width = narrowest(train, k, pair, torque)
+                    yield float(pair.of_width(width).volume), module, z1, z2
+
+
+def test_the_best_pair_of_a_distance_is_that_of_all_pairs(tmp_path):
+    path = written(tmp_path, PAIR.replace("[14, 40]", "[22, 27]"))
+    train = load(path).scene.train()
+    ratios = float(train.lowest_ratio), float(train.highest_ratio)
+    best = min(shares(train, 0, train.torque, ratios))
+    result = gearopt.solve(path)
+    stage = result.design["stages"][0]
+    assert result.status == "optimal"
+    assert result.value == pytest.approx(best[0], rel=1e-9)
+    found = stage["normal_module_mm"], stage["pinion_teeth"], stage["wheel_teeth"]
+    assert found == best[1:]
+    assert stage["centre_distance_mm"] == 125.0
+    assert result.design["gear_volume_mm3"] == pytest.approx(result.value, rel=1e-12)
+
+
+@pytest.mark.slow
+def test_the_best_train_of_two_distances_is_that_of_all_pairs(tmp_path):
+    path = written(tmp_path, TWO.replace("[14, 40]", "[18, 20]"))
+    train = load(path).scene.train()
+    low, high = float(train.lowest_ratio), float(train.highest_ratio)
+    best = np.inf
+    firsts = {}
+    for value, module, z1, z2 in shares(train, 0, train.torque, (1.0, 9.0)):
+        u = Fraction(z2, z1)
+        if np.isfinite(value) and value < firsts.get(u, (np.inf,))[0]:
+            firsts[u] = value, module, z1, z2
+    for u, (value, *_) in sorted(firsts.items(), key=lambda row: row[1][0]):
+        if value < best:
+            rest = shares(train, 1, train.torque * float(u), (low / float(u), high / float(u)))
+            best = min(best, value + min((row[0] for row in rest), default=np.inf))
+    result = gearopt.solve(path)
+    assert result.status == "optimal" and result.value == pytest.approx(best, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (PAIR.replace("[teeth]\n", ""), "stage[1].centre_distance.*a table [teeth]"),
+        (PAIR.replace("[limits]", '[limits]\nk_factor = "2 MPa"\nunit_load = "48 MPa"'), "alone"),
+        (PAIR + "[shift]\nrule = 'best'\n", "shift.rule"),
+        (PAIR.replace("[limits]", "[stage.wheel]\nprofile_shift = 0.1\n[limits]"), "follows from"),
+        (PAIR.replace('centre_distance = "125 mm"', "") + "[shift]\n", "shift.*changes nothing"),
+    ],
+)
+def test_what_does_not_go_with_a_given_distance_is_refused(tmp_path, text, words):
+    with pytest.raises(SceneError) as refusal:
+        load(written(tmp_path, text))
+    parts = words.split(".*")
+    assert all(part in str(refusal.value) for part in parts)
+
+
+@pytest.mark.slow
+def test_a_distance_at_which_nothing_carries_is_proven_impossible(tmp_path):
+    result = gearopt.solve(written(tmp_path, PAIR.replace("125 mm", "60 mm")))
+    assert result.status == "infeasible"
