@@ -13,7 +13,7 @@ import numpy as np
 from gearopt.formulations.strength.cells import Cells
 from gearopt.formulations.strength.iso6336_cells import IsoCells
 from gearopt.formulations.strength.iso6336_rows import AT_ENDS, Columns, IsoRows
-from gearopt.formulations.strength.rated import Box, Load, Smooth
+from gearopt.formulations.strength.rated import Box, Load, Smooth, together
 from gearopt.formulations.strength.teeth_alone import iso_teeth
 from gearopt.optimise.terms import Array
 from gearopt.physics.blanks import SOLID, Blank
@@ -157,18 +157,19 @@ class Iso6336:
         """
         if len(self.loads) > 1:
             check_lives(self.given)
-        unit, shape = pair.of_width(1.0), np.shape(torque[0])
-        levels = []
-        for place in range(len(self.loads)):
-            ends = [self.case(unit, torque[0], s, place) for s in (speed[1], speed[0])]
-            same = np.array_equal(*torque)
-            cases = ends[0], ends[0] if same else ends[1]
-            made = self._level(prepared, cases, self.loads[place], torque, safety)
-            columns = {n: np.broadcast_to(v, shape) for n, v in made.items()}
-            levels.append(columns | {f"{n}1": columns[f"{n}0"] for n in AT_ENDS if same})
-        return IsoRows(self, tuple(levels))
+        unit, shape, load = pair.of_width(1.0), np.shape(torque[0]), together(self.loads)
+        slow, fast = (load.of(self.operation, torque[0], s) for s in (speed[1], speed[0]))
+        same = np.array_equal(*torque)
+        first = Case(unit, slow, self.materials, self._practice(unit), self.given)
+        cases = first, first if same else replace(first, operation=fast)
+        made = self._columns(prepared, cases, load, torque, safety)
+        columns = {
+            name: np.broadcast_to(value, np.broadcast_shapes(np.shape(value), shape))
+            for name, value in made.items()
+        }
+        return IsoRows(self, columns | {f"{n}1": columns[f"{n}0"] for n in AT_ENDS if same})
 
-    def _level(
+    def _columns(
         self,
         table: ToothTable,
         cases: tuple[Case, Case],
@@ -176,7 +177,7 @@ class Iso6336:
         torque: tuple[Array, Array],
         safety: tuple[float, float],
     ) -> Columns:
-        """Return the columns of a level of load; cases: of unit width at the slow and fast end."""
+        """Columns of `IsoRows`; cases: of unit width at the slow and fast end."""
         slow, found = cases[0], self.found(cases[0])
         columns = self._teeth(table, slow) | self._loads(cases, load, torque)
         columns["relief"] = found["C_a"]
@@ -191,9 +192,8 @@ class Iso6336:
                     most = strength.greatest(cases)
                     columns[f"{name}_used{k}"] /= most**2 if contact else most
                     continue
-                columns[f"cycles{k}"] = slow.cycles[k]
-                for place, value in enumerate(strength.knots()):
-                    columns[f"{name}{k}_{place}"] = value
+                columns[f"cycles{k}"] = cycles = slow.cycles[k]
+                columns |= strength.under_levels(f"{name}{k}", cycles)
         return columns
 
     def found(self, case: Case) -> dict[str, Any]:
@@ -336,6 +336,16 @@ class Strength:
         shares = [float(reference_share(self.curve, n)) for n in self.curve.cycles]
         rows = zip(self.curve.values, shares, strict=True)
         return [self.fixed * value * self._other(share) for value, share in rows]
+
+    def under_levels(self, name: str, cycles: Any) -> Columns:
+        """Columns of `IsoRows` at numbers of cycles (levels, n), their names beginning with one."""
+        knots = self.knots()
+        curve = Curve(self.curve.cycles, tuple(knots))
+        columns = {f"{name}_{place}": value for place, value in enumerate(knots)}
+        for end, at in (("own", cycles), ("all", cycles.sum(axis=0))):
+            strength = np.where(cycles > 0.0, curve.factor(at), np.inf)
+            columns[f"{name}_{end}"] = strength**2 if self.contact else strength
+        return columns
 
     def _other(self, share: Any) -> Any:
         return self.reference**share * self.static ** (1.0 - share)

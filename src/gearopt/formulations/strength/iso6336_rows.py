@@ -7,6 +7,7 @@ at the ends bounds them: of two values the first is the least, the second the gr
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,9 +19,9 @@ from gearopt.physics.iso6336 import load_factors as loads
 from gearopt.physics.iso6336 import running_in, stiffness
 from gearopt.physics.iso6336.accuracy import WIDTHS, helix_slope
 from gearopt.physics.iso6336.case import life_curve
-from gearopt.physics.iso6336.curves import Curve
+from gearopt.physics.iso6336.curves import ROUNDING, Curve
 from gearopt.physics.iso6336.tooth_form import load_sharing
-from gearopt.physics.rating import Level, safety_ends, spectrum_safety
+from gearopt.physics.rating import Level, damage
 
 if TYPE_CHECKING:
     from gearopt.formulations.strength.iso6336 import Iso6336
@@ -33,11 +34,14 @@ SMALLEST = 1e-300
 BEFORE = 1.0 - 4e-13  # of a border: up to it the law before it holds, roundings included
 AT_ENDS = "force", "pace", "speed", "pitch", "form", "deviation"  # of the torques
 MODES = ("bending", 0), ("bending", 1), ("contact", 0), ("contact", 1)
+MINER_POWERS = {"bending": 8.0, "contact": 6.0}  # of the load in Miner's sum, about
+FAR = 1.05  # of what a level alone uses: more need not be known closely
+PAST = 1.0 + 1e-13  # a jump of Miner's sum is passed by this factor
 
 
 @dataclass(frozen=True)
 class IsoRows:
-    """Rows of pairs; of every level of load columns (n,) by name.
+    """Rows of pairs: columns by name, of all levels (n,), of each (levels, n).
 
     contact (eps_alpha), virtual (eps_alphan), singles (Z_B, Z_D of spur gears), overlap (the least
     eps_beta that is rated), axial pitch, stiffness c' from 100 N/mm on, tooth depth, both
@@ -46,49 +50,71 @@ class IsoRows:
     contact_used and bending_used of both gears: what is used at W = Z_eps = Z_BD = 1 and at W =
     f_eps = Y_beta = 1. Of several levels these are stresses (of contact squared) times the safety
     factors asked for; contact0_0 and so on are strengths at the knots of life curves, cycles0 and
-    cycles1 least numbers of cycles.
+    cycles1 least numbers of cycles, contact0_own and contact0_all strengths (squared, of contact)
+    at these of the level and of all levels.
     """
 
     standard: "Iso6336"
-    levels: tuple[Columns, ...]
+    columns: Columns
 
     @np.errstate(invalid="ignore", divide="ignore", over="ignore")
     def used(self, low: Array, high: Array) -> Array:
-        """Return the lower bound of the greatest part that is used: of load, so of S_H squared."""
-        boxes = [Box(self.standard, at, (low, high)) for at in self.levels]
-        parts = [box.parts() for box in boxes]
-        found = np.maximum.reduce(parts[0]) if len(parts) == 1 else self._spectrum(parts)
-        at = self.levels[0]
-        rated = (boxes[0].overlap[UPPER] >= at["overlap"]) & (at["contact"] >= 1.0)
+        """Lower bound of the greatest part that is used: of load, so of S_H squared.
+
+        Of several levels of load a number on the same side of 1.
+        """
+        box, at = Box(self.standard, self.columns, (low, high)), self.columns
+        parts = box.parts()
+        single = len(self.standard.loads) == 1
+        found = np.maximum.reduce(parts) if single else self._spectrum(parts)
+        rated = (box.overlap[UPPER] >= at["overlap"]) & (at["contact"] >= 1.0)
         return np.where(rated & ~np.isnan(found), found, np.inf)
 
-    def _spectrum(self, parts: list[list[Any]]) -> Any:
-        """Return the greatest part that all levels use together, from the stresses of each."""
-        made = [self._mode(parts, place) for place in range(len(MODES))]
-        powers = [-2.0 if name == "contact" else -1.0 for name, _ in MODES]
-        ends = [safety_ends(loads) for loads in made]
-        found = np.maximum.reduce([e[1] ** p for e, p in zip(ends, powers, strict=True)])
-        least = found.copy()
-        for levels, (low, _), power in zip(made, ends, powers, strict=True):
-            some = low**power > least  # else another one governs
-            used = spectrum_safety([one.take(some) for one in levels]) ** power
-            found[some] = np.maximum(found[some], used)
+    def _spectrum(self, parts: list[Any]) -> Any:
+        """Number above 1 where Miner's sum of a mode is; parts: of a mode the stresses (levels, n).
+
+        Near 1 it is continuous, so that secants on it find where it is 1.
+        """
+        at = self.columns
+        ends = [
+            [np.max(part / at[f"{name}{k}_{end}"], axis=0) for end in ("own", "all")]
+            for part, (name, k) in zip(parts, MODES, strict=True)
+        ]
+        found = np.maximum.reduce([np.where(every <= 1.0, every, own) for own, every in ends])
+        for part, (own, every), mode in zip(parts, ends, MODES, strict=True):
+            some = np.flatnonzero((found <= FAR) & (every > np.maximum(found, 1.0)))
+            if len(some):
+                used = self._together(part[:, some], own[some], every[some], mode, some)
+                found[some] = np.maximum(found[some], used)
         return found
 
-    def _mode(self, parts: list[list[Any]], place: int) -> list[Level]:
-        """Return the levels of load of a gear by one mode."""
-        (name, k), standard = MODES[place], self.standard
+    def _together(self, part: Any, own: Any, every: Any, mode: tuple[str, int], some: Any) -> Any:
+        """Number above 1 where Miner's sum of some rows is, from `own` to `every`.
+
+        A power of the sum, but where the sum jumps: a level breaks a tooth at once, or begins to
+        count at the endless end of its curve.
+        """
+        (name, k), standard = mode, self.standard
         curve = life_curve(standard.materials[k], standard.practice, name == "contact")
-        loads = []
-        for at, part in zip(self.levels, parts, strict=True):
-            values = tuple(at[f"{name}{k}_{j}"] for j in range(len(curve.cycles)))
-            stress = np.sqrt(part[place]) if name == "contact" else part[place]
-            loads.append(Level(at[f"cycles{k}"], Curve(curve.cycles, values), stress))
-        return loads
+        values = [self.columns[f"{name}{k}_{j}"][..., some] for j in range(len(curve.cycles))]
+        power, square = MINER_POWERS[name], 2.0 if name == "contact" else 1.0
+        stress, cycles = part ** (1.0 / square), self.columns[f"cycles{k}"][:, some]
+        levels = Level(cycles, Curve(curve.cycles, tuple(values)), stress)
+        found = damage([levels]).sum(axis=0) ** (1.0 / power)
+        found = np.minimum(np.maximum(found, own), every)
+        ends = values[0] * (1.0 + ROUNDING), values[-1] * (1.0 - ROUNDING)
+        for used in chain.from_iterable(part / end**square for end in ends):
+            near = np.flatnonzero((used - 1.0) * (used - found) < 0.0)
+            if len(near):
+                counts = used[near] > 1.0
+                growth = used[near] ** (-1.0 / square) * np.where(counts, 1.0 / PAST, PAST)
+                above = damage([levels.take((..., near))], growth).sum(axis=0) > 1.0
+                found[near] = np.where(above != counts, used[near], found[near])
+        return found
 
     def border(self, width: Array) -> Array:
         """Return the next width at which a refusal ends, K_v has other laws, or f_Hbeta a step."""
-        at = self.levels[0]
+        at = self.columns
         with np.errstate(invalid="ignore"):  # of spur gears
             shares = at["overlap"], 2.0 - at["contact"]
             ends = [share * at["axial"] * BEFORE for share in shares]
@@ -102,7 +128,7 @@ class IsoRows:
 
     def take(self, place: Any) -> "IsoRows":
         """Return some of the rows."""
-        return IsoRows(self.standard, tuple(taken(at, place) for at in self.levels))
+        return IsoRows(self.standard, taken(self.columns, place))
 
 
 def taken(columns: Columns, place: Any) -> Columns:
@@ -110,7 +136,7 @@ def taken(columns: Columns, place: Any) -> Columns:
     made: dict[int, Any] = {}
     for value in columns.values():
         if id(value) not in made:
-            made[id(value)] = value[place]
+            made[id(value)] = value[..., place]
     return {name: made[id(value)] for name, value in columns.items()}
 
 
@@ -292,12 +318,13 @@ class Box:
         )
         at, (low, high) = self.columns, self.widths
         free = (low != high) | (at["force0"] != at["force1"])
-        some = np.flatnonzero(free & (wanted > 1.0))
-        found = np.ones(len(low))
+        inside = free & (wanted > 1.0)
+        some = np.flatnonzero(np.any(np.atleast_2d(inside), axis=0))
+        found = np.ones(np.shape(spread))
         if len(some):
             part = Box(self.standard, taken(at, some), (low[some], high[some]))
-            most = part.spread(UPPER, part.dynamic(UPPER)) / spread[some]
-            found[some] = np.clip(wanted[some], 1.0, np.maximum(most, 1.0))
+            most = part.spread(UPPER, part.dynamic(UPPER)) / spread[..., some]
+            found[..., some] = np.clip(wanted[..., some], 1.0, np.maximum(most, 1.0))
         return found
 
     def ratio_factor(self, end: int) -> Any:

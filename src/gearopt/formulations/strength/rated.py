@@ -34,14 +34,23 @@ class Load:
         return replace(operation, power=power, pinion_speed=self.speed * speed, hours=self.hours)
 
 
+def together(loads: Sequence[Load]) -> Load:
+    """One level, or all levels as columns (levels, 1) of numbers."""
+    if len(loads) == 1:
+        return loads[0]
+    table = np.array([(load.hours, load.power, load.speed) for load in loads], float)
+    return Load(*table.T[:, :, None])
+
+
 class Rows(Protocol):
     """Gear pairs (n,) at torques, whose face widths are sought."""
 
     def used(self, low: Array, high: Array) -> Array:
-        """Lower bound of the part of the load capacity used at widths from low to high.
+        """Bound of the part of the load capacity used at widths from low to high.
 
         Load over what gives the safety factors asked for: above 1 no width between them carries.
-        Exact where both are one. low, high (n,) [mm], with no `border` between them.
+        Where both are one, at most 1 where it carries and there alone; exact but under several
+        levels of load. low, high (n,) [mm], with no `border` between them.
         """
 
     def border(self, width: Array) -> Array:

@@ -15,6 +15,7 @@ LONGEST_LIFE = 1e10  # cycles; the curves are flat beyond
 # pitting, hanslhansl/din3990 (DIN 3990-11) has knees and static values of both
 # at LONGEST_LIFE; 1 for the best material, manufacture and lubrication, and experience
 LOWEST = 0.85
+ROUNDING = 1e-12  # of the logarithm of a strength, at both ends of a curve
 PITTING = {
     **dict.fromkeys(("St", "V", "GTS", "GGG", "Eh", "IF"), ((1e5, 1.6), (5e7, 1.0))),
     **dict.fromkeys(("GG", "GGG ferritic", "NT", "NV"), ((1e5, 1.3), (2e6, 1.0))),
@@ -76,8 +77,8 @@ class Curve:
                 span = np.log(self.cycles[k + 1] / self.cycles[k])
                 drop = np.maximum(logs[k] - logs[k + 1], 1e-300)
                 found = found + span * np.clip((logs[k] - at) / drop, 0.0, 1.0)
-        above = at > logs[0] + 1e-12
-        below = at < logs[-1] - 1e-12
+        above = at > logs[0] + ROUNDING
+        below = at < logs[-1] - ROUNDING
         return np.where(above, 0.0, np.where(below, np.inf, np.exp(found)))[()]
 
 
