@@ -43,7 +43,7 @@ from gearopt.physics.strain_wave.tooth_motion import motion
 T = TypeVar("T")
 Columns = tuple[float, ...]
 REPLACED = 0.3  # s that line and arc in place of a cutter's edge take
-SOUGHT = 0.2  # s that the largest addendum takes, and a curve over profile shifts
+SOUGHT = 0.2  # s that other deflections, the largest addendum and a curve over shifts take
 INVOLUTE = "involute"  # law of the circular spline's teeth, to which the flexspline's are conjugate
 WITHIN = (1.0, 2.0, 5.0, 10.0, 20.0)  # um
 ROWS = 21  # of the flank's table
@@ -262,7 +262,7 @@ def other_deflections(extras: Extras, at: Callable[[float], Deflected]) -> tuple
         others = map(at, OTHER_DEFLECTIONS)
         return tuple(other for other in others if math.isfinite(other.least_clearance_mm))
 
-    return extras.of("other deflections", meeting, none)
+    return extras.of("other deflections", meeting, none, SOUGHT)
 
 
 def cutter_design(made: Flank, asked: Cutter, extras: Extras) -> CutterDesign:
