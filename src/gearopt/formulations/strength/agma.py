@@ -4,9 +4,10 @@ The load grows with the torque T, K_v falls no faster than T^-0.5, what life fac
 faster than T^0.148. All else is constant for a given pair and width.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 
@@ -15,19 +16,30 @@ from gearopt.formulations.strength.agma_cells import needed
 from gearopt.formulations.strength.agma_floor import AgmaFloor, agma_floor
 from gearopt.formulations.strength.cells import Cells
 from gearopt.formulations.strength.rated import Box, Load, Smooth
+from gearopt.formulations.strength.virtual import Strength, may_be_best
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma import factors
 from gearopt.physics.agma.batch import (
+    MODES,
     rate_rows,
     safeties,
     spectrum_rows,
     spectrum_safeties,
 )
-from gearopt.physics.agma.rating_factors import Case, Practice, Steel, distribution
+from gearopt.physics.agma.rating_factors import (
+    Case,
+    Practice,
+    Steel,
+    computed,
+    distribution,
+    life_curves,
+)
 from gearopt.physics.agma.table import FactorTable, factor_table
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import GearPair
 from gearopt.physics.rating import Operation
+
+UNIT = GearPair.of_teeth(1.0, 20.0, 20.0, 1.0)  # on which strengths of steels do not depend
 
 
 @dataclass(frozen=True)
@@ -35,7 +47,8 @@ class Agma:
     """The rating of stages made in one way by AGMA 2001.
 
     operation: its overload, temperature, reliability and contacts count. blanks: of pinion and
-    wheel, for K_B. given: as of `agma.rating.rate`.
+    wheel, for K_B. given: as of `agma.rating.rate`. rivals: other ways of making them; of all of
+    them `rows` then has every strength at its best.
     """
 
     loads: tuple[Load, ...]
@@ -46,6 +59,7 @@ class Agma:
     given: Mapping[str, Any] = field(default_factory=dict)
     suffix: str = ""
     monotone: bool = True
+    rivals: tuple["Agma", ...] = ()
 
     def case(
         self, pair: GearPair, torque: Any, speed: Any, given: Mapping[str, Any], level: int = 0
@@ -106,6 +120,36 @@ class Agma:
         """Return the least d1^2 b/(T (1 + 1/u)) of contact and d1^2 b/T of bending."""
         return needed(self, cells, safety)
 
+    def best_with(self, rivals: Sequence[Self]) -> Self | None:
+        """Return the virtual way with every strength at its best; None: they differ in more."""
+        alike = all(replace(one, steels=self.steels) == self for one in rivals)
+        return replace(self, rivals=tuple(rivals)) if alike else None
+
+    @cached_property
+    def _strongest_ways(self) -> tuple["Agma", ...]:
+        """Return ways of which one is the strongest in every mode."""
+        if not self.rivals:
+            return (self,)
+        every = [replace(self, rivals=()), *self.rivals]
+        every.sort(key=lambda way: way.steels[0] != way.steels[1])
+        chosen: dict[int, Agma] = {}
+        for contact, k in MODES:
+            for n in may_be_best([way._strength_of(k, contact) for way in every]):
+                chosen[n] = every[n]
+        return tuple(chosen.values())
+
+    def _strength_of(self, k: int, contact: bool) -> Strength:
+        """Return what tells the strength of a gear from that of a rival."""
+        case = Case(UNIT, self.operation, self.steels, self.practice, self.given)
+        curve, base = life_curves(case, contact)[k], computed(case, "s_ac" if contact else "s_at")
+        stress = base.value[k] if isinstance(base.value, tuple) else base.value
+        if not contact:
+            return Strength(curve, (), stress)
+        law = computed(case, "C_p").value, curve
+        if k == 0 or self.steels[1].kind != "through-hardened" or "C_H" in self.given:
+            return Strength(law, (), stress)
+        return Strength(law, self.steels, stress, factors.LARGEST_HARDNESS_RATIO)
+
     def like(self, other: Any) -> bool:
         """Return whether `prepared` of another standard is the same."""
         return isinstance(other, Agma) and other.practice.load == self.practice.load
@@ -126,11 +170,14 @@ class Agma:
         bare = {"I": 1.0, "J": (1.0, 1.0), "K_m": 1.0, "K_s": (1.0, 1.0)}
         unit = pair.of_width(1.0)
         places = range(len(self.loads))
-        cases = [self.case(unit, torque[0], speed[0], bare, place) for place in places]
-        if len(cases) == 1:
-            made = safeties(cases[0], 1.0, (1.0, 1.0))
-        else:
-            made = spectrum_safeties(cases, 1.0, (1.0, 1.0))
+        every = []
+        for way in self._strongest_ways:
+            cases = [way.case(unit, torque[0], speed[0], bare, place) for place in places]
+            if len(cases) == 1:
+                every.append(safeties(cases[0], 1.0, (1.0, 1.0)))
+            else:
+                every.append(spectrum_safeties(cases, 1.0, (1.0, 1.0)))
+        made = [np.maximum.reduce(values) for values in zip(*every, strict=True)]
         used = [safety[0] / made[0], safety[0] / made[1]]
         used += [(safety[1] / made[2]) ** 2, (safety[1] / made[3]) ** 2]
         lengths = [

@@ -3,10 +3,11 @@
 At one power a slower, stronger torque may take less: it can leave the main resonance.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from gearopt.formulations.strength.iso6336_cells import IsoCells
 from gearopt.formulations.strength.iso6336_rows import AT_ENDS, Columns, IsoRows
 from gearopt.formulations.strength.rated import Box, Load, Smooth, together
 from gearopt.formulations.strength.teeth_alone import iso_teeth
+from gearopt.formulations.strength.virtual import Strength as Rival
+from gearopt.formulations.strength.virtual import may_be_best
 from gearopt.optimise.terms import Array
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.choosing import choose
@@ -22,15 +25,16 @@ from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336 import accuracy, chain, contact_factors, running_in, stiffness
 from gearopt.physics.iso6336 import bending_factors as bending
 from gearopt.physics.iso6336.batch import rate_rows, smooth_safeties, spectrum_rows
-from gearopt.physics.iso6336.case import Case, Practice, of_blanks
+from gearopt.physics.iso6336.case import Case, Practice, life_curve, of_blanks
 from gearopt.physics.iso6336.curves import Curve, reference_share
 from gearopt.physics.iso6336.load_factors import RANGES
-from gearopt.physics.iso6336.materials import Material
+from gearopt.physics.iso6336.materials import SURFACE_HARDENED, Material
 from gearopt.physics.iso6336.rating import check_lives
 from gearopt.physics.iso6336.table import ToothTable, tooth_table
 from gearopt.physics.rating import Operation
 
 GEARS = (0, 1)
+UNIT = GearPair.of_teeth(1.0, 20.0, 20.0, 1.0)  # on which numbers of materials do not depend
 Law = Callable[[Case, dict[str, Any]], Any]
 
 
@@ -39,7 +43,8 @@ class Iso6336:
     """The rating of stages made in one way by ISO 6336.
 
     operation: its overload and contacts count. blanks: of pinion and wheel, for Y_B, C_R and m_red,
-    which practice does not have. given: as of `iso6336.rating.rate`.
+    which practice does not have. given: as of `iso6336.rating.rate`. rivals: other ways of making
+    them; of all of them `rows` then has every factor at its best.
     """
 
     loads: tuple[Load, ...]
@@ -50,6 +55,7 @@ class Iso6336:
     given: Mapping[str, Any] = field(default_factory=dict)
     suffix: str = ""
     monotone: bool = False
+    rivals: tuple["Iso6336", ...] = ()
 
     def case(self, pair: GearPair, torque: Any, speed: Any, level: int = 0) -> Case:
         """Return the case of a level of load."""
@@ -134,6 +140,69 @@ class Iso6336:
     def floor(self, box: Box, choice: str) -> None:
         """Lower bounds of the used capacity as posynomials: None, for none are known."""
 
+    def best_with(self, rivals: Sequence[Self]) -> Self | None:
+        """Return the virtual way with every factor at its best; None where rows cannot be compared.
+
+        Stiffness, mass and laws of the levels of a spectrum have to be the same.
+        """
+        alike = all(replace(one, materials=self.materials) == self for one in rivals)
+        same = alike and all(one._compared == self._compared for one in rivals)
+        return replace(self, rivals=tuple(rivals)) if same else None
+
+    @property
+    def _compared(self) -> Any:
+        """What a virtual best way needs to be the same in all."""
+        first, second = (m.modulus for m in self.materials)
+        several = range(len(GEARS) if len(self.loads) > 1 else 0)
+        curves = [self._curve(k, contact) for k in several for contact in (True, False)]
+        densities = [m.density for m in self.materials]
+        return first * second / (first + second), densities, curves
+
+    def _curve(self, k: int, contact: bool) -> Curve:
+        return life_curve(self.materials[k], self.practice, contact)
+
+    @cached_property
+    def each(self) -> tuple["Iso6336", ...]:
+        """Return all ways of making the gears, this one first."""
+        return (replace(self, rivals=()), *self.rivals) if self.rivals else (self,)
+
+    @cached_property
+    def wearing(self) -> tuple[tuple[tuple[str, float], ...], ...]:
+        """Return families and sigma_Hlim [MPa] of pinion and wheel that may run in most."""
+        made = []
+        for k in GEARS:
+            most: dict[str, tuple[str, float]] = {}
+            for one in self.each:
+                family, limit = one.materials[k].family, one.found["sigma_Hlim"][k]
+                kind = running_in.kind(family)
+                if kind not in most or limit < most[kind][1]:
+                    most[kind] = family, limit
+            made.append(tuple(most.values()))
+        return tuple(made)
+
+    @cached_property
+    def strongest_ways(self) -> dict[tuple[bool, int], tuple["Iso6336", ...]]:
+        """Return the ways that may be the strongest, by contact (else bending) and member."""
+        found = {}
+        for contact in (True, False):
+            for k in GEARS:
+                rivals = [one._strength_of(k, contact) for one in self.each]
+                found[contact, k] = tuple(self.each[n] for n in may_be_best(rivals))
+        return found
+
+    def _strength_of(self, k: int, contact: bool) -> Rival:
+        """Return what tells the strength of a gear from that of a rival."""
+        own, curve, limits = self.materials[k], self._curve(k, contact), self.found["sigma_Hlim"]
+        if not contact:
+            fixed = _two(self.found["sigma_Flim"])[k] * _two(self.found["Y_M"])[k]
+            return Rival((own.family, own.strength_for_notches, own.root, curve), (), fixed)
+        softer = contact_factors.counted_limit(min(limits))
+        law = softer, self.materials[0].flank + self.materials[1].flank, curve
+        hardens = k == 1 and own.family not in SURFACE_HARDENED and "Z_W" not in self.given
+        if not hardens:
+            return Rival(law, (), limits[k])
+        return Rival(law, self.materials, limits[k], contact_factors.LARGEST_HARDENING)
+
     def like(self, other: Any) -> bool:
         """Return whether `prepared` of another standard is the same."""
         return isinstance(other, Iso6336) and other.practice.shift == self.practice.shift
@@ -178,26 +247,41 @@ class Iso6336:
         safety: tuple[float, float],
     ) -> Columns:
         """Columns of `IsoRows`; cases: of unit width at the slow and fast end."""
-        slow, found = cases[0], self.found(cases[0])
+        slow = cases[0]
         columns = self._teeth(table, slow) | self._loads(cases, load, torque)
-        columns["relief"] = found["C_a"]
+        reliefs = [one.found["C_a"] for one in self.each]
+        columns["relief0"], columns["relief1"] = min(reliefs), max(reliefs)
+        found = self.found | {"Z_E": min(one.found["Z_E"] for one in self.each)}
         pressed, bent = self._contact(table, slow, found), self._bending(table, slow, found)
         for k in GEARS:
-            columns[f"limit{k}"] = found["sigma_Hlim"][k]
             columns[f"contact_used{k}"] = pressed * safety[1] ** 2
             columns[f"bending_used{k}"] = bent[k] * safety[0]
             for contact, name in ((True, "contact"), (False, "bending")):
-                strength = _strength(self, cases, table, k, contact, found)
+                strengths = self._strengths(cases, table, k, contact)
                 if len(self.loads) == 1:
-                    most = strength.greatest(cases)
+                    most = np.maximum.reduce([one.greatest(cases) for one in strengths])
                     columns[f"{name}_used{k}"] /= most**2 if contact else most
                     continue
                 columns[f"cycles{k}"] = cycles = slow.cycles[k]
-                columns |= strength.under_levels(f"{name}{k}", cycles)
+                columns |= _under_levels(strengths, f"{name}{k}", cycles)
         return columns
 
-    def found(self, case: Case) -> dict[str, Any]:
-        """Numbers of the materials alone."""
+    def _strengths(
+        self, cases: tuple[Case, Case], table: ToothTable, k: int, contact: bool
+    ) -> list["Strength"]:
+        """Return the strengths of a gear, of which the greatest counts."""
+        made = []
+        for way in self.strongest_ways[contact, k]:
+            slow = replace(cases[0], materials=way.materials)
+            same = cases[0] is cases[1]
+            own = slow, slow if same else replace(cases[1], materials=way.materials)
+            made.append(_strength(way, own, table, k, contact, way.found))
+        return made
+
+    @cached_property
+    def found(self) -> dict[str, Any]:
+        """Numbers of the materials alone, by symbol."""
+        case = Case(UNIT, self.operation, self.materials, self.practice, self.given)
         names = ("K_A", "K_gamma", "sigma_Hlim", "sigma_Flim", "C_a", "Z_E", "Z_X", "Y_ST", "Y_M")
         found: dict[str, Any] = {}
         for name in names:
@@ -228,7 +312,7 @@ class Iso6336:
     def _loads(self, cases: tuple[Case, Case], load: Load, torque: tuple[Array, Array]) -> Columns:
         """Return loads [N], speeds, and deviations after running-in [mm], at both ends."""
         slow = cases[0]
-        found, d1 = self.found(slow), slow.pair.pinion.reference_diameter
+        found, d1 = self.found, slow.pair.pinion.reference_diameter
         force = 2.0 * found["K_A"] * found["K_gamma"] * load.power / load.speed / d1
         densities = self.materials[0].density, self.materials[1].density
         mass = stiffness.reduced_mass(slow.pair, densities, slow.practice.bores)
@@ -237,7 +321,7 @@ class Iso6336:
         form = self.given.get("f_falpha", made.profile_form)
         columns = {}
         for k, case in enumerate(cases[: 1 if cases[0] is cases[1] else 2]):
-            worn = [self.running_in_allowance(case, found, value) for value in (pitch, form)]
+            worn = [self.running_in_allowance(case, value) for value in (pitch, form)]
             columns[f"force{k}"] = force * torque[k]
             columns[f"pace{k}"] = case.operation.pinion_speed * slow.pair.pinion_teeth * mass**0.5
             columns[f"speed{k}"] = case.speed
@@ -246,12 +330,18 @@ class Iso6336:
             columns[f"deviation{k}"] = np.maximum(pitch, form) - worn[0]
         return columns
 
-    def running_in_allowance(self, case: Case, found: dict[str, Any], deviation: Any) -> Any:
+    def running_in_allowance(self, case: Case, deviation: Any) -> Any:
         """Return y_alpha of a deviation [mm], the mean of both gears."""
-        limits = found["sigma_Hlim"]
+        return self._allowance(running_in.pitch_allowance, deviation, case.speed)
+
+    def helix_allowance(self, deviation: Any, speed: Any) -> Any:
+        """Return y_beta of a deviation [mm] at a speed [mm/s], the mean of both gears."""
+        return self._allowance(running_in.helix_allowance, deviation, speed)
+
+    def _allowance(self, law: Callable[..., Any], deviation: Any, speed: Any) -> Any:
         first, second = (
-            running_in.pitch_allowance(m.family, deviation, limits[k], case.speed)
-            for k, m in enumerate(self.materials)
+            np.maximum.reduce([law(family, deviation, limit, speed) for family, limit in kinds])
+            for kinds in self.wearing
         )
         return 0.5 * (first + second)
 
@@ -337,18 +427,23 @@ class Strength:
         rows = zip(self.curve.values, shares, strict=True)
         return [self.fixed * value * self._other(share) for value, share in rows]
 
-    def under_levels(self, name: str, cycles: Any) -> Columns:
-        """Columns of `IsoRows` at numbers of cycles (levels, n), their names beginning with one."""
-        knots = self.knots()
-        curve = Curve(self.curve.cycles, tuple(knots))
-        columns = {f"{name}_{place}": value for place, value in enumerate(knots)}
-        for end, at in (("own", cycles), ("all", cycles.sum(axis=0))):
-            strength = np.where(cycles > 0.0, curve.factor(at), np.inf)
-            columns[f"{name}_{end}"] = strength**2 if self.contact else strength
-        return columns
-
     def _other(self, share: Any) -> Any:
         return self.reference**share * self.static ** (1.0 - share)
+
+
+def _under_levels(strengths: list[Strength], name: str, cycles: Any) -> Columns:
+    """Columns of `IsoRows` at numbers of cycles (levels, n), their names beginning with one.
+
+    strengths: with the knots of one life curve, of which the greatest counts.
+    """
+    every = zip(*(one.knots() for one in strengths), strict=True)
+    knots = [np.maximum.reduce(values) for values in every]
+    curve = Curve(strengths[0].curve.cycles, tuple(knots))
+    columns = {f"{name}_{place}": value for place, value in enumerate(knots)}
+    for end, at in (("own", cycles), ("all", cycles.sum(axis=0))):
+        strength = np.where(cycles > 0.0, curve.factor(at), np.inf)
+        columns[f"{name}_{end}"] = strength**2 if strengths[0].contact else strength
+    return columns
 
 
 def _strength(

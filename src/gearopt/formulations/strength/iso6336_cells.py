@@ -55,7 +55,7 @@ class IsoCells:
     @cached_property
     def found(self) -> dict[str, Any]:
         """Numbers of the materials alone."""
-        return self.standard.found(self.cases[0])
+        return self.standard.found
 
     @cached_property
     def line(self) -> Array:
@@ -125,7 +125,7 @@ class IsoCells:
         found = []
         for end, case in enumerate(self.cases):
             own, other, form = (
-                size - self.standard.running_in_allowance(case, self.found, worn)
+                size - self.standard.running_in_allowance(case, worn)
                 for size, worn in (
                     (pitches[end], pitches[end]),
                     (forms[end], pitches[1 - end]),

@@ -16,7 +16,7 @@ from gearopt.optimise.terms import Array
 from gearopt.physics.iso6336 import bending_factors as bending
 from gearopt.physics.iso6336 import contact_factors as contact
 from gearopt.physics.iso6336 import load_factors as loads
-from gearopt.physics.iso6336 import running_in, stiffness
+from gearopt.physics.iso6336 import stiffness
 from gearopt.physics.iso6336.accuracy import WIDTHS, helix_slope
 from gearopt.physics.iso6336.case import life_curve
 from gearopt.physics.iso6336.curves import ROUNDING, Curve
@@ -237,8 +237,10 @@ class Box:
         c1, c2, c3, c4, c5, c6, _ = made = loads.coefficients(self.total[1 - end])
         c7 = made[6] if self.total[0] is self.total[1] else loads.coefficients(self.total[end])[6]
         pitch, form = at[f"pitch{end}"], at[f"form{end}"]
-        pace, left = self.resonance(end, single), line - single * at["relief"]
-        slow, fast = np.abs(pace * left), np.abs(left)
+        pace = self.resonance(end, single)
+        fast = np.maximum(line - single * at["relief1"], single * at["relief0"] - line)
+        fast = np.maximum(fast, 0.0)  # of a virtual way, whose C_a may be any between two
+        slow = pace * fast
         shared = single * (c1 * pitch + c2 * form)
         low = line + pace * shared + c3 * slow
         main = line + shared + c4 * fast
@@ -258,11 +260,7 @@ class Box:
         before = loads.initial_misalignment(
             shaft, alignment, dynamic, np.maximum(first, second), practice.helix_modification
         )
-        worn = [
-            running_in.helix_allowance(m.family, before, at[f"limit{k}"], at[f"speed{end}"])
-            for k, m in enumerate(self.standard.materials)
-        ]
-        after = before - 0.5 * (worn[0] + worn[1])
+        after = before - self.standard.helix_allowance(before, at[f"speed{end}"])
         return dynamic * loads.face_load_factor(after, self._c_gamma_beta(end), dynamic)
 
     def _c_gamma_beta(self, end: int) -> Any:
@@ -317,6 +315,8 @@ class Box:
             power, SMALLEST
         )
         at, (low, high) = self.columns, self.widths
+        if self.standard.rivals:  # one of them may have any W2 above the least
+            return np.maximum(wanted, 1.0)
         free = (low != high) | (at["force0"] != at["force1"])
         inside = free & (wanted > 1.0)
         some = np.flatnonzero(np.any(np.atleast_2d(inside), axis=0))

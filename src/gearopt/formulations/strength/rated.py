@@ -108,6 +108,12 @@ class Standard(Protocol):
     def floor(self, box: "Box", choice: str) -> "Floor | None":
         """Lower bounds of the used capacity over a box; None where there are none."""
 
+    def best_with(self, rivals: Sequence[Any]) -> "Standard | None":
+        """Return a virtual way of making the gears whose `rows` use no more than those of any way.
+
+        rivals: the other ways; None where there is none.
+        """
+
     def like(self, other: Any) -> bool:
         """Whether `prepared` of another standard returns the same."""
 
@@ -141,6 +147,24 @@ class Option:
     densities: tuple[float | None, float | None] = (None, None)
     prices: tuple[float, float] = (1.0, 1.0)
     materials: tuple[str, str] = ("", "")
+
+    def cheapest_with(self, rivals: Sequence["Option"], density: float | None) -> "Option":
+        """Return a virtual option as light and as cheap as the best of all, rated as this one.
+
+        rivals: the others; density: of gears without one of their own.
+        """
+        densities, prices = [], []
+        for k in (0, 1):
+            heavy = [rho for one in (self, *rivals) if (rho := one.densities[k] or density)]
+            densities.append(min(heavy, default=None))
+            prices.append(min(one.prices[k] for one in (self, *rivals)))
+        return replace(self, densities=(densities[0], densities[1]), prices=(prices[0], prices[1]))
+
+    def strongest_with(self, rivals: Sequence["Option"]) -> "Option | None":
+        """Return this option, but rated as a virtual one that uses no more than any; or None."""
+        rated = zip(*(one.standards for one in (self, *rivals)), strict=True)
+        made = tuple(first.best_with(rest) for first, *rest in rated)
+        return None if None in made else replace(self, standards=made)
 
     def utilisations(
         self, pair: GearPair, torque: Any, speed: Any, safety: Sequence[Any]

@@ -230,6 +230,7 @@ def elastic_coefficient(
 
 
 WHEELS = (180.0, 400.0)  # HB of wheels against surface hardened pinions
+LARGEST_HARDNESS_RATIO = 1.34  # of C_H, of any hardness: 1 + 0.00075 450 rounded up
 LARGEST_RATIO = 20.0  # where the chart of through-hardened pairs ends
 MICROINCH = 1e-6 * INCH  # mm
 

@@ -13,6 +13,7 @@ from gearopt.physics.geometry.tooth import base_helix_angle
 
 # f_ZCa of 2019 by what is known of the profile modification [memory; a printed report has 1.2]
 PROFILE_MODIFICATIONS = {"none": 1.2, "by experience": 1.07, "by analysis": 1.0}
+LARGEST_HARDENING = 1.2  # of Z_W, static or not
 SOFT_LIMIT, HARD_LIMIT = 850.0, 1200.0  # MPa, between which C_ZL and C_ZR change
 STEEPEST, HARDEST = 130.0, 470.0  # HB between which Z_W falls
 
@@ -98,6 +99,11 @@ def velocity_factor(limit: Any, speed: Any) -> Any:
     """Return Z_v = C + 2 (1 - C)/sqrt(0.8 + 32/v), C = C_ZL + 0.02; speed [mm/s]. Part 2, 12."""
     c = _lubrication(limit) + 0.02
     return c + 2.0 * (1.0 - c) / np.sqrt(0.8 + 32000.0 / speed)
+
+
+def counted_limit(limit: float) -> float:
+    """Return sigma_Hlim [MPa] as far as it counts for Z_L, Z_v and Z_R."""
+    return min(max(limit, SOFT_LIMIT), HARD_LIMIT)
 
 
 def _lubrication(limit: Any) -> Any:

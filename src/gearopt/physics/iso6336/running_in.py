@@ -15,6 +15,14 @@ TEMPERED = ("St", "V", "GTS", "GGG")  # GGG: pearlitic and bainitic
 CAST = ("GG", "GGG ferritic")
 
 
+def kind(family: str) -> str:
+    """Return the kind of a family in the laws below, in all of which sigma_Hlim is of one use.
+
+    Tempered ones run in more the less it is; of the others it does not count.
+    """
+    return "tempered" if family in TEMPERED else "cast" if family in CAST else "hard"
+
+
 def pitch_allowance(family: str, deviation: Any, contact_limit: Any, speed: Any) -> Any:
     """Return y_alpha of a base pitch or profile deviation.
 

@@ -18,11 +18,12 @@ from gearopt.formulations.drive.teeth.columns import Index
 from gearopt.formulations.drive.teeth.stage import EDGE, Cells, Table
 from gearopt.formulations.drive.train import Train
 from gearopt.formulations.strength import ALLOWANCE
-from gearopt.formulations.strength.rated import IndexRows, Rows, Standard
+from gearopt.formulations.strength.rated import IndexRows, Option, Rows, Standard
 from gearopt.formulations.strength.widths import MAX_STEPS, first_width, used
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
+VIRTUAL_CLOSE = 1e-3  # of what a virtual option uses above 1, which has to be a bound alone
 FIRST_STEPS = 4  # steps towards a width, for a first lower bound
 BOUNDED_AGAIN = 1.01  # times the least of these: what is bounded again
 TOGETHER = 2000  # pairs bounded again at once, at least
@@ -31,6 +32,8 @@ AT_ONCE = 4000  # rows of several modules that are tried at once
 BATCH = 20_000  # pairs bounded at once
 CELL_TOLERANCE = 0.02  # of what is used above 1, for that, over the width of a cell
 TEETH = 10**8  # more than a wheel has: pairs are told apart by z1 TEETH + z2
+VIRTUAL = -1  # the option that is best in everything
+WHEEL = 9.0  # volume of a wheel over that of its pinion, more or less
 FINEST = 0.005  # width of a cell where none is given
 
 
@@ -289,46 +292,98 @@ class RatedTable(Table):
         steps: as of `first_width`, for lower bounds.
         """
         best = Found(np.full(len(pair), np.inf), np.full(len(pair), len(self.modules)))
-        for option in range(len(self.stage.options)):
-            at = np.maximum(self.first[pair], first)
-            left = np.arange(len(pair))
-            while True:
-                self.tick()
-                left = left[at[left] <= self.last[pair[left]]]
-                if not len(left):
-                    break
-                several = max(1, AT_ONCE // len(left))
-                rows, module = _numbered(left, at[left], self.last[pair[left]], several)
-                own = pair[rows]
-                one = self.made(self.modules[module], own)
-                low, high = self._ends(one, module, own)
-                worth = self._worth(one, low, option)
-                limit = np.minimum(np.broadcast_to(most, len(pair))[rows], best.cost[rows])
-                larger, keep = self._floor(one, low, option) <= limit, worth <= limit
-                if self.train.by_width:
-                    high = np.minimum(high, low * (limit / worth) * (1.0 + EDGE))
-                if keep.any():
-                    tried, ends = rows[keep], (low[keep], high[keep])
-                    loads = torque[0][tried], torque[1][tried]
-                    own, module = own[keep], module[keep]
-                    widths = self._narrowest(loads, own, module, option, ends, close, steps)
-                    self._improve(best, tried, own, module, option, widths)
-                left = np.setdiff1d(left, rows[~larger])
-                at[left] += several
-        return best
+        most = np.broadcast_to(most, len(pair))
+        at = np.maximum(self.first[pair], first)
+        left = np.arange(len(pair))
+        while True:
+            self.tick()
+            left = left[at[left] <= self.last[pair[left]]]
+            if not len(left):
+                return best
+            several = max(1, AT_ONCE // len(left))
+            rows, module = _numbered(left, at[left], self.last[pair[left]], several)
+            one = self.made(self.modules[module], pair[rows])
+            ends = self._ends(one, module, pair[rows])
+            limit = np.minimum(most[rows], best.cost[rows])
+            larger = self._floor(one, ends[0]) <= limit
+            some = np.flatnonzero(self._worth(one, ends[0], VIRTUAL) <= limit)
+            if len(some):
+                tried = rows[some], pair[rows[some]], module[some]
+                ends = ends[0][some], ends[1][some]
+                self._try(best, torque, tried, ends, most, (close, steps))
+            left = np.setdiff1d(left, rows[~larger])
+            at[left] += several
+
+    def _try(
+        self,
+        best: Found,
+        torque: tuple[Array, Array],
+        tried: tuple[Index, Index, Index],
+        ends: tuple[Array, Array],
+        most: Array,
+        until: tuple[float, int],
+    ) -> None:
+        """Put the least costs of rows, pairs and modules with every option in the best so far.
+
+        No option has a narrower face than the virtual one.
+        """
+        rows, pair, module = tried
+        one = self.made(self.modules[module], pair)
+        narrow = ends[0]
+        bounded = until[1] == MAX_STEPS and self._virtual is not None
+        for option in (VIRTUAL, *self._by_price) if bounded else self._by_price:
+            limit = np.minimum(most[rows], best.cost[rows])
+            with np.errstate(invalid="ignore"):  # of no width
+                worth = self._worth(one, narrow, option)
+            some = np.flatnonzero(np.isfinite(narrow) & (worth <= limit))
+            if not len(some):
+                continue
+            low, high = narrow[some], ends[1][some]
+            if self.train.by_width:
+                high = np.minimum(high, low * (limit[some] / worth[some]) * (1.0 + EDGE))
+            loads = torque[0][rows[some]], torque[1][rows[some]]
+            own = pair[some], module[some]
+            enough = (max(until[0], VIRTUAL_CLOSE), until[1]) if option == VIRTUAL else until
+            widths = self._narrowest(loads, *own, option, (low, high), *enough)
+            if option == VIRTUAL:
+                narrow = np.full(len(rows), np.inf)
+                narrow[some] = widths
+            else:
+                self._improve(best, rows[some], *own, option, widths)
+
+    @cached_property
+    def _virtual(self) -> Option | None:
+        """A virtual option that uses no more than any option; None: there is none, or no choice."""
+        first, *rest = self.stage.options
+        return first.strongest_with(rest) if rest else None
+
+    @cached_property
+    def _cheapest(self) -> Train:
+        """The drive with a virtual option of the stage that costs no more than any."""
+        first, *rest = self.stage.options
+        own = replace(self.stage, options=(first.cheapest_with(rest, self.train.density),))
+        stages = [*self.train.stages[: self.position], own, *self.train.stages[self.position + 1 :]]
+        return replace(self.train, stages=tuple(stages), same_option=False)
+
+    @cached_property
+    def _by_price(self) -> list[int]:
+        """Options, cheap ones first."""
+        rows = [zip(o.densities, o.prices, strict=True) for o in self.stage.options]
+        costs = [[(rho or 1.0) * price for rho, price in row] for row in rows]
+        return sorted(range(len(costs)), key=lambda k: costs[k][0] + WHEEL * costs[k][1])
 
     def _worth(self, pair: GearPair, width: Array, option: int) -> Array:
         """Share of pairs of these face widths [mm] in the objective."""
-        shares = objective_share(self.train, self.position, pair.of_width(width), option=option)
+        train, option = (self._cheapest, 0) if option == VIRTUAL else (self.train, option)
+        shares = objective_share(train, self.position, pair.of_width(width), option=option)
         return np.asarray(shares)
 
-    def _floor(self, pair: GearPair, width: Array, option: int) -> Array:
-        """Return a lower bound of `_worth` that larger modules do not fall below."""
+    def _floor(self, pair: GearPair, width: Array) -> Array:
+        """Return a lower bound of `_worth` that larger modules and options do not fall below."""
         if self.stage.toothing.shifting is not None:  # a larger module may be the lighter one
             return np.zeros(np.shape(width))
         fewest = pair.pinion_teeth, pair.wheel_teeth
-        one = pair.of_width(width)
-        shares = least_share(self.train, self.position, one, option=option, fewest=fewest)
+        shares = least_share(self._cheapest, self.position, pair.of_width(width), fewest=fewest)
         return np.asarray(shares)
 
     def _improve(
@@ -377,7 +432,10 @@ class RatedTable(Table):
         place = module * len(self.ratio) + pair if self._by_module else pair
         speed = self.train.speed_at(torque[0]), self.train.speed_at(torque[1])
         scale = np.ones(len(pair)) if self._by_module else self.modules[module]
-        standards = zip(self.stage.options[option].standards, self._prepared[option], strict=True)
+        virtual = option == VIRTUAL
+        made = self._virtual if virtual else self.stage.options[option]
+        assert made is not None
+        standards = zip(made.standards, self._prepared[0 if virtual else option], strict=True)
         found: list[Rows] = [
             standard.rows(prepared.take(place).scaled(scale), one, torque, speed, self.train.safety)
             for standard, prepared in standards
