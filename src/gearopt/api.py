@@ -76,11 +76,10 @@ def solve(
     may end there; None: none is, and 1e-6 is called optimal. top: so many next best answers too
     (drives with a [teeth] table). prices: report["prices"] holds the sensitivities to every number
     of the file, as `explain` does; a number: in so many times the seconds of the answer, at most,
-    and 2 s. start: of a Problem, values by name of the variable from which
-    ipopt, multistart and annealing begin instead of the guess. remedies: of an impossible file
-    report["ways_out"] holds what to write instead; False: its proof alone. workers: of a Problem
-    whose text is run point by point, such as a simulation, processes that annealing and nsga2 share
-    their points among. SceneError for a wrong file or change, SolveError where the method does not
+    and 2 s. start: of a Problem, values by name of the variable from which ipopt, multistart and
+    annealing begin instead of the guess. remedies: of an impossible file report["ways_out"] holds
+    what to write instead; False: its proof alone. workers: of a Problem whose text is run point by
+    point, such as a simulation, processes that annealing and nsga2 share them among. SceneError for a wrong file or change, SolveError where the method does not
     fit, or an option changes nothing, ValueError for an option of another sort. Of several threads
     one solves at a time; its budget begins then.
     """

@@ -100,11 +100,11 @@ def compliance_of(
 
     1/K is RIGID of S at least: of less, rounding leaves a matrix that is not positive definite.
     """
-    own, every = 1.0 / pair_stiffness, np.eye(len(numbers))
+    pairs, every = 1.0 / pair_stiffness, np.eye(len(numbers))
     if rim is None:
-        return own * every
+        return pairs * every
     behind: Array = rim_compliance(gearing, *rim, numbers)
-    return behind + max(own, RIGID * float(behind.max(initial=0.0))) * every
+    return behind + max(pairs, RIGID * float(behind.max(initial=0.0))) * every
 
 
 def shared(compliance: Any, gaps: Any, arms: Any, moment: float) -> Loads:

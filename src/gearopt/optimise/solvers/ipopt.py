@@ -95,11 +95,7 @@ class _Run:
 
 
 def run(
-    problem: Problem,
-    budget: Budget,
-    seed: int,
-    watch: Watch | None,
-    start: Array | None = None,
+    problem: Problem, budget: Budget, seed: int, watch: Watch | None, start: Array | None = None
 ) -> Outcome:
     """Solve a continuous problem from its guess (or from the natural point `start`).
 

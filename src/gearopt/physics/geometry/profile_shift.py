@@ -157,14 +157,14 @@ class Shifting:
         module, first, second = np.broadcast_arrays(*(np.asarray(v, float) for v in numbers))
         total = np.asarray(meshing.shift_sum)
         near = (total >= SUMS[0]) & (total <= SUMS[1])
-        own = Meshing(
+        inside = Meshing(
             module[near],
             (first[near], second[near]),
             *(meshing.helix_angle, meshing.racks),
             meshing.distance,
         )
         pinion = np.full(module.shape, np.nan)
-        pinion[near] = RULES[self.rule](own)
+        pinion[near] = RULES[self.rule](inside)
         return pinion[()], (total - pinion)[()], (meshing.tip_alteration + 0.0 * pinion)[()]
 
     @np.errstate(invalid="ignore", divide="ignore")

@@ -305,10 +305,10 @@ class Scene(Table):
 
     def toothing(self, own: StageTable) -> Toothing:
         """Teeth of a stage."""
-        made = toothing(own, self.gears)
+        teeth = toothing(own, self.gears)
         if not self.shifted(own):
-            return made
-        return replace(made, shifting=(self.shift or ShiftTable()).shifting)
+            return teeth
+        return replace(teeth, shifting=(self.shift or ShiftTable()).shifting)
 
     def _check_layout(self) -> None:
         """Check the tables of a layout against the drive and each other."""

@@ -147,11 +147,9 @@ def _shiftable(stage: Stage, z1: Index, z2: Index) -> NDArray[np.bool_]:
     """Return whether shifts that a centre distance asks for are allowed: (modules, n)."""
     shifting = stage.toothing.shifting
     assert shifting is not None
-    found = []
-    for module in stage.modules:
-        pair = stage.toothing.pair(float(module), z1, z2, 1.0)
-        found.append(np.logical_and.reduce([u <= 1.0 for u in shifting.used(pair).values()]))
-    return np.array(found)
+    pairs = (stage.toothing.pair(float(module), z1, z2, 1.0) for module in stage.modules)
+    used = (shifting.used(pair).values() for pair in pairs)
+    return np.array([np.logical_and.reduce([u <= 1.0 for u in each]) for each in used])
 
 
 def _meshing(stage: Stage, z1: Index, z2: Index) -> tuple[Index, Index, tuple[Index, Index]]:
