@@ -79,9 +79,10 @@ def solve(
     and 2 s. start: of a Problem, values by name of the variable from which ipopt, multistart and
     annealing begin instead of the guess. remedies: of an impossible file report["ways_out"] holds
     what to write instead; False: its proof alone. workers: of a Problem whose text is run point by
-    point, such as a simulation, processes that annealing and nsga2 share them among. SceneError for a wrong file or change, SolveError where the method does not
-    fit, or an option changes nothing, ValueError for an option of another sort. Of several threads
-    one solves at a time; its budget begins then.
+    point, such as a simulation, processes that annealing and nsga2 share them among. SceneError for
+    a wrong file or change, SolveError where the method does not fit, or an option changes nothing,
+    ValueError for an option of another sort. Of several threads one solves at a time; its budget
+    begins then.
     """
     check(method=method, budget=budget, seed=seed, watch=watch, gap=gap, top=top, prices=prices)
     check(start=start, remedies=remedies, workers=workers)
