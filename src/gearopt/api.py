@@ -81,8 +81,7 @@ def solve(
     what to write instead; False: its proof alone. workers: of a Problem whose text is run point by
     point, such as a simulation, processes that annealing and nsga2 share them among. SceneError for
     a wrong file or change, SolveError where the method does not fit, or an option changes nothing,
-    ValueError for an option of another sort. Of several threads one solves at a time; its budget
-    begins then.
+    ValueError for an option of another sort. Threads take turns, each with its own budget.
     """
     check(method=method, budget=budget, seed=seed, watch=watch, gap=gap, top=top, prices=prices)
     check(start=start, remedies=remedies, workers=workers)
