@@ -173,5 +173,11 @@ def test_what_does_not_go_with_a_given_distance_is_refused(tmp_path, text, words
 
 @pytest.mark.slow
 def test_a_distance_at_which_nothing_carries_is_proven_impossible(tmp_path):
-    result = gearopt.solve(written(tmp_path, PAIR.replace("125 mm", "60 mm")))
+    result = gearopt.solve(written(tmp_path, PAIR.replace("125 mm", "60 mm")), remedies=False)
+    assert result.status == "infeasible" and not result.message
+
+
+def test_a_distance_that_no_teeth_fit_is_named(tmp_path):
+    result = gearopt.solve(written(tmp_path, PAIR.replace("125 mm", "20 mm")), remedies=False)
     assert result.status == "infeasible"
+    assert "No teeth fit the centre distance of 20 mm of stage 1" in result.message

@@ -17,8 +17,9 @@ from gearopt.formulations.drive import sizing_text
 from gearopt.formulations.drive.teeth.choices import best_choices
 from gearopt.formulations.drive.teeth.front import fronts
 from gearopt.formulations.drive.teeth.progress import MARGIN, TIE, Progress, Teeth
-from gearopt.formulations.drive.teeth.reach import narrowed, trimmed
+from gearopt.formulations.drive.teeth.reach import largest_ratio, narrowed, trimmed
 from gearopt.formulations.drive.teeth.search import BEAM, search
+from gearopt.formulations.drive.teeth.tables import table
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.pareto.posed import caps
@@ -235,6 +236,7 @@ def _outcome(
             infeasible=True,
             proof=proof | {"sentence": NO_TRAIN},
             evaluations=progress.clock.evaluations,
+            message=_unfit(train),
         )
     return Outcome(
         points[0],
@@ -304,6 +306,19 @@ def _searched(
     # What the first search found is a train of the drive as well, where the second one is stopped.
     progress.add(np.array([v for v, _ in first.found]), iter([t for _, t in first.found]))
     return useful, progress, ""
+
+
+def _unfit(train: Train) -> str:
+    """What keeps gears from given centre distances; nothing where teeth fit all of them."""
+    cut = largest_ratio(train)
+    stages = [k for k, stage in enumerate(train.stages) if stage.toothing.shifting is not None]
+    bare = [k for k in stages if not len(table(train, k, cut).ratio)]
+    distances = [(k, train.stages[k].toothing.working_distance) for k in bare]
+    return " ".join(
+        f"No teeth fit the centre distance of {a:.6g} mm of stage {k + 1}, with the modules, "
+        "numbers of teeth and ratios allowed and the limits of profile shifts."
+        for k, a in distances
+    )
 
 
 def _why(progress: Progress, count: int) -> str:
