@@ -53,7 +53,10 @@ def test_cvxpy_and_ipopt_agree(case):
     assert found.status == cone.status == "optimal"
     assert cone.value == pytest.approx(found.value, rel=1e-9)
     assert 0.0 <= found.gap < 1e-9
-    assert found.bound <= min(found.value, cone.value)
+    below = cone.certificate["feasibility"] * len(
+        cone.limits
+    )  # what may be had by violating limits
+    assert found.bound <= min(found.value, cone.value * (1.0 + below))
 
 
 def test_the_table_of_the_page_is_recomputed():

@@ -42,22 +42,14 @@ class FilletPoint:
     """A point of a fillet: x, y [mm]; slope of its tangent to the centre line of the tooth [rad].
 
     slope > 0: the tooth gets thinner outwards; its normal into the tooth is (-cos(slope),
-    -sin(slope)).
+    -sin(slope)). radius [mm] and half_angle [rad]: the same point in polar coordinates.
     """
 
     x: Any
     y: Any
     slope: Any
-
-    @property
-    def radius(self) -> Any:
-        """Distance from the gear's axis [mm]."""
-        return np.hypot(self.x, self.y)
-
-    @property
-    def half_angle(self) -> Any:
-        """Angle from the centre line of the tooth at the gear's axis [rad]."""
-        return np.arctan2(self.x, self.y)
+    radius: Any
+    half_angle: Any
 
 
 def tool_tip(gear: Gear) -> ToolTip:
@@ -103,11 +95,13 @@ def fillet_point(gear: Gear, theta: Any, tip: ToolTip | None = None) -> FilletPo
     below = tip.depth + tip.radius * np.sin(theta)
     across = (tip.half_width + tip.radius * np.cos(theta)) / cosine
     beside = below * cosine * np.cos(theta) / np.sin(theta)
+    roll = (beside - across) / radius
     above = radius - below
-    turned = np.pi / gear.teeth + (beside - across) / radius
-    sine, turn = np.sin(turned), np.cos(turned)
-    x, y = above * sine - beside * turn, above * turn + beside * sine
-    return FilletPoint(x, y, np.arctan2(np.sin(theta), cosine * np.cos(theta)) - turned)
+    at = np.hypot(beside, above)
+    half = np.pi / gear.teeth - np.arctan2(beside, above) + roll
+    normal = np.arctan2(np.sin(theta), cosine * np.cos(theta))
+    slope = normal - roll - np.pi / gear.teeth
+    return FilletPoint(at * np.sin(half), at * np.cos(half), slope, at, half)
 
 
 def least_fillet_radius(gear: Gear) -> Any:
