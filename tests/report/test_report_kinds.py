@@ -108,8 +108,7 @@ def test_one_limit_is_not_reported_as_several(conflict, said):
 @pytest.mark.parametrize("path", PROBLEMS, ids=lambda p: p.stem)
 def test_a_problem_file_makes_a_page(path):
     top = 1 if "top" in idle_options(path, None) else 3
-    slow = path.stem.startswith("least_vibration")  # whose own pair over speed takes seconds
-    result = gearopt.solve(path, top=top, budget=gearopt.Budget(10.0 if slow else 1.0))
+    result = gearopt.solve(path, top=top, budget=gearopt.Budget(1.0))
     again = gearopt.Result.from_json(result.to_json())
     html = page(again, "gearopt solve x.toml")
     words = "".join(Reader(html).text)

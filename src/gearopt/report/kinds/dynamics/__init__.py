@@ -10,7 +10,7 @@ from gearopt.formulations.dynamics.motion.stability import UNSTABLE
 from gearopt.formulations.dynamics.motions_over_speed import ranges, spans
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
-from gearopt.report.answer import assumptions, limits, progress, summary
+from gearopt.report.answer import assumptions, limits, progress, proven, summary
 from gearopt.report.explained import remedies, sensitivities
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.dynamics import plots
@@ -247,7 +247,7 @@ def rest(result: Result, measures: Measures) -> Section | None:
 
 SECTIONS = (chosen, motion, speeds, stability, rest)
 PAGES = Pages(
-    sections=(*OPENING, *SECTIONS, limits, sensitivities, progress, assumptions),
+    sections=(*OPENING, *SECTIONS, limits, sensitivities, progress, proven, assumptions),
     terminal=(rest, stability, motion, speeds, chosen, limits, sensitivities, remedies, summary),
     tiles=tiles,
     binding_limit=binding_limit,
