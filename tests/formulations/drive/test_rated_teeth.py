@@ -147,16 +147,29 @@ def test_index_limits_beside_ratings():
     assert values["both"] >= max(values["rated"], values["index"]) * (1.0 - 1e-12)
 
 
+def assert_no_smaller_module_is_of_use(table, rest, most):
+    """Of random torques and pairs: none that carries costs less than so much."""
+    rng, (cell, pair) = np.random.default_rng(1), np.nonzero(rest.first[1])
+    cell, pair = (x[rng.integers(0, len(cell), 200)] for x in (cell, pair))
+    torque = table.train.torque * np.exp((cell + rng.random(200)) * rest.delta)
+    first = rest.first[1][cell, pair]
+    for module in range(len(table.modules)):
+        width = table.width(torque, pair, module)
+        some = np.flatnonzero(np.isfinite(width) & (module < first))
+        own = table.made(table.modules[module], pair[some]).of_width(width[some])
+        assert (objective_share(table.train, 1, own) > most).all()
+
+
 def test_cells_of_use_hold_the_best_train():
     """The best train's value lies above what every grid says of the cells it passes through."""
     train = rated_drive(F(30), [TIED] * 3, pinion_teeth=(20, 20), modules=MODULES[1:7])
     found = search(train, 1, Budget())
     value, chosen = found.found[0]
     tables = stage_tables(train, train.highest_ratio)
-    useful, delta = None, 0.32
+    useful, delta, rest = None, 0.32, None
     first = first_costs(train, tables[0], 0.01, np.inf)
     for _ in range(4):
-        rest = bound(train, tables, delta, lambda: None, useful, value * 1.001)
+        rest = bound(train, tables, delta, lambda: None, useful, value * 1.001, rest)
         ratios = np.log([z2 / z1 for z1, z2 in chosen])
         cells = rest.cell(np.concatenate([[0.0], np.cumsum(ratios)]))
         pairs = choices.best_pairs(train, chosen)
@@ -164,6 +177,7 @@ def test_cells_of_use_hold_the_best_train():
         assert rest.minimum[1][cells[1], rest.cell(ratios[1:2])[0]] <= costs[1]
         assert rest.to_go[1][cells[1]] <= sum(costs[1:])
         assert rest.to_go[2][cells[2]] <= costs[2]
+        assert_no_smaller_module_is_of_use(tables[1], rest, value)
         useful = useful_cells(tables, rest, first, value * 1.001)
         delta /= 2.0
     assert useful[1].mean() < 0.2

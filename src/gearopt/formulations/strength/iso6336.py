@@ -26,7 +26,7 @@ from gearopt.physics.iso6336 import accuracy, chain, contact_factors, running_in
 from gearopt.physics.iso6336 import bending_factors as bending
 from gearopt.physics.iso6336.batch import rate_rows, smooth_safeties, spectrum_rows
 from gearopt.physics.iso6336.case import Case, Practice, life_curve, of_blanks
-from gearopt.physics.iso6336.curves import Curve, reference_share
+from gearopt.physics.iso6336.curves import Curve, reference_share, share_of_life
 from gearopt.physics.iso6336.load_factors import RANGES
 from gearopt.physics.iso6336.materials import SURFACE_HARDENED, Material
 from gearopt.physics.iso6336.rating import check_lives
@@ -414,12 +414,12 @@ class Strength:
         cases: at the slow and at the fast end.
         """
         slow, fast = cases
-        life = self.life or self.curve.factor(slow.cycles[self.member])
-        found = self._other(reference_share(self.curve, slow.cycles[self.member]))
+        life = self.curve.factor(slow.cycles[self.member])
+        found = self._other(share_of_life(self.curve, life))
         if slow is not fast:
             other = self._other(reference_share(self.curve, fast.cycles[self.member]))
             found = np.maximum(found, other)
-        return self.fixed * life * found
+        return self.fixed * (self.life or life) * found
 
     def knots(self) -> list[Any]:
         """Return the greatest strength [MPa] at each knot of the life curve."""

@@ -110,5 +110,9 @@ def reference_share(curve: Curve, cycles: Any) -> Any:
     static^(1 - t) reference^t, so that the strength is straight between the two in log-log, as
     parts 2 and 3 interpolate. curve: that of the life factor, whose reference value is 1.
     """
-    found = 1.0 - np.log(curve.factor(cycles)) / np.log(curve.values[0])
-    return np.clip(found, 0.0, 1.0)
+    return share_of_life(curve, curve.factor(cycles))
+
+
+def share_of_life(curve: Curve, life: Any) -> Any:
+    """`reference_share` at the cycles of a life factor."""
+    return np.clip(1.0 - np.log(life) / np.log(curve.values[0]), 0.0, 1.0)

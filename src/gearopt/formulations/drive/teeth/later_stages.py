@@ -32,13 +32,15 @@ class Bound:
 
     to_go[k] (cells,): that of stages k..N-1 from a cell of log cumulative ratio. minimum[k] (cells,
     ratio cells): that of stage k alone. starts[k]: first pair of each ratio cell, so that pairs of
-    cell r are starts[k][r] : starts[k][r + 1].
+    cell r are starts[k][r] : starts[k][r + 1]. first[k] (cells, pairs): first modules of use, of
+    stages whose ratings are limits.
     """
 
     delta: float
     to_go: list[Array]
     minimum: list[Array | None]
     starts: list[NDArray[np.int64]]
+    first: list[NDArray[np.int16] | None]
 
     def cell(self, log_ratio: Array) -> NDArray[np.int64]:
         """Return the cell of a log ratio."""
@@ -62,18 +64,20 @@ def bound(
     tick: Callable[[], None],
     useful: list[Mask] | None = None,
     most: float = math.inf,
+    coarse: Bound | None = None,
 ) -> Bound:
     """Return the bound of all stages but the first, on cells of `delta` in log ratio.
 
     Every table has a pair. tick: called several times a second; what it raises ends the work.
     useful: of `useful_cells`, outside of which everything counts as inf, as may what costs more
-    than so much.
+    than so much. coarse: the bound on cells twice as wide, of costs up to at least so much.
     """
     cells = int((math.log(train.highest_ratio) + EDGE) / delta) + 1
     widest = max(float(t.log_ratio[-1]) for t in tables)
     ratio_cells = int(widest / delta) + 1
     count = len(tables)
     minimum: list[Array | None] = [None] * count
+    first: list[NDArray[np.int16] | None] = [None] * count
     to_go = [np.full(cells + ratio_cells + 2, np.inf) for _ in range(count)]
     last = None if useful is None else useful[-1]
     to_go[-1][:cells] = _last(train, tables[-1], cells, delta, tick, last, most)
@@ -81,19 +85,23 @@ def bound(
         ahead = _ahead(to_go[k + 1], ratio_cells)[:cells]
         mask = None if useful is None else useful[k][:cells, :ratio_cells]
         alike = [train.stages[k] == train.stages[j] for j in (k - 1, k + 1)]
-        now = minimum[k + 1] if alike[1] and mask is None else None
+        now, first[k] = (
+            (minimum[k + 1], first[k + 1]) if alike[1] and mask is None else (None, None)
+        )
         if now is None:
             if not (alike[0] and k > 1):  # else it is that of the stage before, too
                 on = np.isfinite(ahead)  # beyond it no train goes on
                 mask = on if mask is None else mask & on
-            now = tables[k].grid(Cells(cells, ratio_cells, delta, mask, most), tick)
+            before = None if coarse is None else coarse.first[k]
+            made = Cells(cells, ratio_cells, delta, mask, most, before)
+            now, first[k] = tables[k].grid(made, tick)
         minimum[k] = now
         tick()
         to_go[k][:cells] = (now + ahead).min(axis=1)
     columns = [_cell(t.log_ratio, delta) for t in tables]
     edges = np.arange(ratio_cells)
     starts = [np.append(np.searchsorted(c, edges), len(c)) for c in columns]
-    return Bound(delta, to_go, minimum, starts)
+    return Bound(delta, to_go, minimum, starts, first)
 
 
 def first_costs(train: Train, table: Table, delta: float, most: float) -> Array:

@@ -15,7 +15,7 @@ import numpy as np
 
 from gearopt.formulations.drive.shares import least_share, objective_share
 from gearopt.formulations.drive.teeth.columns import Index
-from gearopt.formulations.drive.teeth.stage import EDGE, Cells, Table
+from gearopt.formulations.drive.teeth.stage import EDGE, Cells, Grid, Table
 from gearopt.formulations.drive.train import Train
 from gearopt.formulations.strength import ALLOWANCE
 from gearopt.formulations.strength.rated import IndexRows, Option, Rows, Standard
@@ -30,6 +30,7 @@ TOGETHER = 2000  # pairs bounded again at once, at least
 ROUGH = 0.01  # of what is used above 1, where a bound is only to compare
 AT_ONCE = 4000  # rows of several modules that are tried at once
 BATCH = 20_000  # pairs bounded at once
+MAX_KEPT = 20_000_000  # first modules of cells and pairs that are kept, 40 MB
 CELL_TOLERANCE = 0.02  # of what is used above 1, for that, over the width of a cell
 TEETH = 10**8  # more than a wheel has: pairs are told apart by z1 TEETH + z2
 VIRTUAL = -1  # the option that is best in everything
@@ -211,8 +212,8 @@ class RatedTable(Table):
                 rough &= ~np.isin(group, group[~rough & np.isfinite(cost)])
         return cost
 
-    def grid(self, cells: Cells, tick: Callable[[], None]) -> Array:
-        """Return the minimum cost (torque cells, ratio cells).
+    def grid(self, cells: Cells, tick: Callable[[], None]) -> Grid:
+        """Minimum cost (torque cells, ratio cells), and first modules of use (torque cells, pairs).
 
         A lower bound: the least over the torques of a cell, of its pairs the best.
         """
@@ -220,24 +221,28 @@ class RatedTable(Table):
         delta, most = cells.delta, cells.most
         column = (self.log_ratio / delta).astype(np.int64)
         highest = math.log(self.train.highest_ratio)
-        first = np.zeros(len(self.ratio), np.int64)
+        keeps = len(self.stage.options) == 1 and cells.torque * len(self.ratio) <= MAX_KEPT
+        first = np.zeros((cells.torque if keeps else 1, len(self.ratio)), np.int16)
+        if keeps and cells.first is not None:
+            first[:] = cells.first[np.arange(cells.torque) // 2]
         for rows in cells.batches(len(self.ratio), BATCH):
             tick()
             inside = self.log_ratio <= highest - rows[:, None] * delta + EDGE
             if cells.useful is not None:
                 inside &= cells.useful[rows[:, None], column]
             row, pair = np.nonzero(inside)
-            low = rows[row] * delta
+            low, own = rows[row] * delta, (rows[row] * keeps, pair)
             ends = [self.train.torque * np.exp(e) for e in (low - EDGE, low + delta + EDGE)]
             place = row * cells.ratio + column[pair]
-            made = self._found((ends[0], ends[1]), pair, most, first[pair], steps=FIRST_STEPS)
-            if self.monotone and most == np.inf and len(self.stage.options) == 1:
-                first[pair[row == 0]] = made.first[row == 0]
+            begins = first[own].astype(np.int64)
+            made = self._found((ends[0], ends[1]), pair, most, begins, steps=FIRST_STEPS)
+            if keeps:  # with options one in a larger module may hide another one in this cell
+                first[own] = made.first
             cost = self._closer(
                 (ends[0], ends[1]), pair, place, made.cost, CELL_TOLERANCE * delta, most
             )
             np.minimum.at(found, (rows[row], column[pair]), cost)
-        return found
+        return found, first if keeps else None
 
     def width(self, torque: Array, pair: Index, module: int) -> Array:
         """Return the minimum face width [mm] of pairs of a module (index) at torques; inf: none."""
@@ -311,7 +316,9 @@ class RatedTable(Table):
                 tried = rows[some], pair[rows[some]], module[some]
                 ends = ends[0][some], ends[1][some]
                 self._try(best, torque, tried, ends, most, (close, steps))
-            left = np.setdiff1d(left, rows[~larger])
+            goes = np.ones(len(pair), bool)
+            goes[rows[~larger]] = False
+            left = left[goes[left]]
             at[left] += several
 
     def _try(

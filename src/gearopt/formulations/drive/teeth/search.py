@@ -164,12 +164,13 @@ def _rounds(
     coarse, useful = train.rated, None  # whose bounds take long: few cells at first
     delta = _width(tables) * (FIRST_CELLS if coarse else 1.0)
     first: Array | None = None
+    rest: Bound | None = None
     while True:
         finer = math.log(train.highest_ratio) * tables[-1].log_ratio[-1] / (delta / 2) ** 2
         last = not coarse and (len(tables) <= 2 or finer > CELLS)
         own = DIVE if coarse else math.inf if last else PATIENCE
         enough = progress.clock.evaluations + min(patience, own)
-        rest = bound(train, tables, delta, progress.tick, useful, progress.threshold)
+        rest = bound(train, tables, delta, progress.tick, useful, progress.threshold, rest)
         if train.rated:
             begins = first is None
             if first is None:

@@ -28,7 +28,8 @@ class Cells:
     """Cells of torque and of ratio, so many of each, all `delta` wide in logarithms.
 
     useful (torque, ratio): those asked for, None: all; others may count as inf, as may what costs
-    more than `most`.
+    more than `most`. first (torque, pairs): of cells of torque twice as wide, the first module
+    (index) that may be of use; None: not known.
     """
 
     torque: int
@@ -36,6 +37,7 @@ class Cells:
     delta: float
     useful: NDArray[np.bool_] | None = None
     most: float = np.inf
+    first: NDArray[np.int16] | None = None
 
     def batches(self, pairs: int, most: int) -> Iterator[NDArray[np.int64]]:
         """Yield cells of torque in order, as many at once as have about so many of the pairs."""
@@ -44,6 +46,9 @@ class Cells:
             size = np.ceil(self.useful[: self.torque].mean(axis=1) * pairs).astype(np.int64)
         every, size = every[size > 0], np.cumsum(size[size > 0])
         yield from np.split(every, np.flatnonzero(np.diff(size // most)) + 1)
+
+
+Grid = tuple[Array, NDArray[np.int16] | None]
 
 
 @dataclass(frozen=True)
@@ -121,8 +126,8 @@ class Table:
         """Return the largest ratio whose share of a train is at most so much; at least `least`."""
         return float(max(self.ratio.max(initial=0.0), least))
 
-    def grid(self, cells: Cells, tick: Callable[[], None]) -> Array:
-        """Return the minimum cost (torque cells, ratio cells).
+    def grid(self, cells: Cells, tick: Callable[[], None]) -> Grid:
+        """Minimum cost (torque cells, ratio cells), and first modules of use where they serve.
 
         A lower bound: of the torques of a cell the smallest, of its pairs the best.
         """
@@ -143,7 +148,7 @@ class Table:
         torque = self.train.torque * np.exp(np.arange(cells.torque) * cells.delta - EDGE)
         loaded = np.zeros_like(grid)
         np.multiply(torque[:, None], slope, out=loaded, where=np.isfinite(slope))
-        return np.asarray(np.maximum(grid, loaded))
+        return np.asarray(np.maximum(grid, loaded)), None
 
     def capacity(self, module: int) -> Array:
         """Return the largest torque [N mm] of each pair with a module (index); 0 where not allowed.
