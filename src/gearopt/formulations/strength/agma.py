@@ -122,7 +122,7 @@ class Agma:
 
     def best_with(self, rivals: Sequence[Self]) -> Self | None:
         """Return the virtual way with every strength at its best; None: they differ in more."""
-        alike = all(replace(one, steels=self.steels) == self for one in rivals)
+        alike = all(replace(rival, steels=self.steels) == self for rival in rivals)
         return replace(self, rivals=tuple(rivals)) if alike else None
 
     @cached_property
@@ -139,7 +139,7 @@ class Agma:
         return tuple(chosen.values())
 
     def _strength_of(self, k: int, contact: bool) -> Strength:
-        """Return what tells the strength of a gear from that of a rival."""
+        """Strength of a gear, to compare with that of rivals."""
         case = Case(UNIT, self.operation, self.steels, self.practice, self.given)
         curve, base = life_curves(case, contact)[k], computed(case, "s_ac" if contact else "s_at")
         stress = base.value[k] if isinstance(base.value, tuple) else base.value
@@ -177,9 +177,9 @@ class Agma:
                 every.append(safeties(cases[0], 1.0, (1.0, 1.0)))
             else:
                 every.append(spectrum_safeties(cases, 1.0, (1.0, 1.0)))
-        made = [np.maximum.reduce(values) for values in zip(*every, strict=True)]
-        used = [safety[0] / made[0], safety[0] / made[1]]
-        used += [(safety[1] / made[2]) ** 2, (safety[1] / made[3]) ** 2]
+        best = [np.maximum.reduce(values) for values in zip(*every, strict=True)]
+        used = [safety[0] / best[0], safety[0] / best[1]]
+        used += [(safety[1] / best[2]) ** 2, (safety[1] / best[3]) ** 2]
         lengths = [
             gear.reference_diameter / gear.teeth * factors.lewis_form(gear.teeth) ** 0.5
             for gear in pair.gears

@@ -145,8 +145,8 @@ class Iso6336:
 
         Stiffness, mass and laws of the levels of a spectrum have to be the same.
         """
-        alike = all(replace(one, materials=self.materials) == self for one in rivals)
-        same = alike and all(one._compared == self._compared for one in rivals)
+        alike = all(replace(rival, materials=self.materials) == self for rival in rivals)
+        same = alike and all(rival._compared == self._compared for rival in rivals)
         return replace(self, rivals=tuple(rivals)) if same else None
 
     @property
@@ -169,36 +169,39 @@ class Iso6336:
     @cached_property
     def wearing(self) -> tuple[tuple[tuple[str, float], ...], ...]:
         """Return families and sigma_Hlim [MPa] of pinion and wheel that may run in most."""
-        made = []
+        softest: list[dict[str, tuple[str, float]]] = [{}, {}]
         for k in GEARS:
-            most: dict[str, tuple[str, float]] = {}
-            for one in self.each:
-                family, limit = one.materials[k].family, one.found["sigma_Hlim"][k]
+            for way in self.each:
+                family, limit = way.materials[k].family, way.found["sigma_Hlim"][k]
                 kind = running_in.kind(family)
-                if kind not in most or limit < most[kind][1]:
-                    most[kind] = family, limit
-            made.append(tuple(most.values()))
-        return tuple(made)
+                if kind not in softest[k] or limit < softest[k][kind][1]:
+                    softest[k][kind] = family, limit
+        return tuple(tuple(by_kind.values()) for by_kind in softest)
 
     @cached_property
     def strongest_ways(self) -> dict[tuple[bool, int], tuple["Iso6336", ...]]:
         """Return the ways that may be the strongest, by contact (else bending) and member."""
-        found = {}
+        ways = {}
         for contact in (True, False):
             for k in GEARS:
-                rivals = [one._strength_of(k, contact) for one in self.each]
-                found[contact, k] = tuple(self.each[n] for n in may_be_best(rivals))
-        return found
+                rivals = [way._strength_of(k, contact) for way in self.each]
+                ways[contact, k] = tuple(self.each[n] for n in may_be_best(rivals))
+        return ways
 
     def _strength_of(self, k: int, contact: bool) -> Rival:
-        """Return what tells the strength of a gear from that of a rival."""
-        own, curve, limits = self.materials[k], self._curve(k, contact), self.found["sigma_Hlim"]
+        """Strength of a gear, to compare with that of rivals."""
+        material, curve, limits = (
+            self.materials[k],
+            self._curve(k, contact),
+            self.found["sigma_Hlim"],
+        )
         if not contact:
             fixed = _two(self.found["sigma_Flim"])[k] * _two(self.found["Y_M"])[k]
-            return Rival((own.family, own.strength_for_notches, own.root, curve), (), fixed)
+            notches = material.strength_for_notches
+            return Rival((material.family, notches, material.root, curve), (), fixed)
         softer = contact_factors.counted_limit(min(limits))
         law = softer, self.materials[0].flank + self.materials[1].flank, curve
-        hardens = k == 1 and own.family not in SURFACE_HARDENED and "Z_W" not in self.given
+        hardens = k == 1 and material.family not in SURFACE_HARDENED and "Z_W" not in self.given
         if not hardens:
             return Rival(law, (), limits[k])
         return Rival(law, self.materials, limits[k], contact_factors.LARGEST_HARDENING)
@@ -231,10 +234,10 @@ class Iso6336:
         same = np.array_equal(*torque)
         first = Case(unit, slow, self.materials, self._practice(unit), self.given)
         cases = first, first if same else replace(first, operation=fast)
-        made = self._columns(prepared, cases, load, torque, safety)
+        values = self._columns(prepared, cases, load, torque, safety)
         columns = {
             name: np.broadcast_to(value, np.broadcast_shapes(np.shape(value), shape))
-            for name, value in made.items()
+            for name, value in values.items()
         }
         return IsoRows(self, columns | {f"{n}1": columns[f"{n}0"] for n in AT_ENDS if same})
 
@@ -249,17 +252,17 @@ class Iso6336:
         """Columns of `IsoRows`; cases: of unit width at the slow and fast end."""
         slow = cases[0]
         columns = self._teeth(table, slow) | self._loads(cases, load, torque)
-        reliefs = [one.found["C_a"] for one in self.each]
+        reliefs = [way.found["C_a"] for way in self.each]
         columns["relief0"], columns["relief1"] = min(reliefs), max(reliefs)
-        found = self.found | {"Z_E": min(one.found["Z_E"] for one in self.each)}
-        pressed, bent = self._contact(table, slow, found), self._bending(table, slow, found)
+        factors = self.found | {"Z_E": min(way.found["Z_E"] for way in self.each)}
+        pressed, bent = self._contact(table, slow, factors), self._bending(table, slow, factors)
         for k in GEARS:
             columns[f"contact_used{k}"] = pressed * safety[1] ** 2
             columns[f"bending_used{k}"] = bent[k] * safety[0]
             for contact, name in ((True, "contact"), (False, "bending")):
                 strengths = self._strengths(cases, table, k, contact)
                 if len(self.loads) == 1:
-                    most = np.maximum.reduce([one.greatest(cases) for one in strengths])
+                    most = np.maximum.reduce([each.greatest(cases) for each in strengths])
                     columns[f"{name}_used{k}"] /= most**2 if contact else most
                     continue
                 columns[f"cycles{k}"] = cycles = slow.cycles[k]
@@ -270,13 +273,13 @@ class Iso6336:
         self, cases: tuple[Case, Case], table: ToothTable, k: int, contact: bool
     ) -> list["Strength"]:
         """Return the strengths of a gear, of which the greatest counts."""
-        made = []
+        strengths = []
         for way in self.strongest_ways[contact, k]:
             slow = replace(cases[0], materials=way.materials)
             same = cases[0] is cases[1]
-            own = slow, slow if same else replace(cases[1], materials=way.materials)
-            made.append(_strength(way, own, table, k, contact, way.found))
-        return made
+            ends = slow, slow if same else replace(cases[1], materials=way.materials)
+            strengths.append(_strength(way, ends, table, k, contact, way.found))
+        return strengths
 
     @cached_property
     def found(self) -> dict[str, Any]:
@@ -415,11 +418,11 @@ class Strength:
         """
         slow, fast = cases
         life = self.curve.factor(slow.cycles[self.member])
-        found = self._other(share_of_life(self.curve, life))
+        others = self._other(share_of_life(self.curve, life))
         if slow is not fast:
             other = self._other(reference_share(self.curve, fast.cycles[self.member]))
-            found = np.maximum(found, other)
-        return self.fixed * (self.life or life) * found
+            others = np.maximum(others, other)
+        return self.fixed * (self.life or life) * others
 
     def knots(self) -> list[Any]:
         """Return the greatest strength [MPa] at each knot of the life curve."""
@@ -436,7 +439,7 @@ def _under_levels(strengths: list[Strength], name: str, cycles: Any) -> Columns:
 
     strengths: with the knots of one life curve, of which the greatest counts.
     """
-    every = zip(*(one.knots() for one in strengths), strict=True)
+    every = zip(*(strength.knots() for strength in strengths), strict=True)
     knots = [np.maximum.reduce(values) for values in every]
     curve = Curve(strengths[0].curve.cycles, tuple(knots))
     columns = {f"{name}_{place}": value for place, value in enumerate(knots)}

@@ -66,9 +66,9 @@ class IsoRows:
         box, at = Box(self.standard, self.columns, (low, high)), self.columns
         parts = box.parts()
         single = len(self.standard.loads) == 1
-        found = np.maximum.reduce(parts) if single else self._spectrum(parts)
+        most = np.maximum.reduce(parts) if single else self._spectrum(parts)
         rated = (box.overlap[UPPER] >= at["overlap"]) & (at["contact"] >= 1.0)
-        return np.where(rated & ~np.isnan(found), found, np.inf)
+        return np.where(rated & ~np.isnan(most), most, np.inf)
 
     def _spectrum(self, parts: list[Any]) -> Any:
         """Number above 1 where Miner's sum of a mode is; parts: of a mode the stresses (levels, n).
@@ -80,16 +80,16 @@ class IsoRows:
             [np.max(part / at[f"{name}{k}_{end}"], axis=0) for end in ("own", "all")]
             for part, (name, k) in zip(parts, MODES, strict=True)
         ]
-        found = np.maximum.reduce([np.where(every <= 1.0, every, own) for own, every in ends])
-        for part, (own, every), mode in zip(parts, ends, MODES, strict=True):
-            some = np.flatnonzero((found <= FAR) & (every > np.maximum(found, 1.0)))
+        most = np.maximum.reduce([np.where(every <= 1.0, every, alone) for alone, every in ends])
+        for part, (alone, every), mode in zip(parts, ends, MODES, strict=True):
+            some = np.flatnonzero((most <= FAR) & (every > np.maximum(most, 1.0)))
             if len(some):
-                used = self._together(part[:, some], own[some], every[some], mode, some)
-                found[some] = np.maximum(found[some], used)
-        return found
+                used = self._together(part[:, some], alone[some], every[some], mode, some)
+                most[some] = np.maximum(most[some], used)
+        return most
 
-    def _together(self, part: Any, own: Any, every: Any, mode: tuple[str, int], some: Any) -> Any:
-        """Number above 1 where Miner's sum of some rows is, from `own` to `every`.
+    def _together(self, part: Any, alone: Any, every: Any, mode: tuple[str, int], some: Any) -> Any:
+        """Number above 1 where Miner's sum of some rows is, from `alone` to `every`.
 
         A power of the sum, but where the sum jumps: a level breaks a tooth at once, or begins to
         count at the endless end of its curve.
@@ -100,17 +100,17 @@ class IsoRows:
         power, square = MINER_POWERS[name], 2.0 if name == "contact" else 1.0
         stress, cycles = part ** (1.0 / square), self.columns[f"cycles{k}"][:, some]
         levels = Level(cycles, Curve(curve.cycles, tuple(values)), stress)
-        found = damage([levels]).sum(axis=0) ** (1.0 / power)
-        found = np.minimum(np.maximum(found, own), every)
+        total = damage([levels]).sum(axis=0) ** (1.0 / power)
+        total = np.minimum(np.maximum(total, alone), every)
         ends = values[0] * (1.0 + ROUNDING), values[-1] * (1.0 - ROUNDING)
         for used in chain.from_iterable(part / end**square for end in ends):
-            near = np.flatnonzero((used - 1.0) * (used - found) < 0.0)
+            near = np.flatnonzero((used - 1.0) * (used - total) < 0.0)
             if len(near):
                 counts = used[near] > 1.0
                 growth = used[near] ** (-1.0 / square) * np.where(counts, 1.0 / PAST, PAST)
                 above = damage([levels.take((..., near))], growth).sum(axis=0) > 1.0
-                found[near] = np.where(above != counts, used[near], found[near])
-        return found
+                total[near] = np.where(above != counts, used[near], total[near])
+        return total
 
     def border(self, width: Array) -> Array:
         """Return the next width at which a refusal ends, K_v has other laws, or f_Hbeta a step."""

@@ -155,16 +155,16 @@ class Option:
         """
         densities, prices = [], []
         for k in (0, 1):
-            heavy = [rho for one in (self, *rivals) if (rho := one.densities[k] or density)]
+            heavy = [rho for way in (self, *rivals) if (rho := way.densities[k] or density)]
             densities.append(min(heavy, default=None))
-            prices.append(min(one.prices[k] for one in (self, *rivals)))
+            prices.append(min(way.prices[k] for way in (self, *rivals)))
         return replace(self, densities=(densities[0], densities[1]), prices=(prices[0], prices[1]))
 
     def strongest_with(self, rivals: Sequence["Option"]) -> "Option | None":
         """Return this option, but rated as a virtual one that uses no more than any; or None."""
-        rated = zip(*(one.standards for one in (self, *rivals)), strict=True)
-        made = tuple(first.best_with(rest) for first, *rest in rated)
-        return None if None in made else replace(self, standards=made)
+        rated = zip(*(way.standards for way in (self, *rivals)), strict=True)
+        best = tuple(first.best_with(rest) for first, *rest in rated)
+        return None if None in best else replace(self, standards=best)
 
     def utilisations(
         self, pair: GearPair, torque: Any, speed: Any, safety: Sequence[Any]

@@ -169,7 +169,7 @@ class Shifting:
 
     @np.errstate(invalid="ignore", divide="ignore")
     def used(self, pair: GearPair) -> dict[str, Any]:
-        """Return what a pair uses of every limit, by name; NaN or infinite: it has no such teeth.
+        """Shares of the limits that a pair uses, by name; NaN or infinite: it has no such teeth.
 
         Undercut counts from NEGLIGIBLE modules on; of a tip without thickness the use is infinite.
         """
