@@ -261,7 +261,7 @@ def some_drive(number, stages):
         torque,
         ratio,
         tolerance,
-        stages=tuple(replace(stage, toothing=Toothing(helix)) for stage in made),
+        stages=tuple(replace(stage, toothings=(Toothing(helix),)) for stage in made),
         coprime=bool(rng.random() < 0.2),
         objective=str(rng.choice(names, p=[0.55, 0.2, 0.2, 0.05])),
         density=7.85e-9,
@@ -277,5 +277,5 @@ def own_teeth(train):
         helix, shift = stage.toothing.helix_angle, (0.0, 0.4, -0.2, 0.1)[k]
         shifts, tips = (shift, -shift), (0.0, -0.1 * (k % 2))
         own = Toothing((1.0, 0.6, -1.0, 0.3)[k] * helix + 0.1 * k, profile_shifts=shifts)
-        made.append(replace(stage, toothing=replace(own, tip_alterations=tips)))
+        made.append(replace(stage, toothings=(replace(own, tip_alterations=tips),)))
     return replace(train, stages=tuple(made))

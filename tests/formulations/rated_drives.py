@@ -53,7 +53,7 @@ def rated_drive(ratio, faces, power=7.5e6, rpm=1450.0, helix=0.4363, options=Non
     speed = rpm * math.pi / 30.0
     options = (Option((agma(),)),) if options is None else options
     usual = {"modules": MODULES, "pinion_teeth": (20, 40)}
-    usual |= {"toothing": Toothing(helix, (RACK, RACK)), "options": options}
+    usual |= {"toothings": (Toothing(helix, (RACK, RACK)),), "options": options}
     stages = tuple(Stage((), face, **(usual | choice)) for face in faces)
     return Train(power / speed, F(ratio), F(1, 100), stages, speed=speed, law=RATED)
 

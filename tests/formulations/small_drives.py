@@ -31,7 +31,7 @@ def drive(stages=2, face="tied", total=12, tolerance=None, **changes):
     given = {"modules": (F(1), F(3, 2), F(2), F(3)), "pinion_teeth": (15, 20)}
     of_train = {k: changes.pop(k) for k in ("objective", "coprime") if k in changes}
     made = tuple(
-        Stage((1.5 + 0.2 * k, 40.0 + k), face, toothing=toothing, **given | changes)
+        Stage((1.5 + 0.2 * k, 40.0 + k), face, toothings=(toothing,), **given | changes)
         for k in range(stages)
     )
     tolerance = F(1, 50) if tolerance is None else tolerance

@@ -54,7 +54,7 @@ HELICAL = Toothing(math.radians(25.0))
 
 
 def drive(total=ELEVATOR, widths=("0.6", "0.75"), tolerance=ONE_PERCENT, **stage):
-    limits = {"modules": SERIES_I, "pinion_teeth": (20, 40), "toothing": HELICAL} | stage
+    limits = {"modules": SERIES_I, "pinion_teeth": (20, 40), "toothings": (HELICAL,)} | stage
     stages = tuple(Stage((2.07, 48.0), FaceWidth(F(w), F(w)), **limits) for w in widths)
     return Train(49392.913, F(total), tolerance, stages, law=K_FACTOR)
 

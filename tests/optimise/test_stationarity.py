@@ -88,7 +88,7 @@ def golinski():
 def elevator():
     """Real-valued sizes of a two-stage drive, convex in logarithms: ratio 1450/66.5, 7.5 kW."""
     widths = (FaceWidth(Fraction(w), Fraction(w)) for w in ("0.6", "0.75"))
-    own = {"modules": (), "pinion_teeth": (20, 40), "toothing": Toothing(math.radians(25.0))}
+    own = {"modules": (), "pinion_teeth": (20, 40), "toothings": (Toothing(math.radians(25.0)),)}
     stages = tuple(Stage((2.07, 48.0), w, **own) for w in widths)
     total = Fraction(1450) / Fraction("66.5")
     return sizing.problem(Train(49392.913, total, Fraction(1, 100), stages, law=K_FACTOR))

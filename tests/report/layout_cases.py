@@ -134,7 +134,7 @@ PROGRESS = [
 def drive(rows):
     """The design of a drive of these stages."""
     own = Toothing(math.radians(HELIX))
-    stages = (Stage((1.0, 1.0), FaceWidth(0, None), (), (1, None), toothing=own),) * len(rows)
+    stages = (Stage((1.0, 1.0), FaceWidth(0, None), (), (1, None), toothings=(own,)),) * len(rows)
     train = Train(5e4, 1, 0, stages, law=K_FACTOR, speed=150.0)
     return untyped(describe(train, tuple(train.pair(k, *row) for k, row in enumerate(rows))))
 

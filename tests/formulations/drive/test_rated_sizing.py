@@ -32,7 +32,7 @@ def published_pair(given=()):
     standard = agma(steels, hours=hours, given=dict(given))
     face = FaceWidth(F(3, 10), F(1), over_module=(F(8), F(14)), least=F(254, 10))
     modules = tuple(F(m) for m in "1.5 2 2.5 3 3.5 4 5".split())
-    made = {"toothing": Toothing(0.0, (SHARP, SHARP)), "options": (Option((standard,)),)}
+    made = {"toothings": (Toothing(0.0, (SHARP, SHARP)),), "options": (Option((standard,)),)}
     stage = Stage((), face, modules, (18, 60), **made)
     speed = 1450.0 * math.pi / 30.0
     return Train(15e6 / speed, F(3), F(0), (stage,), speed=speed, law=RATED)
@@ -264,7 +264,7 @@ def two_helical_stages(power):
     option = Option((agma((Steel("carburised"),) * 2, given=GIVEN | {"C_H": (1.0, 1.0)}),))
     toothing = Toothing(math.radians(25.0), (SHARP, SHARP))
     face = FaceWidth(F(3, 10), F(3, 5))
-    stage = Stage((), face, (), (20, 60), toothing=toothing, options=(option,))
+    stage = Stage((), face, (), (20, 60), toothings=(toothing,), options=(option,))
     speed = 150.0
     return Train(power / speed, F(22), F(0), (stage, stage), speed=speed, law=RATED)
 

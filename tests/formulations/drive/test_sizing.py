@@ -25,7 +25,7 @@ HELICAL = Toothing(math.radians(25.0))
 
 
 def drive(power_kW, speed_rpm, total, widths, tolerance=EXACT, **stage):
-    limits = {"modules": (), "pinion_teeth": (20, 40), "toothing": HELICAL} | stage
+    limits = {"modules": (), "pinion_teeth": (20, 40), "toothings": (HELICAL,)} | stage
     stages = tuple(Stage((2.07, 48.0), FaceWidth(F(str(w)), F(str(w))), **limits) for w in widths)
     torque = 30e6 * power_kW / math.pi / speed_rpm
     return Train(torque, F(total), tolerance, stages, law=K_FACTOR)
@@ -71,7 +71,7 @@ def test_the_optimum_does_not_depend_on_tied_width_or_helix():
         for t in (
             train,
             drive(8, 3520, 110, [0.9, 0.5, 0.7]),
-            drive(8, 3520, 110, [0.6, 0.6, 0.75], toothing=Toothing(0.1)),
+            drive(8, 3520, 110, [0.6, 0.6, 0.75], toothings=(Toothing(0.1),)),
         )
     ]
     assert values == pytest.approx([12707311.04] * 3, abs=0.006)

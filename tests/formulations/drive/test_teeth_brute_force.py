@@ -232,7 +232,7 @@ def test_rounding_does_not_decide_ties(stages):
     free = {"modules": (Fraction(3), Fraction(4)), "face_width": FaceWidth(ONE * 0, ONE * 10)}
     train = spur(1e4 / 3, 5**stages, teeth=teeth, allowable=(1.0, 1e9), **free)
     fives = tuple(
-        replace(stage, ratio=(Fraction(5), Fraction(5)), toothing=Toothing(0.3))
+        replace(stage, ratio=(Fraction(5), Fraction(5)), toothings=(Toothing(0.3),))
         for stage in train.stages
     )
     train = replace(train, stages=fives)

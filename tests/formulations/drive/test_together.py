@@ -37,7 +37,7 @@ def chong(kilowatt, rpm, ratio, widths):
     series = MODULES["ISO 54 I"]
     own = Toothing(math.radians(25))
     stages = tuple(
-        Stage((2.07, 48.0), FaceWidth(h, h), series, (20, 40), toothing=own) for h in widths
+        Stage((2.07, 48.0), FaceWidth(h, h), series, (20, 40), toothings=(own,)) for h in widths
     )
     return Train(torque, ratio, F(1, 100), stages, law=K_FACTOR)
 
@@ -92,7 +92,7 @@ def some_train(rng, stages=2):
     ratio = F(int(rng.choice([40, 60, 85] if stages == 2 else [60, 90])), 10)
     torque, helix = float(rng.choice([2e4, 5e4])), math.radians(float(rng.choice([0, 15, 25])))
     coprime = bool(rng.random() < 0.2)
-    made = tuple(replace(stage, toothing=Toothing(helix)) for stage in found)
+    made = tuple(replace(stage, toothings=(Toothing(helix),)) for stage in found)
     train = Train(torque, ratio, F(1, 100), made, coprime=coprime, law=K_FACTOR)
     return own_teeth(train) if coprime else train
 

@@ -27,7 +27,7 @@ OTHER = Toothing(0.3, TOOLS, (0.5, 0.1), (-0.1, 0.0), (-0.05, -0.1), 250.0)
 
 def with_toothing(train, *toothings):
     rows = zip(train.stages, toothings, strict=True)
-    return replace(train, stages=tuple(replace(s, toothing=t) for s, t in rows))
+    return replace(train, stages=tuple(replace(s, toothings=(t,)) for s, t in rows))
 
 
 def test_shifts_and_tools_change_no_load_volume_or_mass():

@@ -71,7 +71,7 @@ def test_a_law_may_ask_for_the_helix_angle():
     law = Law("virtual teeth", (Limit("bending_stress"),), stress, proportional=True)
     modules = tuple(map(F, (1, 2, 3, 4, 5)))
     stage = Stage(
-        (40.0,), FaceWidth(F(1, 2), F(1)), modules, (17, 20), (17, 80), toothing=Toothing(beta)
+        (40.0,), FaceWidth(F(1, 2), F(1)), modules, (17, 20), (17, 80), toothings=(Toothing(beta),)
     )
     train = Train(5e4, F(3), F(1, 100), (stage,), law=law)
     values = []

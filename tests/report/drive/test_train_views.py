@@ -48,7 +48,7 @@ TRAINS = {  # m_n, z1, z2, b of every stage
 
 def result(rows, **blanks):
     width = FaceWidth(0, None)
-    stage = Stage((1.0, 1.0), width, (), (1, None), toothing=Toothing(0.4), **blanks)
+    stage = Stage((1.0, 1.0), width, (), (1, None), toothings=(Toothing(0.4),), **blanks)
     stages = (stage,) * len(rows)
     train = Train(5e4, 1, 0, stages, law=K_FACTOR, speed=150.0)
     pairs = tuple(train.pair(k, *row) for k, row in enumerate(rows))

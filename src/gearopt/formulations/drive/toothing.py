@@ -1,8 +1,11 @@
 """The teeth of a stage as they are cut: helix, tools, profile shifts, tips, thickness, distance."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
+
+import numpy as np
 
 from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack, reference_diameter
 from gearopt.physics.geometry.profile_shift import Meshing, Shifting
@@ -16,19 +19,20 @@ class Toothing:
     pressure angle; profile_shifts x and tip_alterations k in normal modules; thickness_allowances
     A_sn [mm]; working_distance: a given centre distance [mm], None: the one without backlash of
     nominal teeth. shifting: how profile shifts and tip alterations follow from it, None: they are
-    given. ValueError for other angles. Source: ISO 21771:2007.
+    given. Of many pairs (n,) helix angle and distance may be arrays. ValueError for other angles.
+    Source: ISO 21771:2007.
     """
 
-    helix_angle: float = 0.0
+    helix_angle: Any = 0.0
     racks: tuple[Rack, Rack] = (ISO_53_A, ISO_53_A)
     profile_shifts: tuple[float, float] = (0.0, 0.0)
     tip_alterations: tuple[float, float] = (0.0, 0.0)
     thickness_allowances: tuple[float, float] = (0.0, 0.0)
-    working_distance: float | None = None
+    working_distance: Any = None
     shifting: Shifting | None = None
 
     def __post_init__(self) -> None:
-        if not abs(self.helix_angle) < math.pi / 3.0:  # whose cosine is rational
+        if not np.all(np.abs(self.helix_angle) < math.pi / 3.0):  # whose cosine is rational
             raise ValueError("the helix angle must be below 60 degrees")
         first, second = (rack.pressure_angle for rack in self.racks)
         if first != second:
@@ -50,6 +54,11 @@ class Toothing:
     def on_reference(self) -> bool:
         """Whether the centre distance is that of the reference circles: x1 + x2 = 0, none given."""
         return self.working_distance is None and sum(self.profile_shifts) == 0
+
+    def made(self, pair: GearPair) -> bool:
+        """Whether a pair of floats has this helix angle and, where one is given, this distance."""
+        helix, distance = pair.pinion.helix_angle, pair.working_distance
+        return bool(helix == self.helix_angle and distance == self.working_distance)
 
     def pair(self, module: Any, pinion_teeth: Any, wheel_teeth: Any, face_width: Any) -> GearPair:
         """Return the gear pair with these numbers; module, face_width [mm].
@@ -107,3 +116,16 @@ class Toothing:
         )
         bodies = diameters[0] + 2.0 * first * module, diameters[1] + 2.0 * second * module
         return (first, second), (shorter, shorter), bodies
+
+
+def by_row(toothings: Sequence[Toothing], row: Any) -> Toothing:
+    """Toothing of many pairs (n,), each cut by one of several toothings.
+
+    row (n,): which one, from 0. They differ in helix angle and given distance alone.
+    """
+    first = toothings[0]
+    helix = np.array([t.helix_angle for t in toothings])[row]
+    if first.working_distance is None:
+        return replace(first, helix_angle=helix)
+    distance = np.array([t.working_distance for t in toothings])[row]
+    return replace(first, helix_angle=helix, working_distance=distance)

@@ -11,7 +11,9 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-from gearopt.formulations.drive.toothing import Toothing
+import numpy as np
+
+from gearopt.formulations.drive.toothing import Toothing, by_row
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
 from gearopt.physics.blanks import SOLID, Blank
@@ -91,7 +93,8 @@ class Stage:
     allowable: the limits of the train's strength law, in its order. modules: allowed normal modules
     [mm], increasing (for the continuous form its first and last are limits; empty: any).
     pinion_teeth, wheel_teeth, ratio u = z2/z1 >= 1: minimum and maximum (None: no
-    limit). wheel_diameter: maximum [mm] of the wheel's reference diameter. toothing: of its gears.
+    limit). wheel_diameter: maximum [mm] of the wheel's reference diameter. toothings: ways of
+    cutting its gears, of which one is chosen; they differ in helix angle and given distance alone.
     options: ways of making them that are rated, of which one is chosen; none: the law limits alone.
     blanks: of pinion and wheel.
     """
@@ -103,9 +106,35 @@ class Stage:
     wheel_teeth: tuple[int, int | None] = (1, None)
     ratio: tuple[Fraction, Fraction | None] = (Fraction(1), None)
     wheel_diameter: Fraction | None = None
-    toothing: Toothing = Toothing()
+    toothings: tuple[Toothing, ...] = (Toothing(),)
     options: tuple[Option, ...] = ()
     blanks: tuple[Blank, Blank] = (SOLID, SOLID)
+
+    def __post_init__(self) -> None:
+        first = self.toothings[0]
+        for one in self.toothings:
+            cut = replace(
+                one, helix_angle=first.helix_angle, working_distance=first.working_distance
+            )
+            if cut != first or (one.working_distance is None) != (first.working_distance is None):
+                raise ValueError("toothings of a stage differ in helix angle and distance alone")
+
+    @property
+    def toothing(self) -> Toothing:
+        """The toothing of a stage that has one; of several the first, for what is alike."""
+        return self.toothings[0]
+
+    def toothing_of(self, row: Any) -> Toothing:
+        """Toothing of pairs (n,) or of one; row: which of its toothings, from 0."""
+        if len(self.toothings) == 1:
+            return self.toothings[0]
+        return by_row(self.toothings, row) if np.ndim(row) else self.toothings[int(row)]
+
+    def toothing_row(self, pair: GearPair) -> int:
+        """Which of its toothings made a pair of floats, from 0."""
+        if len(self.toothings) == 1:
+            return 0
+        return next(k for k, toothing in enumerate(self.toothings) if toothing.made(pair))
 
     @property
     def pinion_fixed(self) -> bool:
@@ -150,6 +179,8 @@ class Train:
         numbers = [self.torque, *(x for s in self.stages for x in s.allowable)]
         if not all(math.isfinite(x) and x > 0 for x in numbers):
             raise ValueError(f"torque and load limits must be positive numbers: {numbers}")
+        if self.several_toothings and (self.law.limits or not all(s.options for s in self.stages)):
+            raise ValueError("stages with a choice of toothings are limited by ratings alone")
         if any(len(s.allowable) != len(self.law.limits) for s in self.stages):
             raise ValueError(f"every stage needs limits for {', '.join(self.law.names)}")
         if any(s.pinion_teeth[0] < self.law.minimum_teeth for s in self.stages):
@@ -200,6 +231,11 @@ class Train:
         return any(len(stage.options) > 1 for stage in self.stages)
 
     @property
+    def several_toothings(self) -> bool:
+        """Whether a stage has a choice of toothings."""
+        return any(len(stage.toothings) > 1 for stage in self.stages)
+
+    @property
     def of_one_option(self) -> tuple["Train", ...]:
         """The drives of which this one is the best: one for each option that all stages take."""
         if not (self.same_option and self.several_options):
@@ -238,7 +274,7 @@ class Train:
     @property
     def on_reference(self) -> bool:
         """Whether every stage has the centre distance of its reference circles."""
-        return all(stage.toothing.on_reference for stage in self.stages)
+        return all(t.on_reference for stage in self.stages for t in stage.toothings)
 
     @cached_property
     def lowest_ratio(self) -> Fraction:
@@ -256,10 +292,19 @@ class Train:
         return replace(self, stages=self.stages[:stage] + (one,) + self.stages[stage + 1 :])
 
     def pair(
-        self, stage: int, module: Any, pinion_teeth: Any, wheel_teeth: Any, face_width: Any
+        self,
+        stage: int,
+        module: Any,
+        pinion_teeth: Any,
+        wheel_teeth: Any,
+        face_width: Any,
+        toothing: Any = 0,
     ) -> GearPair:
-        """Return the gear pair of a stage (counted from 0); module, face_width [mm]."""
-        own = self.stages[stage].toothing
+        """Return the gear pair of a stage (counted from 0); module, face_width [mm].
+
+        toothing: which of the stage's, from 0.
+        """
+        own = self.stages[stage].toothing_of(toothing)
         return own.pair(module, pinion_teeth, wheel_teeth, face_width)
 
     def speed_at(self, torque: Any) -> Any:

@@ -234,7 +234,7 @@ class AgmaRows:
     def _geometry(self, low: Array, high: Array) -> tuple[Any, Any, Any]:
         """Return the largest I, J_1, J_2 of use between two widths."""
         at = self.table.factors(high)
-        if self.table.cosine == 1.0:
+        if self.table.spur:
             return at
         before = self.table.factors(low)
         conventional = high > self.table.axial

@@ -26,8 +26,8 @@ class FactorTable:
 
     low: I/C_psi^2, J_1/C_psi, J_2/C_psi of spur gears and m_F <= 1; slope: (1 - C_psi^2)/m_F; high:
     I m_N, J_1 m_N, J_2 m_N of m_F > 1; contact: transverse contact ratio; axial: axial pitch p_x
-    [mm], infinite of spur gears; cosine: of the base helix angle; refusal: indices of
-    `refusals.REFUSALS` for m_F <= 1 and above, where the factors are NaN.
+    [mm], infinite of spur gears; cosine: of the base helix angle, one for all or of each; refusal:
+    indices of `refusals.REFUSALS` for m_F <= 1 and above, where the factors are NaN.
     """
 
     low: Three
@@ -35,7 +35,7 @@ class FactorTable:
     high: Three
     contact: Any
     axial: Any
-    cosine: float
+    cosine: Any
     refusal: tuple[Any, Any]
 
     def take(self, place: Any) -> "FactorTable":
@@ -46,9 +46,15 @@ class FactorTable:
 
         codes = self.refusal[0][place], self.refusal[1][place]
         axial, contact = self.axial[place], self.contact[place]
+        cosine = self.cosine[place] if np.ndim(self.cosine) else self.cosine
         return FactorTable(
-            of(self.low), self.slope[place], of(self.high), contact, axial, self.cosine, codes
+            of(self.low), self.slope[place], of(self.high), contact, axial, cosine, codes
         )
+
+    @property
+    def spur(self) -> bool:
+        """Whether all pairs are spur gears, by one helix angle."""
+        return np.ndim(self.cosine) == 0 and bool(self.cosine == 1.0)
 
     def scaled(self, factor: Any) -> "FactorTable":
         """Return the table of pairs whose lengths are all greater by a factor."""
@@ -59,7 +65,7 @@ class FactorTable:
 
         Equal to `refusals.geometry_factors` to rounding; NaN where the table has a refusal.
         """
-        if self.cosine == 1.0:
+        if self.spur:
             return self.low
         overlap = width / self.axial
         above, sharing = overlap > 1.0, self.lines(overlap)
@@ -76,31 +82,33 @@ class FactorTable:
         ratio = self.contact
         n_r, n_a = ratio - np.floor(ratio), overlap - np.floor(overlap)
         lost = choose(n_a <= 1.0 - n_r, n_a * n_r, (1.0 - n_a) * (1.0 - n_r))
-        return (ratio - lost / overlap) / self.cosine
+        with np.errstate(invalid="ignore"):  # of spur gears among others, of no overlap
+            return (ratio - lost / overlap) / self.cosine
 
 
 def factor_table(pair: GearPair, load: str = "highest single") -> FactorTable:
     """Return the table of pairs of arrays of one shape, of any face width.
 
-    load: where it acts on spur teeth, as of `bending.loaded_tooth`. One helix angle for all.
+    load: where it acts on spur teeth, as of `bending.loaded_tooth`. One helix angle for all, or an
+    array.
     """
-    helix = float(np.abs(pair.pinion.helix_angle))
+    sine = np.abs(np.sin(pair.pinion.helix_angle))
+    helical = bool(np.any(sine))
     shape = np.shape(pair.pinion.teeth * pair.normal_module)
-    axial = np.full(shape, np.inf)
-    if helix:
-        axial = np.broadcast_to(np.pi * pair.normal_module / np.sin(helix), shape)
+    with np.errstate(divide="ignore"):
+        axial = np.broadcast_to(np.pi * pair.normal_module / sine, shape)
     unit = np.where(np.isfinite(axial), axial, pair.normal_module)
     narrow = pair.of_width(LOW_OVERLAP * unit)
     low = _bare(narrow, load)
-    high = _bare(pair.of_width(HIGH_OVERLAP * unit), load) if helix else low
+    high = _bare(pair.of_width(HIGH_OVERLAP * unit), load) if helical else low
     mesh = mesh_of(narrow)
     return FactorTable(
         low[0],
-        (1.0 - mesh.overlap_factor) / LOW_OVERLAP if helix else np.zeros(shape),
+        (1.0 - mesh.overlap_factor) / LOW_OVERLAP if helical else np.zeros(shape),
         high[0],
         np.broadcast_to(mesh.path.transverse_ratio, shape),
         axial,
-        float(np.cos(base_helix_angle(pair.pinion))),
+        np.cos(base_helix_angle(pair.pinion)),
         (low[1], high[1]),
     )
 

@@ -60,12 +60,12 @@ class ToothTable:
 def tooth_table(pair: GearPair, shift: str = "nominal") -> ToothTable:
     """Return the table of pairs of arrays of one shape, of any face width.
 
-    shift: of `tooth_form.SHIFTS`. One helix angle for all.
+    shift: of `tooth_form.SHIFTS`. One helix angle for all, or an array.
     """
     shape = np.shape(pair.pinion.teeth * pair.normal_module)
-    sine = float(np.abs(np.sin(pair.pinion.helix_angle)))
-    axial = np.pi * pair.normal_module / sine if sine else np.full(shape, np.inf)
-    wide = pair.of_width(WIDEST_OVERLAP * axial if sine else pair.normal_module)
+    sine = np.abs(np.sin(pair.pinion.helix_angle))
+    axial = np.pi * pair.normal_module / sine
+    wide = pair.of_width(np.where(np.isfinite(axial), WIDEST_OVERLAP * axial, pair.normal_module))
     ratio = contact_path(wide).transverse_ratio
     ratio = np.where(np.asarray(refusal(wide, shift)) == 0, ratio, np.nan)
     made = contact.single_contact_ratios(wide, ratio)

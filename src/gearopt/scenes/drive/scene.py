@@ -437,7 +437,7 @@ class Scene(Table):
             wheel_teeth=own.wheel_teeth or limits.wheel_teeth or (1, None),
             ratio=own.stage_ratio or limits.stage_ratio or (Fraction(1), None),
             wheel_diameter=diameter.exact[0] if diameter else None,
-            toothing=self.toothing(own),
+            toothings=(self.toothing(own),),
             blanks=self._blanks(own),
         )
 

@@ -35,6 +35,7 @@ VARIABLES = {
     "face_width": "mm",
     "width_steps": "",
     "option": "",
+    "toothing": "",
 }
 NO_TRAIN = (
     "Proof: every choice of teeth and modules was compared or excluded; none meets all limits."
@@ -59,7 +60,7 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
     Trains are distinct when a tooth number differs; each has its best modules and face widths.
     Variables, one component per stage: module [mm], pinion_teeth, wheel_teeth, and face_width [mm]
     or width_steps where the width is not tied to d1; option, from 1, where a stage has several; one
-    for all stages where they take the same.
+    for all stages where they take the same; toothing, from 1, where a stage has several.
     Numbers are constants of the text; those with a key in `train.keys` are parameters of the
     relaxed problem. Of a drive with several objectives `exact` proves the whole front (`front`).
     """
@@ -126,19 +127,29 @@ def _is_plain(value: Any) -> bool:
 
 def _pairs(train: Train, x: Any) -> tuple[GearPair, ...]:
     columns = zip(each(x.module), each(x.pinion_teeth), each(x.wheel_teeth), strict=True)
+    rows = _toothings(train, x)
     return tuple(
-        train.pair(k, m, z1, z2, _width(train, k, x, m, z1))
+        train.pair(k, m, z1, z2, _width(train, k, x, m, z1, rows[k]), rows[k])
         for k, (m, z1, z2) in enumerate(columns)
     )
 
 
-def _width(train: Train, k: int, x: Any, module: Any, z1: Any) -> Any:
+def _toothings(train: Train, x: Any) -> list[Any]:
+    """Which of its toothings every stage has, from 0."""
+    if not train.several_toothings:
+        return [0] * len(train.stages)
+    return [np.rint(toothing).astype(int) - 1 for toothing in each(x.toothing)]
+
+
+def _width(train: Train, k: int, x: Any, module: Any, z1: Any, toothing: Any) -> Any:
     stage = train.stages[k]
     face = stage.face_width
     if face.step is not None:
         return each(x.width_steps)[k] * float(face.step)
     if face.tied:
-        return float(face.low) * reference_diameter(module, z1, stage.toothing.helix_angle)
+        return float(face.low) * reference_diameter(
+            module, z1, stage.toothing_of(toothing).helix_angle
+        )
     return each(x.face_width)[k]
 
 
@@ -158,6 +169,7 @@ def _variables(train: Train) -> tuple[Var, ...]:
         ranges["face_width"].append(_widths(stage) if free else (given, given))
         ranges["width_steps"].append((1.0, UNLIMITED if face.step else 1.0))
         ranges["option"].append((1.0, float(max(1, len(stage.options)))))
+        ranges["toothing"].append((1.0, float(len(stage.toothings))))
     if all(s.face_width.tied or s.face_width.step for s in stages):
         del ranges["face_width"]
     if not any(s.face_width.step for s in stages):
@@ -166,6 +178,8 @@ def _variables(train: Train) -> tuple[Var, ...]:
         del ranges["option"]
     elif train.same_option:
         ranges["option"] = ranges["option"][:1]
+    if not train.several_toothings:
+        del ranges["toothing"]
     kinds: dict[str, dict[str, Any]] = {"module": {"values": series}, "face_width": {}}
     return tuple(
         Var(
@@ -184,8 +198,9 @@ def _variables(train: Train) -> tuple[Var, ...]:
 def _widths(stage: Stage) -> tuple[float, float]:
     """Return a range of every free face width [mm], by the diameters of its teeth and modules."""
     ends = zip((stage.modules[0], stage.modules[-1]), _ends(stage.pinion_teeth), strict=True)
-    angle = stage.toothing.helix_angle
-    minimum, maximum = (reference_diameter(float(m), z, angle) for m, z in ends)
+    angles = sorted((t.helix_angle for t in stage.toothings), key=abs)
+    rows = zip(ends, (angles[0], angles[-1]), strict=True)
+    minimum, maximum = (reference_diameter(float(m), z, angle) for (m, z), angle in rows)
     face = stage.face_width
     low = float(face.low) or 1e-6 * face.widest  # thinner than paper
     return 0.999 * low * minimum, 1.001 * max(face.widest * maximum, float(face.least))
@@ -357,5 +372,6 @@ def point(train: Train, pairs: Iterable[GearPair], options: Iterable[int] | None
         steps = round(pair.face_width / float(face.step)) if face.step else 1
         columns["width_steps"].append(steps)
         columns["option"].append(option + 1)
+        columns["toothing"].append(stage.toothing_row(pair) + 1)
     made = [(columns[v.name], v.size) for v in _variables(train)]
     return np.array([float(value) for values, size in made for value in values[:size]])

@@ -2,8 +2,11 @@
 
 import math
 
+import numpy as np
+
 from gearopt.formulations.drive.shares import objective_share
-from gearopt.formulations.drive.teeth.progress import Teeth
+from gearopt.formulations.drive.teeth.progress import TIE, Teeth
+from gearopt.formulations.drive.teeth.stage import Table
 from gearopt.formulations.drive.teeth.tables import table
 from gearopt.formulations.drive.train import Train
 from gearopt.physics.gears import GearPair
@@ -33,8 +36,9 @@ def _choices(train: Train, teeth: Teeth) -> tuple[float, tuple[GearPair, ...], t
     torque, value, found, chosen = train.torque, 0.0, [], []
     for k, (z1, z2) in enumerate(teeth):
         only = table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio)
-        module, width, option = only.choose(torque, 0)
-        found.append(train.pair(k, module, z1, z2, width))
+        row = _best_row(only, torque)
+        module, width, option = only.choose(torque, row)
+        found.append(train.pair(k, module, z1, z2, width, only.toothing[row]))
         chosen.append(option)
         value += (
             float(objective_share(train, k, found[-1], option=option))
@@ -43,3 +47,12 @@ def _choices(train: Train, teeth: Teeth) -> tuple[float, tuple[GearPair, ...], t
         )
         torque *= z2 / z1
     return value, tuple(found), tuple(chosen)
+
+
+def _best_row(teeth: Table, torque: float) -> int:
+    """Return the row of a table of given teeth of the least cost: the first of equal ones."""
+    rows = np.arange(len(teeth.ratio))
+    if len(rows) == 1:
+        return 0
+    costs = teeth.cost(np.full(len(rows), torque), rows)
+    return int(np.flatnonzero(costs <= costs.min() * (1.0 + TIE))[0])

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
@@ -13,11 +14,25 @@ from gearopt.formulations.drive.shares import least_share
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
+from gearopt.physics.geometry.profile_shift import SUMS, Meshing
 
 Index = NDArray[np.int64]
 Columns = tuple[Any, ...]
 
 PAIRS = 3_000_000  # tooth pairs of one stage: about 1 GB of tables
+NEAR = 1e-9  # of a sum of profile shifts beside its ends, which is looked at
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """Tooth pairs (n,), which toothing cuts each, and columns of `Table` of the same names."""
+
+    z1: Index
+    z2: Index
+    toothing: Index
+    first: Index
+    last: Index
+    steps: tuple[Array, Array] | None
 
 
 def columns(train: Train, position: int, cut: Fraction, tick: Callable[[], None]) -> Columns:
@@ -27,30 +42,27 @@ def columns(train: Train, position: int, cut: Fraction, tick: Callable[[], None]
     """
     tick()
     stage = train.stages[position]
-    cosine = stage.toothing.cosine
-    z1, z2 = _pairs(train, position, cut)
-    tick()
-    ends = None
-    if stage.toothing.shifting is not None:
-        z1, z2, ends = _meshing(stage, z1, z2)
+    pairs = _pairs(train, position, cut)
+    blocks = []
+    for toothings in _helices(stage):
         tick()
-    ratio = z2 / z1
-    load, need, exponent, slope = closed(train, position, z1, ratio)
+        blocks.append(_block(stage, *pairs, toothings))
+    rows = blocks[0] if len(blocks) == 1 else _joined(blocks)
+    ratio = rows.z2 / rows.z1
+    load, need, exponent, slope = closed(train, position, rows.z1, ratio)
     tick()
-    first, last = _allowed(stage, z1, z2, cosine)
-    if ends is not None:
-        first, last = np.maximum(first, ends[0]), np.minimum(last, ends[1])
     return (
         train,
         position,
-        z1,
-        z2,
+        rows.z1,
+        rows.z2,
+        rows.toothing,
         ratio,
         np.log(ratio),
         np.array([float(m) for m in stage.modules]),
-        first,
-        last,
-        _steps(stage, z1, cosine),
+        rows.first,
+        rows.last,
+        rows.steps,
         load,
         need,
         exponent,
@@ -81,13 +93,51 @@ def closed(
     return load, (load / widest) ** (1.0 / 3.0), 1.0 / 3.0, slope
 
 
+def _helices(stage: Stage) -> list[list[int]]:
+    """Return the toothings of a stage by helix angle."""
+    found: dict[float, list[int]] = {}
+    for k, toothing in enumerate(stage.toothings):
+        found.setdefault(toothing.helix_angle, []).append(k)
+    return list(found.values())
+
+
+def _block(stage: Stage, z1: Index, z2: Index, toothings: list[int]) -> _Rows:
+    """Return tooth pairs as they are cut by some toothings of one helix angle."""
+    cosine = stage.toothings[toothings[0]].cosine
+    toothing, ends = np.full(len(z1), toothings[0]), None
+    if stage.toothing.shifting is not None:
+        z1, z2, toothing, ends = _meshing(stage, z1, z2, np.array(toothings))
+    first, last = _allowed(stage, z1, z2, cosine)
+    if ends is not None:
+        first, last = np.maximum(first, ends[0]), np.minimum(last, ends[1])
+    return _Rows(z1, z2, toothing, first, last, _steps(stage, z1, cosine))
+
+
+def _joined(blocks: list[_Rows]) -> _Rows:
+    """Return the rows of all blocks by ratio, then by teeth, then by toothing."""
+
+    def column(name: str) -> Any:
+        return np.concatenate([getattr(block, name) for block in blocks])
+
+    z1, z2, toothing = column("z1"), column("z2"), column("toothing")
+    order = np.lexsort((toothing, z1, z2 / z1))
+    steps = None
+    if blocks[0].steps is not None:
+        ends = zip(*(block.steps for block in blocks if block.steps is not None), strict=True)
+        low, high = (np.concatenate(end, axis=1)[:, order] for end in ends)
+        steps = low, high
+    first, last = column("first")[order], column("last")[order]
+    return _Rows(z1[order], z2[order], toothing[order], first, last, steps)
+
+
 def _pairs(train: Train, position: int, cut: Fraction) -> tuple[Index, Index]:
     """Return all (z1, z2) of a stage with ratios up to cut, by ratio, then by teeth.
 
     SolveError where there are too many for the memory.
     """
     ranges = spans(train, position, cut)
-    count = sum(stop - start + 1 for _, start, stop in ranges)
+    helices = len(_helices(train.stages[position]))
+    count = sum(stop - start + 1 for _, start, stop in ranges) * helices
     if count > PAIRS:
         raise SolveError(
             f"a stage has {count:,} tooth pairs to choose from: narrow its pinion teeth, or limit "
@@ -114,7 +164,8 @@ def spans(train: Train, position: int, cut: Fraction) -> list[tuple[int, int, in
     high = cut if stage.ratio[1] is None else min(cut, stage.ratio[1])
     most_wheel = stage.wheel_teeth[1]
     if stage.wheel_diameter is not None:
-        most = math.floor(stage.wheel_diameter * Fraction(stage.toothing.cosine) / stage.modules[0])
+        widest = max(toothing.cosine for toothing in stage.toothings)
+        most = math.floor(stage.wheel_diameter * Fraction(widest) / stage.modules[0])
         most_wheel = most if most_wheel is None else min(most_wheel, most)
     least_z1, most_z1 = stage.pinion_teeth
     assert most_z1 is not None
@@ -143,29 +194,56 @@ def _allowed(stage: Stage, z1: Index, z2: Index, cosine: float) -> tuple[Index, 
     return first[place], np.minimum(last, end[place])
 
 
-def _shiftable(stage: Stage, z1: Index, z2: Index) -> NDArray[np.bool_]:
-    """Return whether shifts that a centre distance asks for are allowed: (modules, n)."""
+@np.errstate(invalid="ignore")
+def _near(stage: Stage, teeth: Index, toothings: Index) -> NDArray[np.bool_]:
+    """Whether sums z1 + z2 fit distances, by the sum of shifts: (modules, sums, toothings)."""
+    modules = np.array([float(module) for module in stage.modules])[:, None, None]
+    own = stage.toothing_of(toothings)
+    pinions, wheels = np.ones((len(teeth), 1)), teeth[:, None] - 1.0  # of which the sum counts
+    shifts = Meshing(
+        modules, (pinions, wheels), own.helix_angle, own.racks, own.working_distance
+    ).shift_sum
+    return np.asarray((shifts >= SUMS[0] - NEAR) & (shifts <= SUMS[1] + NEAR))
+
+
+def _shiftable(
+    stage: Stage, z1: Index, z2: Index, toothing: Index, near: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Return whether shifts that a centre distance asks for are allowed: (modules, n).
+
+    near: those that are looked at; others are not.
+    """
     shifting = stage.toothing.shifting
     assert shifting is not None
-    pairs = (stage.toothing.pair(float(module), z1, z2, 1.0) for module in stage.modules)
-    used = (shifting.used(pair).values() for pair in pairs)
-    return np.array([np.logical_and.reduce([u <= 1.0 for u in each]) for each in used])
+    module, row = np.nonzero(near)
+    sizes = np.array([float(m) for m in stage.modules])[module]
+    pair = stage.toothing_of(toothing[row]).pair(sizes, z1[row], z2[row], 1.0)
+    allowed = np.zeros_like(near)
+    used = shifting.used(pair).values()
+    allowed[module, row] = np.logical_and.reduce([u <= 1.0 for u in used])
+    return allowed
 
 
-def _meshing(stage: Stage, z1: Index, z2: Index) -> tuple[Index, Index, tuple[Index, Index]]:
-    """Return the pairs that a centre distance allows, and their first and last module index.
+def _meshing(
+    stage: Stage, z1: Index, z2: Index, toothings: Index
+) -> tuple[Index, Index, Index, tuple[Index, Index]]:
+    """Return the pairs that centre distances allow, their toothing, first and last module index.
 
-    SolveError where one between them is not allowed: a sum of shifts from -1 to 2 leaves room for
-    few.
+    toothings: which of the stage's. SolveError where a module between them is not allowed: a sum
+    of shifts from -1 to 2 leaves room for few.
     """
-    allowed = _shiftable(stage, z1, z2)
+    sums, place = np.unique(z1 + z2, return_inverse=True)
+    near = _near(stage, sums, toothings)
+    pair, distance = np.nonzero(np.asarray(near.any(axis=0))[place])
+    z1, z2, toothing = z1[pair], z2[pair], toothings[distance]
+    allowed = _shiftable(stage, z1, z2, toothing, near[:, place[pair], distance])
     keep = allowed.any(axis=0)
-    allowed = allowed[:, keep]
+    allowed, toothing = allowed[:, keep], toothing[keep]
     first = allowed.argmax(axis=0).astype(np.int64)
     last = len(allowed) - 1 - allowed[::-1].argmax(axis=0).astype(np.int64)
     if np.any(allowed.sum(axis=0) != last - first + 1):
         raise SolveError("modules so close to each other leave gaps at a given centre distance")
-    return z1[keep], z2[keep], (first, last)
+    return z1[keep], z2[keep], toothing, (first, last)
 
 
 def _modules(stage: Stage, span: tuple[Fraction, Fraction | None]) -> tuple[int, int]:

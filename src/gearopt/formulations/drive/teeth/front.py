@@ -116,10 +116,15 @@ class Search:
         found = []
         for k in range(len(self.values)):
             modules, widths = self.made.module[k].tolist(), self.made.width[k].tolist()
-            rows = zip(teeth_of(self, self.made, k), modules, widths, strict=True)
+            teeth, cuts = (
+                teeth_of(self, self.made, k),
+                zip(self.tables, self.made.pair[k], strict=True),
+            )
+            toothings = [table.toothing[row] for table, row in cuts]
+            rows = zip(teeth, modules, widths, toothings, strict=True)
             pairs = tuple(
-                self.train.pair(stage, module, z1, z2, width)
-                for stage, ((z1, z2), module, width) in enumerate(rows)
+                self.train.pair(stage, module, z1, z2, width, toothing)
+                for stage, ((z1, z2), module, width, toothing) in enumerate(rows)
             )
             found.append((pairs, tuple(map(int, self.made.option[k]))))
         return found
@@ -194,8 +199,8 @@ def _add_teeth(run: Search, teeth: Teeth) -> None:
         pair = np.flatnonzero((table.z1 == z1) & (table.z2 == z2))
         if not len(pair):
             return
-        place = np.full(len(nodes), pair[0])
-        nodes = _children(run, nodes, (np.arange(len(nodes)), place))
+        node, row = np.indices((len(nodes), len(pair))).reshape(2, -1)
+        nodes = _children(run, nodes, (node, pair[row]))
         nodes = nodes.take(unbeaten(nodes.cost, equal=True))
     _keep(run, nodes)
 

@@ -32,7 +32,6 @@ AT_ONCE = 4000  # rows of several modules that are tried at once
 BATCH = 20_000  # pairs bounded at once
 MAX_KEPT = 20_000_000  # first modules of cells and pairs that are kept, 40 MB
 CELL_TOLERANCE = 0.02  # of what is used above 1, for that, over the width of a cell
-TEETH = 10**8  # more than a wheel has: pairs are told apart by z1 TEETH + z2
 VIRTUAL = -1  # the option that is best in everything
 WHEEL = 9.0  # volume of a wheel over that of its pinion, more or less
 FINEST = 0.005  # width of a cell where none is given
@@ -66,10 +65,12 @@ class RatedTable(Table):
 
     @cached_property
     def _prepared(self) -> list[list[Any]]:
-        """Data that standards take of the pairs, by option and standard; (modules n,) by module."""
-        modules = self.modules if self._by_module else np.ones(1)
-        z1, z2 = (np.tile(z, len(modules)) for z in (self.z1, self.z2))
-        pair = self.train.pair(self.position, np.repeat(modules, len(self.z1)), z1, z2, 1.0)
+        """Data that standards take, by option and standard: of pairs, by module those allowed."""
+        pair = (
+            self.made(self.modules[self._shapes[0]], self._shapes[1])
+            if self._by_module
+            else self.made(np.ones(len(self.z1)), slice(None))
+        )
         found: list[list[Any]] = []
         known: list[tuple[Standard, Any]] = []
         for option in self.stage.options:
@@ -88,13 +89,36 @@ class RatedTable(Table):
         place = self._place(other)
         if place is None:
             return
+        count = len(self.ratio)
         if self._by_module:
-            rows = np.arange(len(self.modules))[:, None] * len(self.ratio)
-            place = (rows + place).ravel()
+            module, row = other._shapes
+            place, count = self._shape(module, place[row]), len(self._shapes[0])
         for option, made in zip(self.stage.options, self._prepared, strict=True):
             for one, own in zip(option.standards, made, strict=True):
                 if one.like(standard):
-                    yield own if len(other.ratio) == len(self.ratio) else own.take(place)
+                    yield own if len(place) == count else own.take(place)
+
+    @cached_property
+    def _counts(self) -> Index:
+        """Number of modules that every pair may have, at least one."""
+        return np.asarray(np.maximum(self.last - self.first + 1, 1))
+
+    @cached_property
+    def _shapes(self) -> tuple[Index, Index]:
+        """Modules (indices) and pairs whose teeth are prepared where each module has its own."""
+        pair = np.repeat(np.arange(len(self.z1)), self._counts)
+        module = self.first[pair] + np.arange(len(pair)) - self._begins[pair]
+        return np.minimum(module, len(self.modules) - 1), pair
+
+    @cached_property
+    def _begins(self) -> Index:
+        """Places of the first modules of pairs in `_shapes`."""
+        return np.asarray(np.cumsum(self._counts) - self._counts)
+
+    def _shape(self, module: Index, pair: Index) -> Index:
+        """Return the places of allowed modules of pairs in `_shapes`; of others, any."""
+        number = np.clip(module - self.first[pair], 0, self._counts[pair] - 1)
+        return np.asarray(self._begins[pair] + number)
 
     def covers(self, other: Table) -> bool:
         """Return whether this table has all pairs of another one, of the same toothing."""
@@ -103,13 +127,18 @@ class RatedTable(Table):
     def _place(self, other: Table) -> Index | None:
         """Return where the pairs of another table are in this one; None where one is not."""
         alike = not self._by_module or np.array_equal(self.modules, other.modules)
-        alike = alike and self.stage.toothing == other.stage.toothing
+        alike = alike and self.stage.toothings == other.stage.toothings
         if not alike or len(other.ratio) > len(self.ratio):
             return None
-        own, asked = (t.z1 * TEETH + t.z2 for t in (self, other))
+        ways = len(self.stage.toothings)
+        own, asked = (t.names * ways + t.toothing for t in (self, other))
         order = np.argsort(own, kind="stable")
         place: Index = order[np.searchsorted(own, asked, sorter=order) % max(1, len(own))]
-        return place if np.array_equal(own[place], asked) else None
+        there = np.array_equal(own[place], asked)
+        if there and self._by_module:
+            low, high = self.first[place] <= other.first, other.last <= self.last[place]
+            there = bool(np.all(low & high))
+        return place if there else None
 
     @property
     def _by_module(self) -> bool:
@@ -436,7 +465,7 @@ class RatedTable(Table):
         module: Index,
         option: int,
     ) -> list[Rows]:
-        place = module * len(self.ratio) + pair if self._by_module else pair
+        place = self._shape(module, pair) if self._by_module else pair
         speed = self.train.speed_at(torque[0]), self.train.speed_at(torque[1])
         scale = np.ones(len(pair)) if self._by_module else self.modules[module]
         virtual = option == VIRTUAL

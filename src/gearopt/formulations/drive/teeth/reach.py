@@ -93,7 +93,8 @@ def narrowed(train: Train) -> Train:
         low, _ = stage.pinion_teeth
         ranges = spans(train, k, first_cut(train))
         pairs = np.cumsum([stop - start + 1 for _, start, stop in ranges])
-        few = int(np.searchsorted(pairs, PAIRS_AT_ONCE, side="right"))
+        helices = len({toothing.helix_angle for toothing in stage.toothings})
+        few = int(np.searchsorted(helices * pairs, PAIRS_AT_ONCE, side="right"))
         stages.append(replace(stage, pinion_teeth=(low, low + max(few - 1, 0))))
     return replace(train, stages=tuple(stages))
 
@@ -120,9 +121,11 @@ def _least(train: Train, k: int, teeth: NDArray[np.int64]) -> Array:
     """Return the minimum share (n,) of a stage (counted from 0) with pinions of so many teeth."""
     stage = train.stages[k]
     module, face = float(stage.modules[0]), stage.face_width
-    d = reference_diameter(module, teeth, stage.toothing.helix_angle)
-    width = float(face.low) * d if face.fixed is None else np.full(len(d), float(face.fixed))
-    pair = train.pair(k, module, teeth, teeth * float(stage.ratio[0]), width)
-    options = range(max(1, len(stage.options)))
-    shares = [least_share(train, k, pair, option=o) for o in options]
+    shares = []
+    for own in stage.toothings:
+        d = reference_diameter(module, teeth, own.helix_angle)
+        width = float(face.low) * d if face.fixed is None else np.full(len(d), float(face.fixed))
+        pair = own.pair(module, teeth, teeth * float(stage.ratio[0]), width)
+        options = range(max(1, len(stage.options)))
+        shares += [least_share(train, k, pair, option=o) for o in options]
     return np.asarray(np.minimum.reduce(shares))

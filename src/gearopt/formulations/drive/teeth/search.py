@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -283,8 +284,9 @@ def _expand(
     most = np.where(np.isfinite(ahead), progress.threshold - chunk.cost[node], -np.inf)
     most -= np.where(np.isfinite(ahead), ahead, 0.0)
     own = _costs(train, stage, chunk, (node, pair), most, progress)
-    if progress.wanted == 1:
-        keep = _best_of_ratio(node, stage.ratio[pair], own)
+    if progress.wanted == 1 or len(stage.stage.toothings) > 1:
+        alike = stage.ratio if progress.wanted == 1 else stage.names
+        keep = _best_of_ratio(node, alike[pair], own)
         node, pair, own = node[keep], pair[keep], own[keep]
         log_ratio, ahead = log_ratio[keep], ahead[keep]
     cost = chunk.cost[node] + own
@@ -341,10 +343,11 @@ def _costs(
     return found
 
 
-def _best_of_ratio(node: NDArray[np.int64], ratio: Array, cost: Array) -> NDArray[np.bool_]:
+def _best_of_ratio(node: NDArray[np.int64], ratio: Any, cost: Array) -> NDArray[np.bool_]:
     """Mark of a node's pairs of equal ratio the one of lowest cost, then of fewest teeth.
 
-    What follows depends on the ratio alone. Pairs come by ratio, then by teeth.
+    What follows depends on the ratio alone. Pairs come by ratio, then by teeth. ratio: or any
+    numbers (n,) that are equal where pairs are alike.
     """
     if not len(node):
         return np.empty(0, dtype=bool)
@@ -390,7 +393,7 @@ def _complete(
         if total[k] > maximum:
             break
         candidate = teeth(k)
-        if within(train, candidate):
+        if within(train, candidate) and candidate not in (t for _, t in kept):
             kept.append((float(total[k]), candidate))
             if len(kept) == progress.wanted:
                 maximum = float(total[k]) * (1.0 + TIE)

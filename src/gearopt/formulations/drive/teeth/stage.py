@@ -8,6 +8,7 @@ irrational except at 0, 60 and 90 (Niven's theorem), so no tie with a rational l
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from gearopt.formulations.strength import ALLOWANCE, HALVINGS
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
+TEETH = 10**8  # more than a wheel has: pairs are told apart by z1 TEETH + z2
 EDGE = 1e-9  # cells overlap by this much in log ratio, so that rounding never misses a neighbour
 
 
@@ -55,6 +57,8 @@ Grid = tuple[Array, NDArray[np.int16] | None]
 class Table:
     """Tooth pairs (n,) of one stage with ratios up to a cut, increasing.
 
+    toothing: which of the stage's toothings cuts them. Pairs that may be cut in several ways are as
+    many rows.
     first, last: indices of the modules that diameter and width limits allow. steps: minimum and
     maximum number of width steps, (modules, n), or None. load: of a proportional law the minimum
     width is load T/m^2 [mm]; the minimum module for torque T is need T**exponent; slope: minimum
@@ -66,6 +70,7 @@ class Table:
     position: int
     z1: Index
     z2: Index
+    toothing: Index
     ratio: Array
     log_ratio: Array
     modules: Array
@@ -82,6 +87,11 @@ class Table:
         """The stage's limits."""
         return self.train.stages[self.position]
 
+    @cached_property
+    def names(self) -> Index:
+        """Number of every row, of rows with the same teeth one: z1 TEETH + z2."""
+        return np.asarray(self.z1 * TEETH + self.z2)
+
     @property
     def step(self) -> float:
         """Step of the face width [mm]; nan where there is none."""
@@ -90,7 +100,8 @@ class Table:
 
     def made(self, module: Any, pair: Any) -> GearPair:
         """Return the gear pairs (indices) with modules [mm], of face width 1 mm."""
-        return self.train.pair(self.position, module, self.z1[pair], self.z2[pair], 1.0)
+        toothing = self.toothing[pair] if len(self.stage.toothings) > 1 else 0
+        return self.train.pair(self.position, module, self.z1[pair], self.z2[pair], 1.0, toothing)
 
     def cost(self, torque: Array, pair: Index, most: Array | float = np.inf) -> Array:
         """Return the minimum share of pairs at torques [N mm]; inf where nothing carries them.

@@ -68,7 +68,7 @@ def thinned(tables: list[Table]) -> list[Table]:
 def _few(one: Table) -> Table:
     """Return a table with THINNED of its tooth pairs, evenly spread in their order."""
     place = np.linspace(0, len(one.ratio) - 1, THINNED).astype(np.int64)
-    names = ("z1", "z2", "ratio", "log_ratio", "first", "last", "need", "slope")
+    names = ("z1", "z2", "toothing", "ratio", "log_ratio", "first", "last", "need", "slope")
     columns: dict[str, Any] = {name: getattr(one, name)[place] for name in names}
     if one.steps is not None:
         columns["steps"] = (one.steps[0][:, place], one.steps[1][:, place])
