@@ -186,8 +186,10 @@ def _column(columns, label):
 
 
 def test_safety_factors_are_never_rounded_up():
-    from gearopt.report.kinds.drive.rating_words import safety
+    from gearopt.report.kinds.drive.rating_words import beside, safety
 
+    assert beside(1.02853 - 1e-9, 1.02853, "1.02853") == "1.02853"  # met, and not 1.028 beside it
+    assert [beside(v, 339.292, "339.3") for v in (339.292, 339.28)] == ["339.3", "339.2"]
     assert [safety(v) for v in (1.1999, 1.2, 1.2 - 1e-12, 0.99999, 15.28)] == [
         *("1.199", "1.2", "1.2", "0.9999", "15.28")
     ]

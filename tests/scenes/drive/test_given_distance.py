@@ -173,8 +173,12 @@ def test_what_does_not_go_with_a_given_distance_is_refused(tmp_path, text, words
 
 @pytest.mark.slow
 def test_a_distance_at_which_nothing_carries_is_proven_impossible(tmp_path):
-    result = gearopt.solve(written(tmp_path, PAIR.replace("125 mm", "60 mm")), remedies=False)
-    assert result.status == "infeasible" and not result.message
+    file = written(tmp_path, PAIR.replace("125 mm", "60 mm"))
+    explained = gearopt.explain(file)
+    assert explained.result.status == "infeasible" and not explained.result.message
+    assert "centre_distance[1]" in explained.conflict
+    nearest = next(r for r in explained.remedies if r.what == "stage[1].centre_distance")
+    assert gearopt.solve(file, nearest.edits, remedies=False).status == "optimal"
 
 
 def test_a_distance_that_no_teeth_fit_is_named(tmp_path):

@@ -91,12 +91,12 @@ def equal_sliding(meshing: Meshing) -> Any:
         (top - r) / meshing.module - rack.addendum - lift
         for top, r, rack in zip(highest, radii, meshing.racks, strict=True)
     ]
-    low, high = -room[1], room[0] + meshing.shift_sum
+    total, ratio = meshing.shift_sum, meshing.ratio
+    low, high = -room[1], room[0] + total
     good = low < high
-    ratio = meshing.ratio
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        shifts = middle, meshing.shift_sum - middle
+        shifts = middle, total - middle
         tips = [
             r + (rack.addendum + lift - other) * meshing.module
             for r, rack, other in zip(radii, meshing.racks, shifts[::-1], strict=True)

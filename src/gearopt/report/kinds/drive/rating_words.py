@@ -138,15 +138,24 @@ def _short(rating: DriveRating) -> str:
 def _figures(rating: DriveRating) -> str:
     """Least safety factor and power capacity by every standard, and what is asked for."""
     least = [_governing(rated)[1:] for rated in rating.each]
-    values = [f"{symbol} {safety(reached)}" for symbol, reached, _ in least]
+    values = [
+        f"{symbol} {beside(reached, asked, f'{asked:g}')}" for symbol, reached, asked in least
+    ]
     asked = dict.fromkeys(f"{symbol} {asked:g}" for symbol, _, asked in least)
     wanted = f"{least[0][2]:g}" if len(asked) == 1 else " and ".join(asked)
-    capacities = [f"{safety(rated.power_capacity_kW)} kW" for rated in rating.each]
-    power = rounded(required(rating), SAFETY_DIGITS)
+    power, capacities = _powers(rating)
     return (
         f": {of_standards(rating, values)}, {wanted} required; power capacity "
-        f"{of_standards(rating, capacities)}, {power} kW required"
+        f"{of_standards(rating, capacities)}, {power} required"
     )
+
+
+def _powers(rating: DriveRating) -> tuple[str, list[str]]:
+    """The power asked for and the capacities by every standard, with their unit."""
+    asked = required(rating)
+    text = rounded(asked, SAFETY_DIGITS)
+    capacities = [beside(rated.power_capacity_kW, asked, text) for rated in rating.each]
+    return f"{text} kW", [f"{capacity} kW" for capacity in capacities]
 
 
 def _all(rating: DriveRating) -> list[tuple[str, float, float]]:
@@ -236,6 +245,19 @@ def safety(factor: float) -> str:
     return text if near else rounded(factor, SAFETY_DIGITS, way=-1)
 
 
+def beside(reached: float, asked: float, text: str) -> str:
+    """A safety factor or capacity beside the one asked for: as the text of that where it is met.
+
+    Rounded down it would seem to fall short.
+    """
+    shown, met = safety(reached), (1.0 + FEASIBLE) * reached >= asked
+    return text if met and _number(shown) < _number(text) else shown
+
+
+def _number(text: str) -> float:
+    return float(text.replace(",", ""))
+
+
 def efficiency(rating: DriveRating) -> str:
     """The efficiency of all meshes, with the error of a computed friction."""
     assert rating.efficiency_percent is not None
@@ -253,8 +275,8 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     """Least safety factors, power capacity, life and efficiency as key figures."""
     if (rating := rating_of(result)) is None:
         return []
-    capacities = [measures.words(f"{safety(rated.power_capacity_kW)} kW") for rated in rating.each]
-    asked = measures.words(f"{rounded(required(rating), SAFETY_DIGITS)} kW")
+    power, capacities = _powers(rating)
+    asked, capacities = measures.words(power), [measures.words(each) for each in capacities]
     lives = [life(rated.life_h) for rated in rating.each]
     made = [
         *(_safety_tile(rated, "bending", rating) for rated in rating.each),
@@ -274,7 +296,8 @@ def _safety_tile(rating: DriveRating, mode: str, whole: DriveRating) -> Tile:
     least = min(rating.gears, key=lambda gear: float(getattr(gear, key)))
     remark = f"{gear_words(rating, least)}; {asked:g} required"
     of = "" if whole.beside is None else f" by {rating.by}"
-    return Tile(f"minimum {MODES[mode]}, {mode}{of}", safety(getattr(least, key)), remark)
+    reached = beside(getattr(least, key), asked, f"{asked:g}")
+    return Tile(f"minimum {MODES[mode]}, {mode}{of}", reached, remark)
 
 
 def _tile(rating: DriveRating, name: str, values: Sequence[str], asked: str) -> Tile:

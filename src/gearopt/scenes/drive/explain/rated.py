@@ -11,7 +11,7 @@ from gearopt.scenes.drive.explain.influences import GRADES, eases
 from gearopt.scenes.drive.explain.moves import WIDTH, next_module
 from gearopt.scenes.drive.explain.rated_choices import choices
 from gearopt.scenes.drive.explain.rated_conflict import Conflict, conflict
-from gearopt.scenes.drive.explain.requirements import ORDER, TEETH
+from gearopt.scenes.drive.explain.requirements import DISTANCE, ORDER, TEETH
 from gearopt.scenes.drive.explain.tried import Case, any_possible
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import (
@@ -99,6 +99,9 @@ def _groups(scene: Scene, known: Conflict, far: float = FARTHEST_FACTOR) -> Iter
     """
     dropped = known.names and {name.split("[")[0] for name in known.names}
     for number in sorted(numbers(scene), key=_rank):
+        if number.path[-1] == DISTANCE:
+            yield from (Group((_move(scene, number, way, far),)) for way in (1, -1))
+            continue
         way = -1 if number.path == POWER else eases(scene, number) or _wider(number)
         name = _name(number) if way else ""
         if way and not (dropped and name in _PROVEN and name not in dropped):
@@ -152,6 +155,8 @@ def _wider(number: Number) -> int:
 
 def _rank(number: Number) -> tuple[bool, int]:
     """Sort key of numbers: ranges of teeth take longest, and likely conflicts come first."""
+    if number.path[-1] == DISTANCE:
+        return False, -1
     slow = any(str(step).endswith("_teeth") for step in number.path)
     likely, name = ORDER[0], _name(number)
     return slow, likely.index(name) if name in likely else len(likely)

@@ -13,6 +13,7 @@ from gearopt.formulations.strength.rated import Option
 from gearopt.scenes.drive.explain.requirements import (
     BENDING,
     CONTACT,
+    DISTANCE,
     Dropped,
     requirements,
     without,
@@ -95,13 +96,15 @@ def conflict(case: Case) -> Conflict:
         return Conflict()
     found, groups = _Filter(case), requirements(case.scene)
     families = [family for group in groups for family in group]
-    for family in groups[0]:
+    distances = [family for family in families if family[0].startswith(DISTANCE)]
+    for family in (*distances, *groups[0]):
         if found.possible(family):
             found.needed |= {*family}
     for group in groups[::-1]:
-        found.drop([family for family in group if not found.needed & {*family}])
+        kept = [family for family in group if family not in distances]
+        found.drop([family for family in kept if not found.needed & {*family}])
     for family in families:
-        if len(family) > 1 and not found.dropped & {*family}:
+        if len(family) > 1 and family not in distances and not found.dropped & {*family}:
             found.split(family)
     every = [name for family in families for name in family if name not in found.dropped]
     if not found.needed:

@@ -3,7 +3,8 @@
 What is dropped: safety factors, limits of sizes and ratios, hunting teeth and equal materials as if
 they were not there; modules within the widest series of [teeth]; b/d1 from WIDTHS to three; numbers
 of pinion teeth a quarter fewer and more; the ratio within 5 %; a life to a ten-thousandth;
-materials to all of the file, and grades to the best there are.
+materials to all of the file, and grades to the best there are. A given centre distance gives way to
+that of reference circles: a design without it proves it needed, none proves nothing.
 """
 
 import math
@@ -22,6 +23,7 @@ from gearopt.scenes.reading.module_series import SERIES, family
 Dropped = frozenset[str]
 
 BENDING, CONTACT = "minimum_bending_safety", "minimum_contact_safety"
+DISTANCE = "centre_distance"
 ORDER = (  # the likeliest to be in conflict first; those of the second group are dear to drop
     (
         *(CONTACT, BENDING, "face_width", "face_width_over_diameter", "face_width_high"),
@@ -32,7 +34,7 @@ ORDER = (  # the likeliest to be in conflict first; those of the second group ar
     (
         *("pinion_teeth", "pinion_teeth_high", "pinion_teeth_low", "ratio_tolerance"),
         *("stage_ratio_low", "wheel_teeth_low", "module_low", "modules", "face_width_low"),
-        *("face_width_over_module_low",),
+        *("face_width_over_module_low", DISTANCE),
     ),
 )
 WIDTHS = Fraction(1, 20), Fraction(3)  # b/d1 of free widths
@@ -102,6 +104,7 @@ def _of_stage(scene: Scene, own: StageTable, stage: Stage) -> Iterator[str]:
     yield from ["face_width_over_module_high"] * (high is not None)
     yield from ["least_face_width"] * bool(face.least)
     yield from ["wheel_diameter"] * (stage.wheel_diameter is not None)
+    yield from [DISTANCE] * (stage.toothing.shifting is not None)
 
 
 def _ends(name: str, low: Any, high: Any, least: int = 0) -> list[str]:
@@ -152,8 +155,13 @@ def _stage(scene: Scene, own: StageTable, stage: Stage, dropped: set[str]) -> St
     pinion = math.floor(low / TEETH) if few else low, math.ceil(high * TEETH) if many else high
     wheel, ratio = (_open(name, dropped, span) for name, span in _spans(stage))
     law = zip(scene.law.names, stage.allowable, strict=True)
+    toothings = stage.toothings
+    if DISTANCE in dropped:
+        free = [replace(cut, working_distance=None, shifting=None) for cut in toothings]
+        toothings = tuple(dict.fromkeys(free))
     return replace(
         stage,
+        toothings=toothings,
         allowable=tuple(limit * ALWAYS if name in dropped else limit for name, limit in law),
         face_width=_face(stage.face_width, dropped),
         modules=_modules(scene, own, stage, dropped),
