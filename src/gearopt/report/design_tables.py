@@ -49,7 +49,8 @@ def tables(result: Result, measures: Measures) -> Section | None:
     if not design:
         return None
     stages = design.pop("stages", [])
-    shown = [stage_table(stages, measures)] if stages else []
+    chosen = result.report.get("chosen", ())
+    shown = [stage_table(stages, measures, chosen=chosen)] if stages else []
     shown += tables_of("", design, measures)
     short = [table for table in shown if table.name in ("stages", "totals")]
     known = result.value is not None or result.given
@@ -60,12 +61,17 @@ def stage_table(
     stages: Sequence[Mapping[str, Any]],
     measures: Measures,
     page_only: Collection[str] = PAGE_ONLY,
+    chosen: Collection[str] = (),
 ) -> Table:
-    """The stages side by side; page_only: keys of rows that only the page shows."""
+    """The stages side by side; page_only: keys of rows that only the page shows.
+
+    chosen: keys of the teeth that were chosen from several of the file.
+    """
     heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
     rows, hidden = [], []
     for key, (_, unit) in STAGE_ROWS.items():
-        if not (_own_teeth(key, stages) if key in OF_TEETH else all(key in s for s in stages)):
+        own = _own_teeth(key, stages) if key in OF_TEETH else all(key in s for s in stages)
+        if not (own or key in chosen):
             continue
         label = stage_label(key, measures)
         if key == MODULE:
@@ -147,9 +153,12 @@ def trains(result: Result, measures: Measures) -> Section | None:
         left=6,
         wrap=6,
     )
+    has = "modules and face widths"
+    if "helix_angle_deg" in best.report.get("chosen", ()):
+        has = "modules, helix angles and face widths"
     words = (
-        "The trains differ in their teeth; each has its best modules and face widths. The list is "
-        "complete: no other train is better than the last one."
+        f"The trains differ in their teeth; each has its best {has}. The list is complete: no "
+        "other train is better than the last one."
     )
     whole = best.proof.get("method") == "exhausted" and (best.gap or 0.0) <= EXACT
     words = words if whole else "The best trains of those evaluated; others may be better."

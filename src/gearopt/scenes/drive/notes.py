@@ -12,6 +12,7 @@ from gearopt.scenes.drive.tables.drive import ORIGINS
 from gearopt.scenes.drive.tables.layout import Layout
 from gearopt.scenes.drive.tables.rating import with_shared
 from gearopt.scenes.parts import tooth_warnings
+from gearopt.scenes.reading.lists import values_of
 from gearopt.scenes.reading.module_series import unverified
 
 WEAKER = " Its contact ratio is less than the one given, its root is weaker."
@@ -36,6 +37,8 @@ def notes(scene: Scene, exact: bool) -> list[str]:
         found.append("No limit on wheel teeth, stage ratio or wheel diameter was set.")
     if exact and scene.gears.same_materials and scene.by_ratings:
         found.append("All pinions have one material, and all wheels have one.")
+    if exact:
+        found += _chosen_angles(scene)
     if exact and scene.teeth is not None:
         found += unverified(scene.teeth.modules)
     if scene.objective.density is None and not _dense(scene):
@@ -62,7 +65,26 @@ def _noted(scene: Scene, result: Result, exact: bool) -> Result:
     pairs = held.pairs(design)
     bodies = [flaw.sentence for flaw in body_flaws(held.blanks, pairs)]
     remarks = [*notes(held, exact), *bodies, *tooth_warnings(pairs, WEAKER)]
-    return replace(result, report=result.report | ({"notes": remarks} if remarks else {}))
+    report = result.report | ({"notes": remarks} if remarks else {})
+    if any(len(held.toothings(own)) > 1 for own in held.stage_tables):
+        report |= {"chosen": ["helix_angle_deg"]}
+    return replace(result, report=report)
+
+
+def _chosen_angles(scene: Scene) -> list[str]:
+    """Sentences on the stages that choose from several helix angles."""
+    found: dict[str, list[int]] = {}
+    for k, own in enumerate(scene.stage_tables, 1):
+        held = scene.gears.helix_angle if own.helix_angle is None else own.helix_angle
+        angles = sorted(values_of(held), key=lambda angle: angle.value)
+        if len(angles) > 1:
+            words = f"{len(angles)}, {angles[0]} to {angles[-1]}"
+            found.setdefault(words, []).append(k)
+    return [
+        f"The helix angle of stage{'s' * (len(k) > 1)} {' and '.join(map(str, k))} was chosen "
+        f"from {words}."
+        for words, k in found.items()
+    ]
 
 
 def _dense(scene: Scene) -> bool:
@@ -134,7 +156,7 @@ def _loads(scene: Scene, angle: str, assumed: str) -> list[str]:
 
 def _teeth(scene: Scene) -> list[str]:
     """Assumptions on the teeth: shifts, tools, backlash."""
-    each = [scene.toothing(own) for own in scene.stage_tables]
+    each = [scene.toothings(own)[0] for own in scene.stage_tables]
     shifted = any(any(cut.profile_shifts) for cut in each)
     shifts = "with the profile shifts of the file" if shifted else "without profile shift"
     rule = next((cut.shifting for cut in each if cut.shifting is not None), None)

@@ -1,5 +1,6 @@
 """A drive's file as a whole: its tables, how they fit together, and the drive they describe."""
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
@@ -45,14 +46,14 @@ from gearopt.scenes.drive.tables.layout import (
     gearbox,
 )
 from gearopt.scenes.drive.tables.rating import LoadTable, RatingTable, with_shared
-from gearopt.scenes.drive.tables.teeth import check_follows, check_mesh, check_teeth, toothing
+from gearopt.scenes.drive.tables.teeth import check_follows, check_mesh, check_teeth, toothings
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
-from gearopt.scenes.reading.lists import span
+from gearopt.scenes.reading.lists import Choice, span, values_of
 
 if TYPE_CHECKING:
-    from gearopt.formulations.drive.design import DriveDesign
+    from gearopt.formulations.drive.design import DriveDesign, StageDesign
 
 KEYS: dict[
     str, str | tuple[str, ...]
@@ -216,7 +217,7 @@ class Scene(Table):
     @property
     def rated_real(self) -> bool:
         """Return whether ratings can limit real-valued teeth: under one load, without a choice."""
-        chosen = self.load or self.material or any(map(self.shifted, self.stage))
+        chosen = self.load or self.material or any(map(self.choosing, self.stage_tables))
         return self.rating is not None and not chosen
 
     @property
@@ -278,7 +279,8 @@ class Scene(Table):
         aim = self.objective.minimise if "limits" in self.model_fields_set else ""
         asked = "together" if self.layout is not None and self.layout.together else ""
         asked = asked or ("process_two" if self.process_two is not None else "")
-        lacks = "" if self.given else self._lacks
+        self._check_choices()
+        lacks = "" if self.given else self._lacks("a given centre distance")
         check_teeth(self.stage, self.gears, lacks, aim, asked)
         shifted = [k for k, own in enumerate(self.stage) if self.shifted(own)]
         for k in shifted:
@@ -290,25 +292,45 @@ class Scene(Table):
             if k not in shifted:
                 check_mesh(self._stage(own), k, own, self.gears)
 
-    @property
-    def _lacks(self) -> str:
-        """What the file lacks for gears that are chosen at a given centre distance."""
+    def _lacks(self, what: str) -> str:
+        """What the file lacks for gears that are chosen at such distances or angles."""
         if self.teeth is None:
-            return "a table [teeth]: whole teeth are chosen at a given centre distance"
+            return f"a table [teeth]: whole teeth are chosen at {what}"
         if self.rating is None or self.limits.loaded:
-            return "limits by [rating] alone: gears are chosen by them at a given centre distance"
+            return f"limits by [rating] alone: gears are chosen by them at {what}"
         return ""
 
     def shifted(self, own: StageTable) -> bool:
         """Whether profile shifts of a stage follow from its centre distance."""
         return own.centre_distance is not None and not self.given
 
-    def toothing(self, own: StageTable) -> Toothing:
-        """Teeth of a stage."""
-        teeth = toothing(own, self.gears)
+    def toothings(self, own: StageTable) -> tuple[Toothing, ...]:
+        """Ways in which the teeth of a stage may be cut."""
+        made = toothings(own, self.gears)
         if not self.shifted(own):
-            return teeth
-        return replace(teeth, shifting=(self.shift or ShiftTable()).shifting)
+            return made
+        shifting = (self.shift or ShiftTable()).shifting
+        return tuple(replace(teeth, shifting=shifting) for teeth in made)
+
+    def choosing(self, own: StageTable) -> bool:
+        """Whether the teeth of a stage may be cut in several ways, or shifts are chosen."""
+        return self.shifted(own) or len(self.toothings(own)) > 1
+
+    def _check_choices(self) -> None:
+        """Refuse several helix angles where no search of whole teeth chooses between them."""
+        held: list[tuple[tuple[str | int, ...], Choice | None]]
+        held = [(("stage", k), own.helix_angle) for k, own in enumerate(self.stage)]
+        for place, value in ((("gears",), self.gears.helix_angle), *held):
+            angles = () if value is None else values_of(value)
+            if len(angles) < 2:
+                continue
+            lacks = "gears that are to be chosen: these are all given" if self.given else ""
+            lacks = lacks or self._lacks("one of several helix angles")
+            if self.layout is not None and self.layout.together:
+                lacks = "together = false in [layout]"
+            if lacks:
+                rule = f"has several angles to choose from, which need {lacks}"
+                raise refuse(rule, str(angles[0]), (*place, "helix_angle"), "sample")
 
     def _check_layout(self) -> None:
         """Check the tables of a layout against the drive and each other."""
@@ -408,11 +430,19 @@ class Scene(Table):
         """Gear pairs of a design, with shifts, tools and centre distances of the file."""
         tables = self.held(len(design.stages)).stage_tables
         return tuple(
-            self.toothing(own).pair(
+            self._chosen(own, s).pair(
                 s.normal_module_mm, s.pinion_teeth, s.wheel_teeth, s.face_width_mm
             )
             for own, s in zip(tables, design.stages, strict=True)
         )
+
+    def _chosen(self, own: StageTable, stage: "StageDesign") -> Toothing:
+        """The toothing of a stage of a design."""
+
+        def away(teeth: Toothing) -> float:
+            return abs(math.degrees(teeth.helix_angle) - stage.helix_angle_deg)
+
+        return min(self.toothings(own), key=away)
 
     @property
     def blanks(self) -> tuple[tuple[Blank, Blank], ...]:
@@ -437,7 +467,7 @@ class Scene(Table):
             wheel_teeth=own.wheel_teeth or limits.wheel_teeth or (1, None),
             ratio=own.stage_ratio or limits.stage_ratio or (Fraction(1), None),
             wheel_diameter=diameter.exact[0] if diameter else None,
-            toothings=(self.toothing(own),),
+            toothings=self.toothings(own),
             blanks=self._blanks(own),
         )
 

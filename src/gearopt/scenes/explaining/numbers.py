@@ -12,6 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from gearopt.optimise.explaining.explanation import DIGITS, FEASIBILITY_MARGIN
 from gearopt.scenes.reading.fields import Reads
+from gearopt.scenes.reading.lists import Steps
 from gearopt.scenes.reading.toml import dotted, exact, toml_text
 from gearopt.units import Quantity
 
@@ -178,6 +179,8 @@ def written(value: Any, path: Path) -> Any:
         return f"{exact(value.number)} {value.unit}".rstrip()
     if isinstance(value, Fraction):
         return exact(value) if _is_decimal(value) or not _is_ratio(path) else str(value)
+    if isinstance(value, Steps):
+        return value.written
     if isinstance(value, tuple):
         ends: list[Any] = [written(v, path) for v in value]
         if len(ends) == 2 and value[0] == value[1]:

@@ -17,6 +17,7 @@ from gearopt.scenes.pair.pair_flaws import check_level, check_pair
 from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.sharing_tables import SharingTable
 from gearopt.scenes.reading.fields import Table, refuse, words
+from gearopt.scenes.reading.lists import values_of
 from gearopt.scenes.reading.toml import dotted
 
 # Where a file that asks for a size says nothing: ranges that suit most spur pairs, as the example
@@ -115,7 +116,8 @@ class Scene(Table):
         places: list[tuple[tuple[Any, ...], Any]] = [(("gears",), self.gears)]
         places += [(("stage", k), own) for k, own in enumerate(self.stage)]
         for place, table in places:
-            if table.helix_angle is not None and table.helix_angle.number != 0:
+            angles = () if table.helix_angle is None else values_of(table.helix_angle)
+            if any(angle.number for angle in angles):
                 rule = (
                     'is of helical gears: kind = "pair" is for spur gears, as its models are plane'
                 )

@@ -1,6 +1,7 @@
 """Field types of problem files that hold several values: ranges, lists, named sets."""
 
 import re
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -8,10 +9,50 @@ from pydantic_core import PydanticCustomError
 
 from gearopt.scenes.reading.fields import Reads, refuse
 from gearopt.scenes.reading.near import near
+from gearopt.scenes.reading.toml import toml_text
 from gearopt.units import Quantity
 
 _END = r"([0-9]{1,9}(?:\.[0-9]{1,9})?)"
 _RANGE = re.compile(rf"\s*{_END}\s*(?:-|\u2013|\.\.\.?|to)\s*{_END}\s*([A-Za-z%][\w/^ ]*)?")
+
+
+MAX_STEPS = 200  # values of a range with a step, at most
+KEYS_OF_RANGE = ("from", "to", "step")
+
+
+@dataclass(frozen=True)
+class Steps:
+    """A range of quantities of one unit with a step, both ends included where a step meets them."""
+
+    low: Quantity
+    high: Quantity
+    step: Quantity
+
+    @property
+    def count(self) -> int:
+        """Number of values."""
+        return int((self.high.number - self.low.number) / self.step.number) + 1
+
+    @property
+    def values(self) -> tuple[Quantity, ...]:
+        """The values, ascending."""
+        low, step = self.low.number, self.step.number
+        return tuple(replace(self.low, number=low + k * step) for k in range(self.count))
+
+    @property
+    def written(self) -> dict[str, str]:
+        """The range as a file has it."""
+        return dict(zip(KEYS_OF_RANGE, map(str, (self.low, self.high, self.step)), strict=True))
+
+
+Choice = Quantity | tuple[Quantity, ...] | Steps  # what `to_choose` reads
+
+
+def values_of(value: Choice) -> tuple[Quantity, ...]:
+    """The values that a key of `to_choose` holds."""
+    if isinstance(value, Steps):
+        return value.values
+    return value if isinstance(value, tuple) else (value,)
 
 
 def _mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
@@ -126,6 +167,49 @@ def either(names: dict[str, Any], item: Reads) -> Reads:
 
     items = {"type": "array", "items": item.schema, "minItems": 1}
     return Reads(read, next(iter(names)), {"anyOf": [{"enum": list(names)}, items]})
+
+
+def to_choose(item: Reads, sample: Steps) -> Reads:
+    """Read one quantity, or several to choose from: a list, or a range {from, to, step}.
+
+    sample: a right range. A list or range of one value is that value.
+    """
+    way = f"Write, for example, {toml_text(sample.written)}"
+
+    def stepped(value: dict[str, Any]) -> Choice:
+        if set(value) != set(KEYS_OF_RANGE):
+            raise refuse("is not a range with from, to and step", way, action="tell")
+        right, rule = _mended(item, [value[name] for name in KEYS_OF_RANGE])
+        if rule:
+            raise refuse(f"has an entry that {rule}", way, action="tell")
+        made = Steps(*(item.reader(entry, item.example) for entry in right))
+        if len({made.low.unit, made.high.unit, made.step.unit}) > 1:
+            raise refuse("has entries of different units", way, action="tell")
+        if made.low.number > made.high.number:
+            raise refuse("has its ends in the wrong order", way, action="tell")
+        if made.step.number <= 0:
+            raise refuse("has no step above zero", way, action="tell")
+        if made.count > MAX_STEPS:
+            raise refuse(f"has {made.count:,} values, above {MAX_STEPS}", way, action="tell")
+        return made if made.count > 1 else made.low
+
+    def read(value: Any, example: Any) -> Choice:
+        if isinstance(value, Steps):
+            return value
+        if isinstance(value, dict):
+            return stepped(value)
+        if not isinstance(value, list | tuple):
+            one: Quantity = item.reader(value, item.example)
+            return one
+        entries = listed.reader(list(value), listed.example)
+        found = tuple({entry.exact: entry for entry in entries}.values())
+        return found[0] if len(found) == 1 else found
+
+    listed = several(item, [item.example])
+    ends = {name: item.schema for name in KEYS_OF_RANGE}
+    table = {"type": "object", "properties": ends, "required": [*KEYS_OF_RANGE]}
+    schema = {"anyOf": [item.schema, listed.schema, table]}
+    return Reads(read, item.example, schema)
 
 
 def several(item: Reads, example: Any) -> Reads:

@@ -20,6 +20,7 @@ from gearopt.scenes.drive.tables.rating import (
     RatingTable,
 )
 from gearopt.scenes.reading.fields import Table, refuse
+from gearopt.scenes.reading.lists import values_of
 from gearopt.scenes.reading.toml import dotted
 
 Place = tuple[Any, ...]
@@ -330,7 +331,8 @@ def _check_hands(gears: Gears, stages: Sequence[StageTable]) -> None:
     """Refuse the hand of spur gears."""
     for k, stage in enumerate(stages):
         angle = gears.helix_angle if stage.helix_angle is None else stage.helix_angle
-        if stage.pinion_hand is not None and angle.number == 0:
+        spur = not any(one.number for one in values_of(angle))
+        if stage.pinion_hand is not None and spur:
             rule = "is the hand of a helix, and these are spur gears"
             raise refuse(rule, at=("stage", k, "pinion_hand"), action="remove")
 

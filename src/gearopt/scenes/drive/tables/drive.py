@@ -25,14 +25,15 @@ from gearopt.scenes.reading.fields import (
     truth,
     whole,
 )
-from gearopt.scenes.reading.lists import several, span
+from gearopt.scenes.reading.lists import Choice, Steps, several, span, to_choose
 from gearopt.scenes.reading.module_series import MODULE, SERIES, series
 from gearopt.units import Quantity
 
 LAW = K_FACTOR  # that limits a drive
 LENGTH = quantity("length", "400 mm")
 STEP = quantity("length", "1 mm")
-HELIX = quantity("angle", "25 deg", "45 deg", zero=True)
+ONE_HELIX = quantity("angle", "25 deg", "45 deg", zero=True)
+HELIX = to_choose(ONE_HELIX, Steps(*(units.parse(f"{n} deg", "angle") for n in (8, 20, 1))))
 PRESSURE = quantity("angle", "20 deg", "45 deg")
 TOOTH_COUNT = whole(21, 5, 1000)
 WHEEL_TEETH = advised(
@@ -105,9 +106,11 @@ def limited_by(law: Law) -> Callable[[type[T]], type[T]]:
 class Gears(GearKeys):
     """What all stages share, and all gears that have nothing else of their own."""
 
-    helix_angle: Annotated[Quantity, HELIX] = Field(
+    helix_angle: Annotated[Choice, HELIX] = Field(
         default_factory=lambda: units.parse("0 deg", "angle"),
-        description="Helix angle at the reference cylinder",
+        description="Helix angle at the reference cylinder; where ratings limit whole teeth also "
+        'several to choose from: a list, or a range { from = "8 deg", to = "20 deg", step = '
+        '"1 deg" }',
         json_schema_extra={"default": "0 deg"},
     )
     pressure_angle: Annotated[Quantity, PRESSURE] = Field(
@@ -158,8 +161,8 @@ class StageTable(Loaded):
     minimum_face_width: Length = Field(None, description=LEAST_IS)
     stage_ratio: Ratios = Field(None, description="Range of the stage's ratio")
     wheel_diameter: Length = Field(None, description=WHEEL_IS)
-    helix_angle: Annotated[Quantity | None, HELIX] = Field(
-        None, description="Helix angle of this stage, instead of that of [gears]"
+    helix_angle: Annotated[Choice | None, HELIX] = Field(
+        None, description="Helix angle of this stage, or several, instead of that of [gears]"
     )
     pressure_angle: Annotated[Quantity | None, PRESSURE] = Field(
         None, description="Normal pressure angle of this stage, instead of that of [gears]"

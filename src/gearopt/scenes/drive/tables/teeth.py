@@ -1,6 +1,7 @@
 """From the tables of a stage to its teeth: helix, tools, shifts; and where shifts do not fit."""
 
 import math
+from dataclasses import replace
 from fractions import Fraction
 
 from gearopt.formulations.drive.toothing import Toothing
@@ -9,6 +10,7 @@ from gearopt.physics.gears import ISO_53_A, MEMBERS, Rack
 from gearopt.scenes.drive.tables.drive import Gears, StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, with_shared
 from gearopt.scenes.reading.fields import refuse
+from gearopt.scenes.reading.lists import values_of
 
 USUAL = {"profile_shift": 0, "tip_alteration": 0, "addendum": 1, "tool_addendum": 1.25}
 SAME = 1e-9  # m_n
@@ -16,21 +18,25 @@ ROOT: tuple[str, ...] = ("profile_shift", "tool_addendum")  # what sets a root c
 TIP: tuple[str, ...] = ("profile_shift", "tip_alteration", "addendum")
 
 
-def toothing(own: StageTable, gears: Gears) -> Toothing:
-    """Return the teeth of a stage."""
-    helix, pressure = (
-        (getattr(own, name) or getattr(gears, name)).value
-        for name in ("helix_angle", "pressure_angle")
-    )
+def toothings(own: StageTable, gears: Gears) -> tuple[Toothing, ...]:
+    """Return the ways in which the teeth of a stage may be cut: one for every helix angle."""
+    helices = values_of(gears.helix_angle if own.helix_angle is None else own.helix_angle)
+    pressure = (own.pressure_angle or gears.pressure_angle).value
     pinion, wheel = with_shared(own.pinion, gears), with_shared(own.wheel, gears)
-    return Toothing(
-        helix,
+    first = Toothing(
+        helices[0].value,
         (_rack(pinion, pressure), _rack(wheel, pressure)),
         (_or(pinion.profile_shift, 0.0), _or(wheel.profile_shift, 0.0)),
         (_or(pinion.tip_alteration, 0.0), _or(wheel.tip_alteration, 0.0)),
         (_allowance(pinion), _allowance(wheel)),
         own.centre_distance.value if own.centre_distance else None,
     )
+    return tuple(replace(first, helix_angle=helix.value) for helix in helices)
+
+
+def toothing(own: StageTable, gears: Gears) -> Toothing:
+    """Return the teeth of a stage that has no choice; of others the first."""
+    return toothings(own, gears)[0]
 
 
 def _rack(gear: GearTable, pressure_angle: float) -> Rack:
@@ -65,7 +71,9 @@ def check_teeth(
         if own.centre_distance is not None and lacks:
             rule = f"needs gears that are all given, or {lacks}"
             raise refuse(rule, at=("stage", k, "centre_distance"), action="remove")
-        if toothing(own, gears).on_reference or not (objective in LENGTHS or asked):
+        if all(t.on_reference for t in toothings(own, gears)) or not (
+            objective in LENGTHS or asked
+        ):
             continue
         what = f"minimise = {objective}" if objective in LENGTHS else asked
         rule = f"moves the centre distance, which {what} takes from the reference circles"
@@ -92,7 +100,13 @@ def check_mesh(stage: Stage, k: int, own: StageTable, gears: Gears) -> None:
     tables.
     """
     _check_tips(stage, k, own, gears)
-    made, fewest = stage.toothing, stage.pinion_teeth[0]
+    for made in stage.toothings:
+        _check_fewest(stage, made, k, own, gears)
+
+
+def _check_fewest(stage: Stage, made: Toothing, k: int, own: StageTable, gears: Gears) -> None:
+    """Refuse a toothing of a stage (from 0) whose fewest teeth are none, or do not mesh."""
+    fewest = stage.pinion_teeth[0]
     teeth = fewest, max(stage.wheel_teeth[0], math.ceil(stage.ratio[0] * fewest))
     pair = made.pair(float(min(stage.modules, default=1)), *teeth, 1.0)
     for member, gear in zip(MEMBERS, pair.gears, strict=True):

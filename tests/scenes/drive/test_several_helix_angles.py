@@ -1,0 +1,85 @@
+"""Stages that choose their helix angle from several: against each alone, and refusals."""
+
+import pytest
+
+import gearopt
+from gearopt.errors import SceneError, SolveError
+from gearopt.scenes.reading.load import load
+
+PAIR = """
+gearopt = 1
+kind = "drive"
+[duty]
+power = "15 kW"
+input_speed = "1480 rpm"
+ratio = 3
+ratio_tolerance = "3 %"
+[gears]
+helix_angle = HELIX
+treatment = "carburised"
+grade = 2
+face_width_over_diameter = [0.3, 1.0]
+[[stage]]
+[limits]
+pinion_teeth = [20, 21]
+[teeth]
+[rating]
+standard = "agma"
+life = "20000 h"
+quality = 10
+overload_factor = 1.25
+mounting = "precision"
+minimum_bending_safety = 1.4
+minimum_contact_safety = 1.1
+oil_viscosity = "40 mPa s"
+"""
+LIST = '["0 deg", "8 deg", "20 deg"]'
+RANGE = '{ from = "0 deg", to = "20 deg", step = "10 deg" }'
+
+
+def written(tmp_path, helix, old="", new=""):
+    path = tmp_path / "pair.toml"
+    path.write_text(PAIR.replace("HELIX", helix).replace(old, new))
+    return path
+
+
+@pytest.mark.parametrize(("several", "angles"), [(LIST, (0, 8, 20)), (RANGE, (0, 10, 20))])
+def test_the_best_helix_angle_is_that_of_each_alone(tmp_path, several, angles):
+    result = gearopt.solve(written(tmp_path, several))
+    alone = [gearopt.solve(written(tmp_path, f'"{angle} deg"')).value for angle in angles]
+    stage = result.design["stages"][0]
+    assert result.status == "optimal"
+    assert result.value == pytest.approx(min(alone), rel=1e-12)
+    assert stage.get("helix_angle_deg", 0.0) == angles[alone.index(min(alone))]
+    assert f"of stage 1 was chosen from 3, 0 deg to {angles[-1]} deg." in str(
+        result.report["notes"]
+    )
+    size = f'module = "{stage["normal_module_mm"]} mm"\npinion_teeth = {stage["pinion_teeth"]}\n'
+    size += f'wheel_teeth = {stage["wheel_teeth"]}\nface_width = "{stage["face_width_mm"]!r} mm"\n'
+    angle = f'"{stage["helix_angle_deg"]} deg"'
+    given = gearopt.rate(written(tmp_path, angle, "[[stage]]\n", f"[[stage]]\n{size}"))
+    assert given.limits["pinion_bending[1]"] == pytest.approx(1.0, abs=1e-9)
+    assert given.design["rating"] == result.design["rating"]
+
+
+@pytest.mark.parametrize(
+    ("helix", "old", "new", "told"),
+    [
+        (LIST, "[teeth]\n", "", "several angles to choose from, which need a table [teeth]"),
+        (LIST, "[limits]", '[limits]\npreset = "chong-lee-elevator"', "by [rating] alone"),
+        ('{ from = "8 deg" }', "", "", "is not a range with from, to and step"),
+        (RANGE.replace("10 deg", "0 deg"), "", "", "has no step above zero"),
+        (RANGE.replace("0 deg", "30 deg", 1), "", "", "ends in the wrong order"),
+        (RANGE.replace("10 deg", "0.01 deg"), "", "", "has 2,001 values, above 200"),
+        ('["0 deg", 8]', "", "", 'Write helix_angle = ["0 deg", "8 deg"]'),
+    ],
+)
+def test_where_no_helix_angle_is_chosen_a_list_is_refused(tmp_path, helix, old, new, told):
+    with pytest.raises(SceneError) as refusal:
+        load(written(tmp_path, helix, old, new))
+    assert told in str(refusal.value)
+
+
+def test_real_valued_teeth_have_one_helix_angle(tmp_path):
+    with pytest.raises(SolveError, match="several helix angles"):
+        gearopt.solve(written(tmp_path, LIST), method="smooth")
