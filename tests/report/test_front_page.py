@@ -19,6 +19,7 @@ from page_reader import drawings as drawn
 from plotly.offline import get_plotlyjs
 
 from gearopt import Front
+from gearopt.report.front import table
 from gearopt.report.measures import INCH
 from gearopt.report.pages import frame
 from gearopt.report.pages.front import page, tables
@@ -141,6 +142,21 @@ def test_a_front_without_a_design_says_why():
 def test_one_design_stands_alone():
     shown, told = plots(page(cases.drive(count=1)))
     assert told["pair"] == [0] and len(told["points"]) == 1
+
+
+def test_materials_helix_angles_and_shifts_that_differ_have_columns():
+    front = cases.drive()
+    chosen = [("A", "B", 0.0), ("A", "A", 0.0), ("B", "B", 8.0)]
+    for point, (pinion, wheel, angle) in zip(front.points, chosen, strict=True):
+        first = {"pinion_material": pinion, "wheel_material": wheel, "helix_angle_deg": angle}
+        point.design["stages"][0].update(first)
+        point.design["stages"][1].update(pinion_material="A", wheel_material="B")
+    shown = table(front)
+    assert shown.heads[-2:] == ("materials", "β [°]")  # all shifts are 0
+    assert [row[-2:] for row in shown.rows] == [
+        *(("A/B; A/B", "0; 25"), ("A; A/B", "0; 25"), ("B; A/B", "8; 25"))
+    ]
+    assert "stage 1: pinion material" in plots(page(front))[1]["rows"]
 
 
 def test_inches_are_shown_in_page_and_tables():

@@ -6,7 +6,8 @@ from typing import Any
 
 from gearopt.optimise.pareto.front import Front, Objective
 from gearopt.optimise.pareto.measures import neighbours
-from gearopt.report.measures import METRIC, Measures, read_in
+from gearopt.report.design_tables import OF_TEETH
+from gearopt.report.measures import METRIC, Measures, read_in, rounded
 from gearopt.report.section import Cell, Table, cell
 from gearopt.report.words import MODULE, SECONDS, number
 
@@ -19,6 +20,12 @@ VERDICTS = {
     "limit": ("stopped early", "yellow"),
 }
 COARSE_ERROR = 0.1  # of the ranges of the objectives: an error at which a pick is told with care
+CHOICES = {  # of stages, beside modules and teeth: head of a column, keys
+    "materials": ("pinion_material", "wheel_material"),
+    "β [°]": ("helix_angle_deg",),
+    "x1/x2": ("pinion_profile_shift", "wheel_profile_shift"),
+}
+CHOICE_DIGITS = 3
 DEFAULTS = {"seconds": SECONDS, "seed": 0}
 
 
@@ -139,6 +146,7 @@ def table(front: Front, measures: Measures = METRIC, most: int | None = None) ->
     heads = [head(objective, measures) for objective in front.objectives]
     taken = rules(front)
     gears = any(stages_of(p.design) for p in front.points)
+    apart = _apart(front)
     rows = [
         (
             k + 1,
@@ -148,10 +156,11 @@ def table(front: Front, measures: Measures = METRIC, most: int | None = None) ->
             ),
             ", ".join(taken.get(k, ())),
             *([_gears(front.points[k].design, measures)] if gears else []),
+            *(texts[k] for texts in apart.values()),
         )
         for k in kept
     ]
-    last = [f"{measures.module[1]}, z1/z2"] if gears else []
+    last = [f"{measures.module[1]}, z1/z2", *apart] if gears else []
     return Table("front", ("", *heads, "pick", *last), rows, wrap=10)
 
 
@@ -197,6 +206,24 @@ def _gears(design: Mapping[str, Any], measures: Measures) -> Cell:
         rows.append(f"{module}, {number(stage['pinion_teeth'])}/{number(stage['wheel_teeth'])}")
     text = "; ".join(rows)
     return Cell(text, text)
+
+
+def _apart(front: Front) -> dict[str, list[str]]:
+    """What tells gears of equal teeth apart: texts of every design, by head of a column."""
+    columns = {}
+    for name, keys in CHOICES.items():
+        texts = ["; ".join(_choice(s, keys) for s in stages_of(p.design)) for p in front.points]
+        if len(set(texts)) > 1:
+            columns[name] = texts
+    return columns
+
+
+def _choice(stage: Mapping[str, Any], keys: Sequence[str]) -> str:
+    """The values of pinion and wheel; one word where it is that of both."""
+    values = [stage.get(key, OF_TEETH[key]) for key in keys]
+    if isinstance(values[0], str):
+        return "/".join(dict.fromkeys(values))
+    return "/".join(rounded(value, CHOICE_DIGITS) for value in values)
 
 
 def command(front: Front, measures: Measures = METRIC, html: str = "") -> str:

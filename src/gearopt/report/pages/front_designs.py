@@ -97,6 +97,10 @@ def _different(each: Sequence[Numbers], names: Sequence[str]) -> list[str]:
     return [n for n, values in columns if None not in values and _varies(values)]
 
 
+def _is_word(each: Sequence[Numbers], name: str) -> bool:
+    return not _is_number(each[0].get(name, NONE).value)
+
+
 def _varies(values: Sequence[Any]) -> bool:
     if not all(map(_is_number, values)):
         return len(set(values)) > 1
@@ -181,7 +185,8 @@ def data(
     limits shares are drawn as bars. values: of the objectives, in full, to sort by.
     """
     heads = [head(objective, measures) for objective in front.objectives]
-    main = list(shown)
+    worded = [n for n in _different(each, _names(front, each, measures)) if _is_word(each, n)]
+    main = [*shown, *(n for n in worded if n not in shown)]
     names = [n for n in _names(front, each, measures) if n not in main]
     alike = set.intersection(*map(set, each)).difference(_different(each, names))
     others = [n for n in names if len(each) == 1 or n not in alike]
