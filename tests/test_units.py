@@ -32,6 +32,7 @@ INSIDE = {  # dimension -> what one is inside
     "elastic coefficient": "megapascal**0.5",
     "compliance": "millimeter / newton",
     "stiffness": "newton / millimeter",
+    "force": "newton",
     "mass": "metric_ton",
 }
 NAMES = {  # where pint's name is another; a speed of 1/min or 1/s counts revolutions

@@ -81,6 +81,10 @@ UNITS: dict[str, dict[str, tuple[Fraction, int]]] = {
         **_table(**{"lbf in": _POUND_FORCE * _INCH, "lbf ft": 12 * _POUND_FORCE * _INCH}),
         **_table(**{"ozf in": _POUND_FORCE / 16 * _INCH}),
     },
+    "force": {  # N
+        **_table(N=1, kN=1000, kgf=_GRAVITY),
+        "lbf": (_POUND_FORCE, 0),
+    },
     "compliance": _table(  # mm/N
         **{"um/kN": Fraction(1, 10**6), "nm/N": Fraction(1, 10**6), "um/N": Fraction(1, 1000)},
         **{"mm/N": 1},

@@ -1,5 +1,7 @@
 """Stages that choose their helix angle from several: against each alone, and refusals."""
 
+import math
+
 import pytest
 
 import gearopt
@@ -83,3 +85,67 @@ def test_where_no_helix_angle_is_chosen_a_list_is_refused(tmp_path, helix, old, 
 def test_real_valued_teeth_have_one_helix_angle(tmp_path):
     with pytest.raises(SolveError, match="several helix angles"):
         gearopt.solve(written(tmp_path, LIST), method="smooth")
+
+
+MODULES = (1.5, 2.0, 2.5)
+SERIES = f"[teeth]\nmodules = {[f'{m} mm' for m in MODULES]}"
+
+
+def best_of_each_module(tmp_path, limits):
+    """The least volume of drives of one module each: limits(module) is what their file has more."""
+    results = []
+    for module in MODULES:
+        text = f'[limits]\nmodule = ["{module} mm", "{module} mm"]'
+        path = written(tmp_path, '"15 deg"', "[limits]", text)
+        path.write_text(path.read_text().replace(*limits(module)).replace("[teeth]", SERIES))
+        results.append(gearopt.solve(path, remedies=False))
+    return min(result.value for result in results if result.value)
+
+
+def limited(tmp_path, limit):
+    path = written(tmp_path, '"15 deg"', "[limits]", f"[limits]\n{limit}")
+    path.write_text(path.read_text().replace("[teeth]", SERIES))
+    return gearopt.solve(path)
+
+
+def test_an_overlap_ratio_is_a_minimum_face_width_of_every_module(tmp_path):
+    result = limited(tmp_path, "overlap_ratio = 1.3")
+
+    def least(module):
+        width = 1.3 * math.pi * module / math.sin(math.radians(15))
+        return "treatment", f'minimum_face_width = "{width!r} mm"\ntreatment'
+
+    assert result.value == pytest.approx(best_of_each_module(tmp_path, least), rel=1e-9)
+    assert result.limits["overlap_ratio[1]"] == pytest.approx(1.0, abs=1e-9)
+    assert result.design["stages"][0]["overlap_ratio"] == pytest.approx(1.3, rel=1e-9)
+
+
+def test_an_axial_force_is_a_minimum_number_of_teeth_of_every_module(tmp_path):
+    free = limited(tmp_path, 'axial_force = "9 kN"')
+    force = 0.9 * 9000.0 * free.limits["axial_force[1]"]
+    result = limited(tmp_path, f'axial_force = "{force!r} N"')
+    torque = 15e6 / (1480.0 * math.pi / 30.0)
+
+    def least(module):
+        teeth = math.ceil(2.0 * torque * math.sin(math.radians(15)) / (force * module))
+        return "[20, 21]", f"[{max(20, teeth)}, 21]" if teeth <= 21 else "[99, 99]"
+
+    assert result.value > free.value
+    assert result.value == pytest.approx(best_of_each_module(tmp_path, least), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("helix", "old", "new", "told"),
+    [
+        ('"0 deg"', "[limits]", "[limits]\noverlap_ratio = 1", "gears.helix_angle"),
+        ('"9 deg"', "[teeth]", "", "limits.axial_force"),
+    ],
+)
+def test_limits_of_helical_gears_are_refused_where_nothing_keeps_to_them(
+    tmp_path, helix, old, new, told
+):
+    text = '[limits]\naxial_force = "1 kN"'
+    path = written(tmp_path, helix, "[limits]", text)
+    path.write_text(path.read_text().replace(old, new))
+    with pytest.raises(SceneError, match=told):
+        load(path)

@@ -7,6 +7,7 @@ it. With the total ratio free within its tolerance this is a relaxation of `teet
 holds there too. `terms` are the objective and the limits of both.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -261,6 +262,10 @@ def terms(
                 made = [stage.options[o].utilisations(pair, *load, safety) for o in asked]
                 rows |= {name: _chosen([r[name] for r in made], option) for name in made[0]}
         rows |= _choices(stage, own, pair)
+        if stage.overlap:
+            rows["overlap_ratio"] = stage.width_of_overlap(pair) / pair.face_width
+        if math.isfinite(stage.axial_force):
+            rows["axial_force"] = stage.axial_use(pair, torque)
         if stage.toothing.shifting is not None:
             rows |= stage.toothing.shifting.used(pair)
         if stage.wheel_fixed and not stage.pinion_fixed:

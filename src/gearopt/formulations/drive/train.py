@@ -95,6 +95,7 @@ class Stage:
     pinion_teeth, wheel_teeth, ratio u = z2/z1 >= 1: minimum and maximum (None: no
     limit). wheel_diameter: maximum [mm] of the wheel's reference diameter. toothings: ways of
     cutting its gears, of which one is chosen; they differ in helix angle and given distance alone.
+    overlap: minimum overlap ratio, 0: no limit; axial_force: maximum [N] at the train's torque.
     options: ways of making them that are rated, of which one is chosen; none: the law limits alone.
     blanks: of pinion and wheel.
     """
@@ -109,6 +110,8 @@ class Stage:
     toothings: tuple[Toothing, ...] = (Toothing(),)
     options: tuple[Option, ...] = ()
     blanks: tuple[Blank, Blank] = (SOLID, SOLID)
+    overlap: float = 0.0
+    axial_force: float = math.inf
 
     def __post_init__(self) -> None:
         first = self.toothings[0]
@@ -135,6 +138,18 @@ class Stage:
         if len(self.toothings) == 1:
             return 0
         return next(k for k, toothing in enumerate(self.toothings) if toothing.made(pair))
+
+    def width_of_overlap(self, pair: GearPair) -> Any:
+        """Face width [mm] of the minimum overlap ratio; inf where spur gears have none."""
+        sine = np.sin(np.abs(pair.pinion.helix_angle))
+        with np.errstate(divide="ignore"):
+            return np.divide(self.overlap * math.pi, sine) * pair.normal_module
+
+    def axial_use(self, pair: GearPair, torque: Any) -> Any:
+        """Part of the maximum axial force in use, F_a = 2 T tan(beta)/d1, at a torque [N mm]."""
+        first = pair.pinion
+        force = 2.0 * torque * np.tan(np.abs(first.helix_angle)) / first.reference_diameter
+        return force / self.axial_force
 
     @property
     def pinion_fixed(self) -> bool:

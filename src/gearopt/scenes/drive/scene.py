@@ -88,6 +88,7 @@ RANGE = (
     "[limits] instead, or one number"
 )
 MOST_STAGES = 6
+HELIX_LIMITS = ("overlap_ratio", "axial_force")
 PROCESSES = ("process_one", "process_two")  # tables; as methods with a hyphen
 STAGES = span(whole(2, 1, MOST_STAGES), 2, single=True)
 
@@ -280,7 +281,8 @@ class Scene(Table):
         asked = "together" if self.layout is not None and self.layout.together else ""
         asked = asked or ("process_two" if self.process_two is not None else "")
         self._check_choices()
-        lacks = "" if self.given else self._lacks("a given centre distance")
+        self._check_helix_limits()
+        lacks = "" if self.given else self._lacks("at a given centre distance")
         check_teeth(self.stage, self.gears, lacks, aim, asked)
         shifted = [k for k, own in enumerate(self.stage) if self.shifted(own)]
         for k in shifted:
@@ -293,12 +295,30 @@ class Scene(Table):
                 check_mesh(self._stage(own), k, own, self.gears)
 
     def _lacks(self, what: str) -> str:
-        """What the file lacks for gears that are chosen at such distances or angles."""
+        """What the file lacks for gears that are chosen with such distances, angles or limits."""
         if self.teeth is None:
-            return f"a table [teeth]: whole teeth are chosen at {what}"
+            return f"a table [teeth]: whole teeth are chosen {what}"
         if self.rating is None or self.limits.loaded:
-            return f"limits by [rating] alone: gears are chosen by them at {what}"
+            return f"limits by [rating] alone: gears are chosen by them {what}"
         return ""
+
+    def _check_helix_limits(self) -> None:
+        """Refuse limits of overlap ratio and axial force where no search keeps to them."""
+        tables: list[tuple[Any, Limits | StageTable]] = [(("limits",), self.limits)]
+        tables += [(("stage", k), own) for k, own in enumerate(self.stage)]
+        for place, table in tables:
+            for name in (n for n in HELIX_LIMITS if getattr(table, n) is not None):
+                lacks = "gears that are to be chosen: these are all given" if self.given else ""
+                lacks = lacks or self._lacks("within such a limit")
+                if self.layout is not None and self.layout.together:
+                    lacks = "together = false in [layout]"
+                if lacks:
+                    raise refuse(f"needs {lacks}", at=(*place, name), action="remove")
+        for own in self.stage_tables if not self.several else ():
+            asked = own.overlap_ratio or self.limits.overlap_ratio
+            if asked and not any(cut.helix_angle for cut in self.toothings(own)):
+                rule = "has no overlap ratio, which is asked for"
+                raise refuse(rule, "15 deg", ("gears", "helix_angle"), "sample")
 
     def shifted(self, own: StageTable) -> bool:
         """Whether profile shifts of a stage follow from its centre distance."""
@@ -325,7 +345,7 @@ class Scene(Table):
             if len(angles) < 2:
                 continue
             lacks = "gears that are to be chosen: these are all given" if self.given else ""
-            lacks = lacks or self._lacks("one of several helix angles")
+            lacks = lacks or self._lacks("with one of several helix angles")
             if self.layout is not None and self.layout.together:
                 lacks = "together = false in [layout]"
             if lacks:
@@ -457,6 +477,7 @@ class Scene(Table):
     def _stage(self, own: StageTable) -> Stage:
         limits = self.limits
         diameter = own.wheel_diameter or limits.wheel_diameter
+        force = own.axial_force or limits.axial_force
         return Stage(
             allowable=tuple(
                 (getattr(own, name) or limits.load(name)).value for name in self.law.names
@@ -469,6 +490,8 @@ class Scene(Table):
             wheel_diameter=diameter.exact[0] if diameter else None,
             toothings=self.toothings(own),
             blanks=self._blanks(own),
+            overlap=float(own.overlap_ratio or limits.overlap_ratio or 0),
+            axial_force=force.value if force else math.inf,
         )
 
     def _blanks(self, own: StageTable) -> tuple[Blank, Blank]:

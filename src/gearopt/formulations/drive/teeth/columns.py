@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive.shares import least_share
+from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
@@ -20,6 +21,7 @@ Index = NDArray[np.int64]
 Columns = tuple[Any, ...]
 
 PAIRS = 3_000_000  # tooth pairs of one stage: about 1 GB of tables
+NO_WIDTH = 1e12  # in modules: of teeth that never overlap
 NEAR = 1e-9  # of a sum of profile shifts beside its ends, which is looked at
 
 
@@ -103,7 +105,8 @@ def _helices(stage: Stage) -> list[list[int]]:
 
 def _block(stage: Stage, z1: Index, z2: Index, toothings: list[int]) -> _Rows:
     """Return tooth pairs as they are cut by some toothings of one helix angle."""
-    cosine = stage.toothings[toothings[0]].cosine
+    cut = stage.toothings[toothings[0]]
+    cosine, stage = cut.cosine, _overlapping(stage, cut)
     toothing, ends = np.full(len(z1), toothings[0]), None
     if stage.toothing.shifting is not None:
         z1, z2, toothing, ends = _meshing(stage, z1, z2, np.array(toothings))
@@ -111,6 +114,19 @@ def _block(stage: Stage, z1: Index, z2: Index, toothings: list[int]) -> _Rows:
     if ends is not None:
         first, last = np.maximum(first, ends[0]), np.minimum(last, ends[1])
     return _Rows(z1, z2, toothing, first, last, _steps(stage, z1, cosine))
+
+
+def _overlapping(stage: Stage, cut: Toothing) -> Stage:
+    """A stage whose widths over module are those of its overlap ratio at least, with a toothing.
+
+    What is irrational has no tie; of spur gears no width has any overlap.
+    """
+    if not stage.overlap:
+        return stage
+    sine, face = math.sin(abs(cut.helix_angle)), stage.face_width
+    least = Fraction(stage.overlap * math.pi / sine if sine else NO_WIDTH)
+    over = max(least, face.over_module[0] or least), face.over_module[1]
+    return replace(stage, face_width=replace(face, over_module=over))
 
 
 def _joined(blocks: list[_Rows]) -> _Rows:

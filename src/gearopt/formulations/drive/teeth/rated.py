@@ -453,6 +453,9 @@ class RatedTable(Table):
         one = self.made(self.modules[module], pair)
         rows = self._rows(torque, one, pair, module, option)
         found = first_width(rows, *ends, close, steps)
+        if math.isfinite(self.stage.axial_force):
+            carries = self.stage.axial_use(one, torque[0]) <= 1.0 + ALLOWANCE
+            found = np.where(carries, found, np.inf)
         if self.steps is None:
             return found
         return self._stepped(rows, found, ends[1], close)

@@ -261,6 +261,8 @@ class Table:
             fixed = np.full_like(d, float(face.fixed))
             return fixed, fixed
         low, high = float(face.low) * d, face.widest * d
+        if self.stage.overlap:
+            low = np.maximum(low, self.stage.width_of_overlap(one))
         if face.plain:
             return low, high
         ends, m = face.over_module, one.normal_module

@@ -170,8 +170,10 @@ def eases(scene: Scene, number: Number) -> int:
         return way
     if scene.objective.minimise in MASSES and (way := OF_BLANKS.get(str(field))):
         return way
-    ways = dict.fromkeys((*scene.limits.LAW.names, "wheel_diameter"), 1)  # no ends of a range
-    ways["minimum_face_width"] = -1
+    ways = dict.fromkeys(
+        (*scene.limits.LAW.names, "wheel_diameter", "axial_force"), 1
+    )  # no ends of a range
+    ways |= {"minimum_face_width": -1, "overlap_ratio": -1}
     for name, place in fields(scene).items():
         if place == (field, end) and path[0] in ("limits", "stage", "gears"):
             return ways.get(name, 0) if end is None else (-1 if end == 0 else 1)

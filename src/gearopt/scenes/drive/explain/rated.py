@@ -135,7 +135,7 @@ _PROVEN = (  # whose moves up to FARTHEST_FACTOR are within what the conflict wa
     *("minimum_bending_safety", "minimum_contact_safety", "life", "module_high", "module_low"),
     *("wheel_diameter", "stage_ratio_high", "stage_ratio_low", "least_face_width"),
     *("face_width_over_module_high", "face_width_over_module_low", "face_width_low"),
-    *("wheel_teeth_high", "wheel_teeth_low", "face_width_high"),
+    *("wheel_teeth_high", "wheel_teeth_low", "face_width_high", "axial_force", "overlap_ratio"),
 )
 
 

@@ -29,7 +29,7 @@ ORDER = (  # the likeliest to be in conflict first; those of the second group ar
         *(CONTACT, BENDING, "face_width", "face_width_over_diameter", "face_width_high"),
         *("module", "module_high", "wheel_diameter", "stage_ratio_high", "least_face_width"),
         *("face_width_over_module_high", "life", "material_grade", "materials", "coprime"),
-        *("same_materials", "wheel_teeth", "wheel_teeth_high"),
+        *("same_materials", "wheel_teeth", "wheel_teeth_high", "axial_force", "overlap_ratio"),
     ),
     (
         *("pinion_teeth", "pinion_teeth_high", "pinion_teeth_low", "ratio_tolerance"),
@@ -104,6 +104,8 @@ def _of_stage(scene: Scene, own: StageTable, stage: Stage) -> Iterator[str]:
     yield from ["face_width_over_module_high"] * (high is not None)
     yield from ["least_face_width"] * bool(face.least)
     yield from ["wheel_diameter"] * (stage.wheel_diameter is not None)
+    yield from ["overlap_ratio"] * bool(stage.overlap)
+    yield from ["axial_force"] * math.isfinite(stage.axial_force)
     yield from [DISTANCE] * (stage.toothing.shifting is not None)
 
 
@@ -169,6 +171,8 @@ def _stage(scene: Scene, own: StageTable, stage: Stage, dropped: set[str]) -> St
         wheel_teeth=wheel,
         ratio=ratio,
         wheel_diameter=None if "wheel_diameter" in dropped else stage.wheel_diameter,
+        overlap=0.0 if "overlap_ratio" in dropped else stage.overlap,
+        axial_force=math.inf if "axial_force" in dropped else stage.axial_force,
     )
 
 

@@ -67,6 +67,8 @@ OverModule = Annotated[tuple[Fraction, Fraction] | None, OVER_MODULE]
 Length = Annotated[Quantity | None, LENGTH]
 Step = Annotated[Quantity | None, STEP]
 Lengths = tuple[Quantity, Quantity]
+Overlap = Annotated[Fraction | None, number(1, 0, 100)]
+Force = Annotated[Quantity | None, quantity("force", "2 kN")]
 
 PROPORTION_IS = (
     "Face width over pinion diameter b/d1: a number ties b to d1, a range leaves it free within it"
@@ -75,6 +77,11 @@ OVER_MODULE_IS = "Range of face width over normal module b/m_n"
 LEAST_IS = "Smallest face width that a stage may have"
 STEP_IS = "Face widths are whole multiples of this"
 WHEEL_IS = "Largest reference diameter of a wheel"
+OVERLAP_IS = "Smallest overlap ratio b sin(beta)/(pi m_n); for whole teeth that ratings limit"
+AXIAL_IS = (
+    "Largest axial force 2 T tan(beta)/d1 of a gear, at the torque of the duty; for whole teeth "
+    "that ratings limit"
+)
 
 
 class Loaded(Table):
@@ -161,6 +168,8 @@ class StageTable(Loaded):
     minimum_face_width: Length = Field(None, description=LEAST_IS)
     stage_ratio: Ratios = Field(None, description="Range of the stage's ratio")
     wheel_diameter: Length = Field(None, description=WHEEL_IS)
+    overlap_ratio: Overlap = Field(None, description=OVERLAP_IS)
+    axial_force: Force = Field(None, description=AXIAL_IS)
     helix_angle: Annotated[Choice | None, HELIX] = Field(
         None, description="Helix angle of this stage, or several, instead of that of [gears]"
     )
@@ -232,6 +241,8 @@ class Limits(Loaded):
         None, description="Range of every stage's ratio (without it: 1 and up)"
     )
     wheel_diameter: Length = Field(None, description=WHEEL_IS)
+    overlap_ratio: Overlap = Field(None, description=OVERLAP_IS)
+    axial_force: Force = Field(None, description=AXIAL_IS)
 
     @classmethod
     def open(cls) -> "Limits":
