@@ -3,12 +3,13 @@
 from dataclasses import replace
 from fractions import Fraction
 from importlib import import_module
+from itertools import product
 
 import numpy as np
 import pytest
 from campaigns import few
 from rated_brute_force import cheapest, least_share, safe
-from rated_drives import FREE, MODULES, TIED, F, agma, by, rated_drive
+from rated_drives import EIGHT, FREE, MODULES, RACK, TIED, F, agma, by, iso, rated_drive
 
 from gearopt.formulations.drive import teeth
 from gearopt.formulations.drive.shares import objective_share
@@ -16,17 +17,22 @@ from gearopt.formulations.drive.teeth import choices
 from gearopt.formulations.drive.teeth.columns import spans
 from gearopt.formulations.drive.teeth.later_stages import bound, first_costs, useful_cells
 from gearopt.formulations.drive.teeth.search import search, within
+from gearopt.formulations.drive.teeth.stage import Cells
 from gearopt.formulations.drive.teeth.tables import stage_tables
+from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.formulations.strength.rated import Option
 from gearopt.optimise.result import Budget
 from gearopt.physics.agma.rating_factors import Steel
+from gearopt.physics.iso6336.materials import Material
 
 searching = import_module("gearopt.formulations.drive.teeth.search")
+rating = import_module("gearopt.formulations.drive.teeth.rated")
 stage_tables_of = import_module("gearopt.formulations.drive.teeth.tables")
 
 SLOW = pytest.mark.slow
+HARD, FAIR = Material("Eh", "MQ"), Material("Eh", "ML")
 STEPPED = FaceWidth(F(3, 10), F(3, 4), step=F(5))
 
 
@@ -145,6 +151,40 @@ def test_index_limits_beside_ratings():
         values[name] = found[0]
     assert values["loose"] == pytest.approx(values["rated"], rel=1e-12)
     assert values["both"] >= max(values["rated"], values["index"]) * (1.0 - 1e-12)
+
+
+@pytest.mark.parametrize("shift", ["nominal", "generating"])
+def test_the_cost_of_a_pair_is_that_of_its_best_module_and_option(shift, monkeypatch):
+    """Each rated alone, on steps of widths; tried at once and one by one, and in a cell of torque.
+
+    Allowances, which count in Y_F of one option, make the teeth of every module other ones.
+    """
+    hard = iso((HARD, HARD), practice=replace(EIGHT, shift=shift))
+    made = Option((iso((FAIR, FAIR)),)), Option((hard,), prices=(1.2, 1.4))
+    choice = {"pinion_teeth": (20, 23), "modules": MODULES[2:9:2], "options": made}
+    choice["toothing"] = Toothing(0.2, (RACK, RACK), thickness_allowances=(-0.3, -0.35))
+    aim = {"tolerance": F(0), "objective": "cost", "density": 7.8e-9, "safety": (2.2, 0.8)}
+    train = replace(rated_drive(4, [STEPPED], **choice), **aim)
+    (own,) = stage_tables(train, F(4))
+    parts, pair = (x.ravel() for x in np.meshgrid([0.3, 1.0, 3.0, 10.0], range(4), indexing="ij"))
+    torque, least, best = parts * train.torque, np.full(16, np.inf), set()
+    width = np.broadcast_to(np.arange(5.0, 300.0, 5.0)[:, None], (59, 16))
+    load = np.broadcast_to(torque, width.shape), train.speed_at(torque) + 0.0 * width, train.safety
+    for module, option in product(range(4), range(2)):
+        one = own.made(own.modules[module], pair + np.zeros(width.shape, int)).of_width(width)
+        rated = np.max([*made[option].utilisations(one, *load).values()], axis=0)
+        part = width / one.pinion.reference_diameter
+        good = (part >= 0.3) & (part <= 0.75) & (rated <= 1.0)
+        share = objective_share(train, 0, one, option=option)
+        cost = np.where(good, share, np.inf).min(axis=0)
+        best |= {(module, option)} if (cost < least).any() else set()
+        least = np.minimum(least, cost)
+    assert len(best) > 4
+    assert own.cost(torque, pair) == pytest.approx(least, rel=1e-12)
+    grid, first = own.grid(Cells(1, 1, 2.0), lambda: None)
+    assert first is None and 0.8 * least[4:8].min() < grid <= least[4:8].min()
+    monkeypatch.setattr(rating, "AT_ONCE", 1)
+    assert own.cost(torque, pair) == pytest.approx(least, rel=1e-12)
 
 
 def assert_no_smaller_module_is_of_use(table, rest, most):

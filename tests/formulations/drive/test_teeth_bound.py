@@ -13,7 +13,14 @@ from small_drives import FACES, drive, tables_of
 from gearopt.errors import SolveError
 from gearopt.formulations.drive.teeth import later_stages as bounds
 from gearopt.formulations.drive.teeth import stage as staging
-from gearopt.formulations.drive.teeth.later_stages import EDGE, bound, ragged, slices
+from gearopt.formulations.drive.teeth.later_stages import (
+    EDGE,
+    bound,
+    first_costs,
+    ragged,
+    slices,
+    useful_cells,
+)
 from gearopt.formulations.drive.teeth.tables import stage_tables
 
 F = Fraction
@@ -99,6 +106,23 @@ def test_the_bound_is_its_definition(stages, objective, total, face, edge, torqu
     assert found.cell(np.array([0.0, 0.0699, 0.0701, 0.15])).tolist() == [0, 0, 1, 2]
 
 
+def test_a_stage_is_told_its_own_first_modules(monkeypatch):
+    """Of cells twice as wide; a stage like the one after it shares its grid."""
+    train, told, grid = drive(4), {}, staging.Table.grid
+    train = replace(train, stages=train.stages[:1] * 4)
+    tables = tables_of(train)
+    rest = bound(train, tables, 0.5, lambda: None)
+    rest = replace(rest, first=[np.full((1, 1), k) for k in range(4)])
+
+    def recorded(own, cells, tick):
+        told[own.position] = int(cells.first[0, 0])
+        return grid(own, cells, tick)[0], np.full((1, 1), 10 + own.position)
+
+    monkeypatch.setattr(staging.Table, "grid", recorded)
+    found = bound(train, tables, 0.25, lambda: None, coarse=rest)
+    assert told == {2: 2} and [int(found.first[k][0, 0]) for k in (1, 2)] == [12, 12]
+
+
 def test_a_pair_is_in_the_cell_that_its_cost_is_in():
     """Also where the quotient by delta is whole, and the product with it above the logarithm."""
     train = drive(3)
@@ -137,6 +161,12 @@ def test_the_bound_is_below_every_train_and_close(number):
     assert (ahead <= (behind[1] + behind[2]) * (1.0 + 1e-12)).all()
     if len(trains.values):
         assert ((behind[0] + ahead).min() / trains.values.min()) > 0.9
+        most = 1.0001 * trains.values.min()
+        cheap = trains.teeth[trains.values <= most]
+        useful = useful_cells(tables, rest, first_costs(train, tables[0], 0.005, np.inf), most)
+        first, second = np.log(cheap[:, :2, 1] / cheap[:, :2, 0]).T
+        first, both, second = (bounds._cell(r, 0.0025) for r in (first, first + second, second))
+        assert useful[1][first, second].all() and useful[2][both].all()
 
 
 def test_equal_inner_stages_share_what_was_made(monkeypatch):

@@ -168,7 +168,7 @@ def test_modules_and_steps_by_fractions(face, helix):
         {},
         {"wheel_teeth": (40, 60)},
         {"ratio": (F(5, 2), F(7, 2))},
-        {"ratio": (F(5, 2), None), "wheel_teeth": (1, 55)},
+        {"ratio": (F(5, 2), None), "wheel_teeth": (1, 55), "wheel_diameter": F(1000)},
     ],
 )
 def test_pairs_are_all_of_a_stage_by_ratio_then_teeth(limits, coprime):

@@ -46,12 +46,15 @@ KINDS = {
     "K_v given": (iso(given={"K_v": 1.2}), 0.3),
     "many given": (iso(given=MANY), 0.3),
     "others given": (iso(given=OTHERS), 0.3),
+    "rough": (iso((EH, EH), practice=Practice(grades=(12.0, 12.0)), given={"Z_NT": (9, 9)}), 0.4),
 }
 LEVELS = Load(2000.0), Load(9000.0, 0.6, 0.9), Load(9000.0, 0.3, 1.1)
 BRIEF = Load(0.2), Load(2.0, 0.7), Load(0.0, 0.5)
+ALIKE = Load(2.0), Load(1.7, 0.98), Load(0.0, 4.0)  # hours that add up, and none at all
 ENDLESS = Load(3e5), Load(2e6, 0.6), Load(3e6, 0.55)  # levels past the ends of life curves
 SPECTRA = {
     "three levels": (replace(iso(), loads=LEVELS), 0.3),
+    "like levels": (replace(iso(), loads=ALIKE), 0.3),
     "brief levels": (replace(iso((EH, SOFT)), loads=BRIEF), 0.2),
     "endless levels": (replace(iso((EH, EH)), loads=ENDLESS), 0.25),
     "two levels": (replace(iso((NITRIDED, EH)), loads=LEVELS[::2]), 0.0),
@@ -75,6 +78,7 @@ LOOSE = {
     "K_v given": 2028,
     "many given": 1868,
     "others given": 1304,
+    "rough": 2490,
 }
 
 
@@ -146,7 +150,7 @@ def nearly_used_up(kind, seed):
     return standard, pair, width, torque, power, rng
 
 
-@pytest.mark.parametrize("kind", few(SPECTRA, ["three levels"]))
+@pytest.mark.parametrize("kind", few(SPECTRA, ["like levels"]))
 def test_what_levels_use_together_is_on_the_right_side_of_1(kind):
     standard, pair, width, torque, power, rng = nearly_used_up(kind, 8)
     for near in (0.3, 1e-2, 1e-5, 1e-9):
@@ -198,24 +202,25 @@ def test_no_width_uses_less_near_the_main_resonance_at_one_torque():
         assert np.all(found <= one * (1.0 + 1e-12))
 
 
-def test_the_least_root_load_may_be_within_a_box():
+@pytest.mark.parametrize(("loads", "wide"), [(2.0, 1.5), (1.02, 1.01)])
+def test_the_least_root_load_may_be_within_a_box(loads, wide):
     """W2^N_F K_alpha(W2) on a grid of line loads: least above the least one for some pairs."""
     standard = iso((EH, EH), practice=replace(NEW, grades=(9.0, 9.0)))
     pair, _, torque, power, rng = pairs(0.78, 7)
     width = pair.normal_module * rng.uniform(5.0, 9.0, COUNT)
-    at = rows(standard, pair, (1e-3 * torque, 2e-3 * torque), 1e-3 * power).columns
-    box = Box(standard, at, (width, 1.5 * width))
+    at = rows(standard, pair, (1e-3 * torque, loads * 1e-3 * torque), 1e-3 * power).columns
+    box = Box(standard, at, (width, wide * width))
     before = box.dynamic(0)
     after = box.spread(0, before)
     most = np.maximum(box.spread(1, box.dynamic(1)), after)
     line = np.geomspace(after, most, 1001)
     share = transverse_load_factor(box.mesh(box.singles[0]), at["deviation0"], line, box.total[0])
     limit = box.total[0] / (at["contact"] * (0.25 + 0.75 / at["virtual"]))
-    loads = (line / before) ** root_exponent(width, at["depth"]) * limited(share, limit) * before
+    least = (line / before) ** root_exponent(width, at["depth"]) * limited(share, limit) * before
     found = box.bent(before, after, box._transverse(after))
-    np.testing.assert_allclose(found, loads.min(axis=0), rtol=2e-8)
-    assert (found <= loads.min(axis=0) * (1.0 + 1e-12)).all()
-    assert (loads.argmin(axis=0) > 0).sum() > 30
+    np.testing.assert_allclose(found, least.min(axis=0), rtol=2e-8)
+    assert (found <= least.min(axis=0) * (1.0 + 1e-12)).all()
+    assert (least.argmin(axis=0) > 0).sum() > 20
 
 
 def test_it_is_the_rating_of_one_pair():
@@ -281,6 +286,7 @@ def test_a_width_carries_whose_excess_is_rounding():
     rows = [IndexRows(np.array([1.0, 1.0 + ALLOWANCE, 1.5, 3.0]))]
     found = first_width(rows, np.ones(4), np.full(4, 2.0))
     assert found.tolist() == [1.0, 1.0, pytest.approx(1.5, rel=1e-11), np.inf]
+    assert rows[0].used(np.ones(4), np.full(4, 2.0))[2:].tolist() == [0.75, 1.5]
 
 
 def test_the_first_width_may_be_where_a_refusal_ends():

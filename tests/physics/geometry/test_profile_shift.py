@@ -7,7 +7,9 @@ import pytest
 
 from gearopt.physics.gears import ISO_53_A, GearPair
 from gearopt.physics.geometry.contact import contact_path, specific_sliding
-from gearopt.physics.geometry.profile_shift import RULES, Meshing, equal_sliding
+from gearopt.physics.geometry.fillet import NEGLIGIBLE
+from gearopt.physics.geometry.profile_shift import RULES, Meshing, Shifting, equal_sliding
+from gearopt.physics.geometry.tooth import tip_thickness
 
 # m_n, z1, z2, beta [deg], a [mm]; x1 + x2 and alpha_wt [deg] as printed (None: computed, by another
 # program); x1 of equal sliding, after Roloff and after Henriot by another program; printed x1
@@ -81,3 +83,25 @@ def test_equal_sliding_is_equal_along_the_path_of_contact():
 def test_no_shifts_where_base_circles_overlap_or_tips_pass_the_tangent_points():
     assert np.isnan(equal_sliding(meshing(2.0, 20, 30, 0.0, 45.0)))
     assert np.isnan(equal_sliding(meshing(1.0, 4, 4, 0.0, 3.9)))
+
+
+def test_no_shifts_beyond_usual_sums():
+    """A hundred teeth at 100 mm: of modules of 2 and 2.02 mm, too small and too large ones."""
+    made = meshing(np.array([2.0, 2.02, 1.9, 2.06]), np.full(4, 40.0), np.full(4, 60.0), 0.0, 100.0)
+    x1, x2, _ = Shifting().shifts(made)
+    assert np.isfinite(x1).tolist() == [True, True, False, False]
+    assert (x1 + x2)[:2] == pytest.approx([0.0, made.shift_sum[1]]) and -1.0 < made.shift_sum[1] < 0
+
+
+@pytest.mark.parametrize("worse", [0, 1])
+def test_the_worse_gear_counts_in_every_limit(worse):
+    """Equal numbers of teeth: one gear is undercut, the tips of the other one are thin."""
+    made = meshing(2.0, 14, 14, 0.0, 29.2)
+    pair = paired(made, (0.05, made.shift_sum - 0.05)[worse])
+    used, path = Shifting().used(pair), contact_path(pair)
+    slides = [specific_sliding(path, 1.0, s)[k] for k, s in enumerate((path.start, path.end))]
+    assert used["specific_sliding"] == pytest.approx(-slides[worse] / 3.0)
+    assert used["tip_thickness"] == pytest.approx(0.4 / tip_thickness(pair.gears[1 - worse]))
+    sine = math.sin(math.radians(20.0))
+    deep = 1.25 - 0.38 * (1.0 - sine) - 0.05 - 7.0 * sine**2  # of the straight flank of the rack
+    assert used["undercut"] == pytest.approx(1.0 + deep - NEGLIGIBLE)

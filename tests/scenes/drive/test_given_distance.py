@@ -8,6 +8,8 @@ import pytest
 
 import gearopt
 from gearopt.errors import SceneError
+from gearopt.formulations.drive.teeth import rated
+from gearopt.formulations.drive.teeth.tables import stage_tables
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.contact import contact_path, specific_sliding
 from gearopt.physics.geometry.profile_shift import Meshing, equal_sliding
@@ -92,11 +94,14 @@ def possible(train, k, module, z1, z2, limits):
 
 
 def narrowest(train, k, pair, torque):
-    """The least width that carries a torque: on a hundred widths, and between two of them again."""
+    """The least width that carries a torque: on a hundred widths, and between two of them again.
+
+    Wider than 20 and 40 mm a gear has larger deviations, and may carry less.
+    """
     face, d = train.stages[k].face_width, float(pair.pinion.reference_diameter)
     option, low, high = train.stages[k].options[0], float(face.low) * d, float(face.high) * d
-    for _ in range(7):
-        widths = np.linspace(low, high, 100)
+    for _ in range(5):
+        widths = np.unique([*np.linspace(low, high, 100), *np.clip((20.0, 40.0), low, high)])
         rows = option.utilisations(pair.of_width(widths), torque, train.speed_at(torque), SAFETY)
         good = np.flatnonzero(np.maximum.reduce(np.broadcast_arrays(*rows.values())) <= 1.0)
         if not len(good):
@@ -120,12 +125,27 @@ def shares(train, k, torque, ratios, limits=(0.2, 1.1, 3.0)):
                     yield float(pair.of_width(width).volume), module, z1, z2
 
 
-def test_the_best_pair_of_a_distance_is_that_of_all_pairs(tmp_path):
-    path = written(tmp_path, PAIR.replace("[14, 40]", "[22, 27]"))
+@pytest.mark.parametrize("limits", [(0.2, 1.3, 3.0), (0.2, 1.1, 2.0)])
+def test_the_best_pair_of_a_distance_is_that_of_all_pairs(limits, tmp_path, monkeypatch):
+    """And of every pair its best module, whether they are tried at once or one by one.
+
+    Between modules that the limits allow and those that no shifts fit some are not allowed: cheaper
+    ones, too.
+    """
+    modules = '[teeth]\nmodules = ["3.4 mm", "3.5 mm", "3.6 mm", "3.75 mm"]\n'
+    modules += f"[shift]\ncontact_ratio = {limits[1]}\nspecific_sliding = {limits[2]}"
+    path = written(tmp_path, PAIR.replace("[14, 40]", "[13, 14]").replace("[teeth]", modules))
     train = load(path).scene.train()
     ratios = float(train.lowest_ratio), float(train.highest_ratio)
-    best = min(shares(train, 0, train.torque, ratios))
-    result = gearopt.solve(path)
+    every = sorted(shares(train, 0, train.torque, ratios, limits), reverse=True)
+    least = {(z1, z2): value for value, _, z1, z2 in every}
+    (own,) = stage_tables(train, train.highest_ratio)
+    pairs = [*zip(own.z1, own.z2, strict=True)]
+    assert len(every) > len(least) and set(pairs) == set(least)
+    torque, index = np.full(len(pairs), train.torque), np.arange(len(pairs))
+    expected = pytest.approx([least[pair] for pair in pairs], rel=1e-9)
+    assert own.cost(torque, index) == expected
+    result, best = gearopt.solve(path), every[-1]
     stage = result.design["stages"][0]
     assert result.status == "optimal"
     assert result.value == pytest.approx(best[0], rel=1e-9)
@@ -133,6 +153,12 @@ def test_the_best_pair_of_a_distance_is_that_of_all_pairs(tmp_path):
     assert found == best[1:]
     assert stage["centre_distance_mm"] == 125.0
     assert result.design["gear_volume_mm3"] == pytest.approx(result.value, rel=1e-12)
+    monkeypatch.setattr(rated, "AT_ONCE", 1)
+    light = own.of(replace(train, objective="mass", density=1e-9))
+    assert 1e6 * light.cost(torque, index) == expected  # kg
+    small, large = (own.made(own.modules[end], index) for end in (own.first, own.last))
+    width = np.full(len(pairs), 20.0)
+    assert (light._floor(small, width) <= light._worth(large, width, 0)).all()
 
 
 @pytest.mark.slow
