@@ -162,7 +162,7 @@ def test_the_cost_of_a_pair_is_that_of_its_best_module_and_option(shift, monkeyp
     hard = iso((HARD, HARD), practice=replace(EIGHT, shift=shift))
     made = Option((iso((FAIR, FAIR)),)), Option((hard,), prices=(1.2, 1.4))
     choice = {"pinion_teeth": (20, 23), "modules": MODULES[2:9:2], "options": made}
-    choice["toothing"] = Toothing(0.2, (RACK, RACK), thickness_allowances=(-0.3, -0.35))
+    choice["toothings"] = (Toothing(0.2, (RACK, RACK), thickness_allowances=(-0.3, -0.35)),)
     aim = {"tolerance": F(0), "objective": "cost", "density": 7.8e-9, "safety": (2.2, 0.8)}
     train = replace(rated_drive(4, [STEPPED], **choice), **aim)
     (own,) = stage_tables(train, F(4))
