@@ -56,6 +56,7 @@ LONG = (
     *(
         "three_stage_by_agma",
         "given_distance",
+        "preferred_distance",
         "iso_tr_6336_30_at_distance",
         "wind_pair_at_distance",
         "helical_unit",

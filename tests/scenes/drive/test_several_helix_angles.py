@@ -67,7 +67,7 @@ def test_the_best_helix_angle_is_that_of_each_alone(tmp_path, several, angles):
 @pytest.mark.parametrize(
     ("helix", "old", "new", "told"),
     [
-        (LIST, "[teeth]\n", "", "several angles to choose from, which need a table [teeth]"),
+        (LIST, "[teeth]\n", "", "several values to choose from, which need a table [teeth]"),
         (LIST, "[limits]", '[limits]\npreset = "chong-lee-elevator"', "by [rating] alone"),
         ('{ from = "8 deg" }', "", "", "is not a range with from, to and step"),
         (RANGE.replace("10 deg", "0 deg"), "", "", "has no step above zero"),

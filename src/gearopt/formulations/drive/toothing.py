@@ -60,15 +60,28 @@ class Toothing:
         helix, distance = pair.pinion.helix_angle, pair.working_distance
         return bool(helix == self.helix_angle and distance == self.working_distance)
 
-    def pair(self, module: Any, pinion_teeth: Any, wheel_teeth: Any, face_width: Any) -> GearPair:
+    def pair(
+        self,
+        module: Any,
+        pinion_teeth: Any,
+        wheel_teeth: Any,
+        face_width: Any,
+        shifts: tuple[Any, Any, Any] | None = None,
+    ) -> GearPair:
         """Return the gear pair with these numbers; module, face_width [mm].
 
-        The wheel's reference diameter is u d1, as in `of_diameter`: whole teeth and real-valued
-        ones then agree to the last bit.
+        shifts: of `shifts`, where they are known. The wheel's reference diameter is u d1, as in
+        `of_diameter`: whole teeth and real-valued ones then agree to the last bit.
         """
         d1 = reference_diameter(module, pinion_teeth, self.helix_angle)
         diameters = d1, d1 * (wheel_teeth / pinion_teeth)
-        return self._made(module, (pinion_teeth, wheel_teeth), diameters, face_width)
+        return self._made(module, (pinion_teeth, wheel_teeth), diameters, face_width, shifts)
+
+    def shifts(self, module: Any, pinion_teeth: Any, wheel_teeth: Any) -> tuple[Any, Any, Any]:
+        """Profile shifts x1, x2 and shortening k of both tips that follow from the distance."""
+        assert self.shifting is not None
+        numbers = module, (pinion_teeth, wheel_teeth), self.helix_angle
+        return self.shifting.shifts(Meshing(*numbers, self.racks, self.working_distance))
 
     def of_diameter(
         self, module: Any, pinion_teeth: Any, pinion_diameter: Any, ratio: Any, face_width: Any
@@ -79,14 +92,19 @@ class Toothing:
         return self._made(module, teeth, diameters, face_width)
 
     def _made(
-        self, module: Any, teeth: tuple[Any, Any], diameters: tuple[Any, Any], face_width: Any
+        self,
+        module: Any,
+        teeth: tuple[Any, Any],
+        diameters: tuple[Any, Any],
+        face_width: Any,
+        known: tuple[Any, Any, Any] | None = None,
     ) -> GearPair:
         """Return the pair of these numbers of teeth and reference diameters [mm].
 
         Where shifts are chosen a gear counts as a cylinder of d + 2 x m_n, for by reference circles
         shifts would seem to spare more than they do.
         """
-        shifts, alterations, bodies = self._shifted(module, teeth, diameters)
+        shifts, alterations, bodies = self._shifted(module, teeth, diameters, known)
         first, second = (
             Gear(
                 module,
@@ -105,27 +123,35 @@ class Toothing:
         return GearPair(first, second, self.working_distance)
 
     def _shifted(
-        self, module: Any, teeth: tuple[Any, Any], diameters: tuple[Any, Any]
+        self,
+        module: Any,
+        teeth: tuple[Any, Any],
+        diameters: tuple[Any, Any],
+        known: tuple[Any, Any, Any] | None,
     ) -> tuple[tuple[Any, Any], tuple[Any, Any], tuple[Any, Any]]:
         """Return profile shifts, tip alterations and diameters of bodies [mm], None: d."""
         if self.shifting is None:
             return self.profile_shifts, self.tip_alterations, (None, None)
-        racks, distance = self.racks, self.working_distance
-        first, second, shorter = self.shifting.shifts(
-            Meshing(module, teeth, self.helix_angle, racks, distance)
-        )
+        first, second, shorter = self.shifts(module, *teeth) if known is None else known
         bodies = diameters[0] + 2.0 * first * module, diameters[1] + 2.0 * second * module
         return (first, second), (shorter, shorter), bodies
 
+    def alike(self, other: "Toothing") -> bool:
+        """Whether another one differs in helix angle and given distance alone."""
+        given = self.working_distance is None, other.working_distance is None
+        return given[0] == given[1] and all(
+            getattr(self, name) == getattr(other, name) for name in ALIKE
+        )
 
-def by_row(toothings: Sequence[Toothing], row: Any) -> Toothing:
-    """Toothing of many pairs (n,), each cut by one of several toothings.
 
-    row (n,): which one, from 0. They differ in helix angle and given distance alone.
-    """
+ALIKE = ("racks", "profile_shifts", "tip_alterations", "thickness_allowances", "shifting")
+
+
+def in_columns(toothings: Sequence[Toothing]) -> Toothing:
+    """Several toothings that are alike as one, whose helix angles and distances are arrays."""
     first = toothings[0]
-    helix = np.array([t.helix_angle for t in toothings])[row]
+    helices = np.array([toothing.helix_angle for toothing in toothings])
     if first.working_distance is None:
-        return replace(first, helix_angle=helix)
-    distance = np.array([t.working_distance for t in toothings])[row]
-    return replace(first, helix_angle=helix, working_distance=distance)
+        return replace(first, helix_angle=helices)
+    distances = np.array([toothing.working_distance for toothing in toothings])
+    return replace(first, helix_angle=helices, working_distance=distances)

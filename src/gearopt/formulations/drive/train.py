@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.drive.toothing import Toothing, by_row
+from gearopt.formulations.drive.toothing import Toothing, in_columns
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
 from gearopt.physics.blanks import SOLID, Blank
@@ -114,13 +114,8 @@ class Stage:
     axial_force: float = math.inf
 
     def __post_init__(self) -> None:
-        first = self.toothings[0]
-        for one in self.toothings:
-            cut = replace(
-                one, helix_angle=first.helix_angle, working_distance=first.working_distance
-            )
-            if cut != first or (one.working_distance is None) != (first.working_distance is None):
-                raise ValueError("toothings of a stage differ in helix angle and distance alone")
+        if not all(self.toothings[0].alike(other) for other in self.toothings[1:]):
+            raise ValueError("toothings of a stage differ in helix angle and distance alone")
 
     @property
     def toothing(self) -> Toothing:
@@ -131,7 +126,17 @@ class Stage:
         """Toothing of pairs (n,) or of one; row: which of its toothings, from 0."""
         if len(self.toothings) == 1:
             return self.toothings[0]
-        return by_row(self.toothings, row) if np.ndim(row) else self.toothings[int(row)]
+        if not np.ndim(row):
+            return self.toothings[int(row)]
+        columns = self._columns
+        distances = columns.working_distance
+        at = None if distances is None else distances[row]
+        return replace(columns, helix_angle=columns.helix_angle[row], working_distance=at)
+
+    @cached_property
+    def _columns(self) -> Toothing:
+        """All toothings as one of arrays."""
+        return in_columns(self.toothings)
 
     def toothing_row(self, pair: GearPair) -> int:
         """Which of its toothings made a pair of floats, from 0."""

@@ -12,7 +12,7 @@ from gearopt.scenes.drive.tables.drive import ORIGINS
 from gearopt.scenes.drive.tables.layout import Layout
 from gearopt.scenes.drive.tables.rating import with_shared
 from gearopt.scenes.parts import tooth_warnings
-from gearopt.scenes.reading.lists import values_of
+from gearopt.scenes.reading.choices import in_words
 from gearopt.scenes.reading.module_series import unverified
 
 WEAKER = " Its contact ratio is less than the one given, its root is weaker."
@@ -38,7 +38,7 @@ def notes(scene: Scene, exact: bool) -> list[str]:
     if exact and scene.gears.same_materials and scene.by_ratings:
         found.append("All pinions have one material, and all wheels have one.")
     if exact:
-        found += _chosen_angles(scene)
+        found += _chosen(scene)
     if exact and scene.teeth is not None:
         found += unverified(scene.teeth.modules)
     if scene.objective.density is None and not _dense(scene):
@@ -66,24 +66,23 @@ def _noted(scene: Scene, result: Result, exact: bool) -> Result:
     bodies = [flaw.sentence for flaw in body_flaws(held.blanks, pairs)]
     remarks = [*notes(held, exact), *bodies, *tooth_warnings(pairs, WEAKER)]
     report = result.report | ({"notes": remarks} if remarks else {})
-    if any(len(held.toothings(own)) > 1 for own in held.stage_tables):
+    if any(len(held.helix_angles(own)) > 1 for own in held.stage_tables):
         report |= {"chosen": ["helix_angle_deg"]}
     return replace(result, report=report)
 
 
-def _chosen_angles(scene: Scene) -> list[str]:
-    """Sentences on the stages that choose from several helix angles."""
-    found: dict[str, list[int]] = {}
+def _chosen(scene: Scene) -> list[str]:
+    """Sentences on the stages that choose from several helix angles or centre distances."""
+    found: dict[tuple[str, str], list[int]] = {}
     for k, own in enumerate(scene.stage_tables, 1):
-        held = scene.gears.helix_angle if own.helix_angle is None else own.helix_angle
-        angles = sorted(values_of(held), key=lambda angle: angle.value)
-        if len(angles) > 1:
-            words = f"{len(angles)}, {angles[0]} to {angles[-1]}"
-            found.setdefault(words, []).append(k)
+        helix = scene.gears.helix_angle if own.helix_angle is None else own.helix_angle
+        for name, held in (("helix angle", helix), ("centre distance", own.centre_distance)):
+            if held is not None and (words := in_words(held)):
+                found.setdefault((name, words), []).append(k)
     return [
-        f"The helix angle of stage{'s' * (len(k) > 1)} {' and '.join(map(str, k))} was chosen "
-        f"from {words}."
-        for words, k in found.items()
+        f"The {name} of stage{'s' * (len(k) > 1)} {' and '.join(map(str, k))} was chosen from "
+        f"{words}."
+        for (name, words), k in found.items()
     ]
 
 

@@ -13,7 +13,8 @@ from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength import RATED, Law
 from gearopt.physics.blanks import Blank
-from gearopt.physics.gears import MEMBERS, GearPair
+from gearopt.physics.gears import MEMBERS, GearPair, transverse_pressure_angle
+from gearopt.physics.geometry.profile_shift import SUMS
 from gearopt.physics.loads import torque
 from gearopt.scenes.drive.face_widths import check_width, face_width
 from gearopt.scenes.drive.rating.checks import (
@@ -49,8 +50,10 @@ from gearopt.scenes.drive.tables.rating import LoadTable, RatingTable, with_shar
 from gearopt.scenes.drive.tables.teeth import check_follows, check_mesh, check_teeth, toothings
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty
+from gearopt.scenes.reading.choices import Choice, values_of
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
-from gearopt.scenes.reading.lists import Choice, span, values_of
+from gearopt.scenes.reading.lists import span
+from gearopt.units import Quantity
 
 if TYPE_CHECKING:
     from gearopt.formulations.drive.design import DriveDesign, StageDesign
@@ -326,31 +329,59 @@ class Scene(Table):
 
     def toothings(self, own: StageTable) -> tuple[Toothing, ...]:
         """Ways in which the teeth of a stage may be cut."""
-        made = toothings(own, self.gears)
         if not self.shifted(own):
-            return made
+            return toothings(own, self.gears)
+        made = toothings(own, self.gears, self._reach(own))
         shifting = (self.shift or ShiftTable()).shifting
         return tuple(replace(teeth, shifting=shifting) for teeth in made)
 
+    def _reach(self, own: StageTable) -> tuple[float, float]:
+        """Ends of the centre distances [mm] that teeth of a stage may have, whatever their shifts.
+
+        By base circles that touch, and y <= x1 + x2 <= 2 modules.
+        """
+        modules, limits = self._modules(own), self.limits
+        fewest, most = own.pinion_teeth or limits.pinion_teeth
+        wheels = own.wheel_teeth or limits.wheel_teeth or (1, None)
+        ratios = own.stage_ratio or limits.stage_ratio or (Fraction(1), None)
+        top = self.duty.total_ratio * (1 + self.duty.ratio_tolerance)
+        top = top if ratios[1] is None else min(top, ratios[1])
+        teeth = fewest * (1 + ratios[0]), most * (1 + top)
+        if wheels[1] is not None:
+            teeth = teeth[0], min(teeth[1], Fraction(most + wheels[1]))
+        helices = [angle.value for angle in self.helix_angles(own)]
+        normal = (own.pressure_angle or self.gears.pressure_angle).value
+        base = math.cos(transverse_pressure_angle(normal, max(helices)))
+        low = 0.5 * base * float(min(modules) * teeth[0]) / math.cos(min(helices))
+        high = 0.5 * float(max(modules) * teeth[1]) / math.cos(max(helices))
+        return low, high + SUMS[1] * float(max(modules))
+
     def choosing(self, own: StageTable) -> bool:
         """Whether the teeth of a stage may be cut in several ways, or shifts are chosen."""
-        return self.shifted(own) or len(self.toothings(own)) > 1
+        return self.shifted(own) or len(self.helix_angles(own)) > 1
+
+    def helix_angles(self, own: StageTable) -> tuple[Quantity, ...]:
+        """Helix angles that a stage may have."""
+        return values_of(self.gears.helix_angle if own.helix_angle is None else own.helix_angle)
 
     def _check_choices(self) -> None:
-        """Refuse several helix angles where no search of whole teeth chooses between them."""
+        """Refuse several helix angles or distances where no search of whole teeth chooses them."""
         held: list[tuple[tuple[str | int, ...], Choice | None]]
-        held = [(("stage", k), own.helix_angle) for k, own in enumerate(self.stage)]
-        for place, value in ((("gears",), self.gears.helix_angle), *held):
-            angles = () if value is None else values_of(value)
-            if len(angles) < 2:
+        held = [(("gears", "helix_angle"), self.gears.helix_angle)]
+        for k, own in enumerate(self.stage):
+            held.append((("stage", k, "helix_angle"), own.helix_angle))
+            held.append((("stage", k, "centre_distance"), own.centre_distance))
+        for place, value in held:
+            if value is None or isinstance(value, Quantity):
                 continue
             lacks = "gears that are to be chosen: these are all given" if self.given else ""
-            lacks = lacks or self._lacks("with one of several helix angles")
+            lacks = lacks or self._lacks("with one of several values")
             if self.layout is not None and self.layout.together:
                 lacks = "together = false in [layout]"
             if lacks:
-                rule = f"has several angles to choose from, which need {lacks}"
-                raise refuse(rule, str(angles[0]), (*place, "helix_angle"), "sample")
+                one = values_of(value, (100.0, 100.0))[0]
+                rule = f"has several values to choose from, which need {lacks}"
+                raise refuse(rule, str(one), place, "sample")
 
     def _check_layout(self) -> None:
         """Check the tables of a layout against the drive and each other."""
@@ -460,7 +491,9 @@ class Scene(Table):
         """The toothing of a stage of a design."""
 
         def away(teeth: Toothing) -> float:
-            return abs(math.degrees(teeth.helix_angle) - stage.helix_angle_deg)
+            distance = teeth.working_distance
+            off = 0.0 if distance is None else abs(distance - stage.centre_distance_mm)
+            return abs(math.degrees(teeth.helix_angle) - stage.helix_angle_deg) + off
 
         return min(self.toothings(own), key=away)
 

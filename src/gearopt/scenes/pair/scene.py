@@ -16,8 +16,8 @@ from gearopt.scenes.drive.tables.rating import LoadTable, RatingTable
 from gearopt.scenes.pair.pair_flaws import check_level, check_pair
 from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.sharing_tables import SharingTable
+from gearopt.scenes.reading.choices import values_of
 from gearopt.scenes.reading.fields import Table, refuse, words
-from gearopt.scenes.reading.lists import values_of
 from gearopt.scenes.reading.toml import dotted
 
 # Where a file that asks for a size says nothing: ranges that suit most spur pairs, as the example

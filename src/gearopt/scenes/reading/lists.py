@@ -1,7 +1,6 @@
 """Field types of problem files that hold several values: ranges, lists, named sets."""
 
 import re
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -9,53 +8,13 @@ from pydantic_core import PydanticCustomError
 
 from gearopt.scenes.reading.fields import Reads, refuse
 from gearopt.scenes.reading.near import near
-from gearopt.scenes.reading.toml import toml_text
 from gearopt.units import Quantity
 
 _END = r"([0-9]{1,9}(?:\.[0-9]{1,9})?)"
 _RANGE = re.compile(rf"\s*{_END}\s*(?:-|\u2013|\.\.\.?|to)\s*{_END}\s*([A-Za-z%][\w/^ ]*)?")
 
 
-MAX_STEPS = 200  # values of a range with a step, at most
-KEYS_OF_RANGE = ("from", "to", "step")
-
-
-@dataclass(frozen=True)
-class Steps:
-    """A range of quantities of one unit with a step, both ends included where a step meets them."""
-
-    low: Quantity
-    high: Quantity
-    step: Quantity
-
-    @property
-    def count(self) -> int:
-        """Number of values."""
-        return int((self.high.number - self.low.number) / self.step.number) + 1
-
-    @property
-    def values(self) -> tuple[Quantity, ...]:
-        """The values, ascending."""
-        low, step = self.low.number, self.step.number
-        return tuple(replace(self.low, number=low + k * step) for k in range(self.count))
-
-    @property
-    def written(self) -> dict[str, str]:
-        """The range as a file has it."""
-        return dict(zip(KEYS_OF_RANGE, map(str, (self.low, self.high, self.step)), strict=True))
-
-
-Choice = Quantity | tuple[Quantity, ...] | Steps  # what `to_choose` reads
-
-
-def values_of(value: Choice) -> tuple[Quantity, ...]:
-    """The values that a key of `to_choose` holds."""
-    if isinstance(value, Steps):
-        return value.values
-    return value if isinstance(value, tuple) else (value,)
-
-
-def _mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
+def mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
     """Return the values, wrong ones replaced (or None), and the first rule broken."""
     right, first = [], ""
     for value in values:
@@ -98,14 +57,14 @@ def span(item: Reads, example: Any, single: bool = False) -> Reads:
             return value[0], value[1]
         if isinstance(value, str) and (two := _RANGE.fullmatch(value[:80])):
             texts = [f"{end} {two[3] or ''}".strip() for end in two.group(1, 2)]
-            right, _ = _mended(item, [int(text) if text.isdigit() else text for text in texts])
+            right, _ = mended(item, [int(text) if text.isdigit() else text for text in texts])
             write = None if None in right else right
             raise refuse("is a text, not a range [minimum, maximum]", write)
         if single and not isinstance(value, list):
             only = item.reader(value, item.example)
             return only, only
         ends = value if isinstance(value, list) else [value]
-        right, rule = _mended(item, ends[:2])
+        right, rule = mended(item, ends[:2])
         if len(ends) != 2:
             pair = right * 2 if len(ends) == 1 and not rule else None
             raise refuse("is not a range [minimum, maximum]", pair)
@@ -133,7 +92,7 @@ def each_gear(item: Reads) -> Reads:
         if not isinstance(value, list):
             only = item.reader(value, item.example)
             return only, only
-        right, rule = _mended(item, value[:2])
+        right, rule = mended(item, value[:2])
         if len(value) != 2:
             raise refuse("is not one value nor a list [pinion, wheel]", (right * 2)[:2] or None)
         if rule:
@@ -156,7 +115,7 @@ def either(names: dict[str, Any], item: Reads) -> Reads:
             known = ", ".join(f'"{n}"' for n in names)
             close = near(value, names) if isinstance(value, str) else None
             raise refuse(f"is neither one of {known} nor a list", close)
-        right, rule = _mended(item, value)
+        right, rule = mended(item, value)
         if rule:
             write = [item.example if entry is None else entry for entry in right]
             raise refuse(f"has an entry that {rule}", write)
@@ -169,49 +128,6 @@ def either(names: dict[str, Any], item: Reads) -> Reads:
     return Reads(read, next(iter(names)), {"anyOf": [{"enum": list(names)}, items]})
 
 
-def to_choose(item: Reads, sample: Steps) -> Reads:
-    """Read one quantity, or several to choose from: a list, or a range {from, to, step}.
-
-    sample: a right range. A list or range of one value is that value.
-    """
-    way = f"Write, for example, {toml_text(sample.written)}"
-
-    def stepped(value: dict[str, Any]) -> Choice:
-        if set(value) != set(KEYS_OF_RANGE):
-            raise refuse("is not a range with from, to and step", way, action="tell")
-        right, rule = _mended(item, [value[name] for name in KEYS_OF_RANGE])
-        if rule:
-            raise refuse(f"has an entry that {rule}", way, action="tell")
-        made = Steps(*(item.reader(entry, item.example) for entry in right))
-        if len({made.low.unit, made.high.unit, made.step.unit}) > 1:
-            raise refuse("has entries of different units", way, action="tell")
-        if made.low.number > made.high.number:
-            raise refuse("has its ends in the wrong order", way, action="tell")
-        if made.step.number <= 0:
-            raise refuse("has no step above zero", way, action="tell")
-        if made.count > MAX_STEPS:
-            raise refuse(f"has {made.count:,} values, above {MAX_STEPS}", way, action="tell")
-        return made if made.count > 1 else made.low
-
-    def read(value: Any, example: Any) -> Choice:
-        if isinstance(value, Steps):
-            return value
-        if isinstance(value, dict):
-            return stepped(value)
-        if not isinstance(value, list | tuple):
-            one: Quantity = item.reader(value, item.example)
-            return one
-        entries = listed.reader(list(value), listed.example)
-        found = tuple({entry.exact: entry for entry in entries}.values())
-        return found[0] if len(found) == 1 else found
-
-    listed = several(item, [item.example])
-    ends = {name: item.schema for name in KEYS_OF_RANGE}
-    table = {"type": "object", "properties": ends, "required": [*KEYS_OF_RANGE]}
-    schema = {"anyOf": [item.schema, listed.schema, table]}
-    return Reads(read, item.example, schema)
-
-
 def several(item: Reads, example: Any) -> Reads:
     """Read a list of items, as a tuple in the file's order."""
 
@@ -220,7 +136,7 @@ def several(item: Reads, example: Any) -> Reads:
             return value
         if not isinstance(value, list) or not value:
             raise refuse("is empty" if value == [] else "is not a list")
-        right, rule = _mended(item, value)
+        right, rule = mended(item, value)
         if rule:
             write = [item.example if entry is None else entry for entry in right]
             raise refuse(f"has an entry that {rule}", write)
@@ -237,7 +153,7 @@ def pair(item: Reads) -> Reads:
             return value[0], value[1]
         if not isinstance(value, list) or len(value) != 2:
             raise refuse("is not a place [x, y]")
-        right, rule = _mended(item, value)
+        right, rule = mended(item, value)
         if rule:
             raise refuse(f"has a part that {rule}", None if None in right else right)
         return item.reader(value[0], item.example), item.reader(value[1], item.example)

@@ -328,12 +328,19 @@ def _unfit(train: Train) -> str:
     cut = largest_ratio(train)
     stages = [k for k, stage in enumerate(train.stages) if stage.toothing.shifting is not None]
     bare = [k for k in stages if not len(table(train, k, cut).ratio)]
-    distances = [(k, train.stages[k].toothing.working_distance) for k in bare]
     return " ".join(
-        f"No teeth fit the centre distance of {a:.6g} mm of stage {k + 1}, with the modules, "
+        f"No teeth fit {_distances(train.stages[k])} of stage {k + 1}, with the modules, "
         "numbers of teeth and ratios allowed and the limits of profile shifts."
-        for k, a in distances
+        for k in bare
     )
+
+
+def _distances(stage: Stage) -> str:
+    """The given centre distances of a stage in words."""
+    given = sorted({float(toothing.working_distance) for toothing in stage.toothings})
+    if len(given) == 1:
+        return f"the centre distance of {given[0]:.6g} mm"
+    return f"any of the {len(given)} centre distances from {given[0]:.6g} to {given[-1]:.6g} mm"
 
 
 def _why(progress: Progress, count: int) -> str:

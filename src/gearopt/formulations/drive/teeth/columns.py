@@ -69,6 +69,7 @@ def columns(train: Train, position: int, cut: Fraction, tick: Callable[[], None]
         need,
         exponent,
         slope,
+        cut,
     )
 
 

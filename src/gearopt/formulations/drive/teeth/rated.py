@@ -63,6 +63,28 @@ class RatedTable(Table):
     others: tuple["RatedTable", ...] = ()
     tick: Callable[[], None] = field(default=lambda: None, compare=False, repr=False)
 
+    def made(self, module: Any, pair: Any) -> GearPair:
+        """Return the gear pairs (indices) with modules [mm] of the series, of face width 1 mm.
+
+        Shifts are NaN of modules that are not allowed.
+        """
+        if self.stage.toothing.shifting is None:
+            return super().made(module, pair)
+        index = np.searchsorted(self.modules, module)
+        allowed = (self.first[pair] <= index) & (index <= self.last[pair])
+        place = self._shape(index, pair)
+        first, second, shorter = (np.where(allowed, s[place], np.nan) for s in self._shifts)
+        z1, z2 = self.z1[pair], self.z2[pair]
+        toothing = self.stage.toothing_of(self.toothing[pair])
+        return toothing.pair(module, z1, z2, 1.0, (first, second, shorter))
+
+    @cached_property
+    def _shifts(self) -> tuple[Any, Any, Any]:
+        """Profile shifts and shortening of pairs and modules of `_shapes`."""
+        module, pair = self._shapes
+        toothing = self.stage.toothing_of(self.toothing[pair])
+        return toothing.shifts(self.modules[module], self.z1[pair], self.z2[pair])
+
     @cached_property
     def _prepared(self) -> list[list[Any]]:
         """Data that standards take, by option and standard: of pairs, by module those allowed."""

@@ -8,6 +8,7 @@ irrational except at 0, 60 and 90 (Niven's theorem), so no tie with a rational l
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
@@ -55,7 +56,7 @@ Grid = tuple[Array, NDArray[np.int16] | None]
 
 @dataclass(frozen=True)
 class Table:
-    """Tooth pairs (n,) of one stage with ratios up to a cut, increasing.
+    """Tooth pairs (n,) of one stage with ratios up to `cut`, increasing.
 
     toothing: which of the stage's toothings cuts them. Pairs that may be cut in several ways are as
     many rows.
@@ -81,6 +82,7 @@ class Table:
     need: Array
     exponent: float
     slope: Array
+    cut: Fraction
 
     @property
     def stage(self) -> Stage:

@@ -27,6 +27,9 @@ def table(
     tick: called several times a second; what it raises ends the work. others: tables that may have
     these tooth pairs, too.
     """
+    for known in others:
+        if known.train is train and known.position == position and known.cut == cut:
+            return known if known.tick == tick else replace(known, others=tuple(others), tick=tick)
     rows = columns(train, position, cut, tick)
     if not train.stages[position].options:
         return Table(*rows)

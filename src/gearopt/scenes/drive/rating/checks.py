@@ -19,8 +19,8 @@ from gearopt.scenes.drive.tables.rating import (
     LoadTable,
     RatingTable,
 )
+from gearopt.scenes.reading.choices import values_of
 from gearopt.scenes.reading.fields import Table, refuse
-from gearopt.scenes.reading.lists import values_of
 from gearopt.scenes.reading.toml import dotted
 
 Place = tuple[Any, ...]

@@ -14,6 +14,7 @@ from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.physics.geometry.profile_shift import RULES, Shifting
 from gearopt.scenes.drive.tables.iso6336 import IsoGiven
 from gearopt.scenes.drive.tables.rating import GearKeys, GearTable, GivenTable
+from gearopt.scenes.reading.choices import Choice, Preferred, Steps, to_choose
 from gearopt.scenes.reading.fields import (
     Table,
     advised,
@@ -25,13 +26,16 @@ from gearopt.scenes.reading.fields import (
     truth,
     whole,
 )
-from gearopt.scenes.reading.lists import Choice, Steps, several, span, to_choose
+from gearopt.scenes.reading.lists import several, span
 from gearopt.scenes.reading.module_series import MODULE, SERIES, series
 from gearopt.units import Quantity
 
 LAW = K_FACTOR  # that limits a drive
 LENGTH = quantity("length", "400 mm")
 STEP = quantity("length", "1 mm")
+DISTANCES = to_choose(
+    LENGTH, Preferred("R20", units.parse("100 mm", "length"), units.parse("200 mm", "length"))
+)
 ONE_HELIX = quantity("angle", "25 deg", "45 deg", zero=True)
 HELIX = to_choose(ONE_HELIX, Steps(*(units.parse(f"{n} deg", "angle") for n in (8, 20, 1))))
 PRESSURE = quantity("angle", "20 deg", "45 deg")
@@ -181,10 +185,12 @@ class StageTable(Loaded):
         description="Hand of the pinion's helix; by default right, and of later stages the one "
         "whose thrust opposes that of the wheel on the same shaft",
     )
-    centre_distance: Length = Field(
+    centre_distance: Annotated[Choice | None, DISTANCES] = Field(
         None,
         description="Working centre distance; by default without backlash. Of gears that are "
-        "chosen by ratings profile shifts follow from it, see [shift]",
+        "chosen by ratings profile shifts follow from it, see [shift]; then also several to choose "
+        'from: a list, "R10", "R20" or "R40" of ISO 3, or a range { from = "100 mm", to = '
+        '"200 mm", series = "R20" } or with a step',
     )
     pinion: GearTable = Field(default_factory=GearTable, description="Data of the pinion alone")
     wheel: GearTable = Field(default_factory=GearTable, description="Data of the wheel alone")

@@ -9,8 +9,8 @@ from gearopt.formulations.drive.train import LENGTHS, Stage
 from gearopt.physics.gears import ISO_53_A, MEMBERS, Rack
 from gearopt.scenes.drive.tables.drive import Gears, StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, with_shared
+from gearopt.scenes.reading.choices import values_of
 from gearopt.scenes.reading.fields import refuse
-from gearopt.scenes.reading.lists import values_of
 
 USUAL = {"profile_shift": 0, "tip_alteration": 0, "addendum": 1, "tool_addendum": 1.25}
 SAME = 1e-9  # m_n
@@ -18,8 +18,13 @@ ROOT: tuple[str, ...] = ("profile_shift", "tool_addendum")  # what sets a root c
 TIP: tuple[str, ...] = ("profile_shift", "tip_alteration", "addendum")
 
 
-def toothings(own: StageTable, gears: Gears) -> tuple[Toothing, ...]:
-    """Return the ways in which the teeth of a stage may be cut: one for every helix angle."""
+def toothings(
+    own: StageTable, gears: Gears, reach: tuple[float, float] = (0.0, 0.0)
+) -> tuple[Toothing, ...]:
+    """Return the ways in which the teeth of a stage may be cut: by helix angle and distance.
+
+    reach: ends of the centre distances [mm] that serve, of a series without its own.
+    """
     helices = values_of(gears.helix_angle if own.helix_angle is None else own.helix_angle)
     pressure = (own.pressure_angle or gears.pressure_angle).value
     pinion, wheel = with_shared(own.pinion, gears), with_shared(own.wheel, gears)
@@ -29,9 +34,12 @@ def toothings(own: StageTable, gears: Gears) -> tuple[Toothing, ...]:
         (_or(pinion.profile_shift, 0.0), _or(wheel.profile_shift, 0.0)),
         (_or(pinion.tip_alteration, 0.0), _or(wheel.tip_alteration, 0.0)),
         (_allowance(pinion), _allowance(wheel)),
-        own.centre_distance.value if own.centre_distance else None,
     )
-    return tuple(replace(first, helix_angle=helix.value) for helix in helices)
+    made = [replace(first, helix_angle=helix.value) for helix in helices]
+    if own.centre_distance is None:
+        return tuple(made)
+    distances = [a.value for a in values_of(own.centre_distance, reach)]
+    return tuple(replace(t, working_distance=a) for t in made for a in distances)
 
 
 def toothing(own: StageTable, gears: Gears) -> Toothing:
@@ -71,13 +79,14 @@ def check_teeth(
         if own.centre_distance is not None and lacks:
             rule = f"needs gears that are all given, or {lacks}"
             raise refuse(rule, at=("stage", k, "centre_distance"), action="remove")
-        if all(t.on_reference for t in toothings(own, gears)) or not (
-            objective in LENGTHS or asked
-        ):
+        given = own.centre_distance is not None
+        if not (objective in LENGTHS or asked):
+            continue
+        if not given and toothing(own, gears).on_reference:
             continue
         what = f"minimise = {objective}" if objective in LENGTHS else asked
         rule = f"moves the centre distance, which {what} takes from the reference circles"
-        if own.centre_distance is not None:
+        if given:
             raise refuse(rule, at=("stage", k, "centre_distance"), action="remove")
         member = "wheel" if own.pinion.profile_shift is None else "pinion"
         place = ("stage", k, member, "profile_shift")

@@ -1,0 +1,156 @@
+"""Field types of problem files for quantities to choose from: lists, ranges with a step, series."""
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+from gearopt.physics.preferred_numbers import PREFERRED, preferred_numbers
+from gearopt.scenes.reading.fields import Reads, refuse
+from gearopt.scenes.reading.lists import mended, several
+from gearopt.scenes.reading.toml import toml_text
+from gearopt.units import Quantity
+
+MAX_STEPS = 200  # values of a range with a step, at most
+KEYS_OF_RANGE = ("from", "to", "step")
+KEYS_OF_SERIES = ("from", "to", "series")
+
+
+@dataclass(frozen=True)
+class Steps:
+    """A range of quantities of one unit with a step, both ends included where a step meets them."""
+
+    low: Quantity
+    high: Quantity
+    step: Quantity
+
+    @property
+    def count(self) -> int:
+        """Number of values."""
+        return int((self.high.number - self.low.number) / self.step.number) + 1
+
+    @property
+    def values(self) -> tuple[Quantity, ...]:
+        """The values, ascending."""
+        low, step = self.low.number, self.step.number
+        return tuple(replace(self.low, number=low + k * step) for k in range(self.count))
+
+    @property
+    def written(self) -> dict[str, str]:
+        """The range as a file has it."""
+        return dict(zip(KEYS_OF_RANGE, map(str, (self.low, self.high, self.step)), strict=True))
+
+
+@dataclass(frozen=True)
+class Preferred:
+    """Preferred numbers [mm] of a series of ISO 3 from low to high; None: as far as they serve."""
+
+    series: str
+    low: Quantity | None = None
+    high: Quantity | None = None
+
+    def within(self, low: float, high: float) -> tuple[Quantity, ...]:
+        """The values between its own ends, or else between two lengths [mm]."""
+        ends = [
+            Fraction(other) if own is None else own.exact[0]
+            for own, other in ((self.low, low), (self.high, high))
+        ]
+        return tuple(
+            Quantity(value, "mm", "length") for value in preferred_numbers(self.series, *ends)
+        )
+
+    @property
+    def written(self) -> str | dict[str, str]:
+        """The series as a file has it."""
+        if self.low is None:
+            return self.series
+        ends = str(self.low), str(self.high)
+        return dict(zip(KEYS_OF_SERIES, (*ends, self.series), strict=True))
+
+
+Choice = Quantity | tuple[Quantity, ...] | Steps | Preferred  # what `to_choose` reads
+
+
+def values_of(value: Choice, reach: tuple[float, float] = (0.0, 0.0)) -> tuple[Quantity, ...]:
+    """The values that a key of `to_choose` holds; reach [mm]: those of a series without ends."""
+    if isinstance(value, Steps):
+        return value.values
+    if isinstance(value, Preferred):
+        return value.within(*reach)
+    return value if isinstance(value, tuple) else (value,)
+
+
+def in_words(value: Choice) -> str:
+    """The values that there are to choose from, in words; nothing where there is one."""
+    if isinstance(value, Preferred):
+        ends = "" if value.low is None else f", {value.low} to {value.high}"
+        return f"the series {value.series} of ISO 3 (unverified){ends}"
+    values = sorted(values_of(value), key=lambda one: one.value)
+    return f"{len(values)}, {values[0]} to {values[-1]}" if len(values) > 1 else ""
+
+
+def to_choose(item: Reads, sample: Steps | Preferred) -> Reads:
+    """Read one quantity, or several to choose from: a list, or a range {from, to, step}.
+
+    sample: a right range. A list or range of one value is that value. With a series as the sample
+    also one by its name, or between two ends {from, to, series}.
+    """
+    way = f"Write, for example, {toml_text(sample.written)}"
+    in_series = isinstance(sample, Preferred)
+    known = "from, to and step" + (" or series" if in_series else "")
+
+    def stepped(value: dict[str, Any]) -> Choice:
+        if in_series and set(value) == set(KEYS_OF_SERIES):
+            return between(value)
+        if set(value) != set(KEYS_OF_RANGE):
+            raise refuse(f"is not a range with {known}", way, action="tell")
+        right, rule = mended(item, [value[name] for name in KEYS_OF_RANGE])
+        if rule:
+            raise refuse(f"has an entry that {rule}", way, action="tell")
+        made = Steps(*(item.reader(entry, item.example) for entry in right))
+        if len({made.low.unit, made.high.unit, made.step.unit}) > 1:
+            raise refuse("has entries of different units", way, action="tell")
+        if made.low.number > made.high.number:
+            raise refuse("has its ends in the wrong order", way, action="tell")
+        if made.step.number <= 0:
+            raise refuse("has no step above zero", way, action="tell")
+        if made.count > MAX_STEPS:
+            raise refuse(f"has {made.count:,} values, above {MAX_STEPS}", way, action="tell")
+        return made if made.count > 1 else made.low
+
+    def between(value: dict[str, Any]) -> Choice:
+        ends, rule = mended(item, [value[name] for name in KEYS_OF_SERIES[:2]])
+        if rule:
+            raise refuse(f"has an entry that {rule}", way, action="tell")
+        if value["series"] not in PREFERRED:
+            raise refuse(f"has no series of {', '.join(PREFERRED)}", way, action="tell")
+        low, high = (item.reader(end, item.example) for end in ends)
+        if low.value > high.value:
+            raise refuse("has its ends in the wrong order", way, action="tell")
+        made = Preferred(value["series"], low, high)
+        if not (found := made.within(0.0, 0.0)):
+            raise refuse(f"holds no value of {made.series}", way, action="tell")
+        return made if len(found) > 1 else found[0]
+
+    def read(value: Any, example: Any) -> Choice:
+        if isinstance(value, Steps | Preferred):
+            return value
+        if in_series and isinstance(value, str) and value in PREFERRED:
+            return Preferred(value)
+        if isinstance(value, dict):
+            return stepped(value)
+        if not isinstance(value, list | tuple):
+            one: Quantity = item.reader(value, item.example)
+            return one
+        entries = listed.reader(list(value), listed.example)
+        found = tuple({entry.exact: entry for entry in entries}.values())
+        return found[0] if len(found) == 1 else found
+
+    listed = several(item, [item.example])
+    ends = {name: item.schema for name in KEYS_OF_RANGE}
+    table = {"type": "object", "properties": ends, "required": [*KEYS_OF_RANGE]}
+    ways = [item.schema, listed.schema, table]
+    if in_series:
+        ends = {"from": item.schema, "to": item.schema, "series": {"enum": [*PREFERRED]}}
+        table = {"type": "object", "properties": ends, "required": [*KEYS_OF_SERIES]}
+        ways += [{"enum": [*PREFERRED]}, table]
+    return Reads(read, item.example, {"anyOf": ways})
