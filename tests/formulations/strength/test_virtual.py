@@ -113,5 +113,6 @@ def test_strengths_that_may_be_the_greatest():
         Strength("a", "x", 840.0, 1.2),
         Strength("a", "y", 840.0, 1.2),
         Strength("a", (), 1000.0),
+        Strength("a", "z", 1100.0, 1.2),
     ]
-    assert may_be_best(strengths) == [1, 2, 4, 5]
+    assert may_be_best(strengths) == [1, 2, 4, 5, 7]
