@@ -1,10 +1,13 @@
 """Stages that choose their centre distance from several: against each alone, and refusals."""
 
+import numpy as np
 import pytest
 from test_given_distance import PAIR, written
 
 import gearopt
 from gearopt.errors import SceneError
+from gearopt.formulations.drive import teeth
+from gearopt.optimise.result import Budget
 from gearopt.scenes.reading.load import load
 
 FEW = PAIR.replace("[14, 40]", "[24, 25]").replace('standard = "both"', 'standard = "iso6336"')
@@ -36,6 +39,23 @@ def test_a_series_without_ends_reaches_all_distances_of_its_teeth(tmp_path):
     distances = [toothing.working_distance for toothing in train.stages[0].toothings]
     assert distances[0] == 25.0 and distances[-1] > 0.5 * 50.0 * 25 * 5
     assert {100.0, 112.0, 125.0, 140.0} <= {*distances}
+
+
+def test_points_of_several_toothings_are_what_each_is_alone(tmp_path):
+    path = written(
+        tmp_path, FEW.replace('"125 mm"', LIST).replace('"12 deg"', '["0 deg", "12 deg"]')
+    )
+    train = load(path).scene.train()
+    problem = teeth.problem(train)
+    every = [problem.methods["exact"](problem, Budget(), 0, None).x]
+    far = every[0].copy()
+    far[-1] = 1.0  # the first toothing
+    every += [far, every[0]]
+    together = problem.batch(np.array(every))
+    for k, point in enumerate(every):
+        alone = problem.batch(point[None])
+        assert np.array_equal(together.F[k], alone.F[0], equal_nan=True)
+        assert np.allclose(together.G[k], alone.G[0], rtol=1e-12, atol=0.0, equal_nan=True)
 
 
 def test_distances_that_no_teeth_fit_are_named(tmp_path):

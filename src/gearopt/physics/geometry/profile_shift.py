@@ -153,17 +153,13 @@ class Shifting:
     @np.errstate(invalid="ignore")
     def shifts(self, meshing: Meshing) -> tuple[Any, Any, Any]:
         """Return x1, x2 and the shortening k of both tips; NaN outside SUMS, and without a root."""
-        numbers = meshing.module, *meshing.teeth
-        module, first, second = np.broadcast_arrays(*(np.asarray(v, float) for v in numbers))
-        total = np.asarray(meshing.shift_sum)
+        numbers = meshing.module, *meshing.teeth, meshing.helix_angle, meshing.distance
+        columns = np.broadcast_arrays(*(np.asarray(v, float) for v in numbers))
+        total = np.broadcast_to(meshing.shift_sum, columns[0].shape)
         near = (total >= SUMS[0]) & (total <= SUMS[1])
-        inside = Meshing(
-            module[near],
-            (first[near], second[near]),
-            *(meshing.helix_angle, meshing.racks),
-            meshing.distance,
-        )
-        pinion = np.full(module.shape, np.nan)
+        module, first, second, helix, distance = (column[near] for column in columns)
+        inside = Meshing(module, (first, second), helix, meshing.racks, distance)
+        pinion = np.full(total.shape, np.nan)
         pinion[near] = RULES[self.rule](inside)
         return pinion[()], (total - pinion)[()], (meshing.tip_alteration + 0.0 * pinion)[()]
 
