@@ -65,14 +65,14 @@ def written(tmp_path, text):
     return path
 
 
-def possible(train, k, module, z1, z2, limits):
-    """The pair of a distance, shifted by equal sliding, where it keeps the limits; else None."""
+def possible(train, k, module, z1, z2, limits, shift=None):
+    """The pair of a distance where it keeps the limits; else None. shift: x1, else the rule's."""
     cut = train.stages[k].toothing
     numbers = cut.helix_angle, cut.racks
     made = Meshing(module, (z1, z2), *numbers, cut.working_distance)
     if not -1.0 <= made.shift_sum <= 2.0:
         return None
-    x1 = float(equal_sliding(made))
+    x1 = float(equal_sliding(made)) if shift is None else shift
     shifts = x1, float(made.shift_sum) - x1
     bare = GearPair.of_teeth(module, z1, z2, 1.0, *(numbers[0], cut.racks[0]), shifts)
     shorter = float(made.tip_alteration)
@@ -112,14 +112,14 @@ def narrowest(train, k, pair, torque):
     return high
 
 
-def shares(train, k, torque, ratios, limits=(0.2, 1.1, 3.0)):
+def shares(train, k, torque, ratios, limits=(0.2, 1.1, 3.0), shift=None):
     """Volume and teeth of every pair of a stage that carries, of ratios between two."""
     for module in map(float, train.stages[k].modules):
         low, high = train.stages[k].pinion_teeth
         for z1 in range(low, high + 1):
             first, last = int(np.ceil(ratios[0] * z1)), int(np.floor(ratios[1] * z1))
             for z2 in range(first, last + 1):
-                pair = possible(train, k, module, z1, z2, limits)
+                pair = possible(train, k, module, z1, z2, limits, shift)
                 if pair is not None:
                     width = narrowest(train, k, pair, torque)
                     yield float(pair.of_width(width).volume), module, z1, z2

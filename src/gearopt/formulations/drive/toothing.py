@@ -19,7 +19,8 @@ class Toothing:
     pressure angle; profile_shifts x and tip_alterations k in normal modules; thickness_allowances
     A_sn [mm]; working_distance: a given centre distance [mm], None: the one without backlash of
     nominal teeth. shifting: how profile shifts and tip alterations follow from it, None: they are
-    given. Of many pairs (n,) helix angle and distance may be arrays. ValueError for other angles.
+    given. pinion_shift: x1 at a given distance, None: that of the rule of shifting. Of many pairs
+    (n,) helix angle, distance and pinion_shift may be arrays. ValueError for other angles.
     Source: ISO 21771:2007.
     """
 
@@ -30,6 +31,7 @@ class Toothing:
     thickness_allowances: tuple[float, float] = (0.0, 0.0)
     working_distance: Any = None
     shifting: Shifting | None = None
+    pinion_shift: Any = None
 
     def __post_init__(self) -> None:
         if not np.all(np.abs(self.helix_angle) < math.pi / 3.0):  # whose cosine is rational
@@ -56,9 +58,10 @@ class Toothing:
         return self.working_distance is None and sum(self.profile_shifts) == 0
 
     def made(self, pair: GearPair) -> bool:
-        """Whether a pair of floats has this helix angle and, where one is given, this distance."""
+        """Whether a pair of floats has this helix angle and, where given, this distance and x1."""
         helix, distance = pair.pinion.helix_angle, pair.working_distance
-        return bool(helix == self.helix_angle and distance == self.working_distance)
+        shifted = self.pinion_shift is None or pair.pinion.profile_shift == self.pinion_shift
+        return bool(helix == self.helix_angle and distance == self.working_distance and shifted)
 
     def pair(
         self,
@@ -81,7 +84,8 @@ class Toothing:
         """Profile shifts x1, x2 and shortening k of both tips that follow from the distance."""
         assert self.shifting is not None
         numbers = module, (pinion_teeth, wheel_teeth), self.helix_angle
-        return self.shifting.shifts(Meshing(*numbers, self.racks, self.working_distance))
+        meshing = Meshing(*numbers, self.racks, self.working_distance)
+        return self.shifting.shifts(meshing, self.pinion_shift)
 
     def of_diameter(
         self, module: Any, pinion_teeth: Any, pinion_diameter: Any, ratio: Any, face_width: Any
@@ -137,21 +141,29 @@ class Toothing:
         return (first, second), (shorter, shorter), bodies
 
     def alike(self, other: "Toothing") -> bool:
-        """Whether another one differs in helix angle and given distance alone."""
-        given = self.working_distance is None, other.working_distance is None
-        return given[0] == given[1] and all(
-            getattr(self, name) == getattr(other, name) for name in ALIKE
+        """Whether another one differs in helix angle, given distance and pinion_shift alone."""
+        same = all(getattr(self, name) == getattr(other, name) for name in ALIKE)
+        return same and all(
+            (getattr(self, name) is None) == (getattr(other, name) is None) for name in COLUMNS
         )
 
 
+COLUMNS = ("helix_angle", "working_distance", "pinion_shift")  # in which toothings may differ
 ALIKE = ("racks", "profile_shifts", "tip_alterations", "thickness_allowances", "shifting")
 
 
 def in_columns(toothings: Sequence[Toothing]) -> Toothing:
-    """Several toothings that are alike as one, whose helix angles and distances are arrays."""
+    """Several toothings that are alike as one, whose COLUMNS are arrays where they are given."""
     first = toothings[0]
-    helices = np.array([toothing.helix_angle for toothing in toothings])
-    if first.working_distance is None:
-        return replace(first, helix_angle=helices)
-    distances = np.array([toothing.working_distance for toothing in toothings])
-    return replace(first, helix_angle=helices, working_distance=distances)
+    names = [name for name in COLUMNS if getattr(first, name) is not None]
+    columns: dict[str, Any] = {
+        name: np.array([getattr(t, name) for t in toothings]) for name in names
+    }
+    return replace(first, **columns)
+
+
+def taken(columns: Toothing, row: Any) -> Toothing:
+    """Some of the toothings of `in_columns`, by their places (n,)."""
+    held = {name: getattr(columns, name) for name in COLUMNS}
+    some: dict[str, Any] = {name: v[row] for name, v in held.items() if v is not None}
+    return replace(columns, **some)

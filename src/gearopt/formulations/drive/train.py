@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.drive.toothing import Toothing, in_columns
+from gearopt.formulations.drive.toothing import Toothing, in_columns, taken
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
 from gearopt.physics.blanks import SOLID, Blank
@@ -94,7 +94,8 @@ class Stage:
     [mm], increasing (for the continuous form its first and last are limits; empty: any).
     pinion_teeth, wheel_teeth, ratio u = z2/z1 >= 1: minimum and maximum (None: no
     limit). wheel_diameter: maximum [mm] of the wheel's reference diameter. toothings: ways of
-    cutting its gears, of which one is chosen; they differ in helix angle and given distance alone.
+    cutting its gears, of which one is chosen; they differ in helix angle, given distance
+    and pinion_shift alone.
     overlap: minimum overlap ratio, 0: no limit; axial_force: maximum [N] at the train's torque.
     options: ways of making them that are rated, of which one is chosen; none: the law limits alone.
     blanks: of pinion and wheel.
@@ -115,7 +116,7 @@ class Stage:
 
     def __post_init__(self) -> None:
         if not all(self.toothings[0].alike(other) for other in self.toothings[1:]):
-            raise ValueError("toothings of a stage differ in helix angle and distance alone")
+            raise ValueError("toothings of a stage differ in helix angle, distance and x1 alone")
 
     @property
     def toothing(self) -> Toothing:
@@ -126,12 +127,7 @@ class Stage:
         """Toothing of pairs (n,) or of one; row: which of its toothings, from 0."""
         if len(self.toothings) == 1:
             return self.toothings[0]
-        if not np.ndim(row):
-            return self.toothings[int(row)]
-        columns = self._columns
-        distances = columns.working_distance
-        at = None if distances is None else distances[row]
-        return replace(columns, helix_angle=columns.helix_angle[row], working_distance=at)
+        return taken(self._columns, row) if np.ndim(row) else self.toothings[int(row)]
 
     @cached_property
     def _columns(self) -> Toothing:

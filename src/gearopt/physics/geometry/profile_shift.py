@@ -151,8 +151,11 @@ class Shifting:
     sliding: float = 3.0
 
     @np.errstate(invalid="ignore")
-    def shifts(self, meshing: Meshing) -> tuple[Any, Any, Any]:
-        """Return x1, x2 and the shortening k of both tips; NaN outside SUMS, and without a root."""
+    def shifts(self, meshing: Meshing, given: Any = None) -> tuple[Any, Any, Any]:
+        """Return x1, x2 and the shortening k of both tips; NaN outside SUMS, and without a root.
+
+        given: x1, instead of that of the rule.
+        """
         numbers = meshing.module, *meshing.teeth, meshing.helix_angle, meshing.distance
         columns = np.broadcast_arrays(*(np.asarray(v, float) for v in numbers))
         total = np.broadcast_to(meshing.shift_sum, columns[0].shape)
@@ -160,7 +163,10 @@ class Shifting:
         module, first, second, helix, distance = (column[near] for column in columns)
         inside = Meshing(module, (first, second), helix, meshing.racks, distance)
         pinion = np.full(total.shape, np.nan)
-        pinion[near] = RULES[self.rule](inside)
+        if given is None:
+            pinion[near] = RULES[self.rule](inside)
+        else:
+            pinion[near] = np.broadcast_to(given, total.shape)[near]
         return pinion[()], (total - pinion)[()], (meshing.tip_alteration + 0.0 * pinion)[()]
 
     @np.errstate(invalid="ignore", divide="ignore")

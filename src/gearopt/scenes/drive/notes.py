@@ -72,11 +72,17 @@ def _noted(scene: Scene, result: Result, exact: bool) -> Result:
 
 
 def _chosen(scene: Scene) -> list[str]:
-    """Sentences on the stages that choose from several helix angles or centre distances."""
+    """Sentences on the stages that choose from several helix angles, distances or shifts."""
     found: dict[tuple[str, str], list[int]] = {}
     for k, own in enumerate(scene.stage_tables, 1):
         helix = scene.gears.helix_angle if own.helix_angle is None else own.helix_angle
-        for name, held in (("helix angle", helix), ("centre distance", own.centre_distance)):
+        shift = scene.shift.pinion_shift if scene.shift and scene.shifted(own) else None
+        choices = {
+            "helix angle": helix,
+            "centre distance": own.centre_distance,
+            "profile shift of the pinion": shift,
+        }
+        for name, held in choices.items():
             if held is not None and (words := in_words(held)):
                 found.setdefault((name, words), []).append(k)
     return [
@@ -158,12 +164,17 @@ def _teeth(scene: Scene) -> list[str]:
     each = [scene.toothings(own)[0] for own in scene.stage_tables]
     shifted = any(any(cut.profile_shifts) for cut in each)
     shifts = "with the profile shifts of the file" if shifted else "without profile shift"
-    rule = next((cut.shifting for cut in each if cut.shifting is not None), None)
-    if rule is not None:
+    given = next((cut for cut in each if cut.shifting is not None), None)
+    if given is not None and given.shifting is not None:
         shifts = (
             "whose profile shifts follow from the given centre distances, shared out by the rule "
-            f"{rule.rule}, with both tips shortened alike"
+            f"{given.shifting.rule}, with both tips shortened alike"
         )
+        if given.pinion_shift is not None:
+            shifts = (
+                "whose pinions have the profile shift of the file, that of their wheels following "
+                "from the given centre distances, with both tips shortened alike"
+            )
     ends = "losses in mesh and bearings are neglected"
     sentences = [f"The gears are external cylindrical ones {shifts}; {ends}."]
     usual = {replace(ISO_53_A, pressure_angle=r.pressure_angle) for cut in each for r in cut.racks}

@@ -91,6 +91,7 @@ RANGE = (
     "[limits] instead, or one number"
 )
 MOST_STAGES = 6
+MOST_WAYS = 10_000  # helix angles times distances times shifts of a stage
 HELIX_LIMITS = ("overlap_ratio", "axial_force")
 PROCESSES = ("process_one", "process_two")  # tables; as methods with a hyphen
 STAGES = span(whole(2, 1, MOST_STAGES), 2, single=True)
@@ -293,9 +294,22 @@ class Scene(Table):
         if self.shift is not None and not shifted:
             rule = "changes nothing: no gears are chosen at a given centre_distance of a [[stage]]"
             raise refuse(rule, at=("shift",), action="remove")
+        if self.shift is not None and self.shift.pinion_shift is not None:
+            if "rule" in self.shift.model_fields_set:
+                rule = "changes nothing beside pinion_shift"
+                raise refuse(rule, at=("shift", "rule"), action="remove")
+            self._check_ways(shifted)
         for k, own in enumerate(self.stage if self.to_size else ()):  # else a rating refuses it
             if k not in shifted:
                 check_mesh(self._stage(own), k, own, self.gears)
+
+    def _check_ways(self, stages: list[int]) -> None:
+        """Refuse more ways to cut the teeth of stages (from 0) than are looked at."""
+        ways = max(len(self.toothings(self.stage[k])) for k in stages)
+        if ways > MOST_WAYS:
+            rule = f"makes {ways:,} ways of cutting a stage with its helix angles and distances"
+            tell = f"Give fewer of these, for {MOST_WAYS:,} ways at most"
+            raise refuse(rule, tell, ("shift", "pinion_shift"), "tell")
 
     def _lacks(self, what: str) -> str:
         """What the file lacks for gears that are chosen with such distances, angles or limits."""
@@ -332,8 +346,12 @@ class Scene(Table):
         if not self.shifted(own):
             return toothings(own, self.gears)
         made = toothings(own, self.gears, self._reach(own))
-        shifting = (self.shift or ShiftTable()).shifting
-        return tuple(replace(teeth, shifting=shifting) for teeth in made)
+        table = self.shift or ShiftTable()
+        made = tuple(replace(teeth, shifting=table.shifting) for teeth in made)
+        if table.pinion_shift is None:
+            return made
+        shifts = [float(shift) for shift in values_of(table.pinion_shift)]
+        return tuple(replace(teeth, pinion_shift=x) for teeth in made for x in shifts)
 
     def _reach(self, own: StageTable) -> tuple[float, float]:
         """Ends of the centre distances [mm] that teeth of a stage may have, whatever their shifts.
@@ -493,6 +511,8 @@ class Scene(Table):
         def away(teeth: Toothing) -> float:
             distance = teeth.working_distance
             off = 0.0 if distance is None else abs(distance - stage.centre_distance_mm)
+            if teeth.pinion_shift is not None:
+                off += abs(teeth.pinion_shift - stage.pinion_profile_shift)
             return abs(math.degrees(teeth.helix_angle) - stage.helix_angle_deg) + off
 
         return min(self.toothings(own), key=away)

@@ -1,4 +1,4 @@
-"""Field types of problem files for quantities to choose from: lists, ranges with a step, series."""
+"""Field types of problem files for values to choose from: lists, ranges with a step, series."""
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -7,7 +7,7 @@ from typing import Any
 from gearopt.physics.preferred_numbers import PREFERRED, preferred_numbers
 from gearopt.scenes.reading.fields import Reads, refuse
 from gearopt.scenes.reading.lists import mended, several
-from gearopt.scenes.reading.toml import toml_text
+from gearopt.scenes.reading.toml import exact, toml_text
 from gearopt.units import Quantity
 
 MAX_STEPS = 200  # values of a range with a step, at most
@@ -15,29 +15,43 @@ KEYS_OF_RANGE = ("from", "to", "step")
 KEYS_OF_SERIES = ("from", "to", "series")
 
 
+def _number(value: Any) -> Fraction:
+    number: Fraction = value.number if isinstance(value, Quantity) else value
+    return number
+
+
 @dataclass(frozen=True)
 class Steps:
-    """A range of quantities of one unit with a step, both ends included where a step meets them."""
+    """A range with a step, both ends included where a step meets them.
 
-    low: Quantity
-    high: Quantity
-    step: Quantity
+    Of quantities of one unit, or of pure numbers.
+    """
+
+    low: Any
+    high: Any
+    step: Any
 
     @property
     def count(self) -> int:
         """Number of values."""
-        return int((self.high.number - self.low.number) / self.step.number) + 1
+        low, high, step = map(_number, (self.low, self.high, self.step))
+        return int((high - low) / step) + 1
 
     @property
-    def values(self) -> tuple[Quantity, ...]:
+    def values(self) -> tuple[Any, ...]:
         """The values, ascending."""
-        low, step = self.low.number, self.step.number
-        return tuple(replace(self.low, number=low + k * step) for k in range(self.count))
+        low, step = _number(self.low), _number(self.step)
+        numbers = [low + k * step for k in range(self.count)]
+        if not isinstance(self.low, Quantity):
+            return tuple(numbers)
+        return tuple(replace(self.low, number=number) for number in numbers)
 
     @property
-    def written(self) -> dict[str, str]:
+    def written(self) -> dict[str, Any]:
         """The range as a file has it."""
-        return dict(zip(KEYS_OF_RANGE, map(str, (self.low, self.high, self.step)), strict=True))
+        ends = self.low, self.high, self.step
+        texts = [str(end) if isinstance(end, Quantity) else exact(end) for end in ends]
+        return dict(zip(KEYS_OF_RANGE, texts, strict=True))
 
 
 @dataclass(frozen=True)
@@ -67,10 +81,11 @@ class Preferred:
         return dict(zip(KEYS_OF_SERIES, (*ends, self.series), strict=True))
 
 
-Choice = Quantity | tuple[Quantity, ...] | Steps | Preferred  # what `to_choose` reads
+# what `to_choose` reads: of quantities, or of pure numbers
+Choice = Quantity | Fraction | tuple[Any, ...] | Steps | Preferred
 
 
-def values_of(value: Choice, reach: tuple[float, float] = (0.0, 0.0)) -> tuple[Quantity, ...]:
+def values_of(value: Choice, reach: tuple[float, float] = (0.0, 0.0)) -> tuple[Any, ...]:
     """The values that a key of `to_choose` holds; reach [mm]: those of a series without ends."""
     if isinstance(value, Steps):
         return value.values
@@ -84,12 +99,13 @@ def in_words(value: Choice) -> str:
     if isinstance(value, Preferred):
         ends = "" if value.low is None else f", {value.low} to {value.high}"
         return f"the series {value.series} of ISO 3 (unverified){ends}"
-    values = sorted(values_of(value), key=lambda one: one.value)
-    return f"{len(values)}, {values[0]} to {values[-1]}" if len(values) > 1 else ""
+    values = sorted(values_of(value), key=lambda one: getattr(one, "value", one))
+    low, high = (v if isinstance(v, Quantity) else exact(v) for v in (values[0], values[-1]))
+    return f"{len(values)}, {low} to {high}" if len(values) > 1 else ""
 
 
 def to_choose(item: Reads, sample: Steps | Preferred) -> Reads:
-    """Read one quantity, or several to choose from: a list, or a range {from, to, step}.
+    """Read one value, or several to choose from: a list, or a range {from, to, step}.
 
     sample: a right range. A list or range of one value is that value. With a series as the sample
     also one by its name, or between two ends {from, to, series}.
@@ -107,15 +123,16 @@ def to_choose(item: Reads, sample: Steps | Preferred) -> Reads:
         if rule:
             raise refuse(f"has an entry that {rule}", way, action="tell")
         made = Steps(*(item.reader(entry, item.example) for entry in right))
-        if len({made.low.unit, made.high.unit, made.step.unit}) > 1:
+        if len({getattr(end, "unit", "") for end in (made.low, made.high, made.step)}) > 1:
             raise refuse("has entries of different units", way, action="tell")
-        if made.low.number > made.high.number:
+        if _number(made.low) > _number(made.high):
             raise refuse("has its ends in the wrong order", way, action="tell")
-        if made.step.number <= 0:
+        if _number(made.step) <= 0:
             raise refuse("has no step above zero", way, action="tell")
         if made.count > MAX_STEPS:
             raise refuse(f"has {made.count:,} values, above {MAX_STEPS}", way, action="tell")
-        return made if made.count > 1 else made.low
+        one: Quantity | Fraction = made.low
+        return made if made.count > 1 else one
 
     def between(value: dict[str, Any]) -> Choice:
         ends, rule = mended(item, [value[name] for name in KEYS_OF_SERIES[:2]])
@@ -139,11 +156,12 @@ def to_choose(item: Reads, sample: Steps | Preferred) -> Reads:
         if isinstance(value, dict):
             return stepped(value)
         if not isinstance(value, list | tuple):
-            one: Quantity = item.reader(value, item.example)
+            one: Quantity | Fraction = item.reader(value, item.example)
             return one
         entries = listed.reader(list(value), listed.example)
-        found = tuple({entry.exact: entry for entry in entries}.values())
-        return found[0] if len(found) == 1 else found
+        found = tuple({getattr(entry, "exact", entry): entry for entry in entries}.values())
+        first: Quantity | Fraction = found[0]
+        return first if len(found) == 1 else found
 
     listed = several(item, [item.example])
     ends = {name: item.schema for name in KEYS_OF_RANGE}

@@ -250,10 +250,12 @@ def _meshing(
     of shifts from -1 to 2 leaves room for few.
     """
     sums, place = np.unique(z1 + z2, return_inverse=True)
-    near = _near(stage, sums, toothings)
-    pair, distance = np.nonzero(np.asarray(near.any(axis=0))[place])
-    z1, z2, toothing = z1[pair], z2[pair], toothings[distance]
-    allowed = _shiftable(stage, z1, z2, toothing, near[:, place[pair], distance])
+    distances = np.array([stage.toothings[k].working_distance for k in toothings])
+    _, first_of, distance = np.unique(distances, return_index=True, return_inverse=True)
+    near = _near(stage, sums, toothings[first_of])
+    pair, way = np.nonzero(np.asarray(near.any(axis=0))[:, distance][place])
+    z1, z2, toothing = z1[pair], z2[pair], toothings[way]
+    allowed = _shiftable(stage, z1, z2, toothing, near[:, place[pair], distance[way]])
     keep = allowed.any(axis=0)
     allowed, toothing = allowed[:, keep], toothing[keep]
     first = allowed.argmax(axis=0).astype(np.int64)

@@ -159,7 +159,10 @@ def _stage(scene: Scene, own: StageTable, stage: Stage, dropped: set[str]) -> St
     law = zip(scene.law.names, stage.allowable, strict=True)
     toothings = stage.toothings
     if DISTANCE in dropped:
-        free = [replace(cut, working_distance=None, shifting=None) for cut in toothings]
+        free = [
+            replace(cut, working_distance=None, shifting=None, pinion_shift=None)
+            for cut in toothings
+        ]
         toothings = tuple(dict.fromkeys(free))
     return replace(
         stage,

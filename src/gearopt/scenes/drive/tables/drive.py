@@ -277,6 +277,11 @@ class Limits(Loaded):
         return own or units.parse(PRESETS[str(self.preset)][name], "stress")
 
 
+PINION_SHIFT = to_choose(
+    number(Fraction(3, 10), -1, 2, zero=True), Steps(*(Fraction(n, 10) for n in (0, 6, 1)))
+)
+
+
 class ShiftTable(Table):
     """How profile shifts follow from a centre distance, and what teeth may become by them."""
 
@@ -284,6 +289,12 @@ class ShiftTable(Table):
         Shifting.rule,
         description="Distribution of the sum: equal sliding (specific sliding at both root ends "
         "alike), after Roloff, after Henriot (both from memory: unverified)",
+    )
+    pinion_shift: Annotated[Choice | None, PINION_SHIFT] = Field(
+        None,
+        description="Profile shift of the pinions instead of a rule, the wheels' follow from the "
+        "distance: a number, or several to choose from, a list or a range { from = 0, to = 0.6, "
+        "step = 0.1 }",
     )
     tip_thickness: Annotated[Fraction, number(0.4, 0, 1)] = Field(
         Fraction(1, 5),
