@@ -44,6 +44,8 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "helical_unit": "A unit as of catalogues: hunting teeth, whole widths, both standards.",
         "given_distance": "Teeth, module and shifts chosen for a housing of 125 mm, proven.",
         "preferred_distance": "A distance of the series R20 and a helix angle chosen, too.",
+        "unit_of_r20": "Two stages whose centre distances are preferred numbers.",
+        "coaxial_unit": "The same, the output in line with the input: `coaxial = true`.",
         "iso_tr_6336_30_at_distance": "The pair of `iso_tr_6336_30` chosen anew at its distance.",
         "wind_pair_at_distance": "The pair of `wind_pair` chosen anew at its centre distance.",
         "minimum_volume_pair": "A spur pair of minimum volume, as a paper has it, proven.",

@@ -59,6 +59,8 @@ LONG = (
         "preferred_distance",
         "iso_tr_6336_30_at_distance",
         "wind_pair_at_distance",
+        "unit_of_r20",
+        "coaxial_unit",
         "helical_unit",
         "elevator_by_both",
         "materials_by_cost",

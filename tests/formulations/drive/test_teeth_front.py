@@ -12,7 +12,7 @@ from rated_drives import agma, some_iso, some_rated_drive
 from small_drives import drive
 
 from gearopt.formulations.drive import teeth
-from gearopt.formulations.drive.teeth.front import fronts, teeth_of
+from gearopt.formulations.drive.teeth.front import fronts
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.pareto.tradeoff import found
 from gearopt.optimise.result import Budget
@@ -41,7 +41,7 @@ def same(train, search, most=None, choices=every_choice):
         every, values = every[inside], values[inside]
     kept = unbeaten(every, values) if len(values) else []
     wanted = sorted(every[kept].tolist())
-    made = [teeth_of(search, search.made, k) for k in range(len(search.values))]
+    made = [tuple((p.pinion_teeth, p.wheel_teeth) for p in pairs) for pairs, _ in search.trains]
     assert wanted == sorted([list(map(list, one)) for one in made])
     assert np.sort(search.values, axis=0) == pytest.approx(np.sort(values[kept], axis=0), rel=1e-12)
     assert not search.clock.stopped

@@ -172,8 +172,9 @@ class Train:
     others: further objectives, of a Pareto front; weights: what the objective WEIGHTED adds. law:
     what limits the stages. speed: that of the input [rad/s], for laws that depend on it. safety:
     S_F and S_H asked for of stages with options. same_option: all stages take their options of
-    one and the same number, which have the same materials. keys: places of `numbers` in a problem
-    file, one per stage for what a stage has of its own.
+    one and the same number, which have the same materials. distances: rows of given centre
+    distances [mm] of all stages that go together; (): all do. keys: places of `numbers` in a
+    problem file, one per stage for what a stage has of its own.
     """
 
     torque: float
@@ -189,6 +190,7 @@ class Train:
     speed: float = 0.0
     safety: tuple[float, float] = (1.0, 1.0)
     same_option: bool = False
+    distances: tuple[tuple[float, ...], ...] = ()
     keys: Mapping[str, str | tuple[str, ...]] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
@@ -259,6 +261,19 @@ class Train:
         count = len(self.stages[0].options)
         made = [[replace(s, options=(s.options[k],)) for s in self.stages] for k in range(count)]
         return tuple(replace(self, stages=tuple(stages)) for stages in made)
+
+    @property
+    def of_one_row(self) -> tuple["Train", ...]:
+        """The drives of which this one is the best: one for each row of its distances."""
+        return tuple(map(self._at, self.distances)) or (self,)
+
+    def _at(self, row: tuple[float, ...]) -> "Train":
+        """The drive at given centre distances [mm]."""
+        stages = tuple(
+            replace(stage, toothings=tuple(t for t in stage.toothings if t.working_distance == a))
+            for stage, a in zip(self.stages, row, strict=True)
+        )
+        return replace(self, stages=stages, distances=())
 
     @property
     def of_one_material(self) -> tuple["Train", ...]:

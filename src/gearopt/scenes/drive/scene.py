@@ -16,6 +16,7 @@ from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair, transverse_pressure_angle
 from gearopt.physics.geometry.profile_shift import SUMS
 from gearopt.physics.loads import torque
+from gearopt.scenes.drive.distances import rows_together, together
 from gearopt.scenes.drive.face_widths import check_width, face_width
 from gearopt.scenes.drive.rating.checks import (
     check_given,
@@ -286,6 +287,8 @@ class Scene(Table):
         asked = asked or ("process_two" if self.process_two is not None else "")
         self._check_choices()
         self._check_helix_limits()
+        if not self.several:
+            self._distances(self.stage_tables)
         lacks = "" if self.given else self._lacks("at a given centre distance")
         check_teeth(self.stage, self.gears, lacks, aim, asked)
         shifted = [k for k, own in enumerate(self.stage) if self.shifted(own)]
@@ -474,8 +477,23 @@ class Scene(Table):
             speed=self.duty.input_speed.value,
             safety=safety,
             same_option=self.gears.same_materials and self.by_ratings,
+            distances=self._distances(tables),
             keys=KEYS | self._keys(tables),
         )
+
+    def _distances(self, tables: tuple[StageTable, ...]) -> tuple[tuple[float, ...], ...]:
+        """Rows of centre distances [mm] that go together, of those that stages choose from."""
+        if not together(self.limits):
+            return ()
+        lists = [
+            sorted({one.exact[0] for one in values_of(own.centre_distance, self._reach(own))})
+            if own.centre_distance is not None
+            else []
+            for own in tables
+        ]
+        lacks = "gears that are to be chosen: these are all given" if self.given else ""
+        lacks = lacks or self._lacks("at a given centre distance")
+        return rows_together(self.limits, lists, lacks)
 
     def _keys(self, stages: tuple[StageTable, ...]) -> dict[str, str | tuple[str, ...]]:
         """Return the places of what a stage has of its own; "" where the file has none."""

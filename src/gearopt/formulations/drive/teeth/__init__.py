@@ -268,7 +268,7 @@ def _front(train: Train, problem: Problem, budget: Budget, watch: Watch | None) 
     asked = replace(train, objective=names[0], others=names[1:])
     limits = np.array([most.get(name, math.inf) for name in names])
     run = fronts(asked, limits, Clock(budget, watch))
-    chosen = run.trains()
+    chosen = run.trains
     opened = f"{run.compared:,} trains compared, nodes opened: {run.opened:,}"
     finished = not run.clock.stopped
     words = (

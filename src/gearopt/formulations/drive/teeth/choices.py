@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from gearopt.formulations.drive.shares import objective_share
+from gearopt.formulations.drive.teeth.columns import Index
 from gearopt.formulations.drive.teeth.progress import TIE, Teeth
 from gearopt.formulations.drive.teeth.stage import Table
 from gearopt.formulations.drive.teeth.tables import table
@@ -25,34 +26,59 @@ def best_choices(train: Train, teeth: Teeth) -> tuple[tuple[GearPair, ...], tupl
 def valued(train: Train, teeth: Teeth) -> tuple[float, tuple[GearPair, ...], tuple[int, ...]]:
     """Objective of a train with its best pairs and options, and these; inf: none carries."""
     every = train.of_one_option
-    made = [_choices(one, teeth) for one in every]
-    least = min(range(len(every)), key=lambda k: made[k][0])
-    value, pairs, chosen = made[least]
-    return value, pairs, chosen if len(every) == 1 else (least,) * len(teeth)
+    made = [(*_choices(one, teeth), number) for number, one in enumerate(every)]
+    value, pairs, chosen, number = min(made, key=lambda choice: choice[0])
+    return value, pairs, chosen if len(every) == 1 else (number,) * len(teeth)
 
 
 def _choices(train: Train, teeth: Teeth) -> tuple[float, tuple[GearPair, ...], tuple[int, ...]]:
     """Return the objective of a train with the best pairs and options, and these; inf: none."""
-    torque, value, found, chosen = train.torque, 0.0, [], []
+    torque, value, pairs, options = train.torque, 0.0, [], []
+    loaded: list[tuple[Table, float]] = []
     for k, (z1, z2) in enumerate(teeth):
-        only = table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio)
-        row = _best_row(only, torque)
+        loaded.append((table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio), torque))
+        torque *= z2 / z1
+    rows = _best_rows(train, loaded)
+    if len(rows) < len(teeth):
+        return math.inf, (), ()
+    for k, ((only, torque), row) in enumerate(zip(loaded, rows, strict=True)):
         module, width, option = only.choose(torque, row)
-        found.append(train.pair(k, module, z1, z2, width, only.toothing[row]))
-        chosen.append(option)
+        pairs.append(train.pair(k, module, *teeth[k], width, only.toothing[row]))
+        options.append(option)
         value += (
-            float(objective_share(train, k, found[-1], option=option))
+            float(objective_share(train, k, pairs[-1], option=option))
             if module < math.inf
             else math.inf
         )
-        torque *= z2 / z1
-    return value, tuple(found), tuple(chosen)
+    return value, tuple(pairs), tuple(options)
 
 
-def _best_row(teeth: Table, torque: float) -> int:
-    """Return the row of a table of given teeth of the least cost: the first of equal ones."""
-    rows = np.arange(len(teeth.ratio))
-    if len(rows) == 1:
-        return 0
+def _best_rows(train: Train, loaded: list[tuple[Table, float]]) -> list[int]:
+    """Rows of tables of given teeth, at torques, of the least cost together; none: there are none.
+
+    Of equal ones the first. Distances that go together are those of a row of the train's.
+    """
+    if not train.distances:
+        each = [_best_row(one, torque, np.arange(len(one.ratio))) for one, torque in loaded]
+        return [row for _, row in each]
+    best: tuple[float, list[int]] = math.inf, []
+    for distances in train.distances:
+        each = []
+        for (one, torque), distance in zip(loaded, distances, strict=True):
+            given = np.array([t.working_distance for t in one.stage.toothings])[one.toothing]
+            if not len(places := np.flatnonzero(given == distance)):
+                break
+            each.append(_best_row(one, torque, places))
+        else:
+            value = sum(cost for cost, _ in each)
+            if value < best[0] * (1.0 - TIE):
+                best = value, [row for _, row in each]
+    return best[1]
+
+
+def _best_row(teeth: Table, torque: float, rows: Index) -> tuple[float, int]:
+    """The least cost of some rows of a table of given teeth, and the first row that has it."""
+    if len(rows) == 1 and not teeth.train.distances:
+        return math.nan, int(rows[0])
     costs = teeth.cost(np.full(len(rows), torque), rows)
-    return int(np.flatnonzero(costs <= costs.min() * (1.0 + TIE))[0])
+    return float(costs.min()), int(rows[np.flatnonzero(costs <= costs.min() * (1.0 + TIE))[0]])

@@ -85,6 +85,20 @@ class Nodes:
         return len(self.cost)
 
 
+@dataclass(frozen=True)
+class Designs:
+    """Trains that none beats: values (n, objectives), gear pairs and options.
+
+    clock: of the search; compared: trains that were sized; opened: nodes expanded.
+    """
+
+    values: Array
+    trains: list[tuple[tuple[GearPair, ...], tuple[int, ...]]]
+    clock: Clock
+    compared: int
+    opened: int
+
+
 @dataclass
 class Search:
     """A search as it goes on; it has state because it fills it.
@@ -117,7 +131,7 @@ class Search:
         for k in range(len(self.values)):
             modules, widths = self.made.module[k].tolist(), self.made.width[k].tolist()
             teeth, cuts = (
-                teeth_of(self, self.made, k),
+                _teeth_of(self, self.made, k),
                 zip(self.tables, self.made.pair[k], strict=True),
             )
             toothings = [table.toothing[row] for table, row in cuts]
@@ -136,11 +150,23 @@ class Search:
             raise SearchEnded
 
 
-def fronts(train: Train, most: Array, clock: Clock) -> Search:
+def fronts(train: Train, most: Array, clock: Clock) -> Designs:
     """Return every train that none beats, ties once; `clock.stopped`: not exhausted.
 
     most (objectives,): largest values of interest; inf: any.
     """
+    runs = [_searched(row, most, clock) for row in train.of_one_row]
+    compared, opened = (sum(getattr(run, name) for run in runs) for name in ("compared", "opened"))
+    values = np.concatenate([run.values for run in runs])
+    trains = [design for run in runs for design in run.trains()]
+    if len(runs) > 1:
+        left = unbeaten(values)
+        values, trains = values[left], [trains[k] for k in left.tolist()]
+    return Designs(values, trains, clock, compared, opened)
+
+
+def _searched(train: Train, most: Array, clock: Clock) -> Search:
+    """Search the drives of one row of distances."""
     count = len(train.objectives)
     run = Search(train, clock, most, np.empty((0, count)), values=np.empty((0, count)))
     shelf: list[RatedTable] = []
@@ -352,11 +378,11 @@ def _within(run: Search, nodes: Nodes) -> Mask:
     good = (nodes.log_ratio > low + EDGE) & (nodes.log_ratio < high - EDGE)
     near = ~good & (nodes.log_ratio > low - EDGE) & (nodes.log_ratio < high + EDGE)
     for k in np.flatnonzero(near):
-        good[k] = within(run.train, teeth_of(run, nodes.made, int(k)))
+        good[k] = within(run.train, _teeth_of(run, nodes.made, int(k)))
     return np.asarray(good)
 
 
-def teeth_of(run: Search, made: Choice, k: int) -> Teeth:
+def _teeth_of(run: Search, made: Choice, k: int) -> Teeth:
     """Return the teeth of a train."""
     rows = zip(run.tables, made.pair[k], strict=False)
     return tuple((int(t.z1[j]), int(t.z2[j])) for t, j in rows)

@@ -149,11 +149,12 @@ class RatedTable(Table):
     def _place(self, other: Table) -> Index | None:
         """Return where the pairs of another table are in this one; None where one is not."""
         alike = not self._by_module or np.array_equal(self.modules, other.modules)
-        alike = alike and self.stage.toothings == other.stage.toothings
+        toothings, ways = self.stage.toothings, len(self.stage.toothings)
+        alike = alike and set(other.stage.toothings) <= set(toothings)
         if not alike or len(other.ratio) > len(self.ratio):
             return None
-        ways = len(self.stage.toothings)
-        own, asked = (t.names * ways + t.toothing for t in (self, other))
+        same = np.array([toothings.index(toothing) for toothing in other.stage.toothings])
+        own, asked = self.names * ways + self.toothing, other.names * ways + same[other.toothing]
         order = np.argsort(own, kind="stable")
         place: Index = order[np.searchsorted(own, asked, sorter=order) % max(1, len(own))]
         there = np.array_equal(own[place], asked)

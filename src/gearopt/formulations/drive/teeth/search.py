@@ -92,7 +92,7 @@ def search(
     cut = min(maximum, first_cut(train))
     progress.whole = whole and cut == maximum
     try:
-        for one in train.of_one_material if train.rated else ():
+        for one in _glimpses(train):
             _glance(train, one, cut, progress, shelf)
         closed = not progress.found and _look(train, cut, progress, FIRST_LOOK, shelf)
         far = reach(train, cut, maximum, progress.threshold, progress.tick, shelf)
@@ -102,6 +102,16 @@ def search(
     except SearchEnded:
         pass  # `stopped` or `enough` holds the reason
     return progress
+
+
+def _glimpses(train: Train) -> Iterator[Train]:
+    """Rated drives of one material each, at one row of distances, in which a train is looked for.
+
+    Rows are taken from the middle of all, where most trains are.
+    """
+    for one in train.of_one_material if train.rated else ():
+        rows = one.of_one_row
+        yield from sorted(rows, key=lambda row: abs(rows.index(row) - len(rows) // 2))
 
 
 def _glance(
@@ -139,11 +149,12 @@ def _look(
 ) -> bool:
     """Search all ratios up to a cut, on ever finer grids; False when patience ran out.
 
-    Where all stages take the same option, the drives of one option each are searched in turn, that
-    of the least bound first.
+    Where all stages take the same option, or distances that go together, the drives of one option
+    and one row of distances each are searched in turn, that of the least bound first.
     """
     waiting: list[tuple[float, int, Iterator[float]]] = []
-    for k, one in enumerate(train.of_one_option):
+    parts = [row for one in train.of_one_option for row in one.of_one_row]
+    for k, one in enumerate(parts):
         own = stage_tables(one, cut, progress.tick, shelf)
         if all(len(t.ratio) for t in own):
             waiting.append((-math.inf, k, _rounds(one, own, progress, patience)))

@@ -33,6 +33,8 @@ FIELDS: dict[str, tuple[str, int | None]] = {
     "face_width_over_module_low": ("face_width_over_module", 0),
     "face_width_over_module_high": ("face_width_over_module", 1),
     "minimum_face_width": ("minimum_face_width", None),
+    "sum_of_centre_distances_low": ("sum_of_centre_distances", 0),
+    "sum_of_centre_distances_high": ("sum_of_centre_distances", 1),
     "overlap_ratio": ("overlap_ratio", None),
     "axial_force": ("axial_force", None),
     "module": ("module", None),

@@ -24,6 +24,7 @@ Dropped = frozenset[str]
 
 BENDING, CONTACT = "minimum_bending_safety", "minimum_contact_safety"
 DISTANCE = "centre_distance"
+OF_DISTANCES = "coaxial", "sum_of_centre_distances"  # of all stages together
 ORDER = (  # the likeliest to be in conflict first; those of the second group are dear to drop
     (
         *(CONTACT, BENDING, "face_width", "face_width_over_diameter", "face_width_high"),
@@ -34,7 +35,7 @@ ORDER = (  # the likeliest to be in conflict first; those of the second group ar
     (
         *("pinion_teeth", "pinion_teeth_high", "pinion_teeth_low", "ratio_tolerance"),
         *("stage_ratio_low", "wheel_teeth_low", "module_low", "modules", "face_width_low"),
-        *("face_width_over_module_low", DISTANCE),
+        *("face_width_over_module_low", DISTANCE, *OF_DISTANCES),
     ),
 )
 WIDTHS = Fraction(1, 20), Fraction(3)  # b/d1 of free widths
@@ -72,6 +73,7 @@ def _of_all(scene: Scene, train: Train) -> Iterator[str]:
     yield from ["coprime"] * teeth.coprime
     yield from ["same_materials"] * scene.gears.same_materials
     yield "ratio_tolerance"
+    yield from (name for name in OF_DISTANCES if getattr(scene.limits, name))
     if _with_materials(scene) != scene:
         yield "materials"
     if _with_grades(scene) != scene:
@@ -123,6 +125,9 @@ def without(scene: Scene, dropped: Dropped) -> tuple[Train, ...]:
     if "same_materials" in dropped:
         gears = scene.gears.model_copy(update={"same_materials": False})
         scene = scene.model_copy(update={"gears": gears})
+    if gone := {name: None for name in OF_DISTANCES if name in dropped}:
+        limits = scene.limits.model_copy(update=gone)
+        scene = scene.model_copy(update={"limits": limits})
     return tuple(_without(scene.held(count), dropped) for count in scene.counts)
 
 
@@ -146,6 +151,7 @@ def _without(scene: Scene, dropped: Dropped) -> Train:
         safety=(safety[0], safety[1]),
         tolerance=tolerance,
         coprime=train.coprime and "coprime" not in dropped,
+        distances=() if any(name.startswith(DISTANCE) for name in dropped) else train.distances,
     )
 
 

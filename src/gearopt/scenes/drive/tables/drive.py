@@ -249,6 +249,14 @@ class Limits(Loaded):
     wheel_diameter: Length = Field(None, description=WHEEL_IS)
     overlap_ratio: Overlap = Field(None, description=OVERLAP_IS)
     axial_force: Force = Field(None, description=AXIAL_IS)
+    sum_of_centre_distances: Annotated[Lengths | None, span(LENGTH, "300 mm", single=True)] = Field(
+        None,
+        description="Sum of the centre distances that the stages choose from, or a range of it",
+    )
+    coaxial: Annotated[bool, truth()] = Field(
+        False,
+        description="Two stages choose one centre distance: the output in line with the input",
+    )
 
     @classmethod
     def open(cls) -> "Limits":
