@@ -286,7 +286,7 @@ class Limits(Loaded):
 
 
 PINION_SHIFT = to_choose(
-    number(Fraction(3, 10), -1, 2, zero=True), Steps(*(Fraction(n, 10) for n in (0, 6, 1)))
+    number(0.3, -1, 2, zero=True), Steps(*(Fraction(n, 10) for n in (0, 6, 1)))
 )
 
 
