@@ -150,10 +150,14 @@ class RatedTable(Table):
         """Return where the pairs of another table are in this one; None where one is not."""
         alike = not self._by_module or np.array_equal(self.modules, other.modules)
         toothings, ways = self.stage.toothings, len(self.stage.toothings)
-        alike = alike and set(other.stage.toothings) <= set(toothings)
         if not alike or len(other.ratio) > len(self.ratio):
             return None
-        same = np.array([toothings.index(toothing) for toothing in other.stage.toothings])
+        same = np.arange(ways)
+        if other.stage.toothings != toothings:
+            rows = {toothing: row for row, toothing in enumerate(toothings)}
+            if not rows.keys() >= {*other.stage.toothings}:
+                return None
+            same = np.array([rows[toothing] for toothing in other.stage.toothings])
         own, asked = self.names * ways + self.toothing, other.names * ways + same[other.toothing]
         order = np.argsort(own, kind="stable")
         place: Index = order[np.searchsorted(own, asked, sorter=order) % max(1, len(own))]
