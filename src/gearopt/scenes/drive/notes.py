@@ -73,7 +73,7 @@ def _noted(scene: Scene, result: Result, exact: bool) -> Result:
 
 def _chosen(scene: Scene) -> list[str]:
     """Sentences on the stages that choose from several helix angles, distances or shifts."""
-    found: dict[tuple[str, str], list[int]] = {}
+    stages: dict[tuple[str, str], list[int]] = {}
     for k, own in enumerate(scene.stage_tables, 1):
         helix = scene.gears.helix_angle if own.helix_angle is None else own.helix_angle
         shift = scene.shift.pinion_shift if scene.shift and scene.shifted(own) else None
@@ -84,11 +84,11 @@ def _chosen(scene: Scene) -> list[str]:
         }
         for name, held in choices.items():
             if held is not None and (words := in_words(held)):
-                found.setdefault((name, words), []).append(k)
+                stages.setdefault((name, words), []).append(k)
     return [
         f"The {name} of stage{'s' * (len(k) > 1)} {' and '.join(map(str, k))} was chosen from "
         f"{words}."
-        for (name, words), k in found.items()
+        for (name, words), k in stages.items()
     ]
 
 

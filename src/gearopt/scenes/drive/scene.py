@@ -348,13 +348,13 @@ class Scene(Table):
         """Ways in which the teeth of a stage may be cut."""
         if not self.shifted(own):
             return toothings(own, self.gears)
-        made = toothings(own, self.gears, self._reach(own))
+        cuts = toothings(own, self.gears, self._reach(own))
         table = self.shift or ShiftTable()
-        made = tuple(replace(teeth, shifting=table.shifting) for teeth in made)
+        cuts = tuple(replace(teeth, shifting=table.shifting) for teeth in cuts)
         if table.pinion_shift is None:
-            return made
+            return cuts
         shifts = [float(shift) for shift in values_of(table.pinion_shift)]
-        return tuple(replace(teeth, pinion_shift=x) for teeth in made for x in shifts)
+        return tuple(replace(teeth, pinion_shift=x) for teeth in cuts for x in shifts)
 
     def _reach(self, own: StageTable) -> tuple[float, float]:
         """Ends of the centre distances [mm] that teeth of a stage may have, whatever their shifts.
@@ -400,9 +400,9 @@ class Scene(Table):
             if self.layout is not None and self.layout.together:
                 lacks = "together = false in [layout]"
             if lacks:
-                one = values_of(value, (100.0, 100.0))[0]
+                first = values_of(value, (100.0, 100.0))[0]
                 rule = f"has several values to choose from, which need {lacks}"
-                raise refuse(rule, str(one), place, "sample")
+                raise refuse(rule, str(first), place, "sample")
 
     def _check_layout(self) -> None:
         """Check the tables of a layout against the drive and each other."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
+from typing import Any, cast
 
 from gearopt.physics.preferred_numbers import PREFERRED, preferred_numbers
 from gearopt.scenes.reading.fields import Reads, refuse
@@ -112,41 +112,7 @@ def to_choose(item: Reads, sample: Steps | Preferred) -> Reads:
     """
     way = f"Write, for example, {toml_text(sample.written)}"
     in_series = isinstance(sample, Preferred)
-    known = "from, to and step" + (" or series" if in_series else "")
-
-    def stepped(value: dict[str, Any]) -> Choice:
-        if in_series and set(value) == set(KEYS_OF_SERIES):
-            return between(value)
-        if set(value) != set(KEYS_OF_RANGE):
-            raise refuse(f"is not a range with {known}", way, action="tell")
-        right, rule = mended(item, [value[name] for name in KEYS_OF_RANGE])
-        if rule:
-            raise refuse(f"has an entry that {rule}", way, action="tell")
-        made = Steps(*(item.reader(entry, item.example) for entry in right))
-        if len({getattr(end, "unit", "") for end in (made.low, made.high, made.step)}) > 1:
-            raise refuse("has entries of different units", way, action="tell")
-        if _number(made.low) > _number(made.high):
-            raise refuse("has its ends in the wrong order", way, action="tell")
-        if _number(made.step) <= 0:
-            raise refuse("has no step above zero", way, action="tell")
-        if made.count > MAX_STEPS:
-            raise refuse(f"has {made.count:,} values, above {MAX_STEPS}", way, action="tell")
-        one: Quantity | Fraction = made.low
-        return made if made.count > 1 else one
-
-    def between(value: dict[str, Any]) -> Choice:
-        ends, rule = mended(item, [value[name] for name in KEYS_OF_SERIES[:2]])
-        if rule:
-            raise refuse(f"has an entry that {rule}", way, action="tell")
-        if value["series"] not in PREFERRED:
-            raise refuse(f"has no series of {', '.join(PREFERRED)}", way, action="tell")
-        low, high = (item.reader(end, item.example) for end in ends)
-        if low.value > high.value:
-            raise refuse("has its ends in the wrong order", way, action="tell")
-        made = Preferred(value["series"], low, high)
-        if not (found := made.within(0.0, 0.0)):
-            raise refuse(f"holds no value of {made.series}", way, action="tell")
-        return made if len(found) > 1 else found[0]
+    listed = several(item, [item.example])
 
     def read(value: Any, example: Any) -> Choice:
         if isinstance(value, Steps | Preferred):
@@ -154,21 +120,62 @@ def to_choose(item: Reads, sample: Steps | Preferred) -> Reads:
         if in_series and isinstance(value, str) and value in PREFERRED:
             return Preferred(value)
         if isinstance(value, dict):
-            return stepped(value)
+            if in_series and set(value) == set(KEYS_OF_SERIES):
+                return _of_series(item, value, way)
+            return _stepped(item, value, way, " or series" if in_series else "")
         if not isinstance(value, list | tuple):
-            one: Quantity | Fraction = item.reader(value, item.example)
-            return one
+            return cast(Choice, item.reader(value, item.example))
         entries = listed.reader(list(value), listed.example)
-        found = tuple({getattr(entry, "exact", entry): entry for entry in entries}.values())
-        first: Quantity | Fraction = found[0]
-        return first if len(found) == 1 else found
+        distinct = tuple({getattr(entry, "exact", entry): entry for entry in entries}.values())
+        return cast(Choice, distinct[0]) if len(distinct) == 1 else distinct
 
-    listed = several(item, [item.example])
+    return Reads(read, item.example, {"anyOf": _ways(item, listed, in_series)})
+
+
+def _stepped(item: Reads, value: dict[str, Any], way: str, or_series: str) -> Choice:
+    """Read a range with a step; way: what to write instead of a wrong one."""
+    if set(value) != set(KEYS_OF_RANGE):
+        raise refuse(f"is not a range with from, to and step{or_series}", way, action="tell")
+    steps = Steps(*_entries(item, [value[name] for name in KEYS_OF_RANGE], way))
+    if len({getattr(end, "unit", "") for end in (steps.low, steps.high, steps.step)}) > 1:
+        raise refuse("has entries of different units", way, action="tell")
+    if _number(steps.low) > _number(steps.high):
+        raise refuse("has its ends in the wrong order", way, action="tell")
+    if _number(steps.step) <= 0:
+        raise refuse("has no step above zero", way, action="tell")
+    if steps.count > MAX_STEPS:
+        raise refuse(f"has {steps.count:,} values, above {MAX_STEPS}", way, action="tell")
+    return steps if steps.count > 1 else cast(Choice, steps.low)
+
+
+def _of_series(item: Reads, value: dict[str, Any], way: str) -> Choice:
+    """Read preferred numbers between two ends; way: what to write instead of wrong ones."""
+    low, high = _entries(item, [value[name] for name in KEYS_OF_SERIES[:2]], way)
+    if value["series"] not in PREFERRED:
+        raise refuse(f"has no series of {', '.join(PREFERRED)}", way, action="tell")
+    if low.value > high.value:
+        raise refuse("has its ends in the wrong order", way, action="tell")
+    numbers = Preferred(value["series"], low, high)
+    if not (inside := numbers.within(0.0, 0.0)):
+        raise refuse(f"holds no value of {numbers.series}", way, action="tell")
+    return numbers if len(inside) > 1 else inside[0]
+
+
+def _entries(item: Reads, values: list[Any], way: str) -> list[Any]:
+    """The entries of a range as an item reads them."""
+    right, rule = mended(item, values)
+    if rule:
+        raise refuse(f"has an entry that {rule}", way, action="tell")
+    return [item.reader(entry, item.example) for entry in right]
+
+
+def _ways(item: Reads, listed: Reads, in_series: bool) -> list[dict[str, Any]]:
+    """The schemas of what may be written."""
     ends = {name: item.schema for name in KEYS_OF_RANGE}
     table = {"type": "object", "properties": ends, "required": [*KEYS_OF_RANGE]}
-    ways = [item.schema, listed.schema, table]
+    ways: list[dict[str, Any]] = [item.schema, listed.schema, table]
     if in_series:
         ends = {"from": item.schema, "to": item.schema, "series": {"enum": [*PREFERRED]}}
         table = {"type": "object", "properties": ends, "required": [*KEYS_OF_SERIES]}
         ways += [{"enum": [*PREFERRED]}, table]
-    return Reads(read, item.example, {"anyOf": ways})
+    return ways

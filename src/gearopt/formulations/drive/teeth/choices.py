@@ -26,8 +26,8 @@ def best_choices(train: Train, teeth: Teeth) -> tuple[tuple[GearPair, ...], tupl
 def valued(train: Train, teeth: Teeth) -> tuple[float, tuple[GearPair, ...], tuple[int, ...]]:
     """Objective of a train with its best pairs and options, and these; inf: none carries."""
     every = train.of_one_option
-    made = [(*_choices(one, teeth), number) for number, one in enumerate(every)]
-    value, pairs, chosen, number = min(made, key=lambda choice: choice[0])
+    best = [(*_choices(part, teeth), number) for number, part in enumerate(every)]
+    value, pairs, chosen, number = min(best, key=lambda choice: choice[0])
     return value, pairs, chosen if len(every) == 1 else (number,) * len(teeth)
 
 

@@ -98,10 +98,10 @@ def closed(
 
 def _helices(stage: Stage) -> list[list[int]]:
     """Return the toothings of a stage by helix angle."""
-    found: dict[float, list[int]] = {}
+    by_angle: dict[float, list[int]] = {}
     for k, toothing in enumerate(stage.toothings):
-        found.setdefault(toothing.helix_angle, []).append(k)
-    return list(found.values())
+        by_angle.setdefault(toothing.helix_angle, []).append(k)
+    return list(by_angle.values())
 
 
 def _block(stage: Stage, z1: Index, z2: Index, toothings: list[int]) -> _Rows:
@@ -215,10 +215,10 @@ def _allowed(stage: Stage, z1: Index, z2: Index, cosine: float) -> tuple[Index, 
 def _near(stage: Stage, teeth: Index, toothings: Index) -> NDArray[np.bool_]:
     """Whether sums z1 + z2 fit distances, by the sum of shifts: (modules, sums, toothings)."""
     modules = np.array([float(module) for module in stage.modules])[:, None, None]
-    own = stage.toothing_of(toothings)
+    cuts = stage.toothing_of(toothings)
     pinions, wheels = np.ones((len(teeth), 1)), teeth[:, None] - 1.0  # of which the sum counts
     shifts = Meshing(
-        modules, (pinions, wheels), own.helix_angle, own.racks, own.working_distance
+        modules, (pinions, wheels), cuts.helix_angle, cuts.racks, cuts.working_distance
     ).shift_sum
     return np.asarray((shifts >= SUMS[0] - NEAR) & (shifts <= SUMS[1] + NEAR))
 

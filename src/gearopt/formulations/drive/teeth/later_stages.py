@@ -93,8 +93,8 @@ def bound(
                 on = np.isfinite(ahead)  # beyond it no train goes on
                 mask = on if mask is None else mask & on
             before = None if coarse is None else coarse.first[k]
-            made = Cells(cells, ratio_cells, delta, mask, most, before)
-            now, first[k] = tables[k].grid(made, tick)
+            asked = Cells(cells, ratio_cells, delta, mask, most, before)
+            now, first[k] = tables[k].grid(asked, tick)
         minimum[k] = now
         tick()
         to_go[k][:cells] = (now + ahead).min(axis=1)

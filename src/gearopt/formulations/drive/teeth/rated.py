@@ -287,15 +287,15 @@ class RatedTable(Table):
             if cells.useful is not None:
                 inside &= cells.useful[rows[:, None], column]
             row, pair = np.nonzero(inside)
-            low, own = rows[row] * delta, (rows[row] * keeps, pair)
+            low, kept = rows[row] * delta, (rows[row] * keeps, pair)
             ends = [self.train.torque * np.exp(e) for e in (low - EDGE, low + delta + EDGE)]
             place = row * cells.ratio + column[pair]
-            begins = first[own].astype(np.int64)
-            made = self._found((ends[0], ends[1]), pair, most, begins, steps=FIRST_STEPS)
+            begins = first[kept].astype(np.int64)
+            rough = self._found((ends[0], ends[1]), pair, most, begins, steps=FIRST_STEPS)
             if keeps:  # with options one in a larger module may hide another one in this cell
-                first[own] = made.first
+                first[kept] = rough.first
             cost = self._closer(
-                (ends[0], ends[1]), pair, place, made.cost, CELL_TOLERANCE * delta, most
+                (ends[0], ends[1]), pair, place, rough.cost, CELL_TOLERANCE * delta, most
             )
             np.minimum.at(found, (rows[row], column[pair]), cost)
         return found, first if keeps else None
@@ -405,14 +405,14 @@ class RatedTable(Table):
             if self.train.by_width:
                 high = np.minimum(high, low * (limit[some] / worth[some]) * (1.0 + EDGE))
             loads = torque[0][rows[some]], torque[1][rows[some]]
-            own = pair[some], module[some]
+            sizes = pair[some], module[some]
             enough = (max(until[0], VIRTUAL_CLOSE), until[1]) if option == VIRTUAL else until
-            widths = self._narrowest(loads, *own, option, (low, high), *enough)
+            widths = self._narrowest(loads, *sizes, option, (low, high), *enough)
             if option == VIRTUAL:
                 narrow = np.full(len(rows), np.inf)
                 narrow[some] = widths
             else:
-                self._improve(best, rows[some], *own, option, widths)
+                self._improve(best, rows[some], *sizes, option, widths)
 
     @cached_property
     def _virtual(self) -> Option | None:
@@ -424,8 +424,9 @@ class RatedTable(Table):
     def _cheapest(self) -> Train:
         """The drive with a virtual option of the stage that costs no more than any."""
         first, *rest = self.stage.options
-        own = replace(self.stage, options=(first.cheapest_with(rest, self.train.density),))
-        stages = [*self.train.stages[: self.position], own, *self.train.stages[self.position + 1 :]]
+        cheap = replace(self.stage, options=(first.cheapest_with(rest, self.train.density),))
+        before, after = self.train.stages[: self.position], self.train.stages[self.position + 1 :]
+        stages = [*before, cheap, *after]
         return replace(self.train, stages=tuple(stages), same_option=False)
 
     @cached_property
@@ -479,13 +480,13 @@ class RatedTable(Table):
         """Return the narrowest face widths [mm] of pairs with modules (indices); inf: none."""
         one = self.made(self.modules[module], pair)
         rows = self._rows(torque, one, pair, module, option)
-        found = first_width(rows, *ends, close, steps)
+        widths = first_width(rows, *ends, close, steps)
         if math.isfinite(self.stage.axial_force):
             carries = self.stage.axial_use(one, torque[0]) <= 1.0 + ALLOWANCE
-            found = np.where(carries, found, np.inf)
+            widths = np.where(carries, widths, np.inf)
         if self.steps is None:
-            return found
-        return self._stepped(rows, found, ends[1], close)
+            return widths
+        return self._stepped(rows, widths, ends[1], close)
 
     def _rows(
         self,
@@ -499,9 +500,9 @@ class RatedTable(Table):
         speed = self.train.speed_at(torque[0]), self.train.speed_at(torque[1])
         scale = np.ones(len(pair)) if self._by_module else self.modules[module]
         virtual = option == VIRTUAL
-        made = self._virtual if virtual else self.stage.options[option]
-        assert made is not None
-        standards = zip(made.standards, self._prepared[0 if virtual else option], strict=True)
+        chosen = self._virtual if virtual else self.stage.options[option]
+        assert chosen is not None
+        standards = zip(chosen.standards, self._prepared[0 if virtual else option], strict=True)
         found: list[Rows] = [
             standard.rows(prepared.take(place).scaled(scale), one, torque, speed, self.train.safety)
             for standard, prepared in standards

@@ -35,11 +35,11 @@ def toothings(
         (_or(pinion.tip_alteration, 0.0), _or(wheel.tip_alteration, 0.0)),
         (_allowance(pinion), _allowance(wheel)),
     )
-    made = [replace(first, helix_angle=helix.value) for helix in helices]
+    cuts = [replace(first, helix_angle=helix.value) for helix in helices]
     if own.centre_distance is None:
-        return tuple(made)
+        return tuple(cuts)
     distances = [a.value for a in values_of(own.centre_distance, reach)]
-    return tuple(replace(t, working_distance=a) for t in made for a in distances)
+    return tuple(replace(t, working_distance=a) for t in cuts for a in distances)
 
 
 def toothing(own: StageTable, gears: Gears) -> Toothing:
