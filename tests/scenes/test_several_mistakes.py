@@ -58,7 +58,7 @@ gearopt: wrong.toml: gears.helix_angle = "95 deg": is above 45 deg. Write, for e
 helix_angle = "25 deg"
 gearopt: wrong.toml: stage[1].material = "16MnCr5": is not a key here. Nearest: treatment, grade \
 and hardness of a gear, or tables [[material]] to choose from, with a [rating]
-gearopt: wrong.toml: limits.k_factor = "2 N": has the unknown unit N; units of stress: MPa, Pa, \
+gearopt: wrong.toml: limits.k_factor = "2 N": has the unit N of force; units of stress: MPa, Pa, \
 kPa, GPa, bar, N/mm^2, psi, ksi. Write, for example, k_factor = "2.07 MPa"
 gearopt: wrong.toml: limits.pinion_teeth: is missing. Write, for example, pinion_teeth = [20, 40]
 """
