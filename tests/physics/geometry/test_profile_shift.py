@@ -8,6 +8,7 @@ import pytest
 from gearopt.physics.gears import ISO_53_A, GearPair
 from gearopt.physics.geometry.contact import contact_path, specific_sliding
 from gearopt.physics.geometry.fillet import NEGLIGIBLE
+from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.geometry.profile_shift import RULES, Meshing, Shifting, equal_sliding
 from gearopt.physics.geometry.tooth import tip_thickness
 
@@ -105,3 +106,20 @@ def test_the_worse_gear_counts_in_every_limit(worse):
     sine = math.sin(math.radians(20.0))
     deep = 1.25 - 0.38 * (1.0 - sine) - 0.05 - 7.0 * sine**2  # of the straight flank of the rack
     assert used["undercut"] == pytest.approx(1.0 + deep - NEGLIGIBLE)
+
+
+@pytest.mark.parametrize("x1", [-0.3, 0.0, 0.3, None])
+def test_gears_within_the_limits_do_not_interfere(x1):
+    """By the teeth that are made, one by one; sums below 0 bring tips below the form circles."""
+    rng, excluded = np.random.default_rng(7), 0
+    for _ in range(60):
+        z1 = int(rng.integers(16, 40))
+        z2, distance = int(z1 * rng.uniform(1.0, 6.0)), rng.uniform(-1.0, 1.5)
+        made = meshing(1.0, z1, z2, 0.0, 0.5 * (z1 + z2) + distance)
+        pair = paired(made, equal_sliding(made) if x1 is None else x1)
+        used = Shifting(sliding=9.0).used(pair)
+        interferes = any(flaw.name == "interference" for flaw in flaws(pair))
+        good = all(value <= 1.0 for name, value in used.items() if name != "interference")
+        assert not good or (used["interference"] > 1.0) == interferes
+        excluded += good and interferes
+    assert excluded

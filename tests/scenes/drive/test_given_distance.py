@@ -11,7 +11,12 @@ from gearopt.errors import SceneError
 from gearopt.formulations.drive.teeth import rated
 from gearopt.formulations.drive.teeth.tables import stage_tables
 from gearopt.physics.gears import GearPair
-from gearopt.physics.geometry.contact import contact_path, specific_sliding
+from gearopt.physics.geometry.contact import (
+    active_root_diameters,
+    contact_path,
+    specific_sliding,
+)
+from gearopt.physics.geometry.fillet import form_diameter
 from gearopt.physics.geometry.profile_shift import Meshing, equal_sliding
 from gearopt.physics.geometry.tooth import tip_thickness
 from gearopt.scenes.reading.load import load
@@ -90,6 +95,8 @@ def possible(train, k, module, z1, z2, limits, shift=None):
     rows = zip((z1, z2), shifts, strict=True)
     deep = max(straight - x - z * sine**2 / np.cos(numbers[0]) / 2.0 for z, x in rows)
     good = thin >= sharp * module and path.transverse_ratio >= contact and deep <= 0.01
+    starts = zip(active_root_diameters(pair), pair.gears, strict=True)
+    good &= all(lowest >= form_diameter(gear) for lowest, gear in starts)
     return pair if good and min(slides) >= -sliding else None
 
 
@@ -132,7 +139,7 @@ def test_the_best_pair_of_a_distance_is_that_of_all_pairs(limits, tmp_path, monk
     Between modules that the limits allow and those that no shifts fit some are not allowed: cheaper
     ones, too.
     """
-    modules = '[teeth]\nmodules = ["3.4 mm", "3.5 mm", "3.6 mm", "3.75 mm"]\n'
+    modules = '[teeth]\nmodules = ["3.4 mm", "3.5 mm", "3.55 mm", "3.6 mm", "3.75 mm"]\n'
     modules += f"[shift]\ncontact_ratio = {limits[1]}\nspecific_sliding = {limits[2]}"
     path = written(tmp_path, PAIR.replace("[14, 40]", "[13, 14]").replace("[teeth]", modules))
     train = load(path).scene.train()

@@ -12,7 +12,7 @@ import numpy as np
 
 from gearopt.physics.gears import GearPair, Rack, reference_diameter, transverse_pressure_angle
 from gearopt.physics.geometry.contact import contact_path, specific_sliding
-from gearopt.physics.geometry.fillet import NEGLIGIBLE, undercut_depth
+from gearopt.physics.geometry.fillet import NEGLIGIBLE, form_diameter, undercut_depth
 from gearopt.physics.geometry.involute import angle_at_distance, shift_sum
 from gearopt.physics.geometry.tooth import tip_thickness
 
@@ -174,15 +174,21 @@ class Shifting:
         """Shares of the limits that a pair uses, by name; NaN or infinite: it has no such teeth.
 
         Undercut counts from NEGLIGIBLE modules on; of a tip without thickness the use is infinite.
+        interference: contact begins above the form circles, d_Nf >= d_Ff (ISO 21771:2007), in radii
+        of curvature and modules.
         """
         module, path = pair.normal_module, contact_path(pair)
         first = specific_sliding(path, pair.ratio, path.start)[0]
         second = specific_sliding(path, pair.ratio, path.end)[1]
         thin = np.minimum(*(tip_thickness(gear) for gear in pair.gears))
         cut = np.maximum(*(undercut_depth(gear) for gear in pair.gears))
+        lowest = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
+        formed = [0.5 * np.sqrt(form_diameter(g) ** 2 - g.base_diameter**2) for g in pair.gears]
+        deep = np.maximum(*(form - low for form, low in zip(formed, lowest, strict=True)))
         return {
             "tip_thickness": np.where(thin > 0.0, self.tip_thickness * module / thin, np.inf)[()],
             "contact_ratio": self.contact_ratio / path.transverse_ratio,
             "specific_sliding": -np.minimum(first, second) / self.sliding,
             "undercut": 1.0 - NEGLIGIBLE + cut / module,
+            "interference": 1.0 + deep / module,
         }
