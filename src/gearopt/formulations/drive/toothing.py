@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -142,14 +143,15 @@ class Toothing:
 
     def alike(self, other: "Toothing") -> bool:
         """Whether another one differs in helix angle, given distance and pinion_shift alone."""
-        same = all(getattr(self, name) == getattr(other, name) for name in ALIKE)
-        return same and all(
-            (getattr(self, name) is None) == (getattr(other, name) is None) for name in COLUMNS
+        first, second = _columns_of(self), _columns_of(other)
+        return bool(_alike_of(self) == _alike_of(other)) and all(
+            (value is None) == (held is None) for value, held in zip(first, second, strict=True)
         )
 
 
 COLUMNS = ("helix_angle", "working_distance", "pinion_shift")  # in which toothings may differ
 ALIKE = ("racks", "profile_shifts", "tip_alterations", "thickness_allowances", "shifting")
+_columns_of, _alike_of = attrgetter(*COLUMNS), attrgetter(*ALIKE)
 
 
 def in_columns(toothings: Sequence[Toothing]) -> Toothing:

@@ -348,13 +348,7 @@ class Scene(Table):
         """Ways in which the teeth of a stage may be cut."""
         if not self.shifted(own):
             return toothings(own, self.gears)
-        cuts = toothings(own, self.gears, self._reach(own))
-        table = self.shift or ShiftTable()
-        cuts = tuple(replace(teeth, shifting=table.shifting) for teeth in cuts)
-        if table.pinion_shift is None:
-            return cuts
-        shifts = [float(shift) for shift in values_of(table.pinion_shift)]
-        return tuple(replace(teeth, pinion_shift=x) for teeth in cuts for x in shifts)
+        return toothings(own, self.gears, self._reach(own), self.shift or ShiftTable())
 
     def _reach(self, own: StageTable) -> tuple[float, float]:
         """Ends of the centre distances [mm] that teeth of a stage may have, whatever their shifts.

@@ -1,13 +1,15 @@
 """From the tables of a stage to its teeth: helix, tools, shifts; and where shifts do not fit."""
 
+import itertools
 import math
 from dataclasses import replace
 from fractions import Fraction
+from functools import lru_cache
 
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import LENGTHS, Stage
 from gearopt.physics.gears import ISO_53_A, MEMBERS, Rack
-from gearopt.scenes.drive.tables.drive import Gears, StageTable
+from gearopt.scenes.drive.tables.drive import Gears, ShiftTable, StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, with_shared
 from gearopt.scenes.reading.choices import values_of
 from gearopt.scenes.reading.fields import refuse
@@ -18,12 +20,17 @@ ROOT: tuple[str, ...] = ("profile_shift", "tool_addendum")  # what sets a root c
 TIP: tuple[str, ...] = ("profile_shift", "tip_alteration", "addendum")
 
 
+@lru_cache(64)  # of some thousand ways the same are asked for again and again
 def toothings(
-    own: StageTable, gears: Gears, reach: tuple[float, float] = (0.0, 0.0)
+    own: StageTable,
+    gears: Gears,
+    reach: tuple[float, float] = (0.0, 0.0),
+    shift: ShiftTable | None = None,
 ) -> tuple[Toothing, ...]:
-    """Return the ways in which the teeth of a stage may be cut: by helix angle and distance.
+    """Return the ways in which the teeth of a stage may be cut: by helix angle, distance and x1.
 
-    reach: ends of the centre distances [mm] that serve, of a series without its own.
+    reach: ends of the centre distances [mm] that serve, of a series without its own. shift: how
+    profile shifts follow from the distances, None: they are given.
     """
     helices = values_of(gears.helix_angle if own.helix_angle is None else own.helix_angle)
     pressure = (own.pressure_angle or gears.pressure_angle).value
@@ -35,11 +42,19 @@ def toothings(
         (_or(pinion.tip_alteration, 0.0), _or(wheel.tip_alteration, 0.0)),
         (_allowance(pinion), _allowance(wheel)),
     )
-    cuts = [replace(first, helix_angle=helix.value) for helix in helices]
-    if own.centre_distance is None:
-        return tuple(cuts)
-    distances = [a.value for a in values_of(own.centre_distance, reach)]
-    return tuple(replace(t, working_distance=a) for t in cuts for a in distances)
+    distances: list[float | None] = [None]
+    shifts: list[float | None] = [None]
+    if own.centre_distance is not None:
+        distances = [a.value for a in values_of(own.centre_distance, reach)]
+    if shift is not None:
+        first = replace(first, shifting=shift.shifting)
+        if shift.pinion_shift is not None:
+            shifts = [float(x1) for x1 in values_of(shift.pinion_shift)]
+    rows = itertools.product([helix.value for helix in helices], distances, shifts)
+    return tuple(
+        replace(first, helix_angle=helix, working_distance=a, pinion_shift=x1)
+        for helix, a, x1 in rows
+    )
 
 
 def toothing(own: StageTable, gears: Gears) -> Toothing:
