@@ -64,6 +64,8 @@ def _impossible(result: Result) -> str:
     if unsure:
         with_ = f"cannot be met together with {_some(unsure, has_stages(result))}"
         return f"{together} {with_} (not all of these need be part of the conflict)"
+    if len(names) == 1 and result.message:
+        return result.message.rstrip(".")
     if len(names) == 1 or result.proof.get("each_alone"):
         return f"{together} cannot be met, even if all other limits are dropped"
     if ways.get("any_resolves"):

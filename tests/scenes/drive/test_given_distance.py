@@ -218,3 +218,21 @@ def test_a_distance_that_no_teeth_fit_is_named(tmp_path):
     result = gearopt.solve(written(tmp_path, PAIR.replace("125 mm", "20 mm")), remedies=False)
     assert result.status == "infeasible"
     assert "No teeth fit the centre distance of 20 mm of stage 1" in result.message
+
+
+@pytest.mark.parametrize(
+    ("table", "key"),
+    [
+        ("[shift]\nspecific_sliding = 0.2\n", "shift.specific_sliding"),
+        ("[shift]\ncontact_ratio = 2.2\n", "shift.contact_ratio"),
+        ("[limits]\nwheel_teeth = [20, 40]\n", "limits.wheel_teeth[2]"),
+    ],
+)
+def test_what_teeth_at_a_distance_may_be_is_explained(tmp_path, table, key):
+    text = PAIR.replace("[limits]\n", table) if table[1] == "l" else PAIR + table
+    explained = gearopt.explain(file := written(tmp_path, text))
+    named = {name.split("[")[0].removesuffix("_high") for name in explained.conflict}
+    assert named == {"centre_distance", key.split(".")[1].split("[")[0]}
+    nearest = explained.remedies[0]
+    assert nearest.what == key and nearest.kind == "least"
+    assert gearopt.solve(file, nearest.edits, remedies=False).status == "optimal"

@@ -28,7 +28,7 @@ def test_the_best_shift_of_the_pinion_is_that_of_all_pairs(tmp_path):
     found = stage["normal_module_mm"], stage["pinion_teeth"], stage["wheel_teeth"]
     assert (*found, stage["pinion_profile_shift"]) == best[1:]
     assert (
-        "The profile shift of the pinion of stage 1 was chosen from 3, 0.1 to 0.5."
+        "The profile shift of the pinion of stage 1 was chosen from 3 values, 0.1 to 0.5."
         in (result.report["notes"])
     )
 

@@ -53,7 +53,7 @@ def test_the_best_helix_angle_is_that_of_each_alone(tmp_path, several, angles):
     assert result.status == "optimal"
     assert result.value == pytest.approx(min(alone), rel=1e-12)
     assert stage.get("helix_angle_deg", 0.0) == angles[alone.index(min(alone))]
-    assert f"of stage 1 was chosen from 3, 0 deg to {angles[-1]} deg." in str(
+    assert f"of stage 1 was chosen from 3 values, 0 deg to {angles[-1]} deg." in str(
         result.report["notes"]
     )
     size = f'module = "{stage["normal_module_mm"]} mm"\npinion_teeth = {stage["pinion_teeth"]}\n'

@@ -85,11 +85,17 @@ def _chosen(scene: Scene) -> list[str]:
         for name, held in choices.items():
             if held is not None and (words := in_words(held)):
                 stages.setdefault((name, words), []).append(k)
-    return [
-        f"The {name} of stage{'s' * (len(k) > 1)} {' and '.join(map(str, k))} was chosen from "
-        f"{words}."
-        for (name, words), k in stages.items()
-    ]
+    sentences = []
+    for (name, words), where in stages.items():
+        several = f"{name}s" if "pinion" not in name else "profile shifts of the pinions"
+        are = f"{several} of stages {' and '.join(map(str, where))} were"
+        are = are if len(where) > 1 else f"{name} of stage {where[0]} was"
+        sentences.append(f"The {are} chosen from {words}.")
+    if scene.limits.coaxial:
+        sentences.append(
+            "Both stages have one centre distance: the output is in line with the input."
+        )
+    return sentences
 
 
 def _dense(scene: Scene) -> bool:

@@ -101,7 +101,7 @@ def in_words(value: Choice) -> str:
         return f"the series {value.series} of ISO 3 (unverified){ends}"
     values = sorted(values_of(value), key=lambda one: getattr(one, "value", one))
     low, high = (v if isinstance(v, Quantity) else exact(v) for v in (values[0], values[-1]))
-    return f"{len(values)}, {low} to {high}" if len(values) > 1 else ""
+    return f"{len(values)} values, {low} to {high}" if len(values) > 1 else ""
 
 
 def to_choose(item: Reads, sample: Steps | Preferred) -> Reads:

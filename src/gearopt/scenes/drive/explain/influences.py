@@ -33,6 +33,8 @@ OF_RATING = {  # keys of ratings: the direction that eases them
     **dict.fromkeys(("minimum_bending_safety", "minimum_contact_safety", "pinion_offset"), -1),
     **dict.fromkeys(("accuracy", "accuracy_grade", "roughness", "flank_rz", "root_rz"), -1),
     **dict.fromkeys(("quality", "hardness", "grade", "flank_hardness"), 1),
+    **dict.fromkeys(("tip_thickness", "contact_ratio"), -1),  # of [shift]
+    "specific_sliding": 1,
 }
 GRADES = ("quality", "accuracy")
 OF_BLANKS = dict.fromkeys((*RIM, *WEB, HUBS), -1)  # keys of blanks: where gears get lighter

@@ -11,7 +11,7 @@ from gearopt.scenes.drive.explain.influences import GRADES, eases
 from gearopt.scenes.drive.explain.moves import WIDTH, next_module
 from gearopt.scenes.drive.explain.rated_choices import choices
 from gearopt.scenes.drive.explain.rated_conflict import Conflict, conflict
-from gearopt.scenes.drive.explain.requirements import DISTANCE, ORDER, TEETH
+from gearopt.scenes.drive.explain.requirements import DISTANCE, OF_SHIFTS, ORDER, TEETH
 from gearopt.scenes.drive.explain.tried import Case, any_possible
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import (
@@ -113,7 +113,7 @@ def _move(scene: Scene, number: Number, way: int, far: float) -> Move:
     role = DUTY if number.path == POWER else LIMIT
     if values := _values(scene, number, way):
         return Move(number.path, way, role, inherits=one_at).to_values(number.value, values)
-    if isinstance(number.value, int):
+    if "pinion_teeth" in number.path:
         far = min(far, float(TEETH))
     return Move(number.path, way, role, far=far, inherits=one_at)
 
@@ -136,6 +136,7 @@ _PROVEN = (  # whose moves up to FARTHEST_FACTOR are within what the conflict wa
     *("wheel_diameter", "stage_ratio_high", "stage_ratio_low", "least_face_width"),
     *("face_width_over_module_high", "face_width_over_module_low", "face_width_low"),
     *("wheel_teeth_high", "wheel_teeth_low", "face_width_high", "axial_force", "overlap_ratio"),
+    *OF_SHIFTS,
 )
 
 

@@ -1,10 +1,10 @@
 """Requirements of a drive that ratings limit, by name, and the drive without some of them.
 
-What is dropped: safety factors, limits of sizes and ratios, hunting teeth and equal materials as if
-they were not there; modules within the widest series of [teeth]; b/d1 from WIDTHS to three; numbers
-of pinion teeth a quarter fewer and more; the ratio within 5 %; a life to a ten-thousandth;
-materials to all of the file, and grades to the best there are. A given centre distance gives way to
-that of reference circles: a design without it proves it needed, none proves nothing.
+What is dropped: safety factors, limits of sizes, ratios and shifts, hunting teeth and equal
+materials as if they were not there; modules within the widest series of [teeth]; b/d1 from WIDTHS
+to three; numbers of pinion teeth a quarter fewer and more; the ratio within 5 %; a life to a ten-
+thousandth; materials to all of the file, and grades to the best there are. A given centre distance
+gives way to that of reference circles: a design without it proves it needed, none proves nothing.
 """
 
 import math
@@ -13,6 +13,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
+from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.physics.iso6336.materials import QUALITIES
 from gearopt.scenes.drive.scene import Scene
@@ -25,6 +26,7 @@ Dropped = frozenset[str]
 BENDING, CONTACT = "minimum_bending_safety", "minimum_contact_safety"
 DISTANCE = "centre_distance"
 OF_DISTANCES = "coaxial", "sum_of_centre_distances"  # of all stages together
+OF_SHIFTS = "specific_sliding", "contact_ratio", "tip_thickness"  # of teeth at given distances
 ORDER = (  # the likeliest to be in conflict first; those of the second group are dear to drop
     (
         *(CONTACT, BENDING, "face_width", "face_width_over_diameter", "face_width_high"),
@@ -35,7 +37,7 @@ ORDER = (  # the likeliest to be in conflict first; those of the second group ar
     (
         *("pinion_teeth", "pinion_teeth_high", "pinion_teeth_low", "ratio_tolerance"),
         *("stage_ratio_low", "wheel_teeth_low", "module_low", "modules", "face_width_low"),
-        *("face_width_over_module_low", DISTANCE, *OF_DISTANCES),
+        *("face_width_over_module_low", *OF_SHIFTS, DISTANCE, *OF_DISTANCES),
     ),
 )
 WIDTHS = Fraction(1, 20), Fraction(3)  # b/d1 of free widths
@@ -74,6 +76,7 @@ def _of_all(scene: Scene, train: Train) -> Iterator[str]:
     yield from ["same_materials"] * scene.gears.same_materials
     yield "ratio_tolerance"
     yield from (name for name in OF_DISTANCES if getattr(scene.limits, name))
+    yield from OF_SHIFTS if any(stage.toothing.shifting for stage in train.stages) else ()
     if _with_materials(scene) != scene:
         yield "materials"
     if _with_grades(scene) != scene:
@@ -170,6 +173,7 @@ def _stage(scene: Scene, own: StageTable, stage: Stage, dropped: set[str]) -> St
             for cut in toothings
         ]
         toothings = tuple(dict.fromkeys(free))
+    toothings = tuple(_unlimited(cut, dropped) for cut in toothings)
     return replace(
         stage,
         toothings=toothings,
@@ -183,6 +187,20 @@ def _stage(scene: Scene, own: StageTable, stage: Stage, dropped: set[str]) -> St
         overlap=0.0 if "overlap_ratio" in dropped else stage.overlap,
         axial_force=math.inf if "axial_force" in dropped else stage.axial_force,
     )
+
+
+def _unlimited(cut: Toothing, dropped: set[str]) -> Toothing:
+    """Return a toothing without the limits of its shifts that are dropped."""
+    if cut.shifting is None:
+        return cut
+    limits = cut.shifting
+    if "specific_sliding" in dropped:
+        limits = replace(limits, sliding=math.inf)
+    if "contact_ratio" in dropped:
+        limits = replace(limits, contact_ratio=0.0)
+    if "tip_thickness" in dropped:
+        limits = replace(limits, tip_thickness=0.0)
+    return replace(cut, shifting=limits)
 
 
 def _spans(stage: Stage) -> tuple[tuple[str, Any], ...]:
