@@ -19,6 +19,21 @@ DRIVE = {
     "effective_face_width",
     "centre_distance, in a [[stage]]": "a a_w stage.center_distance stage.axis_distance "
     "stage.achsabstand working_centre_distance",
+    "sum_of_centre_distances, in [limits]": "sum_of_center_distances sum_of_distances",
+    "coaxial, in [limits]": "coaxial_shafts co_axial koaxial in_line inline",
+    "overlap_ratio, in [limits] or a [[stage]]": "limits.overlap stage.overlap overlap "
+    "minimum_overlap_ratio min_overlap_ratio limits.eps_beta stage.eps_beta limits.epsilon_beta "
+    "face_contact_ratio limits.sprungueberdeckung",
+    "axial_force, in [limits] or a [[stage]]": "thrust thrust_force axial_load axial_thrust "
+    "maximum_axial_force max_axial_force f_ax axialkraft",
+    "pinion_shift, in [shift]": "shift.x shift.x1 shift.x_1 shift.profile_shift shift.pinion_x "
+    "pinion_shifts shift.pinion_profile_shift",
+    "pinion_shift, in [shift]: the shift of the wheel follows from the distance": "shift.x2 "
+    "shift.x_2 shift.wheel_shift wheel_shift",
+    "tip_thickness, in [shift]": "s_an minimum_tip_thickness min_tip_thickness zahnkopfdicke",
+    "contact_ratio, in [shift], beside a centre_distance": "limits.contact_ratio shift.eps_alpha "
+    "limits.eps_alpha limits.transverse_contact_ratio shift.minimum_contact_ratio",
+    "specific_sliding, in [shift]": "sliding zeta maximum_specific_sliding spezifisches_gleiten",
     "ratio in [duty], stage_ratio in a [[stage]]": "i u i_ges u_ges m_g gear_ratio total_ratio "
     "transmission_ratio overall_ratio reduction reduction_ratio uebersetzung "
     "uebersetzungsverhaeltnis",

@@ -1,5 +1,6 @@
 """Field types of problem files for values to choose from: lists, ranges with a step, series."""
 
+import re
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, cast
@@ -123,6 +124,12 @@ def to_choose(item: Reads, sample: Steps | Preferred) -> Reads:
             if in_series and set(value) == set(KEYS_OF_SERIES):
                 return _of_series(item, value, way)
             return _stepped(item, value, way, " or series" if in_series else "")
+        if in_series and isinstance(value, str) and re.match(r"\W*r\W*\d", value, re.I):
+            meant = "R" + "".join(re.findall(r"\d", value))
+            rule = f"is none of the series {', '.join(PREFERRED)} of ISO 3"
+            if meant in PREFERRED:
+                raise refuse(rule, meant)
+            raise refuse(rule, cast(Preferred, sample).series, action="sample")
         if not isinstance(value, list | tuple):
             return cast(Choice, item.reader(value, item.example))
         entries = listed.reader(list(value), listed.example)
