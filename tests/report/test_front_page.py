@@ -157,6 +157,9 @@ def test_materials_helix_angles_and_shifts_that_differ_have_columns():
         *(("A/B; A/B", "0; 25"), ("A; A/B", "0; 25"), ("B; A/B", "8; 25"))
     ]
     assert "stage 1: pinion material" in plots(page(front))[1]["rows"]
+    for shift, point in enumerate(front.points):
+        point.design["stages"][0].update(pinion_profile_shift=shift, centre_distance_mm=90 + shift)
+    assert table(front).heads[-3:] == ("β [°]", "x1/x2", "a [mm]")
 
 
 def test_inches_are_shown_in_page_and_tables():

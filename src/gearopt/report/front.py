@@ -25,6 +25,7 @@ CHOICES = {  # of stages, beside modules and teeth: head of a column, keys
     "β [°]": ("helix_angle_deg",),
     "x1/x2": ("pinion_profile_shift", "wheel_profile_shift"),
 }
+SHIFTED = "x1/x2"  # where these differ, centre distances do not follow from teeth and module
 CHOICE_DIGITS = 3
 DEFAULTS = {"seconds": SECONDS, "seed": 0}
 
@@ -146,7 +147,7 @@ def table(front: Front, measures: Measures = METRIC, most: int | None = None) ->
     heads = [head(objective, measures) for objective in front.objectives]
     taken = rules(front)
     gears = any(stages_of(p.design) for p in front.points)
-    apart = _apart(front)
+    apart = _apart(front, measures)
     rows = [
         (
             k + 1,
@@ -208,13 +209,20 @@ def _gears(design: Mapping[str, Any], measures: Measures) -> Cell:
     return Cell(text, text)
 
 
-def _apart(front: Front) -> dict[str, list[str]]:
+def _apart(front: Front, measures: Measures) -> dict[str, list[str]]:
     """What tells gears of equal teeth apart: texts of every design, by head of a column."""
     columns = {}
     for name, keys in CHOICES.items():
         texts = ["; ".join(_choice(s, keys) for s in stages_of(p.design)) for p in front.points]
         if len(set(texts)) > 1:
             columns[name] = texts
+    if SHIFTED in columns:
+        distances = [
+            "; ".join(measures.number(s["centre_distance_mm"], "mm") for s in stages_of(p.design))
+            for p in front.points
+        ]
+        if len(set(distances)) > 1:
+            columns[f"a [{measures.unit('mm')}]"] = distances
     return columns
 
 

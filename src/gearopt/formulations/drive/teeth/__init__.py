@@ -346,8 +346,10 @@ def _distances(stage: Stage) -> str:
 def _why(progress: Progress, count: int) -> str:
     """Reason why a search ended before it was exhausted, and its consequence for the list."""
     if not progress.found:
-        return "stopped before a train was found: allow more time"
-    why = "the requested gap is reached" if progress.enough else "stopped before it was exhausted"
+        return "the search stopped before a train was found: allow more time"
+    unknown = "" if math.isfinite(progress.bound) else " and a lower bound was known"
+    why = f"the search stopped before it was exhausted{unknown}"
+    why = "the requested gap is reached" if progress.enough else why
     return why if count == 1 else f"{why}, so only the best train so far is listed, not {count}"
 
 
