@@ -171,24 +171,38 @@ class Shifting:
 
     @np.errstate(invalid="ignore", divide="ignore")
     def used(self, pair: GearPair) -> dict[str, Any]:
-        """Shares of the limits that a pair uses, by name; NaN or infinite: it has no such teeth.
+        """Shares of the limits that a pair uses, by name; NaN or infinite: it has no such teeth."""
+        return self.used_by_gears(pair) | self.used_in_mesh(pair)
+
+    @np.errstate(invalid="ignore", divide="ignore")
+    def used_by_gears(self, pair: GearPair) -> dict[str, Any]:
+        """Shares of the limits that each gear uses alone, in closed form.
 
         Undercut counts from NEGLIGIBLE modules on; of a tip without thickness the use is infinite.
+        """
+        module = pair.normal_module
+        thin = np.minimum(*(tip_thickness(gear) for gear in pair.gears))
+        cut = np.maximum(*(undercut_depth(gear) for gear in pair.gears))
+        return {
+            "tip_thickness": np.where(thin > 0.0, self.tip_thickness * module / thin, np.inf)[()],
+            "undercut": 1.0 - NEGLIGIBLE + cut / module,
+        }
+
+    @np.errstate(invalid="ignore", divide="ignore")
+    def used_in_mesh(self, pair: GearPair) -> dict[str, Any]:
+        """Shares of the limits that gears use together; form circles of undercut ones are sought.
+
         interference: contact begins above the form circles, d_Nf >= d_Ff (ISO 21771:2007), in radii
         of curvature and modules.
         """
         module, path = pair.normal_module, contact_path(pair)
         first = specific_sliding(path, pair.ratio, path.start)[0]
         second = specific_sliding(path, pair.ratio, path.end)[1]
-        thin = np.minimum(*(tip_thickness(gear) for gear in pair.gears))
-        cut = np.maximum(*(undercut_depth(gear) for gear in pair.gears))
         lowest = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
         formed = [0.5 * np.sqrt(form_diameter(g) ** 2 - g.base_diameter**2) for g in pair.gears]
         deep = np.maximum(*(form - low for form, low in zip(formed, lowest, strict=True)))
         return {
-            "tip_thickness": np.where(thin > 0.0, self.tip_thickness * module / thin, np.inf)[()],
             "contact_ratio": self.contact_ratio / path.transverse_ratio,
             "specific_sliding": -np.minimum(first, second) / self.sliding,
-            "undercut": 1.0 - NEGLIGIBLE + cut / module,
             "interference": 1.0 + deep / module,
         }

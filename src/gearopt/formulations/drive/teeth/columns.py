@@ -233,11 +233,14 @@ def _shiftable(
     shifting = stage.toothing.shifting
     assert shifting is not None
     module, row = np.nonzero(near)
-    sizes = np.array([float(m) for m in stage.modules])[module]
-    pair = stage.toothing_of(toothing[row]).pair(sizes, z1[row], z2[row], 1.0)
     allowed = np.zeros_like(near)
-    used = shifting.used(pair).values()
-    allowed[module, row] = np.logical_and.reduce([u <= 1.0 for u in used])
+    sizes = np.array([float(m) for m in stage.modules])
+    for limits in (shifting.used_by_gears, shifting.used_in_mesh):
+        cut = stage.toothing_of(toothing[row])
+        pair = cut.pair(sizes[module], z1[row], z2[row], 1.0)
+        keep = np.logical_and.reduce([used <= 1.0 for used in limits(pair).values()])
+        module, row = module[keep], row[keep]
+    allowed[module, row] = True
     return allowed
 
 
