@@ -204,9 +204,9 @@ class RatedTable(Table):
                     best = costs[k].item(), self.modules[module[k]].item(), widths[k].item(), option
         return best[1:]
 
-    def rough_cost(self, torque: Array, pair: Index) -> Array:
-        """Return a rough lower bound of `cost`."""
-        return self._found((torque, torque), pair, close=ROUGH, steps=2 * FIRST_STEPS).cost
+    def rough_cost(self, torque: Array, pair: Index, most: Array | float = np.inf) -> Array:
+        """Return a rough lower bound of `cost`; most: as there."""
+        return self._found((torque, torque), pair, most, close=ROUGH, steps=2 * FIRST_STEPS).cost
 
     def least_cost(
         self,

@@ -288,7 +288,7 @@ def _expand(
         group, pair = ragged(start, rest.starts[level][cell + 1] - start)
         node = owner[group]
     if few[0]:
-        node, pair = _promising(train, stage, rest, chunk, (node, pair), *few)
+        node, pair = _promising(train, stage, rest, chunk, (node, pair), progress.threshold, *few)
     progress.clock.evaluations += len(pair)
     log_ratio = chunk.log_ratio[node] + stage.log_ratio[pair]
     ahead = rest.to_go[level + 1][rest.cell(log_ratio)]
@@ -316,10 +316,14 @@ def _promising(
     rest: Bound,
     chunk: Chunk,
     places: Places,
+    most: float,
     few: int,
     first: Array | None,
 ) -> Places:
-    """Return the nodes and pairs of the least rough bounds, a few for each node."""
+    """Return the nodes and pairs of the least rough bounds, a few for each node.
+
+    most: bounds above which any is as good as another.
+    """
     node, pair = places
     ahead = np.zeros(len(pair))
     if chunk.level < len(rest.to_go) - 1:
@@ -328,8 +332,9 @@ def _promising(
         goes = np.isfinite(ahead)
         node, pair, ahead = node[goes], pair[goes], ahead[goes]
     torque = (train.torque * np.exp(chunk.log_ratio))[node]
-    own = stage.rough_cost(torque, pair) if first is None else first[pair]
-    rough = chunk.cost[node] + own + ahead
+    before = chunk.cost[node] + ahead
+    own = stage.rough_cost(torque, pair, most - before) if first is None else first[pair]
+    rough = before + own
     best = np.sort(np.argsort(rough, kind="stable")[: few * len(chunk.cost)])
     return node[best], pair[best]
 
@@ -386,7 +391,7 @@ def _complete(
     stop = np.searchsorted(stage.log_ratio, high - chunk.log_ratio + EDGE)
     node, pair = ragged(start, stop - start)
     if few[0]:
-        node, pair = _promising(train, stage, rest, chunk, (node, pair), *few)
+        node, pair = _promising(train, stage, rest, chunk, (node, pair), progress.threshold, *few)
     progress.clock.evaluations += len(pair)
     most = progress.threshold - chunk.cost[node]
     total = chunk.cost[node] + _costs(train, stage, chunk, (node, pair), most, progress)

@@ -117,8 +117,8 @@ class Table:
         _, module, width = self._best(np.array([torque]), np.array([pair]))
         return module.item(), width.item(), 0
 
-    def rough_cost(self, torque: Array, pair: Index) -> Array:
-        """Return a rough lower bound of `cost`."""
+    def rough_cost(self, torque: Array, pair: Index, most: Array | float = np.inf) -> Array:
+        """Return a rough lower bound of `cost`; most: as there."""
         return self.cost(torque, pair)
 
     def least_cost(
