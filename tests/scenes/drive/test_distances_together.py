@@ -49,6 +49,16 @@ def test_the_best_distances_are_those_of_each_row_alone(tmp_path, alone, limit, 
     assert goes(*chosen) and alone[chosen] == pytest.approx(least, rel=1e-12)
 
 
+def test_a_layout_puts_the_output_of_a_coaxial_drive_in_line_with_the_input(tmp_path):
+    layout = '\n[layout]\nshaft_stress = "40 MPa"\nspan = "partial"\n'
+    file = written(tmp_path, asked("coaxial = true") + layout)
+    output = gearopt.solve(file, remedies=False).design["layout"]["shafts"][2]
+    assert max(abs(output["y_mm"]), abs(output["z_mm"])) <= 0.01 + 1e-6
+    with pytest.raises(SceneError, match="in line with the input"):
+        place = '[[place]]\nshaft = 3\ny = "0 mm"\n'
+        load(written(tmp_path, asked("coaxial = true") + layout + place))
+
+
 @pytest.mark.slow
 def test_a_front_of_coaxial_drives_holds_the_best_of_every_row(tmp_path):
     text = asked("coaxial = true").replace(

@@ -92,6 +92,7 @@ RANGE = (
     "[limits] instead, or one number"
 )
 MOST_STAGES = 6
+IN_LINE = PlaceTable.model_validate({"shaft": 3, "y": "0 mm", "z": "0 mm"})  # coaxial drives
 MOST_WAYS = 10_000  # helix angles times distances times shifts of a stage
 HELIX_LIMITS = ("overlap_ratio", "axial_force")
 PROCESSES = ("process_one", "process_two")  # tables; as methods with a hyphen
@@ -413,6 +414,9 @@ class Scene(Table):
                 check_shared(place.shaft, self.counts, at)
             elif place.shaft > last:
                 raise refuse(f"is above {last}, the output shaft", last, at, "sample")
+            elif self.limits.coaxial and place.shaft == last:
+                rule = "is the output shaft, which coaxial = true puts in line with the input"
+                raise refuse(rule, at=("place", k), action="remove")
         if self.layout.together and self.teeth is None:
             raise refuse("needs a table [teeth]", False, ("layout", "together"))
 
@@ -537,7 +541,8 @@ class Scene(Table):
     def gearbox(self, pairs: tuple[GearPair, ...]) -> Gearbox:
         """Drive of gear pairs with its [layout], to be laid out."""
         assert self.layout is not None
-        return gearbox(self.layout, self.place, self.keep_out, self.torque, pairs)
+        places = (*self.place, IN_LINE) if self.limits.coaxial else self.place
+        return gearbox(self.layout, places, self.keep_out, self.torque, pairs)
 
     def _stage(self, own: StageTable) -> Stage:
         limits = self.limits
