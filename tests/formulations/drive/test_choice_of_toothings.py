@@ -49,12 +49,15 @@ def values(train, count=1):
     return {} if rows is None else dict(zip(names, rows.F[:, 0].tolist(), strict=True))
 
 
+SLOW = pytest.mark.slow
+
+
 @pytest.mark.parametrize(
     ("options", "angles", "face"),
     [
         (by("agma"), ((0.0, 25.0), (8.0,)), FREE),
         (by("iso", "agma"), ((0.0, 12.0),), FaceWidth(F(1, 2), F(1, 2))),
-        (by("iso"), ((8.0, 15.0),), FaceWidth(F(3, 10), F(1), F(2))),
+        pytest.param(by("iso"), ((8.0, 15.0),), FaceWidth(F(3, 10), F(1), F(2)), marks=SLOW),
     ],
 )
 def test_the_best_toothing_is_that_of_all_of_them(options, angles, face):
@@ -81,6 +84,7 @@ def test_a_list_of_trains_has_every_train_with_its_best_toothing():
     assert list(found.values()) == pytest.approx([value for _, value in best], rel=1e-12)
 
 
+@SLOW
 def test_a_front_is_that_of_all_toothings():
     made = rated_drive(3, [FREE], options=by("agma"), pinion_teeth=(17, 18))
     made = replace(made, objective="gear_volume", others=("mesh_loss",))

@@ -15,6 +15,7 @@ FEW = TWO.replace("[14, 40]", "[18, 20]").replace('standard = "both"', 'standard
 FEW = "\n".join(line for line in FEW.splitlines() if not line.startswith(AGMA_ONLY))
 FEW = FEW.replace("[teeth]", '[teeth]\nmodules = ["2 mm", "2.5 mm", "3 mm"]')
 DISTANCES = 112, 125
+slow = pytest.mark.slow
 LIST = str([f"{a} mm" for a in DISTANCES])
 
 
@@ -38,7 +39,9 @@ def alone(tmp_path_factory):
     ("limit", "goes"),
     [
         ("coaxial = true", lambda a, b: a == b),
-        ('sum_of_centre_distances = ["237 mm", "240 mm"]', lambda a, b: a + b == 237),
+        pytest.param(
+            'sum_of_centre_distances = ["237 mm", "240 mm"]', lambda a, b: a + b == 237, marks=slow
+        ),
     ],
 )
 def test_the_best_distances_are_those_of_each_row_alone(tmp_path, alone, limit, goes):
@@ -59,7 +62,7 @@ def test_a_layout_puts_the_output_of_a_coaxial_drive_in_line_with_the_input(tmp_
         load(written(tmp_path, asked("coaxial = true") + layout + place))
 
 
-@pytest.mark.slow
+@slow
 def test_a_front_of_coaxial_drives_holds_the_best_of_every_row(tmp_path):
     text = asked("coaxial = true").replace(
         "[rating]\n", '[objective]\ndensity = "7.85 kg/dm^3"\n[rating]\n', 1

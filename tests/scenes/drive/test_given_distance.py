@@ -223,6 +223,7 @@ def test_a_distance_that_no_teeth_fit_is_named(tmp_path):
     assert "No teeth fit the centre distance of 20 mm of stage 1" in result.message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("table", "key"),
     [

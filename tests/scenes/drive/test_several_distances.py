@@ -68,7 +68,7 @@ def test_distances_that_no_teeth_fit_are_named(tmp_path):
 @pytest.mark.parametrize(
     ("several", "told"),
     [
-        ('"R5"', "is not a number with a unit of length"),
+        ('"R5"', "is none of the series R10, R20, R40 of ISO 3"),
         ('{ from = "100 mm", to = "200 mm", series = "R5" }', "has no series of R10, R20, R40"),
         ('{ from = "101 mm", to = "105 mm", series = "R20" }', "holds no value of R20"),
         ('{ from = "100 mm", series = "R20" }', "is not a range with from, to and step or series"),
