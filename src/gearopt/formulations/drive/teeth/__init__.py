@@ -330,7 +330,7 @@ def _unfit(train: Train) -> str:
     bare = [k for k in stages if not len(table(train, k, cut).ratio)]
     return " ".join(
         f"No teeth fit {_distances(train.stages[k])} of stage {k + 1}, with the modules, "
-        "numbers of teeth and ratios allowed and the limits of profile shifts."
+        "numbers of teeth, ratios and profile shifts allowed."
         for k in bare
     )
 
@@ -347,7 +347,7 @@ def _why(progress: Progress, count: int) -> str:
     """Reason why a search ended before it was exhausted, and its consequence for the list."""
     if not progress.found:
         return "the search stopped before a train was found: allow more time"
-    unknown = "" if math.isfinite(progress.bound) else " and a lower bound was known"
+    unknown = "" if math.isfinite(progress.bound) else "; no lower bound is known yet"
     why = f"the search stopped before it was exhausted{unknown}"
     why = "the requested gap is reached" if progress.enough else why
     return why if count == 1 else f"{why}, so only the best train so far is listed, not {count}"
