@@ -275,6 +275,16 @@ class Train:
         )
         return replace(self, stages=stages, distances=())
 
+    def of_few_toothings(self, count: int) -> "Train":
+        """The drive whose stages have so many of their toothings at most, evenly spread."""
+
+        def few(stage: Stage) -> Stage:
+            places = np.linspace(0, len(stage.toothings) - 1, count).round().astype(int)
+            return replace(stage, toothings=tuple(stage.toothings[k] for k in places))
+
+        stages = (few(s) if len(s.toothings) > count else s for s in self.stages)
+        return replace(self, stages=tuple(stages))
+
     @property
     def of_one_material(self) -> tuple["Train", ...]:
         """The drives of this one whose gears are all of one material; itself without a choice."""

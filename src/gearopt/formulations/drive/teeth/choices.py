@@ -5,11 +5,11 @@ import math
 import numpy as np
 
 from gearopt.formulations.drive.shares import objective_share
-from gearopt.formulations.drive.teeth.columns import Index
 from gearopt.formulations.drive.teeth.progress import TIE, Teeth
 from gearopt.formulations.drive.teeth.stage import Table
 from gearopt.formulations.drive.teeth.tables import table
 from gearopt.formulations.drive.train import Train
+from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
 
@@ -59,26 +59,35 @@ def _best_rows(train: Train, loaded: list[tuple[Table, float]]) -> list[int]:
     Of equal ones the first. Distances that go together are those of a row of the train's.
     """
     if not train.distances:
-        each = [_best_row(one, torque, np.arange(len(one.ratio))) for one, torque in loaded]
-        return [row for _, row in each]
+        return [_best(_costs(*one)) if len(one[0].ratio) > 1 else 0 for one in loaded]
+    by_distance = [_best_by_distance(*one) for one in loaded]
     best: tuple[float, list[int]] = math.inf, []
     for distances in train.distances:
-        each = []
-        for (one, torque), distance in zip(loaded, distances, strict=True):
-            given = np.array([t.working_distance for t in one.stage.toothings])[one.toothing]
-            if not len(places := np.flatnonzero(given == distance)):
-                break
-            each.append(_best_row(one, torque, places))
-        else:
-            value = sum(cost for cost, _ in each)
-            if value < best[0] * (1.0 - TIE):
-                best = value, [row for _, row in each]
+        chosen = [known.get(a) for known, a in zip(by_distance, distances, strict=True)]
+        places = [one for one in chosen if one is not None]
+        value = sum(cost for cost, _ in places)
+        if len(places) == len(loaded) and value < best[0] * (1.0 - TIE):
+            best = value, [row for _, row in places]
     return best[1]
 
 
-def _best_row(teeth: Table, torque: float, rows: Index) -> tuple[float, int]:
-    """The least cost of some rows of a table of given teeth, and the first row that has it."""
-    if len(rows) == 1 and not teeth.train.distances:
-        return math.nan, int(rows[0])
-    costs = teeth.cost(np.full(len(rows), torque), rows)
-    return float(costs.min()), int(rows[np.flatnonzero(costs <= costs.min() * (1.0 + TIE))[0]])
+def _best_by_distance(teeth: Table, torque: float) -> dict[float, tuple[float, int]]:
+    """The least cost of the rows of a table of given teeth at every distance, and its row."""
+    given = np.array([t.working_distance for t in teeth.stage.toothings])[teeth.toothing]
+    costs, best = _costs(teeth, torque), {}
+    for distance in np.unique(given):
+        rows = np.flatnonzero(given == distance)
+        row = int(rows[_best(costs[rows])])
+        best[float(distance)] = float(costs[row]), row
+    return best
+
+
+def _costs(teeth: Table, torque: float) -> Array:
+    """The costs of all rows of a table at a torque [N mm]."""
+    rows = np.arange(len(teeth.ratio))
+    return teeth.cost(np.full(len(rows), torque), rows)
+
+
+def _best(costs: Array) -> int:
+    """The first of the rows of least cost."""
+    return int(np.flatnonzero(costs <= costs.min() * (1.0 + TIE))[0])

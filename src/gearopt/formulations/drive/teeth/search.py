@@ -37,6 +37,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Event, Watch
 from gearopt.optimise.terms import Array
 
+FEW_WAYS = 16  # toothings of a stage that a first look is content with
 BEAM = 4  # nodes followed down at once; measured best for two to four stages
 LEAVES = 256  # nodes completed at once
 FIRST_LOOK = 20_000  # pairs examined for a first train
@@ -107,11 +108,14 @@ def search(
 def _glimpses(train: Train) -> Iterator[Train]:
     """Rated drives of one material each, at one row of distances, in which a train is looked for.
 
-    Rows are taken from the middle of all, where most trains are.
+    Rows are taken from the middle of all, where most trains are; of many toothings FEW_WAYS first.
     """
     for one in train.of_one_material if train.rated else ():
         rows = one.of_one_row
-        yield from sorted(rows, key=lambda row: abs(rows.index(row) - len(rows) // 2))
+        for row in sorted(rows, key=lambda row: abs(rows.index(row) - len(rows) // 2)):
+            if (few := row.of_few_toothings(FEW_WAYS)) != row:
+                yield few
+            yield row
 
 
 def _glance(

@@ -24,6 +24,7 @@ from gearopt.scenes.explaining.engine import (
 from gearopt.scenes.explaining.moves import DUTY, LIMIT, Move
 from gearopt.scenes.explaining.numbers import Number, apart, numbers, one_at
 from gearopt.scenes.explaining.possible import Verdict, of_status
+from gearopt.units import Quantity
 
 POWER = ("duty", "power")
 # at most, for the conflict beside an answer, and beside remedies
@@ -68,7 +69,7 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
         first = clock
         ways = singles(asked, _groups(scene, Conflict(), REACH), SHARPEN_SECONDS)
     last = soon(CHOICE_SECONDS)
-    untried = first.over
+    untried = first.over or _chooses(scene)
     chosen = choices(scene, known, lambda other: None if last.over else works(other))
     ways += chosen
     complete = not (untried or clock.over or case.open)
@@ -77,6 +78,18 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
     words = "; ".join(filter(None, (_doubts(known), late)))
     return Remedies(
         known.names, with_least(ways, complete), words, known.any_resolves, known.unsure
+    )
+
+
+def _chooses(scene: Scene) -> bool:
+    """Whether a file has lists or sums to choose from, whose entries are not moved."""
+    limits, shift = scene.limits, scene.shift
+    lists = [own.centre_distance for own in scene.stage]
+    lists += [own.helix_angle or scene.gears.helix_angle for own in scene.stage_tables]
+    return (
+        not all(one is None or isinstance(one, Quantity) for one in lists)
+        or limits.sum_of_centre_distances is not None
+        or (shift is not None and shift.pinion_shift is not None)
     )
 
 
