@@ -21,6 +21,7 @@ PROVEN = ("optimal", "stationary")  # where a limit that is reached decides
 NAMED_FROM = 0.95  # of a limit; one used so far is named
 NAMED = 3  # limits that a sentence names, where more are reached it counts them
 RATIO_ENDS = ("ratio_low", "ratio_high")  # limits of one range
+DISTANCE = "centre_distance"  # a limit that no conflict was proven without
 GIVEN = ("common_divisor",)  # rules that every design of the file is at the end of
 
 
@@ -64,8 +65,8 @@ def _impossible(result: Result) -> str:
     if unsure:
         with_ = f"cannot be met together with {_some(unsure, has_stages(result))}"
         return f"{together} {with_} (not all of these need be part of the conflict)"
-    if len(names) == 1 and result.message:
-        return result.message.rstrip(".")
+    if [_stem(name) for name in names] == [DISTANCE] and result.message:
+        return result.message.rstrip(".")  # what keeps teeth from it is never dropped whole
     if len(names) == 1 or result.proof.get("each_alone"):
         return f"{together} cannot be met, even if all other limits are dropped"
     if ways.get("any_resolves"):
