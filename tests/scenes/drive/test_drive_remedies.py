@@ -6,11 +6,13 @@ from fractions import Fraction
 import pytest
 from given_drives import every_train, faults, feasible, given_drive, readable, with_changes
 
+import gearopt
 from gearopt import Budget
 from gearopt.optimise.clock import Clock
 from gearopt.report.explained import remedy_words
 from gearopt.scenes import drive
 from gearopt.scenes.drive.explain.choices import nearest_ratio
+from gearopt.scenes.drive.explain.remedies import remedies
 from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.explaining.explanations import explanation
 from gearopt.scenes.reading.ask import Ask
@@ -215,3 +217,12 @@ def test_no_ratio_is_told_where_none_is_written_or_time_ran_out():
     for text, seconds in ((exact, 60.0), (GIVEN_PAIR, 0.0)):
         scene = read(text.encode())[1]
         assert nearest_ratio(Case(scene, Clock(Budget(seconds=seconds))), None) is None
+
+
+def test_no_number_of_real_valued_sizes_is_tried_once_time_is_over(monkeypatch):
+    """Each would take a solution of the continuous problem: some twenty here."""
+    scene, asked = gearopt.load("problems/three_stage_small_wheels.toml"), []
+    monkeypatch.setattr(f"{remedies.__module__}.is_real", lambda scene, clock: True)
+    monkeypatch.setattr(f"{remedies.__module__}.even", lambda *of: asked.append(of))
+    known = remedies(scene, Clock(Budget(seconds=0.0)))
+    assert not asked and not known.remedies and "time ran out" in known.message

@@ -19,6 +19,7 @@ from gearopt.formulations import packing
 from gearopt.formulations.packing.container_bound import Bound
 from gearopt.report.answer import proof
 from gearopt.scenes.packing import KIND
+from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
 
 EXAMPLE = KIND.example.text
@@ -312,3 +313,11 @@ def test_words_of_a_bound_say_where_its_time_ended_it():
     )
     early = dataclasses.replace(result, proof=packing.proof(Bound(1.0, 2, complete=False)))
     assert "Stopped early: the bound is weaker than it could be." in " ".join(proof(early))
+
+
+def test_nothing_is_posed_for_sensitivities_once_time_is_over(solved, monkeypatch):
+    file = "problems/six_cylinders_two_layers.toml"
+    result, scene = solved("six_cylinders_two_layers"), gearopt.load(file)
+    monkeypatch.delattr("gearopt.scenes.packing.at_point")
+    known = KIND.influences(scene, Ask(budget=gearopt.Budget(seconds=0.0)), result)
+    assert known.message.startswith("the time sufficed for 0 of ")

@@ -93,18 +93,21 @@ def _singles(
     conflicting = places and all(not h.given for h in blamed)
     common: dict[tuple[str, int], float] = {}  # smallest factors of all stages: one needs no less
     for move in movable:
+        if case.clock.over:
+            return
         start, bound = 1.0, None
         if base is not None:
-            own = {(h.kind, h.place) for h in move.handles}
             given = any(h.given for h in move.handles)
-            if conflicting and not given and not own & places:
+            if (
+                conflicting
+                and not given
+                and places.isdisjoint((h.kind, h.place) for h in move.handles)
+            ):
                 continue
             alike = even(base, move.handles, case.clock)
             if alike is None:
                 continue
             start, bound = alike.factor, bound_of(case.scene, move, alike.bound)
-        if case.clock.over:
-            return
         kind = "less" if move.role == DUTY else ("even" if shared(move) else "one")
         if is_stepped(case.scene, move):
             known = _given(case, move, FARTHEST * start)
