@@ -2,6 +2,8 @@
 
 import logging
 import math
+import subprocess
+import sys
 import time
 from threading import Thread
 
@@ -263,6 +265,15 @@ def test_time_that_other_work_takes_is_not_the_text_s():
     with pytest.raises(TimeoutError, match=r"has not ended after 0.02 s"), deadline.within(0.02):
         for _ in range(100):
             time.sleep(0.01)
+
+
+def test_tracers_and_profilers_go_on_after_work_that_may_be_ended():
+    code = (
+        "import sys; from gearopt.optimise.deadline import within\n"
+        "with within(9.0): pass\n"
+        "sys.setprofile(lambda *seen: None); print(sum([1, 2])); (lambda: None)()"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=30)  # else without end
 
 
 def test_threads_take_turns():

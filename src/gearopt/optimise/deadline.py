@@ -18,6 +18,7 @@ LONGEST = 5.0  # s, of a text that is fast on floats
 SHORTEST = 1.0  # s, of what is left of a budget: most tapes take some hundredths
 WAITED = 4.0  # times as long, of a text that waits or gets no processor
 SIMULATING = 0.25  # s; after them a text within scipy steps through numbers that it never gets
+TURNS = 8  # of a loop; an exception from outside is raised at the first
 AGAIN = 0.2  # s; a bare `except` in casadi may have stopped the exception
 _END: ContextVar[float | None] = ContextVar("end of the budget", default=None)
 
@@ -68,17 +69,18 @@ def within(seconds: float) -> Iterator[None]:
             with lock:
                 if not ended.is_set():
                     late.set()
-                    _raise(thread, ctypes.py_object(_Late))
+                    _raise_late(thread)
             pause = AGAIN
 
-    threading.Thread(target=wait, daemon=True).start()
     try:
         try:
+            threading.Thread(target=wait, daemon=True).start()
             yield
         finally:
             with lock:
                 ended.set()
-                _raise(thread, None)  # what is not raised yet
+            for _ in range(late.is_set() * TURNS):  # what is not raised yet is raised at a turn
+                pass
     except (_Late, Exception) as stopped:
         ended.set()
         if not late.is_set():
@@ -106,6 +108,10 @@ def _processor_clock(thread: int) -> Callable[[], float]:
     return lambda: time.clock_gettime(number)
 
 
-def _raise(thread: int, what: "ctypes.py_object[type[_Late]] | None") -> None:
-    """Raise an exception in a thread at its next instruction; None takes it back."""
-    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), what)
+def _raise_late(thread: int) -> None:
+    """Raise _Late in a thread at its next instruction.
+
+    It is never taken back: CPython 3.11 would go on to look for it before every instruction, which
+    takes a tenth longer, and without end where a tracer or a profiler is set.
+    """
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), ctypes.py_object(_Late))
