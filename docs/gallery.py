@@ -211,6 +211,8 @@ def objective(file: Mapping[str, Any]) -> tuple[str, str]:
     if file["kind"] not in KINDS:
         raise ValueError(f"KINDS of docs/gallery.py does not know the kind {file['kind']}")
     name = KINDS[file["kind"]][1](file)
+    if name not in UNITS:
+        raise ValueError(f"UNITS of docs/gallery.py does not know the objective {name}")
     return name, UNITS[name]
 
 

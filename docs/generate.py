@@ -18,7 +18,8 @@ import pictures
 import python_api
 import rate_page
 
-from gearopt.scenes.reading.load import kind_named, kinds
+from gearopt.scenes.reading.kinds import kinds
+from gearopt.scenes.reading.load import kind_named
 from gearopt.scenes.reading.schema import reference as tables
 
 DOCS = Path(__file__).parent

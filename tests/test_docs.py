@@ -12,7 +12,8 @@ from gearopt import api, cli
 from gearopt.formulations.drive import sizing, teeth
 from gearopt.optimise.own_methods import back_ends
 from gearopt.report.measures import METRIC
-from gearopt.scenes.reading.load import kind_named, kinds, read
+from gearopt.scenes.reading.kinds import kinds
+from gearopt.scenes.reading.load import kind_named, read
 from gearopt.scenes.reading.schema import reference
 from gearopt.units import UNITS
 

@@ -331,7 +331,9 @@ def test_every_file_says_what_it_is_held_to(path):
     """A kind that no test above solves, or a key that none reads, would hold a file to nothing."""
     content = content_of(path)
     expected = content["x-expected"]
-    assert content["kind"] in HELD and content["title"] and content["source"]
+    assert content["kind"] in HELD, f"no test of this file solves the kind {content['kind']}"
+    assert content["title"] and content["source"]
+    assert content["kind"] in KEYS, f"KEYS of this file needs the kind {content['kind']}"
     assert expected.keys() <= KEYS[content["kind"]]
     given = {"pair": "contact_ratio", "strain_wave": "pairs_in_contact"}
     given |= {"dynamics": "frequencies_Hz"}
@@ -340,7 +342,8 @@ def test_every_file_says_what_it_is_held_to(path):
         "evaluated": given.get(content["kind"], "governs"),
     }
     needed |= {"infeasible": "conflict"} if "rating" in content else {}
-    assert needed.get(expected["status"], "objective") in expected
+    key = needed.get(expected["status"], "objective")
+    assert key in expected, f"[x-expected] of a file that is {expected['status']} needs {key}"
 
 
 def test_there_are_files():

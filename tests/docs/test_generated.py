@@ -13,7 +13,8 @@ import python_api
 import gearopt
 from gearopt.cli import app
 from gearopt.cli.app import EXIT
-from gearopt.scenes.reading.load import kind_named, kinds
+from gearopt.scenes.reading.kinds import kinds
+from gearopt.scenes.reading.load import kind_named
 from gearopt.scenes.reading.schema import reference as tables
 
 ROOT = Path(__file__).parents[2]

@@ -15,7 +15,8 @@ from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import method_of
 from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.reading.load import kind_named, kinds
+from gearopt.scenes.reading.kinds import kinds
+from gearopt.scenes.reading.load import kind_named
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 ROOMS = {kind_named(name).scene: kind_named(name) for name in kinds()}

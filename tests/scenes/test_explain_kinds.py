@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -15,7 +16,7 @@ from edits import edited, scene_of
 import gearopt
 from gearopt import Problem, SolveError, Terms, Var
 from gearopt.optimise.explaining.handles import each_word, handles
-from gearopt.scenes.explaining import explanations
+from gearopt.scenes.explaining import explanations, influences
 from gearopt.scenes.explaining.explanations import explanation
 from gearopt.scenes.explaining.influences import STEP, Basis
 from gearopt.scenes.reading.ask import Ask
@@ -222,6 +223,19 @@ def test_a_mixed_kind_says_where_other_whole_numbers_are_needed():
     assert float(low) == pytest.approx(1.4 * (1.0 - STEP))
     (one,) = (i for i in found.influences if i.key == "bar.safety")
     assert one.sensitivity == pytest.approx(1.0, rel=1e-3)
+
+
+def test_of_held_whole_numbers_that_are_not_decided_no_range_is_told(monkeypatch):
+    """Ipopt proves no minimum of a text with a floor: whether others are better is not known."""
+    solve = influences.solve
+
+    def undecided(*given):
+        return replace(solve(*given), status="feasible")
+
+    monkeypatch.setattr(influences, "solve", undecided)
+    own = {"bar": FILE["bar"] | {"most": 8, "safety": Decimal("1.4")}}
+    known = explanation(KIND, Bars.model_validate(own), Ask())
+    assert known.influences and "the same design is best" not in known.message
 
 
 AXIS = """

@@ -10,7 +10,8 @@ import gearopt.scenes
 from gearopt.errors import SceneError, SolveError
 from gearopt.scenes.reading.changes import as_written
 from gearopt.scenes.reading.fields import Reads
-from gearopt.scenes.reading.load import kind_named, kinds, read
+from gearopt.scenes.reading.kinds import kinds
+from gearopt.scenes.reading.load import kind_named, read
 from gearopt.scenes.reading.mistakes import tables
 
 
@@ -20,7 +21,7 @@ def test_the_kind_is_guessed_from_the_tables(kind, line):
     text = re.sub(r"(?m)^kind = .*$", line, kind_named(kind).example.text)
     with pytest.raises(SceneError) as wrong:
         read(text.encode())
-    assert wrong.value.fix.value == f'"{kind}"'
+    assert wrong.value.fix.value == f'"{kind}"', "a kind is told by a table that no other has"
 
 
 def test_a_kind_that_cannot_be_imported_is_named_and_leaves_the_others_alone(tmp_path, monkeypatch):

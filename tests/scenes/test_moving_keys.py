@@ -19,7 +19,8 @@ import pytest
 import gearopt
 from gearopt import Budget
 from gearopt.errors import GearoptError, SolveError
-from gearopt.scenes.reading.load import examples, kind_named, kinds
+from gearopt.scenes.reading.kinds import kinds
+from gearopt.scenes.reading.load import examples, kind_named
 from gearopt.scenes.reading.mistakes import example_of, table_of, tables
 from gearopt.scenes.reading.schema import json_schema
 

@@ -7,7 +7,8 @@ import jsonschema
 import pytest
 
 from gearopt.scenes.drive import KIND
-from gearopt.scenes.reading.load import examples, kind_named, kinds
+from gearopt.scenes.reading.kinds import kinds
+from gearopt.scenes.reading.load import examples, kind_named
 from gearopt.scenes.reading.mistakes import table_of
 from gearopt.scenes.reading.schema import json_schema
 

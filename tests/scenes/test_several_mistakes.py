@@ -14,10 +14,11 @@ from scene_files import BASES, keys, parse, put, rename
 
 from gearopt import units
 from gearopt.errors import SceneError
-from gearopt.scenes.reading.absent import absent, option
+from gearopt.scenes.reading.absent import absent, absent_kind, option
 from gearopt.scenes.reading.called import CALLED
 from gearopt.scenes.reading.fields import quantity, whole
-from gearopt.scenes.reading.load import kind_named, kinds, read
+from gearopt.scenes.reading.kinds import kinds
+from gearopt.scenes.reading.load import kind_named, read
 from gearopt.scenes.reading.mistakes import tables
 from gearopt.scenes.reading.not_yet import NEAREST
 from gearopt.scenes.reading.toml import dotted
@@ -322,6 +323,12 @@ def test_gears_that_no_kind_has_are_named_with_the_kinds(kind, gears):
     (wrong,) = mistakes(BASES["elevator"].replace('"drive"', f'"{kind}"')).errors
     assert (wrong.key, wrong.rule) == ("kind", f"{gears} are not supported") and wrong.fix is None
     assert all(re.search(rf"\b{name}\b", wrong.remedy) for name in kinds())
+
+
+def test_gears_of_a_new_kind_are_no_longer_absent(monkeypatch):
+    assert absent("ring_teeth") and absent_kind("planetary gears")
+    monkeypatch.setattr("gearopt.scenes.reading.absent.kinds", lambda: (*kinds(), "planetary"))
+    assert not absent("ring_teeth") and not absent_kind("planetary gears") and absent("worm")
 
 
 def test_no_key_of_a_file_is_called_absent():

@@ -97,7 +97,7 @@ def new(
 
 
 def _known(kind: str) -> str:
-    from gearopt.scenes.reading.load import kinds
+    from gearopt.scenes.reading.kinds import kinds
 
     if kind not in kinds():
         raise GearoptError(f"no kind {kind!r} of problem file; kinds: {', '.join(kinds())}")

@@ -16,7 +16,8 @@ SYSTEMS = ("metric", "inch")
 
 def kinds() -> dict[str, str]:
     """Return the kinds of problem file, each with what it is for."""
-    from gearopt.scenes.reading.load import kind_named, kinds
+    from gearopt.scenes.reading.kinds import kinds
+    from gearopt.scenes.reading.load import kind_named
 
     return {name: kind_named(name).example.about for name in kinds()}
 
@@ -42,7 +43,8 @@ FOR_ANY_PROBLEM = "any problem that suits"
 
 def methods() -> dict[str, tuple[str, ...]]:
     """Return the methods of `--method`: of each kind its own, and those for any problem."""
-    from gearopt.scenes.reading.load import kind_named, kinds
+    from gearopt.scenes.reading.kinds import kinds
+    from gearopt.scenes.reading.load import kind_named
 
     own = {name: kind_named(name).methods for name in kinds()}
     return own | {FOR_ANY_PROBLEM: back_ends()}

@@ -68,7 +68,7 @@ def _impossible(result: Result) -> str:
     if [_stem(name) for name in names] == [DISTANCE] and result.message:
         return result.message.rstrip(".")  # what keeps teeth from it is never dropped whole
     if len(names) == 1 or result.proof.get("each_alone"):
-        return f"{together} cannot be met, even if all other limits are dropped"
+        return f"{together} cannot be met, even if all other given limits are dropped"
     if ways.get("any_resolves"):
         return (
             f"{together} cannot all be met{held}; dropping any one of them makes a design possible"

@@ -83,7 +83,9 @@ class Basis:
             if other is None or solved is None or self.posed is None or self.point is None:
                 return True  # no design, which the sensitivities show
             held, tie = self._of_same(other)
-            return held is not None and bool(abs(held - solved) <= tie * abs(held))
+            if held is None:
+                return True  # not known, and nothing is claimed
+            return math.isfinite(held) and bool(abs(held - solved) <= tie * abs(held))
 
         def far(way: int) -> float:
             low, high = NEAREST, self.step
@@ -99,16 +101,18 @@ class Basis:
     def _of_same(self, scene: Any) -> tuple[float | None, float]:
         """Return the objective of a changed file with the whole numbers and choices of the point.
 
-        None where no minimum over the others is certain. With the relative difference of values
-        that counts as none.
+        None where no minimum over the others is certain, inf where there is none for sure. With the
+        relative difference of values that counts as none.
         """
         assert self.posed is not None and self.point is not None
         problem = self.posed(scene)
         lower, upper, _ = problem.bounds()
         if (lower == upper).all():
             return float(problem.batch(lower[None]).F[0, 0]), OBJECTIVE_TIE  # the file's own sizes
-        found = solve(problem.starting(self.point), "ipopt")
-        return (found.value if found.status in CERTAIN else None), SOLVED
+        result = solve(problem.starting(self.point), "ipopt")
+        if result.status == "infeasible":
+            return math.inf, SOLVED
+        return (result.value if result.status in CERTAIN else None), SOLVED
 
 
 def _times(scene: Any, number: Number, factor: float) -> Any:

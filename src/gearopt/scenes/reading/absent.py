@@ -6,12 +6,9 @@ and German ones. They are compared as `plain` writes them.
 
 import re
 from collections.abc import Mapping
+from functools import cache
 
-KINDS_ARE = (
-    "The kinds are drive (spur or helical gears in one to six stages, sized or rated), pair "
-    "(contact of one spur pair), compound (numbers of teeth of two pairs), servo, dynamics "
-    "(vibration of a pair), strain_wave and packing (cylinders)"
-)
+from gearopt.scenes.reading.kinds import kinds
 
 GEARS: dict[str, str] = {  # types of gears: kinds that people ask for, and their keys
     "planetary gear sets are": "planetary planet planets epicyclic planet_gears number_of_planets "
@@ -97,7 +94,13 @@ def looked_up(table: Mapping[str, str], name: str) -> str | None:
 
 def absent(name: str) -> str | None:
     """Return that no kind has what a key or a table is called; None of any other name."""
-    return looked_up(SENTENCES, name)
+    return looked_up(_without(kinds()), name)
+
+
+@cache
+def _without(there: tuple[str, ...]) -> dict[str, str]:
+    """Return SENTENCES without those of gears that some kinds are called by."""
+    return {said: names for said, names in SENTENCES.items() if not {*names.split()} & {*there}}
 
 
 def option(name: str) -> str | None:
@@ -109,5 +112,5 @@ def absent_kind(name: str) -> str | None:
     """Return that gearopt does not have the gears that a kind of file is called by."""
     words = [name, *re.findall(r"[^\W_]+", name)]
     stems = (OF_KINDS.sub("", word.lower()) for word in words)
-    found = next((gears for word in (*words, *stems) if (gears := looked_up(GEARS, word))), None)
-    return found and f"{found} not supported"
+    gears = {said: names for said, names in _without(kinds()).items() if said not in CHECKS}
+    return next((said for word in (*words, *stems) if (said := looked_up(gears, word))), None)

@@ -7,10 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation
 from difflib import get_close_matches
-from functools import cache
 from importlib import import_module
 from pathlib import Path
-from pkgutil import iter_modules
 from types import NoneType
 from typing import Any, get_origin
 
@@ -19,17 +17,17 @@ from pydantic import BaseModel, ValidationError
 import gearopt.scenes
 from gearopt.errors import Fix, SceneError, SolveError, together
 from gearopt.scenes.kind import Kind
-from gearopt.scenes.reading.absent import KINDS_ARE, absent_kind
+from gearopt.scenes.reading.absent import absent_kind
 from gearopt.scenes.reading.called import kind_called
 from gearopt.scenes.reading.changes import as_written, changed
 from gearopt.scenes.reading.fields import Opened
 from gearopt.scenes.reading.files import LARGEST_FILE, first_bytes
+from gearopt.scenes.reading.kinds import kinds
 from gearopt.scenes.reading.mistakes import translate, wrong_name, wrong_value
 from gearopt.scenes.reading.near import near
 from gearopt.scenes.reading.toml import cut, dotted, short
 
 FORMAT = 1
-SHARED = {"reading", "explaining", "kind", "parts", "plan"}  # of `gearopt.scenes`, what is no kind
 HEAD = ("gearopt", "kind")  # keys of every file
 FORMATS = {  # beginnings of files of other formats
     r"\s*<(\?xml[\s\S]*?>\s*(<!--[\s\S]*?-->\s*)*<)?model\b": "a REXS model (XML)",
@@ -55,16 +53,6 @@ class Loaded:
     file: str | None = None
     sha256: str | None = None
     changes: dict[str, Any] = field(default_factory=dict)
-
-
-def kinds() -> tuple[str, ...]:
-    """Return the kinds of problem file: all modules of `gearopt.scenes` but shared ones."""
-    return _kinds_in(tuple(gearopt.scenes.__path__))
-
-
-@cache
-def _kinds_in(folders: tuple[str, ...]) -> tuple[str, ...]:
-    return tuple(sorted({m.name for m in iter_modules(folders)} - SHARED))
 
 
 def kind_named(name: str) -> Kind[Any]:
@@ -222,7 +210,7 @@ def _head(content: dict[str, Any], file: str) -> tuple[str, list[SceneError]]:
     name = kind if isinstance(kind, str) else ""
     meant = near(name, kinds())
     if not meant and (lacking := absent_kind(name)):
-        errors.append(SceneError(file, "kind", short(name), lacking, KINDS_ARE))
+        errors.append(SceneError(file, "kind", short(name), lacking, _kinds_in_words()))
         return "", errors
     likely = meant or _likely(content, kind_called(name))
     known = f"is not a known kind (known: {', '.join(kinds())})"
@@ -231,6 +219,12 @@ def _head(content: dict[str, Any], file: str) -> tuple[str, list[SceneError]]:
     guessed = not sure and kind_called(name) is None
     errors.append(wrong_value(file, "kind", kind, rule, likely, sample=guessed))
     return likely if sure else "", errors
+
+
+def _kinds_in_words() -> str:
+    """Return the kinds of problem file with a few words on each."""
+    abouts = {kind: next(iter(kind_named(kind).examples.values())).about for kind in kinds()}
+    return f"The kinds are {', '.join(f'{kind} ({words})' for kind, words in abouts.items())}"
 
 
 def _too_deep(file: str) -> SceneError:

@@ -5,7 +5,8 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic.json_schema import GenerateJsonSchema
 
-from gearopt.scenes.reading.load import FORMAT, kind_named, kinds
+from gearopt.scenes.reading.kinds import kinds
+from gearopt.scenes.reading.load import FORMAT, kind_named
 from gearopt.scenes.reading.mistakes import example_of, table_of, tables
 from gearopt.scenes.reading.toml import toml_text
 
