@@ -5,7 +5,7 @@ triangles of their numbers.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -158,6 +158,13 @@ def drawn_teeth(teeth: float) -> int:
     if not 1 <= round(teeth) <= MAX_TEETH:
         raise ValueError(f"a gear of {teeth:g} teeth")
     return round(teeth)
+
+
+def undrawn(gears: Iterable[float]) -> str:
+    """Why gears of so many teeth are not drawn, a sentence; "" where they are."""
+    if (most := max(gears)) <= MAX_TEETH:
+        return ""
+    return f"Not drawn: a gear has {most:,.0f} teeth, and teeth are drawn of up to {MAX_TEETH:,}."
 
 
 def _skin(around: int, sections: int) -> list[Face]:

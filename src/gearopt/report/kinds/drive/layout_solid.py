@@ -34,6 +34,7 @@ from gearopt.report.drawing.solid import (
     rod,
     space,
     twist,
+    undrawn,
 )
 from gearopt.report.drawing.still import Block, Body, Rod, Texts, sizes_of, still, view
 from gearopt.report.measures import Measures
@@ -58,6 +59,8 @@ def section(result: Result, measures: Measures) -> Section | None:
     """Draw the gearbox in space; None where there is no layout."""
     if (layout := layout_of(result)) is None:
         return None
+    if why := undrawn(gear.teeth for gear in layout.gears):
+        return Section("In three dimensions", words=(why,))
     seen = space(*drawn_corners(layout), measures)
     whole = all(gear.teeth == drawn_teeth(gear.teeth) for gear in layout.gears)
     words = CAPTION.format("the rack of ISO 53, profile A" if _standard(layout) else OWN_RACKS)

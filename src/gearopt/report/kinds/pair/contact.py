@@ -11,6 +11,7 @@ from gearopt.optimise.result import Result
 from gearopt.physics.blanks import Body
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.contact import usable_path
+from gearopt.report.drawing.solid import undrawn
 from gearopt.report.kinds.pair import solid as pair_solid
 from gearopt.report.kinds.pair import tooth_section
 from gearopt.report.kinds.pair.mesh_motion import CAPTION, Carried, in_mesh
@@ -148,6 +149,8 @@ def in_space(result: Result, measures: Measures) -> Section | None:
     """Draw the gears in three dimensions; None without gears of whole teeth."""
     if (pair := pair_of(result)) is None:
         return None
+    if why := undrawn(gear.teeth for gear in pair.gears):
+        return Section("In three dimensions", words=(why,))
     stage = drive_design(result.design).stages[0]
     figure = pair_solid.figure(pair, bodies(stage), measures)
     return Section("In three dimensions", figures=(figure,))
