@@ -1,16 +1,24 @@
 """The contact of a pair: numbers computed apart from gearopt, and what must hold of any pair."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from gearopt.formulations.pair.contact import PairMesh, contact, contact_stress, spectrum
+from gearopt.formulations.pair.contact import (
+    NODES,
+    PairMesh,
+    contact,
+    contact_stress,
+    spectrum,
+)
 from gearopt.formulations.pair.relief.meshing import Relief
 from gearopt.formulations.pair.relief.rules import smooth_shares, without_error
 from gearopt.formulations.pair.relief_map import Removed, break_even, finer
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.tooth.elastic import ElasticPair
+from gearopt.physics.tooth.ladder import LEVELS
 
 LEVEL = "profile + Sainsot"
 FORCE = 5675.614786538198  # N
@@ -158,3 +166,19 @@ def finer_of(meshed, removed):
     """Peak-to-peak [mm] on the computed positions."""
     mesh = meshed.mesh
     return float(mesh.criteria(removed.separations(mesh)).peak_to_peak[0])
+
+
+def test_a_dear_model_is_asked_once_for_all_parts_of_an_answer(monkeypatch):
+    asked = []
+
+    def compliance(elastic, positions, force):
+        asked.append(len(positions))
+        return 1e-5 + 0.0 * positions
+
+    dear = replace(LEVELS["finite elements"], compliance=compliance)
+    levels = {**LEVELS, "of this test": dear}
+    monkeypatch.setattr("gearopt.formulations.pair.contact.LEVELS", levels)
+    for loads in ((1.0,), (0.5, 1.0)):  # of contact and of relief
+        elastic = ElasticPair(gears(), (30.0, 50.0))
+        PairMesh.of(elastic, "of this test", 200_000.0, 0.0, 12, loads)
+    assert asked == [NODES]

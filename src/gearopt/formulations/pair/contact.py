@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from gearopt.formulations.pair.relief.meshing import NO_RELIEF, Mesh
 from gearopt.formulations.pair.relief.rules import tip_amounts
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma.factors import elastic_coefficient
-from gearopt.physics.geometry.contact import ContactPath, diameters_at
+from gearopt.physics.geometry.contact import diameters_at
 from gearopt.physics.mesh_cycle import break_points, cycle
 from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.physics.tooth.ladder import LEVELS
@@ -55,7 +56,7 @@ class PairMesh:
         def exact(positions: Any) -> Any:
             return model.compliance(elastic, positions, force)
 
-        compliance = _interpolated(exact, elastic.path) if model.cost > DEAR else exact
+        compliance = _interpolated(elastic, level, force) if model.cost > DEAR else exact
         forces = tuple(load * force for load in loads)
         mesh = Mesh.of(cycle(elastic.path, steps), compliance, coupling, forces)
         return cls(elastic, level, compliance, force, tuple(loads), mesh)
@@ -65,16 +66,20 @@ class PairMesh:
         return replace(self.mesh, loads=tuple(load * self.force for load in loads))
 
 
-def _interpolated(compliance: Callable[[Any], Any], path: ContactPath) -> Callable[[Any], Any]:
+@lru_cache(maxsize=4)
+def _interpolated(elastic: ElasticPair, level: str, force: float) -> Callable[[Any], Any]:
     """Return a compliance by a cubic spline through NODES positions, dense towards the ends.
 
     There, within half the width of the contact, it rises steeply as the pressure leaves the flank.
+    The last few are kept: contact, relief and sensitivities of an answer ask for the same one.
     """
     from scipy.interpolate import CubicSpline
 
+    path = elastic.path
     turns = 0.5 - 0.5 * np.cos(np.pi * np.arange(NODES) / (NODES - 1))
     nodes = path.start + turns * (path.end - path.start)
-    found: Callable[[Any], Any] = CubicSpline(nodes, compliance(nodes))
+    values = LEVELS[level].compliance(elastic, nodes, force)
+    found: Callable[[Any], Any] = CubicSpline(nodes, values)
     return found
 
 
