@@ -287,7 +287,7 @@ def _of_comparison(names: dict[str, Any]) -> dict[str, Any]:
 
 
 def _fronts(
-    pose: Callable[[str | None], Tradeoff],
+    pose: Callable[[Ask], Tradeoff],
     names: Sequence[str],
     most: Mapping[str, float] | None,
     methods: Sequence[str] | None,
@@ -300,7 +300,7 @@ def _fronts(
     from gearopt.optimise.pareto.tradeoff import compared_methods
 
     words = f"Front of {', '.join(name.replace('_', ' ') for name in names)}"
-    first = pose(None)
+    first = pose(Ask())
     if first.others:
         raise SolveError(
             "methods are compared on fronts of one problem: write one number of stages in the file"
@@ -308,22 +308,22 @@ def _fronts(
     listed = methods or compared_methods(first.problem, first.limiting)
 
     def model(method: str) -> Model:
-        return Model(pose(method).problem, words)
+        return Model(pose(Ask(method)).problem, words)
 
     return compare_fronts(listed, model, names, most, plan, watch, bound_from, first.limiting)
 
 
 def _traded(
     what: File | Problem | Conic, changes: Changes, objectives: Sequence[str] | str | None
-) -> tuple[Callable[[str | None], Tradeoff], tuple[str, ...], dict[str, Any]]:
-    """Return how objectives are posed to a method, their names, and the names of a file."""
+) -> tuple[Callable[[Ask], Tradeoff], tuple[str, ...], dict[str, Any]]:
+    """Return how objectives are posed as is asked, their names, and the names of a file."""
     names = objectives.split(",") if isinstance(objectives, str) else objectives
     names = None if names is None else [name.strip() for name in names]
     if isinstance(what, Problem | Conic):
         _unchanged(what, changes)
         tradeoff = traded(what, names)
         return (
-            lambda method: tradeoff,
+            lambda ask: tradeoff,
             tuple(o.name for o in tradeoff.objectives),
             {"title": what.name},
         )
@@ -335,7 +335,7 @@ def _traded(
     chosen = chosen_of(names, list(known), f'this file of kind "{about["scene"]}"')
     report = {"assumptions": told} if (told := kind.assumptions(scene)) else {}
     about |= {"title": getattr(scene, "title", ""), "report": report}
-    return lambda method: kind.trades.traded(scene, chosen, method), chosen, about
+    return lambda ask: kind.trades.traded(scene, chosen, ask), chosen, about
 
 
 @in_turn
@@ -370,13 +370,15 @@ def pareto(
     check(method=method, budget=budget, seed=seed, watch=watch, points=points, workers=workers)
     check(most=most, weights=weights)
     budget, watch, most = budget or Budget(), whole(watch), dict(most or {})
+    clock = Clock(budget)
     pose, _, about = _traded(what, changes, objectives)
     options: dict[str, Any] = {"method": method, "seconds": budget.seconds, "points": points}
     options |= {"most": most, "weights": weights, "seed": seed}
     about["options"] = options | about.get("options", {})
     _check_slow(what, workers)
     with working(workers):
-        return solved(pose(method), most, method, points, weights, budget, seed, watch, **about)
+        trade = pose(Ask(method, budget, seed, watch))
+        return solved(trade, most, method, points, weights, clock.left, seed, watch, **about)
 
 
 def _unchanged(problem: Problem | Conic, changes: Changes) -> None:

@@ -42,6 +42,8 @@ def verdict(front: Front) -> tuple[str, str]:
         return "no design found, and no proof that there is none", "yellow"
     words, colour = VERDICTS[front.status]
     scope = front.proof.get("scope")
+    if scope and front.status == "infeasible":
+        words = "impossible with these gears, proven"
     return f"{words} ({scope})" if scope else words, colour
 
 

@@ -60,7 +60,7 @@ def _no_objectives(scene: BaseModel) -> dict[str, str]:
     return {}
 
 
-def _no_front(scene: BaseModel, names: Sequence[str], method: str | None) -> Tradeoff:
+def _no_front(scene: BaseModel, names: Sequence[str], ask: Ask) -> Tradeoff:
     raise SolveError("this kind of file has no objectives to weigh against each other")
 
 
@@ -73,12 +73,13 @@ class Trades(Generic[S]):
     """The fronts of a kind.
 
     objectives: name and unit of all that a front of a file may minimise. traded: the problem of
-    these objectives for a method, None for the one that proves most. advice: what to write for
+    these objectives for the method asked, None for the one that proves most; what must be solved
+    before, within the budget asked. advice: what to write for
     names that are no objectives of this file; "" where nothing would make them so.
     """
 
     objectives: Callable[[S], Mapping[str, str]] = _no_objectives
-    traded: Callable[[S, Sequence[str], str | None], Tradeoff] = _no_front
+    traded: Callable[[S, Sequence[str], Ask], Tradeoff] = _no_front
     advice: Callable[[S, Sequence[str]], str] = _no_advice
 
 

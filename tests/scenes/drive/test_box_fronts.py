@@ -6,6 +6,8 @@ import pytest
 
 import gearopt
 from gearopt import SolveError
+from gearopt.report.front import verdict
+from gearopt.scenes.drive import trades
 
 FILE = Path(__file__).parents[3] / "problems" / "elevator_box.toml"
 
@@ -40,3 +42,14 @@ def test_what_has_no_front_is_said(changes, names, words):
 def test_gears_that_cannot_be_laid_out_have_no_front():
     front = gearopt.pareto(FILE, {"layout.largest_height": "200 mm"}, objectives="width,height")
     assert front.status == "infeasible" and not front.points and front.message
+    assert verdict(front)[0] == (
+        "impossible with these gears, proven (gears sized first for least gear volume)"
+    )
+
+
+def test_gears_of_a_front_of_their_box_are_sized_within_its_seconds(monkeypatch):
+    asked, own = [], trades.sized
+    monkeypatch.setattr(trades, "sized", lambda scene, ask: asked.append(ask) or own(scene, ask))
+    front = gearopt.pareto(FILE, objectives="width,height", budget=gearopt.Budget(seconds=1e-3))
+    assert asked[0].budget.seconds == pytest.approx(5e-4) and front.status == "limit"
+    assert not front.points or "stopped early" in front.proof["scope"]

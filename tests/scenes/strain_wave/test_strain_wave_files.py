@@ -259,14 +259,14 @@ def test_problems_of_a_duty_alone():
     assert set(posed(own, "").problem.methods) == {"exchange"}
     assert len(posed(own, "nsga2").problem.columns) == 6
     assert list(objectives(own)) == ["pressure", "volume_per_torque", "load_share"]
-    tradeoff = traded(own, ("pressure", "load_share"), "nsga2")
+    tradeoff = traded(own, ("pressure", "load_share"), Ask("nsga2"))
     assert tradeoff.problem.rows.objectives == ("pressure", "load_share")
-    tradeoff = traded(own, ("volume_per_torque", "pressure"), None)
+    tradeoff = traded(own, ("volume_per_torque", "pressure"), Ask())
     assert tradeoff.limiting.names == ("pressure",)
-    tradeoff = traded(own, ("pressure", "volume_per_torque"), None)
+    tradeoff = traded(own, ("pressure", "volume_per_torque"), Ask())
     assert tradeoff.limiting.names == ("volume_per_torque",)
     with pytest.raises(SolveError, match="load_share counts teeth"):
-        traded(own, ("pressure", "load_share"), None)
+        traded(own, ("pressure", "load_share"), Ask())
     for call in (compared, objectives, lambda s: posed(s, "")):
         with pytest.raises(SolveError, match="the gearing is given"):
             call(scene(EXAMPLE))

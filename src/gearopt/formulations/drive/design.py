@@ -12,6 +12,7 @@ from gearopt.formulations.drive.train import STEEL_DENSITY, Train
 from gearopt.formulations.pair.design import PairContact, PairRelief
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
+from gearopt.optimise.result import Result
 from gearopt.optimise.typed import INLINE, Shown, typed
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import ISO_53_A, MEMBERS, Gear, GearPair, Rack
@@ -21,9 +22,11 @@ TOOL = ("addendum", "tool_addendum", "tool_tip_radius", "tool_protuberance")  # 
 TEETH = ("profile_shift", "tip_alteration", "thickness_allowance_mm")  # as in a `Gear`
 
 
-def gears_first(objective: str) -> str:
+def gears_first(sized: Result) -> str:
     """Return the scope of a layout of gears that were sized before it, for their own objective."""
-    return f"gears sized first for least {objective.replace('_', ' ')}"
+    least = str(sized.objective["name"]).replace("_", " ")
+    early = ", which was stopped early" if sized.status == "limit" else ""
+    return f"gears sized first for least {least}{early}"
 
 
 @dataclass(frozen=True, kw_only=True)

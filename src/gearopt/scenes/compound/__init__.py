@@ -129,9 +129,9 @@ def objectives(scene: Scene) -> dict[str, str]:
     return {scene.train.minimise: "", compound.LARGEST: ""}
 
 
-def traded(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
+def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
     """Return the problem of a front; SolveError for a method that does not take whole teeth."""
-    if method == EPSILON:
+    if ask.method == EPSILON:
         raise SolveError(f"{EPSILON} is for real-valued sizes; teeth are whole: leave it out")
     train = _train(scene)
     listed = tuple(Objective(name) for name in names)

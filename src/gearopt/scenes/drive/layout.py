@@ -176,7 +176,7 @@ def _with_layout(
 
 def _scope(sized: Result) -> dict[str, str]:
     """Scope of whatever is proven of a layout of gears that were sized before it."""
-    return {"scope": gears_first(str(sized.objective["name"]))}
+    return {"scope": gears_first(sized)}
 
 
 def _of_gears_first(scene: Scene, result: Result, sized: Result) -> Result:

@@ -16,6 +16,7 @@ from gearopt.optimise.pareto.front import Objective
 from gearopt.optimise.pareto.objectives import Limiting, Tradeoff, impossible
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.typed import untyped
+from gearopt.scenes.drive.layout import others_may_fit
 from gearopt.scenes.drive.layout_design import described, handed
 from gearopt.scenes.drive.scene import Scene
 
@@ -28,32 +29,34 @@ def objectives(scene: Scene) -> dict[str, str]:
     return {name: unit for name, unit in layout_front.GOALS.items() if name not in given}
 
 
+def check(scene: Scene) -> None:
+    """Raise SolveError where a file asks for gears and box at once."""
+    if scene.layout is not None and scene.layout.together:
+        raise SolveError(
+            "a front of the box is that of gears sized first: write together = false in [layout]"
+        )
+
+
 def traded(scene: Scene, names: Sequence[str], sized: Result) -> Tradeoff:
     """Return the problem of a front of the box around gears that were sized.
 
     Of three objectives, or two, those behind the first are sides, which epsilon steps limit.
     """
     listed = tuple(Objective(name, objectives(scene)[name]) for name in names)
-    assert scene.layout is not None
-    if scene.layout.together:
-        raise SolveError(
-            "a front of the box is that of gears sized first: write together = false in [layout]"
-        )
     if sized.value is None:
-        why = sized.message or "no gears were found"
-        none = Outcome(None, infeasible=True, proof=dict(sized.proof), message=why)
-        if sized.status != "infeasible":
-            raise SolveError(f"there are no gears to lay out: {why}")
+        certain, why = sized.status == "infeasible", sized.message or "no gears were found"
+        none = Outcome(None, certain, infeasible=certain, proof=dict(sized.proof), message=why)
         return Tradeoff(impossible("layout", names, none), listed)
     gears = drive_design(sized.design)
     box = scene.gearbox(scene.pairs(gears))
+    scope = gears_first(sized) if others_may_fit(scene, box) else ""
     if wrong := faults(box):
         proof = {
             "method": "closed form",
             "sentence": "Proof: the sizes of these gears exclude every layout.",
         }
         none = Outcome(None, infeasible=True, proof=proof, message=" ".join(wrong))
-        return Tradeoff(impossible("layout", names, none), listed)
+        return Tradeoff(impossible("layout", names, none), listed, scope=scope)
     layout.ready()
     orders, given = arrangements(box), [stage.pinion_hand for stage in scene.stage]
 
@@ -64,6 +67,5 @@ def traded(scene: Scene, names: Sequence[str], sized: Result) -> Tradeoff:
         return design
 
     limiting = Limiting(lambda name, most: layout_front.limited(box, name, most), tuple(SIDES))
-    scope = "" if scene.given else gears_first(str(sized.objective["name"]))
     problem = layout_front.problem(box, tuple(names))
     return Tradeoff(problem, listed, drawn, limiting, scope=scope)

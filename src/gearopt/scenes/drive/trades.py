@@ -61,13 +61,13 @@ def advice(scene: Scene, names: Sequence[str]) -> str:
     return what + hint
 
 
-def traded(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
+def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
     """Return the problem of a front; SolveError where the drive has none.
 
     With a [teeth] table it is of whole teeth, but for epsilon constraints, which are for
     real-valued sizes. Objectives of a box are those of gears that are sized first.
     """
-    boxed = [name for name in names if name in _of_box(scene)]
+    method, boxed = ask.method, [name for name in names if name in _of_box(scene)]
     if boxed:
         from gearopt.scenes.drive import sides
 
@@ -76,11 +76,12 @@ def traded(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
                 f"{', '.join(boxed)} of the box and objectives of the gears are no front together: "
                 "the gears are sized first, and laid out then"
             )
-        gears = sized(without(scene, "layout"), Ask())
+        sides.check(scene)
+        gears = sized(without(scene, "layout"), ask.beforehand)
         held = scene.held(len(gears.design["stages"])) if gears.value is not None else scene
         return sides.traded(held, names, gears)
     if scene.several:
-        each = [traded(scene.held(count), names, method) for count in scene.counts]
+        each = [traded(scene.held(count), names, ask) for count in scene.counts]
         curves = any(one.limiting is not None and not one.limiting.whole for one in each)
         if scene.teeth is None or method not in (None, EXACT) or curves:
             raise SolveError(

@@ -173,7 +173,7 @@ def compared(scene: Scene) -> tuple[str, ...]:
 def posed(scene: Scene, method: str) -> Model:
     """Return the problem of the relief, else that which sizes the pair; SolveError of neither."""
     if scene.relief is not None:
-        return relief_part.model(scene, _mesh_of_gears(scene))
+        return relief_part.model(scene, _mesh_of_gears(scene, Ask()))
     return drive.posed(_to_size(scene).drive, method)
 
 
@@ -184,20 +184,22 @@ def objectives(scene: Scene) -> Mapping[str, str]:
     return drive.KIND.trades.objectives(_to_size(scene).drive)
 
 
-def traded(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
+def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
     """Return the problem of a front of reliefs, else of sizes."""
     if scene.relief is not None:
-        return relief_part.traded(scene, _mesh_of_gears(scene), names)
-    return drive.KIND.trades.traded(_to_size(scene).drive, names, method)
+        return relief_part.traded(scene, _mesh_of_gears(scene, ask), names)
+    return drive.KIND.trades.traded(_to_size(scene).drive, names, ask)
 
 
-def _mesh_of_gears(scene: Scene) -> PairMesh:
+def _mesh_of_gears(scene: Scene, ask: Ask) -> PairMesh:
     """Return the gears in mesh, sized where they are not given; SolveError where there are none."""
     if scene.given:
         return mesh_of(scene, scene.given_pair)
-    sized = drive.KIND.solve(scene.drive, Ask())
-    if sized.value is None:
+    sized = drive.KIND.solve(scene.drive, ask.beforehand)
+    if sized.status == "infeasible":
         raise SolveError("no pair of gears meets the limits, so that there is none to relieve")
+    if sized.value is None:
+        raise SolveError("no pair of gears was found in time, so that there is none to relieve")
     return _mesh(scene, sized)[1]
 
 

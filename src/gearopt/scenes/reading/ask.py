@@ -4,6 +4,7 @@ from dataclasses import dataclass, field, replace
 
 from gearopt.errors import SolveError
 from gearopt.optimise.certified import GAP
+from gearopt.optimise.clock import of_others
 from gearopt.optimise.result import Budget, Watch
 
 LEAST_PRICES = 2.0  # s, for sensitivities that may take a share of the answer's seconds
@@ -30,6 +31,12 @@ class Ask:
         """What is asked, in half of its seconds: an answer that leaves time to explain it."""
         seconds = self.budget.seconds and 0.5 * self.budget.seconds
         return replace(self, budget=replace(self.budget, seconds=seconds))
+
+    @property
+    def beforehand(self) -> "Ask":
+        """What is asked of gears that come first: in half of the seconds, by any method."""
+        budget = Budget(seconds=self.half.budget.seconds)
+        return Ask(budget=budget, watch=of_others(self.watch))
 
     def for_prices(self, share: bool | float, spent: float) -> "Ask":
         """What is asked of sensitivities, after an answer that took so many seconds.

@@ -14,6 +14,7 @@ from gearopt.optimise.pareto.objectives import EPSILON, EXACT, Tradeoff, impossi
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
+from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo import tolerances as tolerance_part
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import BudgetTable
@@ -35,9 +36,9 @@ def objectives(scene: Scene) -> dict[str, str]:
     return {COST: "", **dict.fromkeys(_errors(scene).values(), "deg")}
 
 
-def traded(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
+def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
     """Return the problem of a front; SolveError where a method does not fit it."""
-    units = objectives(scene)
+    units, method = objectives(scene), ask.method
     listed = tuple(Objective(name, units[name]) for name in names)
     if scene.train is not None:
         return Tradeoff(_trains(scene, names, method), listed, lambda x: _train(scene, x))

@@ -370,7 +370,7 @@ def objectives(scene: Scene) -> dict[str, str]:
     return dict(sampled.OBJECTIVES)
 
 
-def traded(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
+def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
     """Return the problem of a front: the first objective under limits on the other, or sampled.
 
     The former is clear at all poses. load_share counts teeth, so that it is for the latter.
@@ -381,7 +381,7 @@ def traded(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
     def drawn(x: Array) -> dict[str, Any]:
         return sketched(demand, design_of(demand, x[: len(FREE)]))
 
-    if method in SAMPLERS:
+    if ask.method in SAMPLERS:
         return Tradeoff(sampled.problem(demand, start, names), listed, drawn)
     if SHARE in names:
         raise SolveError(
