@@ -45,13 +45,12 @@ def test_pitch_term_of_both_members_at_the_output(grade, worst, rss):
 
 def test_grade_6_of_a_common_gear():
     """m 3, z 40, b 30, grade 6: 9, 29 and 12 um after rounding, as independent programs print."""
-    rounded = 1e3 * rounded_tolerance(
-        [
-            single_pitch_tolerance(120.0, 3.0, 6),
-            total_pitch_tolerance(120.0, 3.0, 6),
-            total_profile_tolerance(120.0, 3.0, 6),
-        ]
-    )
+    exact = [
+        single_pitch_tolerance(120.0, 3.0, 6),
+        total_pitch_tolerance(120.0, 3.0, 6),
+        total_profile_tolerance(120.0, 3.0, 6),
+    ]
+    rounded = 1e3 * rounded_tolerance(np.array(exact))
     assert rounded == pytest.approx([9.0, 29.0, 12.0], rel=1e-12)
 
 

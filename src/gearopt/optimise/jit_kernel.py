@@ -16,7 +16,9 @@ import hashlib
 import io
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
+from types import FunctionType
 from typing import Any
 
 from numba import config, njit
@@ -110,3 +112,20 @@ entry = _kernel()
 inner = _kernel(no_cpython_wrapper=True)
 light = _kernel(no_cpython_wrapper=True, error_model="numpy", _nrt=False)
 inlined = _kernel(no_cpython_wrapper=True, forceinline=True, error_model="numpy", _nrt=False)
+
+
+@cache
+def _law(function: FunctionType, instead: tuple[tuple[str, Any], ...]) -> Any:
+    own = dict(function.__globals__)
+    for name in function.__code__.co_names:
+        if isinstance(own.get(name), FunctionType):
+            own[name] = dict(instead).get(name) or _law(own[name], instead)
+    return light(FunctionType(function.__code__, own))
+
+
+def law(function: Any, instead: dict[str, Any]) -> Any:
+    """Return a function of arrays or numbers as a kernel of numbers, with those that it calls.
+
+    They are called by names of their modules. instead: kernels in place of some, by name.
+    """
+    return _law(function, tuple(instead.items()))

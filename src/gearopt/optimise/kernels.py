@@ -4,6 +4,7 @@ import gc
 import hashlib
 import logging
 import os
+import re
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -212,7 +213,8 @@ def _called(entry: Any, known: set[Any]) -> Iterator[Any]:
             found.add(one)
             yield one
             names = map(one.py_func.__globals__.get, one.py_func.__code__.co_names)
-            left += [other for other in names if hasattr(other, "py_func")]
+            cells = (cell.cell_contents for cell in one.py_func.__closure__ or ())
+            left += [other for other in (*names, *cells) if hasattr(other, "py_func")]
 
 
 def _call(work: Callable[[], Any]) -> Any:
@@ -235,8 +237,18 @@ def _folder() -> Path:
 
 @cache
 def _key() -> str:
-    """Return A name that changes with the text of any kernel and with numba's version."""
+    """Return A name that changes with the text of any kernel and with numba's version.
+
+    With that of the laws that kernels import, too.
+    """
     text = hashlib.sha256(version("numba").encode())
-    for path in sorted(_SOURCES.rglob("*_kernel.py")):
-        text.update(path.name.encode() + path.read_bytes())
+    left, known = sorted(_SOURCES.rglob("*_kernel.py")), set[Path]()
+    while left:
+        path = left.pop(0)
+        if path not in known and path.is_file():
+            known.add(path)
+            source = path.read_bytes()
+            text.update(path.name.encode() + source)
+            rooms = re.findall(rb"(?m)^from gearopt\.((?:form|phys)[\w.]*) import", source)
+            left += [_SOURCES / (room.decode().replace(".", "/") + ".py") for room in rooms]
     return text.hexdigest()[:16]

@@ -9,3 +9,8 @@ def choose(condition: Any, yes: Any, no: Any) -> Any:
     """Return numpy.where, as a number of numbers; casadi scalars stay casadi scalars."""
     found = np.where(condition, yes, no)
     return found[()] if isinstance(found, np.ndarray) else found
+
+
+def some(condition: Any) -> bool:
+    """Whether a condition holds anywhere."""
+    return bool(np.any(condition))

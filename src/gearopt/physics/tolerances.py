@@ -11,7 +11,8 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+
+from gearopt.physics.choosing import choose
 
 MICROMETRE = 1e-3  # mm
 SCOPE = {
@@ -79,13 +80,13 @@ def runout_tolerance(diameter: Any, module: Any, grade: Any) -> Any:
     return 0.9 * total_pitch_tolerance(diameter, module, grade)
 
 
-def rounded_tolerance(tolerance: ArrayLike) -> Any:
+def rounded_tolerance(tolerance: Any) -> Any:
     """Return a tolerance [mm] rounded by 5.2.3: steps of 1 um above 10 um, 0.5 from 5, else 0.1.
 
     Halves are rounded up; what lies within 1e-9 um of a half counts as one.
     """
-    size = np.asarray(tolerance, float) / MICROMETRE
-    unit = np.where(size > 10.0, 1.0, np.where(size >= 5.0, 0.5, 0.1))
+    size = tolerance / MICROMETRE
+    unit = choose(size > 10.0, 1.0, choose(size >= 5.0, 0.5, 0.1))
     found = np.floor(size / unit + 0.5 + 1e-9) * unit
     return MICROMETRE * found
 

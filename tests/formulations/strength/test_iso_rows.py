@@ -10,8 +10,8 @@ from rated_drives import RACK, agma, iso
 
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.strength import ALLOWANCE
-from gearopt.formulations.strength.iso6336_rows import Box
 from gearopt.formulations.strength.rated import IndexRows, Load
+from gearopt.formulations.strength.use import iso6336 as use
 from gearopt.formulations.strength.widths import first_width
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.geometry.contact import usable_path
@@ -181,7 +181,7 @@ def test_no_width_of_a_box_carries_where_levels_use_more_than_1(kind):
 def test_the_first_width_under_levels_carries_and_none_below_it(kind):
     standard, pair, width, torque, power, _ = nearly_used_up(kind, 10)
     made = rows(standard, pair, (torque, torque), power)
-    found = first_width([made], 0.6 * width, 1.5 * width)
+    found = first_width(made, 0.6 * width, 1.5 * width)
     some = np.isfinite(found)
     assert some.sum() > 100
     assert (exact(standard, pair, found, torque, power)[some] <= 1.0 + 4e-12).all()
@@ -194,8 +194,9 @@ def test_no_width_uses_less_near_the_main_resonance_at_one_torque():
     standard, helix = KINDS["spur"]
     pair, width, torque, power, rng = pairs(helix, 6)
     torque, wide = 0.1 * torque, 1.1
-    box = Box(standard, rows(standard, pair, (torque, torque), power).columns, (width, width))
-    power = power * rng.uniform(0.5, 1.2, COUNT) / box.resonance(0, box.singles[0])
+    at, way = rows(standard, pair, (torque, torque), power).row, standard.way
+    single = use.box_of(at, way, width, width, same=True).single0
+    power = power * rng.uniform(0.5, 1.2, COUNT) / use.resonance(at, way, at.pace0, single)
     found = rows(standard, pair, (torque, torque), power).used(width, width * wide)
     for share in (0.0, 1.0, *rng.uniform(0.0, 1.0, (2, COUNT))):
         one = exact(standard, pair, width * wide**share, torque, power)
@@ -208,16 +209,18 @@ def test_the_least_root_load_may_be_within_a_box(loads, wide):
     standard = iso((EH, EH), practice=replace(NEW, grades=(9.0, 9.0)))
     pair, _, torque, power, rng = pairs(0.78, 7)
     width = pair.normal_module * rng.uniform(5.0, 9.0, COUNT)
-    at = rows(standard, pair, (1e-3 * torque, loads * 1e-3 * torque), 1e-3 * power).columns
-    box = Box(standard, at, (width, wide * width))
-    before = box.dynamic(0)
-    after = box.spread(0, before)
-    most = np.maximum(box.spread(1, box.dynamic(1)), after)
+    at = rows(standard, pair, (1e-3 * torque, loads * 1e-3 * torque), 1e-3 * power).row
+    box = use.box_of(at, standard.way, width, wide * width, same=False)
+    here = at, standard.way, box
+    before = use.dynamic(*here, use.LOWER)
+    after = use.spread(*here, before, use.LOWER)
+    most = np.maximum(use.spread(*here, use.dynamic(*here, use.UPPER), use.UPPER), after)
     line = np.geomspace(after, most, 1001)
-    share = transverse_load_factor(box.mesh(box.singles[0]), at["deviation0"], line, box.total[0])
-    limit = box.total[0] / (at["contact"] * (0.25 + 0.75 / at["virtual"]))
-    least = (line / before) ** root_exponent(width, at["depth"]) * limited(share, limit) * before
-    found = box.bent(before, after, box._transverse(after))
+    stiff = use.mesh(at, standard.way, box.single0)
+    share = transverse_load_factor(stiff, at.deviation0, line, box.total0)
+    limit = box.total0 / (at.contact * (0.25 + 0.75 / at.virtual))
+    least = (line / before) ** root_exponent(width, at.depth) * limited(share, limit) * before
+    found = use.bent(*here, before, after, use.transverse(*here, after))
     np.testing.assert_allclose(found, least.min(axis=0), rtol=2e-8)
     assert (found <= least.min(axis=0) * (1.0 + 1e-12)).all()
     assert (least.argmin(axis=0) > 0).sum() > 20
@@ -283,18 +286,17 @@ def test_a_narrow_pair_is_refused_until_its_overlap_suffices():
 
 
 def test_a_width_carries_whose_excess_is_rounding():
-    rows = [IndexRows(np.array([1.0, 1.0 + ALLOWANCE, 1.5, 3.0]))]
+    rows = IndexRows(np.array([1.0, 1.0 + ALLOWANCE, 1.5, 3.0]))
     found = first_width(rows, np.ones(4), np.full(4, 2.0))
     assert found.tolist() == [1.0, 1.0, pytest.approx(1.5, rel=1e-11), np.inf]
-    assert rows[0].used(np.ones(4), np.full(4, 2.0))[2:].tolist() == [0.75, 1.5]
+    assert rows.used(np.ones(4), np.full(4, 2.0))[2:].tolist() == [0.75, 1.5]
 
 
 def test_the_first_width_may_be_where_a_refusal_ends():
     """A light load on such pairs."""
     pair, torque, power = undercut()
-    found = first_width(
-        [rows(iso(), pair, (torque, torque), power)], np.full(4, 5.0), np.full(4, 90.0)
-    )
+    made = rows(iso(), pair, (torque, torque), power)
+    found = first_width(made, np.full(4, 5.0), np.full(4, 90.0))
     least = 1.0 - usable_path(pair).transverse_ratio
     least[3] = 1.0  # of contact at a base circle
     np.testing.assert_allclose(pair.of_width(found).overlap_ratio, least, rtol=1e-11)

@@ -4,6 +4,7 @@ The load grows with the torque T, K_v falls no faster than T^-0.5, what life fac
 faster than T^0.148. All else is constant for a given pair and width.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -15,7 +16,8 @@ from gearopt.formulations.strength import agma_smooth
 from gearopt.formulations.strength.agma_cells import needed
 from gearopt.formulations.strength.agma_floor import AgmaFloor, agma_floor
 from gearopt.formulations.strength.cells import Cells
-from gearopt.formulations.strength.rated import Box, Load, Smooth
+from gearopt.formulations.strength.rated import Box, Load, Posed, Smooth, table_of
+from gearopt.formulations.strength.use.agma import AgmaRow, AgmaWay, agma_border, agma_use
 from gearopt.formulations.strength.virtual import Strength, may_be_best
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma import factors
@@ -31,7 +33,6 @@ from gearopt.physics.agma.rating_factors import (
     Practice,
     Steel,
     computed,
-    distribution,
     life_curves,
 )
 from gearopt.physics.agma.table import FactorTable, factor_table
@@ -150,6 +151,20 @@ class Agma:
             return Strength(law, (), stress)
         return Strength(law, self.steels, stress, factors.LARGEST_HARDNESS_RATIO)
 
+    @cached_property
+    def way(self) -> AgmaWay:
+        """Return the numbers of it that `agma_use` takes."""
+        made, given = self.practice, self.given
+        shares = 0.8 if made.crowned else 1.0, 1.0 if made.offset < 0.175 else 1.1
+        return AgmaWay(
+            1.0 if "I" in given else math.nan,
+            1.0 if "J" in given else math.nan,
+            1.0 if "K_m" in given else math.nan,
+            made.size and "K_s" not in given,
+            factors.ALIGNMENT[made.curve],
+            (*shares, 0.8 if made.adjusted else 1.0),
+        )
+
     def like(self, other: Any) -> bool:
         """Return whether `prepared` of another standard is the same."""
         return isinstance(other, Agma) and other.practice.load == self.practice.load
@@ -185,9 +200,7 @@ class Agma:
             for gear in pair.gears
         ]
         columns = (*used, pair.working_diameters[0], *lengths)
-        shape = np.shape(torque[0])
-        table = np.array([np.broadcast_to(np.asarray(c, float), shape) for c in columns])
-        return AgmaRows(self, prepared, table)
+        return AgmaRows(self, prepared, table_of(columns, len(torque[0])))
 
 
 @dataclass(frozen=True)
@@ -203,49 +216,28 @@ class AgmaRows:
     table: FactorTable
     columns: Array
 
+    @np.errstate(invalid="ignore")  # of spur gears among others, of no overlap
     def used(self, low: Array, high: Array) -> Array:
-        """Return K_m K_s at the low width over b I and b J at the high one, times the columns.
+        """Lower bound of the greatest part that is used: of load, so of S_H squared."""
+        return np.asarray(agma_use(self.row, self.standard.way, low, high, low is high))
 
-        K_m and K_s do not fall with the width; b I and b J follow the least length of the lines of
-        contact above m_F = 1, which does not fall; below, I and J are largest at one of the ends.
-        """
-        given, made = self.standard.given, self.columns
-        spread = self._spread(low, made[4])
-        geometry = self._geometry(low, high)
-        found = np.zeros(len(low))
-        for k in (0, 1):
-            own = spread * self._size(low, made[5 + k])
-            bent = 1.0 if "J" in given else geometry[1 + k]
-            pressed = 1.0 if "I" in given else geometry[0]
-            found = np.maximum(found, own * made[k] / (high * bent))
-            found = np.maximum(found, own * made[2 + k] / (high * pressed))
-        return np.asarray(found)
-
-    def _spread(self, width: Array, diameter: Array) -> Any:
-        if "K_m" in self.standard.given:
-            return 1.0
-        return distribution(self.standard.practice, width, diameter)
-
-    def _size(self, width: Array, length: Array) -> Any:
-        if "K_s" in self.standard.given or not self.standard.practice.size:
-            return 1.0
-        return factors.size_factor(width, length, 1.0)
-
-    def _geometry(self, low: Array, high: Array) -> tuple[Any, Any, Any]:
-        """Return the largest I, J_1, J_2 of use between two widths."""
-        at = self.table.factors(high)
-        if self.table.spur:
-            return at
-        before = self.table.factors(low)
-        conventional = high > self.table.axial
-        first, second, third = (
-            np.where(conventional, a, np.maximum(a, b)) for a, b in zip(at, before, strict=True)
-        )
-        return first, second, third
+    @cached_property
+    def row(self) -> AgmaRow:
+        """The numbers of the pairs."""
+        at = self.table
+        kind = at.contact, at.axial, at.cosine
+        return AgmaRow(at.low, at.slope, at.high, *kind, *self.columns)
 
     def border(self, width: Array) -> Array:
         """Return the width of m_F = 1 for those up to it."""
-        return np.where(width <= self.table.axial, self.table.axial, np.inf)
+        return np.asarray(agma_border(self.row, self.standard.way, width))
+
+    @property
+    def posed(self) -> Posed:
+        """Kernel and numbers of `widths.first_width`."""
+        at = self.row
+        numbers = *at.low, at.slope, *at.high, *at[3:6], *self.columns
+        return "agma_widths", (table_of(numbers, self.columns.shape[1]), self.standard.way, True)
 
     def take(self, place: Any) -> "AgmaRows":
         """Return some of the rows."""

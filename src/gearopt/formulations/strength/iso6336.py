@@ -13,9 +13,10 @@ import numpy as np
 
 from gearopt.formulations.strength.cells import Cells
 from gearopt.formulations.strength.iso6336_cells import IsoCells
-from gearopt.formulations.strength.iso6336_rows import AT_ENDS, Columns, IsoRows
+from gearopt.formulations.strength.iso6336_rows import AT_ENDS, Columns, IsoRows, way_of
 from gearopt.formulations.strength.rated import Box, Load, Smooth, together
 from gearopt.formulations.strength.teeth_alone import iso_teeth
+from gearopt.formulations.strength.use.iso6336 import IsoWay
 from gearopt.formulations.strength.virtual import Strength as Rival
 from gearopt.formulations.strength.virtual import may_be_best
 from gearopt.optimise.terms import Array
@@ -165,6 +166,11 @@ class Iso6336:
     def each(self) -> tuple["Iso6336", ...]:
         """Return all ways of making the gears, this one first."""
         return (replace(self, rivals=()), *self.rivals) if self.rivals else (self,)
+
+    @cached_property
+    def way(self) -> IsoWay:
+        """Return the numbers of it that `least_part` takes."""
+        return way_of(self)
 
     @cached_property
     def wearing(self) -> tuple[tuple[tuple[str, float], ...], ...]:
@@ -335,15 +341,10 @@ class Iso6336:
 
     def running_in_allowance(self, case: Case, deviation: Any) -> Any:
         """Return y_alpha of a deviation [mm], the mean of both gears."""
-        return self._allowance(running_in.pitch_allowance, deviation, case.speed)
-
-    def helix_allowance(self, deviation: Any, speed: Any) -> Any:
-        """Return y_beta of a deviation [mm] at a speed [mm/s], the mean of both gears."""
-        return self._allowance(running_in.helix_allowance, deviation, speed)
-
-    def _allowance(self, law: Callable[..., Any], deviation: Any, speed: Any) -> Any:
         first, second = (
-            np.maximum.reduce([law(family, deviation, limit, speed) for family, limit in kinds])
+            np.maximum.reduce(
+                [running_in.pitch_allowance(f, deviation, limit, case.speed) for f, limit in kinds]
+            )
             for kinds in self.wearing
         )
         return 0.5 * (first + second)

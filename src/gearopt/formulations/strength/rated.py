@@ -17,6 +17,7 @@ from gearopt.physics.gears import GearPair
 from gearopt.physics.rating import Operation
 
 MODES = ("pinion_bending", "wheel_bending", "pinion_contact", "wheel_contact")
+Posed = tuple[str, tuple[Any, ...]]
 REFUSED = 1e9  # utilisation of pairs that a standard refuses to rate
 
 
@@ -42,6 +43,14 @@ def together(loads: Sequence[Load]) -> Load:
     return Load(*table.T[:, :, None])
 
 
+def table_of(columns: Sequence[Any], count: int) -> Array:
+    """Return a table of columns (n,) or numbers."""
+    table = np.empty((len(columns), count))
+    for place, column in enumerate(columns):
+        table[place] = column
+    return table
+
+
 class Rows(Protocol):
     """Gear pairs (n,) at torques, whose face widths are sought."""
 
@@ -55,6 +64,10 @@ class Rows(Protocol):
 
     def border(self, width: Array) -> Array:
         """Return the next width [mm] above which another law holds; inf: none."""
+
+    @property
+    def posed(self) -> "Posed | None":
+        """Name of the kernel that finds first widths, and the numbers it takes; None: none."""
 
     def take(self, place: Any) -> "Rows":
         """Return some of the rows."""
@@ -194,6 +207,10 @@ class IndexRows:
     def border(self, width: Array) -> Array:
         """Width [mm] above which another law holds: inf, for a proportional law has none."""
         return np.full(len(width), np.inf)
+
+    @property
+    def posed(self) -> None:
+        """No kernel: the first step leads to the width."""
 
     def take(self, place: Any) -> "IndexRows":
         """Return some of the rows."""

@@ -153,9 +153,12 @@ def alignment_factor(face_width: Any, curve: str) -> Any:
     """
     if curve not in ALIGNMENT:
         raise ValueError(f"no curve {curve!r} of C_ma; known: {', '.join(ALIGNMENT)}")
-    a, b, c = ALIGNMENT[curve]
+    return _aligned(face_width, ALIGNMENT[curve])
+
+
+def _aligned(face_width: Any, curve: tuple[float, float, float]) -> Any:
     width = _drawn(face_width)
-    return a + b * width + c * width**2
+    return curve[0] + curve[1] * width + curve[2] * width**2
 
 
 def load_distribution_factor(
@@ -174,8 +177,19 @@ def load_distribution_factor(
     Source: AGMA 2001-D04, clause 15, empirical method.
     """
     leads, mounted = 0.8 if crowned else 1.0, 0.8 if adjusted else 1.0
-    proportion = proportion_factor(face_width, pinion_diameter) * choose(offset < 0.175, 1.0, 1.1)
-    return 1.0 + leads * (proportion + alignment_factor(face_width, curve) * mounted)
+    shared = leads, choose(offset < 0.175, 1.0, 1.1), mounted
+    return distributed(face_width, pinion_diameter, ALIGNMENT[curve], shared)
+
+
+def distributed(
+    face_width: Any,
+    pinion_diameter: Any,
+    curve: tuple[float, float, float],
+    shared: tuple[Any, Any, Any],
+) -> Any:
+    """K_m of `load_distribution_factor`; curve: of ALIGNMENT; shared: C_mc, C_pm, C_e."""
+    proportion = proportion_factor(face_width, pinion_diameter) * shared[1]
+    return 1.0 + shared[0] * (proportion + _aligned(face_width, curve) * shared[2])
 
 
 def rim_factor(backup_ratio: Any) -> Any:

@@ -67,23 +67,29 @@ class FactorTable:
         """
         if self.spur:
             return self.low
-        overlap = width / self.axial
-        above, sharing = overlap > 1.0, self.lines(overlap)
-        factor = np.maximum(0.0, 1.0 - np.minimum(overlap, 1.0) * self.slope)
-        powers = (factor, np.sqrt(factor), np.sqrt(factor))
-        found = [
-            np.where(above, high * sharing, low * power)
-            for low, high, power in zip(self.low, self.high, powers, strict=True)
-        ]
-        return found[0], found[1], found[2]
-
-    def lines(self, overlap: Any) -> Any:
-        """Return 1/m_N = L_min/b at overlap ratios."""
-        ratio = self.contact
-        n_r, n_a = ratio - np.floor(ratio), overlap - np.floor(overlap)
-        lost = choose(n_a <= 1.0 - n_r, n_a * n_r, (1.0 - n_a) * (1.0 - n_r))
         with np.errstate(invalid="ignore"):  # of spur gears among others, of no overlap
-            return (ratio - lost / overlap) / self.cosine
+            kind = self.contact, self.axial, self.cosine
+            return factors_at(self.low, self.slope, self.high, kind, width)
+
+
+def factors_at(low: Three, slope: Any, high: Three, kind: Three, width: Any) -> Three:
+    """I, J_1, J_2 at face widths [mm]; kind: contact, axial and cosine of `FactorTable`."""
+    overlap = width / kind[1]
+    above, sharing = overlap > 1.0, lines(kind[0], overlap, kind[2])
+    factor = np.maximum(0.0, 1.0 - np.minimum(overlap, 1.0) * slope)
+    root = np.sqrt(factor)
+    return (
+        choose(above, high[0] * sharing, low[0] * factor),
+        choose(above, high[1] * sharing, low[1] * root),
+        choose(above, high[2] * sharing, low[2] * root),
+    )
+
+
+def lines(contact: Any, overlap: Any, cosine: Any) -> Any:
+    """Return 1/m_N = L_min/b at overlap ratios; cosine: of the base helix angle."""
+    n_r, n_a = contact - np.floor(contact), overlap - np.floor(overlap)
+    lost = choose(n_a <= 1.0 - n_r, n_a * n_r, (1.0 - n_a) * (1.0 - n_r))
+    return (contact - lost / overlap) / cosine
 
 
 def factor_table(pair: GearPair, load: str = "highest single") -> FactorTable:

@@ -13,6 +13,7 @@ import numpy as np
 
 from gearopt.physics import tolerances
 from gearopt.physics.gears import GearPair
+from gearopt.physics.tolerances import helix_slope_tolerance, rounded_tolerance
 
 TOLERANCES = ("1995", "2013")
 # Ends of the ranges [mm]. Source: ISO 1328-1:1995, 5.2; gfsReboucas/Drivetrain, Gear.m
@@ -47,7 +48,7 @@ def range_mean(size: Any, ends: tuple[float, ...]) -> Any:
 
     A size beyond the ranges counts to the nearest one. Source: ISO 1328-1:1995, 5.2.
     """
-    return _means(ends)[_place(size, ends)]
+    return _means(ends)[range_of(size, ends[1:-1])]
 
 
 @cache
@@ -56,21 +57,19 @@ def _means(ends: tuple[float, ...]) -> Any:
     return np.sqrt(bounds[:-1] * bounds[1:])
 
 
-def _place(size: Any, ends: tuple[float, ...]) -> Any:
-    """Return the index of the range in which a size lies."""
-    return np.searchsorted(_inner(ends), size)
+def range_of(size: Any, ends: Any) -> Any:
+    """Return the index of the range in which a size lies, by the ends between ranges."""
+    place = 0
+    for end in ends:
+        place = place + (size > end)
+    return place
 
 
 @cache
-def _inner(ends: tuple[float, ...]) -> Any:
-    return np.asarray(ends[1:-1], float)
-
-
-@cache
-def _slopes_1995(grade: float) -> Any:
+def slopes_1995(grade: float) -> Any:
     """Return f_Hbeta of every range of diameter and of face width [mm]."""
     means = _means(DIAMETERS)[:, None], _means(WIDTHS)
-    return tolerances.rounded_tolerance(helix_slope_1995(*means, grade))
+    return rounded_tolerance(helix_slope_1995(*means, grade))
 
 
 def single_pitch_1995(diameter: Any, module: Any, grade: Any) -> Any:
@@ -141,9 +140,16 @@ def helix_slope(
     if smooth and edition == "1995":
         return helix_slope_1995(diameter, face_width, grade)
     if edition == "1995":
-        return _slopes_1995(grade)[_place(diameter, DIAMETERS), _place(face_width, WIDTHS)]
-    tolerance = tolerances.helix_slope_tolerance(diameter, face_width, grade)
-    return tolerance if smooth else tolerances.rounded_tolerance(tolerance)
+        places = range_of(diameter, DIAMETERS[1:-1]), range_of(face_width, WIDTHS[1:-1])
+        return slopes_1995(grade)[places]
+    if smooth:
+        return helix_slope_tolerance(diameter, face_width, grade)
+    return slope_2013(diameter, face_width, grade)
+
+
+def slope_2013(diameter: Any, face_width: Any, grade: Any) -> Any:
+    """Return f_Hbeta [mm] by ISO 1328-1:2013, rounded."""
+    return rounded_tolerance(helix_slope_tolerance(diameter, face_width, grade))
 
 
 def _of_gear(gear: Any, grade: Any, edition: str, smooth: bool) -> tuple[Any, Any, Any]:
@@ -160,4 +166,4 @@ def _of_gear(gear: Any, grade: Any, edition: str, smooth: bool) -> tuple[Any, An
         form = profile_form_1995(diameter, module, grade)
     if smooth:
         return pitch, form, slope
-    return tolerances.rounded_tolerance(pitch), tolerances.rounded_tolerance(form), slope
+    return rounded_tolerance(pitch), rounded_tolerance(form), slope

@@ -18,9 +18,14 @@ def helix_factor(helix: Any, overlap: Any, edition: str = "2006") -> Any:
 
     2019: over cos(beta)^3. helix [rad]. Source: ISO 6336-3:2006, 8; a printed report of 2019.
     """
+    return inclined(helix, overlap, edition != "2006")
+
+
+def inclined(helix: Any, overlap: Any, newer: bool) -> Any:
+    """Y_beta of `helix_factor`; newer: of 2019."""
     degrees = np.minimum(np.degrees(np.abs(helix)), 30.0)
     found = 1.0 - np.minimum(overlap, 1.0) * degrees / 120.0
-    return found if edition == "2006" else found / np.cos(helix) ** 3
+    return found / np.cos(helix) ** 3 if newer else found
 
 
 def rim_factor(backup: Any) -> Any:

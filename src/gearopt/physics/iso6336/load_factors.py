@@ -52,14 +52,12 @@ def coefficients(total_ratio: Any) -> tuple[Any, ...]:
     Source: ISO 6336-1:2006, table 8 (6.5); gfsReboucas/Drivetrain has it.
     """
     e = np.maximum(total_ratio, 2.0)
-    laws = (
-        (0.34, 0.57 / (e - 0.3)),
-        (0.23, 0.096 / (e - 1.56)),
-        (0.90, (0.57 - 0.05 * e) / (e - 1.44)),
-        (0.47, 0.12 / (e - 1.74)),
-    )
-    second, third, fourth, sixth = (choose(total_ratio > 2.0, high, low) for low, high in laws)
-    phase = np.clip(total_ratio, 1.5, 2.5) - 2.0
+    above = total_ratio > 2.0
+    second = choose(above, 0.57 / (e - 0.3), 0.34)
+    third = choose(above, 0.096 / (e - 1.56), 0.23)
+    fourth = choose(above, (0.57 - 0.05 * e) / (e - 1.44), 0.90)
+    sixth = choose(above, 0.12 / (e - 1.74), 0.47)
+    phase = np.minimum(np.maximum(total_ratio, 1.5), 2.5) - 2.0
     return 0.32, second, third, fourth, 0.47, sixth, 0.125 * np.sin(np.pi * phase) + 0.875
 
 
@@ -121,8 +119,14 @@ def initial_misalignment(
     line_load w [N/mm]; slope: the larger f_Hbeta [mm]; modification: of HELIX_MODIFICATIONS.
     Source: ISO 6336-1:2006, 7.5.
     """
-    first, second = HELIX_MODIFICATIONS[modification]
-    found = 1.33 * first * shaft + second * alignment
+    return remaining(shaft, alignment, line_load, slope, HELIX_MODIFICATIONS[modification])
+
+
+def remaining(
+    shaft: Any, alignment: Any, line_load: Any, slope: Any, parts: tuple[float, float]
+) -> Any:
+    """F_betax of `initial_misalignment` of parts B_1, B_2."""
+    found = 1.33 * parts[0] * shaft + parts[1] * alignment
     return np.maximum(found, np.maximum(LEAST_PER_LOAD * line_load, 0.5 * slope))
 
 

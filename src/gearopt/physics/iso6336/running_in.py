@@ -32,9 +32,9 @@ def pitch_allowance(family: str, deviation: Any, contact_limit: Any, speed: Any)
     surface hardened gears and, below 5 m/s, of tempered steel; the rest is of memory.
     """
     if family in TEMPERED:
-        return _allowance(deviation, 160.0 / contact_limit, 80.0, speed)
+        return tempered(deviation, 160.0 / contact_limit, speed)
     if family in CAST:
-        return _allowance(deviation, 0.275, 80.0, speed)
+        return tempered(deviation, 0.275, speed)
     return np.minimum(0.075 * deviation, 3.0 * MICROMETRE)
 
 
@@ -46,18 +46,25 @@ def helix_allowance(family: str, deviation: Any, contact_limit: Any, speed: Any)
     than the deviation. Source: ISO 6336-1:2006, 7.5; hanslhansl/din3990 has that of DIN 3990.
     """
     if family in TEMPERED:
-        return _allowance(deviation, 320.0 / contact_limit, 80.0, speed)
-    if family in CAST:
-        limit = choose(speed > FAST, 22.0, 45.0) * MICROMETRE
-        return choose(speed > SLOW, np.minimum(0.55 * deviation, limit), 0.55 * deviation)
+        return tempered(deviation, 320.0 / contact_limit, speed)
+    return cast_helix(deviation, speed) if family in CAST else hard_helix(deviation)
+
+
+def tempered(deviation: Any, share: Any, speed: Any) -> Any:
+    """Return share of a deviation, which counts up to 80 um above 5 m/s, above 10 m/s to 40."""
+    counted = choose(speed > FAST, 40.0, choose(speed > SLOW, 80.0, np.inf))
+    return np.minimum(share, 1.0) * np.minimum(deviation, counted * MICROMETRE)
+
+
+def cast_helix(deviation: Any, speed: Any) -> Any:
+    """Return y_beta of GG and ferritic GGG."""
+    limit = choose(speed > FAST, 22.0, 45.0) * MICROMETRE
+    return choose(speed > SLOW, np.minimum(0.55 * deviation, limit), 0.55 * deviation)
+
+
+def hard_helix(deviation: Any) -> Any:
+    """Return y_beta of hardened gears."""
     return np.minimum(0.15 * deviation, 6.0 * MICROMETRE)
-
-
-def _allowance(deviation: Any, share: Any, most: float, speed: Any) -> Any:
-    """Return share of a deviation, which counts up to `most` um, above 10 m/s to half of it."""
-    share = np.minimum(share, 1.0)
-    counted = choose(speed > FAST, 0.5 * most, choose(speed > SLOW, most, np.inf))
-    return share * np.minimum(deviation, counted * MICROMETRE)
 
 
 def tip_relief(contact_limit: Any) -> Any:

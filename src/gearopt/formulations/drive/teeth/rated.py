@@ -19,7 +19,7 @@ from gearopt.formulations.drive.teeth.stage import EDGE, Cells, Grid, Table
 from gearopt.formulations.drive.train import Train
 from gearopt.formulations.strength import ALLOWANCE
 from gearopt.formulations.strength.rated import IndexRows, Option, Rows, Standard
-from gearopt.formulations.strength.widths import MAX_STEPS, first_width, used
+from gearopt.formulations.strength.widths import MAX_STEPS, Standing
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
@@ -480,7 +480,7 @@ class RatedTable(Table):
         """Return the narrowest face widths [mm] of pairs with modules (indices); inf: none."""
         one = self.made(self.modules[module], pair)
         rows = self._rows(torque, one, pair, module, option)
-        widths = first_width(rows, *ends, close, steps)
+        widths = rows.first_width(np.arange(len(pair)), *ends, close, steps)
         if math.isfinite(self.stage.axial_force):
             carries = self.stage.axial_use(one, torque[0]) <= 1.0 + ALLOWANCE
             widths = np.where(carries, widths, np.inf)
@@ -495,35 +495,43 @@ class RatedTable(Table):
         pair: Index,
         module: Index,
         option: int,
-    ) -> list[Rows]:
-        place = self._shape(module, pair) if self._by_module else pair
-        speed = self.train.speed_at(torque[0]), self.train.speed_at(torque[1])
-        scale = np.ones(len(pair)) if self._by_module else self.modules[module]
+    ) -> Standing:
+        shapes = self._shape(module, pair) if self._by_module else pair
         virtual = option == VIRTUAL
         chosen = self._virtual if virtual else self.stage.options[option]
         assert chosen is not None
+
+        def maker(standard: Standard, prepared: Any) -> Callable[[Index], Rows]:
+            def rows(place: Index) -> Rows:
+                every = len(place) == len(pair)
+                made = one if every else self.made(self.modules[module[place]], pair[place])
+                ends = torque[0][place], torque[1][place]
+                speed = self.train.speed_at(ends[0]), self.train.speed_at(ends[1])
+                scale = np.ones(len(place)) if self._by_module else self.modules[module[place]]
+                teeth = prepared.take(shapes[place]).scaled(scale)
+                return standard.rows(teeth, made, ends, speed, self.train.safety)
+
+            return rows
+
         standards = zip(chosen.standards, self._prepared[0 if virtual else option], strict=True)
-        found: list[Rows] = [
-            standard.rows(prepared.take(place).scaled(scale), one, torque, speed, self.train.safety)
-            for standard, prepared in standards
-        ]
+        makers = [maker(standard, prepared) for standard, prepared in standards]
         if self.train.law.limits:
             assert self.load is not None
-            found.append(IndexRows(self.load[pair] * torque[0] / self.modules[module] ** 2))
-        return found
+            needed = self.load[pair] * torque[0] / self.modules[module] ** 2
+            makers.append(lambda place: IndexRows(needed[place]))
+        return Standing(makers, self.tick)
 
-    def _stepped(self, rows: list[Rows], width: Array, high: Array, close: float) -> Array:
+    def _stepped(self, rows: Standing, width: Array, high: Array, close: float) -> Array:
         """Return the first widths on the step from those on that carry; close: as `first_width`."""
         step, found = self.step, np.full(len(width), np.inf)
         active = np.flatnonzero(np.isfinite(width))
         while len(active):
-            now = [one.take(active) for one in rows]
             on = np.ceil(width[active] / step * (1.0 - ALLOWANCE)) * step
             inside = on <= high[active] * (1.0 + ALLOWANCE)
-            carries = inside & (used(now, on, on) <= 1.0 + close)
+            active, on = active[inside], on[inside]
+            carries = np.isfinite(rows.first_width(active, on, on, close))
             found[active[carries]] = on[carries]
-            goes = inside & ~carries
-            active, now = active[goes], [one.take(goes) for one in now]
-            width[active] = first_width(now, on[goes] + step, high[active], close)
+            active, on = active[~carries], on[~carries]
+            width[active] = rows.first_width(active, on + step, high[active], close)
             active = active[np.isfinite(width[active])]
         return found
