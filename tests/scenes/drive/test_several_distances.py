@@ -86,3 +86,16 @@ def test_given_gears_have_one_distance(tmp_path):
     text = FEW.replace('"125 mm"', f"{LIST}\n{size}")
     with pytest.raises(SceneError, match="these are all given"):
         load(written(tmp_path, text.replace("face_width_over_diameter = [0.3, 1.0]\n", "")))
+
+
+@pytest.mark.slow
+def test_a_coaxial_drive_has_a_bound_as_soon_as_it_has_a_design():
+    """Its rows of distances are searched in turn, and each has a bound when it is begun."""
+    events = []
+
+    def until_known(event):
+        events.append(event)
+        return event.best is None or event.bound is None
+
+    result = gearopt.solve("problems/coaxial_unit.toml", watch=until_known)
+    assert result.status == "limit" and 4e6 < result.bound < 6159497.0 < result.value

@@ -9,7 +9,7 @@ train.
 import heapq
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -93,8 +93,11 @@ def search(
     cut = min(maximum, first_cut(train))
     progress.whole = whole and cut == maximum
     try:
+        parts = len(train.of_one_option) * len(train.of_one_row)
         for one in _glimpses(train):
             _glance(train, one, cut, progress, shelf)
+            if parts > 1 and progress.found and progress.lower == -math.inf:
+                _bound_apart(train, cut, progress, shelf)
         closed = not progress.found and _look(train, cut, progress, FIRST_LOOK, shelf)
         far = reach(train, cut, maximum, progress.threshold, progress.tick, shelf)
         progress.whole = whole
@@ -146,6 +149,19 @@ def _first_dive(train: Train, tables: list[Table], few: list[Table], progress: P
         delta = FIRST_CELLS * _width(tables)
         rest = bound(train, few, delta, progress.tick, None, progress.threshold)
         _dive(train, [*few[:-1], tables[-1]], rest, progress)
+
+
+def _bound_apart(train: Train, cut: Fraction, progress: Progress, shelf: list[RatedTable]) -> None:
+    """Raise the bound to that of stages whose options and distances need not go together.
+
+    Drives of one option and one row of distances have none before each of them was begun.
+    """
+    apart = replace(train, distances=(), same_option=False)
+    tables = stage_tables(apart, cut, progress.tick, shelf)
+    delta = FIRST_CELLS * _width(tables)
+    rest = bound(apart, tables, delta, progress.tick, None, progress.threshold)
+    first = first_costs(apart, tables[0], LAST_COARSE_CELL, progress.threshold)
+    progress.raise_lower(_least(tables, rest, first))
 
 
 def _look(
