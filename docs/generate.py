@@ -18,9 +18,9 @@ import pictures
 import python_api
 import rate_page
 
+from gearopt.scenes.reading.json_schema import reference as tables
 from gearopt.scenes.reading.kinds import kinds
 from gearopt.scenes.reading.load import kind_named
-from gearopt.scenes.reading.schema import reference as tables
 
 DOCS = Path(__file__).parent
 PAGES = {

@@ -12,9 +12,9 @@ from gearopt import api, cli
 from gearopt.formulations.drive import sizing, teeth
 from gearopt.optimise.own_methods import back_ends
 from gearopt.report.measures import METRIC
+from gearopt.scenes.reading.json_schema import reference
 from gearopt.scenes.reading.kinds import kinds
 from gearopt.scenes.reading.load import kind_named, read
-from gearopt.scenes.reading.schema import reference
 from gearopt.units import UNITS
 
 ROOT = Path(__file__).parents[1]

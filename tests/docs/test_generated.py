@@ -13,9 +13,9 @@ import python_api
 import gearopt
 from gearopt.cli import app
 from gearopt.cli.app import EXIT
+from gearopt.scenes.reading.json_schema import reference as tables
 from gearopt.scenes.reading.kinds import kinds
 from gearopt.scenes.reading.load import kind_named
-from gearopt.scenes.reading.schema import reference as tables
 
 ROOT = Path(__file__).parents[2]
 FAST = ("elevator", "elevator_box", "three_stages_ratio_cap", "sandgren_train")

@@ -30,7 +30,7 @@ from gearopt.scenes.explaining.explanations import explanation
 from gearopt.scenes.explaining.numbers import content
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import examples
-from gearopt.scenes.reading.toml import toml_text
+from gearopt.scenes.reading.toml_writing import toml_text
 
 HERE = Path(__file__).parent
 sys.path += [str(HERE.parent / "scenes"), str(HERE.parent / "scenes" / "drive")]

@@ -9,7 +9,7 @@ import pytest
 from servo_trains import PAPER, STIFF
 
 from gearopt.formulations.servo import servo_box
-from gearopt.formulations.servo.ratio import Drive, acceleration, best_ratio, move, swing
+from gearopt.formulations.servo.ratio import Drive, acceleration, best_ratio, least_move_time, swing
 from gearopt.formulations.servo.servo_box import ServoBox, first_that_fits
 from gearopt.formulations.servo.split import problem, relaxation, stiff
 from gearopt.optimise.certificate import certify
@@ -41,7 +41,7 @@ def test_no_motor_inertia_is_unbounded_and_said_so():
     exact = solve(acceleration(massless))
     assert exact.status == "failed" and exact.value is None and exact.bound is None
     assert exact.message.startswith("unbounded")
-    assert solve(move(massless, 1.0)).message.startswith("unbounded")
+    assert solve(least_move_time(massless, 1.0)).message.startswith("unbounded")
     assert solve(swing(massless, 1.0, 1.0)).message.startswith("unbounded")
 
 
@@ -58,9 +58,11 @@ def test_no_motor_inertia_with_a_speed_limit_is_best_at_the_limit():
         result = solve(acceleration(massless, 10.0), method)
         assert result.status == "optimal"
         assert result.design["ratio"] == pytest.approx(80.0, rel=1e-12)
-    limited = solve(move(massless, 6.0 * math.pi), "exact")
+    limited = solve(least_move_time(massless, 6.0 * math.pi), "exact")
     assert limited.status == "optimal"
-    assert limited.value == pytest.approx(solve(move(massless, 6.0 * math.pi), "ipopt").value)
+    assert limited.value == pytest.approx(
+        solve(least_move_time(massless, 6.0 * math.pi), "ipopt").value
+    )
 
 
 @pytest.mark.parametrize("inertia", [0.0, 1e-17, 1e-30])
@@ -114,7 +116,8 @@ def test_a_speed_limit_at_the_change_of_regime(beside):
     ratio, value = best_ratio(BARE)
     turn = beside * (800.0 / ratio) ** 2 / value
     exact, ipopt = (
-        solve(move(replace(BARE, speed_limit=800.0), turn), m) for m in ("exact", "ipopt")
+        solve(least_move_time(replace(BARE, speed_limit=800.0), turn), m)
+        for m in ("exact", "ipopt")
     )
     assert exact.status == ipopt.status == "optimal"
     assert exact.value == pytest.approx(2.0 * math.sqrt(turn / value), rel=1e-12)

@@ -14,7 +14,7 @@ from servo_tolerances import BASE, E_RSS, E_WC, components, stack
 from servo_trains import PAPER, STIFF
 
 from gearopt.formulations.servo import servo_box, split, tolerance
-from gearopt.formulations.servo.ratio import Drive, acceleration, best_ratio, move
+from gearopt.formulations.servo.ratio import Drive, acceleration, best_ratio, least_move_time
 from gearopt.formulations.servo.servo_box import ServoBox
 from gearopt.formulations.servo.tolerance import grades
 from gearopt.optimise.solve import solve
@@ -78,7 +78,7 @@ def move_time_at(ratio, turn):
 def move_rows():
     found = []
     for name, turn in (("90", 0.5), ("1080", 6.0), ("10800", 60.0)):
-        result = best(move, LIMITED, turn * math.pi)
+        result = best(least_move_time, LIMITED, turn * math.pi)
         beside = move_time_at(best_ratio(BARE)[0], turn * math.pi)
         n = result.design["ratio"]
         found.append(f"| {name} degrees | {n:.4f} | {result.value:.6f} | {beside:.6f} |")

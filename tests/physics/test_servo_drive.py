@@ -7,7 +7,7 @@ import pytest
 
 from gearopt.physics.gears import disc_inertia, disc_mass
 from gearopt.physics.servo_drive import (
-    largest_acceleration,
+    best_acceleration,
     load_acceleration,
     move_time,
     reflected_inertia,
@@ -61,10 +61,10 @@ def test_power_balance_of_motor_and_load():
     )
 
 
-def test_largest_acceleration_is_that_of_the_inertia_match():
+def test_best_acceleration_is_that_of_the_inertia_match():
     best = math.sqrt(J_L / J_M)
     assert best == pytest.approx(47.98255, abs=6e-6)
-    peak = largest_acceleration(J_L, J_M, 50.0)
+    peak = best_acceleration(J_L, J_M, 50.0)
     assert load_acceleration(best, J_L, J_M, 50.0) == pytest.approx(peak, rel=1e-14)
     assert 1.0 - load_acceleration(48.0, J_L, J_M, 50.0) / peak == pytest.approx(6.6e-8, abs=6e-10)
     loss = 1.0 - load_acceleration(50 / 8 * 122 / 13, J_L, J_M, 50.0) / peak

@@ -16,7 +16,7 @@ from gearopt import solve
 from gearopt.formulations.drive import sizing
 from gearopt.physics.gears import MODULES
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.reading.toml import toml_text
+from gearopt.scenes.reading.toml_writing import toml_text
 
 sys.path.append(str(Path(__file__).parents[1] / "formulations"))
 from brute_force import every_train  # noqa: E402

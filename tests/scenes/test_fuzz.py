@@ -21,8 +21,8 @@ from gearopt.cli import reporting
 from gearopt.errors import SceneError
 from gearopt.scenes.drive import KIND
 from gearopt.scenes.reading import files
+from gearopt.scenes.reading.json_schema import json_schema
 from gearopt.scenes.reading.load import load, read
-from gearopt.scenes.reading.schema import json_schema
 
 EXAMPLE = KIND.example.text
 

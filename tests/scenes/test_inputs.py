@@ -15,8 +15,8 @@ from gearopt.cli import app
 from gearopt.errors import SceneError
 from gearopt.scenes import compound
 from gearopt.scenes.plan import one_step
+from gearopt.scenes.reading.json_schema import json_schema
 from gearopt.scenes.reading.load import load, read
-from gearopt.scenes.reading.schema import json_schema
 
 TRAIN = compound.KIND.example.text.encode()
 

@@ -19,10 +19,10 @@ import pytest
 import gearopt
 from gearopt import Budget
 from gearopt.errors import GearoptError, SolveError
+from gearopt.scenes.reading.json_schema import json_schema
 from gearopt.scenes.reading.kinds import kinds
 from gearopt.scenes.reading.load import examples, kind_named
 from gearopt.scenes.reading.mistakes import example_of, table_of, tables
-from gearopt.scenes.reading.schema import json_schema
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 TABLE = tomllib.loads(Path(__file__).with_name("moving_keys.toml").read_text("utf-8"))

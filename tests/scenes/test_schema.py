@@ -7,10 +7,10 @@ import jsonschema
 import pytest
 
 from gearopt.scenes.drive import KIND
+from gearopt.scenes.reading.json_schema import json_schema
 from gearopt.scenes.reading.kinds import kinds
 from gearopt.scenes.reading.load import examples, kind_named
 from gearopt.scenes.reading.mistakes import table_of
-from gearopt.scenes.reading.schema import json_schema
 
 EXAMPLE = KIND.example.text
 

@@ -21,7 +21,7 @@ from gearopt.scenes.reading.kinds import kinds
 from gearopt.scenes.reading.load import kind_named, read
 from gearopt.scenes.reading.mistakes import tables
 from gearopt.scenes.reading.not_yet import NEAREST
-from gearopt.scenes.reading.toml import dotted
+from gearopt.scenes.reading.toml_writing import dotted
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
 WRONG = """\

@@ -11,7 +11,7 @@ from gearopt.cli import answering, trading  # noqa: F401
 from gearopt.cli import files, reporting  # noqa: F401
 from gearopt.cli.app import app, told
 from gearopt.cli.names import fill
-from gearopt.cli.writing import patient
+from gearopt.cli.writing import tolerant_of_closed_pipe
 from gearopt.errors import GearoptError
 
 ORDER = (
@@ -35,7 +35,10 @@ def run() -> None:
 
     A reader that leaves (`gearopt ... | head`) changes neither what is done nor the exit code.
     """
-    sys.stdout, sys.stderr = patient(sys.stdout), patient(sys.stderr)
+    sys.stdout, sys.stderr = (
+        tolerant_of_closed_pipe(sys.stdout),
+        tolerant_of_closed_pipe(sys.stderr),
+    )
     try:
         try:
             command = get_command(app)

@@ -68,7 +68,7 @@ def schema(
     ] = False,
 ) -> None:
     """Print the JSON schema of a kind of problem file, for editors."""
-    from gearopt.scenes.reading.schema import json_schema, reference
+    from gearopt.scenes.reading.json_schema import json_schema, reference
 
     if table:
         print_whole(reference(_known(kind)), end="")

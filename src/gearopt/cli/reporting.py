@@ -178,7 +178,7 @@ def _kept(files: Files, page: str, found: Mapping[str, str]) -> list[str]:
         written.append(Written("--html", files.html, page))
         lines.append(f"\nPage: {files.html}")
     if files.csv is not None:
-        _make(files.csv)
+        _make_folder(files.csv)
         paths = {files.csv / name: text for name, text in found.items()}
         # for spreadsheets
         written += [Written("--csv", path, text, "utf-8-sig") for path, text in paths.items()]
@@ -203,7 +203,7 @@ def _tables(result: Result, files: Files) -> dict[str, str]:
     return tables(result, files.measures)
 
 
-def _make(folder: Path) -> None:
+def _make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as refused:

@@ -12,7 +12,7 @@ from typing import TextIO
 from gearopt.errors import GearoptError
 
 
-class _Patient(io.FileIO):
+class _TolerantOfClosedPipe(io.FileIO):
     """A raw stream that drops what nobody reads; an interface of `io`.
 
     It has state because a full disk is reported once: what is written after that is dropped.
@@ -33,7 +33,7 @@ class _Patient(io.FileIO):
         return memoryview(data).nbytes
 
 
-def patient(stream: TextIO) -> TextIO:
+def tolerant_of_closed_pipe(stream: TextIO) -> TextIO:
     """Return a standard stream that a closed pipe does not disturb; other streams as they are."""
     buffer = getattr(stream, "buffer", None)
     raw = getattr(buffer, "raw", buffer)
@@ -41,7 +41,7 @@ def patient(stream: TextIO) -> TextIO:
         return stream
     stream.flush()
     return io.TextIOWrapper(
-        io.BufferedWriter(_Patient(raw.fileno(), "wb", closefd=False)),
+        io.BufferedWriter(_TolerantOfClosedPipe(raw.fileno(), "wb", closefd=False)),
         encoding=stream.encoding,
         errors=stream.errors,
         line_buffering=stream.line_buffering or stream.write_through,

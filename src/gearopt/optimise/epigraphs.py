@@ -36,7 +36,7 @@ def epigraph(problem: Problem) -> Problem | None:
 
 
 def raised(problem: Problem, x: Array) -> Array:
-    """Return a point of a text with the heights of its maxima there: a point of its epigraph."""
+    """Return the point of the epigraph form: x, then the value of every max() of the text at x."""
     heights, _ = _run(problem, list(x), problem.parameter_values(), None)
     return np.concatenate([x, heights])
 

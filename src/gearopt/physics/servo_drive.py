@@ -113,7 +113,7 @@ def rms_torque(
     return ((peak_acceleration * inertia) ** 2 / 2.0 + friction**2) ** 0.5
 
 
-def largest_acceleration(load_inertia: float, motor_inertia: float, torque: float) -> float:
+def best_acceleration(load_inertia: float, motor_inertia: float, torque: float) -> float:
     """Return the acceleration T/(2 sqrt(J_L J_M)) [rad/s2] at N = sqrt(J_L/J_M), no friction.
 
     load_inertia J_L, motor_inertia J_M [t mm2] > 0; torque T [N mm]. Source: Youn, eq. (6).

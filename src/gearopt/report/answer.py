@@ -32,7 +32,7 @@ from gearopt.report.words import (
     sentence,
     series_of,
 )
-from gearopt.scenes.reading.toml import toml_text
+from gearopt.scenes.reading.toml_writing import toml_text
 
 PARTS = {  # of a result: what their names mean
     "sizing": "real-valued sizes",

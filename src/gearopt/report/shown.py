@@ -43,7 +43,7 @@ from gearopt.report.words import (
     title,
     verdict,
 )
-from gearopt.scenes.reading.toml import cut
+from gearopt.scenes.reading.toml_writing import cut
 
 WIDTH = 90  # characters of a line of numbers
 LINE_LENGTH = 900  # of a line of words

@@ -39,7 +39,7 @@ def test_nearest_is_nearest_in_the_ratio_itself():
         train = Compound(Fraction("2.2025"), (16, 24), goal)
         result = solve(problem(train))
         assert result.status == "optimal" and result.design["teeth"] == teeth
-        assert result.value == pytest.approx(float(train.miss(1 / ratio)), rel=1e-14)
+        assert result.value == pytest.approx(float(train.ratio_error(1 / ratio)), rel=1e-14)
 
 
 def test_sandgrens_optimum():
@@ -90,7 +90,7 @@ def test_the_text_loses_no_digit(seed):
     for ratio in (near, Fraction(c * d, a * b), Fraction(int(rng.integers(1, 10**9)), 1000)):
         train = Compound(ratio, (5, 400), (ERROR, SQUARED)[seed % 2])
         found = problem(train).batch(np.array([teeth], float)).F[0, 0]
-        exact = float(train.miss(Fraction(a * b, c * d)))
+        exact = float(train.ratio_error(Fraction(a * b, c * d)))
         assert found == pytest.approx(exact, rel=2e-14, abs=0.0)
 
 
@@ -103,7 +103,7 @@ def test_a_ratio_of_many_digits_is_proven(digits):
     result = solve(problem(train))
     assert result.status == "optimal" and result.gap < 1e-14
     a, b, c, d = result.design["teeth"]
-    miss = train.miss(Fraction(a * b, c * d))
+    miss = train.ratio_error(Fraction(a * b, c * d))
     assert result.value == pytest.approx(float(miss), rel=1e-14, abs=0.0)
 
 
@@ -114,7 +114,7 @@ def test_a_ratio_that_is_nearly_met_is_proven(power):
     train = Compound(ratio, (12, 60))
     result = solve(problem(train))
     assert result.status == "optimal" and result.gap < 1e-13 and result.value > 0.0
-    miss = train.miss(Fraction(13 * 17, 31 * 47))
+    miss = train.ratio_error(Fraction(13 * 17, 31 * 47))
     assert result.value == pytest.approx(float(miss), rel=1e-13, abs=0)
 
 

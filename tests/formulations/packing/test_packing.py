@@ -86,7 +86,7 @@ def test_both_texts_say_the_same_of_the_row(plan):
     found = row(plan)
     direct, smooth = packing.problem(plan), packing_text.smooth(plan, found.layer)
     one = direct.batch(packing_text.point(plan, found)[None])
-    at = packing_text.start(plan, found)
+    at = packing_text.point_of_packing(plan, found)
     other = smooth.batch(at[None])
     assert one.F[0, 0] == pytest.approx(other.F[0, 0], rel=1e-12)
     assert one.G.max(initial=0.0) <= 1.0 + 1e-12 and other.G.max() <= 1.0 + 1e-12

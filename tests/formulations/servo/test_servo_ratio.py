@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from campaigns import few
 
-from gearopt.formulations.servo.ratio import Drive, acceleration, best_ratio, move, swing
+from gearopt.formulations.servo.ratio import Drive, acceleration, best_ratio, least_move_time, swing
 from gearopt.formulations.servo.ratio.acceleration import convex_bound
 from gearopt.formulations.servo.split import core, staged
 from gearopt.optimise import tape
@@ -82,7 +82,7 @@ def test_the_root_is_the_maximum_of_a_fine_grid():
     ],
 )
 def test_moves_known_independently_by_three_methods(turn, ratio, seconds):
-    problem = move(replace(BARE, speed_limit=800.0), turn)
+    problem = least_move_time(replace(BARE, speed_limit=800.0), turn)
     exact, ipopt, gp = (solve(problem, m) for m in METHODS)
     assert exact.status == ipopt.status == "optimal"
     assert exact.value == pytest.approx(seconds, abs=6e-7)
@@ -115,7 +115,7 @@ def test_a_move_brakes_with_friction_too():
     """0.1 N m at 6000 rpm at most, 2 N m of friction: ramps that are alike would take 0.37147 s."""
     axis = Drive(50.0, 5.5e-3, torque=100.0, load_friction=2000.0, speed_limit=200.0 * math.pi)
     turn = math.radians(120.0)
-    result = solve(move(axis, turn))
+    result = solve(least_move_time(axis, turn))
     assert result.status == "optimal" and result.gap < 1e-9
     assert result.value == pytest.approx(0.33643, abs=6e-6)
     assert result.design["ratio"] == pytest.approx(62.51, abs=6e-3)
@@ -135,7 +135,7 @@ def test_a_move_is_the_best_of_all_bang_bang_motions(turn, friction):
         method="bounded",
         options={"xatol": 1e-10},
     )
-    problem = move(drive, turn)
+    problem = least_move_time(drive, turn)
     assert tape.kinds(problem).log_convex
     exact, ipopt, gp = (solve(problem, m) for m in METHODS)
     assert exact.status == ipopt.status == "optimal"
@@ -174,7 +174,7 @@ def test_a_given_ratio_is_an_equality():
     given = replace(REAL, ratio=(48.0, 48.0))
     for text in (
         acceleration(given),
-        move(replace(given, speed_limit=800.0), 3.0),
+        least_move_time(replace(given, speed_limit=800.0), 3.0),
         swing(given, 0.3, 10.0),
         staged(given, 1e-4, 2),
     ):
@@ -236,7 +236,7 @@ def test_a_problem_is_solved_again_with_other_numbers():
     text = acceleration(drive, 5.0).at(**changed, load_speed=4.0)
     for method in ("exact", "ipopt"):
         assert 1.0 / solve(text, method).value == pytest.approx(expected, rel=1e-10)
-    turn = move(replace(REAL, speed_limit=800.0), 20.0).at(angle=30.0, speed_limit=600.0)
+    turn = least_move_time(replace(REAL, speed_limit=800.0), 20.0).at(angle=30.0, speed_limit=600.0)
     sine = swing(BARE, 0.3, 10.0).at(amplitude=0.4, load_inertia=30.0, ratio_low=2.0)
     for other in (turn, sine):
         exact, ipopt = (solve(other, m) for m in ("exact", "ipopt"))
@@ -252,7 +252,7 @@ def test_no_parameter_is_without_effect():
     for text in (
         acceleration(drive, 5.0),
         acceleration(drive),
-        move(still, 9.0),
+        least_move_time(still, 9.0),
         swing(drive, 1, 2),
     ):
         x = text.bounds()[2][None]
@@ -330,7 +330,7 @@ def test_closed_form_and_ipopt_agree_on_any_drive(seed):
         turn, speed = np.exp(rng.uniform(-3.0, 5.0, 2))
         for text in (
             acceleration(drive, speed),
-            move(replace(drive, no_load_speed=math.inf), turn),
+            least_move_time(replace(drive, no_load_speed=math.inf), turn),
             swing(replace(drive, efficiency=1.0), turn, speed),
         ):
             exact, ipopt = (solve(text, m) for m in ("exact", "ipopt"))
@@ -362,7 +362,7 @@ def test_what_is_no_duty_is_refused():
     for wrong in (
         lambda: acceleration(replace(BARE, torque=0.0)),
         lambda: acceleration(BARE, -2.0),
-        lambda: move(BARE, 0.0),
+        lambda: least_move_time(BARE, 0.0),
         lambda: swing(BARE, 1.0, math.inf),
     ):
         with pytest.raises(ValueError, match="positive"):
@@ -371,7 +371,7 @@ def test_what_is_no_duty_is_refused():
 
 def test_duties_that_the_laws_do_not_cover_are_refused():
     with pytest.raises(ValueError, match="no_load_speed"):
-        move(replace(BARE, no_load_speed=800.0), 1.0)
+        least_move_time(replace(BARE, no_load_speed=800.0), 1.0)
     with pytest.raises(ValueError, match="losses"):
         swing(replace(BARE, efficiency=0.9), 1.0, 1.0)
 

@@ -55,7 +55,7 @@ def test_whole_numbers_agree_with_brute_force(name, monkeypatch):
             continue
         assert result.status == "optimal" and result.value == pytest.approx(best, rel=1e-6)
         claim = outcome.records[0]
-        forged = replace(claim, least=best + 0.1)
+        forged = replace(claim, lower_bound=best + 0.1)
         assert certificate.proven(problem, (forged,)) <= best
         assert certificate.proven(problem, (replace(claim, boxes=-900),)) <= best
 

@@ -18,7 +18,7 @@ from gearopt.optimise.kernels import COMPILING
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor
 from gearopt.physics.motion.stiffness_wave import fourier, trapezoid
 from gearopt.scenes.dynamics import KIND
-from gearopt.scenes.dynamics.own_teeth import of_teeth
+from gearopt.scenes.dynamics.stiffness_of_teeth import of_teeth
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import load, read
 

@@ -32,10 +32,9 @@ from gearopt.optimise.typed import typed
 from gearopt.report.explained import remedy_words
 from gearopt.report.kinds.servo.motion import best_words
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.servo import KIND
-from gearopt.scenes.servo import train as trains
+from gearopt.scenes.servo import KIND, axis_steps
+from gearopt.scenes.servo.axis_steps import of_point
 from gearopt.scenes.servo.notes import UNLISTED, assumptions, given_overlap
-from gearopt.scenes.servo.train import of_point
 
 EXAMPLE = KIND.example.text
 
@@ -293,7 +292,7 @@ def test_a_look_for_neighbours_in_parts_finds_the_same_and_stops_in_time(monkeyp
 
 
 def test_trains_that_are_not_listed_are_said_to_be(monkeypatch):
-    monkeypatch.setattr(trains, "neighbours", lambda scene, clock: ())
+    monkeypatch.setattr(axis_steps, "neighbours", lambda scene, clock: ())
     result = gearopt.solve(PROBLEMS / "servo_gimbal_light.toml")
     assert result.status == "optimal" and result.report["trains"] == []
     assert UNLISTED in result.report["notes"]

@@ -44,7 +44,7 @@ class Compound:
         low, high = self.teeth
         return Fraction(low, high) ** 2, Fraction(high, low) ** 2
 
-    def miss(self, inverse: Fraction) -> Fraction:
+    def ratio_error(self, inverse: Fraction) -> Fraction:
         """Return the objective of a train of this 1/i, exactly."""
         if self.goal == SQUARED:
             return (1 / self.ratio - inverse) ** 2
@@ -78,7 +78,7 @@ def problem(train: Compound, names: Sequence[str] = ()) -> Problem:
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Match every pair with the two nearest ratios of the other pair; no other is nearer."""
-        miss, best, looked, done = nearest(train, budget, watch)
+        ratio_error, best, looked, done = nearest(train, budget, watch)
         x = np.array(best, float)
         if not done:
             return Outcome(x, finished=False, evaluations=looked, message="stopped early")
@@ -88,7 +88,7 @@ def problem(train: Compound, names: Sequence[str] = ()) -> Problem:
         )
         proof = {"method": "exhausted", "arithmetic": "rational", "pairs_matched": looked}
         proof |= {"sentence": words}
-        return Outcome(x, bound=float(miss), proof=proof, evaluations=looked)
+        return Outcome(x, bound=float(ratio_error), proof=proof, evaluations=looked)
 
     def front(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Match the pairs of fewer and fewer teeth; the seed changes nothing."""
@@ -150,18 +150,18 @@ def nearest(
     clock = Clock(budget or Budget(), watch)
     pairs, whole = _pairs(train, clock)
     ratios, target = sorted(sorted(pairs, key=float)), 1 / train.ratio  # floats are compared faster
-    best: tuple[Fraction, int, tuple[int, ...]] = (train.miss(ratios[0] ** 2) + 1, 0, ())
+    best: tuple[Fraction, int, tuple[int, ...]] = (train.ratio_error(ratios[0] ** 2) + 1, 0, ())
     place = len(ratios)
     for looked, first in enumerate(ratios, 1):
         missing = target / first
         while place and ratios[place - 1] >= missing:
             place -= 1
         for second in ratios[max(0, place - 1) : place + 1]:
-            miss = train.miss(first * second)
-            if miss <= best[0]:
+            ratio_error = train.ratio_error(first * second)
+            if ratio_error <= best[0]:
                 (a, c), (b, d) = pairs[first], pairs[second]
                 teeth = (*sorted((a, b)), *sorted((c, d)))
-                best = min(best, (miss, sum(teeth), teeth))
+                best = min(best, (ratio_error, sum(teeth), teeth))
                 clock.best = float(best[0])
         clock.evaluations = looked
         if (looked % LOOK == 0 or looked == clock.budget.evaluations) and not clock.tell():

@@ -16,9 +16,9 @@ from gearopt.formulations.dynamics.parts import columns, gaps
 from gearopt.formulations.dynamics.steady_motion import (
     Contact,
     Motion,
+    continued,
     in_contact,
     linear_motion,
-    near,
     settled,
 )
 from gearopt.optimise.clock import Clock
@@ -121,7 +121,7 @@ def followed(pair: MovingPair, level: str, contacts: list[Contact], clock: Clock
         if pair.backlash is None or (contact.holds and (last is None or last.highest <= 0.0)):
             made = linear_motion(moved, level, contact)
         elif last is not None:
-            made = near(moved, level, contact, last, clock)
+            made = continued(moved, level, contact, last, clock)
         if made is None:
             made = settled(moved, level, contact, last, clock)
         if made is None:

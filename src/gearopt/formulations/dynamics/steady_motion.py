@@ -147,7 +147,7 @@ def _amplitudes(series: Orbit) -> Array:
     return found
 
 
-def near(
+def continued(
     pair: MovingPair, level: str, contact: Contact, last: Motion, clock: Clock
 ) -> Motion | None:
     """Return the stable motion near the last one that repeats as that does; None: there is none.

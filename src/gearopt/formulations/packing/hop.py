@@ -14,7 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.packing.packing_text import of_layers, places, point, smooth, start
+from gearopt.formulations.packing.packing_text import (
+    of_layers,
+    places,
+    point,
+    point_of_packing,
+    smooth,
+)
 from gearopt.formulations.packing.plan import Places, Plan
 from gearopt.formulations.packing.sa import Finish, Floor, Spent, anneal, begun, ready, scattered
 from gearopt.optimise.box import violation
@@ -119,26 +125,26 @@ def _changed(plan: Plan, best: Places, rng: np.random.Generator) -> Places:
     partners = _partners(plan, k) if rng.random() < SWAPS else []
     if partners:
         other = int(rng.choice(partners))
-        for part in (x, y, layer) if k in plan.lifted else (x, y):
+        for part in (x, y, layer) if k in plan.free_layers else (x, y):
             part[[k, other]] = part[[other, k]]
         return Places(x, y, layer, centre)
     other = int(rng.integers(len(x)))
     x[k], y[k] = x[other] + rng.normal(), y[other] + rng.normal()
-    if k in plan.lifted:
+    if k in plan.free_layers:
         layer[k] = layer[other]
     return Places(x, y, layer, centre)
 
 
 def _partners(plan: Plan, k: int) -> list[int]:
     """Return the free cylinders of about the size of k, but not equal, that may change places."""
-    lifted, order = set(plan.lifted), np.argsort(plan.radius, kind="stable").tolist()
+    free_layers, order = set(plan.free_layers), np.argsort(plan.radius, kind="stable").tolist()
     rank = order.index(k)
     near = order[max(0, rank - RANKS) : rank + RANKS + 1]
     sizes = list(zip(plan.radius, plan.height, strict=True))
     return [
         j
         for j in near
-        if j in plan.free and sizes[j] != sizes[k] and (j in lifted) == (k in lifted)
+        if j in plan.free and sizes[j] != sizes[k] and (j in free_layers) == (k in free_layers)
     ]
 
 
@@ -153,7 +159,7 @@ def polished(plan: Plan, problem: Problem, begin: Places, spent: Spent) -> tuple
         Budget(),
         0,
         lambda event: spent.clock.tell(event.evaluations),
-        start=start(plan, begin),
+        start=point_of_packing(plan, begin),
     )
     spent.clock.evaluations += ended.evaluations
     if ended.x is None or ended.infeasible:

@@ -26,9 +26,9 @@ def direct(plan: Plan, **methods: Any) -> Problem:
     """
     guess = row(plan)
     variables = [*_axes(plan, guess), *_centre(plan, guess)]
-    if plan.lifted:
-        start = tuple(float(guess.layer[k]) for k in plan.lifted)
-        layers = Var("layer", "", 1, plan.max_layers, start, len(plan.lifted), integer=True)
+    if plan.free_layers:
+        start = tuple(float(guess.layer[k]) for k in plan.free_layers)
+        layers = Var("layer", "", 1, plan.max_layers, start, len(plan.free_layers), integer=True)
         variables.append(layers)
 
     def evaluate(x: Any, p: Any) -> Terms:
@@ -39,7 +39,7 @@ def direct(plan: Plan, **methods: Any) -> Problem:
         rows = tuple(_close(plan, axes, layer, i, j) for i, j in _near(plan))
         if rows:
             defines["apart"] = rows
-        if plan.lifted and plan.filled > 1:
+        if plan.free_layers and plan.filled > 1:
             held = [sum(np.where(at == k, 1.0, 0.0) for at in layer) for k in _levels(plan.filled)]
             defines["occupied"] = tuple(2.0 - count for count in held)
         return Terms(_objective(plan, area, stack(plan, layer)), limits, defines)
@@ -54,7 +54,7 @@ def smooth(plan: Plan, layer: Any = None) -> Problem:
     square of minimum distance over D, or NEVER) and `height` of the stack let other layers be
     solved without tracing again. SolveError where layers are free and not given.
     """
-    if layer is None and plan.lifted:
+    if layer is None and plan.free_layers:
         raise SolveError(
             "gradient methods need fixed layers: give every [[cylinder]] its layer, or use hop"
         )
@@ -145,7 +145,7 @@ def _centre(plan: Plan, guess: Places) -> tuple[Var, ...]:
 
 def _sides(plan: Plan, guess: Places) -> tuple[Var, ...]:
     """Return the container's variables; a corner or centre only where something is fixed."""
-    at = start(plan, guess)[2 * len(plan.free) :]
+    at = point_of_packing(plan, guess)[2 * len(plan.free) :]
     low, high, near, far = _ends(plan)
     maximum = 2.0 * max(high - low, far - near)
     minimum = 2.0 * float(plan.radius.max() + plan.wall)
@@ -173,10 +173,10 @@ def _square(plan: Plan, axes: list[tuple[Any, Any]], i: int, j: int, gap: Any) -
 
 def _near(plan: Plan) -> list[tuple[int, int]]:
     """Return pairs that may come too close: not both fixed, in layers that may be the same."""
-    lifted, cylinders = set(plan.lifted), plan.cylinders
+    free_layers, cylinders = set(plan.free_layers), plan.cylinders
     found = []
     for i, j in combinations(range(len(cylinders)), 2):
-        free = not lifted.isdisjoint((i, j))
+        free = not free_layers.isdisjoint((i, j))
         same = (cylinders[i].layer or 1) == (cylinders[j].layer or 1)
         moved = cylinders[i].at is None or cylinders[j].at is None
         if free or (same and moved):
@@ -187,7 +187,7 @@ def _near(plan: Plan) -> list[tuple[int, int]]:
 def _close(plan: Plan, axes: list[tuple[Any, Any]], layer: list[Any], i: int, j: int) -> Any:
     """Return the row of a pair: 2 - d^2/D^2 in one layer, 0 in different ones."""
     row_of = 2.0 - _square(plan, axes, i, j, plan.gap)
-    return np.where(layer[i] == layer[j], row_of, 0.0) if plan.lifted else row_of
+    return np.where(layer[i] == layer[j], row_of, 0.0) if plan.free_layers else row_of
 
 
 def _extent(values: list[Any], radius: Array) -> Any:
@@ -282,12 +282,12 @@ def point(plan: Plan, found: Places) -> Array:
     parts = [x[free], y[free]]
     if has_centre(plan):
         parts.append(found.centre)
-    parts.append(found.layer[list(plan.lifted)].astype(float))
+    parts.append(found.layer[list(plan.free_layers)].astype(float))
     return np.concatenate(parts)
 
 
-def start(plan: Plan, found: Places) -> Array:
-    """Return the point of `smooth` of a packing, whose container just holds it."""
+def point_of_packing(plan: Plan, found: Places) -> Array:
+    """Return the variables of `smooth` for a packing, with the smallest container around it."""
     r, wall, free = plan.radius, plan.wall, list(plan.free)
     x, y = found.x, found.y
     if plan.shape == "circle":
@@ -313,8 +313,10 @@ def axes_of(plan: Plan, x: Any) -> list[tuple[Any, Any]]:
 
 def layers_of(plan: Plan, x: Any) -> list[Any]:
     """Return the layers of all cylinders: those that are free are variables."""
-    lifted = dict(zip(plan.lifted, each(x.layer), strict=True)) if plan.lifted else {}
-    return [lifted.get(k, c.layer or 1) for k, c in enumerate(plan.cylinders)]
+    free_layers = (
+        dict(zip(plan.free_layers, each(x.layer), strict=True)) if plan.free_layers else {}
+    )
+    return [free_layers.get(k, c.layer or 1) for k, c in enumerate(plan.cylinders)]
 
 
 def has_centre(plan: Plan) -> bool:

@@ -52,7 +52,7 @@ class Plan:
     def __post_init__(self) -> None:
         if not self.free:
             raise ValueError("every cylinder is fixed: nothing is left to place")
-        if self.filled > min(self.max_layers, len(self.named) + len(self.lifted)):
+        if self.filled > min(self.max_layers, len(self.named) + len(self.free_layers)):
             raise ValueError(f"{self.filled} layers cannot each hold a cylinder")
 
     @cached_property
@@ -76,7 +76,7 @@ class Plan:
         return tuple(k for k, c in enumerate(self.cylinders) if c.at is not None)
 
     @cached_property
-    def lifted(self) -> tuple[int, ...]:
+    def free_layers(self) -> tuple[int, ...]:
         """The cylinders whose layer is to be chosen."""
         one = self.max_layers == 1
         return tuple(k for k, c in enumerate(self.cylinders) if c.layer is None and not one)
@@ -84,8 +84,8 @@ class Plan:
     @cached_property
     def named(self) -> frozenset[int]:
         """Layers that hold a cylinder whatever is chosen."""
-        lifted = set(self.lifted)
-        return frozenset(c.layer or 1 for k, c in enumerate(self.cylinders) if k not in lifted)
+        free_layers = set(self.free_layers)
+        return frozenset(c.layer or 1 for k, c in enumerate(self.cylinders) if k not in free_layers)
 
     @cached_property
     def filled(self) -> int:
@@ -165,7 +165,7 @@ def row(plan: Plan) -> Places:
     layer = np.array(coloured, dtype=np.int64)
     for level in range(1, plan.filled + 1):
         if not (layer == level).any():
-            layer[next(k for k in plan.lifted if (layer == layer[k]).sum() > 1)] = level
+            layer[next(k for k in plan.free_layers if (layer == layer[k]).sum() > 1)] = level
     centre = np.zeros(2)
     if plan.shape == "circle":
         low, high = (x - plan.radius).min(), (x + plan.radius).max()

@@ -110,9 +110,9 @@ def numbers(plan: Plan, max_layers: int) -> Array:
 
 def held(plan: Plan) -> Any:
     """Fixed properties of each cylinder: 1 its place, 2 its layer."""
-    lifted = set(plan.lifted)
+    free_layers = set(plan.free_layers)
     return np.array(
-        [(c.at is not None) + 2 * (k not in lifted) for k, c in enumerate(plan.cylinders)],
+        [(c.at is not None) + 2 * (k not in free_layers) for k, c in enumerate(plan.cylinders)],
         dtype=np.int64,
     )
 
@@ -129,10 +129,10 @@ def scattered(plan: Plan, max_layers: int, rng: np.random.Generator) -> Places:
     if plan.width is not None:
         across, along = min(across, plan.width), area / min(across, plan.width)
     x, y, layer = first.x.copy(), first.y.copy(), first.layer.copy()
-    free, lifted = list(plan.free), list(plan.lifted)
+    free, free_layers = list(plan.free), list(plan.free_layers)
     x[free] = low + across * rng.random(len(free))
     y[free] = near + along * rng.random(len(free))
-    layer[lifted] = rng.integers(1, max_layers + 1, len(lifted))
+    layer[free_layers] = rng.integers(1, max_layers + 1, len(free_layers))
     centre = np.zeros(2)
     if plan.shape == "circle":
         middle = np.array([low + 0.5 * across, near + 0.5 * along])

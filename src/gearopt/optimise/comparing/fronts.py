@@ -53,7 +53,7 @@ class Goal:
     limiting: Limiting | None = None
 
     def front(self, problem: Problem | Conic, method: str, *given: Any, **named: Any) -> Found:
-        """Front that a method finds: `tradeoff.found`."""
+        """Pareto front of these objectives by a method; other arguments as of `tradeoff.found`."""
         named["limiting"] = self.limiting
         return found(problem, self.names, self.most, method, *given, **named)
 

@@ -23,7 +23,7 @@ LOOSE = 1e7  # a bound this far beyond a column's scale is left to the certifica
 
 
 @dataclass(frozen=True)
-class Scale:
+class Equilibration:
     """x = column * scaled x; scaled rows = row * rows; scaled cost = cost * the cost."""
 
     column: Array
@@ -48,7 +48,7 @@ class Scaled:
     soc: tuple[int, ...]
     back: Any
     ends: tuple[Any, Array, Array]
-    scale: Scale
+    scale: Equilibration
 
     def within(self, lower: Array, upper: Array) -> "Scaled":
         """Return the same data with other bounds of the columns."""
@@ -60,7 +60,7 @@ class Scaled:
         return replace(self, b=b)
 
 
-def equal(data: Canonical) -> Scale:
+def equal(data: Canonical) -> Equilibration:
     """Return the first scale: least squares of log|entry| + its column's + its row's exponent."""
     import scipy.sparse as sp
     from scipy.sparse.linalg import lsqr
@@ -82,10 +82,12 @@ def equal(data: Canonical) -> Scale:
     right = -np.log2(np.abs(np.concatenate(entries)))
     found = lsqr(left, right, damp=1e-4, atol=1e-6, btol=1e-6, iter_lim=2000)[0]
     rows = groups @ _whole(data, found[n : n + count])
-    return Scale(np.exp2(np.rint(found[:n])), np.exp2(rows), float(np.exp2(np.rint(found[-1]))))
+    return Equilibration(
+        np.exp2(np.rint(found[:n])), np.exp2(rows), float(np.exp2(np.rint(found[-1])))
+    )
 
 
-def after(data: Canonical, scale: Scale, x: Array) -> Scale:
+def after(data: Canonical, scale: Equilibration, x: Array) -> Equilibration:
     """Return the scale in which x, the largest entry of a row and the cost are about 1."""
     size = np.abs(x) / scale.column
     step = np.clip(np.log2(np.maximum(size, 1e-300)), -STEP, STEP)
@@ -102,10 +104,10 @@ def after(data: Canonical, scale: Scale, x: Array) -> Scale:
     price = np.abs(data.c * column).max(initial=0.0)
     price = max(price, float(np.abs(data.P.diagonal() * column**2).max(initial=0.0)))
     cost = float(np.exp2(-np.rint(np.log2(price)))) if price > 0 else 1.0
-    return Scale(column, np.exp2(rows), cost)
+    return Equilibration(column, np.exp2(rows), cost)
 
 
-def scaled(data: Canonical, scale: Scale) -> Scaled:
+def scaled(data: Canonical, scale: Equilibration) -> Scaled:
     """Return the data in a scale, with rows for the bounds of the columns that have some."""
     import scipy.sparse as sp
 

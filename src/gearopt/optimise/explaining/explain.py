@@ -297,7 +297,11 @@ def _alone(problem: Problem, handle: Handle, method: str, clock: Clock) -> Remed
 
 
 def _around(factor: float, suffices: Callable[[float], bool | None]) -> Bracket:
-    """Ends close to a factor that a local method has found, [1, 1] where it does not suffice."""
+    """Return a bracket of the least factor of a number that suffices, from a local method's.
+
+    The bracket is [factor/FACTOR_TOLERANCE, factor], or [1, factor/FACTOR_TOLERANCE] where that
+    end suffices too; [1, 1] where the factor itself does not.
+    """
     if not suffices(factor):
         return Bracket(1.0, 1.0)
     less = max(1.0, factor / FACTOR_TOLERANCE)

@@ -132,7 +132,7 @@ def sensitivities(problem: Problem, x: Array) -> Sensitivities:
 def _by_parameter(
     problem: Problem, shape: Form, y: Array, p: Array, lam_g: Array, lam_h: Array
 ) -> Array:
-    """Return dL/dp (np,)."""
+    """Return dL/dp (np,) of L = f + lam_g.g + lam_h.h at y."""
     import casadi as ca
 
     key = ("sensitivity", id(shape))

@@ -23,8 +23,8 @@ from gearopt.optimise.conic.canonical import Canonical, canonical, shifted
 from gearopt.optimise.conic.cone_bound import Leaf, cutoff, emptiness, lagrangian, propagate
 from gearopt.optimise.conic.interior import (
     TOLERANCES,
+    Equilibration,
     Point,
-    Scale,
     Scaled,
     after,
     equal,
@@ -54,7 +54,7 @@ class Found:
     """
 
     leaf: Leaf
-    scale: Scale
+    scale: Equilibration
     z: Array
     x: Array | None = None
     value: float = np.inf

@@ -51,13 +51,13 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     incumbent.begin(problem.bounds()[2])
     starts = _random_points(problem, seed)
     claim = _enumerated(problem, clock, incumbent) if clock.tell() else None
-    if claim is not None and (claim.least >= incumbent.cutoff or clock.stopped):
-        return _outcome(incumbent, claim.least >= incumbent.cutoff, (claim,))
+    if claim is not None and (claim.lower_bound >= incumbent.cutoff or clock.stopped):
+        return _outcome(incumbent, claim.lower_bound >= incumbent.cutoff, (claim,))
 
     def watched(bound: float) -> bool:
         if len(tree.records) >= EASY:
             _tried(incumbent, starts)
-        clock.bound = max(bound, claim.least if claim else bound)
+        clock.bound = max(bound, claim.lower_bound if claim else bound)
         return clock.tell()
 
     tree = Tree(problem, form, clock, incumbent)
@@ -69,7 +69,7 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
             opened = list(tree.root())
     left = searched(tree, opened, watched) if not clock.stopped else None
     records: tuple[Record | Enumerated, ...] = tuple(tree.records)
-    if claim is not None and (left is None or claim.least > min(left.least, tree.unsplit)):
+    if claim is not None and (left is None or claim.lower_bound > min(left.least, tree.unsplit)):
         records = (claim,)
     done = left is not None and min(left.least, tree.unsplit) >= incumbent.cutoff
     narrow = not done and left is not None and left.least >= incumbent.cutoff
@@ -123,7 +123,7 @@ def _enumerated(problem: Problem, clock: Clock, incumbent: Incumbent) -> Enumera
         value, x = enumeration.best_of(problem, tried, incumbent.value)
         if x is not None:
             incumbent.judge(x)
-        clock.bound = min(boxes.least, incumbent.cutoff)
+        clock.bound = min(boxes.lower_bound, incumbent.cutoff)
 
     def goes_on() -> bool:
         hopeless = boxes.made > TRIED and boxes.waiting > WAITING
@@ -136,7 +136,7 @@ def _enumerated(problem: Problem, clock: Clock, incumbent: Incumbent) -> Enumera
     enumerated(boxes, lambda: incumbent.cutoff, judge, goes_on)
     if current().skipped > skipped:  # of the last points, for which no time was left
         return None
-    return Enumerated(min(boxes.least, incumbent.cutoff), boxes.made)
+    return Enumerated(min(boxes.lower_bound, incumbent.cutoff), boxes.made)
 
 
 def _ready(problem: Problem, clock: Clock) -> Columns | None:

@@ -45,7 +45,7 @@ def takes(form: Columns) -> bool:
 class Enumerated:
     """What an enumeration claims: that no feasible point is below a value; its number of boxes."""
 
-    least: float
+    lower_bound: float
     boxes: int
 
 
@@ -84,7 +84,7 @@ class Boxes:
         self.bound = np.full(count, bound)
 
     @property
-    def least(self) -> float:
+    def lower_bound(self) -> float:
         """Least bound of the boxes that wait, inf where none does."""
         return float(self.bound.min()) if len(self.bound) else math.inf
 
@@ -122,7 +122,7 @@ class Boxes:
         form = self.form
         if self.trials < form.variables and self.made > EASY and self.waiting > GROWING:
             self.trials, self.chunk, self.since = form.variables, 1, self.made
-            self.begin(min(1, len(self.bound)), self.least)
+            self.begin(min(1, len(self.bound)), self.lower_bound)
         count = len(self.bound)
         some = min(self.chunk, count)
         if not some:
@@ -186,14 +186,14 @@ def enumerated(
 def proven(problem: Problem, claim: Enumerated) -> float:
     """Bound of all feasible points, by boxes halved anew below what is claimed (Lemma 79)."""
     form = columns(problem)
-    if not takes(form) or math.isnan(claim.least):
+    if not takes(form) or math.isnan(claim.lower_bound):
         return -math.inf
-    boxes, least = Boxes(form), claim.least
+    boxes, least = Boxes(form), claim.lower_bound
     most = 2 * claim.boxes + 1000
 
     def judge(points: Array) -> None:
         nonlocal least
         least = min(least, best_of(problem, points, least)[0])
 
-    enumerated(boxes, lambda: claim.least, judge, lambda: boxes.made < most)
-    return min(least, boxes.least)
+    enumerated(boxes, lambda: claim.lower_bound, judge, lambda: boxes.made < most)
+    return min(least, boxes.lower_bound)

@@ -128,8 +128,8 @@ def angle_at(gearing: StrainWave, curve: NeutralCurve, tangent: Any) -> Any:
         at = contact(gearing, motion(gearing, curve, angle))
         step = (at.tangent - tangent) / at.tangent_rate
         angle = angle - np.clip(step, -0.02, 0.02)
-    miss = contact(gearing, motion(gearing, curve, angle)).tangent - tangent
-    return np.where(np.abs(miss) < 1e-9, angle, np.nan)
+    slope_error = contact(gearing, motion(gearing, curve, angle)).tangent - tangent
+    return np.where(np.abs(slope_error) < 1e-9, angle, np.nan)
 
 
 def flank(gearing: StrainWave, count: int = 201) -> Flank:

@@ -9,7 +9,7 @@ from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages.frame import render
 from gearopt.report.section import Section, Table
 from gearopt.report.words import title
-from gearopt.scenes.reading.toml import short
+from gearopt.scenes.reading.toml_writing import short
 
 
 def sections(result: Result, measures: Measures = METRIC) -> list[Section]:

@@ -82,7 +82,7 @@ def nearest(scene: Scene, ask: Ask, known: Result | None) -> Result:
     teeth = tuple(round(float(z)) for z in outcome.x)
     z1, z2, z3, z4 = teeth
     ratio = Fraction(z3 * z4, z1 * z2)
-    value = float(train.miss(1 / ratio))  # rational until here
+    value = float(train.ratio_error(1 / ratio))  # rational until here
     lowest, highest = train.reach
     within = lowest <= train.ratio <= highest
     best, measured = NEAREST[train.goal]

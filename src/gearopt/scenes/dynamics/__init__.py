@@ -17,7 +17,6 @@ from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import untyped
 from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.scenes.dynamics.notes import warnings
-from gearopt.scenes.dynamics.own_teeth import of_teeth
 from gearopt.scenes.dynamics.scene import Scene, wave_of
 from gearopt.scenes.dynamics.steps import (
     BEST,
@@ -29,6 +28,7 @@ from gearopt.scenes.dynamics.steps import (
     told,
     whole_problem,
 )
+from gearopt.scenes.dynamics.stiffness_of_teeth import of_teeth
 from gearopt.scenes.explaining.explanations import explained
 from gearopt.scenes.kind import Kind, examples_in
 from gearopt.scenes.plan import one_step

@@ -20,7 +20,7 @@ from gearopt.optimise.explaining.handles import REACH
 from gearopt.optimise.explaining.repair import FACTOR_TOLERANCE, SLACK_TRIED
 from gearopt.scenes.explaining.moves import DUTY, Edited, Move, Moves, edited, less, shorter
 from gearopt.scenes.explaining.possible import UNKNOWN, WORDS, Possible, Verdict
-from gearopt.scenes.reading.toml import dotted
+from gearopt.scenes.reading.toml_writing import dotted
 
 FACTORS_TRIED = (1e6, 1e3, 16.0, 4.0, 2.0, 1.3, 1.1)  # the first that is decided counts
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, to make numbers sharper in given seconds

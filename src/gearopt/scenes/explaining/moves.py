@@ -17,7 +17,7 @@ from gearopt.scenes.explaining.numbers import (
     taken_back,
     written,
 )
-from gearopt.scenes.reading.toml import dotted, toml_text
+from gearopt.scenes.reading.toml_writing import dotted, toml_text
 from gearopt.units import Quantity
 
 SET = 2.0  # a factor above 1, at which a switch is set

@@ -13,7 +13,7 @@ from pydantic_core import PydanticCustomError
 from gearopt.optimise.explaining.explanation import DIGITS, FEASIBILITY_MARGIN
 from gearopt.scenes.reading.choices import Preferred, Steps
 from gearopt.scenes.reading.fields import Reads
-from gearopt.scenes.reading.toml import dotted, exact, toml_text
+from gearopt.scenes.reading.toml_writing import dotted, exact, toml_text
 from gearopt.units import Quantity
 
 SHORT = 4  # digits of a number that is kept as it is

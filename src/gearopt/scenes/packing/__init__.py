@@ -44,7 +44,7 @@ from gearopt.scenes.plan import Step, carried_out
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, choice, quantity, refuse, whole, words
 from gearopt.scenes.reading.lists import pair
-from gearopt.scenes.reading.toml import dotted
+from gearopt.scenes.reading.toml_writing import dotted
 from gearopt.units import Quantity
 
 METHODS = ("hop", "sa")  # its own
@@ -344,7 +344,7 @@ def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
     if result.value is None:
         return Explanation(result, message="no packing was found in time", seconds=clock.seconds)
     found = places(packing_design(result.design))
-    layers, x = found.layer, packing_text.start(scene.plan(), found)
+    layers, x = found.layer, packing_text.point_of_packing(scene.plan(), found)
 
     def posed(other: Scene) -> Problem:
         return packing_text.smooth(other.plan(), layers).starting(x)
@@ -374,7 +374,7 @@ def compared(scene: Scene) -> tuple[str, ...]:
 def posed(scene: Scene, method: str) -> Model:
     """Return the problem that a method solves, without a bound that proves nothing."""
     plan = scene.plan()
-    words = "Places and layers" if plan.lifted else "Places"
+    words = "Places and layers" if plan.free_layers else "Places"
     return Model(_problem(plan, method, loose=False), words, plan.unit())
 
 

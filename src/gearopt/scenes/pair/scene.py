@@ -18,7 +18,7 @@ from gearopt.scenes.pair.relief_tables import ReliefTable
 from gearopt.scenes.pair.sharing_tables import SharingTable
 from gearopt.scenes.reading.choices import values_of
 from gearopt.scenes.reading.fields import Table, refuse, words
-from gearopt.scenes.reading.toml import dotted
+from gearopt.scenes.reading.toml_writing import dotted
 
 # Where a file that asks for a size says nothing: ranges that suit most spur pairs, as the example
 # of a least pair by AGMA has them, whose answer lies inside.

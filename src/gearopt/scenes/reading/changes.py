@@ -11,7 +11,7 @@ from typing import Any
 from gearopt.errors import SceneError
 from gearopt.scenes.reading.allowances import texts_of
 from gearopt.scenes.reading.near import near
-from gearopt.scenes.reading.toml import cut, dotted, exact
+from gearopt.scenes.reading.toml_writing import cut, dotted, exact
 from gearopt.units import parse
 
 Place = tuple[str | int, ...]

@@ -8,7 +8,7 @@ from typing import Any, cast
 from gearopt.physics.preferred_numbers import PREFERRED, preferred_numbers
 from gearopt.scenes.reading.fields import Reads, refuse
 from gearopt.scenes.reading.lists import mended, several
-from gearopt.scenes.reading.toml import exact, toml_text
+from gearopt.scenes.reading.toml_writing import exact, toml_text
 from gearopt.units import Quantity
 
 MAX_STEPS = 200  # values of a range with a step, at most

@@ -25,7 +25,7 @@ from gearopt.scenes.reading.files import LARGEST_FILE, first_bytes
 from gearopt.scenes.reading.kinds import kinds
 from gearopt.scenes.reading.mistakes import translate, wrong_name, wrong_value
 from gearopt.scenes.reading.near import near
-from gearopt.scenes.reading.toml import cut, dotted, short
+from gearopt.scenes.reading.toml_writing import cut, dotted, short
 
 FORMAT = 1
 HEAD = ("gearopt", "kind")  # keys of every file

@@ -14,7 +14,7 @@ from gearopt.scenes.reading.called import called
 from gearopt.scenes.reading.fields import Reads
 from gearopt.scenes.reading.near import near
 from gearopt.scenes.reading.not_yet import nearest
-from gearopt.scenes.reading.toml import cut, dotted, short, toml_text
+from gearopt.scenes.reading.toml_writing import cut, dotted, short, toml_text
 
 OTHER_NAME, OTHER_TABLE = "has another name here", "belongs in another table"
 LISTED = 20  # keys of a table at most that the message on an unknown one names

@@ -28,15 +28,7 @@ from gearopt.scenes.explaining.possible import Verdict, of_status
 from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.plan import Run, Step
 from gearopt.scenes.reading.ask import Ask, unseeded
-from gearopt.scenes.servo.explain import moves
-from gearopt.scenes.servo.explain import remedies as of_train
-from gearopt.scenes.servo.notes import assumptions, notes
-from gearopt.scenes.servo.reach import some_train
-from gearopt.scenes.servo.scene import Scene
-from gearopt.scenes.servo.tolerances import by_every_rule, named, old, with_tolerances
-from gearopt.scenes.servo.tolerances import problem as tolerance_problem
-from gearopt.scenes.servo.trades import objectives, traded
-from gearopt.scenes.servo.train import (
+from gearopt.scenes.servo.axis_steps import (
     added,
     described,
     design_of,
@@ -48,6 +40,14 @@ from gearopt.scenes.servo.train import (
     with_ratio,
     with_train,
 )
+from gearopt.scenes.servo.explain import moves
+from gearopt.scenes.servo.explain import remedies as of_train
+from gearopt.scenes.servo.notes import assumptions, notes
+from gearopt.scenes.servo.reach import some_train
+from gearopt.scenes.servo.scene import Scene
+from gearopt.scenes.servo.tolerances import by_every_rule, named, old, with_tolerances
+from gearopt.scenes.servo.tolerances import problem as tolerance_problem
+from gearopt.scenes.servo.trades import objectives, traded
 
 METHODS = ("exact", "enumeration")  # its own
 

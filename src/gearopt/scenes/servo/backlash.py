@@ -14,7 +14,7 @@ from gearopt.optimise.explaining.explanation import Change, Remedies, Remedy
 from gearopt.optimise.explaining.repair import SLACK_TRIED
 from gearopt.optimise.solve import solve_within
 from gearopt.scenes.explaining.numbers import cut, moved, times
-from gearopt.scenes.reading.toml import dotted
+from gearopt.scenes.reading.toml_writing import dotted
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import THICKNESS, TWO_SIDED
 from gearopt.units import Quantity

@@ -25,12 +25,12 @@ from gearopt.scenes.explaining.engine import (
 )
 from gearopt.scenes.explaining.moves import DUTY, LIMIT, Move
 from gearopt.scenes.explaining.numbers import STEP_FROM_ZERO, Path, at, cut, put, times
-from gearopt.scenes.reading.toml import dotted, toml_text
+from gearopt.scenes.reading.toml_writing import dotted, toml_text
+from gearopt.scenes.servo.axis_steps import errors, of_point
 from gearopt.scenes.servo.backlash import binds
 from gearopt.scenes.servo.reach import possible, reached
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import WORDS
-from gearopt.scenes.servo.train import errors, of_point
 from gearopt.units import Quantity
 
 FARTHEST_FACTOR = 1000.0  # factor up to which a limit is moved

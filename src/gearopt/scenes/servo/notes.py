@@ -11,9 +11,9 @@ from gearopt.optimise.result import Result
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.module_series import unverified
+from gearopt.scenes.servo.axis_steps import candidates, given_gears
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.trains import Train
-from gearopt.scenes.servo.train import candidates, given_gears
 
 SLOWEST = "acceleration"  # what nobody minimises
 FRICTION = {

@@ -25,9 +25,9 @@ from gearopt.optimise.solve import run
 from gearopt.optimise.terms import Array, Terms, Var
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.reading.ask import Ask
+from gearopt.scenes.servo.axis_steps import added, gears_of, sensitivity
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import BudgetTable, Price, Source
-from gearopt.scenes.servo.train import added, gears_of, sensitivity
 
 RULES: tuple[tuple[str, Any, float], ...] = (  # name, rule and kappa
     ("worst_case", "worst_case", 0.0),

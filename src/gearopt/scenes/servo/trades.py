@@ -16,9 +16,9 @@ from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.servo import tolerances as tolerance_part
+from gearopt.scenes.servo.axis_steps import described, given_gears, of_point
 from gearopt.scenes.servo.scene import Scene
 from gearopt.scenes.servo.tables.mesh import BudgetTable
-from gearopt.scenes.servo.train import described, given_gears, of_point
 
 COST, ERROR = "cost", "error"
 

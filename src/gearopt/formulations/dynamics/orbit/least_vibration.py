@@ -28,7 +28,13 @@ from gearopt.formulations.dynamics.orbit.impossible import impossible
 from gearopt.formulations.dynamics.orbit.orbit_text import reduced
 from gearopt.formulations.dynamics.orbit.parting_text import size, worst_motions
 from gearopt.formulations.dynamics.orbit.screening import apart, narrowed, screened
-from gearopt.formulations.dynamics.orbit.task import MICRO, Task, measured, series, worst
+from gearopt.formulations.dynamics.orbit.task import (
+    MICRO,
+    Task,
+    fourier_coefficients,
+    measured,
+    worst,
+)
 from gearopt.formulations.dynamics.orbit.task import parts as orbit_parts
 from gearopt.formulations.dynamics.steady_motion import in_contact
 from gearopt.optimise.box import box
@@ -244,7 +250,9 @@ def _motions(task: Task, point: Array, speeds: Array) -> tuple[Array, Array, int
     0: a motion that does not repeat soon.
     """
     if task.backlash is None:
-        measure, highest = measured(task, series(task, point[None], speeds, JUDGE_HARMONICS))
+        measure, highest = measured(
+            task, fourier_coefficients(task, point[None], speeds, JUDGE_HARMONICS)
+        )
         return measure[0], highest[0], 1
     motions = worst_motions(task, point, speeds, Clock())
     after = [motion.repeats for motion in motions]

@@ -15,10 +15,10 @@ from gearopt.formulations.dynamics.orbit.task import (
     VARIABLES,
     Task,
     cosine,
+    fourier_coefficients,
     measured,
     parts,
     samples,
-    series,
     wave_samples,
 )
 from gearopt.optimise.problem import Problem
@@ -198,7 +198,7 @@ def reduced(task: Task) -> Problem:
 
     def evaluate(x: Any, p: Any) -> Terms:
         points = np.stack([np.atleast_1d(getattr(x, name)) for name in VARIABLES], axis=-1)
-        value, highest = measured(task, series(task, points, speeds, task.harmonics))
+        value, highest = measured(task, fourier_coefficients(task, points, speeds, task.harmonics))
         rows = limits(task, x, p)
         if task.margin is not None:
             top = highest.max(axis=1)
@@ -216,7 +216,7 @@ def _as(x: Any, values: Array) -> Any:
 def start(task: Task, whole: Problem, point: Array) -> Array:
     """Return the point of the whole problem that a design (5,) and its own motions make."""
     count, speeds = task.harmonics, np.array(task.speeds_rpm)
-    found = series(task, np.asarray(point)[None], speeds, count)
+    found = fourier_coefficients(task, np.asarray(point)[None], speeds, count)
     value, _ = measured(task, found)
     rows = []
     for row in found[0] * MICRO:

@@ -108,7 +108,7 @@ def cosine(single: Any, contact_ratio: Any, ramp: Any, order: int) -> Any:
     return flat * np.sin(turn * ramp) / (turn * ramp)
 
 
-def series(task: Task, points: Array, speeds_rpm: Array, harmonics: int) -> Array:
+def fourier_coefficients(task: Task, points: Array, speeds_rpm: Array, harmonics: int) -> Array:
     """Return delta_-H to delta_H [mm] of designs (N, 5) at speeds (K,) [rpm], (N, K, 2 H + 1)."""
     kb, ratio, ramp, width, rim = points.T[:, :, None]
     built = parts(task, kb, ratio, width, rim)
@@ -158,7 +158,9 @@ def samples(harmonics: int) -> int:
 
 def worst(task: Task, point: Array, speeds_rpm: Array, harmonics: int) -> Array:
     """Return the measure [um] of one design at speeds (K,)."""
-    found = measured(task, series(task, np.asarray(point)[None], speeds_rpm, harmonics))[0]
+    found = measured(
+        task, fourier_coefficients(task, np.asarray(point)[None], speeds_rpm, harmonics)
+    )[0]
     return np.asarray(found[0])
 
 

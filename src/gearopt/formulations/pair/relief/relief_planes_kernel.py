@@ -32,7 +32,11 @@ def slope(u, exponent):
 
 @inner
 def depth(stiffness, apart, load, acts):
-    """Approach of uncoupled pairs by dropping those that open; `acts` becomes the ones that do."""
+    """Return the approach d [um] of uncoupled pairs, sum of k_i (d - gap_i)+ = load [N].
+
+    stiffness k_i [N/um], 0 of no pair; apart: gaps [um]. Pairs that open are dropped until none
+    does; `acts` becomes k_i of the pairs in contact, 0 of the others.
+    """
     pairs, datum = stiffness.size, math.inf
     for i in range(pairs):
         if stiffness[i] > 0.0:

@@ -9,7 +9,7 @@ limit there is none, which is reported. `ServoDuty` is one of the three with its
 from gearopt.formulations.servo.ratio.acceleration import acceleration, best_ratio
 from gearopt.formulations.servo.ratio.drive import Drive
 from gearopt.formulations.servo.ratio.duty import ServoDuty
-from gearopt.formulations.servo.ratio.move import move
+from gearopt.formulations.servo.ratio.move import least_move_time
 from gearopt.formulations.servo.ratio.swing import swing
 
-__all__ = ["Drive", "ServoDuty", "acceleration", "best_ratio", "move", "swing"]
+__all__ = ["Drive", "ServoDuty", "acceleration", "best_ratio", "least_move_time", "swing"]

@@ -9,7 +9,7 @@ import numpy as np
 from gearopt.formulations.servo.ratio.duty import ServoDuty
 from gearopt.formulations.servo.servo_design import KG_M2, Achieved, RatioCurve
 from gearopt.optimise.certified import run
-from gearopt.physics.servo_drive import largest_acceleration, mean_ramp
+from gearopt.physics.servo_drive import best_acceleration, mean_ramp
 
 RPM = 30.0 / math.pi  # of a rad/s
 TIE = 1e-12  # relative: a motor that is used to the full is not overloaded by rounding
@@ -133,8 +133,8 @@ def landmarks(duty: ServoDuty) -> dict[str, float]:
         return found
     inertias = load, axis.motor_inertia
     return found | {
-        "frictionless_load_acceleration_rad_per_s2": largest_acceleration(*inertias, axis.torque),
-        "load_acceleration_without_load_friction_rad_per_s2": largest_acceleration(
+        "frictionless_load_acceleration_rad_per_s2": best_acceleration(*inertias, axis.torque),
+        "load_acceleration_without_load_friction_rad_per_s2": best_acceleration(
             *inertias, axis.net_torque
         ),
     }

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearopt.formulations.servo.ratio.acceleration import acceleration
 from gearopt.formulations.servo.ratio.drive import FAINT, Drive
-from gearopt.formulations.servo.ratio.move import move
+from gearopt.formulations.servo.ratio.move import least_move_time
 from gearopt.formulations.servo.ratio.swing import swing
 from gearopt.formulations.servo.servo_design import MOTIONS
 from gearopt.optimise.problem import Problem
@@ -70,7 +70,7 @@ class ServoDuty:
     def problem(self) -> Problem:
         """Return the problem of the best ratio."""
         if self.motion == "move":
-            return move(self.drive, self.angle)
+            return least_move_time(self.drive, self.angle)
         if self.motion == "swing":
             return swing(self.drive, self.amplitude, self.angular_frequency)
         return acceleration(self.drive, self.load_speed)

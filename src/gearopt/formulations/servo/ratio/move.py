@@ -46,7 +46,7 @@ COUNTS = "ratio evaluated"
 HALVINGS = 200  # of a bracket of ratios: to the last place
 
 
-def move(drive: Drive, angle: float) -> Problem:
+def least_move_time(drive: Drive, angle: float) -> Problem:
     """Minimise the time [s] of a move of `angle` [rad]: full torque, top speed, full braking.
 
     Variables: ratio, acceleration (`mean_ramp` of both ramps) and peak speed of the load, with

@@ -309,10 +309,12 @@ def _values(factor: RatingFactor, measures: Measures) -> list[Cell]:
     return [first, second]
 
 
-def _factors_on_terminal(rating: DriveRating, named: bool, measures: Measures) -> list[Table]:
+def _factors_on_terminal(
+    rating: DriveRating, with_standard: bool, measures: Measures
+) -> list[Table]:
     """The factors as the terminal shows them, of so many stages as fit side by side."""
     tables, alone, abreast = [], len(rating.meshes) == 1, ABREAST[rating.by]
-    of = STANDARD_HEADS[rating.by] if named else ""
+    of = STANDARD_HEADS[rating.by] if with_standard else ""
     for start in range(0, len(rating.meshes), abreast):
         heads = [of, *[""] * alone, *names(rating)[2 * start : 2 * (start + abreast)], ""]
         rows = []

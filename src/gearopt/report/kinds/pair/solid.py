@@ -40,7 +40,7 @@ def figure(pair: GearPair, bodies: tuple[Body, Body], measures: Measures) -> Fig
         for gear, y, phase in zip(pair.gears, centres, phases, strict=True)
     ]
     rows = list(zip(MEMBERS, placed, bodies, strict=True))
-    flank = _flank(pair, bodies)
+    flank = _points_per_flank(pair, bodies)
     traces = [_trace(*row, flank) for row in rows]
     for member, gear, body in (row for row in rows if row[2].bore):
         mesh = rod(gear.centre, 0.5 * (body.bore or 0.0), *_shaft(width))
@@ -65,8 +65,8 @@ def _shaft(width: float) -> tuple[float, float]:
     return -SHAFT_BEYOND * width, (1.0 + SHAFT_BEYOND) * width
 
 
-def _flank(pair: GearPair, bodies: tuple[Body, Body]) -> int:
-    """Points on a flank, the most that leave both gears together below POINTS."""
+def _points_per_flank(pair: GearPair, bodies: tuple[Body, Body]) -> int:
+    """Return the number of points on a flank: the most with both gears together below POINTS."""
     rings = [2 + len(rings_of(b, g, 0.0, 1.0)) for b, g in zip(bodies, pair.gears, strict=True)]
     sides = sum(2 * gear.teeth * n for gear, n in zip(pair.gears, rings, strict=True))
     return next((flank for flank in FLANKS if flank * sides < POINTS), FLANKS[-1])

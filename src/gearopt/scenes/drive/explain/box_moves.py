@@ -11,7 +11,7 @@ from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.moves import SET, Move
 from gearopt.scenes.explaining.numbers import Number, Path, at, numbers, put
-from gearopt.scenes.reading.toml import dotted
+from gearopt.scenes.reading.toml_writing import dotted
 from gearopt.units import UNITS, Quantity
 
 # The largest factor by which a number is moved: beyond it another concept is asked for, not another

@@ -17,7 +17,7 @@ from gearopt.scenes.explaining.engine import as_remedy, least
 from gearopt.scenes.explaining.moves import DUTY, Move, changed
 from gearopt.scenes.explaining.numbers import SHORT, STEP_FROM_ZERO, allowed, eased, put, written
 from gearopt.scenes.reading.module_series import SERIES, family, series_of
-from gearopt.scenes.reading.toml import toml_text
+from gearopt.scenes.reading.toml_writing import toml_text
 from gearopt.units import Quantity
 
 TOLERANCE = ("duty", "ratio_tolerance")

@@ -10,7 +10,7 @@ from gearopt.scenes.drive.explain.remedies import remedies
 from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.drive.scene import MOST_STAGES, Scene
 from gearopt.scenes.explaining.numbers import allowed
-from gearopt.scenes.reading.toml import toml_text
+from gearopt.scenes.reading.toml_writing import toml_text
 
 LESS = ("with_less", "nearer")  # of a remedy: whether a smaller change is impossible
 

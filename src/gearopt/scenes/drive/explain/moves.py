@@ -13,7 +13,7 @@ from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.explaining.moves import DUTY, LIMIT, SIZE, Edited, Move, Moves, edited
 from gearopt.scenes.explaining.numbers import Path, eased, taken_back, written
-from gearopt.scenes.reading.toml import exact
+from gearopt.scenes.reading.toml_writing import exact
 from gearopt.units import Quantity
 
 FIELDS: dict[str, tuple[str, int | None]] = {

@@ -9,7 +9,7 @@ from gearopt.scenes.drive.explain.rated_conflict import Conflict
 from gearopt.scenes.drive.scene import MOST_STAGES, Scene
 from gearopt.scenes.explaining.numbers import allowed, content
 from gearopt.scenes.reading.module_series import SERIES, family, series_of
-from gearopt.scenes.reading.toml import toml_text
+from gearopt.scenes.reading.toml_writing import toml_text
 
 Works = Callable[[Scene], bool | None]
 Ways = Iterator[tuple[tuple[Change, ...], Scene]]
@@ -24,7 +24,7 @@ def choices(scene: Scene, known: Conflict, works: Works) -> Iterator[Remedy]:
     every: tuple[tuple[str, Callable[[Scene], Ways]], ...] = (
         ("same_materials", _own_materials),
         ("materials", _materials),
-        ("material_grade", _grades),
+        ("material_grade", _with_better_grades),
         ("", _others),
     )
     for name, ways in every:
@@ -50,7 +50,7 @@ def _materials(scene: Scene) -> Ways:
             yield (change,), _with_gears(scene, {"materials": more})
 
 
-def _grades(scene: Scene) -> Ways:
+def _with_better_grades(scene: Scene) -> Ways:
     """Yield the drives of the next better grades of steel that all gears share."""
     asked, gears = scene.rating, scene.gears
     assert asked

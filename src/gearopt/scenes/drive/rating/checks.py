@@ -21,7 +21,7 @@ from gearopt.scenes.drive.tables.rating import (
 )
 from gearopt.scenes.reading.choices import values_of
 from gearopt.scenes.reading.fields import Table, refuse
-from gearopt.scenes.reading.toml import dotted
+from gearopt.scenes.reading.toml_writing import dotted
 
 Place = tuple[Any, ...]
 NEED_HARDNESS = ("through-hardened",)  # of the life curves and the hardness ratio too

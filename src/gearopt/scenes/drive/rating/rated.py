@@ -38,7 +38,7 @@ from gearopt.scenes.drive.tables.blanks import body_flaws
 from gearopt.scenes.parts import tooth_flaws
 from gearopt.scenes.plan import Step, carried_out
 from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.reading.toml import dotted
+from gearopt.scenes.reading.toml_writing import dotted
 
 FULL_CONTACT = 2.0  # K_Hbeta up to which the whole face width carries load
 

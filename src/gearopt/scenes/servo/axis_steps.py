@@ -1,4 +1,4 @@
-"""The parts of a servo axis's answer: train, ratio and box, with bounds beside them."""
+"""Steps of the answer for a servo axis: train, ratio, lightest train, box, errors; with bounds."""
 
 import math
 from dataclasses import replace

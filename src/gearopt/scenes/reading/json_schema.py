@@ -8,7 +8,7 @@ from pydantic.json_schema import GenerateJsonSchema
 from gearopt.scenes.reading.kinds import kinds
 from gearopt.scenes.reading.load import FORMAT, kind_named
 from gearopt.scenes.reading.mistakes import example_of, table_of, tables
-from gearopt.scenes.reading.toml import toml_text
+from gearopt.scenes.reading.toml_writing import toml_text
 
 
 class _Schema(GenerateJsonSchema):
