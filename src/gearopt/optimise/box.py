@@ -31,8 +31,8 @@ def allowed_values(problem: Problem | Conic, column: int) -> Sequence[float]:
             raise SolveError(f"{problem.name}: the integer {name} needs finite bounds")
         return range(int(minimum), int(maximum) + 1)
     low, high = _widened(problem, column)
-    found = tuple(sorted({float(v) for v in variable.values if low <= v <= high}))
-    return found or _nothing(problem, column, "value of its set")
+    values = tuple(sorted({float(v) for v in variable.values if low <= v <= high}))
+    return values or _nothing(problem, column, "value of its set")
 
 
 def check_discrete(problem: Problem) -> None:

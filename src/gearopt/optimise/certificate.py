@@ -124,14 +124,14 @@ def _claimed(problem: Problem, outcome: Outcome, before: Verdict, tolerance: flo
     """Judge a point with the bound of an exact algorithm; before: the verdict without one."""
     value, bound = before.objective, outcome.bound
     assert outcome.x is not None and value is not None and bound is not None
-    found, scale = measured(problem, outcome.x, value, bound, tolerance)
-    if found < -FEASIBLE:
+    gap, scale = measured(problem, outcome.x, value, bound, tolerance)
+    if gap < -FEASIBLE:
         raise CertificateError(f"a feasible value {value!r} lies below the claimed bound {bound!r}")
     return replace(
         before,
-        status="optimal" if found <= tolerance else before.status,
+        status="optimal" if gap <= tolerance else before.status,
         bound=bound,
-        gap=reported_gap(found),
+        gap=reported_gap(gap),
         certificate=dict(before.certificate) | scale,
         proof=outcome.proof or {},
     )
@@ -155,13 +155,13 @@ def bounded(
     value, excess = before.objective, before.certificate["feasibility"]
     assert value is not None and excess is not None
     tolerance = max(tolerance, FEASIBLE)
-    found, scale = measured(problem, x, value, bound, tolerance)
-    if found < -100 * FEASIBLE and excess <= ROUNDING:
+    gap, scale = measured(problem, x, value, bound, tolerance)
+    if gap < -100 * FEASIBLE and excess <= ROUNDING:
         raise CertificateError(f"a feasible value {value!r} lies below the dual bound {bound!r}")
     status, message = before.status, before.message
-    if abs(found) <= tolerance:
+    if abs(gap) <= tolerance:
         status = "optimal"
-    elif found < 0.0:
+    elif gap < 0.0:
         message = (
             f"{worst} is violated by {excess:.3g}, from which the objective benefits. {message}"
         )
@@ -169,7 +169,7 @@ def bounded(
         before,
         status=status,
         bound=bound,
-        gap=reported_gap(found),
+        gap=reported_gap(gap),
         certificate=dict(before.certificate) | scale,
         message=message.strip(),
     )
@@ -218,13 +218,13 @@ def _local(
     if not points:
         return before
     each = [(residuals(point), point) for point in points]
-    found, best = min(each, key=lambda j: np.nan_to_num(np.max([*j[0].values()]), nan=np.inf))
-    residual = dict(before.certificate) | found
+    of_kkt, best = min(each, key=lambda j: np.nan_to_num(np.max([*j[0].values()]), nan=np.inf))
+    residual = dict(before.certificate) | of_kkt
     before = replace(before, certificate=residual, multipliers=_shadow_prices(best))
     lower, upper, guess = problem.bounds()
     if loose := runaway(problem, outcome.x, lower, upper, guess):
         return replace(before, status="failed", message=loose)
-    if outcome.finished and all(v <= STATIONARY for v in found.values()):
+    if outcome.finished and all(v <= STATIONARY for v in of_kkt.values()):
         doubt = no_minimum(best)
         message = f"{doubt.words}. {before.message}".strip() if doubt.words else before.message
         status = "feasible" if doubt.words else "stationary"

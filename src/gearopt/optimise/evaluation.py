@@ -190,8 +190,8 @@ def evaluated(
         logs = {v.name: v.log for v in (*problem.variables, *(repeat.variables if repeat else ()))}
         x, p = comparisons.quantities(x, logs), comparisons.quantities(p, _above(problem))
         row = {name: comparisons.Quantity(value) for name, value in row.items()}
-    own = problem.evaluate(x, p) if repeat is None else repeat.evaluate(x, p, Named(**row))
-    terms = minimised(own)
+    stated = problem.evaluate(x, p) if repeat is None else repeat.evaluate(x, p, Named(**row))
+    terms = minimised(stated)
     if scales is None or not isinstance(terms, Terms):
         return terms
     numbers = problem.memo.setdefault(("numbers", repeat and repeat.name), {})
@@ -268,11 +268,11 @@ def terms_of(problem: "Problem", repeat: Repeat | None, shared: Array, own: Arra
 def _at_once(problem: "Problem", repeat: Repeat | None, shared: Array, own: Array) -> Terms:
     with blaming(*text_of(problem, repeat), "evaluated"):
         if repeat is None:
-            found: Terms = called(problem, None, shared.T, (), {})
+            terms: Terms = called(problem, None, shared.T, (), {})
         else:
             data = {k: np.asarray(v)[None, :] for k, v in repeat.data.items()}
-            found = called(problem, repeat, shared.T[:, :, None], np.moveaxis(own, 2, 0), data)
-    return found
+            terms = called(problem, repeat, shared.T[:, :, None], np.moveaxis(own, 2, 0), data)
+    return terms
 
 
 def elementwise(problem: "Problem", repeat: Repeat | None) -> bool:
@@ -310,8 +310,8 @@ def functions_of(problem: "Problem") -> set[str] | None:
 
         def __array_ufunc__(self, function: Any, method: str, *inputs: Any, **more: Any) -> Any:
             names.add(function.__name__)
-            found = super().__array_ufunc__(function, method, *inputs, **more)
-            return tuple(Heard() for _ in found) if isinstance(found, tuple) else Heard()
+            result = super().__array_ufunc__(function, method, *inputs, **more)
+            return tuple(Heard() for _ in result) if isinstance(result, tuple) else Heard()
 
         def __array_function__(self, function: Any, types: Any, inputs: Any, more: Any) -> Any:
             super().__array_function__(function, types, inputs, more)
@@ -325,14 +325,14 @@ def _obstacle(
     problem: "Problem", repeat: Repeat | None, scalar: Callable[[], Scalar] = Scalar
 ) -> str:
     """First operation of a text that is not elementwise; "" for none."""
-    shared, own = (
+    shared, repeated = (
         [scalar() for v in variables for _ in range(v.size)]
         for variables in (problem.variables, repeat.variables if repeat else ())
     )
     row = {k: scalar() for k in repeat.data} if repeat else {}
     try:
         with np.errstate(all="ignore"):
-            terms = called(problem, repeat, shared, own, row)
+            terms = called(problem, repeat, shared, repeated, row)
         values = [v for part in SECTIONS for _, v in flat(getattr(terms, part))]
         return "" if all(map(_is_scalar, values)) else "it returns arrays"
     except Exception as refused:
@@ -342,15 +342,17 @@ def _obstacle(
 def _surprise(problem: "Problem", repeat: Repeat | None) -> str:
     """Return how a text that asks for types of its scalars betrays itself; "": it does not."""
     start = sum(v.size for v in problem.variables)
-    shared, own = sample(problem, 2)[:, :start], np.empty((2, 1, 0))
+    shared, repeated = sample(problem, 2)[:, :start], np.empty((2, 1, 0))
     if repeat is not None:
-        own = np.tile([one for v in repeat.variables for one in spread(v.guess, v.size)], (2, 1, 1))
+        repeated = np.tile(
+            [one for v in repeat.variables for one in spread(v.guess, v.size)], (2, 1, 1)
+        )
         repeat = replace(repeat, data={k: v[:1] for k, v in repeat.data.items()})
-    many = _at_once(problem, repeat, shared, own)
+    many = _at_once(problem, repeat, shared, repeated)
     for k in range(2):
-        one = at(problem, repeat, shared[k], own[k].ravel(), 0)
+        single = at(problem, repeat, shared[k], repeated[k].ravel(), 0)
         for part in SECTIONS:
-            values = zip(flat(getattr(one, part)), flat(getattr(many, part)), strict=True)
+            values = zip(flat(getattr(single, part)), flat(getattr(many, part)), strict=True)
             for (name, alone), (_, column) in values:
                 among = np.broadcast_to(column, (2, 1) if repeat else (2,)).reshape(2)[k]
                 if not np.isclose(among, alone, 1e-9, 0.0, equal_nan=True):
@@ -394,7 +396,7 @@ def _one_by_one(problem: "Problem", repeat: Repeat | None, shared: Array, own: A
 
     Of several points those are NaN, too, for which the run has no time left.
     """
-    rows, run = range(repeat.count if repeat else 1), current()
+    rows, running = range(repeat.count if repeat else 1), current()
     names = problem.names(repeat)
     values = np.full((len(shared), len(rows), sum(map(len, names.values()))), np.nan)
     tasks = [
@@ -402,9 +404,9 @@ def _one_by_one(problem: "Problem", repeat: Repeat | None, shared: Array, own: A
         for x, y in zip(shared, own, strict=True)
         for row in rows
     ]
-    for k, (numbers, failure) in enumerate(_each(problem, tasks, len(rows), run)):
+    for k, (numbers, failure) in enumerate(_each(problem, tasks, len(rows), running)):
         values[divmod(k, len(rows))] = numbers
-        run.note(failure)
+        running.note(failure)
     columns = iter(np.moveaxis(values if repeat else values[:, 0], -1, 0))
     return Terms(**{part: {name: next(columns) for name in names[part]} for part in SECTIONS})
 
@@ -453,10 +455,10 @@ def _numbers(
         named = ", ".join(f"{name} = {v:.6g}" for (_, name), v in where)
         broken = _in_words(refused.__cause__)[:150]
         return [np.nan] * sum(map(len, names.values())), f"{broken} at {named}"[:300]
-    found = {part: flat(getattr(terms, part)) for part in SECTIONS}
-    if {part: [n for n, _ in found[part]] for part in SECTIONS} != names:
+    values = {part: flat(getattr(terms, part)) for part in SECTIONS}
+    if {part: [n for n, _ in values[part]] for part in SECTIONS} != names:
         raise SolveError(
             f"the text of {text_of(problem, repeat)[1]} returns other names at other points; "
             "every point needs the same terms"
         )
-    return [float(v) for part in SECTIONS for _, v in found[part]], ""
+    return [float(v) for part in SECTIONS for _, v in values[part]], ""

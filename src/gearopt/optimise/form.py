@@ -57,10 +57,10 @@ def form(problem: Problem) -> Form:
     SolveError where the problem has no single objective.
     """
     one_objective(problem.name, problem.rows.objectives)
-    found = tape.kinds(problem)
-    key = ("form", found)
+    term_kinds = tape.kinds(problem)
+    key = ("form", term_kinds)
     if key not in problem.memo:
-        problem.memo[key] = _build(problem, found)
+        problem.memo[key] = _build(problem, term_kinds)
     result: Form = problem.memo[key]
     return result
 
@@ -135,8 +135,8 @@ def _rows(values: Any, logarithmic: list[bool]) -> Any:
 
 def values(problem: Problem, shape: Form, y: Array) -> tuple[float, Array]:
     """Return F, and G and H together, at a point."""
-    found = np.array(shape.terms(y, problem.parameter_values())).ravel()
-    return float(found[0]), found[1:]
+    terms = np.array(shape.terms(y, problem.parameter_values())).ravel()
+    return float(terms[0]), terms[1:]
 
 
 def violation(problem: Problem, shape: Form, y: Array) -> float:

@@ -52,8 +52,8 @@ def probed(problem: Problem, x: Array) -> tuple[str, bool, Array]:
     Beside them the lowest of these points along that variable, else x.
     """
     lower, upper, _ = problem.bounds()
-    own, count = np.diag(sizes(problem, x)), len(x)
-    ways = np.vstack([own, -own])
+    steps, count = np.diag(sizes(problem, x)), len(x)
+    ways = np.vstack([steps, -steps])
     points = np.clip(x + np.vstack([step * ways for step in PROBE_STEPS]), lower, upper)
     batch = problem.batch(np.vstack([x, points]))
     excess = np.hstack([batch.G - 1.0, np.abs(batch.H - 1.0)])
@@ -75,23 +75,23 @@ def probed(problem: Problem, x: Array) -> tuple[str, bool, Array]:
 
 def _read(problem: Problem, x: Array) -> tuple[list[str], list[str], list[str]]:
     """Return the kinks of the objectives of all blocks, and of all rows of g and h, in order."""
-    found: tuple[list[str], list[str], list[str]] = ([], [], [])
-    own, start = sizes(problem, x), sum(v.size for v in problem.variables)
-    shared = [_Reading(v, s, True) for v, s in zip(x[:start], own[:start], strict=True)]
+    kinks: tuple[list[str], list[str], list[str]] = ([], [], [])
+    scales, start = sizes(problem, x), sum(v.size for v in problem.variables)
+    shared = [_Reading(v, s, True) for v, s in zip(x[:start], scales[:start], strict=True)]
     p = [_Reading(v, abs(v)) for v in problem.parameter_values()]
     for block in problem.traced().blocks:
         repeat, inner, data = block.repeat, [], []
         if repeat is not None:
             stop = start + repeat.count * repeat.width
-            parts = (a[start:stop].reshape(repeat.count, -1).T for a in (x, own))
+            parts = (a[start:stop].reshape(repeat.count, -1).T for a in (x, scales))
             inner = [_Reading(v, s, True) for v, s in zip(*parts, strict=True)]
             data = [_Reading(np.asarray(v, float), np.abs(v)) for v in repeat.data.values()]
             start = stop
         terms = walk(block.function, [shared, inner, p, data], _constant, _apply)
         count = repeat.count if repeat else 1
-        for part, more, times in zip(found, terms, (1, count, count), strict=True):
+        for part, more, times in zip(kinks, terms, (1, count, count), strict=True):
             part += [reading.kink for reading in more] * times
-    return found
+    return kinks
 
 
 def _constant(value: float) -> _Reading:

@@ -112,11 +112,11 @@ class _Levels:
         import casadi as ca
 
         rows = ca.vertsplit(part) if part.numel() else []
-        found = [
+        split_rows = [
             self._log(row.dep(0), 0).split if one and row.is_op(ca.OP_LOG) else row
             for row, one in zip(rows, wide, strict=True)
         ]
-        return ca.vertcat(ca.SX(0, 1), *found)
+        return ca.vertcat(ca.SX(0, 1), *split_rows)
 
     def _width(self, expression: Any) -> int:
         """Return number of variables of an expression."""
@@ -141,12 +141,14 @@ class _Levels:
         total = _Pair(ca.SX(0), ca.SX(0))
         for factor, power in _factors(expression):
             if factor.is_op(ca.OP_ADD) and depth < DEEP and self._width(factor) > DENSE_VARIABLES:
-                one = self._log_of_sum(factor, depth)
+                logarithm = self._log_of_sum(factor, depth)
             elif factor.is_op(ca.OP_EXP):
-                one = _Pair(factor.dep(0), factor.dep(0))
+                logarithm = _Pair(factor.dep(0), factor.dep(0))
             else:
-                one = _Pair(ca.log(factor), ca.log(factor))
-            total = _Pair(total.split + power * one.split, total.exact + power * one.exact)
+                logarithm = _Pair(ca.log(factor), ca.log(factor))
+            total = _Pair(
+                total.split + power * logarithm.split, total.exact + power * logarithm.exact
+            )
         return total
 
     def _log_of_sum(self, expression: Any, depth: int) -> _Pair:
@@ -175,18 +177,18 @@ class _Levels:
         """Return the terms of a sum; of a sum inside it that is split already, its exp(u)."""
         import casadi as ca
 
-        found, waiting = [], [expression]
+        terms, waiting = [], [expression]
         while waiting:
-            one = waiting.pop()
-            if (node := one.element_hash()) in self._sums:
+            summand = waiting.pop()
+            if (node := summand.element_hash()) in self._sums:
                 if len(self._sums[node]) > 1:
                     self._sums[node] = [self._above(_log_of(self._sums[node]))]
-                found += self._sums[node]
-            elif one.is_op(ca.OP_ADD):
-                waiting += [one.dep(1), one.dep(0)]
+                terms += self._sums[node]
+            elif summand.is_op(ca.OP_ADD):
+                waiting += [summand.dep(1), summand.dep(0)]
             else:
-                found.append(one)
-        return found
+                terms.append(summand)
+        return terms
 
 
 def _log_of(terms: list[_Pair]) -> _Pair:
@@ -199,27 +201,27 @@ def _factors(expression: Any) -> list[tuple[Any, float]]:
     """Return [(factor, power)] of a product, all proven to be positive."""
     import casadi as ca
 
-    found: list[tuple[Any, float]] = []
+    factors: list[tuple[Any, float]] = []
     waiting = [(expression, 1.0)]
     while waiting:
-        one, power = waiting.pop()
-        if one.is_op(ca.OP_MUL):
-            waiting += [(one.dep(1), power), (one.dep(0), power)]
-        elif one.is_op(ca.OP_DIV):
-            waiting += [(one.dep(1), -power), (one.dep(0), power)]
-        elif one.is_op(ca.OP_TWICE):
-            waiting += [(ca.SX(2.0), power), (one.dep(0), power)]
-        elif one.is_op(ca.OP_SQ):
-            waiting.append((one.dep(0), 2.0 * power))
-        elif one.is_op(ca.OP_SQRT):
-            waiting.append((one.dep(0), 0.5 * power))
-        elif one.is_op(ca.OP_INV):
-            waiting.append((one.dep(0), -power))
-        elif one.is_op(ca.OP_POW) or one.is_op(ca.OP_CONSTPOW):
-            waiting.append((one.dep(0), power * one.dep(1)))
+        factor, power = waiting.pop()
+        if factor.is_op(ca.OP_MUL):
+            waiting += [(factor.dep(1), power), (factor.dep(0), power)]
+        elif factor.is_op(ca.OP_DIV):
+            waiting += [(factor.dep(1), -power), (factor.dep(0), power)]
+        elif factor.is_op(ca.OP_TWICE):
+            waiting += [(ca.SX(2.0), power), (factor.dep(0), power)]
+        elif factor.is_op(ca.OP_SQ):
+            waiting.append((factor.dep(0), 2.0 * power))
+        elif factor.is_op(ca.OP_SQRT):
+            waiting.append((factor.dep(0), 0.5 * power))
+        elif factor.is_op(ca.OP_INV):
+            waiting.append((factor.dep(0), -power))
+        elif factor.is_op(ca.OP_POW) or factor.is_op(ca.OP_CONSTPOW):
+            waiting.append((factor.dep(0), power * factor.dep(1)))
         else:
-            found.append((one, power))
-    return found
+            factors.append((factor, power))
+    return factors
 
 
 SWING = 0.1  # of the variables' scale, over which the objective's is measured
@@ -249,16 +251,16 @@ def scaled(shape: Form, parts: Split, units: Any) -> tuple[Any, Any, Any, Any, A
 def unit_at(problem: Problem, shape: Form, y: Array) -> Unit:
     """Return units in which natural variables have a scale of about 1 at y, objectives of 100."""
     x = shape.to_x(y)
-    own = np.where(shape.logarithmic, 1.0, sizes(problem, x))
+    scales = np.where(shape.logarithmic, 1.0, sizes(problem, x))
     objective = 1.0 if shape.log_objective else SHARE * objective_scale(problem, x, SWING)
-    return Unit(_power(own), float(_power(np.array(objective))))
+    return Unit(_power(scales), float(_power(np.array(objective))))
 
 
 def _power(size: Array) -> Array:
     """Return the power of two next to each size, exact to multiply by; 1 where it is none."""
     known = np.isfinite(size) & (size > 0.0)
-    found: Array = np.exp2(np.clip(np.round(np.log2(np.where(known, size, 1.0))), -900, 900))
-    return found
+    power: Array = np.exp2(np.clip(np.round(np.log2(np.where(known, size, 1.0))), -900, 900))
+    return power
 
 
 OPTIONS = {

@@ -31,11 +31,11 @@ def check_methods(name: str, methods: Any) -> None:
             f"problem {name}: methods are a dict of functions, such as methods={{'mine': run}}, "
             f"not {type(methods).__name__}"
         )
-    for method, run in methods.items():
-        if not isinstance(method, str) or not callable(run):
+    for method, function in methods.items():
+        if not isinstance(method, str) or not callable(function):
             raise ValueError(
-                f"problem {name}: methods has {method!r}: {type(run).__name__}; write a name and "
-                "a function run(problem, budget, seed, watch)"
+                f"problem {name}: methods has {method!r}: {type(function).__name__}; "
+                "write a name and a function run(problem, budget, seed, watch)"
             )
         if method in back_ends():
             raise ValueError(
@@ -76,20 +76,20 @@ def _unwatched(event: Event) -> bool:
 def _point(where: str, x: Any, count: int) -> Array:
     """Return a point (n,) of a method; SolveError where it is none."""
     try:
-        found = np.asarray(x, float)
+        point = np.asarray(x, float)
     except (TypeError, ValueError):
         raise SolveError(
             f"{where} returns a point of {type(x).__name__}; return the values of all variables "
             f"in order, ({count},)"
         ) from None
-    if found.shape != (count,):
+    if point.shape != (count,):
         raise SolveError(
-            f"{where} returns a point of the shape {found.shape}; return the values of all "
+            f"{where} returns a point of the shape {point.shape}; return the values of all "
             f"variables in order, ({count},)"
         )
-    if np.isnan(found).any():
+    if np.isnan(point).any():
         raise SolveError(f"{where} returns a point with NaN in it; return Outcome(None) for none")
-    return found
+    return point
 
 
 def _check_claims(where: str, outcome: Outcome) -> None:

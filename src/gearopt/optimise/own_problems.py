@@ -261,8 +261,8 @@ def _started(problem: Problem | Conic, method: str, start: Mapping[str, Any]) ->
             )
         return problem.starting(_point(problem, start))
     known = [n for n in back_ends() if getattr(_module(n), "FROM_GUESS", False)]
-    own = method in problem.methods
-    if not (own or method in known):
+    of_problem = method in problem.methods
+    if not (of_problem or method in known):
         takes = f"; these do: {', '.join(known)}"
         raise SolveError(f"{method} takes no start{takes}; leave start out")
     return problem.starting(_point(problem, start))
@@ -306,9 +306,9 @@ def _point(problem: Problem | Conic, start: Mapping[str, Any]) -> Array:
 
 def _places(problem: Problem | Conic) -> dict[str, list[int]]:
     """Return the columns of every name: of a variable, of a key of a design, of one component."""
-    found: dict[str, list[int]] = {}
+    places: dict[str, list[int]] = {}
     for k, (variable, name) in enumerate(problem.columns):
         head = name.rsplit("[", 1)[0] if variable.size > 1 else name
         for key in {head, f"{head}_{variable.unit}" if variable.unit else head, name}:
-            found.setdefault(key, []).append(k)
-    return found
+            places.setdefault(key, []).append(k)
+    return places

@@ -60,10 +60,10 @@ class Polish:
     def sampling(self) -> tuple[Clock, int | None]:
         """Return the clock of the sampling, and the evaluations at which it ends (`sampling`)."""
         variables = len(self.problem.columns) if self.blind else 0
-        own, most = sampling(self.clock, self.skipped is None, variables)
-        if own.budget.seconds is not None:
-            current().end = own.start + own.budget.seconds
-        return own, most
+        clock, most = sampling(self.clock, self.skipped is None, variables)
+        if clock.budget.seconds is not None:
+            current().end = clock.start + clock.budget.seconds
+        return clock, most
 
 
 def sampling(clock: Clock, polished: bool, blind: int = 0) -> tuple[Clock, int | None]:
@@ -124,13 +124,13 @@ def polished(polish: Polish, sampled: Outcome, starts: Array) -> Outcome:
     while waiting and done and runs < RUNS and spent < planned:
         start = waiting.pop(0)
         tried.add(_choice(problem, start))
-        found = _solved(polish, start, planned - spent)
-        runs, spent = runs + 1, spent + found.evaluations
+        outcome = _solved(polish, start, planned - spent)
+        runs, spent = runs + 1, spent + outcome.evaluations
         polish.clock.evaluations = sampled.evaluations + spent
-        done = found.finished or spent >= planned
-        value = _value(problem, found.x)
+        done = outcome.finished or spent >= planned
+        value = _value(problem, outcome.x)
         if value < least:
-            best, least = replace(found, message=polish.blind), value
+            best, least = replace(outcome, message=polish.blind), value
         if not waiting and best.x is not None:
             waiting = [x for x in _beside(problem, best.x) if _choice(problem, x) not in tried]
     return replace(
@@ -170,16 +170,16 @@ def _chosen(polish: Polish, best: Array | None, starts: Array) -> list[Array]:
 
 def _beside(problem: Problem, x: Array) -> list[Array]:
     """Return the points with one discrete variable at its next value up or down."""
-    found = []
+    neighbours = []
     for k in np.flatnonzero([v.discrete for v, _ in problem.columns]):
         given = allowed_values(problem, int(k))
         value = int(x[k]) if isinstance(given, range) else float(x[k])  # of floats all are asked
         at = given.index(value)
         for place in (at - 1, at + 1):
             if 0 <= place <= given.index(given[-1]):
-                found.append(x.copy())
-                found[-1][k] = given[place]
-    return found
+                neighbours.append(x.copy())
+                neighbours[-1][k] = given[place]
+    return neighbours
 
 
 def _solved(polish: Polish, start: Array, most: int) -> Outcome:

@@ -140,15 +140,15 @@ class Problem:
     @cached_property
     def columns(self) -> tuple[tuple[Var, str], ...]:
         """Return variable and printed name of every component of a point, in order."""
-        found = [(v, _name(v.name, v.size, k)) for v in self.variables for k in range(v.size)]
+        columns = [(v, _name(v.name, v.size, k)) for v in self.variables for k in range(v.size)]
         for r in self.repeats:
-            found += [
+            columns += [
                 (v, f"{r.name}[{row + 1}].{_name(v.name, v.size, k)}")
                 for row in range(r.count)
                 for v in r.variables
                 for k in range(v.size)
             ]
-        return tuple(found)
+        return tuple(columns)
 
     def within(self, name: str, lower: Number, upper: Number) -> "Problem":
         """The problem with other bounds of one shared variable; traces and tables are kept."""
@@ -224,14 +224,14 @@ class Problem:
         report: dict[str, Array] = {}
         for r in (None, *self.repeats):
             width = r.count * r.width if r else 0
-            own = points[:, start : start + width].reshape(count, r.count if r else 1, -1)
-            found = terms_of(self, r, shared, own)
-            for name, value in found.minimise.items():
+            repeated = points[:, start : start + width].reshape(count, r.count if r else 1, -1)
+            terms = terms_of(self, r, shared, repeated)
+            for name, value in terms.minimise.items():
                 each = np.broadcast_to(value, (count, r.count) if r else (count,))
                 objectives[name] = objectives[name] + (each.sum(axis=1) if r else each)
-            blocks.append((flatten(found), count, r.count if r else 1))
+            blocks.append((flatten(terms), count, r.count if r else 1))
             prefix = f"{r.name}." if r else ""
-            report |= {f"{prefix}{name}": np.asarray(v) for name, v in flat(found.report)}
+            report |= {f"{prefix}{name}": np.asarray(v) for name, v in flat(terms.report)}
             start += width
         g, h = (
             np.concatenate([_matrix(b[k], n, m) for b, n, m in blocks], axis=1) for k in range(2)
@@ -245,8 +245,8 @@ class Problem:
         """Return names of objectives, inequalities and equalities, in the order of `batch`."""
         if "rows" not in self.memo:
             self.memo["rows"] = self._read_rows()
-        found: Rows = self.memo["rows"]
-        return found
+        rows: Rows = self.memo["rows"]
+        return rows
 
     def names(self, repeat: Repeat | None) -> dict[str, list[str]]:
         """Return names of all terms of a text, as it gives them at the guess, or near it."""
@@ -255,27 +255,27 @@ class Problem:
             if repeat is None:
                 terms = first_terms(self)
             else:
-                guess, own = (_bounds(v)[2] for v in (self.variables, repeat.variables))
-                terms = at(self, repeat, guess, own, 0)
+                guess, repeated = (_bounds(v)[2] for v in (self.variables, repeat.variables))
+                terms = at(self, repeat, guess, repeated, 0)
             self.memo[key] = {part: [n for n, _ in flat(getattr(terms, part))] for part in SECTIONS}
-        found: dict[str, list[str]] = self.memo[key]
-        return found
+        names: dict[str, list[str]] = self.memo[key]
+        return names
 
     def _read_rows(self) -> Rows:
-        own = self.names(None)
-        objectives = list(own["minimise"])
-        limits = [Row(name, kind) for kind in ("limits", "defines") for name in own[kind]]
-        equal = list(own["equal"])
+        names = self.names(None)
+        objectives = list(names["minimise"])
+        limits = [Row(name, kind) for kind in ("limits", "defines") for name in names[kind]]
+        equal = list(names["equal"])
         for r in self.repeats:
-            own = self.names(r)
-            objectives += [name for name in own["minimise"] if name not in objectives]
+            names = self.names(r)
+            objectives += [name for name in names["minimise"] if name not in objectives]
             for k in range(1, r.count + 1):
                 limits += [
                     Row(f"{r.name}.{n}[{k}]", kind)
                     for kind in ("limits", "defines")
-                    for n in own[kind]
+                    for n in names[kind]
                 ]
-                equal += [f"{r.name}.{n}[{k}]" for n in own["equal"]]
+                equal += [f"{r.name}.{n}[{k}]" for n in names["equal"]]
         if not objectives:
             raise SolveError(
                 f"problem {self.name} minimises nothing: Terms(minimise={{...}}) is empty"
@@ -297,8 +297,8 @@ class Problem:
             except SolveError as reason:
                 self.memo[key] = reason  # not to wait once more
                 raise
-        found: Traced = self.memo["traced"]
-        return found
+        traced: Traced = self.memo["traced"]
+        return traced
 
     def compiled(self) -> "Compiled":
         """Return A fast callable for one point at a time, on the traced text."""

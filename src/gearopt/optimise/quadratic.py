@@ -31,8 +31,8 @@ def degrees(problem: Problem) -> Kinds:
             for terms in read(problem, lambda v: Term(AFFINE), _apply)
         )
         problem.memo[key] = Kinds(max(objective), *rows)
-    found: Kinds = problem.memo[key]
-    return found
+    kinds: Kinds = problem.memo[key]
+    return kinds
 
 
 def _apply(operation: int, terms: list[Term]) -> Term:
@@ -115,20 +115,20 @@ def hessian_of(problem: Problem, shape: Form) -> Array:
 
 def dense(matrix: Any) -> Array:
     """Return A casadi matrix as a dense array; casadi's own way is slow."""
-    found = np.zeros(matrix.shape)
-    found[matrix.sparsity().get_triplet()] = matrix.nonzeros()
-    return found
+    full = np.zeros(matrix.shape)
+    full[matrix.sparsity().get_triplet()] = matrix.nonzeros()
+    return full
 
 
 def misfit(problem: Problem) -> str:
     """Name the term that a quadratic program cannot have, in words; "" if there is none."""
-    found, rows = degrees(problem), problem.rows
+    of_terms, rows = degrees(problem), problem.rows
     if len(problem.columns) > MAX_VARIABLES:
         return f"it has {len(problem.columns)} variables, more than {MAX_VARIABLES}"
-    if found.objective > QUADRATIC:
+    if of_terms.objective > QUADRATIC:
         return f"the objective {rows.objectives[0]} is not quadratic"
     names = [r.name for r in rows.inequalities] + list(rows.equalities)
-    for name, degree in zip(names, found.inequalities + found.equalities, strict=True):
+    for name, degree in zip(names, of_terms.inequalities + of_terms.equalities, strict=True):
         if degree > AFFINE:
             return f"{name} is not affine"
     return ""

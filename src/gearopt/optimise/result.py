@@ -169,8 +169,8 @@ class Result:
     @property
     def value(self) -> float | None:
         """Return the objective's value, None without a feasible design."""
-        found = self.objective.get("value")
-        return None if found is None else float(found)
+        value = self.objective.get("value")
+        return None if value is None else float(value)
 
     @property
     def maximised(self) -> bool:
@@ -206,8 +206,8 @@ class Result:
         A row for every stage in "stages", for every train in "best-trains"; columns are those of
         the CSV files. units: "metric" or "inch". ValueError names the tables there are.
         """
-        found: list[dict[str, Any]] = shown("table_rows", self, name, units)
-        return found
+        rows: list[dict[str, Any]] = shown("table_rows", self, name, units)
+        return rows
 
     def to_html(self, units: str = "metric") -> str:
         """Return its page, one self-contained HTML text; units: "metric" or "inch"."""

@@ -162,10 +162,10 @@ def violation(problem: Problem | Conic, x: Array, batch: Batch) -> tuple[float, 
         ]
     )
     worst = int(amounts.argmax())  # the first NaN; at least 0, that of a value that is met
-    found = float(amounts[worst]), names[worst]
-    if isinstance(problem, Conic) or problem.exact_limits is None or math.isnan(found[0]):
-        return found
-    return max(found, *((used - 1.0, name) for name, used in problem.exact_limits(x).items()))
+    largest = float(amounts[worst]), names[worst]
+    if isinstance(problem, Conic) or problem.exact_limits is None or math.isnan(largest[0]):
+        return largest
+    return max(largest, *((used - 1.0, name) for name, used in problem.exact_limits(x).items()))
 
 
 def _distance(variable: Any, value: float, unit: float) -> float:

@@ -71,9 +71,9 @@ def evaluated(
 
 def residuals(point: Point) -> dict[str, float]:
     """Return stationarity and complementarity of a point, both relative, without units."""
-    own, unit = own_scales(point), acting(point)
+    scales, unit = own_scales(point), acting(point)
     slope = point.gradient
-    room = np.clip(np.where(slope > 0.0, point.y - point.low, point.high - point.y), 0.0, own)
+    room = np.clip(np.where(slope > 0.0, point.y - point.low, point.high - point.y), 0.0, scales)
     slack = np.abs(point.lam_g * point.g).max(initial=0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         promised = np.where(slope == 0.0, 0.0, np.abs(slope) * room / unit)
@@ -94,12 +94,12 @@ def acting(point: Point) -> Array:
     """
     if point.shape.convex and point.shape.log_objective:
         return np.ones(len(point.y))
-    own, bend = own_scales(point), np.zeros(len(point.y))
+    scales, bend = own_scales(point), np.zeros(len(point.y))
     curved = hessian(point)
     rows, columns = (np.array(k, int) for k in curved.sparsity().get_triplet())
     there = rows == columns
     bend[rows[there]] = np.abs(np.array(curved.nonzeros())[there])
-    size = point.pull * own + 0.5 * bend * own**2
+    size = point.pull * scales + 0.5 * bend * scales**2
     held = point.lam_g.any() or point.lam_h.any()
     unit: Array = size + (WEAK if held else ALONE) * size.max()
     return unit
@@ -225,8 +225,8 @@ def _kinked(point: Point, name: str) -> Doubt:
 
 def _free(point: Point) -> Any:
     """Return variables that no bound with a price holds, (n,)."""
-    own, slope = own_scales(point), point.gradient
-    price = np.abs(slope) * own > STATIONARY * acting(point)
+    scales, slope = own_scales(point), point.gradient
+    price = np.abs(slope) * scales > STATIONARY * acting(point)
     low, high = _ends(point)
     return ~((low & high) | (low & price & (slope > 0.0)) | (high & price & (slope < 0.0)))
 
@@ -239,19 +239,19 @@ def _ends(point: Point) -> tuple[Any, Any]:
 
 def _cone(point: Point, free: Any) -> _Cone:
     """Return the free directions, in units in which the Hessian has entries of up to 1."""
-    own = own_scales(point)
+    scales = own_scales(point)
     p = point.problem.parameter_values()
     of_g, of_h = (dense(j) for j in point.shape.jacobians(point.y, p))
-    priced = point.lam_g[:, None] * np.abs(of_g) * own > STATIONARY * acting(point)
+    priced = point.lam_g[:, None] * np.abs(of_g) * scales > STATIONARY * acting(point)
     firm = priced.any(axis=1)
     loose = point.g >= -ACTIVE_WITHIN
     low, high = (end[free] for end in _ends(point))
     bounds = np.eye(int(free.sum()))
-    curved = dense(hessian(point))[np.ix_(free, free)] * np.outer(own[free], own[free])
-    size = _equal(curved) + (point.pull * own)[free]
+    curved = dense(hessian(point))[np.ix_(free, free)] * np.outer(scales[free], scales[free])
+    size = _equal(curved) + (point.pull * scales)[free]
     size = size + WEAK * size.max(initial=0.0)
     root = np.sqrt(np.where(size > 0.0, size, 1.0))
-    unit = own[free] / root
+    unit = scales[free] / root
     held, length = _normal(np.vstack([of_g[firm], of_h])[:, free] * unit)
     sides = np.vstack([_normal(of_g[loose][:, free] * unit)[0], -bounds[low], bounds[high]])
     return _Cone(free, unit, curved / np.outer(root, root), held, sides, firm, length)
@@ -266,12 +266,12 @@ def _normal(rows: Array) -> tuple[Array, Array]:
 
 def _equal(matrix: Array) -> Array:
     """Return the s (k,) that makes the largest entry of each row of M_ij/sqrt(s_i s_j) 1, or 0."""
-    found = np.ones(len(matrix))
+    scales = np.ones(len(matrix))
     for _ in range(ROUNDS):
-        root = np.sqrt(found)
+        root = np.sqrt(scales)
         largest = (np.abs(matrix) / np.outer(root, root)).max(axis=1, initial=0.0)
-        found = found * np.where(largest == 0.0, 1.0, largest)
-    return np.where(largest == 0.0, 0.0, found)
+        scales = scales * np.where(largest == 0.0, 1.0, largest)
+    return np.where(largest == 0.0, 0.0, scales)
 
 
 def _eigen(curved: Array, rows: Array) -> list[tuple[float, Array]]:
@@ -279,18 +279,18 @@ def _eigen(curved: Array, rows: Array) -> list[tuple[float, Array]]:
     _, sizes, turned = np.linalg.svd(rows)
     across = turned[int((sizes > RANK).sum()) :].T
     values, vectors = np.linalg.eigh(across.T @ curved @ across)
-    found = zip(values, (across @ vectors).T, strict=True)
-    return [(float(value), d) for value, d in found if value < FLAT]
+    pairs = zip(values, (across @ vectors).T, strict=True)
+    return [(float(value), d) for value, d in pairs if value < FLAT]
 
 
 def _sinks(point: Point, cone: _Cone, d: Array) -> bool:
     """Return whether the Lagrangian falls along d, by steps of the own scales or of the box."""
-    own, width = own_scales(point), point.high - point.low
-    wide = np.where(np.isfinite(width), np.maximum(own, BOX * width), own)
+    scales, width = own_scales(point), point.high - point.low
+    wide = np.where(np.isfinite(width), np.maximum(scales, BOX * width), scales)
     step = np.zeros(len(point.y))
     step[cone.free] = cone.unit * d
     across = cone.across(d)
-    return any(_falls(point, cone, step / (np.abs(step) / s).max(), across) for s in (own, wide))
+    return any(_falls(point, cone, step / (np.abs(step) / s).max(), across) for s in (scales, wide))
 
 
 def _falls(point: Point, cone: _Cone, step: Array, across: Array) -> bool:
@@ -340,8 +340,8 @@ def _lagrangian(point: Point, cone: _Cone, y: Array) -> tuple[float, float, Arra
 def _down(point: Point, cone: _Cone, d: Array) -> Doubt:
     """Return along which variables the objective falls, and a point that way."""
     names = [name for (_, name), at in zip(point.problem.columns, cone.free, strict=True) if at]
-    own, step = own_scales(point), np.zeros(len(point.y))
-    share = np.abs(cone.unit * d) / own[cone.free]
+    scales, step = own_scales(point), np.zeros(len(point.y))
+    share = np.abs(cone.unit * d) / scales[cone.free]
     most = [names[k] for k in np.argsort(-share, kind="stable")[:3] if share[k] > 0.3 * share.max()]
     step[cone.free] = DOWN * cone.unit * d / share.max()
     lower = point.shape.to_x(np.clip(point.y + step, point.low, point.high))

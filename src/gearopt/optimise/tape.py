@@ -84,10 +84,10 @@ def trace(problem: Problem) -> Traced:
     start = shared
     for r, block in zip(problem.repeats, blocks[1:], strict=True):
         stop = start + r.count * r.width
-        own = ca.reshape(x[start:stop], r.width, r.count)
+        repeated = ca.reshape(x[start:stop], r.width, r.count)
         data = ca.DM(np.array([np.asarray(v, float) for v in r.data.values()]))
         mapped = block.function.map(f"{r.name}_rows", "serial", r.count, [0, 2], [])
-        f, g, h = mapped(x[:shared], own, p, data)
+        f, g, h = mapped(x[:shared], repeated, p, data)
         for name, value in zip(block.objectives, ca.vertsplit(ca.sum2(f)), strict=True):
             objective[name] = objective[name] + value
         rows_g.append(ca.vec(g))
@@ -126,10 +126,10 @@ def _block(problem: Problem, repeat: Repeat | None) -> Block:
 
     shared = ca.SX.sym("x", sum(v.size for v in problem.variables))
     p = ca.SX.sym("p", len(problem.parameter_values()))
-    own = ca.SX.sym("own", repeat.width if repeat else 0)
+    repeated = ca.SX.sym("own", repeat.width if repeat else 0)
     data = ca.SX.sym("data", len(repeat.data) if repeat else 0)
     text, where = text_of(problem, repeat)
-    scalars = [ca.vertsplit(v) if v.numel() else [] for v in (shared, own, p, data)]
+    scalars = [ca.vertsplit(v) if v.numel() else [] for v in (shared, repeated, p, data)]
     row = dict(zip(repeat.data, scalars[3], strict=True)) if repeat else {}
     try:
         limit = allowed(seconds(problem, repeat))
@@ -145,7 +145,7 @@ def _block(problem: Problem, repeat: Repeat | None) -> Block:
     if names != problem.names(repeat):
         raise SolveError(f"the text of {where} cannot be traced: it returns other names on symbols")
     return Block(
-        ca.Function("block", [shared, own, p, data], [f, g, h]), tuple(terms.minimise), repeat
+        ca.Function("block", [shared, repeated, p, data], [f, g, h]), tuple(terms.minimise), repeat
     )
 
 
@@ -237,8 +237,8 @@ def kinds(problem: Problem) -> Kinds:
     key = _key(problem)
     if key not in problem.memo:
         problem.memo[key] = _kinds(problem, lambda v: Term(MONOMIAL) if v.log else _UNKNOWN)
-    found: Kinds = problem.memo[key]
-    return found
+    term_kinds: Kinds = problem.memo[key]
+    return term_kinds
 
 
 def _key(problem: Problem) -> Any:
@@ -280,24 +280,24 @@ def read(
 
     variable(v): its reading of a component of v; apply: see `walk`.
     """
-    found: tuple[list[Term], list[Term], list[Term]] = ([], [], [])
+    readings: tuple[list[Term], list[Term], list[Term]] = ([], [], [])
     for block in problem.traced().blocks:
         repeat = block.repeat
-        own, data = (repeat.variables, repeat.data.values()) if repeat else ((), ())
+        repeated, data = (repeat.variables, repeat.data.values()) if repeat else ((), ())
         inputs = [
             *(
                 [variable(v) for v in some for _ in range(v.size)]
-                for some in (problem.variables, own)
+                for some in (problem.variables, repeated)
             ),
             [Term(CONSTANT, float(v)) for v in problem.parameter_values()],
             [Term(CONSTANT, np.asarray(v, float)) for v in data],
         ]
         terms = walk(block.function, inputs, lambda value: Term(CONSTANT, value), apply)
         for part, more, times in zip(
-            found, terms, (1, *2 * [repeat.count if repeat else 1]), strict=True
+            readings, terms, (1, *2 * [repeat.count if repeat else 1]), strict=True
         ):
             part += more * times
-    return found
+    return readings
 
 
 def walk(function: Any, inputs: list[list[Any]], constant: Any, apply: Any) -> list[list[Any]]:
@@ -309,7 +309,7 @@ def walk(function: Any, inputs: list[list[Any]], constant: Any, apply: Any) -> l
     import casadi as ca
 
     work: list[Any] = [None] * function.sz_w()
-    found = [[constant(0.0)] * function.size1_out(k) for k in range(function.n_out())]
+    readings = [[constant(0.0)] * function.size1_out(k) for k in range(function.n_out())]
     with np.errstate(all="ignore"):
         for k in range(function.n_instructions()):
             operation = function.instruction_id(k)
@@ -319,10 +319,10 @@ def walk(function: Any, inputs: list[list[Any]], constant: Any, apply: Any) -> l
             elif operation == ca.OP_CONST:
                 work[target[0]] = constant(function.instruction_constant(k))
             elif operation == ca.OP_OUTPUT:
-                found[target[0]][target[1]] = work[source[0]]
+                readings[target[0]][target[1]] = work[source[0]]
             else:
                 work[target[0]] = apply(operation, [work[s] for s in source])
-    return found
+    return readings
 
 
 def _apply(operation: int, terms: list[Term]) -> Term:

@@ -161,10 +161,10 @@ class Repeat:
 def _numbers(value: Any) -> Array | None:
     """Return a value as an array of floats; None where it is no real number or block."""
     try:
-        found = np.asarray(value)
+        array = np.asarray(value)
     except ValueError:  # of unequal lengths
         return None
-    return found.astype(float) if found.dtype.kind in "iuf" else None
+    return array.astype(float) if array.dtype.kind in "iuf" else None
 
 
 def _check_name(what: str, name: Any) -> None:
@@ -181,8 +181,8 @@ def _check_numbers(what: str, item: Any, keys: tuple[str, ...]) -> None:
     for key in keys:
         value = _numbers(getattr(item, key))
         if value is None or np.isnan(value).any():
-            found = getattr(item, key)
-            raise ValueError(f"{what} {item.name}: {key} is {found!r}, no number or block of them")
+            given = getattr(item, key)
+            raise ValueError(f"{what} {item.name}: {key} is {given!r}, no number or block of them")
         if value.ndim > 1 or value.size not in (1, size):
             raise ValueError(
                 f"{what} {item.name}: {key} has the shape {value.shape}; write one number or {size}"
@@ -232,8 +232,8 @@ class Block(tuple[Any, ...]):
     __lt__ = __le__ = __gt__ = __ge__ = _refused("order (<, <=, >, >=)")
 
     def __getitem__(self, at: Any) -> Any:
-        found = tuple.__getitem__(self, at)
-        return Block(found) if type(at) is slice else found
+        part = tuple.__getitem__(self, at)
+        return Block(part) if type(at) is slice else part
 
     def __neg__(self) -> Any:
         """Refuse the sign of a block: TypeError."""
@@ -252,13 +252,13 @@ class Named(SimpleNamespace):
 
 def namespace(declared: tuple[Any, ...], scalars: list[Any]) -> Named:
     """Return scalars by name: one for size 1, a `Block` for more."""
-    found: dict[str, Any] = {}
+    named: dict[str, Any] = {}
     start = 0
     for item in declared:
         part = scalars[start : start + item.size]
-        found[item.name] = part[0] if item.size == 1 else Block(part)
+        named[item.name] = part[0] if item.size == 1 else Block(part)
         start += item.size
-    return Named(**found)
+    return Named(**named)
 
 
 def minimised(terms: Any) -> Any:
@@ -271,13 +271,13 @@ def minimised(terms: Any) -> Any:
 
 def flat(block: Mapping[str, Any]) -> list[tuple[str, Any]]:
     """Return [(name or name[k], scalar)] of a block of terms; k counts from 1, as stages do."""
-    found: list[tuple[str, Any]] = []
+    scalars: list[tuple[str, Any]] = []
     for name, value in block.items():
         if isinstance(value, tuple | list):
-            found += [(f"{name}[{k}]", v) for k, v in enumerate(value, 1)]
+            scalars += [(f"{name}[{k}]", v) for k, v in enumerate(value, 1)]
         else:
-            found.append((name, value))
-    return found
+            scalars.append((name, value))
+    return scalars
 
 
 def inequalities(terms: Terms) -> list[tuple[str, Any, str]]:
@@ -297,20 +297,20 @@ def checked(terms: Any, where: str, numbers: bool = False) -> Terms:
         raise SolveError(
             f"the text of {where} returns {type(terms).__name__}, not Terms(...){hint}"
         )
-    found: dict[str, dict[str, Any]] = {}
+    parts: dict[str, dict[str, Any]] = {}
     for part in SECTIONS:
         block = getattr(terms, part)
         if not isinstance(block, Mapping):
             raise SolveError(f"{where}: {part} is not a dict of names and terms")
-        found[part] = {name: _block(value) for name, value in block.items()}
-        for name, value in flat(found[part]):
+        parts[part] = {name: _block(value) for name, value in block.items()}
+        for name, value in flat(parts[part]):
             if not isinstance(name, str):
                 raise SolveError(f"{where}: {part} has the key {name!r}; write a name in quotes")
             if wrong := _wrong(value, numbers):
                 raise SolveError(f"{where}: {part} {name} is {wrong}")
-    if blocks := [name for name, value in found["minimise"].items() if isinstance(value, tuple)]:
+    if blocks := [name for name, value in parts["minimise"].items() if isinstance(value, tuple)]:
         raise SolveError(f"{where}: the objective {blocks[0]} is a block; write one scalar")
-    return Terms(**found)
+    return Terms(**parts)
 
 
 def _block(value: Any) -> Any:

@@ -70,8 +70,8 @@ def stage_table(
     heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
     rows, hidden = [], []
     for key, (_, unit) in STAGE_ROWS.items():
-        own = _own_teeth(key, stages) if key in OF_TEETH else all(key in s for s in stages)
-        if not (own or key in chosen):
+        every_stage = _own_teeth(key, stages) if key in OF_TEETH else all(key in s for s in stages)
+        if not (every_stage or key in chosen):
             continue
         label = stage_label(key, measures)
         if key == MODULE:

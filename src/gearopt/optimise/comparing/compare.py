@@ -44,11 +44,11 @@ def enter(method: str, model: Callable[[str], Model]) -> Entry:
     except SolveError as refusal:
         return Entry(method, refused=str(refusal))
     problem = replace(posed.problem)
-    run = method_of(problem, method)
+    solver = method_of(problem, method)
     return warmed(
         Entry(method, posed, problem),
-        sys.modules.get(getattr(run, "__module__", "")),
-        lambda: run_method(run, problem, method, WARM, 0, None),
+        sys.modules.get(getattr(solver, "__module__", "")),
+        lambda: run_method(solver, problem, method, WARM, 0, None),
     )
 
 
@@ -68,8 +68,8 @@ def attempt(entry: Entry, seed: int, budget: Budget, follow: Callable[[Event], b
     unit = "" if entry.model is None else entry.model.unit
     watch = of_problem(in_part(followed, unit), problem)
     try:
-        run = method_of(problem, method)
-        outcome = run_method(run, problem, method, budget, seed, watch)
+        solver = method_of(problem, method)
+        outcome = run_method(solver, problem, method, budget, seed, watch)
         seconds = clock.seconds
         verdict = judge(problem, method, outcome, GAP)
     except GearoptError as broken:
@@ -77,7 +77,7 @@ def attempt(entry: Entry, seed: int, budget: Budget, follow: Callable[[Event], b
         outcome, verdict = Outcome(None), Verdict("failed", message=str(broken))
     if stopped:
         return None
-    found = [e for e in events if e["best"] is not None]
+    improvements = [e for e in events if e["best"] is not None]
     x = None if verdict.objective is None else outcome.x
     return clipped(
         Run(
@@ -89,7 +89,7 @@ def attempt(entry: Entry, seed: int, budget: Budget, follow: Callable[[Event], b
             outcome.evaluations,
             seconds,
             verdict.message,
-            steps=tuple((e["seconds"], e["evaluations"], e["best"]) for e in found),
+            steps=tuple((e["seconds"], e["evaluations"], e["best"]) for e in improvements),
             scale=0.0 if x is None else _scale(problem, x, verdict),
         )
     )
@@ -170,8 +170,8 @@ def _bound(
         return watch is None or watch(Progress(0, 0, method, 0, 0.0, event)) is not False
 
     follow = of_problem(in_part(continues, posed.unit), problem)
-    run = method_of(problem, method)
-    outcome = run_method(run, problem, method, Budget(BOUND_SECONDS), 0, follow)
+    solver = method_of(problem, method)
+    outcome = run_method(solver, problem, method, Budget(BOUND_SECONDS), 0, follow)
     bound = judge(problem, method, outcome, GAP).bound
     return None if bound is None else (problem.name, method, bound)
 
@@ -192,13 +192,13 @@ def _group(
     bound: tuple[str, str, float] | None,
 ) -> Group:
     model = next(e.model for e in members if e.model is not None)
-    own = [
+    runs_by_method = [
         (e.method, run) for e in members for kind in KINDS for run in runs.get((e.method, kind), [])
     ]
-    bounds = [(run.bound, method) for method, run in own if run.bound is not None]
+    bounds = [(run.bound, method) for method, run in runs_by_method if run.bound is not None]
     if bound is not None and bound[0] == name:
         bounds.append((bound[2], bound[1]))
-    values = [(run.objective, run.scale) for _, run in own if run.objective is not None]
+    values = [(run.objective, run.scale) for _, run in runs_by_method if run.objective is not None]
     best, scale = min(values, default=(None, 0.0))
     highest, source = max(bounds, default=(None, ""), key=lambda b: b[0])
     reference = best if highest is None else highest

@@ -185,9 +185,9 @@ class Comparison:
             raise ValueError("is not a comparison: it has no key `comparison`")
         if data["comparison"] != FORMAT:
             raise ValueError(f"comparison format {data['comparison']!r}: this reads {FORMAT}")
-        found: Comparison = typed(cls, data)
-        _check(found)
-        return found
+        comparison: Comparison = typed(cls, data)
+        _check(comparison)
+        return comparison
 
     @classmethod
     def from_json(cls, text: str) -> "Comparison":
@@ -245,8 +245,8 @@ def _judged(run: Run, reference: float | None, scale: float) -> Run:
 
 def quantile(values: Sequence[float], share: float) -> float | None:
     """Return the value that `share` of the values lie below, the worse of two; None for inf."""
-    found = sorted(values)[min(int(share * len(values)), len(values) - 1)]
-    return found if math.isfinite(found) else None
+    value = sorted(values)[min(int(share * len(values)), len(values) - 1)]
+    return value if math.isfinite(value) else None
 
 
 def _summary(runs: Sequence[Run]) -> Summary:

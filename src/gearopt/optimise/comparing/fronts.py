@@ -119,14 +119,14 @@ def _enter(method: str, model: Callable[[str], Model], goal: Goal) -> Entry:
     if method not in METHODS:
         raise SolveError(f"no method {method!r} for a front; methods: {', '.join(METHODS)}")
     try:
-        own = model(method)
+        posed_model = model(method)
     except SolveError as refusal:
         return Entry(method, refused=str(refusal))
-    problem = replace(own.problem)
-    run = {EPSILON: epsilon.front, **SAMPLERS, **problem.methods}.get(method)
+    problem = replace(posed_model.problem)
+    solver = {EPSILON: epsilon.front, **SAMPLERS, **problem.methods}.get(method)
     return warmed(
-        Entry(method, own, problem),
-        sys.modules.get(getattr(run, "__module__", "")),
+        Entry(method, posed_model, problem),
+        sys.modules.get(getattr(solver, "__module__", "")),
         lambda: goal.front(problem, method, budget=WARM),
     )
 
@@ -144,20 +144,22 @@ def _attempt(
         return not ended
 
     try:
-        made = found(
+        front = found(
             entry.problem, goal.names, goal.most, entry.method, None, budget, seed, continues
         )
     except GearoptError as broken:
-        made = Found((), finished=False, message=str(broken))
+        front = Found((), finished=False, message=str(broken))
     seconds = clock.seconds
     if ended:
         return None
-    one = entry.problem
-    if isinstance(one, Conic):
-        one = posed(one, goal.names[:1], {})
-    worst = _violation(one, made)
-    run = Run(seed, status(made), None, None, worst, made.evaluations, seconds, made.message)
-    return Trial(run, made.values, made.steps)
+    problem = entry.problem
+    if isinstance(problem, Conic):
+        problem = posed(problem, goal.names[:1], {})
+    worst = _violation(problem, front)
+    attempted = Run(
+        seed, status(front), None, None, worst, front.evaluations, seconds, front.message
+    )
+    return Trial(attempted, front.values, front.steps)
 
 
 def _violation(problem: Problem | Conic, made: Found) -> float | None:
@@ -199,9 +201,13 @@ def _group(
     runs: Runs[Trial],
 ) -> Group:
     """Return the methods of one model with their runs, judged by its reference front."""
-    own = [t for e in members for kind in KINDS for t in runs.get((e.method, kind), [])]
-    method, made = standard or ("", Found(()))
-    every = [made.values] if made.complete else [made.values, *(t.values for t in own)]
+    trials = [t for e in members for kind in KINDS for t in runs.get((e.method, kind), [])]
+    method, reference_front = standard or ("", Found(()))
+    every = (
+        [reference_front.values]
+        if reference_front.complete
+        else [reference_front.values, *(t.values for t in trials)]
+    )
     values = np.vstack([v for v in every if len(v)] or [np.empty((0, count))])
     values = values[unbeaten(values)]
     corner = reference(values) if len(values) else np.empty(0)
@@ -215,8 +221,10 @@ def _group(
             (s.seconds, s.evaluations, _missing(s.values, corner, whole))
             for s in _thin(trial.steps)
         )
-        run = replace(trial.run, objective=missing, steps=steps, distance=igd(trial.values, values))
-        return clipped(run)
+        result = replace(
+            trial.run, objective=missing, steps=steps, distance=igd(trial.values, values)
+        )
+        return clipped(result)
 
     def row(entry: Entry) -> Row:
         by_count, by_time = (
@@ -238,7 +246,7 @@ def _group(
     best = min(
         (r.objective for s in samples for r in s.runs if r.objective is not None), default=None
     )
-    proven = status(made) in ("complete", "proven")
+    proven = status(reference_front) in ("complete", "proven")
     return Group(
         model.problem.name,
         model.words,
@@ -249,7 +257,7 @@ def _group(
         method if proven else "",
         best,
         rows,
-        front=_words(method, made, len(values)),
+        front=_words(method, reference_front, len(values)),
     )
 
 

@@ -47,12 +47,12 @@ class Entry:
 
 def entered(methods: Sequence[str], enter: Callable[[str], Entry]) -> list[Entry]:
     """Return the entry of every method; SolveError where none takes the problem."""
-    found = [enter(method) for method in dict.fromkeys(methods)]
-    if not any(not e.refused for e in found):
+    entries = [enter(method) for method in dict.fromkeys(methods)]
+    if not any(not e.refused for e in entries):
         raise SolveError(
-            "; ".join(dict.fromkeys(e.refused for e in found)) or "no method was named"
+            "; ".join(dict.fromkeys(e.refused for e in entries)) or "no method was named"
         )
-    return found
+    return entries
 
 
 def warmed(entry: Entry, module: Any, run: Callable[[], Outcome | Found]) -> Entry:
@@ -138,11 +138,11 @@ def work(
 
         before = runs.get((job.entry.method, KINDS[0]), [])
         budget = _budget(job, plan, before)
-        run = make(job.entry, job.seed, budget, follow) if follow(None) else None
-        if run is None:
+        attempt = make(job.entry, job.seed, budget, follow) if follow(None) else None
+        if attempt is None:
             return runs, f"stopped after {done} of {len(jobs)} runs; the others were not made"
-        runs.setdefault((job.entry.method, job.kind), []).append(run)
-        expected[job.entry.method, job.kind] = run.seconds
+        runs.setdefault((job.entry.method, job.kind), []).append(attempt)
+        expected[job.entry.method, job.kind] = attempt.seconds
     return runs, ""
 
 
@@ -170,7 +170,7 @@ def _budget(job: Job, plan: Plan, before: Sequence[Made]) -> Budget:
 def by_model(entries: Sequence[Entry]) -> dict[str, list[Entry]]:
     """Return the entries of every model by its name; one without a model is in the first."""
     names = list(dict.fromkeys(e.model.problem.name for e in entries if e.model is not None))
-    found: dict[str, list[Entry]] = {name: [] for name in names}
+    entries_by_model: dict[str, list[Entry]] = {name: [] for name in names}
     for e in entries:
-        found[names[0] if e.model is None else e.model.problem.name].append(e)
-    return found
+        entries_by_model[names[0] if e.model is None else e.model.problem.name].append(e)
+    return entries_by_model

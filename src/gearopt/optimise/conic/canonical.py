@@ -104,8 +104,8 @@ def canonical(problem: Conic) -> Canonical:
     kept = problem.memo.get("canonical")
     if kept is None or kept[0] != key:
         kept = problem.memo["canonical"] = (key, _canonical(problem))
-    found: Canonical = kept[1]
-    return found
+    data: Canonical = kept[1]
+    return data
 
 
 def shifted(problem: Conic, data: Canonical, margin: float) -> Canonical:
@@ -195,9 +195,9 @@ def _product(A: Any, b: Array, start: int) -> bool:
     kept, before = 0, 0
     for key in first.keys() | second.keys():
         u, v = float(first.get(key, 0.0)), float(second.get(key, 0.0))
-        for one, other in ((u, v), (u, -v)):
-            total = one + other
-            if total - one != other or total - other != one:
+        for augend, addend in ((u, v), (u, -v)):
+            total = augend + addend
+            if total - augend != addend or total - addend != augend:
                 return False
             kept += total != 0.0
         before += (u != 0.0) + (v != 0.0)
@@ -217,7 +217,7 @@ def _turn(count: int, blocks: list[Block]) -> Any:
 
 def _allowed(problem: Conic, user: list[int]) -> dict[int, Array]:
     """Return values of the discrete columns within their bounds; SolveError: too many."""
-    found = {}
+    allowed = {}
     lower, upper, _ = problem.bounds()
     for (variable, name), column, low, high in zip(
         problem.columns, user, lower, upper, strict=True
@@ -232,5 +232,5 @@ def _allowed(problem: Conic, user: list[int]) -> dict[int, Array]:
             continue
         if not len(values):
             raise SolveError(f"{problem.name}: no allowed value of {name} lies in its bounds")
-        found[column] = values
-    return found
+        allowed[column] = values
+    return allowed

@@ -68,8 +68,8 @@ def certify(problem: Conic, outcome: Outcome, gap: float) -> Verdict:
     unit = verdict.certificate.get("scale") or abs(value) or 1.0
     residuals = {"stationarity": charge / unit, "complementarity": slack / unit}
     prices = _shadow_prices(problem, outcome.leaves, batch.G[0] >= 1.0 - ACTIVE_WITHIN)
-    found = dict(verdict.certificate) | residuals
-    return replace(verdict, certificate=found, multipliers=prices)
+    stated = dict(verdict.certificate) | residuals
+    return replace(verdict, certificate=stated, multipliers=prices)
 
 
 def _shadow_prices(problem: Conic, leaves: tuple[Leaf, ...], binding: Any) -> dict[str, float]:
@@ -83,9 +83,9 @@ def _shadow_prices(problem: Conic, leaves: tuple[Leaf, ...], binding: Any) -> di
         return {}
     stated = data.label >= 0
     count = len(rows.inequalities)
-    found = np.zeros(count + len(rows.equalities))
-    found[data.label[stated]] = -leaf.y[stated]
-    return by_name(rows, np.where(binding, found[:count], 0.0), found[count:])
+    prices = np.zeros(count + len(rows.equalities))
+    prices[data.label[stated]] = -leaf.y[stated]
+    return by_name(rows, np.where(binding, prices[:count], 0.0), prices[count:])
 
 
 def _bound(problem: Conic, outcome: Outcome, value: float) -> tuple[float, float, float, str]:
@@ -151,10 +151,10 @@ def _empty(data: Canonical, leaf: Leaf) -> bool:
 
 def _weights(data: Canonical, leaf: Leaf) -> dict[int, float]:
     """Return multipliers of the user's rows by number."""
-    found = dict.fromkeys((int(k) for k in data.label if k >= 0), 0.0)
+    weights = dict.fromkeys((int(k) for k in data.label if k >= 0), 0.0)
     for k in np.flatnonzero(data.label >= 0):
-        found[int(data.label[k])] += 0.0 if leaf.y is None else abs(float(leaf.y[k]))
-    return found
+        weights[int(data.label[k])] += 0.0 if leaf.y is None else abs(float(leaf.y[k]))
+    return weights
 
 
 def _only(data: Canonical, leaf: Leaf, numbers: set[int]) -> tuple[Canonical, Leaf]:
@@ -213,5 +213,5 @@ def covers(data: Canonical, leaves: tuple[Leaf, ...]) -> bool:
 
 def _positions(data: Canonical, columns: list[int], ends: Array, side: Any) -> Any:
     """Return positions of ends (leaves, n) among the allowed values of discrete columns."""
-    found = [np.searchsorted(data.allowed[k], ends[:, k], side) for k in columns]
-    return np.stack(found, axis=1) if found else np.zeros((len(ends), 0), int)
+    places = [np.searchsorted(data.allowed[k], ends[:, k], side) for k in columns]
+    return np.stack(places, axis=1) if places else np.zeros((len(ends), 0), int)

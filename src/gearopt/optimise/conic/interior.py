@@ -80,10 +80,10 @@ def equal(data: Canonical) -> Equilibration:
     )
     entries = [value, data.b[stated], data.c[priced], data.P.diagonal()[bent]]
     right = -np.log2(np.abs(np.concatenate(entries)))
-    found = lsqr(left, right, damp=1e-4, atol=1e-6, btol=1e-6, iter_lim=2000)[0]
-    rows = groups @ _whole(data, found[n : n + count])
+    exponents = lsqr(left, right, damp=1e-4, atol=1e-6, btol=1e-6, iter_lim=2000)[0]
+    rows = groups @ _whole(data, exponents[n : n + count])
     return Equilibration(
-        np.exp2(np.rint(found[:n])), np.exp2(rows), float(np.exp2(np.rint(found[-1])))
+        np.exp2(np.rint(exponents[:n])), np.exp2(rows), float(np.exp2(np.rint(exponents[-1])))
     )
 
 
@@ -125,7 +125,7 @@ def scaled(data: Canonical, scale: Equilibration) -> Scaled:
     A, b = plain @ (E @ data.A @ D), plain @ (scale.row * data.b)
     count = len(column)
     back = sp.vstack([plain[:front], sp.csr_array((count, m)), plain[front:]]).T
-    made = Scaled(
+    unbounded = Scaled(
         sp.csc_array(scale.cost * (D @ data.P @ D)),
         scale.cost * scale.column * data.c,
         sp.vstack([A[:front], _picks(column, n, sign * factor), A[front:]], format="csc"),
@@ -137,7 +137,7 @@ def scaled(data: Canonical, scale: Equilibration) -> Scaled:
         (column, sign, factor),
         scale,
     )
-    return made.within(data.lower, data.upper)
+    return unbounded.within(data.lower, data.upper)
 
 
 def _picks(columns: Any, width: int, values: Array | None = None) -> Any:
@@ -241,11 +241,11 @@ def interior(scaled: Scaled, seconds: float | None = None) -> Point:
     P, A, steps = sp.csc_matrix(sp.triu(scaled.P)), sp.csc_matrix(scaled.A), 0
     for tolerance in TOLERANCES:
         settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = tolerance
-        found = clarabel.DefaultSolver(P, scaled.q, A, scaled.b, cones, settings).solve()
-        words, steps = str(found.status), steps + found.iterations
+        solution = clarabel.DefaultSolver(P, scaled.q, A, scaled.b, cones, settings).solve()
+        words, steps = str(solution.status), steps + solution.iterations
         if "Solved" in words or "Infeasible" in words or "Time" in words:
             break
-    x, s, y = (np.array(v, float) for v in (found.x, found.s, found.z))
+    x, s, y = (np.array(v, float) for v in (solution.x, solution.s, solution.z))
     return Point(x, s, y, words, steps, "PrimalInf" in words, "Solved" in words)
 
 

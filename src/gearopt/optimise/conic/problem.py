@@ -131,14 +131,14 @@ class Conic:
         signs = tuple(_sign(v) for v in values)
         if ("model", signs) not in self.memo:
             self.memo["model", signs] = _build(self, signs)
-        found: Model = self.memo["model", signs]
-        for parameter, inverse, value in zip(found.parameters, found.inverses, values, strict=True):
+        model: Model = self.memo["model", signs]
+        for parameter, inverse, value in zip(model.parameters, model.inverses, values, strict=True):
             parameter.value = value if parameter.ndim else float(value[0])
             if (value != 0).all():
                 inverse.value = 1.0 / parameter.value
-            elif inverse.id in found.divided:
+            elif inverse.id in model.divided:
                 raise SolveError(f"{self.name} divides by a parameter that is zero")
-        return found
+        return model
 
     def text(self, x: Any, p: Any) -> Terms:
         """Terms of the text on cvxpy's expressions, all objectives minimised."""
@@ -148,8 +148,8 @@ class Conic:
     def batch(self, points: Array) -> Batch:
         """Evaluate the user's own expressions at points (N, n) by cvxpy, one after the other."""
         model = self.model()
-        found = [self._at(model, x) for x in np.asarray(points, float)]
-        f, g, h, reports = zip(*found, strict=True)
+        evaluated = [self._at(model, x) for x in np.asarray(points, float)]
+        f, g, h, reports = zip(*evaluated, strict=True)
         report = {name: np.array([r[name] for r in reports]) for name in reports[0]}
         return Batch(np.array(f)[:, None], np.array(g), np.array(h), report)
 
@@ -209,7 +209,7 @@ def _as_rows(terms: Terms, scales: dict[str, Any]) -> Terms:
     import cvxpy as cp
 
     parts: dict[str, dict[str, Any]] = {part: {} for part in ("limits", "defines", "equal")}
-    for part, own in parts.items():
+    for part, section in parts.items():
         for name, value in flat(getattr(terms, part)):
             balance = isinstance(value, cp.constraints.Equality)
             if balance or isinstance(value, cp.constraints.Inequality):
@@ -219,7 +219,7 @@ def _as_rows(terms: Terms, scales: dict[str, Any]) -> Terms:
                     larger = np.max(np.broadcast_arrays(*sides, 0.0), axis=0)
                     scales[name] = np.where((larger > 0.0) & np.isfinite(larger), larger, 1.0)
                 value = 1.0 + cp.multiply(1.0 / scales[name], lesser - greater)
-            (parts["equal"] if balance else own)[name] = value
+            (parts["equal"] if balance else section)[name] = value
     return replace(terms, **parts)
 
 
@@ -234,14 +234,14 @@ def _build(problem: Conic, signs: tuple[str, ...]) -> Model:
     objective = _expression(objective, problem.name, name)
     if objective.size != 1:
         raise SolveError(f"{problem.name}: the objective {name} is not a scalar")
-    found = [
+    rows_of_text = [
         (kind, label, _expression(value, problem.name, label))
         for kind in ("limits", "defines", "equal")
         for label, value in flat(getattr(terms, kind))
     ]
-    for kind, label, expression in (("minimise", name, objective), *found):
+    for kind, label, expression in (("minimise", name, objective), *rows_of_text):
         _refuse(problem.name, kind, label, expression)
-    named = [(kind, n) for kind, label, e in found for n in _names(label, e)]
+    named = [(kind, n) for kind, label, e in rows_of_text for n in _names(label, e)]
     if twice := next((n for n, k in Counter(n for _, n in named).items() if k > 1), None):
         raise SolveError(f"problem {problem.name}: two rows are named {twice!r}")
     rows = Rows(
@@ -251,12 +251,12 @@ def _build(problem: Conic, signs: tuple[str, ...]) -> Model:
     )
     shifts = cp.Parameter(max(1, len(named)), value=np.zeros(max(1, len(named))))
     constraints, start = [], 0
-    for kind, _, expression in found:
+    for kind, _, expression in rows_of_text:
         held = 1.0 - shifts[start : start + expression.size]
         constraints.append(expression == held if kind == "equal" else expression <= held)
         start += expression.size
     report = {n: _expression(v, problem.name, n) for n, v in flat(terms.report)}
-    blocks = tuple((kind, e) for kind, _, e in found)
+    blocks = tuple((kind, e) for kind, _, e in rows_of_text)
     whole = cp.Problem(cp.Minimize(cp.sum(objective)), constraints)
     used = frozenset(one.id for one in whole.parameters())
     return Model(

@@ -147,14 +147,14 @@ def _shared(nodes: list[Node], rows: list[int]) -> list[int]:
 
 def _variables(nodes: list[Node], row: int) -> list[int]:
     """The places of the variables of a row, in order."""
-    found, reached, stack = set[int](), {row}, [row]
+    places, reached, stack = set[int](), {row}, [row]
     while stack:
         word, operands = nodes[stack.pop()]
         if word.startswith(VARIABLE):
-            found.add(int(word[1:]))
+            places.add(int(word[1:]))
         stack += set(operands) - reached
         reached.update(operands)
-    return sorted(found)
+    return sorted(places)
 
 
 def _expression(nodes: list[Node], row: int, named: dict[int, int], own: bool = False) -> list[str]:
@@ -183,22 +183,22 @@ def _forms() -> dict[int, tuple[Any, ...]]:
     """Operations of casadi as .nl's operator and operands: places, numbers, operations."""
     import casadi as ca
 
-    one, two, apart = range(1), range(2), (ca.OP_FABS, (ca.OP_SUB, 0, 1))
+    unary, binary, apart = range(1), range(2), (ca.OP_FABS, (ca.OP_SUB, 0, 1))
     return {
         ca.OP_ASSIGN: ("same",),
-        **{op: (f"o{code}", *two) for op, code in (
+        **{op: (f"o{code}", *binary) for op, code in (
             (ca.OP_ADD, 0), (ca.OP_SUB, 1), (ca.OP_MUL, 2), (ca.OP_DIV, 3), (ca.OP_POW, 5),
             (ca.OP_CONSTPOW, 5), (ca.OP_ATAN2, 48),
         )},
-        **{op: (f"o{code}", *one) for op, code in (
+        **{op: (f"o{code}", *unary) for op, code in (
             (ca.OP_NEG, 16), (ca.OP_FABS, 15), (ca.OP_SQRT, 39), (ca.OP_EXP, 44), (ca.OP_LOG, 43),
             (ca.OP_SIN, 41), (ca.OP_COS, 46), (ca.OP_TAN, 38), (ca.OP_ASIN, 51), (ca.OP_ACOS, 53),
             (ca.OP_ATAN, 49), (ca.OP_SINH, 40), (ca.OP_COSH, 45), (ca.OP_TANH, 37),
             (ca.OP_ASINH, 50), (ca.OP_ACOSH, 52), (ca.OP_ATANH, 47), (ca.OP_FLOOR, 13),
             (ca.OP_CEIL, 14),
         )},
-        ca.OP_FMIN: ("o2", 0.5, (ca.OP_SUB, (ca.OP_ADD, *two), apart)),  # readers lack min, max
-        ca.OP_FMAX: ("o2", 0.5, (ca.OP_ADD, (ca.OP_ADD, *two), apart)),
+        ca.OP_FMIN: ("o2", 0.5, (ca.OP_SUB, (ca.OP_ADD, *binary), apart)),  # readers lack min, max
+        ca.OP_FMAX: ("o2", 0.5, (ca.OP_ADD, (ca.OP_ADD, *binary), apart)),
         ca.OP_SQ: ("o5", 0, 2.0),
         ca.OP_TWICE: ("o2", 2.0, 0),
         ca.OP_INV: ("o3", 1.0, 0),

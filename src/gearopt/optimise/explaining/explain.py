@@ -179,14 +179,16 @@ def _influences(
         sides = slope(value, solved, 1.0 - STEP), slope(value, solved, 1.0 + STEP)
         if clock.over:  # the row may be half done
             return
-        own = float((known.parameters if handle.kind == PARAM else known.columns)[handle.place])
+        relative = float(
+            (known.parameters if handle.kind == PARAM else known.columns)[handle.place]
+        )
         if handle.kind != PARAM and abs(x[handle.place] - handle.value) > BINDS * abs(handle.value):
-            own = 0.0  # the bound does not hold the variable
-        sure = value != 0.0 and math.isfinite(own)
+            relative = 0.0  # the bound does not hold the variable
+        sure = value != 0.0 and math.isfinite(relative)
         yield Influence(
             handle.label,
             f"{handle.value:.10g}",
-            own if sure else None,
+            relative if sure else None,
             sides,
             step,
             price,
@@ -309,12 +311,12 @@ def _around(factor: float, suffices: Callable[[float], bool | None]) -> Bracket:
 
 
 def _with(problem: Problem, values: Array) -> Problem:
-    found, start = {}, 0
+    values_by_name, start = {}, 0
     for q in problem.parameters:
         part = values[start : start + q.size]
-        found[q.name] = float(part[0]) if q.size == 1 else tuple(map(float, part))
+        values_by_name[q.name] = float(part[0]) if q.size == 1 else tuple(map(float, part))
         start += q.size
-    return problem.at(**found)
+    return problem.at(**values_by_name)
 
 
 def _remedy(problem: Problem, repair: Repair, clock: Clock) -> Remedy:

@@ -85,11 +85,11 @@ class Remedies:
     @property
     def told(self) -> dict[str, Any]:
         """The part of it that a report holds."""
-        told = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "drawn"}
-        told["remedies"] = [asdict(remedy) for remedy in self.remedies]
+        report = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "drawn"}
+        report["remedies"] = [asdict(remedy) for remedy in self.remedies]
         if not self.untried:
-            del told["untried"]
-        return told
+            del report["untried"]
+        return report
 
 
 @dataclass(frozen=True)

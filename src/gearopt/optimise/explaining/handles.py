@@ -88,21 +88,21 @@ class Handle:
 
 def handles(problem: Problem) -> tuple[Handle, ...]:
     """Return every number that a repair may move: limits first, then values that are given."""
-    found, governed = _parameters(problem)
-    own: dict[str, list[int]] = {}  # rows of a repeat are one limit
+    every, governed = _parameters(problem)
+    rows_of_limit: dict[str, list[int]] = {}  # rows of a repeat are one limit
     for k, row in enumerate(problem.rows.inequalities):
         if row.kind == "limits" and k not in governed:
-            own.setdefault(_limit(problem, row.name), []).append(k)
-    for name, places in own.items():
+            rows_of_limit.setdefault(_limit(problem, row.name), []).append(k)
+    for name, places in rows_of_limit.items():
         rows = tuple(problem.rows.inequalities[k].name for k in places)
         limit = Handle(name, ROW, places[0], 1.0, 1, rows=rows)
         number = problem.memo.get(("numbers", None), {}).get(name)
         if number is not None and not number.parameter and (number.value or number.scale):
             moves = number.value, number.sign
             limit = replace(limit, value=moves[0], direction=moves[1], shift=number.scale)
-        found.append(limit)
-    found += _bounds(problem)
-    return tuple(sorted(found, key=lambda h: h.given))
+        every.append(limit)
+    every += _bounds(problem)
+    return tuple(sorted(every, key=lambda h: h.given))
 
 
 def _limit(problem: Problem, row: str) -> str:
@@ -117,13 +117,13 @@ def _parameters(problem: Problem) -> tuple[list[Handle], set[int]]:
     rows = problem.rows.inequalities
     roles = [each_word(q.role, q.size) for q in problem.parameters]
     movers = np.array([role not in DATA for own in roles for role in own], bool)
-    found: list[Handle] = []
+    handles_found: list[Handle] = []
     governed: set[int] = set()
     start = 0
-    for parameter, own in zip(problem.parameters, roles, strict=True):
+    for parameter, roles_of in zip(problem.parameters, roles, strict=True):
         values = spread(parameter.value, parameter.size)
         keys = each_word(parameter.key, parameter.size)
-        for k, (role, key, value) in enumerate(zip(own, keys, values, strict=True)):
+        for k, (role, key, value) in enumerate(zip(roles_of, keys, values, strict=True)):
             place = start + k
             touched = np.flatnonzero(acts[:, place])
             ways = {int(s) for s in signs[touched, place]}
@@ -137,12 +137,12 @@ def _parameters(problem: Problem) -> tuple[list[Handle], set[int]]:
             name = names[0] if alone else label
             sign = -ways.pop()
             unit, given = parameter.unit, role == "given"
-            found.append(
+            handles_found.append(
                 Handle(name, PARAM, place, value, sign, unit, key, names, given, parameter=label)
             )
             governed |= set(touched.tolist())
         start += parameter.size
-    return found, governed
+    return handles_found, governed
 
 
 def numbered(problem: Problem) -> Problem:
@@ -250,7 +250,7 @@ def _bounds(problem: Problem) -> list[Handle]:
     x, _, outputs = _symbols(problem)
     used = ca.which_depends(ca.vertcat(*outputs), x, 1, False)
     shared = sum(v.size for v in problem.variables)  # bounds within a repeat stay as they are
-    found = []
+    bounds = []
     for k, (variable, name) in enumerate(problem.columns):
         given = lower[k] == upper[k]
         if not used[k] or (variable.search and not given) or k >= shared:
@@ -258,12 +258,12 @@ def _bounds(problem: Problem) -> list[Handle]:
         for kind, value, sign in ((LOWER, lower[k], -1), (UPPER, upper[k], 1)):
             if math.isfinite(value):
                 word = name if given else f"{name} {kind.split()[0]}"
-                own = (f"{name} {kind}",)
+                label = (f"{name} {kind}",)
                 key = _end(variable.key, kind, given)
                 shift = scale(value) if value <= 0.0 else 0.0
-                bound = Handle(word, kind, k, float(value), sign, variable.unit, key, own, given)
-                found.append(replace(bound, shift=shift))
-    return found
+                bound = Handle(word, kind, k, float(value), sign, variable.unit, key, label, given)
+                bounds.append(replace(bound, shift=shift))
+    return bounds
 
 
 def _end(key: str | tuple[str, str], kind: str, given: bool) -> str:

@@ -57,10 +57,10 @@ def least(problem: Problem, movable: Sequence[Handle], clock: Clock) -> Repair |
 
     None where no factors within reach suffice, or the budget ended.
     """
-    found = least_factors(problem, [[h] for h in movable], clock)
-    if found is None:
+    solution = least_factors(problem, [[h] for h in movable], clock)
+    if solution is None:
         return None
-    factors, value, bound = found
+    factors, value, bound = solution
     moves = tuple(
         (h, float(f)) for h, f in zip(movable, factors, strict=True) if f > 1.0 + PRODUCT_TIE
     )
@@ -76,10 +76,10 @@ def least_factors(
     where no factors within reach suffice, or the budget ended.
     """
     form = elastic(problem, groups)
-    found = solve_within(clock, form, "ipopt")
-    if found.value is None or found.status not in CERTAIN:
+    result = solve_within(clock, form, "ipopt")
+    if result.value is None or result.status not in CERTAIN:
         return None
-    factors = np.atleast_1d(found.design["relaxation"])
+    factors = np.atleast_1d(result.design["relaxation"])
     reach = np.array([min(h.reach for h in group) for group in groups])
     allowed = np.where(factors > 1.0 + PRODUCT_TIE, reach, 1.0)
     for k in np.argsort(factors, kind="stable"):
@@ -91,11 +91,11 @@ def least_factors(
         if (
             other.status in CERTAIN
             and other.value is not None
-            and other.value <= found.value * (1.0 + PRODUCT_TIE)
+            and other.value <= result.value * (1.0 + PRODUCT_TIE)
         ):
             allowed, factors = fewer, np.atleast_1d(other.design["relaxation"])
     firsts = [group[0] for group in groups]
-    return _whole(form, firsts, factors, allowed, clock), found.value, found.bound
+    return _whole(form, firsts, factors, allowed, clock), result.value, result.bound
 
 
 def _whole(
@@ -109,8 +109,8 @@ def _whole(
     low, high = np.ones(len(factors)), allowed.copy()
 
     def follow() -> Array | None:
-        found = solve_within(clock, form.within("relaxation", tuple(low), tuple(high)), "ipopt")
-        return None if found.value is None else np.atleast_1d(found.design["relaxation"])
+        result = solve_within(clock, form.within("relaxation", tuple(low), tuple(high)), "ipopt")
+        return None if result.value is None else np.atleast_1d(result.design["relaxation"])
 
     whole = [k for k, h in enumerate(movable) if h.whole and factors[k] > 1.0 + PRODUCT_TIE]
     for k in whole:
@@ -132,11 +132,11 @@ def _whole(
 
 def even(problem: Problem, family: Sequence[Handle], clock: Clock) -> Repair | None:
     """Return the repair of one common factor for a family of limits; None: it cannot suffice."""
-    found = solve_within(clock, elastic(problem, [family]), "ipopt")
-    if found.value is None or found.status not in CERTAIN:
+    result = solve_within(clock, elastic(problem, [family]), "ipopt")
+    if result.value is None or result.status not in CERTAIN:
         return None
-    moves = tuple((h, found.value) for h in family)
-    return Repair("even", found.value, found.bound, moves)
+    moves = tuple((h, result.value) for h in family)
+    return Repair("even", result.value, result.bound, moves)
 
 
 def impossible(
@@ -153,7 +153,7 @@ def impossible(
     Limits are tried first; values that are given (a duty, a fixed size) move only where relaxing
     limits does not help. Even repairs of given values are listed beside, as ways to ask for less.
     """
-    found: list[Repair] = []
+    repairs: list[Repair] = []
     for allowed in ([h for h in movable if not h.given], list(movable)):
         best = least(problem, allowed, clock) if allowed else None
         if best is not None:
@@ -164,24 +164,24 @@ def impossible(
         return (), []
     given = [h for h in allowed if h.given]
     blamed = conflict(problem, [*limits, *given], clock)
-    found.append(best)
+    repairs.append(best)
     for family in (*families(movable).values(), *together):
         if clock.over:
             break
         alike = even(problem, family, clock)
         alone = alike is not None and len(family) == 1 and best.moves == alike.moves
         if alike is not None and not alone:
-            found.append(alike)
-    return blamed, found
+            repairs.append(alike)
+    return blamed, repairs
 
 
 def families(movable: Sequence[Handle]) -> dict[str, list[Handle]]:
     """Return handles by family, in their order; values that are given apart for up and down."""
-    found: dict[str, list[Handle]] = {}
+    by_family: dict[str, list[Handle]] = {}
     for handle in movable:
         way = f" {handle.direction:+d}" if handle.given else ""
-        found.setdefault(f"{handle.family}{way}", []).append(handle)
-    return found
+        by_family.setdefault(f"{handle.family}{way}", []).append(handle)
+    return by_family
 
 
 def conflict(problem: Problem, movable: Sequence[Handle], clock: Clock) -> tuple[Handle, ...]:
@@ -308,9 +308,12 @@ class _Relaxed:
         self, factors: Mapping[_Place, Any], terms: Terms, prefix: str = ""
     ) -> dict[str, Any]:
         """Return all inequality rows, those with a factor of their own divided by it."""
-        own = {h.name: factors[place] for place, h in self.handles.items() if h.kind == ROW}
+        factors_of_rows = {
+            h.name: factors[place] for place, h in self.handles.items() if h.kind == ROW
+        }
         return {
-            n: v / own[prefix + n] if prefix + n in own else v for n, v, _ in inequalities(terms)
+            n: v / factors_of_rows[prefix + n] if prefix + n in factors_of_rows else v
+            for n, v, _ in inequalities(terms)
         }
 
 
@@ -318,7 +321,7 @@ def _bound_rows(problem: Problem, factors: dict[tuple[str, int], Any], x: Any) -
     """Return bounds that may move, as rows <= 1."""
     lower, upper, _ = problem.bounds()
     flat_x = [s for v in problem.variables for s in each(getattr(x, v.name))]
-    found = {}
+    rows = {}
     for (kind, k), factor in factors.items():
         if kind not in (LOWER, UPPER):
             continue
@@ -326,11 +329,11 @@ def _bound_rows(problem: Problem, factors: dict[tuple[str, int], Any], x: Any) -
         here = flat_x[k]
         name = f"{problem.columns[k][1]} {kind}"
         if value > 0:
-            found[name] = value / (here * factor) if kind == LOWER else here / (value * factor)
+            rows[name] = value / (here * factor) if kind == LOWER else here / (value * factor)
         else:
             excess = value - here if kind == LOWER else here - value
-            found[name] = (1.0 + excess / scale(value)) / factor
-    return found
+            rows[name] = (1.0 + excess / scale(value)) / factor
+    return rows
 
 
 def _wider(problem: Problem, movable: Sequence[tuple[str, int]]) -> tuple[Var, ...]:
@@ -343,11 +346,11 @@ def _wider(problem: Problem, movable: Sequence[tuple[str, int]]) -> tuple[Var, .
         if kind == UPPER:
             value = upper[k]
             upper[k] = value * REACH if value > 0 else value + REACH * scale(value)
-    found = []
+    variables = []
     start = 0
     for v in problem.variables:
         part = slice(start, start + v.size)
         ends = (tuple(map(float, a[part])) for a in (lower, upper))
-        found.append(replace(v, lower=next(ends), upper=next(ends)))
+        variables.append(replace(v, lower=next(ends), upper=next(ends)))
         start += v.size
-    return tuple(found)
+    return tuple(variables)

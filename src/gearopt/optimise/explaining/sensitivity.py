@@ -56,17 +56,17 @@ class Sensitivities:
 
     def _change(self, x: Array, before: Problem, after: Problem) -> float | None:
         """Return the change of the Lagrangian at x between two problems; None: other rows."""
-        one, other = before.batch(x[None]), after.batch(x[None])
-        if one.G.shape != other.G.shape or one.H.shape != other.H.shape:
+        first, second = before.batch(x[None]), after.batch(x[None])
+        if first.G.shape != second.G.shape or first.H.shape != second.H.shape:
             return None
-        value, new = float(one.F[0, 0]), float(other.F[0, 0])
+        value, new = float(first.F[0, 0]), float(second.F[0, 0])
         if min(value, new) > 0.0:
             change = float(np.log(new / value))
         else:
             change = (new - value) / abs(value) if value else np.nan
         priced = self.multipliers > 0.0
-        change += float(self.multipliers[priced] @ (other.G - one.G)[0, priced])
-        change += float(self.equalities @ (other.H - one.H)[0])
+        change += float(self.multipliers[priced] @ (second.G - first.G)[0, priced])
+        change += float(self.equalities @ (second.H - first.H)[0])
         return change + float(self.columns @ _moved(before, after, x))
 
     def stationary(self, problem: Problem, x: Array) -> bool:
@@ -85,11 +85,11 @@ def _held(problem: Problem, x: Array, side: int) -> Any:
 
 def _moved(before: Problem, after: Problem, x: Array) -> Array:
     """Return relative moves (n,) of the bounds that hold x, from one problem to another near it."""
-    found = np.zeros(len(x))
+    moves = np.zeros(len(x))
     for side in (0, 1):
         held = (_held(before, x, side) | _held(after, x, side)) & (x != 0.0)
-        found[held] = (after.bounds()[side] - before.bounds()[side])[held] / x[held]
-    return found
+        moves[held] = (after.bounds()[side] - before.bounds()[side])[held] / x[held]
+    return moves
 
 
 def of_fixed(problem: Problem) -> Sensitivities:

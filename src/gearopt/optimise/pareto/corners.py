@@ -19,8 +19,8 @@ def corners(values: Array, open_: Array) -> Array:
 
     Without a point one corner is open, of the largest values that are allowed.
     """
-    for one in values[np.argsort(values[:, 0], kind="stable")] if len(values) else ():
-        open_ = _without(open_, one)
+    for point in values[np.argsort(values[:, 0], kind="stable")] if len(values) else ():
+        open_ = _without(open_, point)
     return open_
 
 
@@ -30,12 +30,12 @@ def _without(open_: Array, one: Array) -> Array:
     if not cut.any():
         return open_
     left, split = open_[~cut], open_[cut]
-    made = []
+    opened = []
     for k in range(len(one)):
         moved = split.copy()
         moved[:, k] = one[k]
-        made.append(moved[_largest(moved, left)])
-    return np.vstack([left, *made])
+        opened.append(moved[_largest(moved, left)])
+    return np.vstack([left, *opened])
 
 
 def _largest(moved: Array, left: Array) -> NDArray[np.int64]:
@@ -57,7 +57,7 @@ def weighed(points: Array, weights: Array) -> Array:
 
 def useful(bounds: Array, open_: Array) -> NDArray[np.bool_]:
     """Return which lower bounds (n, m) lie below one of the corners (L, m); a tie does."""
-    found = np.zeros(len(bounds), dtype=bool)
+    below = np.zeros(len(bounds), dtype=bool)
     limits = open_[np.argsort(open_[:, 0], kind="stable")] * (1.0 + TIE)
     some = np.flatnonzero(np.isfinite(bounds).all(axis=1))
     first, last = _range(bounds[some], limits)
@@ -68,8 +68,8 @@ def useful(bounds: Array, open_: Array) -> NDArray[np.bool_]:
         here = (first[part, None] <= place) & (place < last[part, None])
         for column in range(bounds.shape[1]):
             here &= bounds[some[part], column, None] <= limits[None, :, column]
-        found[some[part]] = here.any(axis=1)
-    return found
+        below[some[part]] = here.any(axis=1)
+    return below
 
 
 def _range(bounds: Array, limits: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -36,13 +36,13 @@ def front(
         return None
     sets = [np.asarray(values, float) for values in every]
     limits = {name: Limit.of(value, 0.0) for name, value in caps.items()}
-    own = posed(problem, names[:1] if isinstance(problem, Conic) else names, limits)
+    limited = posed(problem, names[:1] if isinstance(problem, Conic) else names, limits)
     x, values = np.empty((0, len(sets))), np.empty((0, len(names)))
-    own.batch(_points(sets, 0, 1))  # how the text is run is found once
+    limited.batch(_points(sets, 0, 1))  # how the text is run is found once
     done, end, began = 0, min(FIRST, count), clock.seconds
     while done < count:
         points = _points(sets, done, end)
-        some, of_some = _designs(own, names, points)
+        some, of_some = _designs(limited, names, points)
         x, values = _unbeaten(np.vstack([x, some]), np.vstack([values, of_some]))
         if done == 0 and (clock.seconds - began) * count > clock.within(SECONDS) * end:
             return None

@@ -145,17 +145,17 @@ def front(
     """
     if limiting is not None:
         _limitable(limiting, (*names[1:], *caps))
-    own = Run(problem, tuple(names), caps, Clock(budget, watch), method, limiting, points)
+    state = Run(problem, tuple(names), caps, Clock(budget, watch), method, limiting, points)
     if limiting is not None and limiting.whole and len(names) == 2:
-        return concluded(own, _stairs(own, points))
-    ends = _ends(own, own.names, own.caps)
+        return concluded(state, _stairs(state, points))
+    ends = _ends(state, state.names, state.caps)
     if ends is None:
-        return concluded(own)
+        return concluded(state)
     if len(names) == 2:
-        _between(own, ends, points or ALL_POINTS, own.caps)
+        _between(state, ends, points or ALL_POINTS, state.caps)
     else:
-        _slices(own, ends, points)
-    return concluded(own)
+        _slices(state, ends, points)
+    return concluded(state)
 
 
 def _limitable(limiting: Limiting, names: Sequence[str]) -> None:
@@ -209,11 +209,11 @@ def _stairs(run: Run, points: int) -> bool:
     """Add designs by steps just below the last one; return whether the last step has none."""
     (first, second), held = run.names, dict(run.caps)
     while not run.clock.over and (not points or len(run.points) < points):
-        made = _solved(run, first, held)
-        if made is None or not made.proven:
-            return made is None and run.skipped[-1].proven
-        _keep(run, made)
-        held[second] = float(made.values[1]) * (1.0 - STEP)
+        point = _solved(run, first, held)
+        if point is None or not point.proven:
+            return point is None and run.skipped[-1].proven
+        _keep(run, point)
+        held[second] = float(point.values[1]) * (1.0 - STEP)
     return False
 
 
@@ -281,11 +281,13 @@ class Line:
 
     def step(self, most: float) -> None:
         """Add the point of least first objective below a limit of the second one, if it is new."""
-        run, near = self.run, POINT_TIE * self.ranges
+        state, near = self.run, POINT_TIE * self.ranges
         gap = next((g for g in self.open if g.floor < most < g.top), None)
-        if gap is None or run.clock.over:
+        if gap is None or state.clock.over:
             return
-        point = _solved(run, run.names[0], _least(self.caps, {run.names[1]: most}), gap.right.x)
+        point = _solved(
+            state, state.names[0], _least(self.caps, {state.names[1]: most}), gap.right.x
+        )
         if point is None or point.values[1] >= gap.top - 0.1 * near[1]:
             return
         if point.values[0] < gap.left.values[0] - near[0]:
@@ -293,14 +295,14 @@ class Line:
 
     def repeat(self) -> None:
         """Take steps again whose bounds miss much, the worst first, in what is left of the time."""
-        run = self.run
-        left = [s for s in _strips(run, sifted(run.points)[0]) if s.missing > OPEN]
+        state = self.run
+        left = [s for s in _strips(state, sifted(state.points)[0]) if s.missing > OPEN]
         for strip in sorted(left, key=lambda s: -s.missing):
             under = [p for p in ranked(self.points) if p.values[1] <= strip.high]
-            if not under or run.clock.over:
+            if not under or state.clock.over:
                 return
-            most = {run.names[1]: strip.high} if strip.high < math.inf else {}
-            point = _solved(run, run.names[0], _least(self.caps, most), under[-1].x)
+            most = {state.names[1]: strip.high} if strip.high < math.inf else {}
+            point = _solved(state, state.names[0], _least(self.caps, most), under[-1].x)
             if (
                 point is not None
                 and point.values[0] < under[-1].values[0] - POINT_TIE * self.ranges[0]
@@ -319,9 +321,9 @@ def _slices(run: Run, ends: list[Point], points: int) -> None:
     least = float(values.min())
     for level in np.linspace(values.max(), least + SLACK * abs(least), count):
         caps = _least(run.caps, {third: float(level)})
-        own = None if run.clock.over else _ends(run, run.names[:2], caps)
-        if own is not None:
-            _between(run, own, points // count, caps)
+        plane_ends = None if run.clock.over else _ends(run, run.names[:2], caps)
+        if plane_ends is not None:
+            _between(run, plane_ends, points // count, caps)
 
 
 def _solved(run: Run, name: str, most: Caps, near: Array | None = None) -> Point | None:
@@ -368,13 +370,13 @@ def _sampled(run: Run, problem: Problem) -> tuple[Point, ...]:
     """Points of a front that evolution finds within a part of the budget, as starts of steps."""
     clock = run.clock
     limits = {name: Limit.of(value, 0.0) for name, value in run.caps.items()}
-    own, left = posed(problem, run.names, limits), clock.left
-    if problem.repeats or not isinstance(own, Problem):
+    limited, left = posed(problem, run.names, limits), clock.left
+    if problem.repeats or not isinstance(limited, Problem):
         return ()
     seconds = None if left.seconds is None else SHARE * left.seconds
     most = SAMPLED if left.evaluations is None else min(SAMPLED, int(SHARE * left.evaluations))
     before = clock.evaluations
-    sample = evolution.front(own, 0, Budget(seconds, most), 0, clock.inner(values=False))
+    sample = evolution.front(limited, 0, Budget(seconds, most), 0, clock.inner(values=False))
     clock.evaluations = before + sample.evaluations
     return sample.points
 

@@ -54,12 +54,12 @@ def front(
         steps.append(Step(clock.seconds, clock.evaluations, values))
         clock.best = min((float(p.values[0]) for p in kept), default=math.inf)
         clock.tell()
-    found = _checked(problem, kept)
+    front_points = _checked(problem, kept)
     proof = {"method": "evolution", "sentence": SENTENCE}
-    message = "" if found else "no feasible individual"
+    message = "" if front_points else "no feasible individual"
     ended = not algorithm.has_next()
     return Found(
-        found,
+        front_points,
         beaten=beaten,
         finished=ended,
         steps=tuple(steps),

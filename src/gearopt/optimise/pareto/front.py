@@ -133,13 +133,13 @@ class Front:
             raise ValueError("is not a Pareto front: it has no key `front`")
         if data["front"] != FORMAT:
             raise ValueError(f"front format {data['front']!r}: this gearopt reads {FORMAT}")
-        found: Front = typed(cls, data)
-        if found.status not in STATUSES:
-            raise ValueError(f"has the status {found.status[:40]!r}, which no front has")
-        count = len(found.objectives)
-        if any(len(p.values) != count for p in found.points):
+        front: Front = typed(cls, data)
+        if front.status not in STATUSES:
+            raise ValueError(f"has the status {front.status[:40]!r}, which no front has")
+        count = len(front.objectives)
+        if any(len(p.values) != count for p in front.points):
             raise ValueError(f"has a point with other than {count} values")
-        return found
+        return front
 
     @classmethod
     def from_json(cls, text: str) -> "Front":

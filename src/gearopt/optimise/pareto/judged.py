@@ -34,9 +34,9 @@ def judged(
 
     drawn: the design of a point as a kind of file shows it; by default variables by name.
     """
-    one = posed(problem, [objectives[0].name], {}) if isinstance(problem, Conic) else problem
-    shown = drawn or (lambda x: design(one, x))
-    used = limits_of(one, np.array([p.x for p in made.points])) if made.points else []
+    single = posed(problem, [objectives[0].name], {}) if isinstance(problem, Conic) else problem
+    shown = drawn or (lambda x: design(single, x))
+    used = limits_of(single, np.array([p.x for p in made.points])) if made.points else []
     points = tuple(_point(p, shown(p.x), u) for p, u in zip(made.points, used, strict=True))
     values = made.values
     corner = reference(values) if len(values) else np.empty(0)
@@ -90,12 +90,12 @@ def _point(point: Point, design: Mapping[str, Any], used: Mapping[str, float]) -
 
 def _growth(made: Found, corner: Array) -> tuple[Growth, ...]:
     """Return the hypervolume wherever it grew."""
-    found: list[Growth] = []
+    growth: list[Growth] = []
     for step in made.steps:
         volume = hypervolume(step.values, corner) if len(corner) and len(step.values) else 0.0
-        if not found or volume > found[-1].hypervolume:
-            found.append(Growth(step.seconds, step.evaluations, volume))
-    return tuple(found)
+        if not growth or volume > growth[-1].hypervolume:
+            growth.append(Growth(step.seconds, step.evaluations, volume))
+    return tuple(growth)
 
 
 CERTAIN = ("complete", "infeasible")

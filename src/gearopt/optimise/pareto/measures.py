@@ -34,14 +34,14 @@ def unbeaten(values: Array, tie: float = TIE, equal: bool = False) -> NDArray[np
 
 def _merged(values: Array, tie: float) -> Array:
     """Return values of which neighbours within a tie are made equal to the least of them."""
-    found = np.empty_like(values)
+    merged = np.empty_like(values)
     for k, column in enumerate(values.T):
         order = np.argsort(column, kind="stable")
         ranked = column[order]
         new = np.diff(ranked) > tie * np.maximum(np.abs(ranked[1:]), np.abs(ranked[:-1]))
         first = np.concatenate([[0], np.flatnonzero(new) + 1])
-        found[order, k] = np.repeat(ranked[first], np.diff([*first, len(ranked)]))
-    return found
+        merged[order, k] = np.repeat(ranked[first], np.diff([*first, len(ranked)]))
+    return merged
 
 
 def ideal(values: Array) -> Array:
@@ -106,19 +106,19 @@ def picks(values: Array, names: Sequence[str], weights: Mapping[str, float] | No
     unit = scaled(values)
     wide = [n.replace("_", " ") for n, log in zip(names, by_decades(values), strict=True) if log]
     by = f", {' and '.join(wide)} in decades" if wide else ""
-    found = []
+    picked = []
     if weights is not None:
         w = np.array([float(weights.get(name, 0.0)) for name in names])
         words = ", ".join(f"{n.replace('_', ' ')} {v:g}" for n, v in zip(names, w, strict=True))
         reason = f"the minimum weighted sum of the normalised objectives{by}: {words}"
-        found.append(Pick(int((unit @ w).argmin()), WEIGHTS, reason))
+        picked.append(Pick(int((unit @ w).argmin()), WEIGHTS, reason))
     if (k := knee(unit)) is not None:
         reason = f"the point furthest below the straight line between the ends of the front{by}"
-        found.append(Pick(k, KNEE, reason))
+        picked.append(Pick(k, KNEE, reason))
     near = int(np.linalg.norm(unit, axis=1).argmin())
     reason = f"the point nearest to the ideal point, in normalised objectives{by}"
-    found.append(Pick(near, COMPROMISE, reason))
-    return found
+    picked.append(Pick(near, COMPROMISE, reason))
+    return picked
 
 
 def scaled(values: Array) -> Array:
@@ -168,9 +168,9 @@ def knee(unit: Array) -> int | None:
 
 def neighbours(values: Array, place: int) -> list[int]:
     """Return the points next to one along every objective, one below and one above."""
-    found: list[int] = []
+    places: list[int] = []
     for column in values.T:
         order = np.argsort(column, kind="stable").tolist()
         at = order.index(place)
-        found += [k for k in (*order[max(0, at - 1) : at], *order[at + 1 : at + 2])]
-    return sorted(set(found))
+        places += [k for k in (*order[max(0, at - 1) : at], *order[at + 1 : at + 2])]
+    return sorted(set(places))

@@ -53,9 +53,9 @@ def annealed(
             width = np.ptp([p.values for p in tried], axis=0)
             scale = np.where(width > 0.0, width, 1.0)
         part = _part(clock, len(weights) - k)
-        made = weighed(problem, np.array(w, float) / scale)
+        weighted_sum = weighed(problem, np.array(w, float) / scale)
         before = clock.evaluations
-        result, outcome = run(made, "annealing", part, seed, clock.inner(values=False))
+        result, outcome = run(weighted_sum, "annealing", part, seed, clock.inner(values=False))
         clock.evaluations = before + result.evaluations
         clock.tell()
         if result.value is not None and outcome.x is not None:
@@ -68,15 +68,15 @@ def annealed(
 def weighed(problem: Problem, weights: Array) -> Problem:
     """Return the problem that minimises a weighted sum of its objectives (k,)."""
     names = problem.rows.objectives
-    one = posed(problem, names, {})
+    several = posed(problem, names, {})
 
     def evaluate(x: Any, p: Any) -> Terms:
-        terms = one.evaluate(x, p)
+        terms = several.evaluate(x, p)
         total = sum(w * terms.minimise[n] for w, n in zip(weights.tolist(), names, strict=True))
         return replace(terms, minimise={SUM: total})
 
-    assert isinstance(one, Problem)
-    return replace(one, evaluate=evaluate, methods={})
+    assert isinstance(several, Problem)
+    return replace(several, evaluate=evaluate, methods={})
 
 
 def polished(
@@ -96,12 +96,16 @@ def polished(
         if clock.over:
             break
         limits = {n: Limit.of(float(v), 0.0) for n, v in zip(names[1:], p.values[1:], strict=True)}
-        own = kept(built, problem, names[:1], limits)
-        assert isinstance(own, Problem)
+        limited_problem = kept(built, problem, names[:1], limits)
+        assert isinstance(limited_problem, Problem)
         before = clock.evaluations
         part = _part(clock, 1)
         result, outcome = run(
-            own.holding(p.x).starting(p.x), "ipopt", part, seed, clock.inner(values=False)
+            limited_problem.holding(p.x).starting(p.x),
+            "ipopt",
+            part,
+            seed,
+            clock.inner(values=False),
         )
         clock.evaluations = before + result.evaluations
         clock.tell()

@@ -64,14 +64,16 @@ def found(
     if isinstance(problem, Conic):
         raise SolveError(f"{chosen} takes a Problem; the front of a Conic is for {EPSILON}")
     limited = {name: Limit.of(float(value), 0.0) for name, value in most.items()}
-    own = posed(problem, names, limited)
-    assert isinstance(own, Problem)
-    if chosen == EXACT and EXACT in own.methods:
-        return _checked(own, own.methods[EXACT](own, budget, seed, watch))
+    limited_problem = posed(problem, names, limited)
+    assert isinstance(limited_problem, Problem)
+    if chosen == EXACT and EXACT in limited_problem.methods:
+        return _checked(
+            limited_problem, limited_problem.methods[EXACT](limited_problem, budget, seed, watch)
+        )
     if chosen not in SAMPLERS:
-        known = [m for m in METHODS if m != EXACT or EXACT in own.methods]
+        known = [m for m in METHODS if m != EXACT or EXACT in limited_problem.methods]
         raise SolveError(f"no method {chosen!r} for a front; methods: {', '.join(known)}")
-    return SAMPLERS[chosen](own, points or 0, budget, seed, watch)
+    return SAMPLERS[chosen](limited_problem, points or 0, budget, seed, watch)
 
 
 def default_method(problem: Problem | Conic, limiting: Limiting | None = None) -> str:
@@ -89,10 +91,10 @@ def default_method(problem: Problem | Conic, limiting: Limiting | None = None) -
 
 def _relaxed(problem: Problem) -> bool:
     """Whether spatial branch and bound takes a problem."""
-    one = posed(problem, problem.rows.objectives[:1], {})
-    assert isinstance(one, Problem)
+    single = posed(problem, problem.rows.objectives[:1], {})
+    assert isinstance(single, Problem)
     try:
-        columns(one)
+        columns(single)
     except SolveError:
         return False
     return True
@@ -160,9 +162,11 @@ def solved(
             raise SolveError(f"{name} is none of the objectives of this front: {', '.join(listed)}")
     chosen = method or default_method(trade.problem, trade.limiting)
     watch = in_part(watch, trade.objectives[0].unit, "front")
-    made = found(trade.problem, listed, most, chosen, points, budget, seed, watch, trade.limiting)
+    designs = found(
+        trade.problem, listed, most, chosen, points, budget, seed, watch, trade.limiting
+    )
     shown = [replace(one, most=most.get(one.name)) for one in trade.objectives]
-    front = judged(trade.problem, made, shown, chosen, clock, weights, trade.drawn, **names)
+    front = judged(trade.problem, designs, shown, chosen, clock, weights, trade.drawn, **names)
     proof = {**front.proof, "scope": trade.scope} if trade.scope else front.proof
     return replace(front, seed=seed, proof=proof)
 
@@ -170,10 +174,10 @@ def solved(
 def _each(trade: Tradeoff, given: Mapping[str, Any], clock: Clock) -> list[Front]:
     """Front of each of several problems, in equal shares of the time that is left."""
     every, fronts = (replace(trade, others=()), *trade.others), list[Front]()
-    for k, one in enumerate(every):
+    for k, posed_trade in enumerate(every):
         left = clock.left
         if left.seconds is not None:
             left = replace(left, seconds=left.seconds / (len(every) - k))
-        fronts.append(solved(one, budget=left, **given))
+        fronts.append(solved(posed_trade, budget=left, **given))
         clock.evaluations += fronts[-1].evaluations
     return fronts

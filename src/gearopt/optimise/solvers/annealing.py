@@ -39,8 +39,8 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     """Anneal CHAINS chains; the best feasible point ever visited is polished."""
     clock, rng, space = Clock(budget, watch), np.random.default_rng(seed), box(problem)
     last = polish.prepared(problem, clock)
-    own, most = last.sampling()
-    began, end = own.seconds, own.budget.seconds if most is None else None
+    sampling, most = last.sampling()
+    began, end = sampling.seconds, sampling.budget.seconds if most is None else None
     chains = CHAINS if most is None else min(CHAINS, max(1, most))
     sweeps = SWEEPS if most is None else most // chains - 1
     unit = rng.random((chains, len(space.low)))
@@ -48,16 +48,18 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
     value, excess = violation(problem, space.points(unit))
     scale = max(abs(float(value[0])), 1e-300) if np.isfinite(value[0]) else 1.0
     positive = bool((value[np.isfinite(value)] > 0).all())
-    best, own.best = _kept(space, unit, value, excess, None, np.inf)
-    own.evaluations = chains
+    best, sampling.best = _kept(space, unit, value, excess, None, np.inf)
+    sampling.evaluations = chains
     sweep = 0
-    while own.tell() and (end is not None or sweep < sweeps):
-        done = sweep / sweeps if end is None else min((own.seconds - began) / (end - began), 1.0)
+    while sampling.tell() and (end is not None or sweep < sweeps):
+        done = (
+            sweep / sweeps if end is None else min((sampling.seconds - began) / (end - began), 1.0)
+        )
         temperature = HOT * (COLD / HOT) ** done
         moved = _moved(rng, space, unit, LONGEST * (SHORTEST / LONGEST) ** done)
         new_value, new_excess = violation(problem, space.points(moved))
-        best, own.best = _kept(space, moved, new_value, new_excess, best, own.best)
-        own.evaluations += chains
+        best, sampling.best = _kept(space, moved, new_value, new_excess, best, sampling.best)
+        sampling.evaluations += chains
         weight = PENALTY * HARDER**done
         energy = _energy(value, excess, weight, scale, positive)
         with np.errstate(invalid="ignore", over="ignore"):
@@ -69,19 +71,23 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
         excess[accept] = new_excess[accept]
         sweep += 1
     message = "" if best is not None else "no feasible point was visited"
-    finished = not own.stopped or (end is not None and sweep > 0 and not own.refused)
-    outcome = Outcome(best, finished, evaluations=own.evaluations, message=message)
+    finished = not sampling.stopped or (end is not None and sweep > 0 and not sampling.refused)
+    outcome = Outcome(best, finished, evaluations=sampling.evaluations, message=message)
     energy = _energy(value, excess, PENALTY * HARDER, scale, positive)
     order = np.argsort(np.nan_to_num(energy, nan=np.inf), kind="stable")
-    return polish.polished(last, outcome, space.points(unit[order])) if not own.refused else outcome
+    return (
+        polish.polished(last, outcome, space.points(unit[order]))
+        if not sampling.refused
+        else outcome
+    )
 
 
 def _moved(rng: np.random.Generator, space: Box, unit: Array, step: float) -> Array:
     chains, size = unit.shape
     change = step * rng.standard_normal((chains, size))
-    one = rng.random(chains) < 0.5
+    single = rng.random(chains) < 0.5
     chosen = rng.integers(0, size, (chains, 1))
-    change[one] *= np.arange(size) == chosen[one]
+    change[single] *= np.arange(size) == chosen[single]
     for k, least in _smallest_steps(space).items():
         short = (change[:, k] != 0) & (np.abs(change[:, k]) < least)
         change[short, k] = np.sign(change[short, k]) * least * rng.integers(0, 2, short.sum())

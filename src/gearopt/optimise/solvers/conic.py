@@ -122,8 +122,8 @@ def candidates(one: Scaled, point: Point) -> Iterator[Point]:
 
 def multipliers(one: Scaled, point: Point) -> Array:
     """Return multipliers of the canonical rows (m,); those of bounds are left to the box."""
-    found: Array = (one.back @ point.y) * one.scale.row / one.scale.cost
-    return found
+    y: Array = (one.back @ point.y) * one.scale.row / one.scale.cost
+    return y
 
 
 def _better(
@@ -165,11 +165,11 @@ def _repaired(problem: Conic, data: Canonical, best: Found, clock: Clock) -> Fou
     The rows are convex, so a step of excess/(excess + MARGIN) is enough but for rounding.
     """
     assert best.x is not None
-    one = scaled(shifted(problem, data, MARGIN), best.scale)
-    point = interior(one, clock.left.seconds)
+    tightened = scaled(shifted(problem, data, MARGIN), best.scale)
+    point = interior(tightened, clock.left.seconds)
     if not point.solved:
         return best
-    inner = np.clip(one.scale.column * point.x, data.lower, data.upper)[data.user]
+    inner = np.clip(tightened.scale.column * point.x, data.lower, data.upper)[data.user]
     step = best.excess / (best.excess + MARGIN)
     while step < 1.0:
         step = min(1.0, 1.5 * step)
@@ -282,14 +282,14 @@ def _closed(search: _Search, lower: Array, upper: Array) -> tuple[Leaf, float]:
         np.where(np.isin(np.arange(len(lower)), list(data.allowed)), box[k], (lower, upper)[k])
         for k in (0, 1)
     ]
-    one = search.one.within(*ends)
-    point = interior(one, search.clock.left.seconds)
+    node = search.one.within(*ends)
+    point = interior(node, search.clock.left.seconds)
     if point.ray:
-        y = multipliers(one, point)
+        y = multipliers(node, point)
         empty = emptiness(data, *box, leaf.x, y) > 0.0
         return (replace(leaf, y=y, ray=True), np.inf) if empty else (leaf, bound)
-    for candidate in candidates(one, point):
-        z, y = one.scale.column * candidate.x, multipliers(one, candidate)
+    for candidate in candidates(node, point):
+        z, y = node.scale.column * candidate.x, multipliers(node, candidate)
         if not np.isfinite(z).all():
             continue
         _keep(search, z, lower, upper)
@@ -335,13 +335,13 @@ def _fixed(search: _Search, rounded: Array, lower: Array, upper: Array) -> None:
         low[column] = high[column] = rounded[column]
     if propagate(search.data, low, high, search.value) is None:
         return
-    one = search.one.within(low, high)
-    point = interior(one, search.clock.left.seconds)
+    fixed = search.one.within(low, high)
+    point = interior(fixed, search.clock.left.seconds)
     search.clock.evaluations += 1
     if point.ray:
         return
-    for candidate in candidates(one, point):
-        _take(search, np.clip(one.scale.column * candidate.x, low, high))
+    for candidate in candidates(fixed, point):
+        _take(search, np.clip(fixed.scale.column * candidate.x, low, high))
 
 
 def _take(search: _Search, z: Array) -> None:
@@ -386,14 +386,14 @@ def run(problem: Conic, budget: Budget, seed: int, watch: Watch | None) -> Outco
     data = canonical(problem)
     if data.allowed:  # its evaluations are relaxations
         clock.budget = replace(budget, evaluations=None)
-    found = solved(problem, replace(data, allowed={}), clock)
+    best = solved(problem, replace(data, allowed={}), clock)
     if data.allowed and not clock.stopped:
-        return branch(problem, data, found, Clock(budget, watch, clock.start))
+        return branch(problem, data, best, Clock(budget, watch, clock.start))
     return Outcome(
-        found.x,
+        best.x,
         finished=not clock.stopped,
-        infeasible=found.leaf.ray,
-        leaves=(found.leaf,),
-        evaluations=found.steps,
-        message="" if found.gap <= 1e-6 or found.words == "Solved" else f"Clarabel: {found.words}",
+        infeasible=best.leaf.ray,
+        leaves=(best.leaf,),
+        evaluations=best.steps,
+        message="" if best.gap <= 1e-6 or best.words == "Solved" else f"Clarabel: {best.words}",
     )

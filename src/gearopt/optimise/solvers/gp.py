@@ -82,8 +82,8 @@ def _model(problem: Problem) -> _Model:
     key = ("gp", *(end.tobytes() for end in problem.bounds()[:2]))
     if key not in problem.memo:
         problem.memo[key] = _build(problem)
-    found: _Model = problem.memo[key]
-    return found
+    model: _Model = problem.memo[key]
+    return model
 
 
 def _build(problem: Problem) -> _Model:

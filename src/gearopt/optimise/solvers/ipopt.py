@@ -167,8 +167,8 @@ def _split(problem: Problem, shape: Form) -> Split:
     key = ("split", id(shape))
     if key not in problem.memo:
         problem.memo[key] = split(shape, tape.kinds(problem))
-    found: Split = problem.memo[key]
-    return found
+    parts: Split = problem.memo[key]
+    return parts
 
 
 def _built(problem: Problem, shape: Form) -> tuple[Any, Any]:
@@ -183,8 +183,8 @@ def _built(problem: Problem, shape: Form) -> tuple[Any, Any]:
         f = f if shape.log_objective else f / unit
         p = ca.vertcat(parts.p, units, unit)
         problem.memo[key] = program(z, p, f, ca.vertcat(g, h, levels), size)
-    found: tuple[Any, Any] = problem.memo[key]
-    return found
+    built: tuple[Any, Any] = problem.memo[key]
+    return built
 
 
 def _ipopt(

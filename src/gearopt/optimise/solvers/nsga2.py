@@ -38,31 +38,31 @@ def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Out
 
     clock, space = Clock(budget, watch), box(problem)
     last = polish.prepared(problem, clock)
-    own, most = last.sampling()
+    sampling, most = last.sampling()
     size = min(POPULATION, most or POPULATION)
     several = len(problem.rows.objectives) > 1
-    timed = most is None and own.budget.seconds is not None and not several
+    timed = most is None and sampling.budget.seconds is not None and not several
     generations = GENERATIONS if most is None else most // size
-    algorithm, found, spent = None, Outcome(None, False), 0
-    while algorithm is None or (timed and not own.stopped):  # again until the seconds end
+    algorithm, evolved, spent = None, Outcome(None, False), 0
+    while algorithm is None or (timed and not sampling.stopped):  # again until the seconds end
         algorithm = NSGA2(pop_size=size)
         ending = ("n_gen", max(1, generations))
         algorithm.setup(posed(problem, space), seed=seed, termination=ending)
-        least = own.best
-        while algorithm.has_next() and not own.stopped:
+        least = sampling.best
+        while algorithm.has_next() and not sampling.stopped:
             algorithm.next()
-            own.evaluations = spent + int(algorithm.evaluator.n_eval)
+            sampling.evaluations = spent + int(algorithm.evaluator.n_eval)
             best = min((float(one.F[0]) for one in algorithm.opt if one.feas), default=math.inf)
-            own.best = min(own.best, best)
-            own.tell()
+            sampling.best = min(sampling.best, best)
+            sampling.tell()
         ended = not algorithm.has_next()
-        if found.x is None or own.best < least:
-            found = _front(algorithm, space, several, ended or found.finished)
-        seed, size, spent = seed + 1, 2 * size, own.evaluations
-    found = replace(found, evaluations=spent)
+        if evolved.x is None or sampling.best < least:
+            evolved = _front(algorithm, space, several, ended or evolved.finished)
+        seed, size, spent = seed + 1, 2 * size, sampling.evaluations
+    evolved = replace(evolved, evaluations=spent)
     everyone = sorted(algorithm.pop, key=lambda one: (float(one.CV[0]), float(one.F[0])))
     starts = space.points(np.array([one.X for one in everyone]))
-    return polish.polished(last, found, starts) if not own.refused else found
+    return polish.polished(last, evolved, starts) if not sampling.refused else evolved
 
 
 def posed(problem: Problem, space: Box) -> Any:
@@ -83,11 +83,11 @@ def posed(problem: Problem, space: Box) -> Any:
 
         def _evaluate(self, unit: Any, out: dict[str, Any], *rest: Any, **more: Any) -> None:
             with np.errstate(all="ignore"):
-                found = problem.batch(space.points(unit))
-            equal = np.abs(found.H - 1.0) - EQUAL
+                terms = problem.batch(space.points(unit))
+            equal = np.abs(terms.H - 1.0) - EQUAL
             out["F"], out["G"] = (
                 np.nan_to_num(values, nan=1e300, posinf=1e300, neginf=1e300)
-                for values in (found.F, np.hstack([found.G - 1.0, equal]))
+                for values in (terms.F, np.hstack([terms.G - 1.0, equal]))
             )
 
     return Batch()

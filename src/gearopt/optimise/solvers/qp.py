@@ -161,9 +161,15 @@ def _solved(
         shapes = {"h": ca.Sparsity.dense(size, size), "a": ca.Sparsity.dense(rows, size)}
         problem.memo[key] = ca.conic("qp", name, shapes, options)
     solver = problem.memo[key]
-    own, bent = program.own, curved.diagonal > 0.0
-    cost = max(np.abs(program.linear * own).max(), (curved.diagonal * own**2).max()) or 1.0
-    unit = np.where(bent, np.sqrt(cost / np.where(bent, curved.diagonal, 1.0)), own)
+    unit_of_columns, bent = program.own, curved.diagonal > 0.0
+    cost = (
+        max(
+            np.abs(program.linear * unit_of_columns).max(),
+            (curved.diagonal * unit_of_columns**2).max(),
+        )
+        or 1.0
+    )
+    unit = np.where(bent, np.sqrt(cost / np.where(bent, curved.diagonal, 1.0)), unit_of_columns)
     solution = solver(
         h=program.hessian / cost * np.outer(unit, unit),
         g=program.linear / cost * unit,

@@ -242,8 +242,8 @@ def _model(
     scale = _scale(problem)
     for c, exponents in zip(model.objective.coefficients, model.objective.exponents, strict=True):
         part = scip.addVar(lb=0.0)
-        one = Posynomial(np.array([c]), exponents[None])
-        scip.addCons(monomials(one, scale) <= part)
+        monomial = Posynomial(np.array([c]), exponents[None])
+        scip.addCons(monomials(monomial, scale) <= part)
         parts.append(part)
     scip.setObjective(quicksum(parts))
     return scip, logs

@@ -342,7 +342,7 @@ def _reader(builder: Builder) -> Callable[[int, list[Affine]], Affine]:
         ca.OP_EXP: EXP, ca.OP_LOG: LOG, ca.OP_SIN: SINE, ca.OP_COS: COSINE, ca.OP_TANH: TANH,
         ca.OP_ATAN: ATAN, ca.OP_ASIN: ASIN, ca.OP_FABS: ABS, ca.OP_FLOOR: FLOOR,
     }  # fmt: skip
-    one, quarter = Affine({}, 1.0), Affine({}, math.pi / 2.0, ROUNDED)
+    unity, quarter = Affine({}, 1.0), Affine({}, math.pi / 2.0, ROUNDED)
     names = {getattr(ca, n): n[3:].lower() for n in dir(ca) if n.startswith("OP_")}
 
     def exponential(a: Affine, sign: float) -> Affine:
@@ -356,7 +356,7 @@ def _reader(builder: Builder) -> Callable[[int, list[Affine]], Affine]:
         ca.OP_TWICE: lambda a: scaled(a, 2.0),
         ca.OP_MUL: lambda a, b: multiplied(builder, a, b),
         ca.OP_DIV: lambda a, b: divided(builder, a, b),
-        ca.OP_INV: lambda a: divided(builder, one, a),
+        ca.OP_INV: lambda a: divided(builder, unity, a),
         ca.OP_SQ: lambda a: powered(builder, a, 2.0),
         ca.OP_SQRT: lambda a: powered(builder, a, 0.5),
         ca.OP_POW: lambda a, b: raised(builder, a, b),
@@ -367,8 +367,8 @@ def _reader(builder: Builder) -> Callable[[int, list[Affine]], Affine]:
         ca.OP_ACOS: lambda a: added(quarter, of_column(builder, ASIN, a), -1.0),
         ca.OP_SINH: lambda a: scaled(added(exponential(a, 1.0), exponential(a, -1.0), -1.0), 0.5),
         ca.OP_COSH: lambda a: scaled(added(exponential(a, 1.0), exponential(a, -1.0)), 0.5),
-        ca.OP_LOG1P: lambda a: of_column(builder, LOG, added(one, a)),
-        ca.OP_EXPM1: lambda a: added(exponential(a, 1.0), one, -1.0),
+        ca.OP_LOG1P: lambda a: of_column(builder, LOG, added(unity, a)),
+        ca.OP_EXPM1: lambda a: added(exponential(a, 1.0), unity, -1.0),
         ca.OP_HYPOT: lambda a, b: powered(
             builder, added(powered(builder, a, 2.0), powered(builder, b, 2.0)), 0.5
         ),
@@ -467,11 +467,11 @@ def columns(problem: Problem, slack: float = 0.0, logarithms: bool = True) -> Co
 def _check_bases(name: str, builder: Builder, form: Columns) -> None:
     """Raise SolveError for u^v with u that may be negative: at whole v exp(v log u) is another."""
     doubtful = dict(builder.bases)
-    kinds, made, of = form.relations[:, :3].T
+    kinds, results, of = form.relations[:, :3].T
     while doubtful:  # without their powers, which may be negative, and logarithms, cut off at 0
         powers = [w for some in doubtful.values() for w in some]
         left_out = (kinds == LOG) & np.isin(of, list(doubtful))
-        left_out |= (kinds == EXP) & np.isin(made, powers)
+        left_out |= (kinds == EXP) & np.isin(results, powers)
         relations, low, high = form.relations.copy(), form.lower.copy(), form.upper.copy()
         relations[left_out, 0] = LINEAR
         if not replace(form, relations=relations).propagated(low, high, ROOT_SWEEPS):

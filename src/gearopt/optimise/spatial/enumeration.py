@@ -96,9 +96,9 @@ class Boxes:
     def points(self) -> Array:
         """Boxes of a single point (N, n), which wait no longer."""
         single = (self.low == self.high).all(axis=1)
-        found: Array = self.low[single]
+        points: Array = self.low[single]
         self.low, self.high, self.bound = (a[~single] for a in (self.low, self.high, self.bound))
-        return found
+        return points
 
     def middles(self) -> Array:
         """Allowed values near the middles of the boxes of the least bounds (N, n)."""
@@ -134,12 +134,12 @@ class Boxes:
             np.empty((some << DEPTH, *a.shape[1:])) for a in (self.low, self.high, self.bound)
         )
         columns = form.relations, form.exponent, form.sums, form.sets
-        left, made = self.kernel.halved(
+        left, halves = self.kernel.halved(
             columns, self.root, form.objective, cutoff, SWEEPS, self.trials,
             self.low[taken], self.high[taken], self.bound[taken], self.work, out,
         )  # fmt: skip
         self.chunk = min(2 * some, max(1, CHUNK // (1 + len(form.relations)) // self.trials))
-        self.made += made
+        self.made += halves
         stays = np.ones(count, bool)
         stays[taken] = False
         self.low, self.high, self.bound = (

@@ -244,9 +244,9 @@ def _narrowest(sheet: Sheet, layout: LayoutDesign, measures: Measures) -> None:
 
 def _name(sheet: Sheet, train: Turning, gear: GearDesign) -> None:
     """Write the gear's name where it is alone inside it, else outside with a line to it."""
-    own, others = gear_disc(train, gear), [g for g in train.gears if g.name != gear.name]
+    disc, others = gear_disc(train, gear), [g for g in train.gears if g.name != gear.name]
     discs = [gear_disc(train, g) for g in others]
-    centre, r = sheet.at(*own.centre), own.radius * sheet.scale
+    centre, r = sheet.at(*disc.centre), disc.radius * sheet.scale
     half = Place(0, 0).half_width(gear.name)
     inside = around(centre, [share * r for share in (0.6, 0.75, 0.45) if share * r > 24.0])
     inside = [p for p in inside if math.dist((p.x, p.y), centre) + 0.8 * half < r]

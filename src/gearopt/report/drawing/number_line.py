@@ -83,8 +83,8 @@ def _row(sheet: Sheet, row: Span, level: float, scale: Scale) -> None:
     """Draw a bar about a level [px, downwards] with its texts."""
     start, end = scale.at(row.start), scale.at(row.end)
     middle = start if row.blocked is None else scale.at(row.blocked)
-    for one, other, style in ((start, middle, "excess"), (middle, end, "range")):
-        low, high = sorted((one, other))
+    for first, last, style in ((start, middle, "excess"), (middle, end, "range")):
+        low, high = sorted((first, last))
         if high > low or (style == "range" and not row.reached):
             y = sheet.height - level
             sheet.rectangle((low, y - BAR / 2), (high, y + BAR / 2), style)

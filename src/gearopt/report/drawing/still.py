@@ -347,8 +347,8 @@ def _toothed(sheet: Sheet, rod: Rod, ends: Point, seen: View) -> tuple[str, str]
         if faces[k % count] and start is None:
             start = k
         elif not faces[k % count] and start is not None:
-            run = [n % count for n in range(start, k + 1)]
-            side += _steps([*(near[n] for n in run), *(far[n] for n in reversed(run))])
+            facing = [n % count for n in range(start, k + 1)]
+            side += _steps([*(near[n] for n in facing), *(far[n] for n in reversed(facing))])
             start = None
     return side, _steps(near)
 

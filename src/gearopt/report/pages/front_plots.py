@@ -185,10 +185,10 @@ def _designs(front: Drawn, at: tuple[int, ...]) -> list[dict[str, Any]]:
     letters = "xyz"[: len(at)]
     space = len(at) == 3
     kind = {"type": "scatter3d" if space else "scatter"}
-    told = "<br>".join(
+    axis_lines = "<br>".join(
         f"{front.heads[n]} %{{{letter}:.5g}}" for letter, n in zip(letters, at, strict=True)
     )
-    hover = {"hovertemplate": f"design %{{customdata}}<br>{told}<extra></extra>"}
+    hover = {"hovertemplate": f"design %{{customdata}}<br>{axis_lines}<extra></extra>"}
     every = {letter: front.column(n) for letter, n in zip(letters, at, strict=True)}
     count = len(front.points)
     marker: dict[str, Any] = {
@@ -264,8 +264,8 @@ def parallel(
     line = {"color": f"--series-1/{0.5 if len(rows) < 100 else 0.25}", "width": 1.2}
     look: dict[str, Any] = {"type": "scatter", "mode": "lines", "hoveron": "points"}
     hover = {"hovertemplate": "design %{customdata}<extra></extra>"}
-    own = {"customdata": [k for k in range(1, len(rows) + 1) for _ in steps], "meta": DESIGN}
-    traces = [look | hover | own | at | {"name": "designs", "line": line}]
+    of_designs = {"customdata": [k for k in range(1, len(rows) + 1) for _ in steps], "meta": DESIGN}
+    traces = [look | hover | of_designs | at | {"name": "designs", "line": line}]
     for place, words in sorted(drawn_front.picks.items()):
         row: dict[str, Any] = {"x": steps[:-1], "y": list(rows[place]), "hoverinfo": "skip"}
         traces.append(look | row | {"name": words, "line": {"color": "--series-2", "width": 2.6}})

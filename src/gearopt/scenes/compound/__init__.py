@@ -113,7 +113,7 @@ def _design(train: compound.Compound, x: Array) -> dict[str, Any]:
     """Return the train of a point, as a result holds it."""
     z1, z2, z3, z4 = (round(float(z)) for z in x)
     ratio = Fraction(z3 * z4, z1 * z2)
-    found: dict[str, Any] = untyped(
+    design: dict[str, Any] = untyped(
         CompoundDesign(
             driver_teeth=(z1, z2),
             driven_teeth=(z3, z4),
@@ -121,7 +121,7 @@ def _design(train: compound.Compound, x: Array) -> dict[str, Any]:
             ratio_error_percent=100.0 * float(ratio / train.ratio - 1),
         )
     )
-    return found
+    return design
 
 
 def objectives(scene: Scene) -> dict[str, str]:
@@ -156,7 +156,7 @@ def _out_of_reach(train: compound.Compound, reach: dict[str, Any]) -> str:
     """Return what the teeth can make, and which would do; "" where the ratio is within."""
     if reach["within"]:
         return ""
-    made = "Two pairs of {} to {} teeth have ratios from {:.6g} to {:.6g}".format(
+    reachable = "Two pairs of {} to {} teeth have ratios from {:.6g} to {:.6g}".format(
         *train.teeth, reach["least_ratio"], reach["most_ratio"]
     )
     end, words = (0, "down to") if train.ratio < 1 else (1, "up to")
@@ -165,15 +165,15 @@ def _out_of_reach(train: compound.Compound, reach: dict[str, Any]) -> str:
         for teeth in reach["wider_teeth"]
     ]
     if ways:
-        return f"{made}. Write {' or '.join(ways)}."
+        return f"{reachable}. Write {' or '.join(ways)}."
     more = ': kind = "drive" has more stages' if train.ratio >= 1 else ""  # a drive slows down
-    return f"{made}. No two pairs of {MIN_TEETH} to {MAX_TEETH} teeth reach it{more}."
+    return f"{reachable}. No two pairs of {MIN_TEETH} to {MAX_TEETH} teeth reach it{more}."
 
 
 def idle(scene: Scene, method: str | None) -> dict[str, str]:
     """Return the options of `solve` that change nothing, each with the reason."""
-    found = {"top": "a compound train has no list of next best answers"}
-    return found | unseeded(method)
+    unused = {"top": "a compound train has no list of next best answers"}
+    return unused | unseeded(method)
 
 
 def compared(scene: Scene) -> tuple[str, ...]:

@@ -80,8 +80,8 @@ def _begun(scene: Scene, ask: Ask, clock: Clock, real: Real) -> Count:
     missing = {**ideal.objective, "value": None}
     unsolved = replace(ideal, status="limit", objective=missing, bound=bound, gap=None)
     unsolved = replace(unsolved, design={}, limits={}, certificate={}, message="not begun in time")
-    found = ideal if ideal.status == "infeasible" else unsolved
-    return Count(scene, ideal, replace(found, name="drive"), clock.seconds - before)
+    result = ideal if ideal.status == "infeasible" else unsolved
+    return Count(scene, ideal, replace(result, name="drive"), clock.seconds - before)
 
 
 def _solved(
@@ -91,11 +91,11 @@ def _solved(
     if clock.over or count.found.status == "infeasible":
         return count
     before = clock.seconds
-    found = answer(count.scene, _asked(ask, clock, count.number, seconds), count.real)
-    clock.evaluations += found.evaluations
+    result = answer(count.scene, _asked(ask, clock, count.number, seconds), count.real)
+    clock.evaluations += result.evaluations
     spent = count.seconds + clock.seconds - before
-    better = _value(found) > _value(count.found) and found.status == "limit"
-    return replace(count, found=count.found if better else found, seconds=spent)
+    better = _value(result) > _value(count.found) and result.status == "limit"
+    return replace(count, found=count.found if better else result, seconds=spent)
 
 
 def _share(clock: Clock, counts: int) -> float | None:
@@ -134,15 +134,15 @@ def _known(counts: Sequence[Count]) -> float:
 
 def _best(counts: Sequence[Count], ask: Ask, clock: Clock) -> Result:
     """Return the best of all counts, with the bound of all."""
-    found = least([c.found for c in counts], ask.gap)
-    report = found.report | {"counts": [_row(c) for c in counts]}
+    best = least([c.found for c in counts], ask.gap)
+    report = best.report | {"counts": [_row(c) for c in counts]}
     if trains := _trains(counts, ask.top):
         report["trains"] = trains
     return replace(
-        found,
+        best,
         report=report,
-        message=_message(found, counts),
-        proof=_proof(found, counts),
+        message=_message(best, counts),
+        proof=_proof(best, counts),
         seconds=clock.seconds,
         evaluations=sum(c.found.evaluations for c in counts),
     )
@@ -150,18 +150,18 @@ def _best(counts: Sequence[Count], ask: Ask, clock: Clock) -> Result:
 
 def _row(count: Count) -> dict[str, Any]:
     """Return what is known of one number of stages, as a result holds it."""
-    found = count.found
-    stages = found.design.get("stages", [])
+    result = count.found
+    stages = result.design.get("stages", [])
     return {
         "stages": count.number,
-        "status": found.status,
-        "objective": found.value,
-        "bound": found.bound,
-        "gap": found.gap,
+        "status": result.status,
+        "objective": result.value,
+        "bound": result.bound,
+        "gap": result.gap,
         "ratios": [s["ratio"] for s in stages],
         "modules_mm": [s["normal_module_mm"] for s in stages],
         "teeth": [[s["pinion_teeth"], s["wheel_teeth"]] for s in stages],
-        "conflict": found.proof.get("conflict", []) if found.status == "infeasible" else [],
+        "conflict": result.proof.get("conflict", []) if result.status == "infeasible" else [],
         "seconds": count.seconds,
     }
 
@@ -172,10 +172,10 @@ def _trains(counts: Sequence[Count], top: int) -> list[Any]:
     def objective(train: Mapping[str, Any]) -> float:
         return float(train["objective"])
 
-    found = sorted((t for c in counts for t in c.found.report.get("trains", ())), key=objective)
+    trains = sorted((t for c in counts for t in c.found.report.get("trains", ())), key=objective)
     unsure = [c.bound for c in counts if c.found.proof.get("method") != WHOLE]
     sure = min(unsure, default=math.inf)
-    return [t for k, t in enumerate(found[:top]) if k == 0 or objective(t) <= sure]
+    return [t for k, t in enumerate(trains[:top]) if k == 0 or objective(t) <= sure]
 
 
 def _stages(count: int) -> str:
@@ -201,6 +201,6 @@ def _proof(found: Result, counts: Sequence[Count]) -> dict[str, Any]:
     if found.status == "infeasible":
         return {"method": "every number of stages", "sentence": f"{span} excluded."}
     lowest = min(counts, key=lambda c: c.bound)
-    own = str(lowest.found.proof.get("sentence", "")).removeprefix("Proof: ")
-    own = f" With {_stages(lowest.number)}: {own}" if own else ""
-    return {**lowest.found.proof, "sentence": f"{span} bounded; the least bound counts.{own}"}
+    sentence = str(lowest.found.proof.get("sentence", "")).removeprefix("Proof: ")
+    sentence = f" With {_stages(lowest.number)}: {sentence}" if sentence else ""
+    return {**lowest.found.proof, "sentence": f"{span} bounded; the least bound counts.{sentence}"}

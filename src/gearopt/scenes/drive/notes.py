@@ -26,24 +26,24 @@ CLEARANCES = {
 
 def notes(scene: Scene, exact: bool) -> list[str]:
     """Notes for the reader of a result beside the numbers."""
-    found = []
+    sentences = []
     limits, stages = scene.limits, scene.stage
     if limits.preset is not None:
-        found.append(f"The load limits are those of preset {limits.preset}, not of a standard.")
+        sentences.append(f"The load limits are those of preset {limits.preset}, not of a standard.")
     if scene.teeth is not None and not exact:
-        found.append("Teeth and modules are real numbers here; the table [teeth] was not used.")
+        sentences.append("Teeth and modules are real numbers here; the table [teeth] was not used.")
     names = ("wheel_teeth", "stage_ratio", "wheel_diameter")
     if not any(getattr(table, name) for table in (limits, *stages) for name in names):
-        found.append("No limit on wheel teeth, stage ratio or wheel diameter was set.")
+        sentences.append("No limit on wheel teeth, stage ratio or wheel diameter was set.")
     if exact and scene.gears.same_materials and scene.by_ratings:
-        found.append("All pinions have one material, and all wheels have one.")
+        sentences.append("All pinions have one material, and all wheels have one.")
     if exact:
-        found += _chosen(scene)
+        sentences += _chosen(scene)
     if exact and scene.teeth is not None:
-        found += unverified(scene.teeth.modules)
+        sentences += unverified(scene.teeth.modules)
     if scene.objective.density is None and not _dense(scene):
-        found.append(f"The density is that of steel, {1e9 * STEEL_DENSITY:g} kg/dm³ (assumed).")
-    return found + unused_materials(scene)
+        sentences.append(f"The density is that of steel, {1e9 * STEEL_DENSITY:g} kg/dm³ (assumed).")
+    return sentences + unused_materials(scene)
 
 
 def with_notes(scene: Scene, result: Result, exact: bool) -> Result:
@@ -74,12 +74,12 @@ def _noted(scene: Scene, result: Result, exact: bool) -> Result:
 def _chosen(scene: Scene) -> list[str]:
     """Sentences on the stages that choose from several helix angles, distances or shifts."""
     stages: dict[tuple[str, str], list[int]] = {}
-    for k, own in enumerate(scene.stage_tables, 1):
-        helix = scene.gears.helix_angle if own.helix_angle is None else own.helix_angle
-        shift = scene.shift.pinion_shift if scene.shift and scene.shifted(own) else None
+    for k, table in enumerate(scene.stage_tables, 1):
+        helix = scene.gears.helix_angle if table.helix_angle is None else table.helix_angle
+        shift = scene.shift.pinion_shift if scene.shift and scene.shifted(table) else None
         choices = {
             "helix angle": helix,
-            "centre distance": own.centre_distance,
+            "centre distance": table.centre_distance,
             "profile shift of the pinion": shift,
         }
         for name, held in choices.items():
@@ -119,15 +119,15 @@ def assumptions(scene: Scene) -> list[str]:
     )
     if scene.material:
         mass = f"the densities of the materials, else from {mass}"
-    found = [
+    sentences = [
         *_teeth(scene),
         *_loads(scene, angle, assumed),
         f"{_bodies(scene)}; masses follow from {mass}.",
     ]
     if scene.limits.preset is not None:
         name = scene.limits.preset
-        found.insert(3, f"The load limits are those of preset {name}: {ORIGINS[name]}.")
-    return found if scene.layout is None else [*found, *_layout_assumptions(scene.layout)]
+        sentences.insert(3, f"The load limits are those of preset {name}: {ORIGINS[name]}.")
+    return sentences if scene.layout is None else [*sentences, *_layout_assumptions(scene.layout)]
 
 
 def _bodies(scene: Scene) -> str:

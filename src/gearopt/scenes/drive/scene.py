@@ -165,11 +165,11 @@ class Scene(Table):
         if self.stages is not None and self.stage and self.stages != (number, number):
             rule = f"differs from the {number} [[stage]] tables"
             raise refuse(RANGE if self.several else rule, number, ("stages",))
-        for k, own in enumerate(self.stage or (StageTable(),)):
-            check_width(own, self.gears, ("stage", k) if self.stage else ("gears",))
-            if self.teeth is not None and not self._modules(own):
-                place = ("stage", k, "module") if own.size else ("limits", "module")
-                raise refuse("holds no module that [teeth] allows", self._around(own), place)
+        for k, stage in enumerate(self.stage or (StageTable(),)):
+            check_width(stage, self.gears, ("stage", k) if self.stage else ("gears",))
+            if self.teeth is not None and not self._modules(stage):
+                place = ("stage", k, "module") if stage.size else ("limits", "module")
+                raise refuse("holds no module that [teeth] allows", self._around(stage), place)
         self._check_layout()
         self._check_loads()
         self._check_teeth()
@@ -250,9 +250,9 @@ class Scene(Table):
         for k, stage in enumerate(self.stage or (StageTable(),)):
             open_width = stage.face_width is None and not self.given
             for member in MEMBERS:
-                own = getattr(stage, member)
-                table = with_shared(own, self.gears)
-                rows.append((("stage", k, member), own, table, open_width))
+                gear = getattr(stage, member)
+                table = with_shared(gear, self.gears)
+                rows.append((("stage", k, member), gear, table, open_width))
         check_blanks(rows)
 
     def _check_rating(self) -> None:
@@ -303,9 +303,9 @@ class Scene(Table):
                 rule = "changes nothing beside pinion_shift"
                 raise refuse(rule, at=("shift", "rule"), action="remove")
             self._check_ways(shifted)
-        for k, own in enumerate(self.stage if self.to_size else ()):  # else a rating refuses it
+        for k, table in enumerate(self.stage if self.to_size else ()):  # else a rating refuses it
             if k not in shifted:
-                check_mesh(self._stage(own), k, own, self.gears)
+                check_mesh(self._stage(table), k, table, self.gears)
 
     def _check_ways(self, stages: list[int]) -> None:
         """Refuse more ways to cut the teeth of stages (from 0) than are looked at."""
@@ -335,9 +335,9 @@ class Scene(Table):
                     lacks = "together = false in [layout]"
                 if lacks:
                     raise refuse(f"needs {lacks}", at=(*place, name), action="remove")
-        for own in self.stage_tables if not self.several else ():
-            asked = own.overlap_ratio or self.limits.overlap_ratio
-            if asked and not any(cut.helix_angle for cut in self.toothings(own)):
+        for stage in self.stage_tables if not self.several else ():
+            asked = stage.overlap_ratio or self.limits.overlap_ratio
+            if asked and not any(cut.helix_angle for cut in self.toothings(stage)):
                 rule = "has no overlap ratio, which is asked for"
                 raise refuse(rule, "15 deg", ("gears", "helix_angle"), "sample")
 
@@ -384,9 +384,9 @@ class Scene(Table):
         """Refuse several helix angles or distances where no search of whole teeth chooses them."""
         held: list[tuple[tuple[str | int, ...], Choice | None]]
         held = [(("gears", "helix_angle"), self.gears.helix_angle)]
-        for k, own in enumerate(self.stage):
-            held.append((("stage", k, "helix_angle"), own.helix_angle))
-            held.append((("stage", k, "centre_distance"), own.centre_distance))
+        for k, table in enumerate(self.stage):
+            held.append((("stage", k, "helix_angle"), table.helix_angle))
+            held.append((("stage", k, "centre_distance"), table.centre_distance))
         for place, value in held:
             if value is None or isinstance(value, Quantity):
                 continue
@@ -438,8 +438,8 @@ class Scene(Table):
         below = max((m for m in series if m < span[0].exact[0]), default=series[0])
         above = min((m for m in series if m > span[1].exact[0]), default=series[-1])
         ends = eased(span[0].of(below), 1.0, -1), eased(span[1].of(above), 1.0, 1)
-        found = written(ends, ("limits", "module"))
-        return found if isinstance(found, list) else [found, found]
+        module_range = written(ends, ("limits", "module"))
+        return module_range if isinstance(module_range, list) else [module_range, module_range]
 
     @property
     def given(self) -> bool:

@@ -45,15 +45,15 @@ class Drive:
 
 def drive_of(scene: Scene) -> Drive:
     """The drive that a file with one number of stages states."""
-    train, one, two = scene.train(), scene.process_one, scene.process_two
+    train, process_one, process_two = scene.train(), scene.process_one, scene.process_two
     webs_alone = train.hollow and not train.rated  # limits are those of solid gears, masses are not
     return Drive(
         scene,
         train,
         without(scene, "webs").train() if webs_alone else None,
         scene.rated_real,
-        one.inputs() if one else None,
-        two.inputs() if two else None,
+        process_one.inputs() if process_one else None,
+        process_two.inputs() if process_two else None,
     )
 
 

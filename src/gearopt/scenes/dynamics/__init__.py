@@ -54,7 +54,7 @@ def motion(scene: Scene, ask: Ask, known: Result | None) -> Result:
     without_method(ask, NOTHING)
     design = _design(scene, pair, scene.mesh.axes, clock)
     missing = _missing(scene, design) if clock.stopped else ""
-    found = Result(
+    evaluated = Result(
         name="dynamics",
         status="limit" if missing else "evaluated",
         method=design.response.method if design.response else "modes",
@@ -67,13 +67,13 @@ def motion(scene: Scene, ask: Ask, known: Result | None) -> Result:
         seed=ask.seed,
         versions=versions("numpy"),
     )
-    return _assuming(replace(found, seconds=clock.seconds), assumed)
+    return _assuming(replace(evaluated, seconds=clock.seconds), assumed)
 
 
 def _assuming(result: Result, assumed: list[str]) -> Result:
     """Return a result with more assumptions, after those of every file."""
-    told = [*result.report.get("assumptions", []), *assumed]
-    return replace(result, report=result.report | {"assumptions": told}) if assumed else result
+    sentences = [*result.report.get("assumptions", []), *assumed]
+    return replace(result, report=result.report | {"assumptions": sentences}) if assumed else result
 
 
 def _least(scene: Scene, ask: Ask, before: MovingPair, clock: Clock) -> Result:
@@ -144,30 +144,30 @@ def _design(scene: Scene, pair: MovingPair, level: str, clock: Clock) -> Dynamic
 def _missing(scene: Scene, design: DynamicsDesign) -> str:
     """Return what a run that was stopped leaves out, as a sentence; "" where it is complete."""
     simulate, stability, speeds = scene.simulate, scene.stability, scene.speeds
-    found = []
+    missing = []
     if simulate is not None and design.response is None:
-        found.append("the motion in time")
+        missing.append("the motion in time")
     elif simulate is not None and design.response is not None:
         reached = 1e-3 * design.response.time_ms[-1]
         if reached < (1.0 - 1e-9) * simulate.duration.value:
-            found.append(f"the motion after {reached:.4g} s")
+            missing.append(f"the motion after {reached:.4g} s")
         elif not design.response.met:
-            found.append("the error asked of the motion")
+            missing.append("the error asked of the motion")
     if stability is not None:
         rows = len(design.stability.depth) if design.stability else 0
         if rows < stability.depths:
-            found.append(f"{stability.depths - rows} of {stability.depths} rows of the map")
+            missing.append(f"{stability.depths - rows} of {stability.depths} rows of the map")
     if speeds is not None:
         done = len(design.speeds.speed_rpm) if design.speeds else 0
         if done < speeds.points:
-            found.append(f"{speeds.points - done} of {speeds.points} speeds")
+            missing.append(f"{speeds.points - done} of {speeds.points} speeds")
         if design.speeds and design.speeds.teeth_part and not design.speeds.falling_rms_mm:
-            found.append("falling speeds")
+            missing.append("falling speeds")
     if design.chosen is not None and set(design.chosen.before_mm) == {None}:
-        found.append("the motions of the file's own pair over speed")
+        missing.append("the motions of the file's own pair over speed")
     if design.chosen is not None and design.chosen.largest_multiplier is None:
-        found.append("the largest multiplier")
-    return f"Stopped early: {', '.join(found)} missing." if found else ""
+        missing.append("the largest multiplier")
+    return f"Stopped early: {', '.join(missing)} missing." if missing else ""
 
 
 def assumptions(scene: Scene) -> list[str]:
@@ -200,10 +200,10 @@ def assumptions(scene: Scene) -> list[str]:
 
 def idle(scene: Scene, method: str | None) -> dict[str, str]:
     """Return the options of `solve` that change nothing, each with the reason."""
-    found = {"top": "no next best answers are listed"}
+    unused = {"top": "no next best answers are listed"}
     if scene.optimise is None:
-        found |= {"seed": NOTHING, "gap": NOTHING}
-    return found
+        unused |= {"seed": NOTHING, "gap": NOTHING}
+    return unused
 
 
 def compared(scene: Scene) -> tuple[str, ...]:

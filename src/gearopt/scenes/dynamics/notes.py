@@ -21,26 +21,26 @@ def warnings(design: DynamicsDesign, module: float) -> list[str]:
 
     module [mm]: of the teeth.
     """
-    found, stability = _out_of_range(design, module), design.stability
+    sentences, stability = _out_of_range(design, module), design.stability
     if design.response is not None:
-        found += _of_response(design.response, design)
+        sentences += _of_response(design.response, design)
     if stability is not None and stability.here is not None and stability.here > 1.0 + UNSTABLE:
         held = "Its motion grows without end."
         if stability.limited_rms_mm is not None:
             limit = MICRO * stability.limited_rms_mm
             held = f"Teeth part, which limits the motion to an RMS of {limit:.3g} µm."
-        found.append(
+        sentences.append(
             f"The pair is unstable at its speed: the largest Floquet multiplier is "
             f"{stability.here:.4f} a mesh period. {held}"
         )
     if design.speeds is not None:
-        found += _of_speeds(design.speeds)
-    return found
+        sentences += _of_speeds(design.speeds)
+    return sentences
 
 
 def _out_of_range(design: DynamicsDesign, module: float) -> list[str]:
     """Return where axes or teeth move so far that the stiffness of the file is not theirs."""
-    rest, moved, found = design.equilibrium, design.response, list[str]()
+    rest, moved, sentences = design.equilibrium, design.response, list[str]()
     growths, pressed = [rest.centre_distance_growth_mm], [rest.deformation_mm]
     if moved is not None:
         pressed += moved.deformation_mm
@@ -54,54 +54,54 @@ def _out_of_range(design: DynamicsDesign, module: float) -> list[str]:
     if most > APART:
         far = f"The axes move apart by up to {most * module:.3g} mm, {most:.3g} modules"
         if most > DEPTH:
-            found.append(
+            sentences.append(
                 f"{far}: teeth are {DEPTH:g} modules deep in mesh, so that none touch there. "
                 "The model neglects this, and its numbers mean nothing from there on."
             )
         else:
-            found.append(
+            sentences.append(
                 f"{far}: the contact ratio falls, and with it the stiffness; the model keeps both "
                 f"as at rest. It holds up to about {APART:g} modules."
             )
     if least > CLEARANCE:
-        found.append(
+        sentences.append(
             f"The axes come together by up to {least * module:.3g} mm, {least:.3g} modules: tips "
             f"touch roots from some {CLEARANCE:g} modules on, which the model neglects."
         )
     if deep > APART:
-        found.append(
+        sentences.append(
             f"The mesh deforms by up to {deep * module:.3g} mm, {deep:.3g} modules: teeth would "
             "break long before, and their stiffness is that of small deformations."
         )
-    return found
+    return sentences
 
 
 def _of_response(response: Response, design: DynamicsDesign) -> list[str]:
-    found = _too_few(response.time_ms, design)
+    sentences = _too_few(response.time_ms, design)
     if response.error > response.error_asked:
-        found.append(
+        sentences.append(
             f"The error asked, {response.error_asked:.1e}, was not reached: the estimate is "
             f"{response.error:.1e}."
         )
     if response.steady_ms is not None:
-        found.append(
+        sentences.append(
             "Every impact of the teeth enlarges small differences: from "
             f"{response.steady_ms:.4g} ms on rounding alone causes more than the error asked, "
             "however short the steps. Until then the motion is known to that error; afterwards "
             "rely on the RMS and the spectrum, not on single peaks."
         )
     if response.jammed_ms is not None:
-        found.append(
+        sentences.append(
             f"The axes come together until the backlash is used up, first at "
             f"{response.jammed_ms:.4g} ms: both flanks are pressed at once, where the model of one "
             "flank at a time does not hold. The motion is wrong from there on."
         )
     if response.highest_mm > 0.0 and response.separations == 0:
-        found.append(
+        sentences.append(
             f"The deformation rises to {MICRO * response.highest_mm:.3g} µm: teeth would part "
             "there, and a mesh without backlash pulls instead."
         )
-    return found
+    return sentences
 
 
 def _too_few(times_ms: Sequence[float], design: DynamicsDesign) -> list[str]:
@@ -122,23 +122,23 @@ def _too_few(times_ms: Sequence[float], design: DynamicsDesign) -> list[str]:
 
 def _of_speeds(speeds: Speeds) -> list[str]:
     """Return where motions over speed are unstable, part, jam, or take more than a period."""
-    found, unstable = list[str](), [g > 1.0 + UNSTABLE for g in speeds.growth]
+    sentences, unstable = list[str](), [g > 1.0 + UNSTABLE for g in speeds.growth]
     falling = speeds.falling_rms_mm or speeds.rms_mm
     endless = [None in both for both in zip(speeds.rms_mm, falling, strict=True)]
     limited = [u and not e for u, e in zip(unstable, endless, strict=True)]
     if any(endless):
-        found.append(
+        sentences.append(
             f"At {ranges(speeds.speed_rpm, endless)} the pair is unstable: its motion grows "
             "without limit, so that there is no amplitude."
         )
     if any(limited):
-        found.append(
+        sentences.append(
             f"At {ranges(speeds.speed_rpm, limited)} contact is unstable: teeth part, "
             "which limits the amplitude."
         )
     pulls = [h is not None and h > 0.0 for h in speeds.highest_mm]
     if any(pulls) and not speeds.teeth_part:
-        found.append(
+        sentences.append(
             f"At {ranges(speeds.speed_rpm, pulls)} the deformation rises above zero: teeth would "
             "part there, and a mesh without backlash pulls instead."
         )
@@ -148,15 +148,15 @@ def _of_speeds(speeds: Speeds) -> list[str]:
     for way, repeats in ways.items():
         for count in sorted(set(repeats) - {1}, reverse=True):
             where = ranges(speeds.speed_rpm, [r == count for r in repeats])
-            told = (
+            takes = (
                 f"repeats only after {count}" if count else f"does not repeat within {MOST_PERIODS}"
             )
-            found.append(f"With {way} speed the motion {told} periods of the mesh at {where}.")
+            sentences.append(f"With {way} speed the motion {takes} periods of the mesh at {where}.")
     if speeds.jammed_rpm:
         jammed = [n in speeds.jammed_rpm for n in speeds.speed_rpm]
-        found.append(
+        sentences.append(
             f"At {ranges(speeds.speed_rpm, jammed)} the axes come together until the backlash is "
             "used up: both flanks are pressed at once, where the model of one flank at a time does "
             "not hold."
         )
-    return found
+    return sentences

@@ -184,7 +184,7 @@ class Scene(Table):
         rotors = [
             _rotor(table, torque) for table, torque in ((self.pinion, drive), (self.wheel, balance))
         ]
-        made = MovingPair(
+        undamped = MovingPair(
             rotors[0],
             rotors[1],
             mesh.pressure_angle.value,
@@ -193,8 +193,8 @@ class Scene(Table):
             backlash=None if mesh.backlash is None else mesh.backlash.value,
             mesh_frequency=self.mesh_frequency,
         )
-        damping = damping_of(float(mesh.damping), wave.mean, made.mesh_mass)
-        return MovingPair(**{**made.__dict__, "damping": damping})
+        damping = damping_of(float(mesh.damping), wave.mean, undamped.mesh_mass)
+        return MovingPair(**{**undamped.__dict__, "damping": damping})
 
     @property
     def mesh_frequency(self) -> float:

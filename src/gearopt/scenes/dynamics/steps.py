@@ -44,11 +44,11 @@ def beside(scene: Scene, other: Scene, result: Result) -> Problem:
 
     Where the range of speeds changes, those of the answer are stretched to it.
     """
-    best, task, own = result.design["chosen"], other.task, scene.task.speeds_rpm
-    if len(task.speeds_rpm) == len(own):
+    best, task, speeds = result.design["chosen"], other.task, scene.task.speeds_rpm
+    if len(task.speeds_rpm) == len(speeds):
         low, high = task.speeds_rpm[0], task.speeds_rpm[-1]
-        stretch = (high - low) / (own[-1] - own[0])
-        moved = tuple(low + stretch * (speed - own[0]) for speed in best["speed_rpm"])
+        stretch = (high - low) / (speeds[-1] - speeds[0])
+        moved = tuple(low + stretch * (speed - speeds[0]) for speed in best["speed_rpm"])
         task = replace(task, speeds_rpm=moved, harmonics=best["harmonics"])
     return begun(task, [best[name] for name in BEST])
 
@@ -61,14 +61,14 @@ def optimised(
     before: the pair of the file, to compare with. No design: the result says why.
     """
     assert scene.optimise is not None
-    task, made, in_mm = scene.task, None, in_part(clock.watch, "mm", factor=1.0 / MICRO)
+    task, least_vibration, in_mm = scene.task, None, in_part(clock.watch, "mm", factor=1.0 / MICRO)
     if impossible(task) is not None:
         result, _ = run(whole_problem(task), "screened", clock.left, ask.seed, in_mm)
     elif ask.method is None:
         inner = Clock(ask.budget, of_others(ask.watch), clock.start)
-        made = (exchange if scene.optimise.exchange else least)(task, inner, ask.seed)
-        task = task if made is None else made.task
-        result = _certified(task, made, inner, ask)
+        least_vibration = (exchange if scene.optimise.exchange else least)(task, inner, ask.seed)
+        task = task if least_vibration is None else least_vibration.task
+        result = _certified(task, least_vibration, inner, ask)
         clock.stopped = inner.stopped
     else:
         result, _ = run(whole_problem(task), ask.method, clock.left, ask.seed, in_mm, ask.gap)
@@ -76,7 +76,9 @@ def optimised(
     if result.value is None:
         return result, None, task
     values = tuple(float(v) for v in list(result.design.values())[: len(VARIABLES)])
-    best = response_over_speed(task, values, before, made.rounds if made else (), clock)
+    best = response_over_speed(
+        task, values, before, least_vibration.rounds if least_vibration else (), clock
+    )
     return _judged(result, best, task), best, task
 
 
@@ -120,32 +122,32 @@ def _judged(result: Result, best: Chosen, task: Task) -> Result:
             )
             result = replace(result, status="feasible", message=text)
         value = simulated
-    told = result.objective | {"value": value, "unit": "mm"}
+    objective = result.objective | {"value": value, "unit": "mm"}
     prices = {name: price / MICRO for name, price in result.multipliers.items()}
-    return replace(result, objective=told, limits=limits, multipliers=prices)
+    return replace(result, objective=objective, limits=limits, multipliers=prices)
 
 
 def told(best: Chosen, result: Result, periods: int) -> list[str]:
     """Return what must be known of the best design before its numbers."""
-    found, objective = [], result.value or 0.0
+    sentences, objective = [], result.value or 0.0
     if best.dense_maximum_mm > (1.0 + JUDGE_MARGIN) * objective:
         more = 100.0 * (best.dense_maximum_mm / objective - 1.0)
-        found.append(
+        sentences.append(
             f"Between the {len(best.speed_rpm)} speeds the deformation reaches "
             f"{MICRO * best.dense_maximum_mm:.4g} µm, {more:.0f} % above the objective: "
             "exchange = true adds the speeds of its maxima."
         )
     if best.parting_speeds:
-        found.append(
+        sentences.append(
             f"Teeth part at {best.parting_speeds} of {len(best.dense_rpm)} speeds: the "
             f"deformation rises to {MICRO * best.highest_mm:.3g} µm."
         )
     if best.longest_repeat > periods:
-        found.append(
+        sentences.append(
             f"A motion repeats after {best.longest_repeat} mesh periods, not after {periods}: "
             f"write periods = {best.longest_repeat}."
         )
-    return found
+    return sentences
 
 
 def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies:

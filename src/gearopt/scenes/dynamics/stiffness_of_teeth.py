@@ -52,9 +52,9 @@ def _others(scene: Scene, design: DriveDesign) -> Iterator[str]:
         ),
         ("[wheel] base_diameter", scene.wheel.base_diameter.value, pair.wheel.base_diameter, " mm"),
     )
-    for name, told, its, unit in rows:
-        if not math.isclose(told, float(its), rel_tol=SAME):
-            yield f"{name} is {told:.6g}{unit}, of the pair's file {float(its):.6g}{unit}"
+    for name, given, its, unit in rows:
+        if not math.isclose(given, float(its), rel_tol=SAME):
+            yield f"{name} is {given:.6g}{unit}, of the pair's file {float(its):.6g}{unit}"
 
 
 def _assumed(name: str, load: ContactLoad, force: float, relieved: bool) -> Iterator[str]:

@@ -154,8 +154,8 @@ def grown(moves: Moves, factor: float) -> Moves:
 def within(clock: Clock, seconds: float, share: float = 1.0) -> Clock:
     """Clock of so many seconds, or of a share of the time left if that is less."""
     left = clock.left.seconds
-    own = seconds if left is None else min(seconds, share * left)
-    return Clock(replace(clock.left, seconds=own if math.isfinite(own) else None), clock.watch)
+    limit = seconds if left is None else min(seconds, share * left)
+    return Clock(replace(clock.left, seconds=limit if math.isfinite(limit) else None), clock.watch)
 
 
 def smallest(
@@ -401,7 +401,7 @@ def singles(
     seconds: at most, to make them sharper.
     """
     rough = [(g, k) for g in groups if (k := smallest(asked, g.moves, g.bound)) is not None]
-    found, sharp = (
+    sufficient, sharp = (
         [],
         within(asked.clock, seconds, SHARE_OF_TIME if math.isfinite(seconds) else 1.0),
     )
@@ -412,8 +412,8 @@ def singles(
         kind = "even" if len(group.numbers) > 1 else "alone"
         kind = "less" if all(move.role == DUTY for move in group.numbers) else kind
         tried = _tried(asked, known, kind, group.what, sharp)
-        found += [] if tried is None else [tried]
-    return [_shortened(asked, *tried) for tried in found]
+        sufficient += [] if tried is None else [tried]
+    return [_shortened(asked, *tried) for tried in sufficient]
 
 
 def with_least(found: Sequence[Remedy], complete: bool) -> tuple[Remedy, ...]:

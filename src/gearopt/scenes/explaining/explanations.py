@@ -99,25 +99,25 @@ def explained(
 
     def solved(other: Any) -> float | None:
         try:
-            found = run(posed(other), None, clock.left, watch=clock.watch)[0]
+            optimum = run(posed(other), None, clock.left, watch=clock.watch)[0]
         except SolveError as reason:  # of a changed file: the answer stands
             undecided.append(str(reason))
             return None
-        return found.value if found.status in CERTAIN else None
+        return optimum.value if optimum.status in CERTAIN else None
 
     problem = posed(scene)
-    own, outcome = run(problem, None, clock.left, watch=clock.watch)
-    if own.value is None or own.status not in CERTAIN:
+    optimum, outcome = run(problem, None, clock.left, watch=clock.watch)
+    if optimum.value is None or optimum.status not in CERTAIN:
         return Explanation(result, (), (), binding(result), (), UNPROVEN, clock.seconds)
-    basis, held = Basis(own.value, solved), False
+    basis, held = Basis(optimum.value, solved), False
     if isinstance(problem, Problem) and outcome.x is not None:
         x, held = outcome.x, any(variable.discrete for variable, _ in problem.columns)
-        basis = at_point(own.value, solved, lambda other: _held(posed(other), x), scene, x)
-    found = of_design(scene, result, clock, basis, solved, "", eases(problem), held)
+        basis = at_point(optimum.value, solved, lambda other: _held(posed(other), x), scene, x)
+    of_optimum = of_design(scene, result, clock, basis, solved, "", eases(problem), held)
     if not undecided:
-        return found
+        return of_optimum
     gaps = f"{UNDECIDED}: {undecided[0]}"
-    return replace(found, message="; ".join(filter(None, (found.message, gaps))))
+    return replace(of_optimum, message="; ".join(filter(None, (of_optimum.message, gaps))))
 
 
 def _impossible(
@@ -220,23 +220,23 @@ def of_design(
         way = directions.get(number.key, 0)
         return stepped(scene, number, way, value, basis.solved, solved)
 
-    found = tuple(map(_sure, influences(scene, basis, clock, wanted, easing, near=near)))
-    late = f"the time sufficed for {len(found)} of {len(wanted)} sensitivities"
+    of_numbers = tuple(map(_sure, influences(scene, basis, clock, wanted, easing, near=near)))
+    late = f"the time sufficed for {len(of_numbers)} of {len(wanted)} sensitivities"
     late = late if clock.over else note
     if ranges:
         late = "; ".join(filter(None, (late, f"the same design is best with {', '.join(ranges)}")))
     words = HELD if held else f",{BASIS}"
-    return Explanation(result, (), (), binding(result), found, late, clock.seconds, words)
+    return Explanation(result, (), (), binding(result), of_numbers, late, clock.seconds, words)
 
 
 def _sure(found: Influence) -> Influence:
     """Return without a sensitivity by multipliers that is neither side's: it is not unique."""
     sides = [s for s in found.resolved if s is not None]
-    own = found.sensitivity
+    slope = found.sensitivity
     if (
-        own is None
+        slope is None
         or not sides
-        or any(abs(own - s) <= SLOPE_TOLERANCE * max(1.0, abs(s)) for s in sides)
+        or any(abs(slope - s) <= SLOPE_TOLERANCE * max(1.0, abs(s)) for s in sides)
     ):
         return found
     return replace(found, sensitivity=None)

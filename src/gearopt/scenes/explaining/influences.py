@@ -143,18 +143,18 @@ def influences(
     for number in wanted:
         if clock.over:
             return
-        own: float | None = None
+        by_chain_rule: float | None = None
         both: tuple[float | None, float | None] = (None, None)
         if basis is not None and sloped(number):
             down, up = near(number) if near else (basis.step, basis.step)
-            own = basis.chained(scene, number, min(POSED, max(down, up) or POSED))
+            by_chain_rule = basis.chained(scene, number, min(POSED, max(down, up) or POSED))
             solved = partial(basis.at, scene, number)
             low, high = (slope(basis.value, solved, 1.0 + s) if s else None for s in (-down, up))
             both = low, high
         step, brings = easing(number)
         if clock.over:  # the row may be half done
             return
-        yield Influence(number.key, number.text, own, both, step, brings)
+        yield Influence(number.key, number.text, by_chain_rule, both, step, brings)
 
 
 def stepped(
@@ -191,8 +191,8 @@ def _brings(
     other = moved(scene, number.path, new)
     if other is None:
         return "", None
-    found = solved(other)
-    return step, None if found is None or value == 0.0 else (found - value) / abs(value)
+    changed = solved(other)
+    return step, None if changed is None or value == 0.0 else (changed - value) / abs(value)
 
 
 def _whole(
@@ -202,11 +202,11 @@ def _whole(
 
     def brings(step: int) -> float | None:
         other = moved(scene, number.path, number.value + step)
-        found = None if other is None else solved(other)
-        return None if found is None or value == 0.0 else (found - value) / abs(value)
+        changed = None if other is None else solved(other)
+        return None if changed is None or value == 0.0 else (changed - value) / abs(value)
 
-    one = {way: brings(way) for way in ((direction,) if direction else (-1, 1))}
-    known = {way: b for way, b in one.items() if b is not None}
+    gains = {way: brings(way) for way in ((direction,) if direction else (-1, 1))}
+    known = {way: b for way, b in gains.items() if b is not None}
     if not known:
         return "", None
     way = min(known, key=lambda w: known[w])
@@ -214,20 +214,20 @@ def _whole(
         return f"{way:+d}", known[way]
     low, high, best = 1, 2, known[way]
     while high <= FARTHEST:
-        found = brings(way * high)
-        if found is None:
+        gain = brings(way * high)
+        if gain is None:
             return f"{way:+d}", known[way]
-        if found < -OBJECTIVE_TIE:
-            best = found
+        if gain < -OBJECTIVE_TIE:
+            best = gain
             break
         low, high = high, 2 * high
     else:
         return f"{way * low:+d}", best
     while high - low > 1:  # a wider range never does worse
         middle = (low + high) // 2
-        found = brings(way * middle)
-        if found is not None and found < -OBJECTIVE_TIE:
-            high, best = middle, found
+        gain = brings(way * middle)
+        if gain is not None and gain < -OBJECTIVE_TIE:
+            high, best = middle, gain
         else:
             low = middle
     return f"{way * high:+d}", best

@@ -53,8 +53,8 @@ class Number:
 
 def in_reverse(value: Any, path: Path) -> bool:
     """Return whether a range has its ends in the file the other way: diametral pitches."""
-    one = value[0] if isinstance(value, tuple) and value else value
-    return path[-1:] == ("module",) and isinstance(one, Quantity) and one.reciprocal
+    end = value[0] if isinstance(value, tuple) and value else value
+    return path[-1:] == ("module",) and isinstance(end, Quantity) and end.reciprocal
 
 
 def numbers(scene: BaseModel, defaults: bool = False) -> tuple[Number, ...]:
@@ -70,8 +70,8 @@ def _walk(value: Any, path: Path, defaults: bool) -> Iterator[Number]:
         for name in type(value).model_fields:
             if defaults or name in value.model_fields_set:
                 held = getattr(value, name)
-                one = held[0] if _is_one(type(value), name, held, (*path, name)) else held
-                yield from _walk(one, (*path, name), defaults)
+                entry = held[0] if _is_one(type(value), name, held, (*path, name)) else held
+                yield from _walk(entry, (*path, name), defaults)
     elif isinstance(value, tuple):
         items = list(enumerate(value))
         for k, item in items[::-1] if in_reverse(value, path) else items:
@@ -111,8 +111,8 @@ def put(scene: Any, path: Path, value: Any) -> Any:
     if isinstance(step, int):
         return scene[:step] + (put(scene[step], rest, value),) + scene[step + 1 :]
     here = getattr(scene, step)
-    one = value is not None and not isinstance(value, tuple)
-    pair = not rest and isinstance(here, tuple) and one
+    single = value is not None and not isinstance(value, tuple)
+    pair = not rest and isinstance(here, tuple) and single
     return scene.model_copy(update={step: put(here, rest, (value, value) if pair else value)})
 
 
@@ -141,8 +141,8 @@ def allowed(scene: BaseModel) -> bool:
 
 def content(scene: BaseModel) -> dict[str, Any]:
     """Content of the file of a scene, to be read again by its own rules."""
-    found: dict[str, Any] = _content(scene, ())
-    return found
+    tables: dict[str, Any] = _content(scene, ())
+    return tables
 
 
 def _content(value: Any, path: Path) -> Any:
@@ -153,8 +153,8 @@ def _content(value: Any, path: Path) -> Any:
             if name in value.model_fields_set and getattr(value, name) is not None
         }
     if isinstance(value, tuple):
-        found = [_content(v, path) for v in value]
-        return found[::-1] if in_reverse(value, path) else found
+        values = [_content(v, path) for v in value]
+        return values[::-1] if in_reverse(value, path) else values
     return written(value, path)
 
 

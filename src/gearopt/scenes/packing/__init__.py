@@ -145,11 +145,11 @@ class Scene(Table):
     def _consistent(self) -> "Scene":
         if not self.cylinder:
             raise refuse("is missing: one table [[cylinder]] per size", at=("cylinder",))
-        for k, own in enumerate(self.cylinder):
-            if own.at is not None and own.count > 1:
+        for k, table in enumerate(self.cylinder):
+            if table.at is not None and table.count > 1:
                 rule = "cannot be combined with at, which places one cylinder"
                 raise refuse(rule, 1, ("cylinder", k, "count"))
-            if own.layer is not None and own.layer > self._max_layers:
+            if table.layer is not None and table.layer > self._max_layers:
                 rule = f"is above the {self._max_layers} of [layers]"
                 raise refuse(rule, self._layer_for(k), ("cylinder", k, "layer"))
         if all(own.at is not None for own in self.cylinder):
@@ -242,17 +242,17 @@ class Scene(Table):
 
     def plan(self) -> Plan:
         """Return the packing as plain numbers."""
-        found: list[Cylinder] = []
-        for own in self.cylinder:
-            place = None if own.at is None else (own.at[0].value, own.at[1].value)
-            size = (own.diameter.value / 2.0, own.height.value, place, own.layer)
-            stem = own.name or f"d {own.diameter}"
-            for k in range(1, own.count + 1):
-                number = f" {k}" if own.count > 1 else ""
-                found.append(Cylinder(stem + number, *size))
+        cylinders: list[Cylinder] = []
+        for table in self.cylinder:
+            place = None if table.at is None else (table.at[0].value, table.at[1].value)
+            size = (table.diameter.value / 2.0, table.height.value, place, table.layer)
+            stem = table.name or f"d {table.diameter}"
+            for k in range(1, table.count + 1):
+                number = f" {k}" if table.count > 1 else ""
+                cylinders.append(Cylinder(stem + number, *size))
         width = self.container.width
         return Plan(
-            cylinders=tuple(found),
+            cylinders=tuple(cylinders),
             shape=self.container.shape,
             width=None if width is None else width.value,
             gap=self.container.gap.value,
@@ -343,8 +343,8 @@ def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
     clock = Clock(ask.budget, of_others(ask.watch))
     if result.value is None:
         return Explanation(result, message="no packing was found in time", seconds=clock.seconds)
-    found = places(packing_design(result.design))
-    layers, x = found.layer, packing_text.point_of_packing(scene.plan(), found)
+    positions = places(packing_design(result.design))
+    layers, x = positions.layer, packing_text.point_of_packing(scene.plan(), positions)
 
     def posed(other: Scene) -> Problem:
         return packing_text.smooth(other.plan(), layers).starting(x)

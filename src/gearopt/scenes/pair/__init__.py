@@ -38,19 +38,20 @@ def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
 
     With a table [relief] that is what the answer is about, and a sized pair is its part "gears".
     """
-    own = scene.relief is None
+    without_relief = scene.relief is None
     gears: tuple[Step[Scene], ...]
     if not scene.given:
-        gears = (Step(sized, own=own),)
+        gears = (Step(sized, own=without_relief),)
     elif scene.rating is None:
-        gears = (Step(given, own=own),)
+        gears = (Step(given, own=without_relief),)
     else:
         gears = tuple(
-            Step(run, _as_drive, own) for run in (rated.with_given_rating, rated.with_given_gears)
+            Step(run, _as_drive, without_relief)
+            for run in (rated.with_given_rating, rated.with_given_gears)
         )
-    if scene.given and own:
+    if scene.given and without_relief:
         without_method(ask, NOTHING)
-    relief: tuple[Step[Scene], ...] = () if own else (Step(with_relief),)
+    relief: tuple[Step[Scene], ...] = () if without_relief else (Step(with_relief),)
     return (*gears, Step(with_contact), *relief)
 
 
@@ -74,18 +75,18 @@ def _mesh(scene: Scene, result: Result) -> tuple[DriveDesign, PairMesh]:
 def with_contact(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Gears with their contact."""
     assert known is not None
-    design, made = _mesh(scene, known)
+    design, mesh = _mesh(scene, known)
     stage = design.stages[0]
-    contact = contact_of(scene, made, (stage.pinion_material, stage.wheel_material))
-    told = [
+    contact = contact_of(scene, mesh, (stage.pinion_material, stage.wheel_material))
+    assumptions = [
         *known.report.get("assumptions", []),
-        *contact_assumptions(scene, contact, made.elastic.pair),
+        *contact_assumptions(scene, contact, mesh.elastic.pair),
     ]
     return replace(
         known,
         name="rating" if known.name == "rating" else "pair",
         design=untyped(replace(design, contact=contact)),
-        report=known.report | {"assumptions": told},
+        report=known.report | {"assumptions": assumptions},
     )
 
 

@@ -31,19 +31,19 @@ NEAR_WHOLE = 0.02  # of a contact ratio to a whole number, where TE is discontin
 
 def contact_of(scene: Scene, made: PairMesh, materials: Materials) -> PairContact:
     """Return the contact of a pair of a file in mesh; materials: as of `mesh_of`."""
-    told = scene.sharing.coupling
-    name = "given" if isinstance(told, Quantity) else told
+    coupling = scene.sharing.coupling
+    name = "given" if isinstance(coupling, Quantity) else coupling
     pair = made.elastic.pair
     beyond = (*_chosen(scene, made), *_webs(scene, pair, materials), *_validity(made, name))
-    found = contact(made, name, _by_iso(scene, pair, made.elastic, materials), beyond)
-    most = max(one.largest_contact_stress_MPa for one in found.loads)
+    computed = contact(made, name, _by_iso(scene, pair, made.elastic, materials), beyond)
+    most = max(one.largest_contact_stress_MPa for one in computed.loads)
     if most <= BORNE:
-        return found
+        return computed
     said = (
         f"The contact stress reaches {most:,.0f} MPa, and hardened steel yields from "
         f"{BORNE:,.0f} MPa on: the gears are too small, or the load in the file is wrong."
     )
-    return replace(found, validity=(*found.validity, said))
+    return replace(computed, validity=(*computed.validity, said))
 
 
 def mesh_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> PairMesh:
@@ -56,20 +56,20 @@ def mesh_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> Pa
         raise SolveError(f"there is no contact to compute: {fatal[0][0].lower()}{fatal[0][1:-1]}")
     asked, duty, relief = scene.sharing, scene.duty, scene.relief
     elastic = elastic_pair(scene, pair, materials)
-    told = asked.coupling
+    coupling = asked.coupling
     moved = torque(duty.power.value, duty.input_speed.value)
     loads = sorted({float(load) for load in (*asked.loads, *((relief and relief.loads) or ()))})
     level = level_of(scene, elastic)
     if excluded := refused(elastic, level):
         raise SolveError(f'[sharing] level = "{level}" does not suit the gears. {excluded[0]}')
     try:
-        coupled = told.value if isinstance(told, Quantity) else COUPLINGS[told](elastic)
-        made = PairMesh.of(elastic, level, moved, coupled, asked.positions, loads)
+        coupled = coupling.value if isinstance(coupling, Quantity) else COUPLINGS[coupling](elastic)
+        mesh = PairMesh.of(elastic, level, moved, coupled, asked.positions, loads)
     except ImportError as reason:  # of finite elements, an extra
         raise SolveError(str(reason)) from None
-    _check_coupling(made)
-    _check_length(scene, made)
-    return made
+    _check_coupling(mesh)
+    _check_length(scene, mesh)
+    return mesh
 
 
 def _check_length(scene: Scene, made: PairMesh) -> None:
@@ -161,8 +161,8 @@ def _chosen(scene: Scene, made: PairMesh) -> Iterator[str]:
 
 def _webs(scene: Scene, pair: GearPair, materials: Materials) -> Iterator[str]:
     """Yield gears with rims on webs, of which the models know only the bore."""
-    made = blanks_of(scene, pair, materials)
-    for name, blank, gear in zip(MEMBERS, made, pair.gears, strict=True):
+    bodies = blanks_of(scene, pair, materials)
+    for name, blank, gear in zip(MEMBERS, bodies, pair.gears, strict=True):
         web, rim = blank.web(gear) or (1.0, 0.0)
         if web < 1.0:
             yield (
@@ -178,9 +178,9 @@ def _validity(made: PairMesh, coupling: str) -> Iterator[str]:
             f"{made.level} has no torsion of the rings, which the coupling by {coupling} has: "
             'stiffness and coupling are then of two different bodies. Write coupling = "none".'
         )
-    told = doubts(made.elastic, made.level)
-    yield from told
-    thin = any("tips" in sentence for sentence in told)
+    sentences = doubts(made.elastic, made.level)
+    yield from sentences
+    thin = any("tips" in sentence for sentence in sentences)
     for flaw in flaws(made.elastic.pair):
         if flaw.name != "interference" and not (thin and flaw.name == "thin tip"):
             yield flaw.sentence

@@ -39,9 +39,9 @@ def _light(line: float) -> Iterator[str]:
 
 def _held(scene: Scene, made: PairContact) -> Iterator[str]:
     """Yield where a gear without a bore is taken to be held."""
-    own = scene.drive.stage[0]
+    table = scene.drive.stage[0]
     for member in MEMBERS:
-        if not with_shared(getattr(own, member), scene.gears).bore:
+        if not with_shared(getattr(table, member), scene.gears).bore:
             held = getattr(made, f"{member}_bore_mm")
             yield (
                 f"The {member} has no bore in the file: it is taken as held at {held:.4g} mm, "

@@ -19,16 +19,16 @@ def check_pair(pair: GearPair, own: StageTable, gears: Gears) -> None:
     """Refuse gears without contact that goes on, and bores without room; own, gears: tables."""
     _check_flaws(pair, own, gears)
     for member, gear in zip(MEMBERS, pair.gears, strict=True):
-        made = blank(with_shared(getattr(own, member), gears), None)
+        body = blank(with_shared(getattr(own, member), gears), None)
         root = float(gear.root_diameter)
-        if made.bore and made.hub >= root:
+        if body.bore and body.hub >= root:
             place: Place = ("stage", 0, member, "bore")
             place = place if getattr(own, member).bore is not None else ("gears", "bore")
             rule = (
-                f"leaves its hub, {made.hub:.4g} mm, no room inside the root circle of the "
+                f"leaves its hub, {body.hub:.4g} mm, no room inside the root circle of the "
                 f"{member}, {root:.4g} mm"
             )
-            raise refuse(rule, f"{0.5 * root / made.hub_over_bore:.2g} mm", place, "sample")
+            raise refuse(rule, f"{0.5 * root / body.hub_over_bore:.2g} mm", place, "sample")
 
 
 def check_level(pair: GearPair, level: str | None) -> None:
@@ -46,8 +46,8 @@ def _check_flaws(pair: GearPair, own: StageTable, gears: Gears) -> None:
 
     Interference alone is left: contact is computed where there are flanks.
     """
-    found = flaws(pair)
-    wrong = [f for f in found if f.fatal or f.misfit and f.name != "interference"]
+    every = flaws(pair)
+    wrong = [f for f in every if f.fatal or f.misfit and f.name != "interference"]
     if not wrong:
         return
     flaw = wrong[0]
@@ -60,7 +60,7 @@ def _check_flaws(pair: GearPair, own: StageTable, gears: Gears) -> None:
         raise refuse(said, 0.38, _tool(flaw.sentence, own), "sample")
     if own.centre_distance is not None and flaw.name != "usable contact ratio below 1":
         raise refuse(said, f"{pair.reference_distance:.4g} mm", ("stage", 0, "centre_distance"))
-    for weak in found:  # an undercut gear: the sentence has the shift that it needs
+    for weak in every:  # an undercut gear: the sentence has the shift that it needs
         if weak.name == "undercut":
             member = next(m for m in MEMBERS if m in weak.sentence)
             rule = f"{said}. {weak.sentence.rstrip('.')}"

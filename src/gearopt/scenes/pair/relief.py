@@ -111,8 +111,8 @@ def _ends(problem: Problem, point: Array) -> list[str]:
     most, least = (high > low) & (point >= high - near), (high > low) & (point <= low + near)
     said = []
     for k, name in enumerate(("pinion", "wheel")):
-        found = {"deep": most[k], "long": most[k + 2], "short": least[k + 2] & (point[k] > 0.0)}
-        words = [f"as {word}" for word, there in found.items() if there]
+        reached = {"deep": most[k], "long": most[k + 2], "short": least[k + 2] & (point[k] > 0.0)}
+        words = [f"as {word}" for word, there in reached.items() if there]
         if words:
             rule = "as the range in [relief] allows: a wider one may give less."
             said.append(f"The relief of the {name} is {' and '.join(words)} {rule}")
@@ -145,9 +145,9 @@ def _free_problem(asked: ReliefTable, mesh: Mesh) -> Problem:
             'a free shape is searched for contact ratios below 2: write shape = "linear", or '
             "another one, in [relief]"
         )
-    made = free_problem(mesh, Shape(asked.amount[1].value))
-    keyed = tuple(replace(v, key=KEYS["amount"]) for v in made.variables)
-    return replace(made, variables=keyed)
+    problem = free_problem(mesh, Shape(asked.amount[1].value))
+    keyed = tuple(replace(v, key=KEYS["amount"]) for v in problem.variables)
+    return replace(problem, variables=keyed)
 
 
 def _united(result: Result, minimise: str) -> Result:
@@ -170,8 +170,8 @@ def _posed(asked: ReliefTable, mesh: Mesh, ranges: Ranges) -> Problem:
     """Return what is minimised: a criterion, or its worst case within tolerances."""
     if not asked.robust:
         return _problem(asked, mesh, ranges)
-    made = robust_problem(mesh, ranges, _tolerance(asked, mesh))
-    return replace(made, variables=_keyed(made))
+    problem = robust_problem(mesh, ranges, _tolerance(asked, mesh))
+    return replace(problem, variables=_keyed(problem))
 
 
 def _keyed(problem: Problem) -> tuple[Var, ...]:
@@ -192,13 +192,13 @@ def _problem(
     some, by the latter.
     """
     names = names or {asked.minimise: asked.minimise}
-    made = parametric.problem(mesh, ranges, tuple(names.values()), dict(most or {}))
+    unkeyed = parametric.problem(mesh, ranges, tuple(names.values()), dict(most or {}))
 
     def evaluate(x: Any, p: Any) -> Terms:
-        found = made.evaluate(x, p)
-        return replace(found, minimise={n: found.minimise[own] for n, own in names.items()})
+        terms = unkeyed.evaluate(x, p)
+        return replace(terms, minimise={n: terms.minimise[own] for n, own in names.items()})
 
-    return replace(made, variables=_keyed(made), evaluate=evaluate)
+    return replace(unkeyed, variables=_keyed(unkeyed), evaluate=evaluate)
 
 
 def model(scene: Scene, made: PairMesh) -> Model:
@@ -245,8 +245,8 @@ def traded(scene: Scene, made: PairMesh, names: Sequence[str]) -> Tradeoff:
     def drawn(x: Array) -> dict[str, Any]:
         removed = Removed.of(mesh, parametric.at_point(x, ranges))
         relief = described(made, removed, asked.minimise, loads_of(scene))
-        found: dict[str, Any] = untyped(relief)
-        return found
+        design: dict[str, Any] = untyped(relief)
+        return design
 
     listed = tuple(Objective(name, units[name]) for name in names)
     chosen = {name: known[name] for name in names}

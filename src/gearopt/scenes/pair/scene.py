@@ -64,11 +64,11 @@ class Scene(Table):
     @property
     def drive(self) -> Drive:
         """Return the pair as a drive of one stage, with the ranges that the file leaves out."""
-        own = self._tables()
-        limits = own.pop("limits", None) or Limits.open()
-        names = own.keys() | ({"limits"} if limits.model_fields_set else set())
-        made: Drive = OneStage.model_construct(names, limits=limits, **own)
-        return made
+        tables = self._tables()
+        limits = tables.pop("limits", None) or Limits.open()
+        names = tables.keys() | ({"limits"} if limits.model_fields_set else set())
+        drive: Drive = OneStage.model_construct(names, limits=limits, **tables)
+        return drive
 
     @property
     def given(self) -> bool:
@@ -126,20 +126,22 @@ class Scene(Table):
     def _tables(self) -> dict[str, Any]:
         """Return the tables that a drive has, of a pair to be sized with usual ranges."""
         names = self.model_fields_set & OneStage.model_fields.keys()
-        found = {name: getattr(self, name) for name in names}
-        return found if self.given else found | self._ranges()
+        tables = {name: getattr(self, name) for name in names}
+        return tables if self.given else tables | self._ranges()
 
     def _ranges(self) -> dict[str, Any]:
         """Return the tables of a pair that is sized, completed by usual ranges."""
-        own = self.stage[0] if self.stage else StageTable()
+        stage = self.stage[0] if self.stage else StageTable()
         open_: dict[str, Any] = {}
         gears = self.gears
-        if not (own.face_width or own.face_width_over_diameter or gears.face_width_over_diameter):
+        if not (
+            stage.face_width or stage.face_width_over_diameter or gears.face_width_over_diameter
+        ):
             open_["face_width_over_diameter"] = OVER_DIAMETER
-            if not (own.face_width_over_module or gears.face_width_over_module):
+            if not (stage.face_width_over_module or gears.face_width_over_module):
                 open_["face_width_over_module"] = OVER_MODULE
         return {
-            "stage": (own.model_copy(update=open_),),
+            "stage": (stage.model_copy(update=open_),),
             "limits": self.limits or Limits(pinion_teeth=PINION_TEETH),
             "teeth": self.teeth or Teeth(),
         }

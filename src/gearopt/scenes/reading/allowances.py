@@ -19,15 +19,15 @@ def allowances(example: str) -> Reads:
 
     Two allowances: "+0.02/-0.01 mm", "±0.01 mm" or a list of both.
     """
-    one, signed = (quantity("length", example, zero=not s, signed=s) for s in (False, True))
+    unsigned, signed = (quantity("length", example, zero=not s, signed=s) for s in (False, True))
 
     def read(value: Any, example: Any) -> Quantity | tuple[Quantity, Quantity]:
         if isinstance(value, Quantity | tuple):
             return value  # read before
         ends = texts_of(value)
         if ends is None:
-            found: Quantity = one.reader(value, example)
-            return found
+            length: Quantity = unsigned.reader(value, example)
+            return length
         if len(ends) != 2:
             raise refuse("is neither a length nor two allowances", ["-0.01 mm", "0.02 mm"])
         low, high = sorted((signed.reader(e, example) for e in ends), key=lambda q: q.value)
@@ -37,7 +37,7 @@ def allowances(example: str) -> Reads:
 
     pair = {"type": "array", "items": signed.schema, "minItems": 2, "maxItems": 2}
     texts = {"type": "string", "pattern": "/|±"}
-    return Reads(read, example, {"anyOf": [one.schema, texts, pair]})
+    return Reads(read, example, {"anyOf": [unsigned.schema, texts, pair]})
 
 
 def texts_of(value: Any) -> list[Any] | None:

@@ -45,16 +45,16 @@ def changed(content: Mapping[str, Any], changes: Mapping[str, Any], file: str) -
     is. A key that the file lacks is added; None removes it. SceneError for what is no key, what
     leads nowhere and what is not there to be removed; values are for the readers of the kind.
     """
-    found: dict[str, Any] = _copied(dict(content))
+    copy: dict[str, Any] = _copied(dict(content))
     places = [(key, _place(key, file), value) for key, value in changes.items()]
     for key, place, value in places:
         if value is not None:
-            _set(found, place, as_written(value), key, file)
+            _set(copy, place, as_written(value), key, file)
     gone = [(key, place) for key, place, value in places if value is None]
-    holders = [(_found(found, place, key, file), place[-1]) for key, place in gone]
+    holders = [(_found(copy, place, key, file), place[-1]) for key, place in gone]
     for here, step in sorted(holders, key=lambda one: str(one[1]).zfill(6), reverse=True):
         del here[step]
-    return found
+    return copy
 
 
 def _place(key: Any, file: str) -> Place:

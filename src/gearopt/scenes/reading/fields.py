@@ -159,12 +159,12 @@ def quantity(
             rule = f"has a {sign}, which may separate thousands or decimals"
             raise refuse(rule, f'Write "{two[0]}" or "{two[1]}"', action="tell")
         try:
-            found = units.parse(value, dimension)
+            parsed = units.parse(value, dimension)
         except ValueError as reason:
             raise refuse(str(reason), usable(meant(value, dimension, likely))) from None
-        if rule := fault(found):
+        if rule := fault(parsed):
             raise refuse(rule, usable(value.strip().removeprefix("-")))
-        return found
+        return parsed
 
     alternatives = "|".join(map(units.pattern, units.UNITS[dimension]))
     sign = "[+-]?" if signed else r"\+?"
@@ -191,10 +191,10 @@ def _likely_thousands(text: str, usual: Quantity) -> bool:
     if usual.dimension not in GROUPED:
         return False
     try:
-        found = units.parse(text, usual.dimension).value
+        amount = units.parse(text, usual.dimension).value
     except ValueError:
         return False
-    return 0.0 < found <= usual.value / FAR_OFF
+    return 0.0 < amount <= usual.value / FAR_OFF
 
 
 def number(
@@ -222,25 +222,25 @@ def number(
         if fraction and isinstance(value, str) and (parts := _FRACTION.fullmatch(value)):
             if not int(parts[2]):
                 raise refuse("is divided by zero")
-            found = Fraction(int(parts[1]), int(parts[2]))
+            parsed = Fraction(int(parts[1]), int(parts[2]))
         elif isinstance(value, str):
             try:
-                found = units.parse(value, "fraction").exact[0]
+                parsed = units.parse(value, "fraction").exact[0]
             except ValueError:
                 raise refuse(f"is not {sort}") from None
             if not percent:
-                raise refuse("is a text, not a number", float(found) if inside(found) else None)
+                raise refuse("is a text, not a number", float(parsed) if inside(parsed) else None)
         elif not _is_number(value):
             raise refuse(f"is not {sort}")
         elif not Decimal(value).is_finite():
             raise refuse("is not a finite number")
         else:
-            found = LARGEST if _is_far(value) else Fraction(value)
-        if found and not SMALLEST < abs(found) < LARGEST:
+            parsed = LARGEST if _is_far(value) else Fraction(value)
+        if parsed and not SMALLEST < abs(parsed) < LARGEST:
             raise refuse(OUT_OF_RANGE)
-        if not inside(found):
-            raise refuse(f"is not {above} {float(maximum):.7g}", slip(value, found))
-        return found
+        if not inside(parsed):
+            raise refuse(f"is not {above} {float(maximum):.7g}", slip(value, parsed))
+        return parsed
 
     def slip(value: Any, found: Fraction) -> Any:
         if percent and _is_number(value) and inside(found / 100):

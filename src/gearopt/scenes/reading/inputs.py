@@ -36,11 +36,11 @@ class Input:
         """Return the result with its design; SceneError where solving the file finds none."""
         if isinstance(self.what, Result):
             return self.what
-        own = replace(ask, method=None, top=1)
-        found = kind_named(self.kind).solve(self.what, own)
-        if found.design:
-            return found
-        rule = f"its design is an input here, and it has none ({found.status}: {found.message})"
+        default = replace(ask, method=None, top=1)
+        result = kind_named(self.kind).solve(self.what, default)
+        if result.design:
+            return result
+        rule = f"its design is an input here, and it has none ({result.status}: {result.message})"
         raise SceneError(self.file, "", "", rule, f"See what `gearopt solve {self.file}` says")
 
 
@@ -71,11 +71,11 @@ def result_of(kind: str) -> Reads:
         what: Result | BaseModel
         if kept:
             what = result = _kept(data, wrong)
-            found = result.scene or "a problem of one's own"
+            file_kind = result.scene or "a problem of one's own"
         else:
-            found, what = read_scene(data, str(path), before)
-        if found != kind:
-            raise wrong(f"is of kind {found}, not {kind}")
+            file_kind, what = read_scene(data, str(path), before)
+        if file_kind != kind:
+            raise wrong(f"is of kind {file_kind}, not {kind}")
         return Input(value, hashlib.sha256(data).hexdigest(), kind, what)
 
     return Reads(read, f"{kind}.json", {"type": "string"}, opens=True)

@@ -19,17 +19,17 @@ class _Schema(GenerateJsonSchema):
 
 def json_schema(kind: str) -> dict[str, Any]:
     """Return the JSON schema (2020-12) of a whole file of a kind."""
-    found: dict[str, Any] = kind_named(kind).scene.model_json_schema(schema_generator=_Schema)
+    schema: dict[str, Any] = kind_named(kind).scene.model_json_schema(schema_generator=_Schema)
     head = {
         "gearopt": {"const": FORMAT, "description": "Format version of the file"},
         "kind": {"const": kind, "description": "Kind of problem"},
     }
-    found["properties"] = head | found["properties"]
-    found["required"] = ["gearopt", "kind", *found.get("required", [])]
-    found["patternProperties"] = {"^x-": {}}
-    found["$schema"] = "https://json-schema.org/draft/2020-12/schema"
-    found["title"] = f"gearopt {kind}"
-    return found
+    schema["properties"] = head | schema["properties"]
+    schema["required"] = ["gearopt", "kind", *schema.get("required", [])]
+    schema["patternProperties"] = {"^x-": {}}
+    schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
+    schema["title"] = f"gearopt {kind}"
+    return schema
 
 
 def reference(kind: str) -> str:

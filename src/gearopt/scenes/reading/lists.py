@@ -22,8 +22,8 @@ def mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
             item.reader(value, item.example)
         except PydanticCustomError as wrong:
             context = wrong.context or {}
-            told = context["action"] == "tell"  # a sentence, no value
-            first, value = first or context["rule"], None if told else context["write"]
+            without_value = context["action"] == "tell"  # a sentence, no value
+            first, value = first or context["rule"], None if without_value else context["write"]
         right.append(value)
     return right, first
 
@@ -48,8 +48,8 @@ def span(item: Reads, example: Any, single: bool = False) -> Reads:
 
     def ordered(values: list[Any]) -> list[Any]:
         """Return two right values as a file has them: by number, also of diametral pitches."""
-        found = [item.reader(value, item.example) for value in values]
-        numbers = [_number(one, all(map(_reciprocal, found))) for one in found]
+        ends = [item.reader(value, item.example) for value in values]
+        numbers = [_number(one, all(map(_reciprocal, ends))) for one in ends]
         return values if numbers[0] <= numbers[1] else values[::-1]
 
     def read(value: Any, example: Any) -> tuple[Any, Any]:
@@ -120,8 +120,8 @@ def either(names: dict[str, Any], item: Reads) -> Reads:
             write = [item.example if entry is None else entry for entry in right]
             raise refuse(f"has an entry that {rule}", write)
         sizes: dict[Fraction, Quantity] = {}
-        for found in (item.reader(entry, item.example) for entry in value):
-            sizes.setdefault(found.exact[0], found)
+        for size in (item.reader(entry, item.example) for entry in value):
+            sizes.setdefault(size.exact[0], size)
         return tuple(sizes.values())
 
     items = {"type": "array", "items": item.schema, "minItems": 1}

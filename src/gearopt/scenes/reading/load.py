@@ -58,17 +58,19 @@ class Loaded:
 def kind_named(name: str) -> Kind[Any]:
     """Return a kind of problem file; SolveError names one that cannot be imported."""
     try:
-        found: Kind[Any] = import_module(f"{gearopt.scenes.__name__}.{name}").KIND
+        kind: Kind[Any] = import_module(f"{gearopt.scenes.__name__}.{name}").KIND
     except (ImportError, SyntaxError, NameError, AttributeError, TypeError) as reason:
         raise SolveError(f"kind {name!r} cannot be imported: {reason}") from reason
-    return found
+    return kind
 
 
 def examples() -> dict[str, str]:
     """Return problem files to start from: one of each kind, and others that kinds have by name."""
     listed = [kind_named(name).examples for name in kinds()]
-    own = [dict([next(iter(of_kind.items()))]) for of_kind in listed]
-    return {name: each.text for of_kind in (*own, *listed) for name, each in of_kind.items()}
+    first_of_kinds = [dict([next(iter(of_kind.items()))]) for of_kind in listed]
+    return {
+        name: each.text for of_kind in (*first_of_kinds, *listed) for name, each in of_kind.items()
+    }
 
 
 def kind_of(scene: BaseModel) -> str:
@@ -167,8 +169,8 @@ def _name_a_file(path: str | Path) -> str:
     except OSError:
         names = []
     close = names[:1] if folder == Path(path) else get_close_matches(Path(path).name, names, n=1)
-    found = f"Did you mean {folder / close[0]}? " if close else ""
-    return f"{found}`gearopt new drive` prints a file to start from"
+    suggestion = f"Did you mean {folder / close[0]}? " if close else ""
+    return f"{suggestion}`gearopt new drive` prints a file to start from"
 
 
 def read(data: bytes, file: str = "<text>", before: tuple[Path, ...] = ()) -> tuple[str, BaseModel]:
@@ -285,9 +287,9 @@ def _several(text: str, message: str) -> str:
     """Return the remedy where the line of the message has [name], as other tables have too."""
     at = re.search(r"\(at line (\d+)", message)
     lines = text.splitlines()
-    if at is None or not (found := re.match(r"\s*\[([\w-]+)\]", lines[int(at[1]) - 1])):
+    if at is None or not (header := re.match(r"\s*\[([\w-]+)\]", lines[int(at[1]) - 1])):
         return ""
-    name = found[1]
+    name = header[1]
     if len(re.findall(rf"(?m)^\s*\[+{re.escape(name)}\]", text)) < 2:
         return ""
     double = any(
@@ -302,8 +304,8 @@ def _comma(text: str, message: str) -> str:
     """Return the remedy where the line of the message has a number with a decimal comma."""
     at = re.search(r"\(at line (\d+)", message)
     line = text.splitlines()[int(at[1]) - 1] if at else ""
-    found = re.match(r"\s*[\w.-]+\s*=\s*([+-]?[0-9]+),([0-9]+)", line)
-    return f"The decimal sign is a point: {found[1]}.{found[2]}" if found else ""
+    assignment = re.match(r"\s*[\w.-]+\s*=\s*([+-]?[0-9]+),([0-9]+)", line)
+    return f"The decimal sign is a point: {assignment[1]}.{assignment[2]}" if assignment else ""
 
 
 _SYNTAX = {  # part of the parser's message -> remedy

@@ -27,9 +27,9 @@ def wrong_value(
 
     sample: `write` is one right value of many, not what the user meant.
     """
-    found = "" if value is None else short(value)
+    shown = "" if value is None else short(value)
     fix = Fix("set", key, toml_text(write))
-    return SceneError(file, key, found, rule, _instruction(key, write, sample), fix)
+    return SceneError(file, key, shown, rule, _instruction(key, write, sample), fix)
 
 
 def _instruction(key: str, write: Any, sample: bool) -> str:
@@ -77,15 +77,15 @@ def translate(
 
 def _order(content: Any, place: tuple[Any, ...]) -> list[int]:
     """Return where a place stands in a file; what is missing stands at the end of its table."""
-    found: list[int] = []
+    positions: list[int] = []
     for part in place:
         if isinstance(content, dict):
-            found.append(list(content).index(part) if part in content else len(content))
+            positions.append(list(content).index(part) if part in content else len(content))
             content = content.get(part)
         elif isinstance(content, list) and isinstance(part, int):
-            found.append(part)
+            positions.append(part)
             content = content[part] if part < len(content) else None
-    return found
+    return positions
 
 
 def _mistake(
@@ -100,7 +100,7 @@ def _mistake(
     context: dict[str, Any] = error.get("ctx", {})
     if error["type"] == "extra_forbidden":
         return _unknown(file, kind, model, content, place)
-    value, found = _lookup(content, place)
+    value, present = _lookup(content, place)
     key = dotted(place)
     if error["type"] == "missing":
         return wrong_value(file, key, None, "is missing", example_of(model, place), sample=True)
@@ -109,7 +109,7 @@ def _mistake(
     if name := _near_name(model, content, place):  # [[stages]] for [[stage]]
         return wrong_name(file, key, name)
     rule, write, action = context["rule"], context["write"], context["action"]
-    shown = short(value) if found else ""
+    shown = short(value) if present else ""
     if action == "remove":
         return SceneError(file, key, shown, rule, "Remove it", Fix("remove", key))
     if action == "tell":
@@ -179,8 +179,8 @@ def _unknown(
     rule = f"{what}; known here: {', '.join(known[:LISTED])}"
     if len(known) > LISTED:
         rule += f" and {len(known) - LISTED} more (`gearopt schema {kind} --table`)"
-    own = " (tables of your own are named [x-...])" if len(place) == 1 else ""
-    return SceneError(file, shown, "", rule, f"Remove it{own}", Fix("remove", key))
+    hint = " (tables of your own are named [x-...])" if len(place) == 1 else ""
+    return SceneError(file, shown, "", rule, f"Remove it{hint}", Fix("remove", key))
 
 
 def _homes(model: type[BaseModel], name: str) -> list[str]:
@@ -215,11 +215,11 @@ def _near_name(
 
     taken: whether the name is one that the table has already, or one that it lacks.
     """
-    value, found = _lookup(content, place)
+    value, present = _lookup(content, place)
     parent, _ = _lookup(content, place[:-1])
     fields = _table_at(model, place[:-1]).model_fields
     fitting = [f for f in fields if _fits(value, table_of(fields[f].annotation))]
-    if not found or isinstance(place[-1], int) or place[-1] in fitting:
+    if not present or isinstance(place[-1], int) or place[-1] in fitting:
         return None
     return near(place[-1], [f for f in fitting if (f in parent) == taken])
 
@@ -281,8 +281,8 @@ def example_of(model: type[BaseModel], place: tuple[Any, ...]) -> Any:
     texts = [example.text for example in kind.examples.values()]
     at = tuple(0 if isinstance(part, int) else part for part in place)
     each = (_lookup(tomllib.loads(text, parse_float=Decimal), at) for text in texts)
-    shown, found = next((one for one in each if one[1]), (None, False))
+    shown, present = next((one for one in each if one[1]), (None, False))
     required = {
         n: example_of(table, (n,)) for n, f in table.model_fields.items() if f.is_required()
     }
-    return shown if found else required
+    return shown if present else required

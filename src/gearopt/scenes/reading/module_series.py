@@ -15,13 +15,13 @@ def module() -> Reads:
     length = quantity("module", "2 mm", "1 m")
 
     def read(value: Any, example: Any) -> Quantity:
-        found: Quantity = length.reader(value, example)
-        if found.unit in ("in", "ft") and found.value > LARGEST_IN_INCHES:
-            number = f"{float(found.number):.12g}"
-            rule = f"is a module of {found.value:.4g} mm"
+        size: Quantity = length.reader(value, example)
+        if size.unit in ("in", "ft") and size.value > LARGEST_IN_INCHES:
+            number = f"{float(size.number):.12g}"
+            rule = f"is a module of {size.value:.4g} mm"
             way = f'Write "{number} 1/in" for a diametral pitch of {number}'
             raise refuse(rule, way, action="tell")
-        return found
+        return size
 
     return Reads(read, length.example, length.schema)
 

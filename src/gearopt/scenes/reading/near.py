@@ -30,8 +30,8 @@ def near(word: str, names: Iterable[str]) -> str | None:
     typed = re.sub(r"[-\s]+", "_", word[:80].lower())
     close = (name for name in get_close_matches(typed, plain) if _misspelt(typed, name))
     begun = [name for name in plain if len(word) > 2 and name.startswith(f"{word.lower()} ")]
-    found = next(close, begun[0] if len(begun) == 1 else None)
-    return None if found is None else plain[found]
+    closest = next(close, begun[0] if len(begun) == 1 else None)
+    return None if closest is None else plain[closest]
 
 
 def _misspelt(typed: str, name: str) -> bool:

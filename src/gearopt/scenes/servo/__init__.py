@@ -146,18 +146,22 @@ def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
     def answer(other: Scene) -> Result:
         return KIND.solve(other, replace(ask, budget=clock.left, watch=clock.watch))
 
-    found = explained(scene, result, clock, answer, lambda other: _posed(other, boxed=True)[0])
+    explanation = explained(
+        scene, result, clock, answer, lambda other: _posed(other, boxed=True)[0]
+    )
     if scene.train is None and scene.duty is None:
-        found = replace(found, conflict=tuple(named(n, scene.sources) for n in found.conflict))
-    return found
+        explanation = replace(
+            explanation, conflict=tuple(named(n, scene.sources) for n in explanation.conflict)
+        )
+    return explanation
 
 
 def idle(scene: Scene, method: str | None) -> dict[str, str]:
     """Return the options of `solve` that change nothing, each with the reason."""
-    found = {"top": "the trains of the Pareto front are listed as they are"}
+    unused = {"top": "the trains of the Pareto front are listed as they are"}
     if scene.train is None:
-        found["top"] = "without [train] there are no trains to list"
-    return found | unseeded(method)
+        unused["top"] = "without [train] there are no trains to list"
+    return unused | unseeded(method)
 
 
 def compared(scene: Scene) -> tuple[str, ...]:

@@ -171,13 +171,13 @@ def described(scene: Scene, gears: Pairs) -> TrainDesign:
     n, table = first.ratio * second.ratio, scene.train
     train = None if table is None else scene.servo_train()
     error = sum(s.most * sensitivity(gears, s) for s in scene.sources)
-    found = TrainDesign(
+    design = TrainDesign(
         stages=(_stage(first), _stage(second)),
         ratio=n,
         error_deg=math.degrees(error) if scene.sources else None,
     )
     if table is None or train is None:
-        return found
+        return design
     worth = objectives(train, ("inertia", "mass"), gears)
     torques, moved = pinion_torques(train, gears), motion_torques(train, gears)
     stages = tuple(
@@ -187,11 +187,11 @@ def described(scene: Scene, gears: Pairs) -> TrainDesign:
             pinion_torque_Nm=1e-3 * float(torque),
             bending_stress_MPa=float(bending_stress(torque * pair.ratio, pair)),
         )
-        for stage, pair, torque in zip(found.stages, gears, torques, strict=True)
+        for stage, pair, torque in zip(design.stages, gears, torques, strict=True)
     )
     single = table.ratio[0] == table.ratio[1]
     return replace(
-        found,
+        design,
         stages=stages,
         motion_torque_Nm=None if moved is None else 1e-3 * float(moved[1]),
         output_torque_Nm=1e-3 * train.output_torque or None,
@@ -306,18 +306,18 @@ def _counts(ratio: float) -> tuple[StageCount, ...]:
 
 def candidates(scene: Scene, chosen: TrainDesign | None) -> dict[str, Candidate]:
     """Return the ratio of [duty], the chosen and the given train, to be judged."""
-    found = {}
+    by_name = {}
     if scene.duty is not None and scene.duty.ratio is not None:
         asked = float(scene.duty.ratio)
-        found["given"] = Candidate(f"At the given ratio of {asked:g}", asked)
+        by_name["given"] = Candidate(f"At the given ratio of {asked:g}", asked)
     trains = {"chosen": chosen if scene.train else None}
     if scene.train is not None and (gears := given_gears(scene)) is not None:
         trains["given_train"] = described(scene, gears)
     for who, train in trains.items():
         if train is not None and train.inertia_kg_m2 is not None:
             where = f"With the {who.removesuffix('_train')} train, of ratio {train.ratio:.6g},"
-            found[who] = Candidate(where, train.ratio, train.inertia_kg_m2 / KG_M2)
-    return found
+            by_name[who] = Candidate(where, train.ratio, train.inertia_kg_m2 / KG_M2)
+    return by_name
 
 
 def with_ratio(scene: Scene, ask: Ask, known: Result | None) -> Result:
@@ -331,19 +331,19 @@ def with_ratio(scene: Scene, ask: Ask, known: Result | None) -> Result:
     if result.value is None or outcome.x is None:
         return added(known, result)
     best = float(outcome.x[0])
-    reached, own = float(judged(duty, best)), candidates(scene, chosen)
+    reached, judged_beside = float(judged(duty, best)), candidates(scene, chosen)
     figures = {"best_total_ratio": best, f"best_{goal.key}": reached} | landmarks(duty)
-    with_train = None if "chosen" not in own else own["chosen"].inertia
+    with_train = None if "chosen" not in judged_beside else judged_beside["chosen"].inertia
     if with_train is not None:
         other = best_ratio_of(duty.with_gears(with_train))
         if other is not None:
-            own["best_with_train"] = Candidate("", other, with_train)
+            judged_beside["best_with_train"] = Candidate("", other, with_train)
             figures["best_total_ratio_with_train"] = other
-    others = {who: achieved(duty, one, reached) for who, one in own.items()}
-    for who, found in others.items():
+    others = {who: achieved(duty, one, reached) for who, one in judged_beside.items()}
+    for who, at_ratio in others.items():
         stem, _, end = f"{who}_{goal.key}".partition("_with_train_")
-        if found is not None:
-            figures[f"{stem}_{end}_with_train" if end else stem] = found.value
+        if at_ratio is not None:
+            figures[f"{stem}_{end}_with_train" if end else stem] = at_ratio.value
     ratio = RatioDesign(
         duty=duty.motion,
         total_ratio=best,
@@ -361,9 +361,9 @@ def with_ratio(scene: Scene, ask: Ask, known: Result | None) -> Result:
 
 def scaled(result: Result, factor: float, unit: str) -> Result:
     """Return a result whose objective and bound are in another unit."""
-    found = None if result.value is None else factor * result.value
+    value = None if result.value is None else factor * result.value
     bound = None if result.bound is None else factor * result.bound
-    return replace(result, objective=result.objective | {"value": found, "unit": unit}, bound=bound)
+    return replace(result, objective=result.objective | {"value": value, "unit": unit}, bound=bound)
 
 
 def with_lightest(scene: Scene, ask: Ask, known: Result | None) -> Result:

@@ -92,7 +92,7 @@ def _moved(was: Any, key: str, by: float, exact: bool = False) -> Any:
 
 def _shifted(end: Quantity, by: float, way: int) -> Quantity:
     """Return an allowance moved by so much [mm], to a tenth of a micrometre beyond."""
-    one = end.of(Fraction(1, 10_000)).number
-    steps = (end.of(end.exact[0] + Fraction(by)).number) / one
-    number = one * (math.ceil(steps) if way > 0 else math.floor(steps))
+    step = end.of(Fraction(1, 10_000)).number
+    steps = (end.of(end.exact[0] + Fraction(by)).number) / step
+    number = step * (math.ceil(steps) if way > 0 else math.floor(steps))
     return replace(end, number=Fraction(number))

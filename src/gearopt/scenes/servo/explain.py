@@ -126,28 +126,30 @@ def remedies(scene: Scene, clock: Clock, message: str = NO_TEETH) -> Remedies:
     assert scene.train is not None
     asked = FeasibilityQuestions(scene, possible, clock, lower_bounds=not cause.names)
     single = {(move.path, move.way): move for move in moves(scene)}
-    found = singles(asked, _errors(scene, cause))
+    sufficient = singles(asked, _errors(scene, cause))
     blamed = [(path, -1) for path in DIAMETERS if cause.bodies and (path, -1) in single]
-    found += singles(asked, (Group((single[place],)) for place in blamed))
+    sufficient += singles(asked, (Group((single[place],)) for place in blamed))
     left = within(clock, PATIENCE[bool(GOALS[scene.train.goal].motion)])
     asked = replace(asked, clock=left)
-    found += singles(asked, (Group((m,)) for place, m in single.items() if place not in blamed))
-    moved = {change.key for remedy in found for change in remedy.changes}
+    sufficient += singles(
+        asked, (Group((m,)) for place, m in single.items() if place not in blamed)
+    )
+    moved = {change.key for remedy in sufficient for change in remedy.changes}
     thinner = [single[path, -1] for path in DIAMETERS if (path, -1) in single]
     bodies = cause.bodies and not moved & {dotted(move.path) for move in thinner}
     if bodies and len(thinner) > 1:
-        found += singles(asked, [Group(tuple(thinner), what="all diameters")])
-    found += _both_sides(asked, single, found)
-    found += [] if (module := _module(asked)) is None else [module]
+        sufficient += singles(asked, [Group(tuple(thinner), what="all diameters")])
+    sufficient += _both_sides(asked, single, sufficient)
+    sufficient += [] if (module := _module(asked)) is None else [module]
     sentences = [cause.message] if cause.message else []
-    if bodies and not left.over and not any(r.what == "all diameters" for r in found):
+    if bodies and not left.over and not any(r.what == "all diameters" for r in sufficient):
         sentences.append("with smaller bodies, the box, the stiffness or the duty is still not met")
     if cause.names and (kept := [KEPT[name] for name in scene.choice().apart]):
         sentences.append(f"every remedy also keeps {' and '.join(kept)}")
     if left.over and sentences:
         sentences.append("time ran out before all numbers of the file were tried")
-    own = with_least(found, not left.over)
-    return Remedies(cause.names, own, "; ".join(sentences))
+    listed = with_least(sufficient, not left.over)
+    return Remedies(cause.names, listed, "; ".join(sentences))
 
 
 def moves(scene: Scene) -> Iterator[Move]:
@@ -235,9 +237,9 @@ def _module(asked: FeasibilityQuestions) -> Remedy | None:
     None for lists of diametral pitches.
     """
     path: Path = ("train", "modules")
-    own = at(asked.scene, path)
-    sizes = [m.exact[0] for m in own]
-    if own[0].reciprocal:
+    modules = at(asked.scene, path)
+    sizes = [m.exact[0] for m in modules]
+    if modules[0].reciprocal:
         return None
 
     def far(m: Fraction) -> float:
@@ -246,9 +248,9 @@ def _module(asked: FeasibilityQuestions) -> Remedy | None:
     series = (*SHAFT_DIAMETERS, *SERIES_I, *SERIES_II)
     others = (m for m in series if m not in sizes and far(m) <= WIDEST_FACTOR)
     for module in sorted(others, key=far):
-        more = (*own, own[0].of(module))
+        more = (*modules, modules[0].of(module))
         if asked.ask(put(asked.scene, path, more), possible).answer:
-            was, write = (toml_text([str(m) for m in listed]) for listed in (own, more))
+            was, write = (toml_text([str(m) for m in listed]) for listed in (modules, more))
             change = Change("train.modules", was, write, far(module))
             return Remedy(
                 "choice", "train.modules", (change,), far(module), None, {"with": "feasible"}
@@ -323,8 +325,8 @@ def _other(scene: Scene, message: str, clock: Clock) -> Cause:
     if message != NO_TEETH:  # it names the box, or the stiffness
         return Cause(message=_reached(scene, clock) or message)
     if (other := impossible.with_wider_ratio(train, clock)) is not None:
-        own, ends = (_span(scene, one) for one in (train, other))
-        return Cause(message=f"no whole teeth make the ratio {own}; {ends} some do")
+        ratio, ends = (_span(scene, one) for one in (train, other))
+        return Cause(message=f"no whole teeth make the ratio {ratio}; {ends} some do")
     return Cause(message=CAUSE_UNKNOWN if clock.over else WHOLE)
 
 

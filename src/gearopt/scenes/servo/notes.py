@@ -31,52 +31,52 @@ FRICTION = {
 
 def assumptions(scene: Scene) -> list[str]:
     """Return all assumptions that hold for this file."""
-    found = []
+    sentences = []
     if scene.duty is not None:
-        found.append(FRICTION[scene.duty.motion])
-        found.append(
+        sentences.append(FRICTION[scene.duty.motion])
+        sentences.append(
             "The best total ratio is computed with the motor's inertia, without that of a train."
         )
     if scene.train is not None:
-        found += _of_train(scene)
+        sentences += _of_train(scene)
     if scene.mesh:
         sides = "" if any(mesh.two_sided for mesh in scene.mesh) else "one-sided and "
-        found.append(
+        sentences.append(
             "The error is the lost motion between both flanks at the output, by small angles; "
             f"every deviation is {sides}at its limit at the same time."
         )
     if any(mesh.two_sided or mesh.minimum_backlash for mesh in scene.mesh):
-        found.append(
+        sentences.append(
             "Backlash: at the reference circle, -(sum of thickness allowances) + 2 tan(alpha) "
             "times what moves the gears apart (ISO 21771, DIN 3967); at its minimum one-sided "
             "deviations are zero and run-outs close the mesh by as much as they open it. Pitch and "
             "helix deviations, heat and swelling are not counted."
         )
     if scene.tolerances is not None and any(mesh.two_sided for mesh in scene.mesh):
-        found.append(
+        sentences.append(
             "Of two-sided allowances the end that gives less backlash stays as it is; their width "
             "is the tolerance that is chosen."
         )
     if any(mesh.grade is not None for mesh in scene.mesh):
-        found.append(
+        sentences.append(
             "Pitch deviations by grade are F_pT of ISO 1328-1:2013, not rounded, of both gears."
         )
     if scene.tolerances is not None:
-        found.append(
+        sentences.append(
             "The cost of a tolerance is that of the old one times (old/new)^exponent. Of Monte "
             "Carlo errors run-outs are t cos(phi), phi uniform; all else is uniform from 0 to t."
         )
     if any(budget.rule == "rss" for budget in scene.budget):
-        found.append(
+        sentences.append(
             "The root of the sum of squares neglects the mean of one-sided deviations, which is "
             "above zero; the Monte Carlo yield includes it."
         )
-    return found
+    return sentences
 
 
 def _of_train(scene: Scene) -> list[str]:
     assert scene.train is not None
-    found = [
+    sentences = [
         "The gears are external spur gears without profile shift, with an addendum of one module: "
         "solid discs of one face width.",
         *_sector(scene.train),
@@ -88,25 +88,25 @@ def _of_train(scene: Scene) -> list[str]:
         _counted(scene),
         *unverified(scene.train.modules),
     ]
-    found += _of_bodies(scene)
+    sentences += _of_bodies(scene)
     if scene.stiffness is not None:
-        found.append(
+        sentences.append(
             "Stiffness is that of one pair of teeth in mesh and of the shaft between the stages, "
             "twisted over its length; bearings, housing, motor and output shaft are rigid, and the "
             "motor is locked."
         )
         if scene.stiffness.line_stiffness is None:
-            found.append(
+            sentences.append(
                 "Line stiffness of a mesh after Buckingham and Lewis: formula not checked against "
                 "any source."
             )
     if scene.space is not None:
-        found.append(
+        sentences.append(
             "The box holds all gears, the last wheel wherever it swings, shafts, hub and motor, "
             "seen along the shafts, without clearances; its depth is not checked. Lists and plots "
             "of other trains ignore the box."
         )
-    return found
+    return sentences
 
 
 def _sector(train: Train) -> tuple[str, ...]:
@@ -186,10 +186,10 @@ def given_overlap(scene: Scene) -> str:
 
 def _overlaps(scene: Scene, results: tuple[Result, ...]) -> str:
     """Say which gears of the lightest train overlap something: its mass is a lower bound."""
-    found = [r for r in results if r.name == "stiff" and r.value is not None]
-    if not found:
+    lightest = [r for r in results if r.name == "stiff" and r.value is not None]
+    if not lightest:
         return ""
-    design, train = found[0].design, scene.servo_train()
+    design, train = lightest[0].design, scene.servo_train()
     assert train.bodies is not None
     m = float(train.modules[0])
     first, second = (
@@ -213,39 +213,41 @@ def notes(
     scene: Scene, results: tuple[Result, ...], design: ServoDesign, report: ServoReport
 ) -> list[str]:
     """Notes for the reader beside the numbers."""
-    duty, found = scene.servo_duty(), []
+    duty, sentences = scene.servo_duty(), []
     if duty is not None and design.ratio is not None:
         judged = candidates(scene, design.train).values()
-        found = [said for one in judged if (said := why_not(duty, one))]
+        sentences = [said for one in judged if (said := why_not(duty, one))]
     if scene.train is not None and scene.train.maximise is None and scene.train.aim == SLOWEST:
-        found.append(f'minimise = "{SLOWEST}" was read as maximise: the maximum was searched for.')
+        sentences.append(
+            f'minimise = "{SLOWEST}" was read as maximise: the maximum was searched for.'
+        )
     if design.box is not None and not design.box.fits:
-        found.append("The best train does not fit the box of [space].")
+        sentences.append("The best train does not fit the box of [space].")
     asked, drawn = scene.accuracy.error, design.drawn
     if asked is not None and drawn is not None:
         limit = math.degrees(asked.value)
         worst = drawn.worst_case_deg
         if worst > limit * (1.0 + 1e-9):
-            found.append(
+            sentences.append(
                 f"With all new tolerances at their limits the error is {worst:.5g} degrees, above "
                 f"the {limit:.5g} of [accuracy]: their budget is not by the rule worst_case."
             )
     stages = () if design.train is None else design.train.stages
     rack = Rack(scene.accuracy.pressure_angle.value)
-    found += tooth_warnings(
+    sentences += tooth_warnings(
         GearPair.of_teeth(s.normal_module_mm, s.pinion_teeth, s.wheel_teeth, 1.0, rack=rack)
         for s in stages
     )
     if scene.lightest is not None:
-        found.append(
+        sentences.append(
             "The lightest train has real-valued sizes: its mass is a lower bound for whole teeth."
         )
-    found += [said for said in (_overlaps(scene, results), given_overlap(scene)) if said]
+    sentences += [said for said in (_overlaps(scene, results), given_overlap(scene)) if said]
     if report.trains == ():
-        found.append(UNLISTED)
-    found += [
+        sentences.append(UNLISTED)
+    sentences += [
         f"There is no answer for the part {part.name}: {(part.message or part.status).rstrip('.')}."
         for part in results[1:]
         if part.value is None
     ]
-    return found
+    return sentences

@@ -45,12 +45,12 @@ def reached(scene: Scene, clock: Clock) -> Iterator[str]:
         if stiffest is not None:
             yield f"the stiffest train that meets all other limits has {_stiff(springs, stiffest)}"
     if scene.space is not None and scene.space.required:
-        found = smallest_scale(scene, clock)
-        if found is not None:
+        scales = smallest_scale(scene, clock)
+        if scales is not None:
             sides = scene.space.width, scene.space.height
             there, too_small = (
                 " x ".join(str(cut(times(side, f), way, 4)) for side in sides)
-                for f, way in ((found[1], 1), (found[0], -1))
+                for f, way in ((scales[1], 1), (scales[0], -1))
             )
             yield (
                 f"the smallest box of these proportions that holds a train is {there}; it "

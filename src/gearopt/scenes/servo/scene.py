@@ -128,13 +128,13 @@ class Scene(Table):
     def _check_backlash(self) -> None:
         """Check that every mesh can open at all, and that a minimum backlash has deviations."""
         for k, mesh in enumerate(self.mesh):
-            own = [s for s in self.sources if s.stage == k + 1]
-            if own and sum(s.per_mm * s.most for s in own) <= 0.0:
+            deviations = [s for s in self.sources if s.stage == k + 1]
+            if deviations and sum(s.per_mm * s.most for s in deviations) <= 0.0:
                 key = next(n for n in TWO_SIDED if isinstance(getattr(mesh, n), tuple))
                 raise refuse("leaves no backlash at all: the gears bind", at=("mesh", k, key))
             if mesh.minimum_backlash is None:
                 continue
-            if not own:
+            if not deviations:
                 rule = "is missing, as is any deviation: minimum_backlash needs one"
                 raise refuse(rule, at=("mesh", k, "centre_distance"))
             if self.tolerances is not None and self.tolerances.grades is not None:
@@ -147,10 +147,12 @@ class Scene(Table):
         Every deviation is at the end that closes or opens the mesh; a run-out closes it by as much
         as it opens it. run_outs: whether they are counted at the minimum.
         """
-        own = [s for s in self.sources if s.stage == k and s.kind == "backlash"]
-        closed = [s.start - (s.tolerance if run_outs and s.law is RUN_OUT else 0.0) for s in own]
-        low = math.fsum(0.5 * s.per_mm * end for s, end in zip(own, closed, strict=True))
-        return low, math.fsum(0.5 * s.per_mm * s.most for s in own)
+        deviations = [s for s in self.sources if s.stage == k and s.kind == "backlash"]
+        closed = [
+            s.start - (s.tolerance if run_outs and s.law is RUN_OUT else 0.0) for s in deviations
+        ]
+        low = math.fsum(0.5 * s.per_mm * end for s, end in zip(deviations, closed, strict=True))
+        return low, math.fsum(0.5 * s.per_mm * s.most for s in deviations)
 
     def _check_aim(self, train: Train) -> None:
         """Check that the objective is known: an error needs deviations, a motion needs [duty]."""
@@ -244,8 +246,8 @@ class Scene(Table):
     def sources(self) -> tuple[Source, ...]:
         """Return all deviations above zero, stage by stage."""
         angle = self.accuracy.pressure_angle.value
-        found = [mesh.sources(k, angle) for k, mesh in enumerate(self.mesh, 1)]
-        return tuple(source for stage in found for source in stage)
+        by_stage = [mesh.sources(k, angle) for k, mesh in enumerate(self.mesh, 1)]
+        return tuple(source for stage in by_stage for source in stage)
 
     def servo_duty(self) -> ServoDuty | None:
         """Return the motion of the load and its drive, in plain numbers; None for none."""
@@ -332,30 +334,30 @@ class Scene(Table):
 
     def stiff_train(self) -> StiffTrain:
         """Return the lightest train to be sized, in plain numbers."""
-        own, table, springs = self.servo_train(), self.lightest, self.springs
+        train, table, springs = self.servo_train(), self.lightest, self.springs
         assert table and springs and springs.minimum and springs.line_stiffness
-        assert own.bodies is not None
-        module = float(own.modules[0])
-        teeth = own.pinion_teeth[0]
-        second = max(teeth, -(-own.bore // own.modules[0]))
+        assert train.bodies is not None
+        module = float(train.modules[0])
+        teeth = train.pinion_teeth[0]
+        second = max(teeth, -(-train.bore // train.modules[0]))
         numbers: dict[str, Any] = {
-            name: getattr(own, name)
+            name: getattr(train, name)
             for name in ("density", "output_torque", "bending", "lost_motion", "error", "sector")
         }
         return StiffTrain(
             stiffness=springs.minimum,
             line_stiffness=springs.line_stiffness,
             shear_modulus=springs.shear_modulus,
-            ratio=(float(own.ratios[0]), float(own.ratios[1])),
+            ratio=(float(train.ratios[0]), float(train.ratios[1])),
             module=module,
             pinion_teeth=(teeth, int(second)),
-            bore=(float(own.bore), table.shaft_wall.value),
-            wheel_tips=(float(own.wheel_tips[0]), float(own.wheel_tips[1])),
+            bore=(float(train.bore), table.shaft_wall.value),
+            wheel_tips=(float(train.wheel_tips[0]), float(train.wheel_tips[1])),
             face_width=table.face_width.value,
             shaft_diameter=table.shaft_diameter.value,
             shaft_length=springs.shaft[1],
             inertia=table.inertia.value,
-            output=float(own.bodies.output_shaft),
-            motor=float(own.bodies.motor),
+            output=float(train.bodies.output_shaft),
+            motor=float(train.bodies.motor),
             **numbers,
         )

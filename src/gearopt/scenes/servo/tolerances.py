@@ -69,17 +69,17 @@ def start(scene: Scene, gears: Pairs) -> float:
 
 def _closing(scene: Scene, gears: Pairs) -> list[ErrorBudget]:
     """Return the budgets of the run-outs, which close a mesh with a minimum backlash."""
-    found = []
+    budgets = []
     for k, mesh in enumerate(scene.mesh, 1):
-        own = [s for s in scene.sources if s.stage == k and s.law is RUN_OUT]
-        if mesh.minimum_backlash is None or not own:
+        run_outs = [s for s in scene.sources if s.stage == k and s.law is RUN_OUT]
+        if mesh.minimum_backlash is None or not run_outs:
             continue
         left = scene.backlash(k, run_outs=False)[0] - mesh.minimum_backlash.value
-        error = math.degrees(2.0 * left * sensitivity(gears, own[0]) / own[0].per_mm)
-        names = frozenset(s.name for s in own)
+        error = math.degrees(2.0 * left * sensitivity(gears, run_outs[0]) / run_outs[0].per_mm)
+        names = frozenset(s.name for s in run_outs)
         name, key = f"minimum_backlash[{k}]", f"mesh[{k}].minimum_backlash"
-        found.append(ErrorBudget("worst_case", error, name=name, key=key, only=names))
-    return found
+        budgets.append(ErrorBudget("worst_case", error, name=name, key=key, only=names))
+    return budgets
 
 
 def old(scene: Scene) -> Array:
@@ -131,7 +131,7 @@ def problem(scene: Scene, gears: Pairs) -> Problem:
 
 def grades(scene: Scene, gears: Pairs) -> graded.Choice:
     """Return the grades that a file lets tolerances have."""
-    table, own = scene.tolerances, stack(scene, gears)
+    table, errors = scene.tolerances, stack(scene, gears)
     assert table is not None and table.grades is not None
     steps = [2.0 ** (0.5 * j) for j in range(-table.grades, table.grades + 1)]
     parts = tuple(
@@ -140,9 +140,9 @@ def grades(scene: Scene, gears: Pairs) -> graded.Choice:
             c.sensitivity,
             tuple((s.tolerance * f, price.cost * f**-price.exponent) for f in steps),
         )
-        for c, s, price in zip(own.components, scene.sources, scene.prices, strict=True)
+        for c, s, price in zip(errors.components, scene.sources, scene.prices, strict=True)
     )
-    (budget,) = own.budgets
+    (budget,) = errors.budgets
     rule: Any = budget.rule
     return graded.Choice(parts, budget.error, rule)
 
@@ -189,11 +189,11 @@ def with_tolerances(scene: Scene, ask: Ask, known: Result | None) -> Result:
     if result.value is None or outcome.x is None:
         proof = {k: v for k, v in result.proof.items() if k != "conflict"}
         return added(known, replace(result, proof=proof), report=ServoReport(figures=figures))
-    t, own, lost = np.array(outcome.x, float), stack(scene, gears), start(scene, gears)
+    t, errors, lost = np.array(outcome.x, float), stack(scene, gears), start(scene, gears)
     t = widths(scene, t, old(scene))
-    allotted = _allocation(own, t, result, scene, lost)
-    draws = drawn(own, t, lost + own.budgets[0].error, seed=table.seed, start=lost)
-    design = ServoDesign(tolerances=listed(scene, own)(t), allocation=allotted, drawn=draws)
+    allotted = _allocation(errors, t, result, scene, lost)
+    draws = drawn(errors, t, lost + errors.budgets[0].error, seed=table.seed, start=lost)
+    design = ServoDesign(tolerances=listed(scene, errors)(t), allocation=allotted, drawn=draws)
     figures |= by_every_rule(scene, gears, t, "new")
     figures |= {
         "new_quantile_deg": draws.quantile_deg,
@@ -202,7 +202,7 @@ def with_tolerances(scene: Scene, ask: Ask, known: Result | None) -> Result:
         "tolerance_cost": allotted.cost,
         "old_tolerance_cost": allotted.old_cost,
     }
-    limits = {named(name, own.components): used for name, used in result.limits.items()}
+    limits = {named(name, errors.components): used for name, used in result.limits.items()}
     result = replace(result, design=untyped(design), limits=limits)
     return added(known, result, design, ServoReport(figures=figures))
 
@@ -275,6 +275,6 @@ def by_every_rule(scene: Scene, gears: Pairs, t: Array, whose: str) -> dict[str,
     )
     budgets = tuple(ErrorBudget(rule, 1.0, kappa, name) for name, rule, kappa in RULES)
     used = (start(scene, gears) + Stack(parts, budgets).used(t)).tolist()
-    found = {f"{whose}_{name}_deg": v for (name, _, _), v in zip(RULES, used, strict=True)}
-    mean, three = (found[f"{whose}_{name}_deg"] for name in ("mean", "mean_plus_3_sd"))
-    return found | {f"{whose}_sd_deg": (three - mean) / 3.0}
+    errors = {f"{whose}_{name}_deg": v for (name, _, _), v in zip(RULES, used, strict=True)}
+    mean, three = (errors[f"{whose}_{name}_deg"] for name in ("mean", "mean_plus_3_sd"))
+    return errors | {f"{whose}_sd_deg": (three - mean) / 3.0}

@@ -62,10 +62,10 @@ def _trains(scene: Scene, names: Sequence[str], method: str | None) -> Problem:
 def _train(scene: Scene, x: Array) -> Mapping[str, Any]:
     gears, springs = of_point(scene, x), scene.springs
     stiffness = None if springs is None else springs.design(gears)
-    found: Mapping[str, Any] = untyped(
+    design: Mapping[str, Any] = untyped(
         ServoDesign(train=described(scene, gears), stiffness=stiffness)
     )
-    return found
+    return design
 
 
 def _errors(scene: Scene) -> dict[str, str]:
@@ -86,18 +86,18 @@ def _tolerances(
         if method == EPSILON:
             raise SolveError(f"{EPSILON} is for real-valued tolerances; grades are for {EXACT}")
         return grades.problem(tolerance_part.grades(scene, gears), names, lost)
-    own = tolerance_part.stack(scene, gears)
-    if not own.exponent.all():
+    stack = tolerance_part.stack(scene, gears)
+    if not stack.exponent.all():
         raise SolveError(
             "a cost of exponent 0 grows with the logarithm, which cones do not have: write an "
             "exponent above 0 in [tolerances] and every [[cost]]"
         )
-    if not own.least.all():
+    if not stack.least.all():
         raise SolveError(
             "the error has no least value where tolerances may be as small as one likes: write "
             "least_factor = 0.25 in [tolerances], or another part of the old ones"
         )
-    return conic.several(own, {v: k for k, v in _errors(scene).items()}, names, lost)
+    return conic.several(stack, {v: k for k, v in _errors(scene).items()}, names, lost)
 
 
 def _allotted(scene: Scene, gears: Pairs) -> Callable[[Array], Mapping[str, Any]]:

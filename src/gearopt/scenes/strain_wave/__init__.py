@@ -102,21 +102,21 @@ def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
 def exchanged(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Numbers of least pressure by equal sharing, without interference at any pose."""
     clock, demand = Clock(ask.budget, ask.watch), scene.demand()
-    found = exchange(demand, scene.start(), clock, ask.gap)
-    result = replace(found.result, seconds=clock.seconds, evaluations=clock.evaluations)
+    optimum = exchange(demand, scene.start(), clock, ask.gap)
+    result = replace(optimum.result, seconds=clock.seconds, evaluations=clock.evaluations)
     result = replace(result, method="exchange", seed=ask.seed)
-    numbers = found.outcome.x
-    if found.design is None or numbers is None:
-        return _without_design(scene, found, result, clock)
+    numbers = optimum.outcome.x
+    if optimum.design is None or numbers is None:
+        return _without_design(scene, optimum, result, clock)
     if result.status == "stationary":  # what Ipopt says of itself is certified
         result = replace(result, message="")
-    slopes = slopes_of(found.problem, numbers) if result.status == "stationary" else {}
-    if not found.clear:
+    slopes = slopes_of(optimum.problem, numbers) if result.status == "stationary" else {}
+    if not optimum.clear:
         message = f"{INTERFERING} {result.message}".strip()
         result = replace(result, status="limit", message=message)
     return _begun(
         result,
-        rounds=_rounds(found),
+        rounds=_rounds(optimum),
         range_ends=ends_of(demand.ranges, numbers[: len(FREE)], slopes),
     )
 
@@ -279,14 +279,14 @@ def described(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """The gearing with its whole design, and all that is told of it."""
     assert known is not None
     design = WaveDesign(**known.design)
-    told: dict[str, Any] = {
+    report: dict[str, Any] = {
         "assumptions": assumptions(scene),
         "notes": [*notes(design), *range_notes(scene, design.range_ends)],
     }
     drawing = scene.cutter
     if drawing is not None:
         grid = drawing.grid.value if drawing.grid else 0.05
-        told["cutter_drawing"] = {
+        report["cutter_drawing"] = {
             "scale": None if drawing.scale is None else float(drawing.scale),
             "grid_mm": grid,
         }
@@ -296,7 +296,7 @@ def described(scene: Scene, ask: Ask, known: Result | None) -> Result:
         objective=known.objective | ({"unit": "MPa"} if known.objective else {}),
         design=untyped(design),
         multipliers={k: v for k, v in known.multipliers.items() if "[" not in k},
-        report=known.report | told,
+        report=known.report | report,
     )
 
 
@@ -329,14 +329,14 @@ def _limited(known: Result, limits: dict[str, float]) -> Result:
 
 def _interference_used(result: Result) -> dict[str, float]:
     """Return the largest utilisation of the poses that an optimisation held clear."""
-    own = [v for name, v in result.limits.items() if name.startswith("interference")]
-    return {"interference": max(own)} if own else {}
+    utilisations = [v for name, v in result.limits.items() if name.startswith("interference")]
+    return {"interference": max(utilisations)} if utilisations else {}
 
 
 def idle(scene: Scene, method: str | None) -> dict[str, str]:
     """Return the options of `solve` that change nothing, each with the reason."""
-    found = {"top": "no next best answers are listed"}
-    return found | ({} if method in SAMPLERS else unseeded(method))
+    unused = {"top": "no next best answers are listed"}
+    return unused | ({} if method in SAMPLERS else unseeded(method))
 
 
 def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:

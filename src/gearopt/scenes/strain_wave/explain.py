@@ -64,9 +64,9 @@ def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies
 
 def of_pressure(scene: Scene, result: Result, clock: Clock, gap: float) -> Explanation:
     """Return what every number of a file does to its pressure, by multipliers and solving again."""
-    found = exchange(scene.demand(), scene.start(), clock, gap)
-    x = found.outcome.x
-    if x is None or found.result.value is None:
+    optimum = exchange(scene.demand(), scene.start(), clock, gap)
+    x = optimum.outcome.x
+    if x is None or optimum.result.value is None:
         return Explanation(result, (), (), binding(result), (), NO_TIME, clock.seconds)
 
     def solved(other: Scene) -> float | None:
@@ -74,11 +74,11 @@ def of_pressure(scene: Scene, result: Result, clock: Clock, gap: float) -> Expla
         return again.result.value if again.result.status == "stationary" and again.clear else None
 
     def posed(other: Scene) -> Problem:
-        return problem(other.demand(), x[:6], found.passages)
+        return problem(other.demand(), x[:6], optimum.passages)
 
-    note = costs(found.result.multipliers)
-    basis = at_point(found.result.value, solved, posed, scene, x)
-    ways = eases(found.problem) | EASES
+    note = costs(optimum.result.multipliers)
+    basis = at_point(optimum.result.value, solved, posed, scene, x)
+    ways = eases(optimum.problem) | EASES
     return replace(
         of_design(scene, result, clock, basis, solved, note, ways), seconds=clock.seconds
     )

@@ -25,10 +25,10 @@ def contact_fault(gearing: StrainWave) -> Fault | None:
     """Return why an involute has no conjugate flank from root to tip; None where it has one."""
     if flank(gearing).complete.all():
         return None
-    least, own = least_deflection(gearing), float(gearing.deflection)
+    least, deflection = least_deflection(gearing), float(gearing.deflection)
     if math.isinf(least):
         return _never(gearing)
-    first = math.ceil(100.0 * max(least, own)) / 100.0
+    first = math.ceil(100.0 * max(least, deflection)) / 100.0
     tried = (first + HIGHER * k for k in range(TRIED))
     enough = (w for w in tried if flank(replace(gearing, deflection=w), 41).complete.all())
     write, place = next(enough, None), ("gears", "deflection")
@@ -36,7 +36,7 @@ def contact_fault(gearing: StrainWave) -> Fault | None:
     if write is None:
         return _shorter_or_steeper(gearing, rule)
     write = round(write, 2)
-    if own >= least:
+    if deflection >= least:
         return rule, place, write
     arcs = existence(gearing)
     beyond = math.degrees(min(abs(end) for arc in arcs for end in arc)) if arcs else 90.0
@@ -50,8 +50,8 @@ def contact_fault(gearing: StrainWave) -> Fault | None:
 
 def _shorter_or_steeper(gearing: StrainWave, rule: str) -> Fault:
     """Return a fault with an addendum, else a pressure angle, that gives a flank, if any does."""
-    own, angle = float(gearing.addendum), math.degrees(gearing.pressure_angle)
-    for addendum in (a for a in ADDENDA if a < own):
+    tip, angle = float(gearing.addendum), math.degrees(gearing.pressure_angle)
+    for addendum in (a for a in ADDENDA if a < tip):
         if flank(replace(gearing, addendum=addendum), 41).complete.all():
             return rule, ("gears", "addendum"), addendum
     for degrees in (a for a in ANGLES if a > angle):

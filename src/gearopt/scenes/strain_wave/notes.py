@@ -43,8 +43,8 @@ def assumptions(scene: Scene) -> list[str]:
     )
     assumed = [*_sizes(scene), *_materials(scene, scene.demand()), *_sharing(scene)]
     ranges = list(_ranges(scene)) if scene.has_free_sizes else []
-    found = [*model, limits, *(f"Assumed: {words}." for words in (*assumed, *ranges))]
-    return found if math.isfinite(scene.demand().bending_limit) else [*found, NOT_JUDGED]
+    sentences = [*model, limits, *(f"Assumed: {words}." for words in (*assumed, *ranges))]
+    return sentences if math.isfinite(scene.demand().bending_limit) else [*sentences, NOT_JUDGED]
 
 
 def _mesh_torque(scene: Scene) -> str:
@@ -145,41 +145,41 @@ def range_notes(scene: Scene, ends: Sequence[RangeEnd]) -> list[str]:
             f"{_name(end.name)} {_amount(end.name, end.value)} ({side}, "
             f"{'of [design]' if given else 'assumed'})"
         )
-    told = [f"At ends of their ranges: {_series(each)}."]
+    sentences = [f"At ends of their ranges: {_series(each)}."]
     gains = [end for end in ends if end.gain is not None]
     if gains:
         shown = _series([f"{end.gain:.2g} MPa by {_name(end.name)}" for end in gains])
-        told.append(
+        sentences.append(
             f"With a range {100.0 * WIDER:g} % wider the pressure would fall, to first order, by "
             f"{shown}: {_name(gains[0].name)} counts most."
         )
-    return told
+    return sentences
 
 
 def notes(made: WaveDesign) -> list[str]:
     """Return what is to be known of this gearing, in sentences."""
     carry = "1 tooth carries" if made.carrying_teeth == 1 else f"{made.carrying_teeth} teeth carry"
-    found = [
+    sentences = [
         f"On average {made.pairs_in_contact:.3f} pairs of teeth per lobe and flank are conjugate; "
         f"under load {carry}, equivalent to {made.effective_teeth:.2f} with equal loads.",
         _windup(made),
     ]
     if made.least_clearance_mm < CUTTING:
-        found.append(
+        sentences.append(
             f"Interference: teeth overlap by {-1e3 * made.least_clearance_mm:.3g} µm, at "
             f"{made.least_clearance_at_deg:.4g} degrees from the major axis."
         )
     elif made.law != INVOLUTE:
-        found.append(
+        sentences.append(
             "No interference: the circular spline's tooth spaces are cut by the motion of the "
             "flexspline's teeth."
         )
     else:
-        found.append("No interference at any position of the wave generator.")
-        found += _without_play(made)
+        sentences.append("No interference at any position of the wave generator.")
+        sentences += _without_play(made)
     if made.left_out:
-        found.append(f"Left out for lack of time: {_series(made.left_out)}.")
-    return found
+        sentences.append(f"Left out for lack of time: {_series(made.left_out)}.")
+    return sentences
 
 
 def _windup(made: WaveDesign) -> str:

@@ -107,11 +107,11 @@ class Scene(Table):
     def _with_a_bore(self) -> "Scene":
         if any(getattr(self.gears, name) is None for name in FREE):
             return self
-        made = self.gearing()
-        bore = 2.0 * made.neutral_radius - made.rim
+        gearing = self.gearing()
+        bore = 2.0 * gearing.neutral_radius - gearing.rim
         if bore <= 0.0:
             rule = f"is too thick: the flexspline would have a bore of {bore:.4g} mm"
-            raise refuse(rule, f"{0.01 * made.module * made.teeth:.3g} mm", ("gears", "rim"))
+            raise refuse(rule, f"{0.01 * gearing.module * gearing.teeth:.3g} mm", ("gears", "rim"))
         return self
 
     @model_validator(mode="after")
@@ -122,14 +122,14 @@ class Scene(Table):
         if self.involute:
             return self._made(contact_fault(self.gearing()))
         for name in FREE:
-            own = name == "pressure_angle" and self.teeth.law == HALF_LOCUS
-            if own and getattr(self.gears, name) is not None:
+            of_half_locus = name == "pressure_angle" and self.teeth.law == HALF_LOCUS
+            if of_half_locus and getattr(self.gears, name) is not None:
                 rule = f'changes nothing: law = "{HALF_LOCUS}" has its own angles'
                 raise refuse(rule, at=("gears", name), action="remove")
             if getattr(self.design, name) is not None:
                 rule = f'changes nothing: law = "{self.teeth.law}" has no search'
                 raise refuse(rule, at=("design", name), action="remove")
-            if not own and getattr(self.gears, name) is None:
+            if not of_half_locus and getattr(self.gears, name) is None:
                 rule = f'is missing: gears are chosen with law = "{INVOLUTE}" alone'
                 raise refuse(rule, at=("gears", name), action="sample")
         for name in ("tool_angle", "least_radius"):
@@ -195,10 +195,10 @@ class Scene(Table):
     def law(self) -> Law:
         """Return how teeth that are no involutes are made."""
         assert self.gears.module is not None
-        m, own = self.gears.module.value, self.teeth
-        radii = _or(own.convex_radius, CONVEX * m), _or(own.concave_radius, CONCAVE * m)
-        thick, tangent = _or(own.thickness, 0.5 * math.pi * m), _or(own.tangent, TANGENT * m)
-        return Law(own.law, thick, radii, tangent)
+        m, teeth = self.gears.module.value, self.teeth
+        radii = _or(teeth.convex_radius, CONVEX * m), _or(teeth.concave_radius, CONCAVE * m)
+        thick, tangent = _or(teeth.thickness, 0.5 * math.pi * m), _or(teeth.tangent, TANGENT * m)
+        return Law(teeth.law, thick, radii, tangent)
 
     def gearing(self) -> StrainWave:
         """Return the gearing that is given, or that at which a search begins."""
@@ -247,16 +247,16 @@ class Scene(Table):
 
     def ranges(self) -> dict[str, tuple[float, float]]:
         """Return the ranges of the six numbers; ends that are equal where one is given."""
-        found = {}
+        ranges = {}
         for name in FREE:
             given, asked = getattr(self.gears, name), getattr(self.design, name)
             if given is not None:
-                found[name] = (_value(given), _value(given))
+                ranges[name] = (_value(given), _value(given))
             elif asked is not None:
-                found[name] = (_value(asked[0]), _value(asked[1]))
+                ranges[name] = (_value(asked[0]), _value(asked[1]))
             else:
-                found[name] = self._usual(name)
-        return found
+                ranges[name] = self._usual(name)
+        return ranges
 
     def _usual(self, name: str) -> tuple[float, float]:
         """Return the range of a number of which the file says nothing."""

@@ -278,7 +278,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     power, capacities = _powers(rating)
     asked, capacities = measures.words(power), [measures.words(each) for each in capacities]
     lives = [life(rated.life_h) for rated in rating.each]
-    made = [
+    shown = [
         *(_safety_tile(rated, "bending", rating) for rated in rating.each),
         *(_safety_tile(rated, "contact", rating) for rated in rating.each),
         _tile(rating, "power capacity", capacities, asked),
@@ -286,8 +286,8 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     ]
     if rating.efficiency_percent is not None:
         remark = "tooth friction alone"
-        made.append(Tile("efficiency", efficiency(rating), remark))
-    return made
+        shown.append(Tile("efficiency", efficiency(rating), remark))
+    return shown
 
 
 def _safety_tile(rating: DriveRating, mode: str, whole: DriveRating) -> Tile:

@@ -90,15 +90,15 @@ class BoxMove:
 def box_moves(scene: Scene, pairs: tuple[GearPair, ...]) -> tuple[BoxMove, ...]:
     """Return every move of one number of [layout], [[place]] and [[keep_out]]."""
     reach = sum(pair.centre_distance for pair in pairs)
-    found = [m for n in numbers(scene) for m in _factors(n)]
+    moves = [m for n in numbers(scene) for m in _factors(n)]
     farthest = REACHES * reach
     for table, ways, what in (
         ("place", ((0, -1), (1, 1)), "an end of a place"),
         ("keep_out", ((0, 1), (1, -1)), "a side of a keep-out inwards"),
     ):
-        for k, one in enumerate(getattr(scene, table)):
+        for k, table_row in enumerate(getattr(scene, table)):
             for axis in ("y", "z", "x") if table == "keep_out" else ("y", "z"):
-                ends = getattr(one, axis)
+                ends = getattr(table_row, axis)
                 if ends is None:
                     continue
                 inside = (1.0 - LEFT) * (ends[1].value - ends[0].value)
@@ -107,8 +107,8 @@ def box_moves(scene: Scene, pairs: tuple[GearPair, ...]) -> tuple[BoxMove, ...]:
                 limit = f"{what} by up to {farthest:.0f} mm{part}"
                 for end, way in ways if far > 0.0 else ():
                     point = table == "place" and ends[0] == ends[1]
-                    found.append(_shift((table, k, axis), end, way, far, limit, reach, point))
-    return tuple(found)
+                    moves.append(_shift((table, k, axis), end, way, far, limit, reach, point))
+    return tuple(moves)
 
 
 def limits_of(tried: tuple[BoxMove, ...]) -> tuple[str, ...]:
@@ -182,24 +182,26 @@ def switches(scene: Scene) -> tuple[BoxMove, ...]:
     """Return every place or keep-out left out, slabs left free, no split line, partial span."""
     table = scene.layout
     assert table is not None
-    found = []
+    moves = []
     for field in ("place", "keep_out"):
-        for k, one in enumerate(getattr(scene, field)):
-            called = f"that of shaft {one.shaft}" if field == "place" else one.name or "it"
+        for k, table_row in enumerate(getattr(scene, field)):
+            called = (
+                f"that of shaft {table_row.shaft}" if field == "place" else table_row.name or "it"
+            )
             limit = f"a {field.replace('_', '-')} left out"
-            without = partial(_without, one)
-            found.append(_switch((field, k), without, (f"{field}[{k + 1}]", called, ""), limit))
+            without = partial(_without, table_row)
+            moves.append(_switch((field, k), without, (f"{field}[{k + 1}]", called, ""), limit))
     if table.slabs is not None:
         was = str([list(slab) for slab in table.slabs])
         texts = ("layout.slabs", was, '"best"')
-        found.append(_switch(("layout", "slabs"), lambda now: None, texts, "slabs left free"))
+        moves.append(_switch(("layout", "slabs"), lambda now: None, texts, "slabs left free"))
     if table.split_line is not None:
         texts = ("layout.split_line", str(list(table.split_line)), "")
-        found.append(_switch(("layout", "split_line"), lambda now: None, texts, "no split line"))
+        moves.append(_switch(("layout", "split_line"), lambda now: None, texts, "no split line"))
     if table.span == "full":
         texts = ("layout.span", '"full"', '"partial"')
-        found.append(_switch(("layout", "span"), lambda now: "partial", texts, "partial span"))
-    return tuple(found)
+        moves.append(_switch(("layout", "span"), lambda now: "partial", texts, "partial span"))
+    return tuple(moves)
 
 
 def _without(table: Any, tables: Any) -> Any:

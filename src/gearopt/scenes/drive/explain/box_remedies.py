@@ -92,22 +92,22 @@ def remedies(scene: Scene, gears: Result, clock: Clock) -> Remedies:
     single, choices = box_moves(scene, pairs), switches(scene)
     chosen = [r for m in choices if (r := _chosen(asked, m)) is not None]
     moved = [r for m in single if (r := _moved(asked, m)) is not None]
-    found = sorted(moved, key=_size) + chosen
+    sufficient = sorted(moved, key=_size) + chosen
     message = ""
-    if found and asked.open:
+    if sufficient and asked.open:
         message = f"time ran out before it was known whether {', '.join(asked.open)} alone suffices"
-    elif not found:
+    elif not sufficient:
         both = _pairs(asked, single + choices[::-1])  # of two tables the last goes first
-        found = sorted(both, key=_size)
-        if asked.open and not found:
+        sufficient = sorted(both, key=_size)
+        if asked.open and not sufficient:
             message = "no remedy was found, and time ran out before every change was decided"
-        elif not found:
+        elif not sufficient:
             none = "no layout was found by changing one or two numbers within these ranges"
             message = f"{none}: {', '.join(limits_of(single + choices))}"
     if clock.over:
         message = "time ran out before all remedies were tried"
-    changed = found[0][2] if found else None
-    known = tuple(remedy for _, remedy, _ in found)
+    changed = sufficient[0][2] if sufficient else None
+    known = tuple(remedy for _, remedy, _ in sufficient)
     more, unknown = other_gears(scene, pairs, known, clock)
     first = GEARS_FIRST if known and others_may_fit(scene, scene.gearbox(pairs)) else ""
     words = "; ".join(filter(None, (message, first, unknown)))
@@ -129,8 +129,8 @@ def _nearest(scene: Scene, changed: Scene, sized: Result, clock: Clock) -> dict[
     if result.value is None or outcome.x is None:
         return None
     angles, order = read(arrangements(box), outcome.x)
-    found = placed(box, order, angles)
-    gone = [keep_out_design(k, found) for k in asked.keep_outs if k not in box.keep_outs]
+    arranged = placed(box, order, angles)
+    gone = [keep_out_design(k, arranged) for k in asked.keep_outs if k not in box.keep_outs]
     return {
         "layout": untyped(described(box, order, angles, design)),
         "keep_outs": [untyped(k) for k in gone],
@@ -204,13 +204,13 @@ def _pairs(asked: FeasibilityQuestions, single: tuple[BoxMove, ...]) -> list[Fou
         if known is not None:
             moves = [(own.move, own.unscaled(known.high)) for own in pair]
             rough.append((_changed(pair, moves), moves, pair))
-    found = []
+    remedies_of_two = []
     for _, moves, pair in sorted(rough, key=lambda r: r[0])[:PAIRS]:
         if (remedy := _together(asked, pair, moves)) is not None:
-            found.append(remedy)
+            remedies_of_two.append(remedy)
         else:
             asked.open.append(" and ".join(own.key for own in pair))
-    return found
+    return remedies_of_two
 
 
 def _changed(pair: Pair, moves: Sequence[tuple[Move, float]]) -> float:
@@ -263,12 +263,12 @@ def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:
         for n in numbers(scene)
         if n.path[0] in TABLES and isinstance(n.value, Quantity) and smooth(n)
     ]
-    found = tuple(influences(scene, Basis(result.value, solved, step=STEP), clock, wanted))
+    sensitivities = tuple(influences(scene, Basis(result.value, solved, step=STEP), clock, wanted))
     late = "; time ran out before all numbers were tried" if clock.over else ""
     return Explanation(
         result,
         binding=tuple(n for n, v in result.limits.items() if v > 1.0 - SIZE_TIE),
-        influences=found,
+        influences=sensitivities,
         message=f"sensitivities are those of the box around these gears{late}",
         seconds=result.seconds + clock.seconds,
     )

@@ -56,10 +56,10 @@ def nearest_ratio(case: Case, away: Fraction | None) -> Remedy | None:
     if isinstance(reached, str) or reached.away == 0:
         return None
     reached, word = _nearest(case, reached)
-    for found in (one for ratio in reached.ratios for one in _written(case.scene, ratio)):
-        if case.status(found) == "feasible":
-            place = ("duty", "ratio" if found.duty.output_speed is None else "output_speed")
-            (change,) = changed(case.scene, found, [Move(place, 1, inherits=inherited)]).changes
+    for other in (one for ratio in reached.ratios for one in _written(case.scene, ratio)):
+        if case.status(other) == "feasible":
+            place = ("duty", "ratio" if other.duty.output_speed is None else "output_speed")
+            (change,) = changed(case.scene, other, [Move(place, 1, inherits=inherited)]).changes
             verified = {"with": "feasible", "nearer": word}
             return Remedy("choice", "ratio", (change,), change.factor, None, verified)
     return None
@@ -81,12 +81,12 @@ def _nearest(case: Case, best: Reached) -> tuple[Reached, str]:
         away = Fraction(math.sqrt(max(low, best.away * SLACK_FRACTION) * best.away))
         if excluded and best.away - low <= NEARER_ASKED * best.away:
             away = best.away * (1 - NEARER)
-        found = _met(case, away)
-        excluded = whole and isinstance(found, str)
-        if isinstance(found, Reached):
-            best = found
+        met = _met(case, away)
+        excluded = whole and isinstance(met, str)
+        if isinstance(met, Reached):
+            best = met
         else:
-            low, proven = away, away if found == "infeasible" else proven
+            low, proven = away, away if met == "infeasible" else proven
         if case.clock.over:
             break
     known = best.away - proven <= (NEARER if whole else SLACK_FRACTION) * best.away
@@ -109,8 +109,8 @@ def _met(case: Case, away: Fraction) -> Reached | str:
 
 
 def _within(scene: Scene, tolerance: Fraction) -> Scene:
-    found: Scene = put(scene, TOLERANCE, tolerance)
-    return found
+    changed_scene: Scene = put(scene, TOLERANCE, tolerance)
+    return changed_scene
 
 
 def _written(scene: Scene, ratio: Fraction) -> Iterator[Scene]:
@@ -128,21 +128,21 @@ def _written(scene: Scene, ratio: Fraction) -> Iterator[Scene]:
         numbers = [_short(number, SHORT), eased(number, 1.0, way)]
     for k, value in enumerate(numbers):
         new: Any = value if speed is None else replace(speed, number=value)
-        found: Scene = put(scene, ("duty", "ratio" if speed is None else "output_speed"), new)
-        if not allowed(found):
+        other: Scene = put(scene, ("duty", "ratio" if speed is None else "output_speed"), new)
+        if not allowed(other):
             continue
-        written = found.duty.total_ratio
+        written = other.duty.total_ratio
         missed = abs(ratio - written)
         if scene.teeth is not None and missed <= scene.duty.ratio_tolerance * written:
-            yield found
+            yield other
             return
         if scene.teeth is None and (k or missed <= Fraction(SLACK_TRIED) * abs(ratio - asked)):
-            yield found
+            yield other
 
 
 def _short(number: Fraction, digits: int) -> Fraction:
-    one, other = Decimal(number.numerator), Decimal(number.denominator)
-    return Fraction(Context(prec=digits).divide(one, other))
+    numerator, denominator = Decimal(number.numerator), Decimal(number.denominator)
+    return Fraction(Context(prec=digits).divide(numerator, denominator))
 
 
 def eased_tolerance(case: Case) -> Remedy | None:
@@ -189,11 +189,11 @@ def _one_more(modules: tuple[Quantity, ...]) -> list[tuple[Quantity, ...]]:
         size = module.exact[0]
         return min(float(max(m, size) / min(m, size)) for m in sizes)
 
-    found: list[Quantity] = []
+    added: list[Quantity] = []
     for name in family(modules):
-        new = [m for m in SERIES[name] if m.exact[0] not in sizes and m not in found]
-        found += sorted(new, key=far)
-    return [tuple(sorted((*modules, m), key=lambda m: m.number)) for m in found]
+        new = [m for m in SERIES[name] if m.exact[0] not in sizes and m not in added]
+        added += sorted(new, key=far)
+    return [tuple(sorted((*modules, m), key=lambda m: m.number)) for m in added]
 
 
 def _listed(modules: Sequence[Quantity]) -> str:

@@ -23,12 +23,12 @@ def remedies_of_counts(asked: Scene, scene: Scene, clock: Clock) -> Remedies:
     """
     if scene.stage:
         return remedies(scene, clock)
-    found: dict[int, Remedies] = {}
+    by_count: dict[int, Remedies] = {}
     for k, n in enumerate(scene.counts):
         left = clock.left.seconds
         share = None if left is None else left / (len(scene.counts) - k)
-        found[n] = remedies(scene.held(n), Clock(Budget(share), clock.watch))
-    joined = _joined(found) if scene.several else found[scene.counts[0]]
+        by_count[n] = remedies(scene.held(n), Clock(Budget(share), clock.watch))
+    joined = _joined(by_count) if scene.several else by_count[scene.counts[0]]
     return replace(joined, remedies=(*joined.remedies, *_other_counts(asked, scene, clock)))
 
 
@@ -43,15 +43,15 @@ def _joined(found: Mapping[int, Remedies]) -> Remedies:
             if keys not in best or way.factor < best[keys][1].factor:
                 best[keys] = n, way
     known = [_held_against(found, *one) for one in best.values()]
-    own = sorted((r for r in known if r.kind not in ("less", "choice")), key=lambda r: r.factor)
-    own = [replace(r, kind=_kind(r), what=", ".join(_keys(r))) for r in own]
-    if own:
+    nearest = sorted((r for r in known if r.kind not in ("less", "choice")), key=lambda r: r.factor)
+    nearest = [replace(r, kind=_kind(r), what=", ".join(_keys(r))) for r in nearest]
+    if nearest:
         sure = not any(ways.message for ways in found.values())
         others = {"others": "need more" if sure else "not all known"}
-        own[0] = replace(own[0], kind="least", verified={**own[0].verified, **others})
+        nearest[0] = replace(nearest[0], kind="least", verified={**nearest[0].verified, **others})
     rest = [r for kind in ("less", "choice") for r in known if r.kind == kind]
     late = next((ways.message for ways in found.values() if ways.message), "")
-    return Remedies((), (*own, *rest), late)
+    return Remedies((), (*nearest, *rest), late)
 
 
 def _keys(way: Remedy) -> tuple[str, ...]:

@@ -55,8 +55,8 @@ def explained(
     def solved(other: Scene) -> float | None:
         if not whole:  # a difference to what is not the best means nothing
             return None
-        found = answer(other)
-        return found.value if found.status in CERTAIN else None
+        result = answer(other)
+        return result.value if result.status in CERTAIN else None
 
     spelt = _spelt(scene)
     wanted = [
@@ -65,7 +65,7 @@ def explained(
     stepped = scene.by_ratings or scene.train().hollow  # slopes are known of posynomials alone
     if stepped:
         wanted = [n for n in wanted if eases(scene, n)]
-    found = tuple(
+    of_numbers = tuple(
         influences(
             spelt,
             None if stepped else _basis(spelt, clock),
@@ -75,14 +75,14 @@ def explained(
             lambda number: _smooth(spelt, number),
         )
     )
-    late = f"the time sufficed for {len(found)} of {len(wanted)} sensitivities"
+    late = f"the time sufficed for {len(of_numbers)} of {len(wanted)} sensitivities"
     late = late if clock.over else ""
     if not whole:
         late = late or "relaxing a limit is not tried, because the answer is not proven optimal"
     return Explanation(
         result,
         binding=tuple(n for n in binding(result) if not n.startswith("common_divisor")),
-        influences=found,
+        influences=of_numbers,
         message=late,
         seconds=clock.seconds,
         basis=RATED if stepped else BASIS,
@@ -154,8 +154,8 @@ def _easing(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[
     other = None if value is None else moved(scene, number.path, value)
     if other is None:
         return "", None
-    found = solved(other)
-    return step, None if found is None else (found - result.value) / abs(result.value)
+    objective = solved(other)
+    return step, None if objective is None else (objective - result.value) / abs(result.value)
 
 
 def eases(scene: Scene, number: Number) -> int:

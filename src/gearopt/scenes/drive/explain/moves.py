@@ -53,7 +53,7 @@ def moves_of(scene: Scene, handles: Sequence[Handle]) -> list[Move]:
     A number of [limits] or [gears] for all stages that have none of their own, and that of each
     stage alone; where a single stage takes it from there, once.
     """
-    found: list[Move] = []
+    moves: list[Move] = []
     groups: dict[tuple[str, int], list[Handle]] = {}
     for handle in handles:
         groups.setdefault((handle.family, handle.direction), []).append(handle)
@@ -62,10 +62,10 @@ def moves_of(scene: Scene, handles: Sequence[Handle]) -> list[Move]:
             path: Path = ("duty", OF_DUTY[family])
             if inherited(scene, path):  # a tolerance of zero has no factor
                 end = {"ratio_low": 0, "ratio_high": 1}.get(family)
-                found.append(_move(scene, family, path, end, direction, DUTY, tuple(group)))
+                moves.append(_move(scene, family, path, end, direction, DUTY, tuple(group)))
         elif family in fields(scene):
-            found += _of_stages(scene, family, direction, {stage_of(h): h for h in group})
-    return found
+            moves += _of_stages(scene, family, direction, {stage_of(h): h for h in group})
+    return moves
 
 
 def _of_stages(scene: Scene, family: str, direction: int, group: dict[int, Handle]) -> list[Move]:
@@ -78,20 +78,20 @@ def _of_stages(scene: Scene, family: str, direction: int, group: dict[int, Handl
     widened = given and field != WIDTH
     end = (0 if direction < 0 else 1) if widened else own_end
     taken = LIMIT if widened or not given else SIZE
-    found = []
+    moves = []
     if shared is not None and takers:
         behind = tuple(group[k] for k in takers)
-        found.append(_move(scene, family, (table, field), end, direction, taken, behind))
+        moves.append(_move(scene, family, (table, field), end, direction, taken, behind))
     for k, handle in group.items():
         path = ("stage", k, field)
         if k not in takers:
             role = SIZE if given else LIMIT
-            found.append(_move(scene, family, path, own_end, direction, role, (handle,)))
+            moves.append(_move(scene, family, path, own_end, direction, role, (handle,)))
         elif shared is not None and takers != [k]:
-            found.append(_move(scene, family, path, end, direction, taken, (handle,)))
+            moves.append(_move(scene, family, path, end, direction, taken, (handle,)))
         elif shared is None and inherited(scene, path) is not None:  # a load limit of a preset
-            found.append(_move(scene, family, path, own_end, direction, LIMIT, (handle,)))
-    return found
+            moves.append(_move(scene, family, path, own_end, direction, LIMIT, (handle,)))
+    return moves
 
 
 def fields(scene: Scene) -> dict[str, tuple[str, int | None]]:
@@ -243,17 +243,19 @@ def _module_back(scene: Scene, now: Any, before: Any, part: float) -> Any:
         sizes = new.exact[0], old.exact[0]
         if sizes[0] != sizes[1]:
             way = 1 if sizes[1] > sizes[0] else -1
-            one = next_module(scene, new, way)
-            ends[k] = old if one is None or (one.exact[0] - sizes[1]) * way > 0 else one
+            neighbour = next_module(scene, new, way)
+            ends[k] = (
+                old if neighbour is None or (neighbour.exact[0] - sizes[1]) * way > 0 else neighbour
+            )
     return tuple(ends)
 
 
 def inherited(scene: Scene, path: Path) -> Any:
     """Value at a place of the file: its own, or that for all stages."""
     field = str(path[-1])
-    own = scene.stage[path[1]] if path[0] == "stage" and scene.stage else None  # type: ignore[index]
-    if own is not None and getattr(own, field) is not None:
-        return getattr(own, field)
+    stage = scene.stage[path[1]] if path[0] == "stage" and scene.stage else None  # type: ignore[index]
+    if stage is not None and getattr(stage, field) is not None:
+        return getattr(stage, field)
     if path[0] == "duty":
         return getattr(scene.duty, field)
     if field == "face_width_over_diameter":
@@ -269,11 +271,11 @@ def next_module(
     """Return the next module of [teeth] up (+1) or down (-1), beyond or at one; in its unit."""
     assert scene.teeth is not None
     size = module.exact[0]
-    found = [
+    candidates = [
         m for m in scene.teeth.sizes if (m - size) * direction > 0 or (m == size and not beyond)
     ]
-    if not found:
+    if not candidates:
         return None
-    nearest = module.of(min(found, key=lambda m: abs(m - size)))
+    nearest = module.of(min(candidates, key=lambda m: abs(m - size)))
     decimal = Fraction(exact(nearest.number)) == nearest.number
     return nearest if decimal else eased(nearest, 1.0, direction)

@@ -28,18 +28,18 @@ def other_gears(
 
     pairs: gears sized first, which do not fit. known: remedies for these, which are not tried.
     """
-    found, unknown = [], []
+    remedies, unknown = [], []
     for changed, changes in _candidates(scene, pairs, known):
         words = " and ".join(f"{change.key} = {change.write}" for change in changes)
         fits = _fits(changed, clock)
         if fits:
             what = " and ".join(change.key.rsplit(".", 1)[-1] for change in changes)
-            found.append(Remedy("choice", what, changes, 1.0, None, {"with": "feasible"}))
+            remedies.append(Remedy("choice", what, changes, 1.0, None, {"with": "feasible"}))
         elif fits is None:
             unknown.append(f"time ran out before it was known whether other gears fit with {words}")
         else:
             unknown.append(f"no other gears fit with {words}")
-    return tuple(found), "; ".join(unknown)
+    return tuple(remedies), "; ".join(unknown)
 
 
 def _candidates(
@@ -81,9 +81,9 @@ def _fits(scene: Scene, clock: Clock) -> bool | None:
         train = scene.train()
         problem = together.problem(train, scene.gearbox)
         budget = replace(clock.left, seconds=min(seconds, SECONDS))
-        found, _ = run(problem, None, budget, watch=first)
+        result, _ = run(problem, None, budget, watch=first)
     except SolveError:  # too many pairs to examine
         return None
-    if found.value is not None:
+    if result.value is not None:
         return True
-    return False if found.status == "infeasible" else None
+    return False if result.status == "infeasible" else None

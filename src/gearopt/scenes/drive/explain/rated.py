@@ -157,9 +157,9 @@ def _name(number: Number) -> str:
     """Return the requirement that a number is of."""
     end = number.path[-1] if isinstance(number.path[-1], int) else None
     field = str(number.path[-1] if end is None else number.path[-2])
-    own = {"minimum_face_width": "least_face_width", "input_revolutions": "life"}
+    requirements = {"minimum_face_width": "least_face_width", "input_revolutions": "life"}
     tail = ("_low", "_high")[end] if end in (0, 1) else ""
-    return own.get(field, field.replace(WIDTH, "face_width" if tail else WIDTH)) + tail
+    return requirements.get(field, field.replace(WIDTH, "face_width" if tail else WIDTH)) + tail
 
 
 def _wider(number: Number) -> int:

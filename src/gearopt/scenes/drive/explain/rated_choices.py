@@ -41,12 +41,12 @@ def choices(scene: Scene, known: Conflict, works: Works) -> Iterator[Remedy]:
 
 def _materials(scene: Scene) -> Ways:
     """Yield the drives whose gears may have one material of the file more."""
-    own = scene.gears.materials
-    for one in scene.material if own else ():
-        assert own
-        if one.name not in own:
-            more = (*own, one.name)
-            change = Change("gears.materials", toml_text(list(own)), toml_text(list(more)), 1.0)
+    chosen = scene.gears.materials
+    for material in scene.material if chosen else ():
+        assert chosen
+        if material.name not in chosen:
+            more = (*chosen, material.name)
+            change = Change("gears.materials", toml_text(list(chosen)), toml_text(list(more)), 1.0)
             yield (change,), _with_gears(scene, {"materials": more})
 
 

@@ -66,24 +66,24 @@ class _Filter:
         if not families:
             return
         names = [name for family in families for name in family]
-        found = self.possible(self.dropped | {*names})
-        if found is False:
+        verdict = self.possible(self.dropped | {*names})
+        if verdict is False:
             self.dropped |= {*names}
         elif len(families) > 1:
             middle = len(families) // 2
             self.drop(families[middle:])
             self.drop(families[:middle])
-        elif found:
+        elif verdict:
             self.needed |= {*names}
 
     def split(self, family: Sequence[str]) -> None:
         """Drop single stages of a family that is in the conflict."""
         self.needed -= {*family}
         for name in family:
-            found = self.possible([name]) or self.possible(self.dropped | {name})
-            if found:
+            verdict = self.possible([name]) or self.possible(self.dropped | {name})
+            if verdict:
                 self.needed.add(name)
-            elif found is False:
+            elif verdict is False:
                 self.dropped |= {name}
 
 
@@ -94,24 +94,24 @@ def conflict(case: Case) -> Conflict:
     """
     if case.scene.teeth is None:
         return Conflict()
-    found, groups = _Filter(case), requirements(case.scene)
+    filtering, groups = _Filter(case), requirements(case.scene)
     families = [family for group in groups for family in group]
     distances = [family for family in families if family[0].startswith(DISTANCE)]
     for family in (*distances, *groups[0]):
-        if found.possible(family):
-            found.needed |= {*family}
+        if filtering.possible(family):
+            filtering.needed |= {*family}
     for group in groups[::-1]:
         kept = [family for family in group if family not in distances]
-        found.drop([family for family in kept if not found.needed & {*family}])
+        filtering.drop([family for family in kept if not filtering.needed & {*family}])
     for family in families:
-        if len(family) > 1 and family not in distances and not found.dropped & {*family}:
-            found.split(family)
-    every = [name for family in families for name in family if name not in found.dropped]
-    if not found.needed:
+        if len(family) > 1 and family not in distances and not filtering.dropped & {*family}:
+            filtering.split(family)
+    every = [name for family in families for name in family if name not in filtering.dropped]
+    if not filtering.needed:
         return Conflict()
-    unsure = tuple(name for name in every if name not in found.needed)
-    alone = len(every) > 1 and all(found.answers.get(frozenset([name])) for name in every)
-    return Conflict((*every, *_standard(case, found.dropped, every)), unsure, alone)
+    unsure = tuple(name for name in every if name not in filtering.needed)
+    alone = len(every) > 1 and all(filtering.answers.get(frozenset([name])) for name in every)
+    return Conflict((*every, *_standard(case, filtering.dropped, every)), unsure, alone)
 
 
 def _standard(case: Case, dropped: Dropped, names: Sequence[str]) -> list[str]:

@@ -52,16 +52,16 @@ def remedies(scene: Scene, clock: Clock) -> Remedies:
     blamed = _conflict(base, known, clock) if real else ()
     singles = _tried(asked, _singles(case, asked, base if real else None, movable, blamed))
     floor, beside = together(case, base, movable) if real else (None, None)
-    found = _changes(case, asked, movable, singles, beside, floor)
+    listed = _changes(case, asked, movable, singles, beside, floor)
     if scene.duty.ratio_tolerance == 0 and (remedy := eased_tolerance(case)) is not None:
-        found.append(remedy)
-    if (remedy := nearest_ratio(case, _tolerance(found))) is not None:
-        found.append(remedy)
+        listed.append(remedy)
+    if (remedy := nearest_ratio(case, _tolerance(listed))) is not None:
+        listed.append(remedy)
     if scene.teeth is not None:
-        found += switches(case)
+        listed += switches(case)
     late = "time ran out before all remedies were tried" if clock.over else ""
     sure = scene.teeth is None and any_resolves(base, known, blamed, clock)
-    return Remedies(tuple(h.name for h in blamed), tuple(found), late, sure)
+    return Remedies(tuple(h.name for h in blamed), tuple(listed), late, sure)
 
 
 def _tolerance(found: Sequence[Remedy]) -> Fraction | None:
@@ -194,20 +194,20 @@ def _changes(
         rows += [r for _, r in _tried(asked, [(JOINT, known)])]
     if not any(r.kind != "less" for r in rows) and (r := _all_limits(case, asked, movable)):
         rows.append(r)
-    own = sorted((r for r in rows if r.kind != "less"), key=_product)
-    own.sort(key=lambda r: r.kind == "even" and len(r.changes) > 1)  # its numbers move alike
-    if own:
-        all_known = not (case.clock.over or case.open) and _product(own[0]) <= FARTHEST
+    nearest = sorted((r for r in rows if r.kind != "less"), key=_product)
+    nearest.sort(key=lambda r: r.kind == "even" and len(r.changes) > 1)  # its numbers move alike
+    if nearest:
+        all_known = not (case.clock.over or case.open) and _product(nearest[0]) <= FARTHEST
         tried = "need more" if all_known else "not all known"
         least = replace(
-            own[0],
+            nearest[0],
             kind=JOINT,
-            factor=_product(own[0]),
-            bound=own[0].bound if floor is None else floor,
-            verified={**own[0].verified, "others": tried},
+            factor=_product(nearest[0]),
+            bound=nearest[0].bound if floor is None else floor,
+            verified={**nearest[0].verified, "others": tried},
         )
-        own = [least, *_worth_reporting(r for r in own[1:] if r.kind != "least")]
-    return _distinct([*own, *(r for r in rows if r.kind == "less")])
+        nearest = [least, *_worth_reporting(r for r in nearest[1:] if r.kind != "least")]
+    return _distinct([*nearest, *(r for r in rows if r.kind == "less")])
 
 
 def _worth_reporting(found: Any) -> Iterator[Remedy]:

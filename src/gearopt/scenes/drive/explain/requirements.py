@@ -55,15 +55,15 @@ def requirements(scene: Scene) -> tuple[tuple[tuple[str, ...], ...], ...]:
     A name of a stage is `wheel_diameter[2]`; where the number of stages is open, it is of all.
     """
     train = scene.held(scene.counts[0]).train()
-    found: dict[str, list[str]] = {name: [name] for name in _of_all(scene, train)}
+    families: dict[str, list[str]] = {name: [name] for name in _of_all(scene, train)}
     for k, stage in enumerate(train.stages):
-        own = scene.stage[k] if scene.stage else StageTable()
-        for name in _of_stage(scene, own, stage):
-            found.setdefault(name, []).append(f"{name}[{k + 1}]")
+        table = scene.stage[k] if scene.stage else StageTable()
+        for name in _of_stage(scene, table, stage):
+            families.setdefault(name, []).append(f"{name}[{k + 1}]")
     if scene.several:
-        found = {name: [name] for name in found}
+        families = {name: [name] for name in families}
     groups = (scene.law.names + ORDER[0], ORDER[1])
-    return tuple(tuple(tuple(found[n]) for n in group if n in found) for group in groups)
+    return tuple(tuple(tuple(families[n]) for n in group if n in families) for group in groups)
 
 
 def _of_all(scene: Scene, train: Train) -> Iterator[str]:
@@ -139,8 +139,8 @@ def _without(scene: Scene, dropped: Dropped) -> Train:
     stages = []
     for k, stage in enumerate(train.stages):
         here = {name for name in dropped if name.endswith(f"[{k + 1}]") or "[" not in name}
-        own = scene.stage[k] if scene.stage else StageTable()
-        stages.append(_stage(scene, own, stage, {name.split("[")[0] for name in here}))
+        table = scene.stage[k] if scene.stage else StageTable()
+        stages.append(_stage(scene, table, stage, {name.split("[")[0] for name in here}))
     safety = tuple(
         NO_SAFETY if name in dropped else asked
         for name, asked in zip((BENDING, CONTACT), train.safety, strict=True)

@@ -96,16 +96,16 @@ def _met(case: Case, train: Train, choices: list[Choice], box: Box) -> Box | boo
     Where it is known to be possible, but not with which numbers, True for a box of several.
     """
     if case.scene.teeth is None:
-        found = case.possible(train)
-        return box if found and all(i == j for i, j in box) else found
+        verdict = case.possible(train)
+        return box if verdict and all(i == j for i, j in box) else verdict
     teeth = case.teeth(train)
     if not teeth:
         return False if teeth == () else None
-    made = best_pairs(train, teeth)
+    pairs = best_pairs(train, teeth)
     places = []
     for choice in choices:
         pinion, wheel = teeth[choice.stage]
-        module = Fraction(made[choice.stage].normal_module).limit_denominator(10**6)
+        module = Fraction(pairs[choice.stage].normal_module).limit_denominator(10**6)
         value = {"pinion_teeth": pinion, "wheel_teeth": wheel, "module": module}[choice.field]
         places.append(choice.values.index(value))
     return tuple((j, j) for j in places)
@@ -122,13 +122,13 @@ def _choices(case: Case, movable: list[Move], most: float) -> list[Choice]:
                 if factor < most and factor <= reach:
                     value = _plain(case.scene, train, number.path, factor, number.way)
                     numbers.setdefault(number.path, []).append((value, factor, number))
-    found = []
+    choices = []
     for path, known in numbers.items():
         given = _plain(case.scene, train, path), 1.0, None
         rows = sorted([*known, given], key=lambda row: row[0])
         values, factors, moved = zip(*rows, strict=True)
-        found.append(Choice(int(path[1]), str(path[2]), values, factors, moved))
-    return found
+        choices.append(Choice(int(path[1]), str(path[2]), values, factors, moved))
+    return choices
 
 
 def _plain(
@@ -164,9 +164,9 @@ def _parts(choices: list[Choice], box: Box) -> list[Box]:
     spread = [s if i < j else -1.0 for s, (i, j) in zip(spread, box, strict=True)]
     k = spread.index(max(spread))
     (i, j), factors = box[k], choices[k].factors
-    own = factors.index(1.0)
-    if i <= own <= j:
-        ranges = [(i, own - 1), (own, own), (own + 1, j)]
+    unchanged = factors.index(1.0)
+    if i <= unchanged <= j:
+        ranges = [(i, unchanged - 1), (unchanged, unchanged), (unchanged + 1, j)]
     else:
         ranges = [(i, (i + j) // 2), ((i + j) // 2 + 1, j)]
     return [(*box[:k], r, *box[k + 1 :]) for r in ranges if r[0] <= r[1]]
@@ -218,18 +218,18 @@ def together(case: Case, base: Problem, movable: list[Move]) -> tuple[float | No
 
     Whole numbers that are given are set first: the others follow them.
     """
-    found = _smallest_moves(case, base, movable)
-    if found is None:
+    smallest = _smallest_moves(case, base, movable)
+    if smallest is None:
         return None, None
-    moves, bound = found
+    moves, bound = smallest
     stepped = tuple(m for m in moves if is_stepped(case.scene, m[0]))
     others = tuple(m for m in moves if m not in stepped)
     for whole in _rounded(case.scene, stepped):
         edited = applied(case.scene, whole) if whole else None
         rest = others if edited is None else _after(case, edited.scene)
-        made = None if rest is None else _beside(case, whole, rest)
-        if made is not None:
-            return bound, made
+        with_rest = None if rest is None else _beside(case, whole, rest)
+        if with_rest is not None:
+            return bound, with_rest
     return bound, _from_sizes(case, movable, tuple(m for m in others if m[0].role == SIZE))
 
 
@@ -283,10 +283,10 @@ def _smallest_moves(
 ) -> tuple[Moves, float | None] | None:
     """Return the moves of limits and given sizes of the smallest product, and its bound."""
     groups = [m for m in movable if m.role != DUTY]
-    found = least_factors(base, [m.handles for m in groups], case.clock) if groups else None
-    if found is None:
+    solution = least_factors(base, [m.handles for m in groups], case.clock) if groups else None
+    if solution is None:
         return None
-    factors, _, bound = found
+    factors, _, bound = solution
     moves = tuple(
         (m, float(f)) for m, f in zip(groups, factors, strict=True) if f > 1.0 + PRODUCT_TIE
     )
@@ -298,8 +298,8 @@ def _after(case: Case, scene: Scene) -> Moves | None:
     if not is_real(scene, case.clock):
         return ()
     base, _, movable = posed(scene)
-    found = _smallest_moves(case, base, [m for m in movable if not is_stepped(scene, m)])
-    return None if found is None else found[0]
+    smallest = _smallest_moves(case, base, [m for m in movable if not is_stepped(scene, m)])
+    return None if smallest is None else smallest[0]
 
 
 def is_stepped(scene: Scene, number: Move) -> bool:

@@ -51,10 +51,10 @@ class Case:
         few, seconds = narrowed(train), self.clock.within(self.seconds)
         if few != train and possible(few, seconds, self.clock.watch, self.shelf):
             return True
-        found = possible(train, seconds, self.clock.watch, self.shelf)
-        if found is None:
+        verdict = possible(train, seconds, self.clock.watch, self.shelf)
+        if verdict is None:
             self.open.append(train)
-        return found
+        return verdict
 
     def _rated(self, train: Train) -> bool | None:
         """Return whether a drive that ratings limit has a design.
@@ -63,11 +63,11 @@ class Case:
         are searched quickly.
         """
         few = _widest(train), _of_pinion(train, 0), _of_pinion(train, -1)
-        for one, part in ((train, WHOLE), *((one, FEW) for one in few)):
+        for narrower, part in ((train, WHOLE), *((one, FEW) for one in few)):
             seconds = part * self.clock.within(self.seconds)
-            found = possible(one, seconds, self.clock.watch, self.shelf)
-            if found or one is train and found is False:
-                return found
+            verdict = possible(narrower, seconds, self.clock.watch, self.shelf)
+            if verdict or narrower is train and verdict is False:
+                return verdict
         self.open.append(train)
         return None
 
@@ -87,8 +87,8 @@ class Case:
         if scene.teeth is not None:
             if solve_within(self.clock, sizing.problem(scene.train())).status == "infeasible":
                 return "infeasible"
-        found = self.possible(scene.train())
-        return "undecided" if found is None else ("feasible" if found else "infeasible")
+        verdict = self.possible(scene.train())
+        return "undecided" if verdict is None else ("feasible" if verdict else "infeasible")
 
     @property
     def asked(self) -> FeasibilityQuestions:

@@ -15,7 +15,7 @@ def rating_assumptions(scene: Scene) -> list[str]:
     asked = scene.rating
     assert asked
     by_agma, by_iso = asked.standard != "iso6336", asked.standard != "agma"
-    found = [
+    sentences = [
         "The rating is of external cylindrical steel gears on parallel shafts; the pinions drive. "
         "Losses are neglected, but for those of the mesh where they are reported.",
         "The standards themselves were not read: formulas and values are those of textbooks, "
@@ -27,7 +27,7 @@ def rating_assumptions(scene: Scene) -> list[str]:
         "safety factor is 1.",
     ]
     unstated = _unstated(asked, by_agma, by_iso)
-    return [*found, f"Not in the file: {', '.join(unstated)}."] if unstated else found
+    return [*sentences, f"Not in the file: {', '.join(unstated)}."] if unstated else sentences
 
 
 def _agma_assumptions(asked: RatingTable) -> list[str]:

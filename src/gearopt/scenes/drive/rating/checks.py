@@ -106,11 +106,11 @@ def check_objective(
     if asked.minimise == "cost" and None in used:
         rule = "needs materials of every gear, with their prices in [[material]]"
         raise refuse(rule, "gear_volume", ("objective", "minimise"))
-    for one in used:
-        if asked.minimise == "cost" and one and one.price is None:
-            at = ("material", materials.index(one), "price")
+    for material in used:
+        if asked.minimise == "cost" and material and material.price is None:
+            at = ("material", materials.index(material), "price")
             raise refuse("is missing: cost needs it", at=at)
-        if asked.density is None and (one is None or one.density is None):
+        if asked.density is None and (material is None or material.density is None):
             raise refuse(f"is missing: {asked.minimise} needs it", at=("objective", "density"))
 
 
@@ -160,23 +160,23 @@ def check_rated(
         _check_needed("yield_strength", YIELDLESS, _by_yield, gears, stages, materials)
     for k, stage in enumerate(stages or (StageTable(),)):
         given = rating.given.factors() | stage.given.factors()
-        made = rating.iso6336.given.factors() | stage.given_iso6336.factors()
+        given_factors = rating.iso6336.given.factors() | stage.given_iso6336.factors()
         for name in CYCLES if load else ():
-            if name in given or name in made:
+            if name in given or name in given_factors:
                 rule = "follows from the levels [[load]] and cannot be given"
                 raise refuse(rule, at=_given_at(rating, stage, k, name), action="remove")
         check_pinion(stage, k)
         if rating.by_iso6336:
-            _check_accuracy(rating, made)
+            _check_accuracy(rating, given_factors)
         for member in MEMBERS:
-            own = getattr(stage, member)
-            place = ("stage", k, member) if own.model_fields_set & set(MATERIAL) else ("gears",)
-            for gear, one in choices(own, gears, materials):
-                at = place if one is None else ("material", materials.index(one))
+            table = getattr(stage, member)
+            place = ("stage", k, member) if table.model_fields_set & set(MATERIAL) else ("gears",)
+            for gear, material in choices(table, gears, materials):
+                at = place if material is None else ("material", materials.index(material))
                 if rating.by_agma:
                     _check_steel(gear, at, given)
                 if rating.by_iso6336:
-                    _check_material(gear, at, made)
+                    _check_material(gear, at, given_factors)
     _check_roughness(rating, gears, stages, materials)
     total = sum(level.share for level in load)
     if load and total != 1:
@@ -274,14 +274,14 @@ def _check_needed(
     counts: dict[Place, bool] = {}
     for k, stage in enumerate(stages or (StageTable(),)):
         for member in MEMBERS:
-            own = getattr(stage, member)
-            for gear, one in choices(own, gears, materials):
+            table = getattr(stage, member)
+            for gear, material in choices(table, gears, materials):
                 if getattr(gear, name) is None:
                     continue
                 at: Place = ("gears", name)
-                if one is not None and name in STEEL:
-                    at = ("material", materials.index(one), name)
-                elif getattr(own, name) is not None:
+                if material is not None and name in STEEL:
+                    at = ("material", materials.index(material), name)
+                elif getattr(table, name) is not None:
                     at = ("stage", k, member, name)
                 counts[at] = counts.get(at, False) or needed(k, member, gear)
     for at, counted in counts.items():
@@ -346,14 +346,14 @@ def _check_material(gear: GearTable, place: Place, given: dict[str, Any]) -> Non
         rule = "leaves the roots soft: ISO 6336-5 has the bending strength of hardened ones alone"
         tell = 'Give sigma_Flim in [rating.iso6336.given], or write treatment = "induction, roots"'
         raise refuse(rule, tell, (*place, "treatment"), "tell")
-    found = steel(gear)
+    material = steel(gear)
     for stress in ("H", "F"):
         if f"sigma_{stress}lim" in given:
             continue
         try:
-            strength(found, stress)
+            strength(material, stress)
         except ValueError as reason:
-            key = "hardness" if found.name not in SURFACE_HARDENED else "flank_hardness"
+            key = "hardness" if material.name not in SURFACE_HARDENED else "flank_hardness"
             key = "iso_quality" if "quality" in str(reason) else key
             write = {"hardness": "240 HB", "flank_hardness": "600 HV", "iso_quality": "MQ"}[key]
             missing = key != "iso_quality"

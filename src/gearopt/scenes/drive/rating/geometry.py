@@ -61,13 +61,13 @@ def _measured(gear: Gear) -> dict[str, Any]:
     """
     teeth = span_teeth(gear)
     low, high = float(form_diameter(gear)), float(gear.tip_diameter)
-    found: dict[str, Any] = {}
+    dimensions: dict[str, Any] = {}
     width = float(span(gear, teeth))
     helical = width * abs(math.sin(base_helix_angle(gear)))  # along the axis
     if low <= float(span_diameter(gear, teeth)) <= high and helical < gear.face_width:
-        found |= {"span_teeth": teeth, "span_mm": width}
+        dimensions |= {"span_teeth": teeth, "span_mm": width}
     ball = BALL * gear.normal_module
     over = float(over_balls(gear, ball))
     if low <= float(ball_contact_diameter(gear, ball)) <= high < over:
-        found |= {"ball_diameter_mm": ball, "over_balls_mm": over}
-    return found
+        dimensions |= {"ball_diameter_mm": ball, "over_balls_mm": over}
+    return dimensions

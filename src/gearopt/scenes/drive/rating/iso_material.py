@@ -50,9 +50,9 @@ def finish(table: GearTable) -> float:
 
 def material(table: GearTable) -> str:
     """Return a gear's material in words."""
-    found = steel(table)
-    hardness = table.flank_hardness or (table.hardness if found.hardness else None)
-    words = [found.name, found.quality, *([str(hardness)] if hardness else [])]
-    words += [f"core {table.iso_core}"] if table.iso_core and found.by_core else []
+    kind = steel(table)
+    hardness = table.flank_hardness or (table.hardness if kind.hardness else None)
+    words = [kind.name, kind.quality, *([str(hardness)] if hardness else [])]
+    words += [f"core {table.iso_core}"] if table.iso_core and kind.by_core else []
     words += [f"grade {table.accuracy_grade}"] if table.accuracy_grade is not None else []
     return ", ".join(words)

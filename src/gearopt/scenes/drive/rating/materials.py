@@ -77,15 +77,15 @@ def check_materials(
     known = [one.name for one in materials]
     for k, name in enumerate(known):
         if name in known[:k]:
-            told = f"Rename this one or material[{known.index(name) + 1}]: gears choose by name"
+            remedy = f"Rename this one or material[{known.index(name) + 1}]: gears choose by name"
             rule = f"is that of material[{known.index(name) + 1}], too"
-            raise refuse(rule, told, ("material", k, "name"), "tell")
+            raise refuse(rule, remedy, ("material", k, "name"), "tell")
     for place, table in _tables(stages, gears):
         for name in table.materials or ():
             if name not in known:
-                told = f"Known: {', '.join(known)}" if known else "Write a table [[material]]"
+                remedy = f"Known: {', '.join(known)}" if known else "Write a table [[material]]"
                 rule = f'has "{name}", which is the name of no [[material]]'
-                raise refuse(rule, told, (*place, "materials"), "tell")
+                raise refuse(rule, remedy, (*place, "materials"), "tell")
         for key in STEEL if table.materials else ():
             if getattr(table, key) is not None:
                 rule = "conflicts with materials, which set it"
@@ -103,8 +103,8 @@ def check_same(gears: Any, stages: Sequence[Any]) -> None:
     for member in MEMBERS:
         known = [names(getattr(stage, member), gears) for stage in stages]
         free = free or any(len(found) > 1 for found in known or [gears.materials or ()])
-        for k, found in enumerate(known or [gears.materials or ()]):
-            if not found:
+        for k, common in enumerate(known or [gears.materials or ()]):
+            if not common:
                 place = ("stage", k, member, "materials") if stages else ("gears", "materials")
                 raise refuse("is missing: same_materials chooses of the materials of all", at=place)
         if known and not set(known[0]).intersection(*known):

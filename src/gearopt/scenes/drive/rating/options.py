@@ -35,10 +35,10 @@ def of_stages(
     """
     hours, loaded = required_hours(rating, duty), loads(rating, duty, levels)
     options = []
-    for own in stages:
-        pinion, wheel = (choices(getattr(own, member), gears, materials) for member in MEMBERS)
+    for table in stages:
+        pinion, wheel = (choices(getattr(table, member), gears, materials) for member in MEMBERS)
         options.append(
-            tuple(_option(rating, own, (a, b), hours, loaded) for a in pinion for b in wheel)
+            tuple(_option(rating, table, (a, b), hours, loaded) for a in pinion for b in wheel)
         )
     if not gears.same_materials:
         return tuple(options)

@@ -99,23 +99,23 @@ def check_blanks(tables: Sequence[tuple[Place, BlankKeys, BlankKeys, bool]]) -> 
     """
     rims = any(table.rimmed for _, _, table, _ in tables)
     bores = any(table.bore for _, _, table, _ in tables)
-    for place, own, table, open_width in tables:
+    for place, keys, table, open_width in tables:
 
-        def at(key: str, place: Place = place, own: BlankKeys = own) -> Place:
+        def at(key: str, place: Place = place, own: BlankKeys = keys) -> Place:
             return (*place, key) if getattr(own, key) is not None else ("gears", key)
 
-        told = next((key for key in WEB if getattr(table, key) is not None), None)
-        if told and not (table.rimmed or rims and at(told)[0] == "gears"):
-            rim = RIM[WEB.index(told)]
+        web = next((key for key in WEB if getattr(table, key) is not None), None)
+        if web and not (table.rimmed or rims and at(web)[0] == "gears"):
+            rim = RIM[WEB.index(web)]
             rule = f"is missing (or give {RIM[1 - RIM.index(rim)]}): a gear with a web has a rim"
-            raise refuse(rule, "12 mm" if rim == RIM[0] else 3, (*at(told)[:-1], rim), "sample")
+            raise refuse(rule, "12 mm" if rim == RIM[0] else 3, (*at(web)[:-1], rim), "sample")
         idle = not (table.bore or bores and at(HUBS)[0] == "gears")
         if table.hub_over_bore is not None and idle:
             raise refuse("needs bore, which the hub surrounds", at=at(HUBS), action="remove")
-        if told == WEB[0] and open_width:
+        if web == WEB[0] and open_width:
             rule = "is a length, and the face width of its gear is to be chosen"
             tell = "Write web_over_face_width = 0.3, or give the stage a face_width"
-            raise refuse(rule, tell, at(told), "tell")
+            raise refuse(rule, tell, at(web), "tell")
 
 
 def body_flaws(
@@ -129,18 +129,18 @@ def body_flaws(
     wide as the root circle is a misfit there; a bore of all gears leaves small ones solid.
     """
     for k, (both, pair) in enumerate(zip(blanks, pairs, strict=True)):
-        for i, (member, made, gear) in enumerate(zip(MEMBERS, both, pair.gears, strict=True)):
-            name, body = f"{member} of stage {k + 1}", made.body(gear)
+        for i, (member, shape, gear) in enumerate(zip(MEMBERS, both, pair.gears, strict=True)):
+            name, body = f"{member} of stage {k + 1}", shape.body(gear)
             root = float(gear.root_diameter)
-            if made.bore and not body.bore:
+            if shape.bore and not body.bore:
                 text = (
-                    f"The {name} is solid, without its bore: a hub of {made.hub:.4g} mm does not "
+                    f"The {name} is solid, without its bore: a hub of {shape.hub:.4g} mm does not "
                     f"lie inside the root circle of {root:.4g} mm."
                 )
-                wide = (made.bore - root) / gear.normal_module if bored and bored[k][i] else -1.0
+                wide = (shape.bore - root) / gear.normal_module if bored and bored[k][i] else -1.0
                 equal = 2.0 * ROUNDING  # a bore as wide as the root circle does not fit either
                 yield Flaw("no bore", text, misfit=max(0.0, wide + equal))
-            elif made.has_rim and not body.rim_thickness:
-                inside = f"{float(made.inside(gear)):.4g} mm inside its rim"
-                hub = f" for a hub of {made.hub:.4g} mm" if made.bore else ""
+            elif shape.has_rim and not body.rim_thickness:
+                inside = f"{float(shape.inside(gear)):.4g} mm inside its rim"
+                hub = f" for a hub of {shape.hub:.4g} mm" if shape.bore else ""
                 yield Flaw("no web", f"The {name} has no web: {inside} leave no room{hub}.")

@@ -108,8 +108,8 @@ def limited_by(law: Law) -> Callable[[type[T]], type[T]]:
 
     def limited(table: type[T]) -> type[T]:
         inside = {"LAW": law, "__module__": table.__module__, "__doc__": table.__doc__}
-        made: Any = type(table)
-        return cast(type[T], made(table.__name__, (table, loads), inside))
+        metaclass: Any = type(table)
+        return cast(type[T], metaclass(table.__name__, (table, loads), inside))
 
     return limited
 
@@ -281,8 +281,8 @@ class Limits(Loaded):
 
     def load(self, name: str) -> Quantity:
         """Return a limit of the strength law, from the file or the preset."""
-        own: Quantity | None = getattr(self, name)
-        return own or units.parse(PRESETS[str(self.preset)][name], "stress")
+        limit: Quantity | None = getattr(self, name)
+        return limit or units.parse(PRESETS[str(self.preset)][name], "stress")
 
 
 PINION_SHIFT = to_choose(
@@ -439,9 +439,9 @@ class ProcessTwoTable(Table):
 
 def _check_lists(table: Table, stages: int, name: str) -> None:
     for key in ("stage_ratios", "pinion_teeth", "modules"):
-        found = getattr(table, key)
-        if found is not None and len(found) != stages:
-            fit = [_written(v) for v in (*found, *found[-1:] * stages)[:stages]]
+        values = getattr(table, key)
+        if values is not None and len(values) != stages:
+            fit = [_written(v) for v in (*values, *values[-1:] * stages)[:stages]]
             rule = f"does not have one entry for each of the {stages} stages"
             raise refuse(rule, fit, (name, key), "sample")
 

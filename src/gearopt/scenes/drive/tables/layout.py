@@ -172,11 +172,11 @@ class Layout(Table):
                 remedy = f"Write stages = {stages}, or {other}"
                 raise refuse(rule, remedy, ("layout", name), "tell")
         for name in ("shaft_diameters", "bearing_diameters", "bearing_widths"):
-            found = getattr(self, name)
-            if found is not None and len(found) != shafts:
-                texts = [str(q) for q in found]
+            values = getattr(self, name)
+            if values is not None and len(values) != shafts:
+                texts = [str(q) for q in values]
                 fit = (texts + texts[-1:] * shafts)[:shafts]
-                rule = f"names {len(found)} shafts; a drive of {stages} stages has {shafts}"
+                rule = f"names {len(values)} shafts; a drive of {stages} stages has {shafts}"
                 raise refuse(rule, fit, ("layout", name), "sample")
         if self.split_line is not None and several:
             check_shared(max(self.split_line), counts, ("layout", "split_line"))

@@ -90,20 +90,20 @@ def check_teeth(
     objective: what is minimised; asked: what else takes reference circles, such as gears and box
     at once, or nothing.
     """
-    for k, own in enumerate(stages):
-        if own.centre_distance is not None and lacks:
+    for k, table in enumerate(stages):
+        if table.centre_distance is not None and lacks:
             rule = f"needs gears that are all given, or {lacks}"
             raise refuse(rule, at=("stage", k, "centre_distance"), action="remove")
-        given = own.centre_distance is not None
+        given = table.centre_distance is not None
         if not (objective in LENGTHS or asked):
             continue
-        if not given and toothing(own, gears).on_reference:
+        if not given and toothing(table, gears).on_reference:
             continue
         what = f"minimise = {objective}" if objective in LENGTHS else asked
         rule = f"moves the centre distance, which {what} takes from the reference circles"
         if given:
             raise refuse(rule, at=("stage", k, "centre_distance"), action="remove")
-        member = "wheel" if own.pinion.profile_shift is None else "pinion"
+        member = "wheel" if table.pinion.profile_shift is None else "pinion"
         place = ("stage", k, member, "profile_shift")
         raise refuse(rule, "Give shifts whose sum is 0, or none", place, "tell")
 
@@ -124,8 +124,8 @@ def check_mesh(stage: Stage, k: int, own: StageTable, gears: Gears) -> None:
     tables.
     """
     _check_tips(stage, k, own, gears)
-    for made in stage.toothings:
-        _check_fewest(stage, made, k, own, gears)
+    for cut in stage.toothings:
+        _check_fewest(stage, cut, k, own, gears)
 
 
 def _check_fewest(stage: Stage, made: Toothing, k: int, own: StageTable, gears: Gears) -> None:

@@ -53,8 +53,8 @@ Allowance = Annotated[Quantity | tuple[Quantity, Quantity] | None, allowances("0
 
 
 def _deviation(description: str) -> Quantity | None:
-    found: Quantity | None = Field(None, description=description)
-    return found
+    field: Quantity | None = Field(None, description=description)
+    return field
 
 
 @dataclass(frozen=True)
@@ -178,10 +178,10 @@ class Mesh(Table):
 
     def opening(self, name: str) -> tuple[float, float]:
         """Return the ends of a deviation [mm], in the direction that opens the mesh."""
-        found = getattr(self, name)
-        if not isinstance(found, tuple):
-            return 0.0, 0.0 if found is None else float(found.value)
-        low, high = (float(end.value) for end in found)
+        deviation = getattr(self, name)
+        if not isinstance(deviation, tuple):
+            return 0.0, 0.0 if deviation is None else float(deviation.value)
+        low, high = (float(end.value) for end in deviation)
         return (-high, -low) if name in THICKNESS else (low, high)
 
     @property
@@ -337,10 +337,10 @@ class Price:
 def price(source: Source, table: Tolerances, costs: tuple[CostTable, ...]) -> Price:
     """Cost of a deviation, by its own table where it has one."""
     cost, k = (table.pitch_cost if source.kind == "pitch" else Fraction(1)), table.exponent
-    for own in costs:
-        if own.meets(source):
-            cost = cost if own.cost is None else own.cost
-            k = k if own.exponent is None else own.exponent
+    for row in costs:
+        if row.meets(source):
+            cost = cost if row.cost is None else row.cost
+            k = k if row.exponent is None else row.exponent
     return Price(float(cost), float(k))
 
 

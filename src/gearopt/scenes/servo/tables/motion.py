@@ -113,7 +113,7 @@ class Duty(Table):
 def servo_duty(duty: Duty, motor: Motor, load: Load) -> ServoDuty:
     """Return motion, motor and load as plain numbers, without gears."""
     free, limit = motor.no_load_speed, motor.speed_limit
-    own = Drive(
+    drive = Drive(
         load_inertia=load.inertia.value,
         motor_inertia=motor.inertia.value,
         torque=motor.torque.value if motor.torque else 0.0,
@@ -124,13 +124,13 @@ def servo_duty(duty: Duty, motor: Motor, load: Load) -> ServoDuty:
         speed_limit=limit.value if limit else math.inf,
     )
     numbers = {
-        name: found.value
+        name: given.value
         for name in ("load_speed", "angle", "amplitude")
-        if (found := getattr(duty, name)) is not None
+        if (given := getattr(duty, name)) is not None
     }
     turns = 2.0 * math.pi * duty.frequency.value if duty.frequency else 0.0
     most = _max_ratio(duty, motor)
-    return ServoDuty(own, duty.motion, **numbers, angular_frequency=turns, max_ratio=most)
+    return ServoDuty(drive, duty.motion, **numbers, angular_frequency=turns, max_ratio=most)
 
 
 def _max_ratio(duty: Duty, motor: Motor) -> Fraction | None:

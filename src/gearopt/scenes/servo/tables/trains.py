@@ -268,31 +268,31 @@ def check_shafts(
 
 def check_sector(train: Train, space: Space | None, duty: Duty | None) -> None:
     """Check that sector and sweep of the last wheel cover its travel; placed below the file."""
-    own, turned = train.sector, Fraction(0)
+    sector, turned = train.sector, Fraction(0)
     if duty is not None and duty.motion in TURNED:
         name, times = TURNED[duty.motion]
         turned = times * _turns(getattr(duty, name))
-        if own < min(turned, Fraction(1)):
+        if sector < min(turned, Fraction(1)):
             rule = f"is smaller than the {_degrees(turned)} that the load turns by [duty]: the "
             _refuse_sector(rule + "wheel's teeth would leave the pinion", turned)
     if space is None or space.swept_angle is None:
         return
     swept = _turns(space.swept_angle)
-    if swept < own:
-        rule = f"is below the {_degrees(own)} of the last wheel itself, sector in [train]"
-        raise refuse(rule, _degrees(own), ("space", "swept_angle"))
-    if 2 * own < swept and own < 1:
+    if swept < sector:
+        rule = f"is below the {_degrees(sector)} of the last wheel itself, sector in [train]"
+        raise refuse(rule, _degrees(sector), ("space", "swept_angle"))
+    if 2 * sector < swept and sector < 1:
         rule = (
-            f"is smaller than the travel of {_degrees(swept - own)} that swept_angle = "
+            f"is smaller than the travel of {_degrees(swept - sector)} that swept_angle = "
             f'"{space.swept_angle}" leaves it: the '
         )
         _refuse_sector(rule + "wheel's teeth would leave the pinion", swept / 2)
-    if own < 1 and swept < min(own + turned, Fraction(1)):
+    if sector < 1 and swept < min(sector + turned, Fraction(1)):
         rule = (
-            f"is below the {_degrees(own)} of the wheel's sector and the {_degrees(turned)} that "
-            "the load turns by [duty] together"
+            f"is below the {_degrees(sector)} of the wheel's sector and the {_degrees(turned)} "
+            "that the load turns by [duty] together"
         )
-        write = _degrees(min(own + turned, Fraction(1)))
+        write = _degrees(min(sector + turned, Fraction(1)))
         raise refuse(rule, write, ("space", "swept_angle"))
 
 
@@ -317,5 +317,5 @@ def _above(length: Fraction, like: Quantity) -> str:
 
 def _decimal(value: Fraction) -> str:
     context = Context(prec=DIGITS, rounding=ROUND_CEILING)
-    found = context.divide(Decimal(value.numerator), Decimal(value.denominator))
-    return f"{found.normalize():f}"
+    quotient = context.divide(Decimal(value.numerator), Decimal(value.denominator))
+    return f"{quotient.normalize():f}"
