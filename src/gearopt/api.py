@@ -161,8 +161,8 @@ def explain(
         return explained_as_asked(explain_problem(what, budget, watch))
     ask = Ask(budget=budget, watch=watch)
     scene, kind, names = _opened(what, changes)
-    found = explanation(kind, scene, ask)
-    return replace(found, result=_named(found.result, **names))
+    explained = explanation(kind, scene, ask)
+    return replace(explained, result=_named(explained.result, **names))
 
 
 def _with_prices(result: Result, scene: BaseModel, kind: Kind[Any], ask: Ask) -> Result:
@@ -261,8 +261,8 @@ def compare(
     methods = methods.split(",") if isinstance(methods, str) else methods
     if objectives is not None:
         pose, names, about = _traded(what, changes, objectives)
-        found = _fronts(pose, names, most, methods, plan, watch, bound_from)
-        return replace(found, **_of_comparison(about))
+        comparison = _fronts(pose, names, most, methods, plan, watch, bound_from)
+        return replace(comparison, **_of_comparison(about))
     if most is not None:
         raise SolveError("most changes nothing here: it is for objectives of fronts; leave it out")
     if isinstance(what, Problem | Conic):
@@ -270,14 +270,14 @@ def compare(
         usual = ("conic",) if isinstance(what, Conic) else (*what.methods, *DEFAULT)
         chosen = usual if methods is None else methods
         one_objective(what.name, what.rows.objectives)
-        own = Model(what)
-        found = compare_methods(chosen, lambda method: own, plan, watch, bound_from)
-        return replace(found, title=what.name)
+        model = Model(what)
+        comparison = compare_methods(chosen, lambda method: model, plan, watch, bound_from)
+        return replace(comparison, title=what.name)
     scene, kind, about = _opened(what, changes)
     chosen = kind.compared(scene) if methods is None else methods
-    found = compare_methods(chosen, lambda m: kind.posed(scene, m), plan, watch, bound_from)
+    comparison = compare_methods(chosen, lambda m: kind.posed(scene, m), plan, watch, bound_from)
     title = getattr(scene, "title", "") or about["scene"]
-    return replace(found, title=title, **_of_comparison(about))
+    return replace(comparison, title=title, **_of_comparison(about))
 
 
 def _of_comparison(names: dict[str, Any]) -> dict[str, Any]:
@@ -333,7 +333,7 @@ def _traded(
     if left and (why := kind.trades.advice(scene, left)):
         raise SolveError(why)
     chosen = chosen_of(names, list(known), f'this file of kind "{about["scene"]}"')
-    report = {"assumptions": told} if (told := kind.assumptions(scene)) else {}
+    report = {"assumptions": assumptions} if (assumptions := kind.assumptions(scene)) else {}
     about |= {"title": getattr(scene, "title", ""), "report": report}
     return lambda ask: kind.trades.traded(scene, chosen, ask), chosen, about
 

@@ -71,7 +71,7 @@ class SceneError(GearoptError):
         super().__init__("\n".join(lines))
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
-        """What copies and other processes build it from: its text alone would not do."""
+        """Arguments from which copies and other processes build it: its text alone would not do."""
         place = self.file, self.key, self.value
         return SceneError, (*place, self.rule, self.remedy, self.fix, self.errors[1:])
 
@@ -80,8 +80,8 @@ class SceneError(GearoptError):
 
     def _line(self) -> str:
         where = self._name() + (f": {self.key}" if self.key else "")
-        found = f" = {self.value}" if self.value else ""
-        return f"{where}{found}: {self.rule}. {self.remedy}".rstrip()
+        value = f" = {self.value}" if self.value else ""
+        return f"{where}{value}: {self.rule}. {self.remedy}".rstrip()
 
 
 def together(errors: Sequence[SceneError]) -> SceneError:

@@ -245,9 +245,9 @@ def parse(text: str, dimension: str) -> Quantity:
     number, unit = match.groups()
     if unit is None and dimension != "fraction":
         raise ValueError(f"has no unit; units of {dimension}: {known}")
-    found = unit and named(unit, dimension)
-    if unit is not None and found is None:
+    recognised = unit and named(unit, dimension)
+    if unit is not None and recognised is None:
         other = next((f" of {d}" for d in UNITS if named(unit, d)), "")
         shown = f"{'' if other else 'unknown '}unit {unit if unit.isprintable() else ''}".rstrip()
         raise ValueError(f"has the {shown}{other}; units of {dimension}: {known}")
-    return Quantity(Fraction(number), found or "", dimension)
+    return Quantity(Fraction(number), recognised or "", dimension)

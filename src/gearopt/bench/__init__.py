@@ -23,5 +23,9 @@ def timed(call: Callable[[], T], repeat: int) -> tuple[T, dict[str, float]]:
         result = call()
         times.append(1000.0 * clock.seconds)
     times = times[1:]
-    found = {"median_ms": statistics.median(times), "least_ms": min(times), "most_ms": max(times)}
-    return result, {name: round(ms, 2) for name, ms in found.items()}
+    milliseconds = {
+        "median_ms": statistics.median(times),
+        "least_ms": min(times),
+        "most_ms": max(times),
+    }
+    return result, {name: round(ms, 2) for name, ms in milliseconds.items()}

@@ -53,8 +53,8 @@ def _compared(file: Path, seconds: float) -> float:
         entry = enter(method, lambda one: kind.posed(scene, one))
         if not entry.refused:
             processor = time.process_time()
-            run = attempt(entry, 0, Budget(seconds), lambda _: True)
-            used.append(min(run.seconds if run else 0.0, time.process_time() - processor))
+            result = attempt(entry, 0, Budget(seconds), lambda _: True)
+            used.append(min(result.seconds if result else 0.0, time.process_time() - processor))
     return max(used)
 
 

@@ -73,8 +73,8 @@ def random_drive(number: int) -> Train:
     torque = float(np.exp(rng.uniform(np.log(5e3), np.log(5e5))))
     ratio = Fraction(round(100 * even**count), 100)
     helix = float(np.radians(rng.uniform(0.0, 25.0)))
-    made = tuple(replace(stage, toothings=(Toothing(helix),)) for stage in stages)
-    return Train(torque, ratio, Fraction(1, 100), made, law=K_FACTOR)
+    helical = tuple(replace(stage, toothings=(Toothing(helix),)) for stage in stages)
+    return Train(torque, ratio, Fraction(1, 100), helical, law=K_FACTOR)
 
 
 def reducer() -> Problem:

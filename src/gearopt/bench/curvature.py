@@ -31,28 +31,28 @@ def run(repeat: int) -> list[dict[str, Any]]:
     A contact whose 1/R comes out negative has neither R nor p0: such stations are counted (median).
     ms: of all stations.
     """
-    made, at = flank(GEARING, STATIONS), flank(GEARING, STATIONS).contacts
-    closed, times = timed(lambda: _closed(made), repeat)
+    mated, at = flank(GEARING, STATIONS), flank(GEARING, STATIONS).contacts
+    closed, times = timed(lambda: _closed(mated), repeat)
     rows = [_row("closed form", "", "", [closed], at, times)]
-    function, angles = by_derivatives(made), at.motion.angle
-    found, times = timed(lambda: function(angles), repeat)
-    rows.append(_row("AD of the position", "", "", [found], at, times))
-    found, times = timed(lambda: of_small_displacements(made), repeat)
-    rows.append(_row("ring theory of first order", "", "", [found], at, times))
+    function, angles = by_derivatives(mated), at.motion.angle
+    curvature, times = timed(lambda: function(angles), repeat)
+    rows.append(_row("AD of the position", "", "", [curvature], at, times))
+    curvature, times = timed(lambda: of_small_displacements(mated), repeat)
+    rows.append(_row("ring theory of first order", "", "", [curvature], at, times))
     for data, noise in DATA.items():
         for count in POINTS:
-            draws = [points(made, count, noise, seed) for seed in range(SEEDS if noise else 1)]
+            draws = [points(mated, count, noise, seed) for seed in range(SEEDS if noise else 1)]
             for name, fit in FITS.items():
                 _, times = timed(partial(fit, *draws[0], at.point.x), repeat)
-                found = [fit(*draw, at.point.x) for draw in draws]
-                rows.append(_row(name, data, count, found, at, times))
+                curvature = [fit(*draw, at.point.x) for draw in draws]
+                rows.append(_row(name, data, count, curvature, at, times))
     return rows
 
 
 def _closed(made: Flank) -> Any:
     """Return the curvature by the text that the reference is made of."""
-    found = contact(made.gearing, motion(made.gearing, made.curve, made.contacts.motion.angle))
-    return found.curvatures[1]
+    touching = contact(made.gearing, motion(made.gearing, made.curve, made.contacts.motion.angle))
+    return touching.curvatures[1]
 
 
 def of_small_displacements(made: Flank) -> Any:
@@ -60,8 +60,8 @@ def of_small_displacements(made: Flank) -> Any:
     gearing, wanted = made.gearing, made.contacts.tangent
     arc = made.contacts.motion.arc
     for _ in range(NEWTON_STEPS):
-        found = contact(gearing, small_motion(gearing, arc))
-        arc = arc - (found.tangent - wanted) / found.tangent_rate
+        touching = contact(gearing, small_motion(gearing, arc))
+        arc = arc - (touching.tangent - wanted) / touching.tangent_rate
     return contact(gearing, small_motion(gearing, arc)).curvatures[1]
 
 

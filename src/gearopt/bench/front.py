@@ -88,8 +88,8 @@ def elevator() -> Problem:
 def _real(names: tuple[str, ...], most: dict[str, float], seeds: int) -> Iterator[dict[str, Any]]:
     problem, case = elevator(), "elevator, real-valued: " + ", ".join(names)
     fine = found(problem, names, most, "epsilon", REFERENCE_POINTS[len(names)]).values
-    made, ms = _timed(lambda: found(elevator(), names, most, "epsilon"))
-    yield _row(case, "epsilon", [made], [ms], fine)
+    front, ms = _timed(lambda: found(elevator(), names, most, "epsilon"))
+    yield _row(case, "epsilon", [front], [ms], fine)
     for count in EVALUATIONS:
         yield _sampled(case, problem, names, most, count, seeds, fine)
 
@@ -100,9 +100,9 @@ def _whole(
     train = replace(train_of(*CASES[case][:2]), objective=names[0], others=names[1:])
     most = {} if largest is None else {VOLUME: largest}
     words = f"{case}, whole teeth: " + ", ".join(names)
-    made, ms = _timed(lambda: found(teeth.problem(train), names, most, "exact"))
-    yield _row(words, "exact", [made], [ms], made.values)
-    yield _sampled(words, teeth.problem(train), names, most, EVALUATIONS[-1], seeds, made.values)
+    front, ms = _timed(lambda: found(teeth.problem(train), names, most, "exact"))
+    yield _row(words, "exact", [front], [ms], front.values)
+    yield _sampled(words, teeth.problem(train), names, most, EVALUATIONS[-1], seeds, front.values)
 
 
 def _sampled(

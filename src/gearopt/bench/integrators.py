@@ -58,9 +58,9 @@ def run(repeat: int) -> list[dict[str, Any]]:
     rows = []
     for case, scene in scenes().items():
         known = reference(scene)
-        made = {name: list(_climbed(ladder, known)) for name, ladder in _ladders(scene)}
-        rounds = [_round(made) for _ in range(max(repeat, 1))]
-        for name, settings in made.items():
+        settings_of = {name: list(_climbed(ladder, known)) for name, ladder in _ladders(scene)}
+        rounds = [_round(settings_of) for _ in range(max(repeat, 1))]
+        for name, settings in settings_of.items():
             errors = [one.error for one in settings]
             slope = _slope(errors) if name in STEPPERS else None
             row = {"case": case, "method": name, "order": slope}
@@ -121,8 +121,8 @@ def _climbed(ladder: Iterator[Run], known: Any) -> Iterator[_Setting]:
 
     scale = np.max(np.abs(known))
     for run_ in ladder:
-        made = run_()  # the first compiles
-        error = float(np.max(np.abs(made.delta - known)) / scale)
+        motion = run_()  # the first compiles
+        error = float(np.max(np.abs(motion.delta - known)) / scale)
         took = _took(run_, 1)
         calls = max(1, round(BATCH / max(took, 1e-3)))
         yield _Setting(run_, error if math.isfinite(error) else math.inf, calls)
@@ -140,12 +140,12 @@ def _took(run_: Run, calls: int) -> float:
 
 def _round(made: dict[str, list[_Setting]]) -> dict[str, list[float | None]]:
     """Return the time of every method to each error of TARGETS [ms], measured anew."""
-    found: dict[str, list[float | None]] = {}
+    milliseconds: dict[str, list[float | None]] = {}
     for name, settings in made.items():
         needed = _needed([one.error for one in settings])
         times = [(settings[i].error, _took(settings[i].run, settings[i].calls)) for i in needed]
-        found[name] = [_least(times, target) for target in TARGETS]
-    return found
+        milliseconds[name] = [_least(times, target) for target in TARGETS]
+    return milliseconds
 
 
 def _needed(errors: list[float]) -> list[int]:
@@ -165,8 +165,8 @@ def reference(scene: MovingPair) -> Any:
 
     times = np.linspace(0.0, TIME, OUTPUTS)
     longest = TIME / (OUTPUTS - 1) / REFERENCE
-    made = march(scene, "plane", timeline(scene, times), "rk8", longest, np.zeros(10))
-    return made.delta
+    motion = march(scene, "plane", timeline(scene, times), "rk8", longest, np.zeros(10))
+    return motion.delta
 
 
 def _least(found: list[tuple[float, float]], target: float) -> float | None:

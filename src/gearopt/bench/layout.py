@@ -65,8 +65,8 @@ def run(repeat: int) -> list[dict[str, Any]]:
         bound = exact[0].bound or 0.0
         rows.append(_row(name, "exact", exact, took, bound, known))
         for steps in (5_000, 20_000, 128_701):
-            found, took = _timed(box, "sa", list(range(SEEDS)), Budget(evaluations=steps))
-            rows.append(_row(name, f"sa, median of {SEEDS}", found, took, bound, known))
+            results, took = _timed(box, "sa", list(range(SEEDS)), Budget(evaluations=steps))
+            rows.append(_row(name, f"sa, median of {SEEDS}", results, took, bound, known))
     return rows
 
 

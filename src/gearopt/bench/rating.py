@@ -68,9 +68,9 @@ def _published(repeat: int) -> list[dict[str, Any]]:
 
     z1, z2, *values = np.array(PUBLISHED).T
     pair = thinned(GearPair.of_teeth(1.0, z1, z2, 1.0, rack=TOOL), THINNING)
-    found, times = timed(lambda: geometry_factors(pair), repeat)
-    made = found.pitting, *found.bending
-    errors = [float(np.abs(a - b).max()) for a, b in zip(made, values, strict=True)]
+    factors, times = timed(lambda: geometry_factors(pair), repeat)
+    ours = factors.pitting, *factors.bending
+    errors = [float(np.abs(a - b).max()) for a, b in zip(ours, values, strict=True)]
     count = len(PUBLISHED)
     return [
         _row("I of AGMA 908", "arrays", times, count, errors[0]),
@@ -93,7 +93,7 @@ def _speeds(case: str, helix: float, repeat: int) -> list[dict[str, Any]]:
         factors = table.take(place).factors(chosen.face_width)
         return safeties(Case(chosen, OPERATION, steels, PRACTICE), factors[0], factors[1:])
 
-    one = [
+    separate = [
         _pairs(
             helix,
             float(teeth[0][place[k]]),
@@ -103,12 +103,12 @@ def _speeds(case: str, helix: float, repeat: int) -> list[dict[str, Any]]:
         )
         for k in range(CHECKED)
     ]
-    single, slow = timed(lambda: [rate(p, OPERATION, steels, PRACTICE) for p in one], repeat)
-    found, fast = timed(rows, repeat)
+    single, slow = timed(lambda: [rate(p, OPERATION, steels, PRACTICE) for p in separate], repeat)
+    computed, fast = timed(rows, repeat)
     error = max(
         abs(float(ours[k]) / theirs - 1.0)
         for k, made in enumerate(single)
-        for ours, theirs in zip(found, (*made.bending_safety, *made.contact_safety), strict=True)
+        for ours, theirs in zip(computed, (*made.bending_safety, *made.contact_safety), strict=True)
     )
     return [
         _row(case, "one at a time", slow, CHECKED, 0.0),
@@ -128,8 +128,8 @@ def iso_example() -> iso.Case:
     Source: gfsReboucas/Drivetrain, MATISO_6336.m; a public test of the edition of 2022.
     """
     rack, helix = Rack(dedendum=1.4, tip_radius=0.39), math.radians(15.8)
-    made = GearPair.of_teeth(8.0, 17, 103, 100.0, helix, rack, (0.145, 0.0), 500.0)
-    tips = zip(made.gears, (159.66, 872.35), strict=True)
+    pair = GearPair.of_teeth(8.0, 17, 103, 100.0, helix, rack, (0.145, 0.0), 500.0)
+    tips = zip(pair.gears, (159.66, 872.35), strict=True)
     first, second = (replace(g, tip_alteration=(d - g.tip_diameter) / 16.0) for g, d in tips)
     steel = Material("Eh", "MQ", flank=6e-3)
     speed = 360.0 * math.pi / 30.0
@@ -147,11 +147,11 @@ def _iso(repeat: int) -> list[dict[str, Any]]:
     import numpy as np
 
     case = iso_example()
-    own = case.pair, case.operation, case.materials, case.practice
-    one, slow = timed(lambda: iso_rate(*own), repeat)
-    made = one.contact_stress[0], *one.contact_safety
+    inputs = case.pair, case.operation, case.materials, case.practice
+    rated, slow = timed(lambda: iso_rate(*inputs), repeat)
+    ours = rated.contact_stress[0], *rated.contact_safety
     known = ISO_PRINTED.values()
-    error = max(abs(a / b - 1.0) for a, b in zip(made, known, strict=True))
+    error = max(abs(a / b - 1.0) for a, b in zip(ours, known, strict=True))
     rng = np.random.default_rng(0)
     steels = (Material("Eh", "MQ"),) * 2
     numbers = rng.integers(17, 61, ISO_ROWS), rng.integers(61, 201, ISO_ROWS)
@@ -175,8 +175,8 @@ def _apart(exact: Any, numbers: Any, module: Any, helix: float, steels: Any) -> 
     for k in range(CHECKED):
         teeth = float(numbers[0][k]), float(numbers[1][k])
         pair = GearPair.of_teeth(float(module[k]), *teeth, float(12.0 * module[k]), helix)
-        one = iso_rate(pair, OPERATION, steels, ISO_PRACTICE)
-        known = *one.bending_safety, *one.contact_safety
+        separate = iso_rate(pair, OPERATION, steels, ISO_PRACTICE)
+        known = *separate.bending_safety, *separate.contact_safety
         worst = max(worst, *(abs(float(a[k]) / b - 1.0) for a, b in zip(exact, known, strict=True)))
     return worst
 
@@ -185,5 +185,5 @@ def _row(
     case: str, method: str, times: dict[str, float], ratings: int, error: float | None
 ) -> dict[str, Any]:
     rate_ = 1e3 * ratings / max(times["median_ms"], 1e-3)
-    found = {"case": case, "method": method, **times, "ratings": ratings}
-    return found | {"ratings_per_second": round(rate_), "error": error}
+    row = {"case": case, "method": method, **times, "ratings": ratings}
+    return row | {"ratings_per_second": round(rate_), "error": error}

@@ -44,21 +44,21 @@ def run(repeat: int) -> list[dict[str, Any]]:
     """Return rows: case, method, runs, ms, um (median and worst of all seeds), bound, published."""
     rows = []
     for (model, count), known in PUBLISHED.items():
-        made = mesh(LOADS[count - 1], model, exact=False)
+        meshed = mesh(LOADS[count - 1], model, exact=False)
         for (shape, exponent), published in zip(SHAPES.items(), known[:2], strict=True):
             case = model, count, shape
-            posed = problem(made, Ranges.of(made, exponent))
+            posed = problem(meshed, Ranges.of(meshed, exponent))
             exact, times = timed(partial(solve, posed, "exact"), 1)
             rows.append(_row(case, "exact", [exact], times["median_ms"], exact.bound, published))
             for method, budget in SAMPLED.items():
-                found = [solve(posed, method, budget, seed) for seed in range(repeat)]
-                spent = statistics.median(1e3 * r.seconds for r in found)
-                rows.append(_row(case, method, found, spent, exact.bound, published))
+                results = [solve(posed, method, budget, seed) for seed in range(repeat)]
+                spent = statistics.median(1e3 * r.seconds for r in results)
+                rows.append(_row(case, method, results, spent, exact.bound, published))
             both = mesh(LOADS[count - 1], model, exact=True)
             ends = solve(problem(both, Ranges.of(both, exponent)), "exact")
             word = "exact, break points"
             rows.append(_row(case, word, [ends], 1e3 * ends.seconds, ends.bound, None))
-        free = solve(free_problem(made), "exact")
+        free = solve(free_problem(meshed), "exact")
         case = model, count, "any shape"
         rows.append(_row(case, "exact", [free], 1e3 * free.seconds, free.bound, known[2]))
     return rows

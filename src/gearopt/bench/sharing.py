@@ -25,7 +25,7 @@ def run(repeat: int) -> list[dict[str, Any]]:
     """Return rows: case, method, ms, positions, us of one, largest error of a share F/W."""
     import numpy as np
 
-    found = []
+    timings = []
     for pairs in PAIRS:
         rows = _random(pairs)
         few = tuple(a[:CHECKED] for a in rows)
@@ -33,12 +33,12 @@ def run(repeat: int) -> list[dict[str, Any]]:
         for method, call in _closed(rows).items():
             forces, times = timed(call, repeat)
             shares = forces[:CHECKED] / few[2][:, None]
-            found.append(_row(pairs, method, times, POSITIONS, np.abs(shares - exact).max()))
+            timings.append(_row(pairs, method, times, POSITIONS, np.abs(shares - exact).max()))
         for method, build in SOLVERS.items():
-            own, separations = _scaled(few)
-            shares, times = timed(partial(_each, build(pairs), own, separations), repeat)
-            found.append(_row(pairs, method, times, CHECKED, np.abs(shares - exact).max()))
-    return found
+            uncoupled, separations = _scaled(few)
+            shares, times = timed(partial(_each, build(pairs), uncoupled, separations), repeat)
+            timings.append(_row(pairs, method, times, CHECKED, np.abs(shares - exact).max()))
+    return timings
 
 
 def _random(pairs: int) -> Rows:
@@ -61,12 +61,15 @@ def _closed(rows: Rows) -> dict[str, Callable[[], Any]]:
 
 def _exact(compliances: Any, separations: Any, load: float) -> list[float]:
     """Return shares of one position in rational arithmetic: the least depth of all sets."""
-    own = [1 / (Fraction(float(c)) - Fraction(COUPLING)) for c in compliances]
+    stiffnesses = [1 / (Fraction(float(c)) - Fraction(COUPLING)) for c in compliances]
     apart, w = [Fraction(float(e)) for e in separations], Fraction(float(load))
-    order = sorted(range(len(own)), key=apart.__getitem__)
-    sets = [order[: k + 1] for k in range(len(own))]
-    depth: Any = min((w + sum(own[i] * apart[i] for i in s)) / sum(own[i] for i in s) for s in sets)
-    return [float(max(depth - e, 0) * k / w) for e, k in zip(apart, own, strict=True)]
+    order = sorted(range(len(stiffnesses)), key=apart.__getitem__)
+    sets = [order[: k + 1] for k in range(len(stiffnesses))]
+    depth: Any = min(
+        (w + sum(stiffnesses[i] * apart[i] for i in s)) / sum(stiffnesses[i] for i in s)
+        for s in sets
+    )
+    return [float(max(depth - e, 0) * k / w) for e, k in zip(apart, stiffnesses, strict=True)]
 
 
 def _scaled(rows: Rows) -> tuple[Any, Any]:
@@ -91,8 +94,8 @@ def _daqp(pairs: int) -> Solve:
     ones = np.ones((1, pairs))
 
     def solve(own: Any, separations: Any) -> Any:
-        found = solver(h=ca.diag(own), g=separations, a=ones, lba=1.0, uba=1.0, lbx=0.0)
-        return np.array(found["x"]).ravel()
+        solution = solver(h=ca.diag(own), g=separations, a=ones, lba=1.0, uba=1.0, lbx=0.0)
+        return np.array(solution["x"]).ravel()
 
     return solve
 
@@ -166,5 +169,5 @@ def _row(
     pairs: int, method: str, times: dict[str, float], positions: int, error: float
 ) -> dict[str, Any]:
     each = 1e3 * times["median_ms"] / positions
-    found = {"case": f"{pairs} pairs", "method": method, **times, "positions": positions}
-    return found | {"us_each": float(f"{each:.3g}"), "error": float(error)}
+    row = {"case": f"{pairs} pairs", "method": method, **times, "positions": positions}
+    return row | {"us_each": float(f"{each:.3g}"), "error": float(error)}

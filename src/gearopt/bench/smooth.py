@@ -74,11 +74,11 @@ def _compared(
 
     torque = _torque(standard, pair, speed)
     exact = np.array(standard.safeties(pair, torque, speed))
-    made, times = timed(lambda: np.array(smooth(pair, torque, speed)), repeat)
+    estimates, times = timed(lambda: np.array(smooth(pair, torque, speed)), repeat)
     known = np.isfinite(exact).all(axis=0)
     rows = []
-    for mode, right, found in zip(MODES, exact[:, known], made[:, known], strict=True):
-        error = np.sort(np.abs(found / right - 1.0)) * 100.0
+    for mode, right, estimated in zip(MODES, exact[:, known], estimates[:, known], strict=True):
+        error = np.sort(np.abs(estimated / right - 1.0)) * 100.0
         rows.append(
             {
                 "case": case,
@@ -87,8 +87,8 @@ def _compared(
                 "median": float(np.median(error)),
                 "of_1000": float(error[-(len(error) // 1000 + 1)]),
                 "worst": float(error[-1]),
-                "unsafe_called_safe": int(((right < 1.0) & (found >= 1.0)).sum()),
-                "safe_called_unsafe": int(((right >= 1.0) & (found < 1.0)).sum()),
+                "unsafe_called_safe": int(((right < 1.0) & (estimated >= 1.0)).sum()),
+                "safe_called_unsafe": int(((right >= 1.0) & (estimated < 1.0)).sum()),
                 "ms": times["median_ms"],
             }
         )
@@ -102,8 +102,8 @@ def _torque(standard: Any, pair: GearPair, speed: Any) -> Any:
     rng = np.random.default_rng(100)
     torque = 5.0 * pair.pinion.reference_diameter**2 * pair.face_width
     for _ in range(4):  # loads enter factors, too
-        made = standard.safeties(pair, torque, speed)
-        torque = torque * np.minimum(np.minimum(*made[:2]), np.minimum(*made[2:]) ** 2)
+        safeties = standard.safeties(pair, torque, speed)
+        torque = torque * np.minimum(np.minimum(*safeties[:2]), np.minimum(*safeties[2:]) ** 2)
     return torque * rng.uniform(0.64, 1.25, COUNT)
 
 
@@ -125,8 +125,8 @@ def _of_iso(pair: GearPair, torque: Any, speed: Any) -> Any:
     import numpy as np
 
     case = ISO.case(pair, torque, speed)
-    found = quantities(case)
-    limit = lower_limit(case.load * found["K_A"] * found["K_gamma"] / pair.face_width)
-    place = np.where(found["N"] <= limit, 0, np.where(found["N"] < 0.5 * (MAIN + SUPER), 1, 2))
-    made = [np.array(ISO.smooth(pair, torque, speed, r, {}).safeties) for r in RANGES]
-    return np.choose(place, made)
+    numbers = quantities(case)
+    limit = lower_limit(case.load * numbers["K_A"] * numbers["K_gamma"] / pair.face_width)
+    place = np.where(numbers["N"] <= limit, 0, np.where(numbers["N"] < 0.5 * (MAIN + SUPER), 1, 2))
+    by_range = [np.array(ISO.smooth(pair, torque, speed, r, {}).safeties) for r in RANGES]
+    return np.choose(place, by_range)

@@ -54,12 +54,12 @@ def run(repeat: int) -> list[dict[str, Any]]:
     is kept for further positions, tables and factors. Random pairs are not timed; a level is asked
     for those that it supports (`tooth.validity.unsupported`).
     """
-    found = []
+    rows = []
     for sample in samples():
         for plane in PLANES:
             elastic = ElasticPair(sample.pair, sample.bores, plane=plane)
-            found += _levels(sample, elastic, repeat)
-    return found + _random()
+            rows += _levels(sample, elastic, repeat)
+    return rows + _random()
 
 
 def _levels(sample: Sample, elastic: ElasticPair, repeat: int) -> list[dict[str, Any]]:
@@ -82,9 +82,9 @@ def _row(
 
     points, path = five_points(elastic), elastic.path
     many = points if level.tooth == "elements" else np.linspace(path.start, path.end, TIMED)
-    made, first = timed(lambda: _fresh(level, elastic, points, force), min(repeat, 3))
+    computed, first = timed(lambda: _fresh(level, elastic, points, force), min(repeat, 3))
     _, times = timed(lambda: level.compliance(elastic, many, force), repeat)
-    error, each = fine / made - 1.0, times["median_ms"] / len(many)
+    error, each = fine / computed - 1.0, times["median_ms"] / len(many)
     return times | {
         "us_per_position": round(1e3 * each, 3),
         "setup_ms": round(max(first["median_ms"] - each * len(points), 0.0), 2),
@@ -109,8 +109,8 @@ def random_pairs() -> list[tuple[ElasticPair, float]]:
     import numpy as np
 
     rng = np.random.default_rng(0)
-    found: list[tuple[ElasticPair, float]] = []
-    while len(found) < RANDOM:
+    pairs: list[tuple[ElasticPair, float]] = []
+    while len(pairs) < RANDOM:
         rack = Rack(tip_radius=rng.uniform(0.2, 0.38))
         teeth = float(rng.integers(17, 61)), float(rng.integers(17, 151))
         shifts = rng.uniform(0.0, 0.6), rng.uniform(-0.2, 0.4)
@@ -121,10 +121,10 @@ def random_pairs() -> list[tuple[ElasticPair, float]]:
             first, second = (
                 float(g.root_diameter / h) for g, h in zip(pair.gears, ratios, strict=True)
             )
-            found.append(
+            pairs.append(
                 (ElasticPair(pair, (first, second), plane=usual_plane(pair)), load * width)
             )
-    return found
+    return pairs
 
 
 def _random() -> list[dict[str, Any]]:

@@ -44,8 +44,8 @@ def run(repeat: int) -> list[dict[str, Any]]:
 def _exact(blank: Profile, repeat: int) -> list[dict[str, Any]]:
     rows = []
     for name, radius in CUTTERS.items():
-        found, times = timed(partial(envelope, blank, PITCH, radius), repeat)
-        back = (generated(found.profile, PITCH, radius) - blank.points).length
+        enveloped, times = timed(partial(envelope, blank, PITCH, radius), repeat)
+        back = (generated(enveloped.profile, PITCH, radius) - blank.points).length
         rows.append(_row(name, "envelope", 0, 0.0, float(back.max()), times))
     return rows
 

@@ -54,14 +54,14 @@ def _exchanged() -> list[dict[str, Any]]:
     rows = []
     for number, start in enumerate(STARTS, 1):
         clock = Clock()
-        found = exchange(DEMAND, np.array(start), clock)
-        value = found.result.value or math.nan
+        exchanged = exchange(DEMAND, np.array(start), clock)
+        value = exchanged.result.value or math.nan
         rows.append(
             _row(
                 f"exchange, start {number}",
-                found.result.status,
+                exchanged.result.status,
                 [value],
-                [found.gap],
+                [exchanged.gap],
                 [clock.seconds],
                 clock.evaluations,
             )
@@ -92,10 +92,10 @@ def _fronts(seeds: int) -> dict[str, Any]:
     best, gaps, seconds = [], [], []
     for seed in range(seeds):
         clock = Clock()
-        found = front(posed, SIZE, Budget(evaluations=EVALUATIONS), seed)
+        evolved = front(posed, SIZE, Budget(evaluations=EVALUATIONS), seed)
         seconds.append(clock.seconds)
-        best.append(np.min([point.values for point in found.points], axis=0))
-        gaps += [sampled.least_clearance(DEMAND, point.x) for point in found.points]
+        best.append(np.min([point.values for point in evolved.points], axis=0))
+        gaps += [sampled.least_clearance(DEMAND, point.x) for point in evolved.points]
     pressures, volumes, shares = np.array(best).T
     row = _row(f"front, {seeds} seeds", "feasible", pressures.tolist(), gaps, seconds, EVALUATIONS)
     teeth = 1.0 / shares

@@ -23,22 +23,22 @@ def run(repeat: int) -> list[dict[str, Any]]:
     """Return rows: torque, rim, method, teeth that carry, largest load, error of a load [N], ms."""
     import numpy as np
 
-    made, rows = flank(GEARING), []
+    shape, rows = flank(GEARING), []
     for torque in TORQUES:
         for rim, cup in (("rigid", None), ("elastic", (Cup(), WIDTH))):
-            teeth = teeth_of(made, STIFFNESS, cup)
+            teeth = teeth_of(shape, STIFFNESS, cup)
             given = teeth.compliance, teeth.gaps, np.full(len(teeth.gaps), teeth.arm), 500 * torque
             exact, times = timed(partial(shared, *given), repeat)
-            found = {"active set": (exact.forces, times)}
+            answers = {"active set": (exact.forces, times)}
             posed: dict[str, Any] = {
                 "qp": (problem(*given), "qp"),
                 "conic (Clarabel)": (conic(*given), None),
             }
-            for name, (one, method) in posed.items():
-                answer, times = timed(partial(solve, one, method), repeat)
+            for name, (stated, method) in posed.items():
+                answer, times = timed(partial(solve, stated, method), repeat)
                 shares = np.array(list(answer.design.values())).ravel()
-                found[name] = shares * 500 * torque / teeth.arm, times
-            for name, (forces, times) in found.items():
+                answers[name] = shares * 500 * torque / teeth.arm, times
+            for name, (forces, times) in answers.items():
                 rows.append(
                     {
                         "torque_Nm": torque,

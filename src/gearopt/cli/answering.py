@@ -167,19 +167,19 @@ def explain(
     measures = checked(None, None, units, file).measures
     _metric(as_json, units)
     with watching(seconds, quiet=as_json, measures=measures) as watch:
-        found = explain_file(file, budget=Budget(seconds), watch=watch)
+        explanation = explain_file(file, budget=Budget(seconds), watch=watch)
     if as_json:
-        print_whole(found.to_json())
-    elif found.result.value is None:
+        print_whole(explanation.to_json())
+    elif explanation.result.value is None:
         from gearopt.report.shown import answered
         from gearopt.report.terminal import show as show_result
 
-        show_result(answered(found), console(), measures)
+        show_result(answered(explanation), console(), measures)
     else:
         from gearopt.report.terminal import show_explanation
 
-        show_explanation(found, console(), measures)
-    raise typer.Exit(exit_code(found.result))
+        show_explanation(explanation, console(), measures)
+    raise typer.Exit(exit_code(explanation.result))
 
 
 @app.command(rich_help_panel=MORE_OF_FILES)
@@ -226,7 +226,7 @@ def compare(
     files = checked(html, csv, "metric", file)
     named = [name.strip() for name in (methods or "").split(",") if name.strip()]
     with following(_words, quiet=as_json, kept=lambda now: now.done > 0) as watch:
-        found = compare_file(
+        comparison = compare_file(
             file,
             objectives=objectives,
             most=numbers("--most", most) if most else None,
@@ -239,9 +239,9 @@ def compare(
         )
     lines: list[str] = []
     try:
-        lines = compared(found, files)
+        lines = compared(comparison, files)
     finally:  # what took long to find is shown even where no page can be written
-        answer(found, as_json, lines)
+        answer(comparison, as_json, lines)
 
 
 def _announced(watch: Callable[[Progress], bool]) -> Callable[[Progress], bool]:

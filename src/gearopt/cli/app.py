@@ -119,18 +119,18 @@ def print_whole(text: str, end: str = "\n") -> None:
 
 def console() -> Console:
     """Return the terminal; wide where it is a pipe."""
-    found = Screen(highlight=False)
-    return found if found.is_terminal else Screen(highlight=False, width=110)
+    terminal = Screen(highlight=False)
+    return terminal if terminal.is_terminal else Screen(highlight=False, width=110)
 
 
 def numbers(option: str, pairs: list[str]) -> dict[str, float]:
     """Return numbers by name; GearoptError for what is none."""
-    found = {}
+    values = {}
     for pair in pairs:
         name, _, text = pair.partition("=")
         try:
-            found[name.strip()] = float(text)
+            values[name.strip()] = float(text)
         except ValueError:
             example = f"{name.strip() or 'gear_volume'}=8.5e6"
             raise GearoptError(f"{option} {pair}: is not NAME=NUMBER, such as {example}") from None
-    return found
+    return values

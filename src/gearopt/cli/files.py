@@ -35,22 +35,22 @@ def check(
     """Read problem files and report their mistakes, without solving."""
     from gearopt.scenes.reading.load import load
 
-    found: list[dict[str, Any]] = []
+    reports: list[dict[str, Any]] = []
     for file in files:
         try:
             loaded = load(file)
         except SceneError as wrong:
             errors = [_plain(error) for error in wrong.errors]
-            found.append({"file": str(file), "valid": False, **errors[0], "errors": errors})
+            reports.append({"file": str(file), "valid": False, **errors[0], "errors": errors})
             if not as_json:
                 print(told(wrong), file=sys.stderr)
         else:
-            found.append({"file": str(file), "valid": True, "kind": loaded.kind})
+            reports.append({"file": str(file), "valid": True, "kind": loaded.kind})
             if not as_json:
                 print(f"{file}: a valid {loaded.kind} file")
     if as_json:
-        print_whole(json.dumps(found, indent=2))
-    raise typer.Exit(0 if all(f["valid"] for f in found) else 2)
+        print_whole(json.dumps(reports, indent=2))
+    raise typer.Exit(0 if all(f["valid"] for f in reports) else 2)
 
 
 def _plain(error: SceneError) -> dict[str, Any]:
@@ -118,14 +118,14 @@ def doctor(as_json: Json = False) -> None:
         "pydantic",
         "typer",
     )
-    found: dict[str, str] = {"python": platform.python_version(), "machine": platform.platform()}
-    found |= {name: _version(name) for name in packages}
+    facts: dict[str, str] = {"python": platform.python_version(), "machine": platform.platform()}
+    facts |= {name: _version(name) for name in packages}
     checks = {"exact": _works("exact"), "ipopt": _works("ipopt")}
-    found |= {f"{name} works": word for name, word in checks.items()}
+    facts |= {f"{name} works": word for name, word in checks.items()}
     if as_json:
-        print_whole(json.dumps(found, indent=2))
+        print_whole(json.dumps(facts, indent=2))
     else:
-        for name, text in found.items():
+        for name, text in facts.items():
             print(f"{name:14} {text}")
     raise typer.Exit(0 if all(w.startswith("yes") for w in checks.values()) else 1)
 

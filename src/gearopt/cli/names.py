@@ -1,4 +1,4 @@
-"""What a command offers by name: kinds, methods, benches, files; for its help and for completion.
+"""Names that commands offer: kinds, methods, benches, files; for help and completion.
 
 All is looked up when help or the Tab key asks for it, so that the start of a command pays nothing.
 """
@@ -46,8 +46,8 @@ def methods() -> dict[str, tuple[str, ...]]:
     from gearopt.scenes.reading.kinds import kinds
     from gearopt.scenes.reading.load import kind_named
 
-    own = {name: kind_named(name).methods for name in kinds()}
-    return own | {FOR_ANY_PROBLEM: back_ends()}
+    by_kind = {name: kind_named(name).methods for name in kinds()}
+    return by_kind | {FOR_ANY_PROBLEM: back_ends()}
 
 
 def back_ends() -> tuple[str, ...]:
@@ -98,11 +98,11 @@ def bench_words(incomplete: str) -> list[tuple[str, str]]:
 
 def method_words(incomplete: str) -> list[tuple[str, str]]:
     """Return the methods that begin with what is typed, with the problems they are for."""
-    found: dict[str, list[str]] = {}
+    problems_of: dict[str, list[str]] = {}
     for of, names in methods().items():
         for name in names:
-            found.setdefault(name, []).append(of)
-    return _begun({name: ", ".join(of) for name, of in found.items()}, incomplete)
+            problems_of.setdefault(name, []).append(of)
+    return _begun({name: ", ".join(of) for name, of in problems_of.items()}, incomplete)
 
 
 def method_lists(incomplete: str) -> list[str]:
@@ -150,7 +150,7 @@ def _files(incomplete: str, endings: tuple[str, ...]) -> Iterator[str]:
 
 def fill(command: Any) -> None:
     """Fill the names into the help texts of a command and of those below it."""
-    for one in (command, *getattr(command, "commands", {}).values()):
-        for parameter in one.params:
+    for each in (command, *getattr(command, "commands", {}).values()):
+        for parameter in each.params:
             if text := getattr(parameter, "help", None):
                 parameter.help = filled(text)

@@ -85,7 +85,7 @@ def report(
 
 
 def _fault(odd: Exception) -> str:
-    """What is wrong with a kept result, by the error that showing it met."""
+    """Mistake of a kept result, by the error that showing it met."""
     said = " ".join(str(odd).split())[:REASON_LENGTH]
     if isinstance(odd, UnicodeError):
         return "holds text with half a character (a lone surrogate)"
@@ -141,17 +141,17 @@ def compared(found: "Comparison", files: Files) -> list[str]:
     """Write the page and the table of a comparison, once both are made; a line for each."""
     from gearopt.report.pages.comparison import page, tables
 
-    made = "" if files.html is None else page(found)
-    return _kept(files, made, {} if files.csv is None else tables(found))
+    html = "" if files.html is None else page(found)
+    return _kept(files, html, {} if files.csv is None else tables(found))
 
 
 def traded(front: "Front", files: Files) -> list[str]:
     """Write the page and the tables of a Pareto front, once all are made; a line for each."""
     from gearopt.report.pages.front import page, tables
 
-    made = "" if files.html is None else page(front, str(files.html), files.measures)
-    found = {} if files.csv is None else tables(front, files.measures)
-    return _kept(files, made, found)
+    html = "" if files.html is None else page(front, str(files.html), files.measures)
+    texts = {} if files.csv is None else tables(front, files.measures)
+    return _kept(files, html, texts)
 
 
 def checked(html: Path | None, csv: Path | None, units: str, *given: Path) -> Files:

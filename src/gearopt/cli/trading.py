@@ -51,7 +51,7 @@ def pareto(
 
     files = checked(html, csv, units, file)
     with watching(seconds, quiet=as_json, measures=files.measures) as watch:
-        found = pareto_of(
+        front = pareto_of(
             file,
             objectives=objectives,
             most=numbers("--most", most or []),
@@ -64,7 +64,7 @@ def pareto(
         )
     lines: list[str] = []
     try:
-        lines = traded(found, files)
+        lines = traded(front, files)
     finally:  # what took long to find is shown even where no file can be written
-        answer(found, as_json, lines, files.measures)
-    raise typer.Exit(front_code(found))
+        answer(front, as_json, lines, files.measures)
+    raise typer.Exit(front_code(front))

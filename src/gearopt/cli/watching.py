@@ -189,7 +189,7 @@ class _News(logging.Handler):
 
 @dataclass
 class _Line:
-    """What a terminal shows of a run under way; an interface of rich.
+    """Progress of a run on the terminal; an interface of rich.
 
     It has state because time passes and the run continues.
     """

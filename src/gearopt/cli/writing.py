@@ -1,4 +1,4 @@
-"""What is written: standard output whose reader may leave, and files, whole or not at all."""
+"""Output: a standard stream whose reader may leave, and files, whole or not at all."""
 
 import io
 import os
@@ -114,10 +114,10 @@ def write(*files: Written) -> None:
             if _ordinary(now.path):
                 beside[_place(now.path)] = _beside(now)
         for now in files:
-            if (made := beside.get(_place(now.path))) is None:
+            if (draft := beside.get(_place(now.path))) is None:
                 now.path.write_text(now.text, encoding=now.encoding)
             else:
-                made.replace(_place(now.path))
+                draft.replace(_place(now.path))
                 del beside[_place(now.path)]
             placed.append(str(now.path))
     except OSError as refused:
@@ -127,8 +127,8 @@ def write(*files: Written) -> None:
         words = "; ".join(filter(None, (refused.strerror, left)))
         raise GearoptError(f"{now.option} {now.path}: {words}") from refused
     finally:
-        for made in beside.values():
-            made.unlink(missing_ok=True)
+        for draft in beside.values():
+            draft.unlink(missing_ok=True)
 
 
 def _beside(file: Written) -> Path:
@@ -137,16 +137,16 @@ def _beside(file: Written) -> Path:
     for stale in place.parent.glob(f"{BESIDE}*"):
         if not _runs(stale.name.removeprefix(BESIDE).partition("-")[0]):
             stale.unlink(missing_ok=True)
-    made = place.with_name(f"{BESIDE}{os.getpid()}-{token_hex(4)}")
+    draft = place.with_name(f"{BESIDE}{os.getpid()}-{token_hex(4)}")
     try:
-        with made.open("x", encoding=file.encoding, newline="") as stream:
+        with draft.open("x", encoding=file.encoding, newline="") as stream:
             stream.write(file.text)
         if place.exists():
-            shutil.copymode(place, made)
+            shutil.copymode(place, draft)
     except BaseException:
-        made.unlink(missing_ok=True)
+        draft.unlink(missing_ok=True)
         raise
-    return made
+    return draft
 
 
 def _runs(number: str) -> bool:

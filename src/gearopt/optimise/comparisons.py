@@ -128,7 +128,7 @@ def quantities(scalars: Named, above: Mapping[str, bool]) -> Named:
 
 
 def plain(value: Any) -> Any:
-    """What a quantity stands for; anything else as it is."""
+    """Return the value of a quantity or comparison; anything else as it is."""
     return value.value if isinstance(value, Quantity | Comparison) else value
 
 

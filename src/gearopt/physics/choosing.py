@@ -7,8 +7,8 @@ import numpy as np
 
 def choose(condition: Any, yes: Any, no: Any) -> Any:
     """Return numpy.where, as a number of numbers; casadi scalars stay casadi scalars."""
-    found = np.where(condition, yes, no)
-    return found[()] if isinstance(found, np.ndarray) else found
+    chosen = np.where(condition, yes, no)
+    return chosen[()] if isinstance(chosen, np.ndarray) else chosen
 
 
 def some(condition: Any) -> bool:

@@ -262,10 +262,10 @@ class GearPair:
 
         normal_module, pinion_diameter (reference, d1 = m_n z1/cos(beta)), face_width [mm].
         """
-        own = face_width, helix_angle, rack
+        shared = face_width, helix_angle, rack
         return cls(
-            Gear(normal_module, pinion_teeth, pinion_diameter, *own),
-            Gear(normal_module, pinion_teeth * ratio, pinion_diameter * ratio, *own),
+            Gear(normal_module, pinion_teeth, pinion_diameter, *shared),
+            Gear(normal_module, pinion_teeth * ratio, pinion_diameter * ratio, *shared),
         )
 
     def of_width(self, face_width: Any) -> "GearPair":

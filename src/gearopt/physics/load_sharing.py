@@ -57,9 +57,9 @@ def share(compliances: Any, separations: Any, load: Any, coupling: Any = 0.0) ->
     for start in range(0, rows, BLOCK):
         part = slice(start, start + BLOCK)
         pairs = [np.ascontiguousarray(a[part].T) for a in (c, e)]  # a pair in a row: sums are fast
-        found = _shared(pairs[0] - c12[part], pairs[1], w[part])
-        forces[part], gaps[part] = found.forces.T, found.gaps.T
-        approach[part] = found.approach + c12[part] * w[part]
+        shared = _shared(pairs[0] - c12[part], pairs[1], w[part])
+        forces[part], gaps[part] = shared.forces.T, shared.gaps.T
+        approach[part] = shared.approach + c12[part] * w[part]
     return Sharing(forces.reshape(shape), approach.reshape(shape[:-1]), gaps.reshape(shape))
 
 
@@ -104,8 +104,8 @@ def slopes(compliances: Any, forces: Any, coupling: Any = 0.0) -> tuple[Array, A
     are those of the side on which it carries nothing. Shapes and units as `share`.
     """
     carries = np.asarray(forces) > 0.0
-    own = np.asarray(compliances) - np.asarray(coupling)[..., None]
-    stiffness = np.where(carries, 1.0 / np.where(carries, own, 1.0), 0.0)
+    uncoupled = np.asarray(compliances) - np.asarray(coupling)[..., None]
+    stiffness = np.where(carries, 1.0 / np.where(carries, uncoupled, 1.0), 0.0)
     total = stiffness.sum(axis=-1)
     return stiffness / total[..., None], np.asarray(coupling) + 1.0 / total
 

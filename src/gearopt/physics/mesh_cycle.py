@@ -45,8 +45,8 @@ class Cycle:
 
         Elsewhere they are those at the middle of the path, which do not matter.
         """
-        found: Array = compliance(self._inside.ravel()).reshape(self.positions.shape)
-        return found
+        compliances: Array = compliance(self._inside.ravel()).reshape(self.positions.shape)
+        return compliances
 
     @property
     def _inside(self) -> Array:
@@ -108,10 +108,10 @@ def break_points(path: ContactPath) -> dict[str, float]:
     whole = int(np.floor(ratio + NARROW))
     if whole < 2:
         single = {"LPSTC": path.lowest_single, "HPSTC": path.highest_single}
-        found = {"SAP": path.start, **single, "EAP": path.end}
+        points = {"SAP": path.start, **single, "EAP": path.end}
     else:
-        found = {"SAP": path.start, "EAP": path.end}
+        points = {"SAP": path.start, "EAP": path.end}
         for k in range(1, whole + 1):
-            found[f"SAP + {k} p_b"] = path.start + k * path.base_pitch
-            found[f"EAP - {k} p_b"] = path.end - k * path.base_pitch
-    return {name: float(s) for name, s in sorted(found.items(), key=lambda pair: pair[1])}
+            points[f"SAP + {k} p_b"] = path.start + k * path.base_pitch
+            points[f"EAP - {k} p_b"] = path.end - k * path.base_pitch
+    return {name: float(s) for name, s in sorted(points.items(), key=lambda pair: pair[1])}

@@ -198,11 +198,11 @@ def safety_ends(levels: Sequence[Level]) -> tuple[Any, Any]:
     total = sum(np.where(on, x.cycles, 0.0) for on, x in zip(loaded, levels, strict=True))
     ends = []
     for cycles in ([total] * len(levels), [x.cycles for x in levels]):
-        made = [
+        factors = [
             np.where(on, x.curve.factor(n) / x.stress, np.inf)
             for on, x, n in zip(loaded, levels, cycles, strict=True)
         ]
-        ends.append(np.minimum.reduce(np.broadcast_arrays(*made)))
+        ends.append(np.minimum.reduce(np.broadcast_arrays(*factors)))
     low, high = np.broadcast_arrays(*ends)
     return low, high
 
@@ -216,10 +216,10 @@ def spectrum_safety(levels: Sequence[Level]) -> Any:
     load.
     """
     low, high = safety_ends(levels)
-    found, some = np.array(high), low < high
+    safety, some = np.array(high), low < high
     root = _root([x.take(some) for x in levels], low[some], high[some])
-    found[some] = np.clip(root, low[some], high[some])
-    return found[()]
+    safety[some] = np.clip(root, low[some], high[some])
+    return safety[()]
 
 
 def _root(levels: Sequence[Level], low: Any, high: Any) -> Any:
@@ -228,7 +228,7 @@ def _root(levels: Sequence[Level], low: Any, high: Any) -> Any:
     high where it stays below.
     Source: T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145-149.
     """
-    found, place = np.array(high), np.arange(len(high))
+    root, place = np.array(high), np.arange(len(high))
     a, b, share = np.log(high), np.log(low), np.full(len(high), 0.5)
     fa, fb = (np.log(damage(levels, np.exp(x))) for x in (a, b))
     done = fa <= 0.0
@@ -246,10 +246,10 @@ def _root(levels: Sequence[Level], low: Any, high: Any) -> Any:
         a, fa = x, f
         least = ROUNDING * (1.0 + np.abs(a)) / np.abs(b - a)
         done = ~(least < 0.5) | (fa == 0.0)
-        found[place] = np.exp(np.where(fa <= 0.0, a, b))
+        root[place] = np.exp(np.where(fa <= 0.0, a, b))
         xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
         share = fa / (fb - fa) * fc / (fb - fc)
         share = share + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
         curved = (phi**2 < xi) & ((1.0 - phi) ** 2 < 1.0 - xi) & np.isfinite(share)
         share = np.clip(np.where(curved, share, 0.5), least, 1.0 - least)
-    return found
+    return root

@@ -63,10 +63,10 @@ def hands(first: Sequence[str | None]) -> list[str]:
     Two gears of one hand on an intermediate shaft, of which one is driven and one drives, have
     opposite axial forces.
     """
-    found: list[str] = []
+    every: list[str] = []
     for hand in first:
-        found.append(hand or (OTHER[found[-1]] if found else "right"))
-    return found
+        every.append(hand or (OTHER[every[-1]] if every else "right"))
+    return every
 
 
 def train_forces(
@@ -77,18 +77,20 @@ def train_forces(
     The axial force of a driving gear points along its angular velocity where its helix is right
     handed (the right-hand rule); its mate has the opposite force.
     """
-    found = []
+    every = []
     for k, pair in enumerate(pairs):
         forces = mesh_forces(pair, torque)
         turning = 1.0 if k % 2 == 0 else -1.0  # shafts turn in turn one way and the other
         axial = turning * HANDS[pinion_hands[k]] * float(forces.axial)
         radii = [0.5 * float(d) for d in pair.working_diameters]
         load, radial = float(forces.tangential), float(forces.radial)
-        one, two = pinion_hands[k], OTHER[pinion_hands[k]]
-        found.append(GearForces(k + 1, k + 1, "pinion", one, radii[0], -load, radial, axial))
-        found.append(GearForces(k + 1, k + 2, "wheel", two, radii[1], load, radial, -axial))
+        pinion_hand, wheel_hand = pinion_hands[k], OTHER[pinion_hands[k]]
+        every.append(
+            GearForces(k + 1, k + 1, "pinion", pinion_hand, radii[0], -load, radial, axial)
+        )
+        every.append(GearForces(k + 1, k + 2, "wheel", wheel_hand, radii[1], load, radial, -axial))
         torque *= float(pair.ratio)
-    return found
+    return every
 
 
 def rotation(shaft: int) -> str:

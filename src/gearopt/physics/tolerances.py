@@ -87,8 +87,8 @@ def rounded_tolerance(tolerance: Any) -> Any:
     """
     size = tolerance / MICROMETRE
     unit = choose(size > 10.0, 1.0, choose(size >= 5.0, 0.5, 0.1))
-    found = np.floor(size / unit + 0.5 + 1e-9) * unit
-    return MICROMETRE * found
+    rounded = np.floor(size / unit + 0.5 + 1e-9) * unit
+    return MICROMETRE * rounded
 
 
 def scope(**quantities: Any) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What every kind of result shows: key figures, limits, the file, progress, what is proven."""
+"""Sections that every kind of result shows: key figures, limits, the file, progress, proof."""
 
 import re
 from collections.abc import Mapping, Sequence

@@ -212,7 +212,7 @@ def _gears(design: Mapping[str, Any], measures: Measures) -> Cell:
 
 
 def _apart(front: Front, measures: Measures) -> dict[str, list[str]]:
-    """What tells gears of equal teeth apart: texts of every design, by head of a column."""
+    """Columns that distinguish gears of equal teeth: texts of every design, by head."""
     columns = {}
     for name, keys in CHOICES.items():
         texts = ["; ".join(_choice(s, keys) for s in stages_of(p.design)) for p in front.points]

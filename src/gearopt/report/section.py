@@ -1,4 +1,4 @@
-"""What pages and terminal are made of: sections of key figures, sentences, drawings, plots, tables.
+"""Elements of pages and terminal: sections of key figures, sentences, drawings, plots, tables.
 
 A table is written once. What only one of the two shows of it is marked: columns and rows by name.
 """

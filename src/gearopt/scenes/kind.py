@@ -1,4 +1,4 @@
-"""What a kind of problem file is: its tables, its examples, and how it is solved and explained.
+"""A kind of problem file: its tables, its examples, and how it is solved and explained.
 
 The package of a kind ends with `KIND = Kind(...)`; all that kinds share asks it by these names. A
 field that is missing or misspelt fails when the kind is imported.

@@ -1,4 +1,4 @@
-"""What kinds of gear drives share: the table [duty], and warnings of teeth."""
+"""Parts that kinds of gear drives share: the table [duty], and warnings of teeth."""
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
@@ -70,7 +70,7 @@ class Duty(Table):
         return self.output_speed is not None or self.ratio is not None
 
     def missing_ratio(self) -> tuple[str, str]:
-        """Return what is said where a ratio is missing, and an output speed to write."""
+        """Return the rule for a missing ratio, and an output speed to write."""
         return "is missing (or give ratio)", self._slow()
 
     @property

@@ -102,16 +102,16 @@ def problem(train: Compound, names: Sequence[str] = ()) -> Problem:
 def _front(train: Compound, problem: Problem, clock: Clock) -> Outcome:
     """Return the nearest ratio of every largest gear that brings it nearer, within limits."""
     low, most = train.teeth
-    found, done = [], True
+    nearest_trains, done = [], True
     while most >= low and done:
-        one = replace(train, teeth=(low, most))
-        _, best, looked, done = nearest(one, clock.left, clock.inner(values=False))
+        limited = replace(train, teeth=(low, most))
+        _, best, looked, done = nearest(limited, clock.left, clock.inner(values=False))
         clock.evaluations += looked
         if done:
-            found.append(best)
+            nearest_trains.append(best)
             most = max(best) - 1
             clock.tell()
-    points = np.array(found, float).reshape(-1, 4)
+    points = np.array(nearest_trains, float).reshape(-1, 4)
     known = caps(problem)
     limits = np.array([known.get(name, np.inf) for name in problem.rows.objectives])
     points = points[(problem.batch(points).F <= limits).all(axis=1)] if len(points) else points

@@ -92,19 +92,21 @@ class StageDesign:
     def pair(self) -> GearPair:
         """The gears with their teeth, at their centre distance."""
         shifted = self.working_pressure_angle_deg is not None
-        made = [self._gear(member) for member in ("pinion", "wheel")]
-        return GearPair(made[0], made[1], self.centre_distance_mm if shifted else None)
+        gears = [self._gear(member) for member in ("pinion", "wheel")]
+        return GearPair(gears[0], gears[1], self.centre_distance_mm if shifted else None)
 
     def _gear(self, member: str) -> Gear:
-        own = {n: getattr(self, f"{member}_{n}") for n in (*TOOL, *TEETH, "teeth", "diameter_mm")}
+        values = {
+            n: getattr(self, f"{member}_{n}") for n in (*TOOL, *TEETH, "teeth", "diameter_mm")
+        }
         return Gear(
             self.normal_module_mm,
-            own["teeth"],
-            own["diameter_mm"],
+            values["teeth"],
+            values["diameter_mm"],
             self.face_width_mm,
             math.radians(self.helix_angle_deg),
-            Rack(math.radians(self.pressure_angle_deg), *(own[n] for n in TOOL)),
-            *(own[n] for n in TEETH),
+            Rack(math.radians(self.pressure_angle_deg), *(values[n] for n in TOOL)),
+            *(values[n] for n in TEETH),
         )
 
 
@@ -131,8 +133,8 @@ class DriveDesign:
 
 def drive_design(data: Mapping[str, Any]) -> DriveDesign:
     """Design that a result of a drive holds; ValueError names the keys that do not belong."""
-    found: DriveDesign = typed(DriveDesign, data, "design")
-    return found
+    design: DriveDesign = typed(DriveDesign, data, "design")
+    return design
 
 
 def describe(train: Train, pairs: tuple[GearPair, ...], options: Sequence[int] = ()) -> DriveDesign:
@@ -142,13 +144,13 @@ def describe(train: Train, pairs: tuple[GearPair, ...], options: Sequence[int] =
     """
     loaded = float(train.torque), float(train.speed)
     blanks = [stage.blanks for stage in train.stages]
-    made = of_pairs(train.law, pairs, *loaded, train.ratio, train.density, blanks)
+    design = of_pairs(train.law, pairs, *loaded, train.ratio, train.density, blanks)
     if not train.rated:
-        return made
-    chosen = zip(made.stages, train.stages, options or (0,) * len(pairs), strict=True)
+        return design
+    chosen = zip(design.stages, train.stages, options or (0,) * len(pairs), strict=True)
     usual = train.density or STEEL_DENSITY
     stages = tuple(_of_materials(one, stage.options[k], usual) for one, stage, k in chosen)
-    return replace(made, stages=stages, mass_kg=sum(s.mass_kg for s in stages))
+    return replace(design, stages=stages, mass_kg=sum(s.mass_kg for s in stages))
 
 
 def _of_materials(stage: StageDesign, option: Option, usual: float) -> StageDesign:
@@ -181,8 +183,8 @@ def of_pairs(
     """
     stages: list[StageDesign] = []
     density = density or STEEL_DENSITY
-    for pair, made in zip(pairs, blanks or [(SOLID, SOLID)] * len(pairs), strict=True):
-        stages.append(_stage(law, pair, torque, speed, density, made))
+    for pair, bodies in zip(pairs, blanks or [(SOLID, SOLID)] * len(pairs), strict=True):
+        stages.append(_stage(law, pair, torque, speed, density, bodies))
         torque, speed = torque * float(pair.ratio), speed / float(pair.ratio)
     ratio = math.prod(s.ratio for s in stages)
     volume = sum(s.gear_volume_mm3 for s in stages)
@@ -246,29 +248,29 @@ def _stage(
 
 def _teeth(pair: GearPair) -> dict[str, Any]:
     """Words of a stage on how its teeth are cut."""
-    working, own = pair.working_angle, pair.pinion.transverse_pressure_angle
-    found: dict[str, Any] = {
+    working, reference = pair.working_angle, pair.pinion.transverse_pressure_angle
+    words: dict[str, Any] = {
         "helix_angle_deg": round(math.degrees(pair.pinion.helix_angle), 12),
         "pressure_angle_deg": round(math.degrees(pair.pinion.rack.pressure_angle), 12),
-        "working_pressure_angle_deg": None if working == own else math.degrees(working),
+        "working_pressure_angle_deg": None if working == reference else math.degrees(working),
     }
     for member, gear in zip(("pinion", "wheel"), pair.gears, strict=True):
-        found[f"{member}_profile_shift"] = float(gear.profile_shift)
-        found[f"{member}_tip_alteration"] = float(gear.tip_alteration)
-        found[f"{member}_thickness_allowance_mm"] = float(gear.thickness_allowance)
+        words[f"{member}_profile_shift"] = float(gear.profile_shift)
+        words[f"{member}_tip_alteration"] = float(gear.tip_alteration)
+        words[f"{member}_thickness_allowance_mm"] = float(gear.thickness_allowance)
         rack = gear.rack
         tool = rack.addendum, rack.dedendum, rack.tip_radius, rack.protuberance
-        found |= {f"{member}_{n}": float(v) for n, v in zip(TOOL, tool, strict=True)}
-    return found
+        words |= {f"{member}_{n}": float(v) for n, v in zip(TOOL, tool, strict=True)}
+    return words
 
 
 def _bodies(pair: GearPair, blanks: tuple[Blank, Blank]) -> dict[str, Any]:
     """Return the dimensions of rims, webs, hubs and bores."""
-    found: dict[str, Any] = {}
+    dimensions: dict[str, Any] = {}
     for member, blank, gear in zip(MEMBERS, blanks, pair.gears, strict=True):
         rows = asdict(blank.body(gear)).items()
-        found |= {f"{member}_{name}_mm": value for name, value in rows}
-    return found
+        dimensions |= {f"{member}_{name}_mm": value for name, value in rows}
+    return dimensions
 
 
 def _whole(teeth: float) -> float | int:

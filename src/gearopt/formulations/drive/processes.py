@@ -118,8 +118,8 @@ def _check(which: str, train: Train, inputs: ProcessOne | ProcessTwo) -> None:
 
 def _pair(stage: Stage, module: Fraction, z1: int, z2: int) -> GearPair:
     """Return the pair of a stage whose face width is tied to d1."""
-    one = stage.toothing.pair(float(module), z1, z2, 1.0)
-    return one.of_width(float(stage.face_width.high or 0) * one.pinion.reference_diameter)
+    narrow = stage.toothing.pair(float(module), z1, z2, 1.0)
+    return narrow.of_width(float(stage.face_width.high or 0) * narrow.pinion.reference_diameter)
 
 
 def _first(train: Train, inputs: ProcessOne) -> tuple[Pairs, str]:
@@ -168,10 +168,10 @@ def _second(train: Train, inputs: ProcessTwo) -> tuple[Pairs, str]:
         assert module is not None
         z1 = z1 or math.ceil(across / float(module) * (1.0 - ROUNDING))
         pairs.append(_pair(stage, module, z1, wheel_teeth(z1, ratios[k])))
-        made = pairs[-1].pinion.reference_diameter
-        if made < d1 * (1.0 - ROUNDING):
+        diameter = pairs[-1].pinion.reference_diameter
+        if diameter < d1 * (1.0 - ROUNDING):
             small.append(
-                f"pinion {k + 1} has {made:.2f} mm, its centre distance requires {d1:.2f} mm"
+                f"pinion {k + 1} has {diameter:.2f} mm, its centre distance requires {d1:.2f} mm"
             )
     return tuple(pairs), "; ".join(small)
 
@@ -181,17 +181,17 @@ def _diameters(train: Train, centre_distance: float, u: list[float]) -> list[flo
 
     Of the chains that Table 4 could come from, only this one rounds up to it in every stage.
     """
-    found = [pinion_diameter(centre_distance, u[0])]
+    diameters = [pinion_diameter(centre_distance, u[0])]
     for k in range(1, len(u)):
-        one, two = train.stages[k - 1 : k + 1]
+        before, stage = train.stages[k - 1 : k + 1]
         centre_distance = next_centre_distance(
             centre_distance,
             (u[k - 1], u[k]),
-            (float(one.face_width.high or 0), float(two.face_width.high or 0)),
-            (one.allowable[0], two.allowable[0]),
+            (float(before.face_width.high or 0), float(stage.face_width.high or 0)),
+            (before.allowable[0], stage.allowable[0]),
         )
-        found.append(pinion_diameter(centre_distance, u[k]))
-    return found
+        diameters.append(pinion_diameter(centre_distance, u[k]))
+    return diameters
 
 
 def _no_module(position: int, minimum: float, stage: Stage) -> str:
@@ -265,8 +265,8 @@ def balanced_pinion(law: Law, stage: Stage, ratio: float) -> int:
 
     Source: Chong and Lee, eq. (11) over eq. (10). Cut, not rounded: 25.84 is 25 in their Table 2.
     """
-    one = stage.toothing.of_diameter(stage.toothing.cosine, 1.0, 1.0, ratio, 1.0)
-    contact, root = law.utilisations(one, 1.0, 0.0, stage.allowable).values()
+    unit = stage.toothing.of_diameter(stage.toothing.cosine, 1.0, 1.0, ratio, 1.0)
+    contact, root = law.utilisations(unit, 1.0, 0.0, stage.allowable).values()
     balanced = float(contact / root)
     return max(1, math.floor(balanced * (1.0 + ROUNDING)))
 
@@ -288,8 +288,8 @@ def needed_module(law: Law, stage: Stage, torque: float, teeth: tuple[int, int])
     d1^3 = 2 T (u + 1)/(u K m_a). torque [N mm] of the pinion; teeth of pinion and wheel, so that
     the loads hold with those that are made. Source: Chong and Lee, eqs. (10) to (13).
     """
-    one = stage.toothing.pair(1.0, *teeth, 1.0)
-    tied = one.of_width(float(stage.face_width.high or 0) * one.pinion.reference_diameter)
+    unit = stage.toothing.pair(1.0, *teeth, 1.0)
+    tied = unit.of_width(float(stage.face_width.high or 0) * unit.pinion.reference_diameter)
     return math.cbrt(law.largest_utilisation(tied, torque, 0.0, stage.allowable))
 
 

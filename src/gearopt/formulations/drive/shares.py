@@ -85,7 +85,7 @@ def _worth(
     """Return mass [kg] or cost of gears of these volumes [mm3] of a stage."""
     usual: Any = train.density if density is None else density
     options = train.stages[stage].options
-    own = options[option] if options else Option(())
-    rows = zip(volumes, own.densities, own.prices, strict=True)
+    making = options[option] if options else Option(())
+    rows = zip(volumes, making.densities, making.prices, strict=True)
     masses = [(1000.0 * (rho or usual) * volume, price) for volume, rho, price in rows]
     return sum(kg if objective == "mass" else kg * price for kg, price in masses)

@@ -94,14 +94,14 @@ def smooth_problem(train: Train, choice: Choice) -> Problem:
             rows: dict[str, Any] = {}
             for j, standard in enumerate(_standards(train.stages[k])):
                 suffix = standard.suffix
-                own = {n: each(getattr(x, n + suffix))[k] for n in standard.unknowns}
-                smooth_form = standard.smooth(pair, torque, speed, choice[k][j], own)
+                unknowns = {n: each(getattr(x, n + suffix))[k] for n in standard.unknowns}
+                smooth_form = standard.smooth(pair, torque, speed, choice[k][j], unknowns)
                 for i, (mode, actual) in enumerate(zip(MODES, smooth_form.safeties, strict=True)):
                     rows[mode + suffix] = safety[i // 2] / (actual * p.trim[8 * k + 4 * j + i])
                 rows |= {n + suffix: v for n, v in smooth_form.limits.items()}
                 for part in extra:
-                    found = getattr(smooth_form, part).items()
-                    extra[part] |= {f"{n}{suffix}[{k + 1}]": v for n, v in found}
+                    of_part = getattr(smooth_form, part).items()
+                    extra[part] |= {f"{n}{suffix}[{k + 1}]": v for n, v in of_part}
             return rows
 
         pairs = sizing_text.text_pairs(train, x, p)
@@ -115,15 +115,17 @@ def smooth_problem(train: Train, choice: Choice) -> Problem:
 
 
 def _unknowns(train: Train) -> tuple[Var, ...]:
-    size, found = len(train.stages), {}
+    size, by_name = len(train.stages), {}
     for stage in train.stages:
         for standard in _standards(stage):
             for name, (low, high, log) in standard.unknowns.items():
                 at = max(low, 1.0) if log else 0.5 * (low + high)
-                own = name + standard.suffix
+                full_name = name + standard.suffix
                 lower, upper, guess = ((end,) * size for end in (low, high, at))
-                found[own] = Var(own, "", lower, upper, guess, size, log=log, search=True)
-    return tuple(found.values())
+                by_name[full_name] = Var(
+                    full_name, "", lower, upper, guess, size, log=log, search=True
+                )
+    return tuple(by_name.values())
 
 
 @dataclass(frozen=True)
@@ -147,9 +149,9 @@ def searched(train: Train) -> Callable[..., Outcome]:
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Branch and bound; the seed changes nothing."""
         clock = Clock(budget, watch)
-        found = _searched(train, None, clock, budget.seconds)
-        best = _of_pairs(train, problem, found)
-        return _claim(best, found.bound, clock)
+        searched_cells = _searched(train, None, clock, budget.seconds)
+        best = _of_pairs(train, problem, searched_cells)
+        return _claim(best, searched_cells.bound, clock)
 
     return run
 
@@ -161,15 +163,17 @@ def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
     bounded = _all_bounded(train)
     designs, bound = _by_programs(train, exact, clock) if bounded else ([], -math.inf)
     if not bounded or not designs or train.hollow:
-        made = [_Design(_value(exact, x), x, (), False, "feasible") for x in whole(train, clock)]
-        designs += [design for design in made if safe(exact, design.x)]
+        whole_designs = [
+            _Design(_value(exact, x), x, (), False, "feasible") for x in whole(train, clock)
+        ]
+        designs += [design for design in whole_designs if safe(exact, design.x)]
     best = min(designs, key=lambda design: design.value, default=None)
     long = SEARCH * (3.0 if len(train.stages) > 2 else 1.0)
     seconds = None if clock.budget.gap > 0.0 else clock.within(long)
     if bound < math.inf and not clock.over:
-        found = _searched(train, best, clock, seconds)
-        own = _of_pairs(train, exact, found)
-        bound, designs = max(bound, found.bound), [*designs, *([own] if own else [])]
+        of_cells = _searched(train, best, clock, seconds)
+        of_search = _of_pairs(train, exact, of_cells)
+        bound, designs = max(bound, of_cells.bound), [*designs, *([of_search] if of_search else [])]
     more = train.hollow or not bounded and not (designs and _stepped(train))
     if more and bound < math.inf:
         designs += _by_ipopt(train, exact, [*(d.x for d in designs), *starts(exact)], clock)
@@ -181,8 +185,8 @@ def _by_programs(train: Train, exact: Problem, clock: Clock) -> tuple[list[_Desi
     begun = {choice: _start(train, choice, clock) for choice in choices(train)}
     designs = []
     for choice, (start, _) in begun.items():
-        made = None if start is None else _design(train, exact, choice, start, clock)
-        designs += [] if made is None else [made]
+        end = None if start is None else _design(train, exact, choice, start, clock)
+        designs += [] if end is None else [end]
         if designs:
             clock.best = min(d.value for d in designs)
     designs.sort(key=lambda design: design.value)
@@ -195,8 +199,8 @@ def _by_ipopt(train: Train, exact: Problem, begin: list[Array], clock: Clock) ->
     designs = []
     for choice in choices(train):
         smooth_text = smooth_problem(train, choice)
-        found = [_design(train, exact, choice, one, clock, smooth_text) for one in begin]
-        designs += [design for design in found if design is not None]
+        ended = [_design(train, exact, choice, one, clock, smooth_text) for one in begin]
+        designs += [design for design in ended if design is not None]
     designs.sort(key=lambda design: design.value)
     return designs + [_refined(train, exact, design, clock) for design in designs[:1]]
 
@@ -210,14 +214,14 @@ def _searched(train: Train, best: _Design | None, clock: Clock, seconds: float |
     if known and _stepped(train):
         spent = None if seconds is None else POLISHING * seconds
         known, most = polished(train, (tuple(known), most), Clock(Budget(spent), clock.inner()))
-    found = search(train, known, most, inner, close)
-    if found.pairs is None and known and best is not None and most < best.value:
-        found = Searched(found.bound, tuple(known), most)
-    if found.pairs is not None and found.bound < found.value * (1.0 - close):
-        found = Searched(found.bound, *polished(train, (found.pairs, found.value), clock))
-    clock.best, clock.bound = min(clock.best, found.value), max(clock.bound, found.bound)
+    result = search(train, known, most, inner, close)
+    if result.pairs is None and known and best is not None and most < best.value:
+        result = Searched(result.bound, tuple(known), most)
+    if result.pairs is not None and result.bound < result.value * (1.0 - close):
+        result = Searched(result.bound, *polished(train, (result.pairs, result.value), clock))
+    clock.best, clock.bound = min(clock.best, result.value), max(clock.bound, result.bound)
     clock.tell()
-    return found
+    return result
 
 
 def _of_pairs(train: Train, exact: Problem, found: Searched) -> _Design | None:
@@ -245,10 +249,10 @@ def _refined(train: Train, exact: Problem, best: _Design, clock: Clock) -> _Desi
             row = best.choice[k]
             for closer in () if clock.stopped else standard.refined(pair, row[j]):
                 changed = (*row[:j], closer, *row[j + 1 :])
-                own = (*best.choice[:k], changed, *best.choice[k + 1 :])
-                made = _design(train, exact, own, best.x, clock)
-                if made is not None and made.value < best.value:
-                    best = made
+                neighbour = (*best.choice[:k], changed, *best.choice[k + 1 :])
+                other = _design(train, exact, neighbour, best.x, clock)
+                if other is not None and other.value < best.value:
+                    best = other
     return best
 
 
@@ -292,13 +296,13 @@ def _all_bounded(train: Train) -> bool:
 
 def _start(train: Train, choice: Choice, clock: Clock) -> tuple[Array | None, float]:
     """Return the optimum of the bounding program, or None, and its bound; inf: impossible."""
-    made = None if clock.stopped else bounding(train, choice)
-    if made is None:
+    program = None if clock.stopped else bounding(train, choice)
+    if program is None:
         return None, -math.inf
-    found = solved(clock, made)
-    if found.status == "infeasible":
+    optimum = solved(clock, program)
+    if optimum.status == "infeasible":
         return None, math.inf
-    return point_of_result(made, found), -math.inf if found.bound is None else found.bound
+    return point_of_result(program, optimum), -math.inf if optimum.bound is None else optimum.bound
 
 
 def _design(
@@ -322,8 +326,8 @@ def _design(
         if clock.stopped:
             break
         made = made.at(trim=tuple(trims.ravel().tolist()))
-        found = solved(clock, made.starting(np.concatenate([at, guess(train, at, choice)])))
-        at_end = point_of_result(made, found)
+        optimum = solved(clock, made.starting(np.concatenate([at, guess(train, at, choice)])))
+        at_end = point_of_result(made, optimum)
         if at_end is None:
             break
         at = np.clip(at_end[:size], *exact.bounds()[:2])
@@ -333,7 +337,7 @@ def _design(
             value = float(exact.batch(safe[None]).F[0, 0])
             same = bool(np.all(np.abs(trims * ratio - 1.0) <= EQUAL)) and np.array_equal(safe, at)
             if best is None or value < best.value:
-                best = _Design(value, safe, choice, same, found.status)
+                best = _Design(value, safe, choice, same, optimum.status)
         if not np.isfinite(ratio).all() or np.abs(ratio - 1.0).max() <= CORRECTION_TOLERANCE:
             break
         trims = trims * ratio
@@ -365,8 +369,8 @@ def _errors(
     x = namespace(made.variables, [float(v) for v in point])
     for k, (pair, torque, speed) in enumerate(_loads(train, sizing_text.pairs(train, at))):
         for j, standard in enumerate(_standards(train.stages[k])):
-            own = {n: each(getattr(x, n + standard.suffix))[k] for n in standard.unknowns}
-            smooth = standard.smooth(pair, torque, speed, choice[k][j], own).safeties
+            unknowns = {n: each(getattr(x, n + standard.suffix))[k] for n in standard.unknowns}
+            smooth = standard.smooth(pair, torque, speed, choice[k][j], unknowns).safeties
             exact = standard.safeties(pair, torque, speed)
             ratio[k, j] = np.array(exact, float) / (np.array(smooth, float) * trims[k, j])
     return ratio
@@ -399,12 +403,12 @@ def starts(exact: Problem) -> list[Array]:
     """Return starts of more and more, smaller teeth."""
     lower, upper, guess = exact.bounds()
     names = [v.name for v, _ in exact.columns]
-    found = []
+    points = []
     for factor in FINER:
         change = {"module": 1.0 / factor, "pinion_teeth": factor}
         moved = [g * change.get(n, 1.0) for g, n in zip(guess, names, strict=True)]
-        found.append(np.clip(moved, lower, upper))
-    return found
+        points.append(np.clip(moved, lower, upper))
+    return points
 
 
 def whole(train: Train, clock: Clock) -> list[Array]:
@@ -438,8 +442,8 @@ def point_of_result(made: Problem, found: Result) -> Array | None:
 
 def safe(exact: Problem, x: Array) -> bool:
     """Return whether the exact text accepts a point."""
-    made = exact.batch(x[None])
-    return bool(max(made.G.max(initial=0.0), 1.0 + np.abs(made.H - 1.0).max(initial=0.0)) <= SAFE)
+    batch = exact.batch(x[None])
+    return bool(max(batch.G.max(initial=0.0), 1.0 + np.abs(batch.H - 1.0).max(initial=0.0)) <= SAFE)
 
 
 def repaired(exact: Problem, at: Array) -> Array | None:
@@ -458,13 +462,13 @@ def repaired(exact: Problem, at: Array) -> Array | None:
     if here is None:
         return None
     for k in range(1, max(stage) + 1):
-        own = lengths & (np.array(stage) == k)
-        if not safe(exact, scaled(here, 1.0 - LESS, own)):
+        moved = lengths & (np.array(stage) == k)
+        if not safe(exact, scaled(here, 1.0 - LESS, moved)):
             continue
         low, high = SMALLEST, 1.0 - LESS
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
-            good = safe(exact, scaled(here, middle, own))
+            good = safe(exact, scaled(here, middle, moved))
             low, high = (low, middle) if good else (middle, high)
-        here = scaled(here, high, own)
+        here = scaled(here, high, moved)
     return here

@@ -81,12 +81,12 @@ def movable(train: Train) -> Problem:
     Wheel teeth that are given are variables, one component per stage that gives them; the
     proportion b/d1 of tied widths is a given parameter. The objective means nothing.
     """
-    own = exact_text(train)
+    text = exact_text(train)
     wheels = given_wheels(train)
-    numbers = tuple(replace(q, role=_role(train, q.name, "given")) for q in own.parameters)
+    numbers = tuple(replace(q, role=_role(train, q.name, "given")) for q in text.parameters)
 
     def evaluate(x: Any, p: Any) -> Terms:
-        terms = own.evaluate(x, p)
+        terms = text.evaluate(x, p)
         teeth = zip(wheels, each(x.wheel_teeth) if wheels else (), strict=True)
         rows = {
             f"wheel_teeth[{k + 1}]": each(x.pinion_teeth)[k] * each(x.ratio)[k] / z
@@ -94,7 +94,7 @@ def movable(train: Train) -> Problem:
         }
         return Terms({"module": each(x.module)[0]}, terms.limits, equal={**terms.equal, **rows})
 
-    columns = _with_wheels(train) if wheels else own.variables
+    columns = _with_wheels(train) if wheels else text.variables
     return Problem("sizing", columns, numbers, evaluate)
 
 
@@ -122,8 +122,8 @@ def _with_wheels(train: Train) -> tuple[Var, ...]:
         guess = tuple(max(u, RATIO[0]) for u in each(v.guess))
         return replace(v, lower=low, upper=high, guess=guess)
 
-    found = (free(v) if v.name == "ratio" else v for v in variables(train))
-    return (*found, Var("wheel_teeth", "", teeth, teeth, teeth, len(teeth), log=True, search=True))
+    freed = (free(v) if v.name == "ratio" else v for v in variables(train))
+    return (*freed, Var("wheel_teeth", "", teeth, teeth, teeth, len(teeth), log=True, search=True))
 
 
 def _role(train: Train, name: str, tied: str) -> str | tuple[str, ...]:
@@ -146,7 +146,7 @@ def text_pairs(train: Train, x: Any, numbers: Any) -> tuple[GearPair, ...]:
 
     numbers: `train.numbers()` as attributes, floats or parameters.
     """
-    found = []
+    gear_pairs = []
     for k, stage in enumerate(train.stages):
         m, z, u = each(x.module)[k], each(x.pinion_teeth)[k], each(x.ratio)[k]
         cosine = each(numbers.helix_cosine)[k]
@@ -155,8 +155,8 @@ def text_pairs(train: Train, x: Any, numbers: Any) -> tuple[GearPair, ...]:
             width = each(numbers.width_high)[k] * reference_diameter(m / cosine, z)
         else:
             width = each(x.face_width)[k]
-        found.append(stage.toothing.of_diameter(m, z, d, u, width))
-    return tuple(found)
+        gear_pairs.append(stage.toothing.of_diameter(m, z, d, u, width))
+    return tuple(gear_pairs)
 
 
 def variables(train: Train) -> tuple[Var, ...]:
@@ -191,11 +191,11 @@ def variables(train: Train) -> tuple[Var, ...]:
         torque *= u
     if all(s.face_width.tied for s in train.stages):
         del columns["face_width"]
-    found = []
+    posed = []
     for name, rows in columns.items():
         low, high, guess = zip(*rows, strict=True)
-        found.append(Var(name, VARIABLES[name], low, high, guess, len(rows), log=True, search=True))
-    return tuple(found)
+        posed.append(Var(name, VARIABLES[name], low, high, guess, len(rows), log=True, search=True))
+    return tuple(posed)
 
 
 def _lengths(train: Train) -> tuple[float, float]:
@@ -243,7 +243,7 @@ def terms(
     limits: dict[str, Any] = {}
     equal: dict[str, Any] = {}
     for k, pair in enumerate(pairs):
-        own = {name: each(getattr(numbers, name))[k] for name in train.by_stage}
+        of_stage = {name: each(getattr(numbers, name))[k] for name in train.by_stage}
         stage, option = train.stages[k], options[k] if options else 0
         chosen = np.rint(option).astype(int)
         asked = np.flatnonzero(np.bincount(chosen.ravel()))  # np.unique would load numpy.ma
@@ -251,7 +251,7 @@ def terms(
         for name in totals:
             worth = [shares(train, k, pair, numbers.density, one, name) for one in asked]
             totals[name] = totals[name] + _chosen(worth, option)
-        allowable = [own[name] for name in train.law.names]
+        allowable = [of_stage[name] for name in train.law.names]
         rows = train.law.utilisations(pair, torque, numbers.speed / product, allowable)
         if stage.options:
             safety = numbers.bending_safety, numbers.contact_safety
@@ -259,9 +259,11 @@ def terms(
             if rated is not None:
                 rows |= rated(k, pair, *load, safety)
             else:
-                made = [stage.options[o].utilisations(pair, *load, safety) for o in asked]
-                rows |= {name: _chosen([r[name] for r in made], option) for name in made[0]}
-        rows |= _choices(stage, own, pair)
+                by_option = [stage.options[o].utilisations(pair, *load, safety) for o in asked]
+                rows |= {
+                    name: _chosen([r[name] for r in by_option], option) for name in by_option[0]
+                }
+        rows |= _choices(stage, of_stage, pair)
         if stage.overlap:
             rows["overlap_ratio"] = stage.width_of_overlap(pair) / pair.face_width
         if math.isfinite(stage.axial_force):
@@ -269,7 +271,7 @@ def terms(
         if stage.toothing.shifting is not None:
             rows |= stage.toothing.shifting.used(pair)
         if stage.wheel_fixed and not stage.pinion_fixed:
-            equal[f"wheel_teeth[{k + 1}]"] = pair.wheel_teeth / own["wheel_low"]
+            equal[f"wheel_teeth[{k + 1}]"] = pair.wheel_teeth / of_stage["wheel_low"]
         limits |= {f"{name}[{k + 1}]": value for name, value in rows.items()}
         torque = torque * pair.ratio
         product = product * pair.ratio

@@ -220,8 +220,8 @@ class Train:
             raise ValueError("the objective cost needs the price of every stage's materials")
         if objective in MASSES and not solid:
             raise ValueError(f"the objective {objective} needs a density")
-        made = {tuple(option.materials for option in stage.options) for stage in self.stages}
-        if self.same_option and len(made) > 1:
+        materials = {tuple(option.materials for option in stage.options) for stage in self.stages}
+        if self.same_option and len(materials) > 1:
             raise ValueError("stages that take the same option need options of the same materials")
 
     @property
@@ -259,8 +259,10 @@ class Train:
         if not (self.same_option and self.several_options):
             return (self,)
         count = len(self.stages[0].options)
-        made = [[replace(s, options=(s.options[k],)) for s in self.stages] for k in range(count)]
-        return tuple(replace(self, stages=tuple(stages)) for stages in made)
+        by_option = [
+            [replace(s, options=(s.options[k],)) for s in self.stages] for k in range(count)
+        ]
+        return tuple(replace(self, stages=tuple(stages)) for stages in by_option)
 
     @property
     def of_one_row(self) -> tuple["Train", ...]:
@@ -292,11 +294,11 @@ class Train:
             return (self,)
         rows = [{o.materials: o for o in s.options} for s in self.stages]
         alike = [n for n in rows[0] if n[0] == n[1] and all(n in row for row in rows)]
-        made = [
+        by_material = [
             [replace(s, options=(row[n],)) for s, row in zip(self.stages, rows, strict=True)]
             for n in alike
         ]
-        return tuple(replace(self, stages=tuple(own), same_option=False) for own in made)
+        return tuple(replace(self, stages=tuple(own), same_option=False) for own in by_material)
 
     @property
     def hollow(self) -> bool:
@@ -329,8 +331,10 @@ class Train:
 
     def fixed_teeth(self, stage: int, pinion: int, wheel: int) -> "Train":
         """Return the drive with the teeth of one stage (counted from 0) given."""
-        one = replace(self.stages[stage], pinion_teeth=(pinion, pinion), wheel_teeth=(wheel, wheel))
-        return replace(self, stages=self.stages[:stage] + (one,) + self.stages[stage + 1 :])
+        changed = replace(
+            self.stages[stage], pinion_teeth=(pinion, pinion), wheel_teeth=(wheel, wheel)
+        )
+        return replace(self, stages=self.stages[:stage] + (changed,) + self.stages[stage + 1 :])
 
     def pair(
         self,
@@ -345,8 +349,8 @@ class Train:
 
         toothing: which of the stage's, from 0.
         """
-        own = self.stages[stage].toothing_of(toothing)
-        return own.pair(module, pinion_teeth, wheel_teeth, face_width)
+        cut = self.stages[stage].toothing_of(toothing)
+        return cut.pair(module, pinion_teeth, wheel_teeth, face_width)
 
     def speed_at(self, torque: Any) -> Any:
         """Return the speed [rad/s] of a shaft that carries a torque [N mm], without losses."""

@@ -71,11 +71,11 @@ def over_speeds(
 
 def passed(frequencies: Array) -> Array:
     """Return rising frequencies with others between them: steps of at most STEP of themselves."""
-    found = [frequencies[:1]]
+    parts = [frequencies[:1]]
     for low, high in pairwise(frequencies):
         count = math.ceil(math.log(high / low) / STEP)
-        found.append(np.append(np.geomspace(low, high, count + 1)[1:-1], high))
-    return np.concatenate(found)
+        parts.append(np.append(np.geomspace(low, high, count + 1)[1:-1], high))
+    return np.concatenate(parts)
 
 
 def rms_limited_by_backlash(
@@ -88,9 +88,9 @@ def rms_limited_by_backlash(
     """
     if pair.backlash is None or pair.mesh_frequency <= 0.0:
         return None
-    own = np.array([pair.mesh_frequency])
-    found = followed(pair, level, in_contact(pair, level, own, harmonics, clock), clock)
-    return found[0].rms if found and not found[0].grows else None
+    frequency = np.array([pair.mesh_frequency])
+    motions = followed(pair, level, in_contact(pair, level, frequency, harmonics, clock), clock)
+    return motions[0].rms if motions and not motions[0].grows else None
 
 
 def ranges(speeds_rpm: Columns, inside: Sequence[bool]) -> str:
@@ -100,8 +100,10 @@ def ranges(speeds_rpm: Columns, inside: Sequence[bool]) -> str:
 
 def spans(ends: Iterable[Sequence[float]]) -> str:
     """Return ranges in words: "800 to 900 and 1,200"."""
-    told = [f"{a:,.0f}" if a == b else f"{a:,.0f} to {b:,.0f}" for a, b in ends]
-    return f" and {told[-1]}".join([", ".join(told[:-1]), ""]) if len(told) > 1 else "".join(told)
+    texts = [f"{a:,.0f}" if a == b else f"{a:,.0f} to {b:,.0f}" for a, b in ends]
+    return (
+        f" and {texts[-1]}".join([", ".join(texts[:-1]), ""]) if len(texts) > 1 else "".join(texts)
+    )
 
 
 def followed(pair: MovingPair, level: str, contacts: list[Contact], clock: Clock) -> list[Motion]:
@@ -111,20 +113,20 @@ def followed(pair: MovingPair, level: str, contacts: list[Contact], clock: Clock
     speed is begun in contact where that is stable, else at rest under the load. A pair without
     backlash stays in contact, stable or not. Of the first speeds alone where the clock stops.
     """
-    found: list[Motion] = []
+    motions: list[Motion] = []
     for contact in contacts:
         if pair.backlash is not None and not clock.tell():
             break
         moved = replace(pair, mesh_frequency=contact.series.frequency)
-        last = found[-1] if found and not found[-1].grows else None
-        made: Motion | None = None
+        last = motions[-1] if motions and not motions[-1].grows else None
+        motion: Motion | None = None
         if pair.backlash is None or (contact.holds and (last is None or last.highest <= 0.0)):
-            made = linear_motion(moved, level, contact)
+            motion = linear_motion(moved, level, contact)
         elif last is not None:
-            made = continued(moved, level, contact, last, clock)
-        if made is None:
-            made = settled(moved, level, contact, last, clock)
-        if made is None:
+            motion = continued(moved, level, contact, last, clock)
+        if motion is None:
+            motion = settled(moved, level, contact, last, clock)
+        if motion is None:
             break
-        found.append(made)
-    return found
+        motions.append(motion)
+    return motions

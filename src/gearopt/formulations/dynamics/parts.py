@@ -200,15 +200,15 @@ def stability(
     system, wave = around(pair, level), pair.wave
     mine = np.array([pair.mesh_frequency] if pair.mesh_frequency > 0.0 else [])
     ready(system, wave, clock)
-    own = largest(system, wave, np.append(mine, frequencies), clock)
-    clock.evaluations += len(own)
+    multipliers = largest(system, wave, np.append(mine, frequencies), clock)
+    clock.evaluations += len(multipliers)
     waves = [scaled(wave, float(d)) for d in depths]
     growth = stability_map(system, waves, frequencies, clock)
     if len(growth) < 2:
         return None
-    here, own = (float(own[0]) if mine.size else None), own[mine.size :]
-    unstable = bands(frequencies, own > 1.0 + UNSTABLE)
-    found = [
+    here, multipliers = (float(multipliers[0]) if mine.size else None), multipliers[mine.size :]
+    unstable = bands(frequencies, multipliers > 1.0 + UNSTABLE)
+    widest = [
         Tongue(
             modes=t.modes,
             harmonic=t.harmonic,
@@ -228,7 +228,7 @@ def stability(
         own_frequency_Hz=pair.mesh_frequency,
         here=here,
         bands_Hz=tuple(columns(ends) for ends in unstable),
-        tongues=tuple(found[:WIDEST]),
+        tongues=tuple(widest[:WIDEST]),
     )
 
 

@@ -88,7 +88,7 @@ def in_contact(
 
     harmonics: at least so many, see `enough`. Of the first alone where the clock stops.
     """
-    found, system = [], around(pair, level)
+    contacts, system = [], around(pair, level)
     ready(system, pair.wave, clock)
     for frequency in frequencies:
         if not clock.tell():
@@ -98,9 +98,9 @@ def in_contact(
         grown = largest(system, pair.wave, np.array([frequency]), clock)
         if not len(grown):
             break
-        found.append(Contact(series, float(grown[0])))
+        contacts.append(Contact(series, float(grown[0])))
         clock.evaluations += 2
-    return found
+    return contacts
 
 
 def enough(pair: MovingPair, level: str, frequency: float, harmonics: int) -> int:
@@ -141,10 +141,10 @@ def _growing(motion: Motion, jams: bool) -> Motion:
 
 
 def _amplitudes(series: Orbit) -> Array:
-    found = np.zeros(ORDERS)
+    amplitudes = np.zeros(ORDERS)
     orders = 2.0 * np.abs(series.harmonics[1 : ORDERS + 1])
-    found[: orders.size] = orders
-    return found
+    amplitudes[: orders.size] = orders
+    return amplitudes
 
 
 def continued(
@@ -158,20 +158,20 @@ def continued(
     harmonics = min(GUESSED, len(contact.series.harmonics) - 1)
     if periods == 1:
         guess = contact.series if last.highest <= 0.0 else last.series
-        made = orbit(pair, level, pair.mesh_frequency, harmonics, guess)
+        balanced = orbit(pair, level, pair.mesh_frequency, harmonics, guess)
         clock.evaluations += 1
-        if not made.found:
+        if not balanced.found:
             return None
-        state = states(pair, level, made, SAMPLES * harmonics)[0]
+        state = states(pair, level, balanced, SAMPLES * harmonics)[0]
     repeating = _repeating(pair, level, state, periods, clock)
-    found = (
+    motion = (
         None if repeating is None else _periodic_response(pair, level, repeating, periods, clock)
     )
-    if found is None:
+    if motion is None:
         return None
-    size = max(found.delta.size, last.delta.size)
-    off = float(np.std(np.resize(found.delta, size) - np.resize(last.delta, size)))
-    return found if off <= RMS_JUMP * max(found.rms, last.rms) else None
+    size = max(motion.delta.size, last.delta.size)
+    off = float(np.std(np.resize(motion.delta, size) - np.resize(last.delta, size)))
+    return motion if off <= RMS_JUMP * max(motion.rms, last.rms) else None
 
 
 def _repeating(
@@ -240,10 +240,10 @@ def settled(
         spent += CHUNK
         changes = [_change(passed / scale, p) for p in range(1, MOST_PERIODS + 1)]
     repeats = next((p for p, c in enumerate(changes, 1) if c <= REPEATED), 0)
-    found = _periodic_response(pair, level, passed[-1], repeats, clock)
-    if found is not None and repeats == 1 and found.highest <= 0.0 and contact.holds:
+    response = _periodic_response(pair, level, passed[-1], repeats, clock)
+    if response is not None and repeats == 1 and response.highest <= 0.0 and contact.holds:
         return linear_motion(pair, level, contact)
-    return found
+    return response
 
 
 def _patience(pair: MovingPair, level: str, growth: float) -> int:

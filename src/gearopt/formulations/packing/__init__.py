@@ -26,10 +26,10 @@ def problem(plan: Plan, loose: bool = True) -> Problem:
     """
 
     def floor(packing: Problem, spent: Spent) -> Bound:
-        found: Bound = packing.memo.get("bound") or bound(plan, spent.late())
-        if found.complete:
-            packing.memo["bound"] = found
-        return found
+        lower: Bound = packing.memo.get("bound") or bound(plan, spent.late())
+        if lower.complete:
+            packing.memo["bound"] = lower
+        return lower
 
     def finish(outcome: Outcome, spent: Spent, floor: Bound) -> Outcome:
         if not loose and spent.clock.best - floor.value > CERTAIN * spent.clock.best:

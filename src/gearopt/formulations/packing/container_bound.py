@@ -106,12 +106,12 @@ def _ordered(plan: Plan, discs: tuple[Layer, ...]) -> bool:
 
 def _kinds(plan: Plan) -> dict[tuple[float, float, int], int]:
     """Return the number of cylinders of each grown radius, height and layer (0: free)."""
-    found: dict[tuple[float, float, int], int] = {}
+    counts: dict[tuple[float, float, int], int] = {}
     for c in plan.cylinders:
         layer = 0 if plan.max_layers > 1 and c.layer is None else c.layer or 1
         kind = (c.radius + 0.5 * plan.gap, c.height, layer)
-        found[kind] = found.get(kind, 0) + 1
-    return found
+        counts[kind] = counts.get(kind, 0) + 1
+    return counts
 
 
 def _ways(
@@ -146,9 +146,9 @@ def _shares(count: int, layers: int) -> Iterator[tuple[int, ...]]:
     if layers == 1:
         yield (count,)
         return
-    for own in range(count + 1):
-        for rest in _shares(count - own, layers - 1):
-            yield (own, *rest)
+    for here in range(count + 1):
+        for rest in _shares(count - here, layers - 1):
+            yield (here, *rest)
 
 
 def _coarse(plan: Plan) -> float:
@@ -269,15 +269,15 @@ def depth(radii: Sequence[float], w: Array, late: Late = never) -> Array:
     late: asked while the orders are examined; once it is true the bound is the one without them.
     """
     rho = np.sort(np.asarray(radii, float))[::-1]
-    found = np.maximum(2.0 * rho[0], math.pi * float((rho**2).sum()) / w)
+    lower = np.maximum(2.0 * rho[0], math.pi * float((rho**2).sum()) / w)
     for smallest in np.unique(rho):
-        found = np.maximum(found, _oler(2.0 * smallest, int((rho >= smallest).sum()), w))
+        lower = np.maximum(lower, _oler(2.0 * smallest, int((rho >= smallest).sum()), w))
     by_order = _by_order(rho, w, late) if orders_of(rho) <= ORDERS else None
     if by_order is not None:
-        return np.asarray(np.maximum(found, by_order))
+        return np.asarray(np.maximum(lower, by_order))
     for a, b in _kinds_of_pairs(rho[:LARGEST]):
-        found = np.maximum(found, a + b + _pair(a, b, w))
-    return np.asarray(found)
+        lower = np.maximum(lower, a + b + _pair(a, b, w))
+    return np.asarray(lower)
 
 
 def orders_of(rho: Array) -> float:

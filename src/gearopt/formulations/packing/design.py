@@ -67,18 +67,18 @@ class PackingDesign:
 
 def packing_design(data: Mapping[str, Any]) -> PackingDesign:
     """Design that a result of a packing holds; ValueError names the keys that do not belong."""
-    found: PackingDesign = typed(PackingDesign, data, "design")
-    return found
+    design: PackingDesign = typed(PackingDesign, data, "design")
+    return design
 
 
 def places(design: PackingDesign) -> Places:
     """Return where the cylinders of a design are."""
-    box, own = design.container, design.cylinders
+    box, cylinders = design.container, design.cylinders
     width, depth = box.sides
     return Places(
-        np.array([c.x_mm for c in own]),
-        np.array([c.y_mm for c in own]),
-        np.array([c.layer for c in own], dtype=np.int64),
+        np.array([c.x_mm for c in cylinders]),
+        np.array([c.y_mm for c in cylinders]),
+        np.array([c.layer for c in cylinders], dtype=np.int64),
         np.array([box.left_mm + 0.5 * width, box.front_mm + 0.5 * depth]),
     )
 
@@ -113,8 +113,10 @@ def describe(plan: Plan, found: Places) -> PackingDesign:
         )
         for k, c in enumerate(plan.cylinders)
     )
-    made = ContainerDesign(**container, height_mm=floor, volume_mm3=container["area_mm2"] * floor)
-    return PackingDesign(container=made, layers=tuple(layers), cylinders=cylinders)
+    container_design = ContainerDesign(
+        **container, height_mm=floor, volume_mm3=container["area_mm2"] * floor
+    )
+    return PackingDesign(container=container_design, layers=tuple(layers), cylinders=cylinders)
 
 
 def _container(plan: Plan, found: Places) -> tuple[dict[str, Any], Any, Any]:

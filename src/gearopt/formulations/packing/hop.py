@@ -95,26 +95,26 @@ def method(plan: Plan, floor: Floor, finish: Finish) -> Any:
 
 def _round(plan: Plan, problem: Problem, rng: np.random.Generator, spent: Spent) -> float:
     """Run one round; return the objective of its best packing, inf where none met all limits."""
-    best, own, idle, hops = math.inf, np.empty(0), 0, 0
+    best, current, idle, hops = math.inf, np.empty(0), 0, 0
     fresh = FRESH_LAYERS if plan.max_layers > plan.fewest else FRESH
     while idle < PATIENCE and spent.clock.tell() and not spent.close(PROVEN):
-        if hops < SCATTERS or not len(own) or rng.random() < fresh:
+        if hops < SCATTERS or not len(current) or rng.random() < fresh:
             max_layers, moves, hot = int(rng.integers(plan.fewest, plan.max_layers + 1)), MOVES, HOT
             begin = scattered(plan, max_layers, rng)
         else:
             moves, hot = MOVES_COLD, WARM
-            begin = _changed(plan, places(plan, problem, own), rng)
+            begin = _changed(plan, places(plan, problem, current), rng)
             max_layers = max(plan.fewest, int(begin.layer.max()))
         left, moves = spent.clock.left.evaluations, moves * len(plan.radius)
         moves = moves if left is None else min(moves, left)
         last = anneal(plan, problem, begin, max_layers, moves, (hot, COLD), rng, spent)
-        value, found = math.inf, own
+        value, candidate = math.inf, current
         if float(problem.batch(point(plan, last)[None]).F[0, 0]) < HOPEFUL * best:
-            value, found = polished(plan, problem, last, spent)
+            value, candidate = polished(plan, problem, last, spent)
         idle, hops = 0 if value < best * (1.0 - BETTER) else idle + 1, hops + 1
         if value < best:
-            best, own = value, found
-            spent.keep(value, found)
+            best, current = value, candidate
+            spent.keep(value, candidate)
     return best
 
 
@@ -164,6 +164,6 @@ def polished(plan: Plan, problem: Problem, begin: Places, spent: Spent) -> tuple
     spent.clock.evaluations += ended.evaluations
     if ended.x is None or ended.infeasible:
         return math.inf, np.empty(0)
-    found = point(plan, places(plan, local, ended.x, begin.layer))
-    value, excess = violation(problem, found[None])
-    return (float(value[0]) if excess[0] <= FEASIBLE else math.inf), found
+    polished_point = point(plan, places(plan, local, ended.x, begin.layer))
+    value, excess = violation(problem, polished_point[None])
+    return (float(value[0]) if excess[0] <= FEASIBLE else math.inf), polished_point

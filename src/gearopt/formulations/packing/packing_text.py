@@ -174,14 +174,14 @@ def _square(plan: Plan, axes: list[tuple[Any, Any]], i: int, j: int, gap: Any) -
 def _near(plan: Plan) -> list[tuple[int, int]]:
     """Return pairs that may come too close: not both fixed, in layers that may be the same."""
     free_layers, cylinders = set(plan.free_layers), plan.cylinders
-    found = []
+    pairs = []
     for i, j in combinations(range(len(cylinders)), 2):
         free = not free_layers.isdisjoint((i, j))
         same = (cylinders[i].layer or 1) == (cylinders[j].layer or 1)
         moved = cylinders[i].at is None or cylinders[j].at is None
         if free or (same and moved):
-            found.append((i, j))
-    return found
+            pairs.append((i, j))
+    return pairs
 
 
 def _close(plan: Plan, axes: list[tuple[Any, Any]], layer: list[Any], i: int, j: int) -> Any:
@@ -239,21 +239,21 @@ def _walls(plan: Plan, axes: list[tuple[Any, Any]], x: Any, width: Any) -> dict[
     width = getattr(x, "side", getattr(x, "width", width))
     depth = getattr(x, "side", getattr(x, "depth", None))
     need = plan.radius + plan.wall
-    found: dict[str, Any] = {}
+    sides: dict[str, Any] = {}
     if plan.fixed:
-        found["left_side"] = tuple(
+        sides["left_side"] = tuple(
             1.0 + (left + n - u) / scale for (u, _), n in zip(axes, need, strict=True)
         )
-        found["front_side"] = tuple(
+        sides["front_side"] = tuple(
             1.0 + (front + n - v) / scale for (_, v), n in zip(axes, need, strict=True)
         )
-    found["right_side"] = tuple(
+    sides["right_side"] = tuple(
         1.0 + (u + n - left - width) / scale for (u, _), n in zip(axes, need, strict=True)
     )
-    found["back_side"] = tuple(
+    sides["back_side"] = tuple(
         1.0 + (v + n - front - depth) / scale for (_, v), n in zip(axes, need, strict=True)
     )
-    return found
+    return sides
 
 
 def _objective(plan: Plan, area: Any, height: Any) -> dict[str, Any]:

@@ -78,8 +78,8 @@ class Plan:
     @cached_property
     def free_layers(self) -> tuple[int, ...]:
         """The cylinders whose layer is to be chosen."""
-        one = self.max_layers == 1
-        return tuple(k for k, c in enumerate(self.cylinders) if c.layer is None and not one)
+        single = self.max_layers == 1
+        return tuple(k for k, c in enumerate(self.cylinders) if c.layer is None and not single)
 
     @cached_property
     def named(self) -> frozenset[int]:
@@ -192,9 +192,9 @@ def minimum_layers(plan: Plan) -> int:
 
 def colours(plan: Plan, layers: int) -> list[int] | None:
     """Return a layer from 1 to `layers` of each cylinder so that no fixed ones overlap, or None."""
-    found = [c.layer or 0 for c in plan.cylinders]
-    open_ = [k for k in plan.fixed if not found[k]]
-    settled = [k for k in plan.fixed if found[k]]
+    layer_of = [c.layer or 0 for c in plan.cylinders]
+    open_ = [k for k in plan.fixed if not layer_of[k]]
+    settled = [k for k in plan.fixed if layer_of[k]]
 
     def fill(rank: int) -> bool:
         if rank == len(open_):
@@ -202,11 +202,11 @@ def colours(plan: Plan, layers: int) -> list[int] | None:
         k = open_[rank]
         before = settled + open_[:rank]
         for level in range(1, layers + 1):
-            if all(found[o] != level or not overlap(plan, k, o) for o in before):
-                found[k] = level
+            if all(layer_of[o] != level or not overlap(plan, k, o) for o in before):
+                layer_of[k] = level
                 if fill(rank + 1):
                     return True
-        found[k] = 0
+        layer_of[k] = 0
         return False
 
-    return [level or 1 for level in found] if fill(0) else None
+    return [level or 1 for level in layer_of] if fill(0) else None

@@ -176,8 +176,8 @@ def anneal(
         done = last
         if best[-1] < best_value:
             levels, best_value = best[2 * n : 3 * n].astype(np.int64), float(best[-1])
-            found = point(plan, Places(best[:n], best[n : 2 * n], levels, best[3 * n : -1]))
-            spent.keep(float(problem.batch(found[None]).F[0, 0]), found)
+            best_point = point(plan, Places(best[:n], best[n : 2 * n], levels, best[3 * n : -1]))
+            spent.keep(float(problem.batch(best_point[None]).F[0, 0]), best_point)
         if done < moves and not spent.clock.tell():
             break
     return Places(x, y, layer, centre)

@@ -79,8 +79,8 @@ def _interpolated(elastic: ElasticPair, level: str, force: float) -> Callable[[A
     turns = 0.5 - 0.5 * np.cos(np.pi * np.arange(NODES) / (NODES - 1))
     nodes = path.start + turns * (path.end - path.start)
     values = LEVELS[level].compliance(elastic, nodes, force)
-    found: Callable[[Any], Any] = CubicSpline(nodes, values)
-    return found
+    spline: Callable[[Any], Any] = CubicSpline(nodes, values)
+    return spline
 
 
 def contact(
@@ -214,12 +214,12 @@ def spectrum(travels: Any, values: Any, most: int = HARMONICS) -> list[float]:
     """
     start, step = travels[:-1], np.diff(travels)
     low, high = values[:-1], values[1:]
-    found = [float((0.5 * (low + high) * step).sum())]
+    amplitudes = [float((0.5 * (low + high) * step).sum())]
     for k in range(1, most + 1):
         turn = 2j * math.pi * k
         left, right = np.exp(-turn * start), np.exp(-turn * (start + step))
         slope = np.divide(high - low, step, out=np.zeros_like(step), where=step > 0.0)
         ends = (low * left - high * right) / turn  # of a line, by parts; a jump has none
         lines = ends + slope * (left - right) / turn**2
-        found.append(2.0 * abs(complex(np.where(step > 0.0, lines, 0.0).sum())))
-    return found
+        amplitudes.append(2.0 * abs(complex(np.where(step > 0.0, lines, 0.0).sum())))
+    return amplitudes

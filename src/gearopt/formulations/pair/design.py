@@ -1,4 +1,4 @@
-"""What a report holds of a spur pair in contact: stiffness, shares, errors and stresses, relief.
+"""Fields of a report on a spur pair in contact: stiffness, shares, errors and stresses, relief.
 
 Fields are keys of a result, with their units; lists of one table are columns of equal length.
 """

@@ -139,7 +139,7 @@ def _partings(mesh: Mesh, apart: Array) -> Array:
 
     There its separation is the depth of the others alone, which has no kink, as its gap has.
     """
-    found, loads = [np.zeros(0)], np.array(mesh.loads)[:, None]
+    positions, loads = [np.zeros(0)], np.array(mesh.loads)[:, None]
     for pair, s in enumerate(mesh.cycle.positions.T):
         others = apart.copy()
         others[:, pair] = np.inf
@@ -151,8 +151,8 @@ def _partings(mesh: Mesh, apart: Array) -> Array:
         crossed = before * after < 0.0
         part = before[crossed] / (before[crossed] - after[crossed])
         ends = (np.broadcast_to(end, crossed.shape)[crossed] for end in (s[:-1], s[1:]))
-        found.append((1.0 - part) * next(ends) + part * next(ends))
-    return np.concatenate(found)
+        positions.append((1.0 - part) * next(ends) + part * next(ends))
+    return np.concatenate(positions)
 
 
 def break_even(made: PairMesh, removed: Removed, loads: Sequence[float]) -> float | None:

@@ -160,8 +160,8 @@ class Springs:
         """Return the compliance [rad/(N mm)] of a mesh, its line stiffness given or by Lewis."""
         stiffness: Any = self.line_stiffness
         if self.line_stiffness is None:
-            one, two = (tooth_factor(lewis_form_factor(g.teeth) / math.pi) for g in pair.gears)
-            stiffness = line_stiffness(self.youngs_modulus, one, self.youngs_modulus, two)
+            pinion, wheel = (tooth_factor(lewis_form_factor(g.teeth) / math.pi) for g in pair.gears)
+            stiffness = line_stiffness(self.youngs_modulus, pinion, self.youngs_modulus, wheel)
         return mesh_compliance(stiffness, pair.face_width, pair.wheel.reference_diameter)
 
     def numbers(self, face_width: float) -> Array:
@@ -263,14 +263,16 @@ def train_problem(choice: Choice) -> Problem:
             clock = Clock(budget, watch)
             # a train may be better than the answer where limits are checked apart
             shown = of_others(watch, "") if choice.apart else in_part(watch, factor=factor)
-            found: Outcome = base.methods[name](base, budget, seed, shown)
-            found = _counted(found, found.proof, choice.apart)
-            if choice.apart and found.x is not None and not choice.keeps(found.x):
-                clock.evaluations = found.evaluations
-                best = float(base.batch(found.x[None]).F[0, 0])
-                counts, found = found.proof, _kept(choice, base, best, clock)
-                found = _counted(found, counts, choice.apart)
-            return found if found.bound is None else replace(found, bound=factor * found.bound)
+            outcome: Outcome = base.methods[name](base, budget, seed, shown)
+            outcome = _counted(outcome, outcome.proof, choice.apart)
+            if choice.apart and outcome.x is not None and not choice.keeps(outcome.x):
+                clock.evaluations = outcome.evaluations
+                best = float(base.batch(outcome.x[None]).F[0, 0])
+                counts, outcome = outcome.proof, _kept(choice, base, best, clock)
+                outcome = _counted(outcome, counts, choice.apart)
+            return (
+                outcome if outcome.bound is None else replace(outcome, bound=factor * outcome.bound)
+            )
 
         return run
 
@@ -288,8 +290,8 @@ def text(choice: Choice, base: Problem) -> Callable[[Any, Any], Terms]:
         terms = base.evaluate(x, p)
         limits = dict(terms.limits)
         if choice.springs is not None and choice.springs.minimum is not None:
-            made = pairs((*x.pinion_teeth, *x.wheel_teeth, *x.module), choice.train.face_width)
-            limits["stiffness"] = choice.springs.minimum / choice.springs.output_stiffness(made)
+            gears = pairs((*x.pinion_teeth, *x.wheel_teeth, *x.module), choice.train.face_width)
+            limits["stiffness"] = choice.springs.minimum / choice.springs.output_stiffness(gears)
         for stage, there, asked in choice.backlash:
             none = 0.0 * x.module[0]  # of the shape of a population
             scale = there if there > 0.0 else asked  # required over actual, where gears have any
@@ -324,10 +326,10 @@ def _counted(found: Outcome, proof: Mapping[str, Any] | None, apart: tuple[str, 
     if proof is None or "feasible_trains" not in proof:
         return found
     counts = {k: proof[k] for k in ("trains_looked_at", "feasible_trains")}
-    made = {**(found.proof or {}), **counts, "not_counted": list(apart)}
-    if "sentence" in made:
-        made["sentence"] = teeth.sentence(made, found.infeasible)
-    return replace(found, proof=made)
+    with_counts = {**(found.proof or {}), **counts, "not_counted": list(apart)}
+    if "sentence" in with_counts:
+        with_counts["sentence"] = teeth.sentence(with_counts, found.infeasible)
+    return replace(found, proof=with_counts)
 
 
 def _kept(choice: Choice, base: Problem, best: float, clock: Clock) -> Outcome:

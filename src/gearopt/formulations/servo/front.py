@@ -70,8 +70,8 @@ def _end(choice: Choice, goal: str, clock: Clock) -> Outcome:
     """Return the best train by one objective, or the proof that there is none."""
     if (bound := binding(choice.backlash)) is not None:
         return bound
-    one = train_problem(replace(choice, goal=goal))
-    outcome: Outcome = one.methods["exact"](one, clock.left, 0, clock.inner(values=False))
+    posed = train_problem(replace(choice, goal=goal))
+    outcome: Outcome = posed.methods["exact"](posed, clock.left, 0, clock.inner(values=False))
     clock.evaluations += outcome.evaluations
     return outcome
 
@@ -115,8 +115,8 @@ def front(
         count += look(given, aims, spring, sample, at, duty, rows[count:], KERNEL_STEPS)
         if at[0] < end and count < min(FIRST_FRONT + len(best), len(rows) - longest):
             continue
-        found, count = split.points(given, rows[:count]), 0
-        best, worth = _sifted(choice, posed, best, worth, found, clock)
+        points, count = split.points(given, rows[:count]), 0
+        best, worth = _sifted(choice, posed, best, worth, points, clock)
     columns = [ranked.index(name) for name in goals]
     order = np.argsort(worth[:, columns[0]], kind="stable")
     return best[order], worth[order][:, columns]

@@ -157,9 +157,9 @@ def _searched(box: ServoBox, budget: Budget, watch: Watch | None) -> Outcome:
         stuck, clock.best = stuck or bad, best
         clock.evaluations += more
         clock.tell()
-    found, looked = math.isfinite(best), clock.evaluations
+    fits, looked = math.isfinite(best), clock.evaluations
     done = count == 0 and not stuck
-    x = np.remainder(angles + math.pi, 2.0 * math.pi) - math.pi if found else None
+    x = np.remainder(angles + math.pi, 2.0 * math.pi) - math.pi if fits else None
     method = "exhausted" if done else "branch and bound, stopped early"
     proof = {
         "method": method,
@@ -169,7 +169,7 @@ def _searched(box: ServoBox, budget: Budget, watch: Watch | None) -> Outcome:
         "sentence": f"Proof: {looked:,} cells of link angles, each bounded by intervals "
         f"({method}).",
     }
-    if done and not found:
+    if done and not fits:
         text = "in no layout does the motor clear the hub of the output shaft"
         return Outcome(None, infeasible=True, proof=proof, evaluations=looked, message=text)
     bound = best * (1.0 - rel) if done else None
@@ -205,8 +205,8 @@ def box_design(
     assert result.value is not None
     fits, most = result.value <= 1.0 + TIE, 1.0 + TIE
     if not fits and result.bound is not None and result.bound <= most:
-        found = first_that_fits([box])
-        fits, x = found is not None, x if found is None else found[1]
+        fitting = first_that_fits([box])
+        fits, x = fitting is not None, x if fitting is None else fitting[1]
     motor, output = float(x[0]), float(x[1])
     width, height = (float(side) for side in extents(box, motor, output))
     return BoxDesign(

@@ -320,11 +320,11 @@ class DrawnErrors:
 def train_figures(train: TrainDesign, springs: StiffnessDesign | None) -> dict[str, float]:
     """Figures by which trains are compared: ratio, inertia, mass, error, stiffness, where known."""
     keys = ("ratio", "inertia_kg_m2", "mass_kg", "error_deg")
-    found = {key: getattr(train, key) for key in keys}
+    figures = {key: getattr(train, key) for key in keys}
     if springs is not None:
-        found["output_stiffness_Nm_per_rad"] = springs.output_Nm_per_rad
-        found |= {key: getattr(springs, key) for key in ("frequency_Hz", "windup_deg")}
-    return {key: value for key, value in found.items() if value is not None}
+        figures["output_stiffness_Nm_per_rad"] = springs.output_Nm_per_rad
+        figures |= {key: getattr(springs, key) for key in ("frequency_Hz", "windup_deg")}
+    return {key: value for key, value in figures.items() if value is not None}
 
 
 @dataclass(frozen=True)
@@ -366,17 +366,17 @@ class ServoReport:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data, the figures at its top."""
-        found: dict[str, Any] = untyped(self)
-        figures: dict[str, Any] = found.pop("figures", {})
-        return found | figures
+        data: dict[str, Any] = untyped(self)
+        figures: dict[str, Any] = data.pop("figures", {})
+        return data | figures
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> "ServoReport":
         """The known part in the report of a result."""
-        own = {f.name for f in fields(cls)}
+        names = {f.name for f in fields(cls)}
         figures = {k: v for k, v in data.items() if isinstance(v, float)}
-        found: ServoReport = typed(cls, {k: v for k, v in data.items() if k in own})
-        return replace(found, figures=figures)
+        report: ServoReport = typed(cls, {k: v for k, v in data.items() if k in names})
+        return replace(report, figures=figures)
 
 
 def _given(found: Any) -> dict[str, Any]:

@@ -67,21 +67,21 @@ def cutter_of(gearing: StrainWave, blank: Profile, asked: Cutter) -> CutterDesig
     """Return the cutter of a blank's flank; an irregular one with the least regular teeth."""
     pitch = asked.pitch_radius or float(gearing.blank_radius)
     radius = pitch * asked.teeth / float(gearing.teeth) if asked.teeth else math.inf
-    found = envelope(blank, pitch, radius)
-    slowest = float(np.nan_to_num(found.speeds, nan=-1e9).min())
+    edge_curve = envelope(blank, pitch, radius)
+    slowest = float(np.nan_to_num(edge_curve.speeds, nan=-1e9).min())
     head: dict[str, Any] = {
         "teeth": asked.teeth,
         "pitch_radius_mm": pitch,
         "cutter_radius_mm": radius if asked.teeth else 0.0,
-        "regular": found.regular,
+        "regular": edge_curve.regular,
         "least_speed": slowest,
         "least_teeth": least_teeth(blank, pitch, int(gearing.teeth)),
     }
-    if not found.regular:
+    if not edge_curve.regular:
         return CutterDesign(**head)
-    back = (generated(found.profile, pitch, radius) - blank.points).length
+    back = (generated(edge_curve.profile, pitch, radius) - blank.points).length
     pick = np.rint(np.linspace(0, len(back) - 1, POINTS)).astype(int)
-    edge = found.profile.points[pick]
+    edge = edge_curve.profile.points[pick]
     return CutterDesign(
         **head,
         x_mm=tuple(map(float, edge.x)),

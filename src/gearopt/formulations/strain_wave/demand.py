@@ -141,9 +141,9 @@ class Demand:
 
     def gearing(self, numbers: Mapping[str, Any]) -> StrainWave:
         """Return the gearing of the free numbers, floats, arrays or symbols."""
-        own = {name: numbers[name] for name in FREE}
+        free = {name: numbers[name] for name in FREE}
         return StrainWave(
-            teeth=self.teeth, clearance=self.clearance, wave=self.wave, wrap=self.wrap, **own
+            teeth=self.teeth, clearance=self.clearance, wave=self.wave, wrap=self.wrap, **free
         )
 
     @property
@@ -164,13 +164,13 @@ class Demand:
 
 def free_variables(demand: Demand, start: Any) -> tuple[Var, ...]:
     """Return the variables of FREE; start (6,): their guess, moved into the ranges."""
-    found = []
+    variables = []
     for name, value in zip(FREE, start, strict=True):
         low, high = demand.ranges[name]
         guess = min(max(float(value), low), high)
         key = demand.keys.get(name, "")
-        found.append(Var(name, UNITS.get(name, ""), low, high, guess, key=key))
-    return tuple(found)
+        variables.append(Var(name, UNITS.get(name, ""), low, high, guess, key=key))
+    return tuple(variables)
 
 
 def pairs_of(gearing: StrainWave, contacts: Sequence[Contact]) -> Any:
@@ -219,7 +219,7 @@ def common_limits(
     """
     names = ("flexspline_land", "flexspline_space", "spline_land")
     thin = {k: 1.0 + LAND - v / gearing.module for k, v in zip(names, widths, strict=True)}
-    found = {
+    utilisations = {
         "pairs": demand.pairs / pairs,
         "rim_fatigue": fatigue(demand, gearing, curve),
         "ratcheting": demand.ratchet_factor * demand.duty.torque / ratchets_at,
@@ -227,7 +227,7 @@ def common_limits(
         **thin,
         "minor_axis": (TIP_GAP + 2.0 * gearing.addendum) / (2.0 * gearing.deflection),
     }
-    return {name: used for name, used in found.items() if name not in demand.unasked}
+    return {name: used for name, used in utilisations.items() if name not in demand.unasked}
 
 
 def flank_ratcheting_torque(demand: Demand, gearing: StrainWave, tip: Contact) -> Any:

@@ -84,13 +84,13 @@ def exchange(
     numbers = np.asarray(start, float)
     if why := proof(demand):
         return _impossible(demand, numbers, why, clock)
-    found = _searched(demand, numbers, clock, gap, minimise, most)
-    if found.design is not None or found.result.status != "failed" or most:
-        return found
+    exchanged = _searched(demand, numbers, clock, gap, minimise, most)
+    if exchanged.design is not None or exchanged.result.status != "failed" or most:
+        return exchanged
     near = nearest(demand, numbers, clock)
     if near is not None and near.excess <= 0.0:
         return _searched(demand, near.numbers, clock, gap, minimise, most)
-    return replace(found, nearest=near)
+    return replace(exchanged, nearest=near)
 
 
 def _impossible(demand: Demand, start: Array, why: Mapping[str, Any], clock: Clock) -> Exchanged:
@@ -145,9 +145,11 @@ def design_of(demand: Demand, numbers: Sequence[float] | Array) -> Flank:
 
 def _cutting(least: Sequence[Least], known: Sequence[Passage]) -> tuple[Passage, ...]:
     """Return the worst passage of a point of the flank at which teeth cut, where it is new."""
-    for one in least:
-        if one.gap < CUTTING and one.passing and one.point is not None:
-            new = Passage(round(one.point * (COUNT - 1)), one.angle > 0.0, one.angle)
+    for least_gap in least:
+        if least_gap.gap < CUTTING and least_gap.passing and least_gap.point is not None:
+            new = Passage(
+                round(least_gap.point * (COUNT - 1)), least_gap.angle > 0.0, least_gap.angle
+            )
             return () if new in known else (new,)
     return ()
 
@@ -183,7 +185,7 @@ def ends_of(
 
     slopes: d objective/d number with the limits held, as `slopes_of` has them; may be empty.
     """
-    found = []
+    ends = []
     for name, value in zip(FREE, map(float, numbers), strict=True):
         low, high = ranges[name]
         width = high - low
@@ -192,8 +194,8 @@ def ends_of(
         for end, sign in ((low, 1.0), (high, -1.0)):
             if abs(value - end) <= AT_END * width:
                 gain = sign * slopes[name] * WIDER * width if name in slopes else None
-                found.append(RangeEnd(name=name, value=end, least=sign > 0.0, gain=gain))
-    return tuple(sorted(found, key=lambda e: -(e.gain or 0.0)))
+                ends.append(RangeEnd(name=name, value=end, least=sign > 0.0, gain=gain))
+    return tuple(sorted(ends, key=lambda e: -(e.gain or 0.0)))
 
 
 def slopes_of(problem: Problem, x: Array) -> dict[str, float]:
@@ -204,10 +206,10 @@ def slopes_of(problem: Problem, x: Array) -> dict[str, float]:
     """
     shape = form(problem)
     low, high, y = (shape.to_y(v) for v in (*problem.bounds()[:2], x))
-    found = multipliers(shape, y, problem.parameter_values(), low, high)
-    if found is None:
+    prices = multipliers(shape, y, problem.parameter_values(), low, high)
+    if prices is None:
         return {}
-    point = evaluated(problem, shape, y, low, high, *found)
+    point = evaluated(problem, shape, y, low, high, *prices)
     unit = shape.objective(point.f) if shape.log_objective else 1.0
     names = [variable.name for variable, _ in problem.columns]
     each = zip(names, shape.logarithmic, x, point.gradient, strict=True)

@@ -69,9 +69,9 @@ def problem(
         columns = [np.asarray(getattr(x, name), float) for name in FREE]
         shape = np.broadcast_shapes(*(c.shape for c in columns))
         rows = [np.broadcast_to(c, shape).reshape(-1, 1) for c in columns]
-        found, goals = _assessed(demand, rows, names, look)
+        used, goals = _assessed(demand, rows, names, look)
         goals = {name: _given(goals[name], shape) for name in names}
-        return Terms(goals, {name: _given(v, shape) for name, v in found.items()})
+        return Terms(goals, {name: _given(v, shape) for name, v in used.items()})
 
     def exact(x: Array) -> dict[str, float]:
         return {
@@ -105,8 +105,8 @@ def _assessed(
     )
     each = [contact(thin, motion(thin, line, angles[:, k])) for k in range(COUNT)]
     used = limits(demand, thin, line, each)
-    made = Flank(wide, curve, touching, known)
-    gap = clearances(made, poses(look.step, look.reach), look.points).min(axis=1)
+    flank = Flank(wide, curve, touching, known)
+    gap = clearances(flank, poses(look.step, look.reach), look.points).min(axis=1)
     used["interference"] = 1.0 - (gap + look.rounding) / GAP_UNIT
     used = {name: _limited(v, known) for name, v in used.items()}
     highest = np.max([np.where(known, s, np.nan) for s in squares(demand, thin, each)], axis=0)
@@ -114,7 +114,7 @@ def _assessed(
     if VOLUME in names:
         goals[VOLUME] = demand.specific_volume(thin)
     if SHARE in names:
-        goals[SHARE] = _share(wide, curve, made, known)
+        goals[SHARE] = _share(wide, curve, flank, known)
     return used, goals
 
 
@@ -124,10 +124,10 @@ def limited(demand: Demand, start: Any, name: str, most: Mapping[str, float]) ->
     Its method `exchange` solves the traced form with cuts; a point of it that is stationary there
     is one here, where its rows and objectives are the same.
     """
-    own = problem(demand, start, (PRESSURE, VOLUME), WHOLE)
+    both = problem(demand, start, (PRESSURE, VOLUME), WHOLE)
 
     def evaluate(x: Any, p: Any) -> Terms:
-        terms = own.evaluate(x, p)
+        terms = both.evaluate(x, p)
         caps = {f"most_{n}": terms.minimise[n] / value for n, value in most.items()}
         return Terms({name: terms.minimise[name]}, {**terms.limits, **caps})
 
@@ -144,7 +144,7 @@ def limited(demand: Demand, start: Any, name: str, most: Mapping[str, float]) ->
         stationary = exchanged.result.status == "stationary"
         return Outcome(x, evaluations=clock.evaluations, stationary=stationary)
 
-    return replace(own, evaluate=evaluate, methods={"exchange": run})
+    return replace(both, evaluate=evaluate, methods={"exchange": run})
 
 
 def _given(value: Any, shape: tuple[int, ...]) -> Any:

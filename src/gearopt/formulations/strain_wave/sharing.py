@@ -152,9 +152,9 @@ def _towards(
         at = np.flatnonzero(closed)
         windup, aim = _solved(matrix, gap, arm, moment, at)
         if (aim > 0.0).all():
-            found = np.zeros_like(forces)
-            found[at] = aim
-            return windup, found, closed
+            loads = np.zeros_like(forces)
+            loads[at] = aim
+            return windup, loads, closed
         falls = np.flatnonzero(aim <= 0.0)
         here = forces[at]
         share = here[falls] / np.maximum(here[falls] - aim[falls], np.finfo(float).tiny)
@@ -203,9 +203,9 @@ def problem(compliance: Any, gaps: Any, arms: Any, moment: float) -> Problem:
     def active_set(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Solve by `shared`; the certificate makes the bound from its own multipliers."""
         clock = Clock(budget, watch)
-        found = shared(matrix, gap, arm, moment)
+        solution = shared(matrix, gap, arm, moment)
         clock.evaluations = 1
-        x = found.forces / load
+        x = solution.forces / load
         clock.best = float(problem.batch(x[None]).F[0, 0])
         return Outcome(x, clock.tell(), evaluations=1)
 

@@ -34,12 +34,12 @@ class ShiftPoint:
 
 def shift_curve(gearing: StrainWave, duty: Duty, shifts: Iterable[float]) -> list[ShiftPoint]:
     """Return the points of all shifts that have a conjugate flank."""
-    found = []
+    points = []
     for x in shifts:
         meshing = flank(replace(gearing, profile_shift=float(x)), POINTS)
         if not bool(np.all(meshing.complete)) or not (meshing.contacts.gap_curvature > 0.0).all():
             continue
-        found.append(
+        points.append(
             ShiftPoint(
                 float(x),
                 float(meshing.pairs_in_contact),
@@ -50,7 +50,7 @@ def shift_curve(gearing: StrainWave, duty: Duty, shifts: Iterable[float]) -> lis
                 interference(meshing, STEP_DEG).gap,
             )
         )
-    return found
+    return points
 
 
 def last_shift_of_one_pair(gearing: StrainWave, most: float = 3.0) -> float | None:

@@ -76,19 +76,19 @@ def problem(
         gearing = demand.gearing({name: getattr(x, name) for name in FREE})
         curve = curve_of(gearing, x.change * CHANGE_UNIT)
         at = [contact(gearing, motion(gearing, curve, angle + 0.0)) for angle in x.contact]
-        found = limits(demand, gearing, curve, at)
+        rows = limits(demand, gearing, curve, at)
         passing = [
             motion(gearing, curve, getattr(x, name) + 0.0).placed(at[passage.point].point)
             for name, passage in zip(_names(passages), passages, strict=True)
         ]
         if passages:
-            found["interference"] = tuple(_cut(gearing, place) for place in passing)
+            rows["interference"] = tuple(_cut(gearing, place) for place in passing)
         pressure = tuple(s / x.pressure**2 for s in squares(demand, gearing, at))
         goals = {PRESSURE: x.pressure, VOLUME: demand.specific_volume(gearing)}
-        found |= {f"most_{name}": goals[name] / value for name, value in most.items()}
+        rows |= {f"most_{name}": goals[name] / value for name, value in most.items()}
         return Terms(
             {minimise: goals[minimise]},
-            found,
+            rows,
             {"contact": pressure},
             {
                 "meshing": _missed(gearing, at),
@@ -132,12 +132,12 @@ def _names(passages: Sequence[Passage]) -> list[str]:
 
 def _angles(passages: Sequence[Passage]) -> list[Var]:
     """Return the polar angles of the passages."""
-    found = []
+    angles = []
     for name, passage in zip(_names(passages), passages, strict=True):
         low, high = PASSING if passage.leaves else (-PASSING[1], -PASSING[0])
         guess = min(max(passage.angle, low), high)
-        found.append(Var(name, "rad", low, high, guess, search=True))
-    return found
+        angles.append(Var(name, "rad", low, high, guess, search=True))
+    return angles
 
 
 @np.errstate(all="ignore")  # of a start without a flank

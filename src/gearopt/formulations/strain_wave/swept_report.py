@@ -104,10 +104,10 @@ def swept_gearing(gearing: StrainWave, law: Law) -> SweptGearing:
     if law.name == HALF_LOCUS:
         gearing = replace(gearing, pressure_angle=_slope(gearing, tooth, 0.5))
     mesh = swept_mesh(gearing, neutral_curve(gearing), tooth)
-    found = touching(mesh)
-    if not len(found.arcs):
+    contacts = touching(mesh)
+    if not len(contacts.arcs):
         raise ValueError("tooth and space are conjugate at no pose of the wave")
-    return SweptGearing(mesh, found, tuple(intervals(found)))
+    return SweptGearing(mesh, contacts, tuple(intervals(contacts)))
 
 
 def _slope(gearing: StrainWave, tooth: Profile, share: float) -> float:
@@ -203,11 +203,11 @@ def used_by_law(demand: Demand, made: SweptGearing) -> dict[str, float]:
     gearing, tooth = mesh.gearing, mesh.tooth.points
     widths = *flexspline_widths(gearing, tooth[0], tooth[-1]), mesh.spline_land
     ratchets_at = _ratcheting_torque(demand, gearing)
-    found = common_limits(demand, gearing, mesh.curve, made.pairs, ratchets_at, widths)
+    utilisations = common_limits(demand, gearing, mesh.curve, made.pairs, ratchets_at, widths)
     least, _ = _least(mesh)
     if least < -TOUCH:
-        found["interference"] = 1.0 - least / float(gearing.module)
-    return {name: float(value) for name, value in found.items()}
+        utilisations["interference"] = 1.0 - least / float(gearing.module)
+    return {name: float(value) for name, value in utilisations.items()}
 
 
 def _ratcheting_torque(demand: Demand, gearing: StrainWave) -> Any:
@@ -218,17 +218,17 @@ def _ratcheting_torque(demand: Demand, gearing: StrainWave) -> Any:
 
 def _equal(duty: Duty, made: SweptGearing, pairs: float) -> float:
     """Return the largest pressure [MPa] if conjugate pairs shared the load equally."""
-    found = made.touching
-    load = duty.moment / (float(found.arms.mean()) * pairs)
-    return float(duty.pressure(load, found.gap_curvature.max()))
+    contacts = made.touching
+    load = duty.moment / (float(contacts.arms.mean()) * pairs)
+    return float(duty.pressure(load, contacts.gap_curvature.max()))
 
 
 def _least(mesh: SweptMesh) -> tuple[float, float]:
     """Return the least clearance [mm] over poses that were not swept, and its pose [degrees]."""
     angles = np.arange(-90.0 + 0.5 * STEP_DEG, 90.0, STEP_DEG)
-    found = gaps(mesh, np.radians(angles))
-    k = int(np.argmin(found))
-    return float(found[k]), float(angles[k])
+    clearances = gaps(mesh, np.radians(angles))
+    k = int(np.argmin(clearances))
+    return float(clearances[k]), float(angles[k])
 
 
 def _deflected(mesh: SweptMesh, by: float) -> Deflected:

@@ -1,4 +1,4 @@
-"""What a comparison is asked: problems, the budget of every run, and who follows it."""
+"""Plan of a comparison: problems, the budget of every run, and who follows it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -117,7 +117,7 @@ def _parameters(problem: Problem) -> tuple[list[Handle], set[int]]:
     rows = problem.rows.inequalities
     roles = [each_word(q.role, q.size) for q in problem.parameters]
     movers = np.array([role not in DATA for own in roles for role in own], bool)
-    handles_found: list[Handle] = []
+    of_parameters: list[Handle] = []
     governed: set[int] = set()
     start = 0
     for parameter, roles_of in zip(problem.parameters, roles, strict=True):
@@ -137,12 +137,12 @@ def _parameters(problem: Problem) -> tuple[list[Handle], set[int]]:
             name = names[0] if alone else label
             sign = -ways.pop()
             unit, given = parameter.unit, role == "given"
-            handles_found.append(
+            of_parameters.append(
                 Handle(name, PARAM, place, value, sign, unit, key, names, given, parameter=label)
             )
             governed |= set(touched.tolist())
         start += parameter.size
-    return handles_found, governed
+    return of_parameters, governed
 
 
 def numbered(problem: Problem) -> Problem:

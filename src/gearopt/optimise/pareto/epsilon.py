@@ -529,7 +529,7 @@ NO_DESIGN = "no design meets all limits"
 
 
 def _strips(run: Run, points: tuple[Point, ...]) -> list[Strip]:
-    """What the steps of a front of two objectives leave open."""
+    """Gaps that the steps of a front of two objectives leave open."""
     (first, second), caps = run.names, run.caps
     values = np.array([p.values for p in points])
     width, size = np.ptp(values, axis=0), np.abs(values).max(axis=0)

@@ -104,7 +104,7 @@ def _tried(incumbent: Incumbent, starts: list[Array]) -> None:
 
 
 def _enumerated(problem: Problem, clock: Clock, incumbent: Incumbent) -> Enumerated | None:
-    """What an enumeration proves where all variables are whole or listed; None of others.
+    """Return the claim of an enumeration of whole and listed variables; None for others.
 
     It may take ENUMERATED of the seconds, as the certificate needs as long again.
     """

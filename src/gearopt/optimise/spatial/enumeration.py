@@ -43,7 +43,7 @@ def takes(form: Columns) -> bool:
 
 @dataclass(frozen=True)
 class Enumerated:
-    """What an enumeration claims: that no feasible point is below a value; its number of boxes."""
+    """Claim of an enumeration: no feasible point is below a value; its number of boxes."""
 
     lower_bound: float
     boxes: int

@@ -207,7 +207,7 @@ def squeezed(
 
 @dataclass(frozen=True)
 class Record:
-    """What a box was closed by, or split at.
+    """Reason for which a box was closed, or the split of it.
 
     parent: its place in the list of records, -1 of the root; side: 0 below, 1 above the parent's
     split. cutoff: known then. squeezes: of the root. at: points of tangents; duals: None where

@@ -88,8 +88,8 @@ def active_root_diameters(pair: GearPair) -> tuple[Any, Any]:
     path = contact_path(pair)
     first, second = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
     rows = zip((first, second), pair.gears, strict=True)
-    found = [np.hypot(g.base_diameter, 2.0 * at) + 0.0 * np.sqrt(at) for at, g in rows]
-    return found[0], found[1]
+    diameters = [np.hypot(g.base_diameter, 2.0 * at) + 0.0 * np.sqrt(at) for at, g in rows]
+    return diameters[0], diameters[1]
 
 
 def diameters_at(pair: GearPair, path: ContactPath, position: Any) -> tuple[Any, Any]:

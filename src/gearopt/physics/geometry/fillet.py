@@ -178,10 +178,10 @@ def fillet_end(gear: Gear) -> Any:
     """
     rack = gear.rack
     searched = np.asarray(is_undercut(gear) | np.greater(rack.protuberance, 0.0))
-    found = np.array(np.broadcast_to(rack.pressure_angle, searched.shape), float)
+    angle = np.array(np.broadcast_to(rack.pressure_angle, searched.shape), float)
     if searched.any():
-        found[searched] = _crossing(_rows(gear, searched))
-    return found[()]
+        angle[searched] = _crossing(_rows(gear, searched))
+    return angle[()]
 
 
 def _rows(gear: Gear, chosen: Any) -> Gear:

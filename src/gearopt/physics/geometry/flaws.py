@@ -58,18 +58,18 @@ def flaws(pair: GearPair, of: str = "") -> tuple[Flaw, ...]:
 
     of: what sentences add to what they are about, such as " of stage 1".
     """
-    found = [flaw for k, gear in enumerate(pair.gears) for flaw in _of_gear(MEMBERS[k] + of, gear)]
-    if not any(flaw.fatal for flaw in found):
-        found += _of_pair(pair, of)
-    return tuple(sorted(found, key=lambda flaw: (not flaw.fatal, not flaw.misfit)))
+    every = [flaw for k, gear in enumerate(pair.gears) for flaw in _of_gear(MEMBERS[k] + of, gear)]
+    if not any(flaw.fatal for flaw in every):
+        every += _of_pair(pair, of)
+    return tuple(sorted(every, key=lambda flaw: (not flaw.fatal, not flaw.misfit)))
 
 
 def _of_gear(member: str, gear: Gear) -> list[Flaw]:
     """Flaws of one gear with any mate."""
-    found = []
+    of_gear = []
     if tool_tip(gear).half_width < 0.0:
         most = float(largest_tip_radius(gear.rack.pressure_angle, gear.rack.dedendum))
-        found.append(
+        of_gear.append(
             Flaw(
                 "pointed tool",
                 f"The tool of the {member} has no room for a tip radius of "
@@ -81,22 +81,22 @@ def _of_gear(member: str, gear: Gear) -> list[Flaw]:
             )
         )
     if gear.root_diameter <= 0.0:
-        found.append(Flaw("no root", f"The root circle of the {member} has no diameter.", True))
-        return found
+        of_gear.append(Flaw("no root", f"The root circle of the {member} has no diameter.", True))
+        return of_gear
     thin = float(tip_thickness(gear)) / gear.normal_module
     if gear.tip_diameter <= gear.base_diameter:
         text = f"The tip circle of the {member} lies inside its base circle: it has no involute."
-        found.append(Flaw("no involute", text, True))
+        of_gear.append(Flaw("no involute", text, True))
     elif thin <= 0.0:
         text = f"The teeth of the {member} are pointed: their flanks meet below the tip circle."
-        found.append(Flaw("pointed tooth", text, True))
+        of_gear.append(Flaw("pointed tooth", text, True))
     elif thin < THIN_TIP:
         text = f"The tips of the {member} are {thin:.2f} m_n thick, below {THIN_TIP:g} m_n."
-        found.append(Flaw("thin tip", text))
+        of_gear.append(Flaw("thin tip", text))
     depth = float(undercut_depth(gear)) / gear.normal_module
     if depth > NEGLIGIBLE:
-        found.append(Flaw("undercut", _undercut(member, gear, depth)))
-    return found
+        of_gear.append(Flaw("undercut", _undercut(member, gear, depth)))
+    return of_gear
 
 
 def _undercut(member: str, gear: Gear, depth: float) -> str:
@@ -124,30 +124,30 @@ def _of_pair(pair: GearPair, of: str) -> list[Flaw]:
         return [Flaw("no centre distance", text, True)]
     nominal, usable = contact_path(pair), usable_path(pair)
     ratio = float(usable.transverse_ratio)
-    found = []
+    of_mesh = []
     bare = float(nominal.transverse_ratio)
     if bare <= 0.0 or bare < 1.0 and bare + pair.overlap_ratio < 1.0:
         text = f"The transverse contact ratio{of} is {bare:.3f}: contact breaks off."
-        found.append(Flaw("contact ratio below 1", text, True))
+        of_mesh.append(Flaw("contact ratio below 1", text, True))
     elif not ratio >= 1.0:
         text = f"Form circles leave a transverse contact ratio{of} of {ratio:.3f}, below 1."
         fatal = not ratio + pair.overlap_ratio >= 1.0
-        found.append(Flaw("usable contact ratio below 1", text, fatal))
+        of_mesh.append(Flaw("usable contact ratio below 1", text, fatal))
     elif pair.overlap_ratio < 1.0 and ratio < LEAST_RATIO:
         text = (
             f"The contact ratio{of} is small, {ratio:.3f}: errors of the gears may take contact "
             f"away for a moment; {LEAST_RATIO:g} is a usual minimum."
         )
-        found.append(Flaw("small contact ratio", text))
-    if not any(flaw.fatal for flaw in found):
-        found = _backlash(pair, of) + found
-    found += _interference(pair, of)
+        of_mesh.append(Flaw("small contact ratio", text))
+    if not any(flaw.fatal for flaw in of_mesh):
+        of_mesh = _backlash(pair, of) + of_mesh
+    of_mesh += _interference(pair, of)
     for member, clearance in zip(MEMBERS, tip_clearances(pair), strict=True):
         depth = -float(clearance) / pair.normal_module
         if depth > ROUNDING:
             text = f"The tips of the {member}{of} reach {-clearance:.3f} mm into the mate's root."
-            found.append(Flaw("no tip clearance", text, misfit=depth))
-    return found
+            of_mesh.append(Flaw("no tip clearance", text, misfit=depth))
+    return of_mesh
 
 
 def _backlash(pair: GearPair, of: str) -> list[Flaw]:
@@ -190,7 +190,7 @@ def _interference(pair: GearPair, of: str) -> list[Flaw]:
 
     Where an undercut gear has no flank left to be reached, only cutting counts.
     """
-    found = []
+    of_tips = []
     for k, (gear, active) in enumerate(zip(pair.gears, active_root_diameters(pair), strict=True)):
         member, form, module = MEMBERS[k], float(form_diameter(gear)), gear.normal_module
         depth = tip_intrusion(pair, k)
@@ -199,14 +199,14 @@ def _interference(pair: GearPair, of: str) -> list[Flaw]:
                 f"The mate's tips cut {depth:.3f} mm into the fillets of the {member}{of}: relieve "
                 "or shorten them."
             )
-            found.append(Flaw("interference", text, misfit=depth / module))
+            of_tips.append(Flaw("interference", text, misfit=depth / module))
         elif not (active >= form * (1.0 - ROUNDING) or undercut_depth(gear) > NEGLIGIBLE * module):
             text = (
                 f"The mate's tip reaches below the form circle of the {member}{of}, "
                 f"{form:.3f} mm: relieve or shorten the tips."
             )
-            found.append(Flaw("interference", text))
-    return found
+            of_tips.append(Flaw("interference", text))
+    return of_tips
 
 
 def tip_intrusion(pair: GearPair, member: int) -> float:
@@ -215,20 +215,20 @@ def tip_intrusion(pair: GearPair, member: int) -> float:
     Of a pair of floats that touch on one flank, in the transverse plane: the path of the corner in
     the gear's frame against `fillet.profile`, at POINTS places. 0 of gears that run freely.
     """
-    own, mate = pair.gears[member], pair.gears[1 - member]
+    gear, mate = pair.gears[member], pair.gears[1 - member]
     distance, top = float(pair.centre_distance), 0.5 * float(mate.tip_diameter)
-    tip = 0.5 * float(own.tip_diameter)
+    tip = 0.5 * float(gear.tip_diameter)
     reach = (distance**2 + top**2 - tip**2) / (2.0 * distance * top)
     corner = np.linspace(-1.0, 1.0, POINTS) * math.acos(min(1.0, max(-1.0, reach)))
     across, along = top * np.sin(corner), distance - top * np.cos(corner)
     radius, turned = np.hypot(across, along), corner - float(half_angle(mate, top))
     play = max(0.0, float(circumferential_backlash(pair)))  # teeth that do not fit stay centred
     free = play / float(pair.working_diameters[member])
-    angle = np.arctan2(across, along) - turned * float(mate.teeth / own.teeth) + free
-    x, y = profile(own, POINTS, 2)
+    angle = np.arctan2(across, along) - turned * float(mate.teeth / gear.teeth) + free
+    x, y = profile(gear, POINTS, 2)
     fillet = np.hypot(x, y)[:-1]
     half = np.interp(radius, fillet, np.arctan2(x, y)[:-1])
     flank = radius > fillet[-1]
-    half[flank] = half_angle(own, radius[flank])
-    depth = np.where(radius > fillet[0], (angle + half - math.pi / own.teeth) * radius, 0.0)
+    half[flank] = half_angle(gear, radius[flank])
+    depth = np.where(radius > fillet[0], (angle + half - math.pi / gear.teeth) * radius, 0.0)
     return max(0.0, float(np.max(depth)))

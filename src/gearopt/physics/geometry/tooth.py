@@ -56,8 +56,8 @@ def span_teeth(gear: Gear) -> int:
     teeth, angle = gear.teeth, gear.rack.pressure_angle
     shifted = 2.0 * gear.profile_shift / teeth * np.tan(angle)
     rolled = tangent / np.cos(base_helix_angle(gear)) ** 2 - shifted
-    found = teeth / np.pi * (rolled - involute(gear.transverse_pressure_angle)) + 0.5
-    return max(2, round(float(found)))
+    spanned = teeth / np.pi * (rolled - involute(gear.transverse_pressure_angle)) + 0.5
+    return max(2, round(float(spanned)))
 
 
 def span(gear: Gear, teeth: Any) -> Any:

@@ -81,8 +81,10 @@ def linear(pair: MovingPair, level: str, state: Static | None = None) -> Linear:
     p, w = pair.rotors
     c = pair.damping
     if level == "fixed":
-        one = np.ones(1)
-        return Linear(pair.mesh_mass * one, np.zeros((1, 1)), (c + pair.drag) * one[:, None], -one)
+        unit = np.ones(1)
+        return Linear(
+            pair.mesh_mass * unit, np.zeros((1, 1)), (c + pair.drag) * unit[:, None], -unit
+        )
     if level == "line":
         held = [stiffness_along(pair, r) for r in pair.rotors]
         mass = np.array([p.mass, pair.mesh_mass, w.mass])
@@ -162,9 +164,9 @@ def tongues(system: Linear, wave: Wave, harmonics: int) -> list[Tongue]:
     together (a_1 with a_2 on l = 3), or tongues overlap, they may be wider. Differences of two
     frequencies are stable, as the coupling is symmetric.
     """
-    mean, found = wave.mean, modes(system, wave.mean)
-    along, omega = system.direction @ found.shapes, found.frequencies
-    kappa, made = mesh_shares(system, mean), []
+    mean, shapes = wave.mean, modes(system, wave.mean)
+    along, omega = system.direction @ shapes.shapes, shapes.frequencies
+    kappa, every = mesh_shares(system, mean), []
     for order, c in enumerate(wave.harmonics(harmonics)[1:], 1):
         a = 2.0 * abs(c) / mean
         for p in range(omega.size):
@@ -176,7 +178,7 @@ def tongues(system: Linear, wave: Wave, harmonics: int) -> list[Tongue]:
                     root = math.sqrt(omega[p] * omega[q])
                     width = mean * a * abs(along[p] * along[q]) / (2.0 * root) / total
                     damping = width * total / (2.0 * root)
-                made.append(
+                every.append(
                     Tongue((p + 1, q + 1), order, total / (2.0 * math.pi * order), width, damping)
                 )
-    return sorted(made, key=lambda t: -t.half_width)
+    return sorted(every, key=lambda t: -t.half_width)

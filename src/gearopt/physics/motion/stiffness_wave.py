@@ -77,18 +77,18 @@ class Wave:
 
         c_-h is the conjugate of c_h. Of every straight piece the integral is exact.
         """
-        found = np.zeros(count + 1, complex)
-        found[0] = self.mean
+        coefficients = np.zeros(count + 1, complex)
+        coefficients[0] = self.mean
         start, stop = self.edges, np.append(self.edges[1:], 1.0)
         low, high = self.after, np.roll(self.before, -1)
         for h in range(1, count + 1):
             q = -2j * math.pi * h
             slope = (high - low) / (stop - start)
             ends = (high - slope / q) * np.exp(q * stop) - (low - slope / q) * np.exp(q * start)
-            found[h] = np.sum(ends) / q
+            coefficients[h] = np.sum(ends) / q
             if h <= len(self.cosines):
-                found[h] += 0.5 * (self.cosines[h - 1] - 1j * self.sines[h - 1])
-        return found
+                coefficients[h] += 0.5 * (self.cosines[h - 1] - 1j * self.sines[h - 1])
+        return coefficients
 
 
 def constant(stiffness: float) -> Wave:

@@ -75,8 +75,8 @@ def clearances(flank: Flank, angles: Any, points: int = 51) -> Any:
     at = pose_of(gearing, flank.curve, angles)
     nearest: Any = math.inf
     for k in np.unique(np.rint(np.linspace(0, count - 1, points)).astype(int)):
-        one = Vector(flex.x[..., k : k + 1], flex.y[..., k : k + 1])
-        gap, radius = involute_gap(gearing, at.placed(one))
+        place = Vector(flex.x[..., k : k + 1], flex.y[..., k : k + 1])
+        gap, radius = involute_gap(gearing, at.placed(place))
         nearest = np.minimum(nearest, np.where(radius >= gearing.tip_radius, gap, math.inf))
     return np.minimum(nearest, corner_clearance(flank, at))
 
@@ -163,9 +163,9 @@ def least_gaps(flank: Flank, step_deg: float = 0.05, points: int = 51) -> list[L
     at = pose(angles)
     of_points = _minima(of_point, pose, taken, angles, at)
     corners = _minima(of_corner, pose, np.array([-1]), angles, at)
-    found = [Least(gap, angle, float(k / last), passing) for k, gap, angle, passing in of_points]
-    found += [Least(gap, angle, None, passing) for _, gap, angle, passing in corners]
-    return sorted(found, key=lambda least: least.gap)
+    minima = [Least(gap, angle, float(k / last), passing) for k, gap, angle, passing in of_points]
+    minima += [Least(gap, angle, None, passing) for _, gap, angle, passing in corners]
+    return sorted(minima, key=lambda least: least.gap)
 
 
 def interferes(flank: Flank, step_deg: float, points: int) -> bool:
@@ -213,9 +213,9 @@ def _minima(
     sides = [np.split(v, 2) for v in (ends, at_ends)]
     three = [(angles[k], counted[row, k]), *zip(*sides, strict=True)]
     middle = _lowest(look, pose, item, three)
-    found = [middle, *three[1:]]
-    best = np.stack([gap for _, gap in found]).argmin(axis=0)
-    angle, gap = (np.choose(best, [one[n] for one in found]) for n in (0, 1))
+    poses_and_gaps = [middle, *three[1:]]
+    best = np.stack([gap for _, gap in poses_and_gaps]).argmin(axis=0)
+    angle, gap = (np.choose(best, [one[n] for one in poses_and_gaps]) for n in (0, 1))
     leaving = np.choose(best, [np.zeros(len(row), bool), *np.split(passing, 2)])
     rows = zip(item, gap, angle, leaving, strict=True)
     return [(int(k), float(g), float(a), bool(p)) for k, g, a, p in rows]
@@ -225,15 +225,15 @@ def _end(
     look: Look, pose: Callable[[Any], Pose], items: Any, ends: tuple[Any, Any], depths: Any
 ) -> Any:
     """Return the poses at which gaps cease to count, between two, by false position."""
-    (low, high), (one, two) = ends, depths
+    (low, high), (first, last) = ends, depths
     middle = low
     for _ in range(SECANTS):
-        share = np.where(one - two > 0.0, one / (one - two), 0.5)
+        share = np.where(first - last > 0.0, first / (first - last), 0.5)
         middle = low + share * (high - low)
         depth = look(items, pose(middle))[1]
         counts = depth >= 0.0
-        low, one = np.where(counts, middle, low), np.where(counts, depth, one)
-        high, two = np.where(counts, high, middle), np.where(counts, two, depth)
+        low, first = np.where(counts, middle, low), np.where(counts, depth, first)
+        high, last = np.where(counts, high, middle), np.where(counts, last, depth)
     return middle
 
 
@@ -285,6 +285,6 @@ def teeth_within(flank: Flank, gaps: Any, count: int = 8001) -> Any:
     """
     reach = 0.25 * math.pi
     arcs = float(tooth_arcs(flank, 0)) + np.linspace(-reach, reach, count)
-    found = np.sort(tooth_clearances(flank, arcs))
+    sorted_clearances = np.sort(tooth_clearances(flank, arcs))
     each = 2.0 * reach / (count - 1) * flank.gearing.teeth / (2.0 * math.pi)
-    return np.searchsorted(found, gaps, side="right") * each
+    return np.searchsorted(sorted_clearances, gaps, side="right") * each

@@ -167,8 +167,8 @@ def existence(gearing: StrainWave, count: int = 7201) -> list[tuple[float, float
         after = inside(middle) == known[edges + 1]
         low, high = np.where(after, low, middle), np.where(after, middle, high)
     ends = np.concatenate((grid[:1][known[:1]], high, grid[-1:][known[-1:]]))
-    found = motion(gearing, curve, ends).arc.tolist()
-    return list(zip(found[::2], found[1::2], strict=True))
+    arcs = motion(gearing, curve, ends).arc.tolist()
+    return list(zip(arcs[::2], arcs[1::2], strict=True))
 
 
 def least_deflection(gearing: StrainWave) -> float:
@@ -179,9 +179,9 @@ def least_deflection(gearing: StrainWave) -> float:
     """
 
     def reaches(deflection: float) -> bool:
-        one = replace(gearing, deflection=deflection)
-        centre = motion(one, neutral_curve(one), 0.0).centre
-        return bool(centre.length >= one.base_radius)
+        deflected = replace(gearing, deflection=deflection)
+        centre = motion(deflected, neutral_curve(deflected), 0.0).centre
+        return bool(centre.length >= deflected.base_radius)
 
     low, high = 0.2, 2.0
     if not reaches(high):

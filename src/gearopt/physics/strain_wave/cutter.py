@@ -118,8 +118,8 @@ def superposition(
     across = np.tan(beta) if printed else np.sin(beta)
     along = np.ones_like(beta) if printed else np.cos(beta)
     swept = Vector(along, -across) * apart - turned
-    found = np.full((len(beta), len(at)), np.nan)
+    angles = np.full((len(beta), len(at)), np.nan)
     for k, (radius, angle) in enumerate(zip(swept.length, swept.angle, strict=True)):
         order = np.argsort(radius)
-        found[k] = np.interp(at, radius[order], angle[order], left=np.nan, right=np.nan)
-    return np.nanmin(found, axis=0)
+        angles[k] = np.interp(at, radius[order], angle[order], left=np.nan, right=np.nan)
+    return np.nanmin(angles, axis=0)

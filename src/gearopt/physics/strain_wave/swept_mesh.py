@@ -87,14 +87,14 @@ def tooth_angles(at: Motion, tooth: Profile, radii: Any) -> Any:
 
     Minus infinity where the flank does not reach.
     """
-    found = np.full((len(at.place.x), len(radii)), -np.inf)
-    for k in range(len(found)):
+    angles = np.full((len(at.place.x), len(radii)), -np.inf)
+    for k in range(len(angles)):
         placed = at.place[k] + tooth.points.turned(at.turn[k])
         radius = placed.length
         if radius[-1] > radii[0]:
-            own = np.interp(radii, radius, placed.angle, left=-np.inf, right=-np.inf)
-            found[k] = own
-    return found
+            of_pose = np.interp(radii, radius, placed.angle, left=-np.inf, right=-np.inf)
+            angles[k] = of_pose
+    return angles
 
 
 def gaps(mesh: SweptMesh, angles: Any) -> Any:
@@ -152,18 +152,18 @@ def _conjugate(mesh: SweptMesh, angles: Any) -> Touching:
     pose, point = np.nonzero(np.sign(off[:, 1:]) != np.sign(off[:, :-1]))
     share = off[pose, point] / (off[pose, point] - off[pose, point + 1])
     here, along, bent = _between(flank, point, share)
-    own = motion(mesh.gearing, mesh.curve, angles[pose])
-    place, turned = own.placed(here), along.turned(own.turn)
-    lever = (place - own.centre).dot(turned.left)
-    slow = own.centre_rate.dot(turned) / (1.0 + bent * lever)
-    slide = turned.dot((place - own.centre).left) * own.turn_rate
-    gap = (own.turn_rate - bent * slide) / (slow + slide)
+    moving = motion(mesh.gearing, mesh.curve, angles[pose])
+    place, turned = moving.placed(here), along.turned(moving.turn)
+    lever = (place - moving.centre).dot(turned.left)
+    slow = moving.centre_rate.dot(turned) / (1.0 + bent * lever)
+    slide = turned.dot((place - moving.centre).left) * moving.turn_rate
+    gap = (moving.turn_rate - bent * slide) / (slow + slide)
     inside = mesh.radii[0] <= place.length
     half = np.interp(place.length, mesh.radii, mesh.halves)
     kept = inside & (place.length * (half - place.angle) < ON_SPACE) & (gap > 0.0)
     arm = np.abs(place.dot(turned))
     return Touching(
-        own.arc[kept],
+        moving.arc[kept],
         here.x[kept],
         place.length[kept],
         arm[kept],

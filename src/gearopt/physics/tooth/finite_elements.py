@@ -118,9 +118,9 @@ def factorised(member: ElasticGear, made: GearMesh) -> tuple[Any, Callable[[Any]
     )
 
     def solve(forces: Any) -> Any:
-        found = np.zeros_like(forces)
-        found[free] = factor.solve(np.ascontiguousarray(forces[free]))
-        return found
+        displacements = np.zeros_like(forces)
+        displacements[free] = factor.solve(np.ascontiguousarray(forces[free]))
+        return displacements
 
     return basis, solve
 
@@ -177,13 +177,13 @@ def fineness_of(elastic: ElasticPair, force: Any, halvings: int) -> tuple[Finene
     step = max(np.floor(2.0 * np.log2(narrow / FINEST)), 0.0)
     size = FINEST * module * 2.0 ** (0.5 * step)
     margin = 2.0 * PER_HALF_WIDTH * size
-    found = [
+    of_gears = [
         Fineness(
             size, float(line.radius.min()) - margin, float(line.radius.max()) + margin, halvings
         )
         for line in elastic.load_lines(ends)
     ]
-    return found[0], found[1]
+    return of_gears[0], of_gears[1]
 
 
 def bodies(elastic: ElasticPair, force: Any, halvings: int = 0) -> tuple[Body, Body]:
@@ -230,7 +230,7 @@ def _matrix(elastic: ElasticPair, places: Any, force: float, halvings: int = 0) 
     """Return C (n, n) [mm/N] of pairs of teeth at positions [mm], neighbours in their order."""
     path = elastic.path
     wide, lost = _pressed_widths(elastic, places, force)
-    found = np.zeros((len(places), len(places)))
+    compliances = np.zeros((len(places), len(places)))
     rows = zip(
         (1, -1), bodies(elastic, force, halvings), path.radii_of_curvature(places), strict=True
     )
@@ -240,10 +240,10 @@ def _matrix(elastic: ElasticPair, places: Any, force: float, halvings: int = 0) 
             column = np.broadcast_to(under[:, [loaded]], under.shape)
             for seen in range(len(places)):
                 tooth = side * (seen - loaded)
-                found[seen, loaded] += each.moved(column[:, [seen]], tooth, at[[seen]])[0]
-    found /= float(elastic.pair.face_width)
+                compliances[seen, loaded] += each.moved(column[:, [seen]], tooth, at[[seen]])[0]
+    compliances /= float(elastic.pair.face_width)
     soft = sum(2.0 * m.plane_factor / (np.pi * m.rigidity) for m in elastic.members)
-    return found + soft * np.diag(lost)
+    return compliances + soft * np.diag(lost)
 
 
 def coupling(elastic: ElasticPair) -> float:

@@ -208,13 +208,13 @@ def joined(blocks: list[Any], flanks: dict[int, Any], near: float) -> GearMesh:
         corners = at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]
         quads.append(np.stack([corner.ravel() for corner in corners]))
         first += angle.size
-    found = np.concatenate(points, axis=1)
-    tree = cKDTree(found.T)
+    nodes = np.concatenate(points, axis=1)
+    tree = cKDTree(nodes.T)
     same = tree.query_pairs(near, output_type="ndarray")
     links = coo_array((np.ones(len(same)), (same[:, 0], same[:, 1])), shape=(first, first))
     count, label = connected_components(links, directed=False)
     merged = np.zeros((2, count))
-    merged[:, label] = found
+    merged[:, label] = nodes
     named = {
         place: label[tree.query(np.stack([radius * np.sin(angle), radius * np.cos(angle)]).T)[1]]
         for place, (angle, radius) in flanks.items()

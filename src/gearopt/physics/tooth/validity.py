@@ -31,29 +31,29 @@ def usual_level(elastic: ElasticPair) -> str:
 def unsupported(elastic: ElasticPair, level: str) -> tuple[str, ...]:
     """Return why a level of `LEVELS` must not be used for a pair, in sentences; () if it may."""
     rows = list(zip(MEMBERS, elastic.members, strict=True))
-    model, found = LEVELS[level], []
+    model, reasons = LEVELS[level], []
     if model.tooth == "trapezoid":
-        found += [
+        reasons += [
             f"The teeth of the {name} are undercut: a trapezoid has no waist."
             for name, member in rows
             if is_waisted(member.gear)
         ]
     if model.body == "Sainsot":
         least = SAINSOT_BORE_RATIOS[0]
-        found += [
+        reasons += [
             f"The ring of the {name} is thin: root over bore {member.bore_ratio:.2f}, below the "
             f"{least:g} from which Sainsot's body was fitted; at 1.15 it is 23 % too soft."
             for name, member in rows
             if member.bore_ratio < least
         ]
-        found += [
+        reasons += [
             f"The root circle of the {name} is {member.bore_ratio:.4g} times its bore: Sainsot's "
             f"body is known up to {WIDEST_SAINSOT:g}, and up to 2.4 times too soft at 50. Take "
             f'level = "{RINGED}"'
             for name, member in rows
             if member.bore_ratio > WIDEST_SAINSOT
         ]
-    return tuple(found)
+    return tuple(reasons)
 
 
 def refused(elastic: ElasticPair, level: str) -> tuple[str, ...]:
@@ -69,27 +69,27 @@ def doubts(elastic: ElasticPair, level: str) -> tuple[str, ...]:
     A rigid shaft, and teeth that touch over the whole face width, are assumed of every pair and not
     said here.
     """
-    found = list(unsupported(elastic, level))
+    sentences = list(unsupported(elastic, level))
     model = LEVELS[level]
     for name, member in zip(MEMBERS, elastic.members, strict=True):
         if model.body == "Sainsot":
-            found += _outside_fit(name, member)
+            sentences += _outside_fit(name, member)
         elif member.bore_ratio < SAINSOT_BORE_RATIOS[0] and model.body != "disc":
-            found.append(
+            sentences.append(
                 f"The ring of the {name} is thin, root over bore {member.bore_ratio:.2f}, and its "
                 "bore is taken as rigid: a real rim is softer."
             )
         thin = float(tip_thickness(member.gear)) / float(member.gear.normal_module)
         if thin < THIN_TIP:
-            found.append(
+            sentences.append(
                 f"The tips of the {name} are {thin:.2f} m_n thick, below {THIN_TIP:g} m_n: near "
                 "them the model means little."
             )
         if is_waisted(member.gear) and model.tooth != "trapezoid":
-            found.append(
+            sentences.append(
                 f"The teeth of the {name} are undercut: they touch from the form circle outwards."
             )
-    return tuple(found) + _of_pair(elastic)
+    return tuple(sentences) + _of_pair(elastic)
 
 
 def cheapest(elastic: ElasticPair, error: float) -> str:
@@ -117,34 +117,34 @@ def _measured(elastic: ElasticPair, level: str) -> bool:
 
 def _outside_fit(name: str, member: ElasticGear) -> list[str]:
     """Return where a gear lies outside the range over which Sainsot's body was fitted."""
-    found, most = [], SAINSOT_BORE_RATIOS[1]
+    sentences, most = [], SAINSOT_BORE_RATIOS[1]
     if most < member.bore_ratio <= WIDEST_SAINSOT:
-        found.append(
+        sentences.append(
             f"Root over bore of the {name} is {member.bore_ratio:.2f}: Sainsot's body was fitted "
             f"up to {most:g}. At 7 to 15 it makes teeth 4 to 36 % too stiff."
         )
     low, high = SAINSOT_HALF_ANGLES
     if not low <= member.root_half_angle <= WIDEST_ROOT:
-        found.append(
+        sentences.append(
             f"Half the root of a tooth of the {name} spans {member.root_half_angle:.3f} rad: "
             f"Sainsot's body was fitted from {low:g} to {high:g} rad, and its error is known up to "
             f"{WIDEST_ROOT:g} rad, where stiffness was 5 to 9 % too low."
         )
-    return found
+    return sentences
 
 
 def _of_pair(elastic: ElasticPair) -> tuple[str, ...]:
     """Remarks on both gears: contact that breaks off, an unlikely plane."""
-    found, ratio = [], float(elastic.path.transverse_ratio)
+    sentences, ratio = [], float(elastic.path.transverse_ratio)
     if ratio < 1.0:
-        found.append(
+        sentences.append(
             f"Tips and form circles leave a contact ratio of {ratio:.3f}: contact breaks off."
         )
     usual = usual_plane(elastic.pair)
     if elastic.plane != usual:
         wide = float(elastic.pair.face_width / elastic.pair.normal_module)
-        found.append(
+        sentences.append(
             f"The face is {wide:.3g} modules wide: plane {usual} is nearer to the truth; "
             "stiffness differs by 7 %."
         )
-    return tuple(found)
+    return tuple(sentences)

@@ -1,1 +1,1 @@
-"""What any kind draws with: sheets, solids, bodies that move."""
+"""Tools of drawings of any kind: sheets, solids, bodies that move."""

@@ -72,7 +72,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Scale:
-    """What the colours of bodies of style `heat` mean, from low to high."""
+    """Meaning of the colours of bodies of style `heat`, from low to high."""
 
     name: str
     low: float
@@ -86,7 +86,7 @@ class Scale:
 
 @dataclass(frozen=True)
 class Animation:
-    """What moves over one period, again and again, in views on one clock.
+    """Bodies that move over one period, again and again, in views on one clock.
 
     name: unique on its page; a `Figure` that follows it has it. times (N,) [s] at normal speed,
     from 0, never falling, N >= 2. readings: the first one names the place of the slider. marks

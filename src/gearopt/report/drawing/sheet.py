@@ -57,7 +57,7 @@ class Place:
 
 @dataclass
 class Ink:
-    """What is drawn so far, counted by cells, and the texts: filled while a drawing is made."""
+    """Ink of a drawing by cells, and its texts: filled while the drawing is made."""
 
     width: float
     height: float
@@ -160,7 +160,7 @@ class Drawing:
 
 @dataclass(frozen=True)
 class Window:
-    """What a drawing shows: ends of both axes [mm], and what is kept free around them [px]."""
+    """Extent of a drawing: ends of both axes [mm], and what is kept free around them [px]."""
 
     left: float
     right: float

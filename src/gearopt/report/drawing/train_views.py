@@ -39,7 +39,7 @@ MAX_STAGES = 100  # in one line; a drive has six at most
 
 @dataclass(frozen=True)
 class DrawnStage:
-    """What is drawn of a stage, by the keys of a result."""
+    """Dimensions of a stage that are drawn, by the keys of a result."""
 
     normal_module_mm: float
     pinion_teeth: float

@@ -1,4 +1,4 @@
-"""What page and terminal show of each kind of result.
+"""Page and terminal of each kind of result.
 
 Each module here is a kind, of the name that its scene has, and holds `Pages` called PAGES. Nothing
 is registered: a kind without a module, and a problem of a user's own, have those of `generic`.

@@ -63,7 +63,7 @@ class Scene(Table):
 
 @dataclass(frozen=True, kw_only=True)
 class CompoundDesign:
-    """What a result holds of a train; fields are its keys, with their units."""
+    """A train as a result holds it; fields are its keys, with their units."""
 
     driver_teeth: tuple[int, int]
     driven_teeth: tuple[int, int]
@@ -125,7 +125,7 @@ def _design(train: compound.Compound, x: Array) -> dict[str, Any]:
 
 
 def objectives(scene: Scene) -> dict[str, str]:
-    """Return what a front of the train may minimise: name and unit."""
+    """Return the objectives that a front of the train may have: name and unit."""
     return {scene.train.minimise: "", compound.LARGEST: ""}
 
 
@@ -153,7 +153,7 @@ def _achieved(train: compound.Compound, ratio: Fraction) -> str:
 
 
 def _out_of_reach(train: compound.Compound, reach: dict[str, Any]) -> str:
-    """Return what the teeth can make, and which would do; "" where the ratio is within."""
+    """Return the ratios that these teeth reach, and teeth that reach it; "" where they do."""
     if reach["within"]:
         return ""
     reachable = "Two pairs of {} to {} teeth have ratios from {:.6g} to {:.6g}".format(

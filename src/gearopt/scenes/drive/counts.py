@@ -104,7 +104,7 @@ def _share(clock: Clock, counts: int) -> float | None:
 
 
 def _asked(ask: Ask, clock: Clock, count: int, seconds: float | None = None) -> Ask:
-    """Return what is asked with one number of stages: at most so many seconds of what is left."""
+    """Return the request for one number of stages: at most so many seconds of what is left."""
     budget = clock.left
     if seconds is not None:
         budget = replace(budget, seconds=clock.within(seconds))
@@ -149,7 +149,7 @@ def _best(counts: Sequence[Count], ask: Ask, clock: Clock) -> Result:
 
 
 def _row(count: Count) -> dict[str, Any]:
-    """Return what is known of one number of stages, as a result holds it."""
+    """Return status, objective and bound of one number of stages, as a result holds them."""
     result = count.found
     stages = result.design.get("stages", [])
     return {

@@ -44,7 +44,7 @@ NOTHING = "the file has no table [optimise], so that nothing is chosen"
 
 
 def motion(scene: Scene, ask: Ask, known: Result | None) -> Result:
-    """Return what the file asks of its pair, or of the pair of least vibration with [optimise]."""
+    """Return the motions of the file's pair, or of the pair of least vibration with [optimise]."""
     clock = Clock(ask.budget, ask.watch)
     wave, assumed = of_teeth(scene, ask) if scene.mesh.pair else (wave_of(scene.mesh), [])
     pair = scene.pair(wave)
@@ -94,7 +94,7 @@ def _least(scene: Scene, ask: Ask, before: MovingPair, clock: Clock) -> Result:
 
 
 def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
-    """What every number does to the answer.
+    """Influence of every number on the answer.
 
     Numbers are solved again from the answer, over its speeds, where teeth stay in contact.
     """
@@ -109,7 +109,7 @@ def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
 
 
 def _design(scene: Scene, pair: MovingPair, level: str, clock: Clock) -> DynamicsDesign:
-    """Return what the tables of the file ask of a pair, or what of it there is in time."""
+    """Return the motions that the tables of the file ask of a pair, as far as time suffices."""
     simulate, stability, speeds = scene.simulate, scene.stability, scene.speeds
     response = mapped = motions = None
     if simulate is not None and clock.tell():
@@ -142,7 +142,7 @@ def _design(scene: Scene, pair: MovingPair, level: str, clock: Clock) -> Dynamic
 
 
 def _missing(scene: Scene, design: DynamicsDesign) -> str:
-    """Return what a run that was stopped leaves out, as a sentence; "" where it is complete."""
+    """Return the parts that a stopped run left out, as a sentence; "" where it is complete."""
     simulate, stability, speeds = scene.simulate, scene.stability, scene.speeds
     missing = []
     if simulate is not None and design.response is None:
@@ -171,7 +171,7 @@ def _missing(scene: Scene, design: DynamicsDesign) -> str:
 
 
 def assumptions(scene: Scene) -> list[str]:
-    """Return what the model takes for granted."""
+    """Return the assumptions of the model."""
     said = [
         "Rigid gears on massless springs and dampers; the teeth are one spring along the line of "
         "action, its stiffness a function of time at constant mesh frequency.",

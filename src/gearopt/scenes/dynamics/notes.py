@@ -1,4 +1,4 @@
-"""What must be known of the motion of a pair before its numbers."""
+"""Warnings that precede the numbers of the motion of a pair."""
 
 import math
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ OUTPUTS_PER_PERIOD = 10.0  # times in a period of the fastest motion at which it
 
 
 def warnings(design: DynamicsDesign, module: float) -> list[str]:
-    """Return what is unstable, parts, jams, leaves the model's range, or was not reached.
+    """Return warnings: unstable, parting or jammed motions, limits of the model, of the time.
 
     module [mm]: of the teeth.
     """
@@ -105,7 +105,7 @@ def _of_response(response: Response, design: DynamicsDesign) -> list[str]:
 
 
 def _too_few(times_ms: Sequence[float], design: DynamicsDesign) -> list[str]:
-    """Return what is missed between the times at which a motion is told, where they are few."""
+    """Return a warning where a motion is stated at too few times to show its peaks."""
     fastest = max(design.mesh_frequency_Hz, design.equilibrium.frequencies_Hz[-1])
     duration = 1e-3 * (times_ms[-1] - times_ms[0])
     needed = math.ceil(OUTPUTS_PER_PERIOD * fastest * duration) + 1

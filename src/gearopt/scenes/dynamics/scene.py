@@ -84,7 +84,7 @@ class Scene(Table):
 
     @property
     def _pull(self) -> float:
-        """What presses the driving flanks together: above zero where the pinion drives."""
+        """Measure of the force on the driving flanks: above zero where the pinion drives."""
         if self.wheel.torque is None:
             return 1.0
         return sum(
@@ -210,7 +210,7 @@ class Scene(Table):
 
     @property
     def task(self) -> Task:
-        """Return what [optimise] asks."""
+        """Return the task that [optimise] states."""
         asked, mesh = self.optimise, self.mesh
         assert asked is not None and self.pinion.torque is not None
         bases = (0.5 * self.pinion.base_diameter.value, 0.5 * self.wheel.base_diameter.value)

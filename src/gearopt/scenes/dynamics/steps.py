@@ -128,7 +128,7 @@ def _judged(result: Result, best: Chosen, task: Task) -> Result:
 
 
 def told(best: Chosen, result: Result, periods: int) -> list[str]:
-    """Return what must be known of the best design before its numbers."""
+    """Return warnings that precede the numbers of the best design."""
     sentences, objective = [], result.value or 0.0
     if best.dense_maximum_mm > (1.0 + JUDGE_MARGIN) * objective:
         more = 100.0 * (best.dense_maximum_mm / objective - 1.0)

@@ -293,7 +293,7 @@ def _away(plan: Plan, i: int, j: int, at: tuple[Quantity, Quantity]) -> list[str
 
 
 def assumptions(scene: Scene) -> list[str]:
-    """Return what a packing takes for granted."""
+    """Return the assumptions of a packing."""
     size = "Cylinders are rigid, upright and of their nominal size"
     return [f"{size}; they may touch each other and walls."]
 

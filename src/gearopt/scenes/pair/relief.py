@@ -156,7 +156,7 @@ def _united(result: Result, minimise: str) -> Result:
 
 
 def _ranges(asked: ReliefTable, mesh: Mesh) -> Ranges:
-    """What the relief of a mesh at its loads may be."""
+    """Ranges of the relief of a mesh at its loads."""
     low, high = (end.value for end in asked.amount)
     ranges = Ranges.of(mesh, asked.exponent, high)
     if asked.length is not None:
@@ -167,7 +167,7 @@ def _ranges(asked: ReliefTable, mesh: Mesh) -> Ranges:
 
 
 def _posed(asked: ReliefTable, mesh: Mesh, ranges: Ranges) -> Problem:
-    """Return what is minimised: a criterion, or its worst case within tolerances."""
+    """Return the problem of a criterion, or of its worst case within tolerances."""
     if not asked.robust:
         return _problem(asked, mesh, ranges)
     problem = robust_problem(mesh, ranges, _tolerance(asked, mesh))

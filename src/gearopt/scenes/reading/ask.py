@@ -1,4 +1,4 @@
-"""What a caller asks of a scene beside the file: method, budget, how many answers."""
+"""The request of a caller beside the file: method, budget, how many answers."""
 
 from dataclasses import dataclass, field, replace
 
@@ -14,7 +14,7 @@ RANDOM = ("annealing", "multistart", "nsga2", "scip", "spatial")
 
 @dataclass(frozen=True)
 class Ask:
-    """What a caller asks beside the file: by which method, in what budget, how many answers.
+    """The request of a caller beside the file: method, budget, how many answers.
 
     method: None for the scene's own choice. top: answers in proven order. gap: see `solve`.
     """
@@ -28,7 +28,7 @@ class Ask:
 
     @property
     def half(self) -> "Ask":
-        """What is asked, in half of its seconds: an answer that leaves time to explain it."""
+        """The request in half of its seconds: an answer that leaves time to explain it."""
         seconds = self.budget.seconds and 0.5 * self.budget.seconds
         return replace(self, budget=replace(self.budget, seconds=seconds))
 
@@ -39,7 +39,7 @@ class Ask:
         return Ask(budget=budget, watch=of_others(self.watch))
 
     def for_prices(self, share: bool | float, spent: float) -> "Ask":
-        """What is asked of sensitivities, after an answer that took so many seconds.
+        """The request for sensitivities, after an answer that took so many seconds.
 
         share: True for all that is left; else of these seconds, and LEAST_PRICES, at most.
         """

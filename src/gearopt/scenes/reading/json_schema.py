@@ -1,4 +1,4 @@
-"""What a kind of problem file may hold: as JSON schema for editors, as Markdown for people."""
+"""Tables and keys of a kind of problem file: as JSON schema for editors, as Markdown for people."""
 
 from typing import Any
 

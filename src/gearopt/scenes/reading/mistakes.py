@@ -1,4 +1,4 @@
-"""What is wrong with a file as one SceneError: where, the rule, and what to write instead."""
+"""Mistakes of a file as a SceneError: where, the rule, and what to write instead."""
 
 import tomllib
 from collections.abc import Iterator

@@ -60,7 +60,7 @@ def added(
     design: ServoDesign = NO_DESIGN,
     report: ServoReport = NO_REPORT,
 ) -> Result:
-    """What is known of an axis, with a part more; the first result is the answer to it.
+    """Add a part to the result of an axis; the first part is the answer to the file.
 
     result: of the part, where it has one. design, report: what it adds to those of the answer.
     """

@@ -340,7 +340,7 @@ def idle(scene: Scene, method: str | None) -> dict[str, str]:
 
 
 def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
-    """What every number does to the pressure of a design that was chosen."""
+    """Influence of every number on the pressure of a design that was chosen."""
     if scene.has_free_sizes and result.status == "stationary":
         clock = Clock(ask.budget, of_others(ask.watch))
         return of_pressure(scene, result, clock, ask.gap)
@@ -365,7 +365,7 @@ def posed(scene: Scene, method: str) -> Model:
 
 
 def objectives(scene: Scene) -> dict[str, str]:
-    """Return what a front may minimise: name and unit."""
+    """Return the objectives that a front may have: name and unit."""
     _to_choose(scene)
     return dict(sampled.OBJECTIVES)
 

@@ -1,4 +1,4 @@
-"""What to write instead of an impossible file, and what every number does to a possible one."""
+"""Remedies of an impossible file, and the influence of every number of a possible one."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -63,7 +63,7 @@ def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies
 
 
 def of_pressure(scene: Scene, result: Result, clock: Clock, gap: float) -> Explanation:
-    """Return what every number of a file does to its pressure, by multipliers and solving again."""
+    """Return the influence of every number on the pressure, by multipliers and solving again."""
     optimum = exchange(scene.demand(), scene.start(), clock, gap)
     x = optimum.outcome.x
     if x is None or optimum.result.value is None:
@@ -85,7 +85,7 @@ def of_pressure(scene: Scene, result: Result, clock: Clock, gap: float) -> Expla
 
 
 def costs(multipliers: Mapping[str, float]) -> str:
-    """Return what the pressure [MPa] owes to each limit that decides, by multipliers.
+    """Return in words the price [MPa] of each limit that decides, by multipliers.
 
     1 % of a limit, 1 um of overlap where teeth pass each other.
     """

@@ -1,4 +1,4 @@
-"""What no tooth can be: the key at fault, and a value to write instead."""
+"""Shapes that no tooth can have: the key at fault, and a value to write instead."""
 
 import math
 from dataclasses import replace
@@ -61,7 +61,7 @@ def _shorter_or_steeper(gearing: StrainWave, rule: str) -> Fault:
 
 
 def _never(gearing: StrainWave) -> Fault:
-    """Return what keeps contact from the major axis at any deflection: the rim, else the angle."""
+    """Return the fault by which no deflection brings contact to the major axis: rim, else angle."""
     rule = "no deflection up to 2 modules brings contact to the major axis"
     usual = 0.01 * float(gearing.module * gearing.teeth)
     if gearing.rim > usual and math.isfinite(least_deflection(replace(gearing, rim=usual))):

@@ -1,4 +1,4 @@
-"""What a strain wave gearing takes for granted, and what is to be known of its answer."""
+"""Assumptions and notes of the answer for a strain wave gearing, in sentences."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -23,7 +23,7 @@ NOT_JUDGED = (
 
 
 def assumptions(scene: Scene) -> list[str]:
-    """Return what the numbers take for granted, in sentences."""
+    """Return the assumptions behind the numbers, in sentences."""
     model = [
         "A plane section: no taper of the cup, no stretch of the neutral curve, no friction, no "
         "oil film; teeth do not bend by themselves, and the wave generator is rigid.",
@@ -48,7 +48,7 @@ def assumptions(scene: Scene) -> list[str]:
 
 
 def _mesh_torque(scene: Scene) -> str:
-    """Return what torque the teeth carry."""
+    """Return a sentence on the torque that the teeth carry."""
     held = scene.loads().reaction
     if held == 1.0:
         return (
@@ -157,7 +157,7 @@ def range_notes(scene: Scene, ends: Sequence[RangeEnd]) -> list[str]:
 
 
 def notes(made: WaveDesign) -> list[str]:
-    """Return what is to be known of this gearing, in sentences."""
+    """Return notes on this gearing, in sentences."""
     carry = "1 tooth carries" if made.carrying_teeth == 1 else f"{made.carrying_teeth} teeth carry"
     sentences = [
         f"On average {made.pairs_in_contact:.3f} pairs of teeth per lobe and flank are conjugate; "

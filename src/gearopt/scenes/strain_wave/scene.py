@@ -222,7 +222,7 @@ class Scene(Table):
         )
 
     def demand(self) -> Demand:
-        """Return what the gearing must meet, and the ranges of what is chosen."""
+        """Return the demand on the gearing, and the ranges of the numbers that are chosen."""
         asked, diameter = self.design, self.duty.outer_diameter
         wrap = self.wave_generator.wrap_angle
         usual = STEEL_LIMITS if self.steel else (math.inf, math.inf)

@@ -69,12 +69,12 @@ def _methods(box: Gearbox, orders: tuple[Arrangement, ...]) -> dict[str, Any]:
         m = round(x[-1]) if len(orders) > 1 else 0
         return _polish(plain, texts(m), shape, x, budget or Budget(), watch)
 
-    found: dict[str, Any] = {
+    solvers: dict[str, Any] = {
         "exact": exact.method(shape, turns(box), lambda x: polished(x)[:2]),
         "sa": annealing.method(shape, free=False),
         "sa-polish": annealing.method(shape, free=False, polish=polished),
     }
-    return found | ({} if len(orders) > 1 else {"sa-paper": annealing.method(shape, free=True)})
+    return solvers | ({} if len(orders) > 1 else {"sa-paper": annealing.method(shape, free=True)})
 
 
 def _polish(
@@ -94,6 +94,6 @@ def _polish(
         return kept
     turned = np.remainder(ended.x[:links] + np.pi, 2 * np.pi) - np.pi
     moved = np.concatenate([turned, x[links:]])
-    found, excess = (float(v[0]) for v in violation(plain, moved[None]))
-    better = excess <= POLISH_TOLERANCE and found < value
-    return kept._replace(x=moved, value=found) if better else kept
+    volume, excess = (float(v[0]) for v in violation(plain, moved[None]))
+    better = excess <= POLISH_TOLERANCE and volume < value
+    return kept._replace(x=moved, value=volume) if better else kept

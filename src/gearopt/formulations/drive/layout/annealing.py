@@ -64,19 +64,19 @@ def anneal(
     """
     kernels = kernel(ANNEAL)
     links = chain.link.size
-    found, state = np.full(links + 2, np.inf), np.zeros(4)
+    best, state = np.full(links + 2, np.inf), np.zeros(4)
     theta, y, z = np.zeros(links), np.zeros(links + 1), np.zeros(links + 1)
     size = min(SLICE, max(1, -(-steps // looks)))
     for start in range(0, steps, size):
         stop = min(steps, start + size)
-        own = (seed * 1_000_003 + start // size) % 2**32  # a stream for every slice
+        stream = (seed * 1_000_003 + start // size) % 2**32  # a stream for every slice
         if free:
-            kernels.anneal_positions(chain, own, start, stop, steps, y, z, state, found)
+            kernels.anneal_positions(chain, stream, start, stop, steps, y, z, state, best)
         else:
-            kernels.anneal(chain, own, start, stop, steps, theta, state, found)
-        if not goes(stop, float(found[0])):
-            return found, stop
-    return found, steps
+            kernels.anneal(chain, stream, start, stop, steps, theta, state, best)
+        if not goes(stop, float(best[0])):
+            return best, stop
+    return best, steps
 
 
 def ready(chain: Chain, watch: Watch | None, free: bool = False) -> bool:
@@ -100,22 +100,24 @@ def method(chain: Chain, free: bool, polish: Polish | None = None) -> Any:
         if not ready(chain, watch, free):
             return Outcome(None, False, message=UNREADY)
         clock = Clock(budget, watch)
-        own, maximum = sampling(clock, polish is not None)
+        sampler, maximum = sampling(clock, polish is not None)
 
         def goes(steps: int, best: float) -> bool:
-            own.evaluations, own.best = steps, best
-            return own.tell()
+            sampler.evaluations, sampler.best = steps, best
+            return sampler.tell()
 
         steps = PAPER_EVALUATIONS if maximum is None else max(1, maximum)
-        found, made = anneal(chain, seed, steps, goes, free, LOOKS)
-        x = point(chain, found)
+        layout, steps_run = anneal(chain, seed, steps, goes, free, LOOKS)
+        x = point(chain, layout)
         message = "" if x is not None else "no feasible layout was visited"
-        outcome = Outcome(x, made == steps, evaluations=made, message=message)
-        if x is None or polish is None or own.refused:
+        outcome = Outcome(x, steps_run == steps, evaluations=steps_run, message=message)
+        if x is None or polish is None or sampler.refused:
             return outcome
-        clock.evaluations, clock.best = made, own.best
+        clock.evaluations, clock.best = steps_run, sampler.best
         last = polish(x, clock.left, clock.inner())
         finished = outcome.finished and last.finished
-        return replace(outcome, x=last.x, finished=finished, evaluations=made + last.evaluations)
+        return replace(
+            outcome, x=last.x, finished=finished, evaluations=steps_run + last.evaluations
+        )
 
     return run

@@ -137,9 +137,9 @@ def _first(search: Search, chain: Chain, seed: int, polish: Polish) -> None:
             clock.evaluations = spent + steps
             return clock.tell()
 
-        found, _ = anneal(chain, STARTS * seed + k, search.left(STEPS), goes)
-        if found[0] < clock.best:
-            clock.best, search.x = float(found[0]), point(chain, found)
+        layout, _ = anneal(chain, STARTS * seed + k, search.left(STEPS), goes)
+        if layout[0] < clock.best:
+            clock.best, search.x = float(layout[0]), point(chain, layout)
         if clock.stopped:
             return
     if search.x is not None:
@@ -178,10 +178,10 @@ def _prove(
             start, size = clock.best, UNCOMPILED_STEPS if warm().waits(branch) else NODES
             limit = search.left(min(size, NODES - spent))
             state = (count, start, near, floor, rel, limit, theta)
-            found = warm().call(clock, branch, chain, m, cells, bounds, *state)
-            if found is None:
+            searched = warm().call(clock, branch, chain, m, cells, bounds, *state)
+            if searched is None:
                 return None
-            count, best, near, floor, nodes = found
+            count, best, near, floor, nodes = searched
             search.nodes, clock.evaluations = search.nodes + nodes, clock.evaluations + nodes
             spent += nodes
             x = np.append(theta, m) if chain.factor.size > 1 else theta.copy()

@@ -41,9 +41,9 @@ def of_any_gears(box: Gearbox) -> list[str]:
 
 def _axial(box: Gearbox) -> Iterator[str]:
     """Faults of every order of slabs: those of the order with the smallest clash."""
-    one = arrangements(box)[0]
+    least_clash = arrangements(box)[0]
     longest = box.largest[2] * (1.0 + 1e-9)
-    if not clashes(box, one) and one.length <= longest:
+    if not clashes(box, least_clash) and least_clash.length <= longest:
         return
     every = _every(box)
     clear = [one for one in every if not clashes(box, one)]

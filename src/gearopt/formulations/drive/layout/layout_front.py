@@ -32,8 +32,8 @@ def limited(box: Gearbox, name: str, most: Mapping[str, float]) -> Problem:
     orders = arrangements(box)
     if name != "length":
         return layout.problem(replace(held, objective=name), orders=orders)
-    own = direct(held, orders, {}, (name,))
-    return replace(own, methods={"exact": lambda *run: _shortest(held, orders, *run[1:])})
+    text = direct(held, orders, {}, (name,))
+    return replace(text, methods={"exact": lambda *run: _shortest(held, orders, *run[1:])})
 
 
 def _shortest(
@@ -47,8 +47,8 @@ def _shortest(
     spent, outcome = 0, Outcome(None, infeasible=True)
     for length in sorted({one.length for one in orders}):
         held = replace(box, objective="height", largest=(*box.largest[:2], length))
-        one = layout.problem(held, orders=orders)
-        outcome = one.methods["exact"](one, budget.less(0.0, spent), seed, watch)
+        posed = layout.problem(held, orders=orders)
+        outcome = posed.methods["exact"](posed, budget.less(0.0, spent), seed, watch)
         spent += outcome.evaluations
         if not outcome.infeasible:
             break

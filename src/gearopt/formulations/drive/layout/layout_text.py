@@ -105,8 +105,8 @@ def placed_by(links: list[Any], angle: tuple[Any, ...]) -> Point:
 def sides(shape: Chain, y: list[Any], z: list[Any]) -> dict[str, float]:
     """Left, bottom, width and height of the box around shafts at y, z [mm]."""
     left, bottom = (min(v - r for v, r in zip(c, shape.reach, strict=True)) for c in (y, z))
-    found = {"left": left, "bottom": bottom, "width": _side(shape, y), "height": _side(shape, z)}
-    return {name: float(side) for name, side in found.items()}
+    box = {"left": left, "bottom": bottom, "width": _side(shape, y), "height": _side(shape, z)}
+    return {name: float(side) for name, side in box.items()}
 
 
 def _side(shape: Chain, c: list[Any]) -> Any:
@@ -224,9 +224,9 @@ def placed(box: Gearbox, one: Arrangement, angles: tuple[float, ...]) -> Placed:
     """Return where the shafts are and the box around them [mm], of the given width if any."""
     shape = chain(box, (one,))
     y, z = positions(shape, angles)
-    found = sides(shape, y, z)
+    around = sides(shape, y, z)
     if box.width is not None:
-        found["left"] -= 0.5 * (box.width - found["width"])
-        found["width"] = box.width
+        around["left"] -= 0.5 * (box.width - around["width"])
+        around["width"] = box.width
     axes = tuple((float(a), float(b)) for a, b in zip(y, z, strict=True))
-    return Placed(axes, one.length, **found)
+    return Placed(axes, one.length, **around)

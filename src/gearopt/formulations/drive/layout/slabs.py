@@ -73,10 +73,10 @@ def arrangements(box: Gearbox) -> tuple[Arrangement, ...]:
         return (arrange(box, box.slabs),)
     kept: list[Arrangement] = []
     for slabs in sorted(orders(box), key=lambda s: (-len(s), s)):
-        one = arrange(box, slabs)
-        possible = one.length <= box.largest[2] + TOUCH and not clashes(box, one)
-        if possible and not any(_dominates(k, one) for k in kept):
-            kept = [k for k in kept if not _dominates(one, k)] + [one]
+        order = arrange(box, slabs)
+        possible = order.length <= box.largest[2] + TOUCH and not clashes(box, order)
+        if possible and not any(_dominates(k, order) for k in kept):
+            kept = [k for k in kept if not _dominates(order, k)] + [order]
     return tuple(sorted(kept, key=lambda a: a.length)) or (arrange(box, in_order(box)),)
 
 
@@ -91,8 +91,8 @@ def clashes(box: Gearbox, one: Arrangement) -> tuple[Clash, ...]:
     Those of neighbours are exactly their centre distance apart, others at most the sum.
     """
     links = [p.centre_distance for p in box.pairs]
-    found = [Clash(pair, need, sum(links[pair[0] : pair[1]])) for pair, need in one.needs.items()]
-    return tuple(sorted((c for c in found if c.short > TOUCH), key=lambda c: -c.short))
+    short = [Clash(pair, need, sum(links[pair[0] : pair[1]])) for pair, need in one.needs.items()]
+    return tuple(sorted((c for c in short if c.short > TOUCH), key=lambda c: -c.short))
 
 
 def _dominates(a: Arrangement, b: Arrangement) -> bool:
@@ -190,15 +190,15 @@ def _on(box: Gearbox, k: int, start: dict[int, float], length: float) -> tuple[B
             gear = getattr(box.pairs[stage], word)
             x = (start[stage], start[stage] + gear.face_width)
             gears.append(Body(f"{word} {stage + 1}", 0.5 * gear.tip_diameter, x, True, stage))
-    own, wide = box.shafts[k], box.shafts[k].bearing_width
+    shaft, wide = box.shafts[k], box.shafts[k].bearing_width
     span = (0.0, length)
     if box.partial:
         span = (min(g.x[0] for g in gears) - wide, max(g.x[1] for g in gears) + wide)
-    found = [*gears, Body(f"shaft {k + 1}", own.radius, span)]
+    bodies = [*gears, Body(f"shaft {k + 1}", shaft.radius, span)]
     if wide > 0.0:
         ends = ((span[0], span[0] + wide), (span[1] - wide, span[1]))
-        found += [Body(f"bearing of shaft {k + 1}", own.bearing_radius, x) for x in ends]
-    return tuple(found)
+        bodies += [Body(f"bearing of shaft {k + 1}", shaft.bearing_radius, x) for x in ends]
+    return tuple(bodies)
 
 
 def largest_beside(bodies: tuple[Body, ...], x: Range) -> Body:

@@ -32,9 +32,9 @@ def bounding(train: Train, choice: Choice, most: float = math.inf) -> Problem | 
     """
     floors: list[list[Any]] = []
     for k, stage in enumerate(train.stages):
-        own = stage_box(train, k, most)
+        box = stage_box(train, k, most)
         standards = stage.options[0].standards if stage.options else ()
-        floors.append([s.floor(own, choice[k][j]) for j, s in enumerate(standards)])
+        floors.append([s.floor(box, choice[k][j]) for j, s in enumerate(standards)])
     if any(row and all(floor is None for floor in row) for row in floors):
         return None
 
@@ -91,8 +91,8 @@ def _widest(train: Train, k: int, ratio: float, most: float) -> float:
     if not sized or not math.isfinite(most) or not math.isfinite(face.widest):
         return math.inf
     stage = train.stages[k].toothing
-    one = stage.of_diameter(stage.cosine / 20.0, 20.0, 1.0, ratio, face.widest)
-    alone = float(least_share(train, k, one))  # of d1 = 1 mm and the widest face
+    unit = stage.of_diameter(stage.cosine / 20.0, 20.0, 1.0, ratio, face.widest)
+    alone = float(least_share(train, k, unit))  # of d1 = 1 mm and the widest face
     power = 1.0 / 3.0 if train.by_width else 1.0
     return float(face.widest * (most / alone) ** power * (1.0 + FEASIBLE))
 
@@ -101,8 +101,8 @@ def solved(clock: Clock, made: Problem) -> Result:
     """Certified answer of Ipopt within ITERATIONS and the budget that a clock has left."""
     before, left = clock.evaluations, clock.left
     most = ITERATIONS if left.evaluations is None else min(ITERATIONS, left.evaluations)
-    own = Budget(left.seconds, most)
-    result = solve(made, "ipopt", own, watch=clock.inner(values=False))
+    allowed = Budget(left.seconds, most)
+    result = solve(made, "ipopt", allowed, watch=clock.inner(values=False))
     clock.evaluations = before + result.evaluations
     clock.tell()
     return result

@@ -169,9 +169,9 @@ def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
 
 def _possible(sizes: Array) -> Array:
     """Mask of boxes that are not empty; a box empty by rounding alone is made a point."""
-    found = (sizes[:, 1] >= sizes[:, 0] - ROUND).all(axis=0)
+    filled = (sizes[:, 1] >= sizes[:, 0] - ROUND).all(axis=0)
     sizes[:, 1] = np.maximum(sizes[:, 0], sizes[:, 1])
-    return np.asarray(found)
+    return np.asarray(filled)
 
 
 def _follow(train: Train, k: int, sizes: Array) -> None:
@@ -191,14 +191,14 @@ def _follow(train: Train, k: int, sizes: Array) -> None:
         sizes[B_OVER_D, 1] = np.minimum(sizes[B_OVER_D, 1], math.log(high) + cosine - sizes[Z, 0])
         sizes[Z, 1] = np.minimum(sizes[Z, 1], math.log(high) + cosine - sizes[B_OVER_D, 0])
     for _ in range(2):
-        for whole, one, other, by in ((D, M, Z, -cosine), (B, B_OVER_D, D, 0.0), (D2, D, U, 0.0)):
-            (a_low, a_high), (b_low, b_high) = sizes[one] + by, sizes[other]
+        for whole, side, other, by in ((D, M, Z, -cosine), (B, B_OVER_D, D, 0.0), (D2, D, U, 0.0)):
+            (a_low, a_high), (b_low, b_high) = sizes[side] + by, sizes[other]
             c_low, c_high = sizes[whole]
             sizes[whole] = np.maximum(c_low, a_low + b_low), np.minimum(c_high, a_high + b_high)
             c_low, c_high = sizes[whole]
-            sizes[one] = np.maximum(a_low, c_low - b_high), np.minimum(a_high, c_high - b_low)
+            sizes[side] = np.maximum(a_low, c_low - b_high), np.minimum(a_high, c_high - b_low)
             sizes[other] = np.maximum(b_low, c_low - a_high), np.minimum(b_high, c_high - a_low)
-            sizes[one] -= by
+            sizes[side] -= by
 
 
 def _needed(train: Train, stage: Stage, cells: Cells) -> tuple[Array, Array]:
@@ -207,17 +207,17 @@ def _needed(train: Train, stage: Stage, cells: Cells) -> tuple[Array, Array]:
     An index of a proportional law over 1 + 1/u falls neither with z1 nor with u (`Law`).
     """
     zero, u = np.zeros(cells.teeth.shape[1]), cells.ratio[LOWER]
-    made = [(zero, zero)]
+    needs = [(zero, zero)]
     with np.errstate(all="ignore"):
         if train.law.limits and train.law.proportional:
             z = cells.teeth[LOWER]
             pair = cells.toothing.of_diameter(cells.toothing.cosine / z, z, 1.0, u, 1.0)
             load = train.law.largest_utilisation(pair, 1.0, cells.speed[LOWER], stage.allowable)
-            made.append((load / (1.0 + 1.0 / u), zero))
+            needs.append((load / (1.0 + 1.0 / u), zero))
         given = stage.toothing.working_distance is not None  # then teeth alone say little
-        for one in stage.options[0].standards if stage.options and not given else ():
-            made.append(one.needed(cells, train.safety))
-    pressed, bent = (np.maximum.reduce([one[i] for one in made]) for i in (0, 1))
+        for standard in stage.options[0].standards if stage.options and not given else ():
+            needs.append(standard.needed(cells, train.safety))
+    pressed, bent = (np.maximum.reduce([one[i] for one in needs]) for i in (0, 1))
     return np.nan_to_num(pressed, nan=0.0), np.nan_to_num(bent, nan=0.0)
 
 
@@ -230,20 +230,20 @@ def _needed_by_weak(stage: Any, cells: Cells, safety: Any, usual: Array) -> Arra
         return usual
     weak = replace(cells, torque=np.stack([cells.torque[LOWER]] * 2))
     with np.errstate(all="ignore"):
-        made = [np.nan_to_num(one.needed(weak, safety)[0], nan=0.0) for one in standards]
-    return np.asarray(np.maximum.reduce([usual, *made]))
+        needs = [np.nan_to_num(one.needed(weak, safety)[0], nan=0.0) for one in standards]
+    return np.asarray(np.maximum.reduce([usual, *needs]))
 
 
 def _moved(shafts: Shafts, k: int, before: Any, after: Any) -> Any:
-    """What the potentials of `Shafts` add to the share of a stage, by torques at its shafts."""
+    """Addition of the potentials of `Shafts` to the share of a stage, by torques at its shafts."""
     (first, second), (at, then) = shafts.potential[k : k + 2], shafts.middle[k : k + 2]
     return first * (before - at) - second * (after - then)
 
 
 def _of_sizes(shafts: Shafts, k: int, sizes: Array, before: Array, after: Array) -> Array:
     """Lower bound of the share of designs in boxes, potentials added, by their least sizes."""
-    own, moved = _least_sizes(shafts, k, sizes, before, after)
-    return np.asarray(own * (1.0 - MARGIN) + moved)
+    share, moved = _least_sizes(shafts, k, sizes, before, after)
+    return np.asarray(share * (1.0 - MARGIN) + moved)
 
 
 def _least_sizes(
@@ -251,8 +251,8 @@ def _least_sizes(
 ) -> tuple[Array, Array]:
     """The two terms of `_of_sizes`: share at the least sizes, least addition of the potentials."""
     size = np.exp(sizes[:, LOWER])
-    own = shafts.train.stages[k].toothing
-    pair = own.of_diameter(size[M], size[Z], size[D], size[U], size[B])
+    toothing = shafts.train.stages[k].toothing
+    pair = toothing.of_diameter(size[M], size[Z], size[D], size[U], size[B])
     first, second = shafts.potential[k : k + 2]
     moved = _moved(shafts, k, before[int(first < 0.0)], after[int(second > 0.0)])
     fewest = size[Z], size[Z] * size[U]
@@ -288,9 +288,9 @@ def cut(shafts: Shafts, k: int, boxes: Boxes, limit: Array) -> Boxes:
     """Boxes without designs whose share, less the potentials' addition, exceeds a limit (n,)."""
     before, after = shafts.torques(k, boxes)
     sizes = boxes.sizes.copy()
-    own, moved = _least_sizes(shafts, k, sizes, before, after)
+    share, moved = _least_sizes(shafts, k, sizes, before, after)
     with np.errstate(divide="ignore", invalid="ignore"):
-        room = np.log((limit - moved) / own) + MARGIN
+        room = np.log((limit - moved) / share) + MARGIN
     room = np.where(np.isfinite(room), np.maximum(room, 0.0), np.inf)
     power = 2.0 if shafts.train.by_width and not shafts.train.hollow else 1.0
     sizes[D, 1] = np.minimum(sizes[D, 1], sizes[D, 0] + room / power)
@@ -307,7 +307,7 @@ def growth(train: Train, k: int, u: Any) -> tuple[float, Any, Any]:
     power, exponent = (1.0, 2.0) if train.by_width else (1.0 / 3.0, 1.0)
     tooth = train.stages[k].toothing
     pairs = [tooth.of_diameter(1.0, 20.0, 1.0, x, 1.0) for x in (1.0, 2.0)]
-    one, two = (least_share(train, k, pair) for pair in pairs)
-    rising = (two - one) / (2.0**exponent - 1.0) * u**exponent
-    grown = one - (two - one) / (2.0**exponent - 1.0) + rising
+    single, double = (least_share(train, k, pair) for pair in pairs)
+    rising = (double - single) / (2.0**exponent - 1.0) * u**exponent
+    grown = single - (double - single) / (2.0**exponent - 1.0) + rising
     return power, grown, exponent * rising / grown

@@ -66,8 +66,8 @@ def search(
     while True:
         totals = _totals(shafts, rows)
         here = min(total.min(initial=math.inf) for total in totals)
-        made = _improved(train, shafts, rows, totals, best, tried)
-        best, tried = made, PATHS if made.value < best.value else IDLE_POLISHES
+        improved = _improved(train, shafts, rows, totals, best, tried)
+        best, tried = improved, PATHS if improved.value < best.value else IDLE_POLISHES
         far = best.value * (1.0 - close)
         best = replace(best, bound=max(best.bound, min(here, far)))
         keep = [total < far for total in totals]
@@ -83,8 +83,8 @@ def search(
             if best.pairs and best.value < before:
                 best = Searched(best.bound, *polished(train, (best.pairs, best.value), clock))
                 before = best.value
-            found = best.pairs or known
-            shafts = shafts_about(_governed(train, found), 2 * shafts.count, found)
+            about = best.pairs or known
+            shafts = shafts_about(_governed(train, about), 2 * shafts.count, about)
             rows = [bounded(shafts, k, _halved_shafts(shafts, k, rows[k][0])) for k in stages]
         else:
             spare = [far - (t - v) for t, (_, v) in zip(totals, rows, strict=True)]
@@ -97,10 +97,10 @@ def _governed(train: Train, pairs: Sequence[GearPair]) -> Train:
     for k, pair in enumerate(pairs):
         option, used = stages[k].options[:1], []
         for standard in option[0].standards if option else ():
-            made = replace(option[0], standards=(standard,))
+            single = replace(option[0], standards=(standard,))
             speed = train.speed_at(torque)
-            found = made.utilisations(pair, torque, speed, train.safety)
-            used.append((float(max(found.values())), standard))
+            utilisations = single.utilisations(pair, torque, speed, train.safety)
+            used.append((float(max(utilisations.values())), standard))
         most = max((u for u, _ in used), default=0.0)
         left = tuple(standard for u, standard in used if u >= GOVERNS * most)
         if option:
@@ -122,19 +122,19 @@ def _sums(shafts: Shafts, rows: Rows) -> tuple[list[Array], list[Array]]:
     sizes = [1] + [shafts.count] * shafts.last + [1]
     before, after = [np.zeros(1)], [np.zeros(1)]
     for k, (boxes, value) in enumerate(rows):
-        made = np.full(sizes[k + 1], np.inf)
-        np.minimum.at(made, boxes.after, before[k][boxes.before] + value)
-        before.append(made)
+        sums = np.full(sizes[k + 1], np.inf)
+        np.minimum.at(sums, boxes.after, before[k][boxes.before] + value)
+        before.append(sums)
     for k, (boxes, value) in reversed(list(enumerate(rows))):
-        made = np.full(sizes[k], np.inf)
-        np.minimum.at(made, boxes.before, after[0][boxes.after] + value)
-        after.insert(0, made)
+        sums = np.full(sizes[k], np.inf)
+        np.minimum.at(sums, boxes.before, after[0][boxes.after] + value)
+        after.insert(0, sums)
     return before, after
 
 
 def _borders(shafts: Shafts, k: int, sizes: Array) -> tuple[Array, Array]:
     """Return by row (rows, n) the middlemost border of a law within boxes, and how many."""
-    found, number = np.zeros(sizes.shape[::2]), np.zeros(sizes.shape[::2], int)
+    borders, number = np.zeros(sizes.shape[::2]), np.zeros(sizes.shape[::2], int)
     options = shafts.train.stages[k].options[:1]
     for standard in (one for option in options for one in option.standards):
         for name, ends in standard.steps.items():
@@ -142,8 +142,8 @@ def _borders(shafts: Shafts, k: int, sizes: Array) -> tuple[Array, Array]:
             low = np.searchsorted(at, sizes[row, 0] + ROUND, side="right")
             high = np.searchsorted(at, sizes[row, 1] - ROUND)
             middle = np.minimum((low + high) // 2, len(at) - 1)
-            found[row], number[row] = at[middle], np.maximum(high - low, 0)
-    return found, number
+            borders[row], number[row] = at[middle], np.maximum(high - low, 0)
+    return borders, number
 
 
 def _halves(shafts: Shafts, k: int, boxes: Boxes) -> Boxes:
@@ -170,8 +170,8 @@ def _divided(
     if not chosen.any():
         return boxes, value
     halves = _halves(shafts, k, cut(shafts, k, boxes.take(chosen), spare[chosen]))
-    made, new = bounded(shafts, k, halves)
-    return joined([boxes.take(~chosen), made]), np.concatenate([value[~chosen], new])
+    divided_boxes, new = bounded(shafts, k, halves)
+    return joined([boxes.take(~chosen), divided_boxes]), np.concatenate([value[~chosen], new])
 
 
 def _coarse(shafts: Shafts, rows: Rows, chosen: list[Array]) -> bool:
@@ -184,15 +184,15 @@ def _coarse(shafts: Shafts, rows: Rows, chosen: list[Array]) -> bool:
 
 def _halved_shafts(shafts: Shafts, k: int, boxes: Boxes) -> Boxes:
     """Return boxes in shafts of twice as many cells."""
-    found = []
+    halves = []
     for i in (0, 1) if k else (0,):
         for j in (0, 1) if k < shafts.last else (0,):
             before = 2 * boxes.before + i if k else boxes.before
             after = 2 * boxes.after + j if k < shafts.last else boxes.after
-            found.append(Boxes(boxes.sizes, before, after))
-    made = joined(found)
+            halves.append(Boxes(boxes.sizes, before, after))
+    whole = joined(halves)
     inside = 0 < k < shafts.last
-    return made.take(made.after >= made.before) if inside else made
+    return whole.take(whole.after >= whole.before) if inside else whole
 
 
 def _improved(
@@ -207,9 +207,9 @@ def _improved(
             if path is None or path in seen:
                 continue
             seen.add(path)
-            made = _design(train, shafts, rows, path)
-            if made is not None and made[1] < best.value:
-                best = Searched(best.bound, *made)
+            design = _design(train, shafts, rows, path)
+            if design is not None and design[1] < best.value:
+                best = Searched(best.bound, *design)
     return best
 
 
@@ -218,24 +218,24 @@ def _path(
 ) -> tuple[int, ...] | None:
     """Return the boxes of the least sum through a box of a stage; None where there is none."""
     before, after = sums
-    found = [place]
+    path = [place]
     if not all(len(value) for _, value in rows):
         return None
     for m in range(k + 1, shafts.last + 1):
         boxes, value = rows[m]
-        at = rows[m - 1][0].after[found[-1]]
+        at = rows[m - 1][0].after[path[-1]]
         total = np.where(boxes.before == at, value + after[m + 1][boxes.after], np.inf)
-        found.append(int(total.argmin()))
+        path.append(int(total.argmin()))
         if not math.isfinite(total.min()):
             return None
     for m in reversed(range(k)):
         boxes, value = rows[m]
-        at = rows[m + 1][0].before[found[0]]
+        at = rows[m + 1][0].before[path[0]]
         total = np.where(boxes.after == at, value + before[m][boxes.before], np.inf)
-        found.insert(0, int(total.argmin()))
+        path.insert(0, int(total.argmin()))
         if not math.isfinite(total.min()):
             return None
-    return tuple(found)
+    return tuple(path)
 
 
 def _design(train: Train, shafts: Shafts, rows: Rows, path: tuple[int, ...]) -> Design | None:

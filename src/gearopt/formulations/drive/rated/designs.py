@@ -77,9 +77,9 @@ def polished(train: Train, best: Design, clock: Clock) -> Design:
         for moves in product((-size, 0.0, size), repeat=len(pairs) - 1):
             if clock.over:
                 return best
-            made = in_boxes(train, [*(at[:-1] + np.array(moves)), at[-1]], tried)
-            if made is not None and made[1] < best[1]:
-                best = made
+            neighbour = in_boxes(train, [*(at[:-1] + np.array(moves)), at[-1]], tried)
+            if neighbour is not None and neighbour[1] < best[1]:
+                best = neighbour
         if not best[1] < before * (1.0 - LITTLE):
             size *= SHORTER
     return best
@@ -159,14 +159,16 @@ def _allowed(train: Train, k: int, pair: GearPair) -> Array:
     d, width = pair.pinion.reference_diameter, pair.face_width
     rows = {Z: pair.pinion_teeth, B_OVER_D: width / d, D: d, M: pair.normal_module, B: width}
     rows[D2] = pair.wheel.reference_diameter
-    found = np.ones(np.shape(d), bool)
+    allowed = np.ones(np.shape(d), bool)
     for row, value in rows.items():
-        found &= (np.log(value) >= sizes[row, 0] - ROUND) & (np.log(value) <= sizes[row, 1] + ROUND)
+        allowed &= (np.log(value) >= sizes[row, 0] - ROUND) & (
+            np.log(value) <= sizes[row, 1] + ROUND
+        )
     numbers, over = dict[str, Any](train.numbers()), width / pair.normal_module
     low, high = train.stages[k].face_width.over_module
-    found &= (over >= float(low or 0) - ROUND) & (over <= float(high or math.inf) * (1.0 + ROUND))
+    allowed &= (over >= float(low or 0) - ROUND) & (over <= float(high or math.inf) * (1.0 + ROUND))
     z = pair.wheel_teeth
-    found &= (z >= numbers["wheel_low"][k] - RATIO_TIE) & (
+    allowed &= (z >= numbers["wheel_low"][k] - RATIO_TIE) & (
         z <= numbers["wheel_high"][k] + RATIO_TIE
     )
-    return found
+    return allowed

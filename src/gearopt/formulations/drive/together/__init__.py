@@ -88,8 +88,8 @@ def ready(watch: Watch | None = None) -> bool:
 @cache
 def _tiny() -> None:
     """Search a tiny drive, which calls every kernel."""
-    one = FaceWidth(Fraction(1), Fraction(1))
-    stage = Stage((2.0, 48.0), one, (Fraction(2), Fraction(3)), (20, 22))
+    unit = FaceWidth(Fraction(1), Fraction(1))
+    stage = Stage((2.0, 48.0), unit, (Fraction(2), Fraction(3)), (20, 22))
     train = Train(3e4, Fraction(9), Fraction(1, 50), (stage, stage), law=K_FACTOR)
 
     def make(pairs: tuple[GearPair, ...]) -> Gearbox:
@@ -122,10 +122,10 @@ def _first(search: Search) -> bool:
     """Lay out the best sizings; False if there is no train at all."""
     count = FIRST_RATED_SIZINGS if search.train.rated else FIRST_SIZINGS
     progress = sizing(search.train, count, Budget(), search.clock.inner(values=False))
-    for _, one in progress.found[:count]:
+    for _, node in progress.found[:count]:
         if search.clock.stopped:
             break
-        lay(search, best_choices(search.train, one), MARGINS[3])
+        lay(search, best_choices(search.train, node), MARGINS[3])
     return bool(progress.found) or progress.clock.stopped
 
 
@@ -182,10 +182,10 @@ def text(
     box: what `make` gives for any sizes.
     """
     sized, known, links = teeth.problem(train), slabs_of(box), len(train.stages)
-    own = [Var("angle", "rad", -math.pi, math.pi, 0.1, links)]
+    placing = [Var("angle", "rad", -math.pi, math.pi, 0.1, links)]
     if len(known) > 1:
-        own.append(Var("arrangement", "", 0, len(known) - 1, 0, integer=True))
-    variables = (*sized.variables, *own)
+        placing.append(Var("arrangement", "", 0, len(known) - 1, 0, integer=True))
+    variables = (*sized.variables, *placing)
     count = sum(v.size for v in sized.variables)
 
     def one(point: Array) -> tuple[dict[str, float], dict[str, float], dict[str, float]]:

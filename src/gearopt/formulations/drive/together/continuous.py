@@ -107,21 +107,21 @@ def _variables(
         "ratio": [p.ratio for p in box.pairs],
         "face_width": [p.face_width for p in box.pairs],
     }
-    own = tuple(
+    sizing = tuple(
         replace(v, guess=tuple(np.clip(values[v.name], v.lower, v.upper))) for v in sized.variables
     )
     links = [p.centre_distance for p in box.pairs]
     widths = tuple(max(box.pairs[s].face_width for s in slab) for slab in slabs)
     far = PLACES_SPAN * (sides["width"] + sides["height"] + sum(widths))
     near = (tuple(t - ANGLES_SPAN for t in angles), tuple(t + ANGLES_SPAN for t in angles))
-    made = [Var("angle", "rad", *near, angles, len(links), search=True)]
-    made += [Var(n, "mm", -far, 0.0, sides[n], search=True) for n in ("left", "bottom")]
-    made += [
+    placing = [Var("angle", "rad", *near, angles, len(links), search=True)]
+    placing += [Var(n, "mm", -far, 0.0, sides[n], search=True) for n in ("left", "bottom")]
+    placing += [
         Var(n, "mm", 1e-3 * far, far, sides[n], log=True, search=True) for n in ("width", "height")
     ]
     slab = Var("slab", "mm", 1e-4 * far, far, widths, len(slabs), log=True, search=True)
     longest = Var("longest", "mm", 1e-3 * far, far, 0.5 * far, log=True, search=True)
-    return (*own, *made, slab, *([longest] if box.objective == "longest_side" else []))
+    return (*sizing, *placing, slab, *([longest] if box.objective == "longest_side" else []))
 
 
 def _radius(box: Gearbox, body: Body, k: int) -> Any:
@@ -135,8 +135,8 @@ def _radius(box: Gearbox, body: Body, k: int) -> Any:
 def _walls(box: Gearbox, bodies: Any, point: Any, x: Any) -> dict[str, Any]:
     """Return rows that keep every body within the four sides."""
     rows: dict[str, Any] = {}
-    for k, own in enumerate(bodies):
-        for n, body in enumerate(own):
+    for k, of_shaft in enumerate(bodies):
+        for n, body in enumerate(of_shaft):
             r = _radius(box, body, k) + box.clearances.wall
             for axis, start, side in ((0, x.left, x.width), (1, x.bottom, x.height)):
                 c, word = point[axis][k], "yz"[axis]
@@ -169,9 +169,9 @@ def _clear(box: Gearbox, bodies: Any, point: Any) -> dict[str, Any]:
     y, z = point
     rows: dict[str, Any] = {}
     for n, keep in enumerate(box.keep_outs):
-        for k, own in enumerate(bodies):
+        for k, of_shaft in enumerate(bodies):
             dy, dz = outside(y[k], *keep.y), outside(z[k], *keep.z)
-            for b, body in enumerate(own):
+            for b, body in enumerate(of_shaft):
                 need = _radius(box, body, k) + box.clearances.shafts
                 name = f"clear_of_keep_out[{n + 1}][{k + 1}][{b + 1}]"
                 rows[name] = 2.0 - (dy**2 + dz**2) / need**2

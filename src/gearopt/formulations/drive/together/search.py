@@ -92,8 +92,8 @@ class Search:
     @cached_property
     def tables(self) -> list[RatedTable]:
         """The tables of the stages of a drive that ratings limit."""
-        made = stage_tables(self.train, self.train.highest_ratio)
-        return [t for t in made if isinstance(t, RatedTable)]
+        tables = stage_tables(self.train, self.train.highest_ratio)
+        return [t for t in tables if isinstance(t, RatedTable)]
 
     @property
     def value(self) -> float:
@@ -115,34 +115,34 @@ def sized(train: Train, drive: Drive, node: Nodes) -> Iterator[Made]:
     The widths of a node are bounds where the strength law has no closed form. Where all stages
     take the same option, there are such pairs of each.
     """
-    for option, one in enumerate(train.of_one_option):
-        if (made := _sized(one, drive, node)) is not None:
-            yield made if one is train else (made[0], (option,) * len(node))
+    for option, single in enumerate(train.of_one_option):
+        if (sizing := _sized(single, drive, node)) is not None:
+            yield (sizing if single is train else (sizing[0], (option,) * len(node)))
 
 
 def _sized(train: Train, drive: Drive, node: Nodes) -> Made | None:
-    torque, found, options = train.torque, [], []
+    torque, pairs, options = train.torque, [], []
     for j, (p, k) in enumerate(node):
         z1, z2 = float(drive.z1[p]), float(drive.z2[p])
         widths = widths_of(train.fixed_teeth(j, round(z1), round(z2)), j, torque, int(k))
         option = min(range(len(widths)), key=widths.__getitem__)
         if (width := widths[option]) == math.inf:
             return None
-        found.append(train.pair(j, float(drive.modules[j, k]), z1, z2, width))
+        pairs.append(train.pair(j, float(drive.modules[j, k]), z1, z2, width))
         options.append(option)
         torque *= z2 / z1
-    return tuple(found), tuple(options)
+    return tuple(pairs), tuple(options)
 
 
 def widths_of(train: Train, stage: int, torque: float, module: int) -> list[float]:
     """Return the minimum face widths [mm] of the options of a stage whose teeth are given."""
-    own, found = train.stages[stage], []
-    for way in [replace(own, options=(o,)) for o in own.options] or [own]:
+    whole_stage, widths = train.stages[stage], []
+    for way in [replace(whole_stage, options=(o,)) for o in whole_stage.options] or [whole_stage]:
         stages = (*train.stages[:stage], way, *train.stages[stage + 1 :])
-        one = replace(train, stages=stages, same_option=False)
-        only = table(one, stage, train.highest_ratio)
-        found.append(only.width(np.array([torque]), np.array([0]), module).item())
-    return found
+        single = replace(train, stages=stages, same_option=False)
+        only = table(single, stage, train.highest_ratio)
+        widths.append(only.width(np.array([torque]), np.array([0]), module).item())
+    return widths
 
 
 def orders_of(box: Gearbox) -> list[Arrangement]:
@@ -161,9 +161,9 @@ def lay(search: Search, made: Made, margin: float) -> bool:
     for order in orders_of(box):
         if not _below(search, box, order, margin):
             continue
-        one = replace(box, slabs=order.slabs)
+        ordered = replace(box, slabs=order.slabs)
         budget, watch = Budget(gap=min(margin, LAYOUT_GAP)), search.clock.inner(values=False)
-        outcome = layout.problem(one).methods["exact"](None, budget, search.seed, watch)
+        outcome = layout.problem(ordered).methods["exact"](None, budget, search.seed, watch)
         proven = proven and outcome.finished
         if outcome.x is not None:
             keep(search, made, order, outcome.x)
@@ -220,8 +220,8 @@ def prepare(search: Search, drive: Drive, box: Gearbox, margin: float) -> Work |
     # Before all shafts are there, only the sides of the box distinguish the directions.
     bare = turns(replace(box, places=(), keep_outs=(), level=()))
     ranges = [turns(box)] + [bare] * (drive.kind.size - 1)
-    made = chains(fewer, box)
-    return None if tables is None else Work(search.value, fewer, tables, made, ranges)
+    shafts = chains(fewer, box)
+    return None if tables is None else Work(search.value, fewer, tables, shafts, ranges)
 
 
 def prove(search: Search, work: Work, margin: float) -> bool:
@@ -241,12 +241,12 @@ def prove(search: Search, work: Work, margin: float) -> bool:
         if place[0] >= of_use:
             continue
         stop = min(of_use, (int(place[0]) // PARENTS + 1) * PARENTS)
-        nodes, own = _children(search, work, stage, parents, place, stop, (cut, aim))
+        nodes, lower = _children(search, work, stage, parents, place, stop, (cut, aim))
         stack.append((stage, parents, bounds, place))
         if stage > 0:
-            stack.append((stage - 1, nodes, own, np.array([0, -1])))
+            stack.append((stage - 1, nodes, lower, np.array([0, -1])))
         else:
-            _last_looks(search, work.drive, nodes, own, margin)
+            _last_looks(search, work.drive, nodes, lower, margin)
         if not search.clock.tell() or search.value < STALE * work.value:
             return False
     return True
@@ -257,8 +257,8 @@ def _last_looks(search: Search, drive: Drive, nodes: Nodes, bounds: Array, margi
     for node, value in zip(nodes, bounds, strict=True):
         teeth = tuple((round(drive.z1[p]), round(drive.z2[p])) for p, _ in node)
         if value < search.value * (1.0 - margin) and within(search.train, teeth):
-            for made in sized(search.train, drive, node):
-                proven = lay(search, made, margin)
+            for whole_train in sized(search.train, drive, node):
+                proven = lay(search, whole_train, margin)
                 search.clock.stopped = search.clock.stopped or not proven
         if search.clock.stopped:
             return
@@ -277,17 +277,17 @@ def _children(
     kernels = kernel(KERNELS)
     count = work.drive.kind.size
     nodes, bounds = np.zeros((CHILDREN, count, 2), np.int64), np.zeros(CHILDREN)
-    made, looked = kernels.expand(
+    children, looked = kernels.expand(
         work.drive, work.rest, stage, parents, place, stop, levels[0], CHOICES, nodes, bounds
     )
     search.clock.evaluations += looked
-    search.made[stage] = search.made.get(stage, 0) + made
-    order = np.argsort(bounds[:made], kind="stable")
+    search.made[stage] = search.made.get(stage, 0) + children
+    order = np.argsort(bounds[:children], kind="stable")
     nodes, bounds = nodes[order], bounds[order]
-    alive, found = np.zeros(made, np.int64), np.zeros((made, 2 + count - stage))
+    alive, sums = np.zeros(children, np.int64), np.zeros((children, 2 + count - stage))
     start, maximum = 0, LOOKS[0] if stage > 0 else LOOKS[1]
     shape = work.chains[stage]
-    while start < made:
+    while start < children:
         start, cells = kernels.sift(
             work.drive,
             work.rest,
@@ -299,7 +299,7 @@ def _children(
             levels,
             (maximum, CELLS),
             alive,
-            found,
+            sums,
         )
         search.clock.evaluations += cells
         if not search.clock.tell():
@@ -341,23 +341,23 @@ def narrower(
     rows, module = rows[some], module[some]
     if len(rows) > ROWS:
         return drive
-    found = np.full((int(row[-1]), drive.modules.shape[1]), np.inf)
+    widths = np.full((int(row[-1]), drive.modules.shape[1]), np.inf)
     for k, rated in enumerate(tables):
         first, stop = np.searchsorted(rows, row[[drive.start[k], drive.start[k + 1]]])
-        own, shy = _places(rated, drive, k), EDGE if k else 0.0  # first: the input torque itself
+        places, shy = _places(rated, drive, k), EDGE if k else 0.0  # first: the input torque itself
         for part in slices(np.ones(stop - first, np.int64), SLICE):
             r, q = rows[first:stop][part], module[first:stop][part]
             p = pair[r]
             ends = np.maximum(reached[r], low[p]), np.minimum(reached[r] + step, high[p])
             torques = [drive.torque * np.exp(e) for e in (ends[0] - shy, np.maximum(*ends) + shy)]
-            place = own[p - drive.start[k]]
-            found[r, q] = rated.least_width(
+            place = places[p - drive.start[k]]
+            widths[r, q] = rated.least_width(
                 (torques[0], torques[1]), place, q, CELL_TOLERANCE * step
             )
             if not goes_on():
                 return None
-    _hold_stronger(found, row, cells)
-    return drive._replace(bisected=found, row=row, cell=cell, step=step)
+    _hold_stronger(widths, row, cells)
+    return drive._replace(bisected=widths, row=row, cell=cell, step=step)
 
 
 def shortened(drive: Drive, cut: float) -> Drive:
@@ -404,19 +404,19 @@ def _window(drive: Drive, stage: int) -> tuple[Array, Array]:
     ends = [drive.log_ratio[drive.start[k] : drive.start[k + 1]] for k in range(count)]
     least = [e.min(initial=math.inf) for e in ends]
     most = [e.max(initial=-math.inf) for e in ends]
-    own = ends[stage]
+    ratios = ends[stage]
     if stage == 0:
-        return np.zeros(len(own)), np.zeros(len(own))
-    low = np.maximum(sum(least[:stage]), drive.log_low - own - sum(most[stage + 1 :]))
-    high = np.minimum(sum(most[:stage]), drive.log_high - own - sum(least[stage + 1 :]))
+        return np.zeros(len(ratios)), np.zeros(len(ratios))
+    low = np.maximum(sum(least[:stage]), drive.log_low - ratios - sum(most[stage + 1 :]))
+    high = np.minimum(sum(most[:stage]), drive.log_high - ratios - sum(least[stage + 1 :]))
     return low, high
 
 
 def _places(table: RatedTable, drive: Drive, stage: int) -> Index:
     """Return where the pairs of a stage of the drive stand in its table."""
-    own = slice(drive.start[stage], drive.start[stage + 1])
+    rows = slice(drive.start[stage], drive.start[stage + 1])
     base = int(table.z2.max(initial=0)) + 1
     known = table.z1 * base + table.z2
     order = np.argsort(known, kind="stable")
-    wanted = (np.rint(drive.z1[own]) * base + np.rint(drive.z2[own])).astype(np.int64)
+    wanted = (np.rint(drive.z1[rows]) * base + np.rint(drive.z2[rows])).astype(np.int64)
     return np.asarray(order[np.searchsorted(known[order], wanted)])

@@ -155,11 +155,11 @@ def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
 
 def _loaded_like(train: Train, ratio: float) -> tuple[GearPair, ...]:
     """Return gear pairs whose shafts all carry the torque behind a ratio."""
-    found = []
+    pairs = []
     for k, stage in enumerate(train.stages):
         z = float(stage.pinion_teeth[0])
-        found.append(train.pair(k, float(stage.modules[0]), z, z if k else z * ratio, 1.0))
-    return tuple(found)
+        pairs.append(train.pair(k, float(stage.modules[0]), z, z if k else z * ratio, 1.0))
+    return tuple(pairs)
 
 
 def _bearing(shaft: Shaft) -> float:
@@ -200,12 +200,12 @@ def _facing(box: Gearbox) -> tuple[list[Slabs], NDArray[np.uint8]]:
     """Return orders of slabs undominated for any sizes, and the bodies that face each other."""
     shafts = tuple(Shaft(1.0, 1.0, 0.0 if box.partial else s.bearing_width) for s in box.shafts)
     alike = replace(box, pairs=(GearPair.of_teeth(1.0, 2, 2, 1.0),) * len(box.pairs), shafts=shafts)
-    found: list[tuple[Slabs, NDArray[np.uint8]]] = []
+    undominated: list[tuple[Slabs, NDArray[np.uint8]]] = []
     for slabs in (box.slabs,) if box.slabs is not None else orders(box):
         new = (slabs, _faces(alike, slabs))
-        if not any(_no_worse(old, new) for old in found):
-            found = [old for old in found if not _no_worse(new, old)] + [new]
-    return [slabs for slabs, _ in found], np.stack([faces for _, faces in found])
+        if not any(_no_worse(old, new) for old in undominated):
+            undominated = [old for old in undominated if not _no_worse(new, old)] + [new]
+    return [slabs for slabs, _ in undominated], np.stack([faces for _, faces in undominated])
 
 
 def _no_worse(a: tuple[Slabs, NDArray[np.uint8]], b: tuple[Slabs, NDArray[np.uint8]]) -> bool:
@@ -216,14 +216,14 @@ def _no_worse(a: tuple[Slabs, NDArray[np.uint8]], b: tuple[Slabs, NDArray[np.uin
 def _faces(box: Gearbox, slabs: Slabs) -> NDArray[np.uint8]:
     """Which bodies of the shafts stand side by side and do not mesh: 1, (N+1, 4, N+1, 4)."""
     bodies = arrange(box, slabs).bodies
-    found = np.zeros((len(bodies), 4, len(bodies), 4), np.uint8)
-    for x, own in enumerate(bodies):
+    facing = np.zeros((len(bodies), 4, len(bodies), 4), np.uint8)
+    for x, of_shaft in enumerate(bodies):
         for y, other in enumerate(bodies):
-            for p in own:
+            for p in of_shaft:
                 for q in other:
                     if x != y and face_each_other(p, q):
-                        found[x, _kind(p.name), y, _kind(q.name)] = 1
-    return found
+                        facing[x, _kind(p.name), y, _kind(q.name)] = 1
+    return facing
 
 
 def _kind(name: str) -> int:
@@ -251,8 +251,8 @@ def _pairs(tables: list[Table]) -> tuple[Any, ...]:
     ]
     for k, t in enumerate(tables):
         if t.steps is not None:
-            for own, values in zip(steps, t.steps, strict=True):
-                own[: len(t.modules), start[k] : start[k + 1]] = values
+            for steps_of_stage, values in zip(steps, t.steps, strict=True):
+                steps_of_stage[: len(t.modules), start[k] : start[k + 1]] = values
     return start, *columns, *steps
 
 
@@ -289,7 +289,7 @@ def _loads(train: Train, tables: list[Table]) -> tuple[Array, Array, Index, Inde
     cells = max(1, min(math.ceil(span / DELTA), ENTRIES // max(1, pairs * modules)))
     cells = 1 if train.rated else cells
     step = span / cells
-    found = np.full((pairs, cells, modules), np.inf)
+    widths = np.full((pairs, cells, modules), np.inf)
     stop = 0
     for t in tables:
         start, stop = stop, stop + len(t.z1)
@@ -297,10 +297,12 @@ def _loads(train: Train, tables: list[Table]) -> tuple[Array, Array, Index, Inde
         for cell in range(cells):
             torque = np.full(len(t.z1), train.torque * math.exp(cell * step))
             for k in range(len(t.modules)):
-                own = t.narrowest(k) if isinstance(t, RatedTable) else t.width(torque, every, k)
-                found[start:stop, cell, k] = own
+                narrowest = (
+                    t.narrowest(k) if isinstance(t, RatedTable) else t.width(torque, every, k)
+                )
+                widths[start:stop, cell, k] = narrowest
     rows = cells * np.arange(pairs + 1)
-    return np.empty(0), found.reshape(-1, modules), rows, np.zeros(pairs, np.int64), step
+    return np.empty(0), widths.reshape(-1, modules), rows, np.zeros(pairs, np.int64), step
 
 
 def useful(drive: Drive, cut: float) -> Drive:
@@ -330,12 +332,12 @@ def useful(drive: Drive, cut: float) -> Drive:
 
 def _others(drive: Drive, widths: Array) -> Array:
     """Return the minimum length that stages before each one add in own slabs, (M, N)."""
-    found = np.zeros_like(drive.others)
+    added = np.zeros_like(drive.others)
     for m, slab in enumerate(drive.slab_of):
         for j in range(1, widths.size):
-            own = [s for s in range(drive.slabs[m]) if not (slab[j:] == s).any()]
-            found[m, j] = sum(widths[:j][slab[:j] == s].max() for s in own)
-    return found
+            alone = [s for s in range(drive.slabs[m]) if not (slab[j:] == s).any()]
+            added[m, j] = sum(widths[:j][slab[:j] == s].max() for s in alone)
+    return added
 
 
 def rest(drive: Drive, goes_on: GoesOn) -> Rest | None:
@@ -360,10 +362,10 @@ def rest(drive: Drive, goes_on: GoesOn) -> Rest | None:
 
 def _edges(drive: Drive, j: int) -> Array:
     """Radii that divide those of the wheels of a stage (none before the first: zeros)."""
-    own = slice(drive.start[j], drive.start[j + 1]) if j >= 0 else slice(0, 0)
-    modules = drive.modules[j][drive.first[own]], drive.modules[j][drive.last[own]]
+    rows = slice(drive.start[j], drive.start[j + 1]) if j >= 0 else slice(0, 0)
+    modules = drive.modules[j][drive.first[rows]], drive.modules[j][drive.last[rows]]
     cosine, addendum = drive.cosine[j], drive.addenda[j, 1]
-    radii = [m * (0.5 * drive.z2[own] / cosine + addendum) for m in modules]
+    radii = [m * (0.5 * drive.z2[rows] / cosine + addendum) for m in modules]
     if j < 0 or not radii[0].size:
         return np.zeros(BINS)
     return np.geomspace(radii[0].min() * (1.0 - 1e-9), radii[1].max(), BINS)
@@ -371,14 +373,14 @@ def _edges(drive: Drive, j: int) -> Array:
 
 def chains(drive: Drive, box: Gearbox) -> list[Chain]:
     """For each first stage, a chain of the shafts from there on, for the kernel to fill."""
-    found = []
+    links = []
     for first in range(drive.kind.size):
         shafts = drive.kind.size + 1 - first
         place = np.tile([-np.inf, np.inf], (shafts, 2))
         for p in box.places if first == 0 else ():
             place[p.shaft] = (*p.y, *p.z)
         level = sorted(box.level) if first == 0 else []
-        found.append(
+        links.append(
             Chain(
                 np.zeros(shafts - 1),
                 np.zeros(shafts),
@@ -396,4 +398,4 @@ def chains(drive: Drive, box: Gearbox) -> list[Chain]:
                 np.zeros(1),
             )
         )
-    return found
+    return links

@@ -47,8 +47,8 @@ class Orbit:
     @cached_property
     def extremes(self) -> tuple[float, float]:
         """Least and largest delta [mm]."""
-        found = self.delta(LOOKS)
-        return float(found.min()), float(found.max())
+        samples = self.delta(LOOKS)
+        return float(samples.min()), float(samples.max())
 
 
 def _sampled(half: Complex, count: int) -> Array:
@@ -116,19 +116,19 @@ class _Balance:
         both = np.concatenate([np.conj(half[:0:-1]), half])
         mesh = both[self.order[:, None] - self.order + 2 * h].astype(complex)
         mesh += np.diag((pair.damping + pair.drag) * self.turning)
-        found = np.eye(2 * h + 1) + self.row[:, None] * mesh
-        found[h, h] -= 1.0
-        return np.asarray(found, complex)
+        system = np.eye(2 * h + 1) + self.row[:, None] * mesh
+        system[h, h] -= 1.0
+        return np.asarray(system, complex)
 
     @cached_property
     def right(self) -> Complex:
         """The right side b: the load, and the transmission error."""
         pair, h = self.pair, self.harmonics
-        found = np.zeros(2 * h + 1, complex)
-        found[h] = -pair.load / pair.wave.mean
+        side = np.zeros(2 * h + 1, complex)
+        side[h] = -pair.load / pair.wave.mean
         for n, a in enumerate(pair.error[:h], 1):
-            found[h + n] = found[h - n] = 0.5 * a
-        return found
+            side[h + n] = side[h - n] = 0.5 * a
+        return side
 
     @cached_property
     def stiffness(self) -> Array:
@@ -159,8 +159,8 @@ def linear_orbit(pair: MovingPair, level: str, frequency: float, harmonics: int)
     It holds the exact harmonics k_l of the wave to l = 2 H; N_0 = -F. frequency of the mesh [Hz].
     """
     system = _Balance(pair, level, frequency, harmonics)
-    found = np.linalg.solve(system.matrix, system.right)[harmonics:]
-    return Orbit(frequency, np.asarray(found, complex))
+    coefficients = np.linalg.solve(system.matrix, system.right)[harmonics:]
+    return Orbit(frequency, np.asarray(coefficients, complex))
 
 
 def orbit(

@@ -91,7 +91,7 @@ def march(
         times = times.divided(-(-counts // SLICE))
         counts = times.counts(longest)
     out = np.empty((len(counts), 2 * LEVELS[level][0]))
-    last, told = np.array(state, float), np.array([-1.0, np.inf])
+    last, events_of_jam = np.array(state, float), np.array([-1.0, np.inf])
     newton, ends = method in ALPHAS, np.cumsum(counts)
     events = rates = done = 0
     steps, slowed = 0, math.inf if clock is None else SLICE
@@ -99,15 +99,15 @@ def march(
     while done < len(counts) and (done == 0 or clock.tell()):
         stop = max(done + 1, int(np.searchsorted(ends, steps + slowed, "right")))
         part = slice(done, stop)
-        given = model, times.between(done, stop), counts[part], last, out[part], told
-        found = compiling_aside(clock, stepper.kernel, partial(stepper.run, *given))
-        if found is None:
+        given = model, times.between(done, stop), counts[part], last, out[part], events_of_jam
+        advanced = compiling_aside(clock, stepper.kernel, partial(stepper.run, *given))
+        if advanced is None:
             break
-        spent = 2 * found if newton else (int(ends[stop - 1]) - steps) * stepper.rates
-        events, rates, done = events + (0 if newton else found), rates + spent, stop
+        spent = 2 * advanced if newton else (int(ends[stop - 1]) - steps) * stepper.rates
+        events, rates, done = events + (0 if newton else advanced), rates + spent, stop
         clock.evaluations, steps = clock.evaluations + spent, int(ends[stop - 1])
     whole = np.concatenate([[state], out])[times.asked[times.asked < done] + 1]
-    jammed = float(told[1]) if np.isfinite(told[1]) else None
+    jammed = float(events_of_jam[1]) if np.isfinite(events_of_jam[1]) else None
     return Marched(pair, level, whole, steps, rates, events, jammed)
 
 
@@ -222,7 +222,7 @@ def numbers(pair: MovingPair, level: str) -> Numbers:
         k1, k2, c1, c2 = (a, a), (b, b), (c, c), (d, d)
     rest, omega = pair.rest, 2.0 * math.pi * pair.mesh_frequency
     backlash = math.inf if pair.backlash is None else pair.backlash
-    found = (
+    values = (
         *(LEVELS[level][0], FORMS.get(level, 0), KINDS.index(pair.kinematics)),
         *(p.mass, w.mass, pair.mesh_mass, pair.load, *k1, *k2, *c1, *c2),
         *(pair.damping, pair.drag, backlash),
@@ -234,7 +234,7 @@ def numbers(pair: MovingPair, level: str) -> Numbers:
     waves = np.zeros((3, max(len(cosines), len(errors))))
     waves[0, : len(cosines)], waves[1, : len(cosines)] = cosines, pair.wave.sines
     waves[2, : len(errors)] = [-a * (h * omega) ** 2 for h, a in enumerate(errors, 1)]
-    return Numbers(np.array([found], dtype=KIND), waves)
+    return Numbers(np.array([values], dtype=KIND), waves)
 
 
 def deformation(pair: MovingPair, level: str, states: Array) -> Array:

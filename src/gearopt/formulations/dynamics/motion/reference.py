@@ -45,13 +45,13 @@ def scipy_motion(
         t, end, line = start, start + length, (start, k0, (k1 - k0) / length)
         while t < end:
             due = asked[(asked > t) & (asked <= end)]
-            made = _smooth(model, line, flank, (t, end), now, due, tolerances)
-            rates += made.nfev
-            left = made.status == 1
-            t = made.t_events[0][0] if left else end
-            states = np.reshape(made.y, (len(now), -1)).T  # a list where none was reached
+            solution = _smooth(model, line, flank, (t, end), now, due, tolerances)
+            rates += solution.nfev
+            left = solution.status == 1
+            t = solution.t_events[0][0] if left else end
+            states = np.reshape(solution.y, (len(now), -1)).T  # a list where none was reached
             out += list(states[: int(np.sum(due <= t))])
-            now = made.y_events[0][0] if left else states[-1]
+            now = solution.y_events[0][0] if left else states[-1]
             if left:
                 flank, events = _other(model, flank, now), events + 1
     return Marched(pair, level, np.array(out), rates, rates, events)
@@ -79,9 +79,9 @@ def _smooth(
     law = kernel(MARCH)
 
     def rate(at: float, y: Array) -> Array:
-        k, found = line[1] + line[2] * (at - line[0]), np.empty(y.size)
-        law.rates(*model, at, k, flank, np.ascontiguousarray(y), found)
-        return found
+        k, rates = line[1] + line[2] * (at - line[0]), np.empty(y.size)
+        law.rates(*model, at, k, flank, np.ascontiguousarray(y), rates)
+        return rates
 
     def leaves(at: float, y: Array) -> float:
         return float(law.past(model.pair, flank, y))
@@ -108,11 +108,11 @@ def cvodes(pair: MovingPair, level: str, times: Array, rtol: float) -> Any:
     whole = [y[i] * float(scale[i]) for i in range(2 * n)]
     bare = replace(pair, error=())
     with legacy_numpy():
-        found = law(bare, _stiffness(pair, t), whole[:n], whole[n:])
+        accelerations = law(bare, _stiffness(pair, t), whole[:n], whole[n:])
     if pair.error:
-        found[n // 2] += _shaken(pair, t)
-    rhs = [one / float(s) for one, s in zip([*whole[n:], *found], scale, strict=True)]
-    made = ca.integrator(
+        accelerations[n // 2] += _shaken(pair, t)
+    rhs = [one / float(s) for one, s in zip([*whole[n:], *accelerations], scale, strict=True)]
+    integrator = ca.integrator(
         "motion",
         "cvodes",
         {"x": y, "t": t, "ode": ca.vertcat(*rhs)},
@@ -122,7 +122,7 @@ def cvodes(pair: MovingPair, level: str, times: Array, rtol: float) -> Any:
     )
 
     def run(state: Array) -> Marched:
-        x = np.array(made(x0=np.asarray(state) / scale)["xf"], float).T
+        x = np.array(integrator(x0=np.asarray(state) / scale)["xf"], float).T
         states = np.concatenate([[state], x * scale])
         return Marched(pair, level, states, 0, 0)
 
@@ -136,15 +136,15 @@ def _stiffness(pair: MovingPair, t: Any) -> Any:
     phase = t * pair.mesh_frequency
     phase = phase - ca.floor(phase)
     after = np.roll(wave.before, -1)
-    found = 0.0
+    stiffness = 0.0
     for edge, length, low, high in zip(wave.edges, wave.lengths, wave.after, after, strict=True):
         inside = ca.logic_and(phase >= edge, phase < edge + length)
         line = float(low) + float(high - low) * (phase - float(edge)) / float(length)
-        found = found + ca.if_else(inside, line, 0.0)
+        stiffness = stiffness + ca.if_else(inside, line, 0.0)
     for h, (a, b) in enumerate(zip(wave.cosines, wave.sines, strict=True), 1):
         angle = 2.0 * math.pi * h * phase
-        found = found + float(a) * ca.cos(angle) + float(b) * ca.sin(angle)
-    return found
+        stiffness = stiffness + float(a) * ca.cos(angle) + float(b) * ca.sin(angle)
+    return stiffness
 
 
 def _shaken(pair: MovingPair, t: Any) -> Any:

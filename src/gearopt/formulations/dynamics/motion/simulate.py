@@ -115,11 +115,13 @@ def simulate(
         best = min((*ended, *tried), key=lambda t: t.error)
     changed = _moved(best, intervals, state, clock)
     reached = max(best.error, float(changed.max(initial=0.0)))
-    found = _simulated(times, best.motion, best.method, reached, error, spent, best.longest)
-    if found is None or len(changed) < len(best.motion.states):
-        return found and replace(found, met=False)
+    simulated = _simulated(times, best.motion, best.method, reached, error, spent, best.longest)
+    if simulated is None or len(changed) < len(best.motion.states):
+        return simulated and replace(simulated, met=False)
     beyond = np.flatnonzero(changed > error)
-    return replace(found, steady=float(times[max(0, beyond[0] - 1)])) if beyond.size else found
+    return (
+        replace(simulated, steady=float(times[max(0, beyond[0] - 1)])) if beyond.size else simulated
+    )
 
 
 def _moved(tried: _Try, times: Timeline, state: Array, clock: Clock) -> Array:
@@ -220,8 +222,8 @@ def _halved(tried: _Try, times: Timeline, state: Array, clock: Clock) -> _Try | 
         min(STEPPERS[tried.method].order, IMPACTS) if new.events else STEPPERS[tried.method].order
     )
     falls = min(falls, 2.0**order) if tried.change < math.inf else 1.0
-    told = SAFETY * change / (falls - 1.0) if falls > SAFETY + 1.0 else change
-    error = max(told, ROUNDING)
+    estimate = SAFETY * change / (falls - 1.0) if falls > SAFETY + 1.0 else change
+    error = max(estimate, ROUNDING)
     spent = tried.spent + new.rates
     return replace(tried, longest=half, motion=new, change=change, error=error, spent=spent)
 
@@ -253,7 +255,7 @@ def exact_motion(
     top = float(modes(linear(pair, level), float(np.max(pair.wave.after))).frequencies[-1])
     scale = np.append(np.ones(n), np.full(n, top))
     rates = {float(k): _rates(pair, level, float(k), scale) for k in np.unique(times.k0)}
-    now, made = np.append(np.asarray(state, float) / scale, 1.0), dict[tuple[float, str], Array]()
+    now, maps = np.append(np.asarray(state, float) / scale, 1.0), dict[tuple[float, str], Array]()
     out, clock = np.empty((len(times.starts), 2 * n)), clock or Clock()
     done = len(out)
     for i, (length, k) in enumerate(zip(times.lengths, times.k0, strict=True)):
@@ -261,9 +263,9 @@ def exact_motion(
             done = i
             break
         key = float(k), f"{length:.12e}"
-        if key not in made:
-            made[key] = expm(rates[key[0]] * length)
-        now = made[key] @ now
+        if key not in maps:
+            maps[key] = expm(rates[key[0]] * length)
+        now = maps[key] @ now
         out[i] = now[:-1] * scale
         clock.evaluations += 1
     whole = np.concatenate([[state], out])[times.asked[times.asked < done] + 1]
@@ -273,10 +275,10 @@ def exact_motion(
 def _rates(pair: MovingPair, level: str, k: float, scale: Array) -> Array:
     """Return A (2 n + 1, 2 n + 1) of y' = A y at a stiffness k [N/mm], column by column."""
     n, law = LEVELS[level]
-    found = np.zeros((2 * n + 1, 2 * n + 1))
+    matrix = np.zeros((2 * n + 1, 2 * n + 1))
     for j in range(2 * n + 1):
         unit = np.eye(2 * n + 1)[j, :-1] * scale
-        found[:n, j], found[n:-1, j] = unit[n:], law(pair, k, unit[:n], unit[n:])
-    found[:-1] /= scale[:, None]
-    found[:-1, :-1] -= found[:-1, -1:]
-    return found
+        matrix[:n, j], matrix[n:-1, j] = unit[n:], law(pair, k, unit[:n], unit[n:])
+    matrix[:-1] /= scale[:, None]
+    matrix[:-1, :-1] -= matrix[:-1, -1:]
+    return matrix

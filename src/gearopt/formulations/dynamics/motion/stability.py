@@ -33,21 +33,21 @@ def monodromy(system: Linear, wave: Wave, frequency: float, clock: Clock | None 
     if wave.stepped:
         from scipy.linalg import expm
 
-        found = np.eye(2 * system.mass.size)
+        over_period = np.eye(2 * system.mass.size)
         for length, k in zip(wave.lengths, wave.after, strict=True):
-            found = expm(_rates(system, float(k), top) * (length / frequency)) @ found
-        return found
-    found, part = np.eye(2 * system.mass.size), np.empty((2 * system.mass.size,) * 2)
+            over_period = expm(_rates(system, float(k), top) * (length / frequency)) @ over_period
+        return over_period
+    over_period, part = np.eye(2 * system.mass.size), np.empty((2 * system.mass.size,) * 2)
     given = 1.0 / system.mass, system.stiffness, system.damping, system.direction
     longest = 2.0 * math.pi / top / STEPS_PER_PERIOD
     for begin, pieces in _slices(wave, 1.0 / frequency / longest):
         if begin and clock is not None and not clock.tell():
-            return np.full(found.shape, math.nan)
+            return np.full(over_period.shape, math.nan)
         pieces = *pieces, wave.cosines, wave.sines
         kernel(KERNEL).monodromy(eighth(), given, pieces, 1.0 / frequency, longest, begin, part)
-        found = part @ found
+        over_period = part @ over_period
     scale = np.append(np.ones(system.mass.size), np.full(system.mass.size, top))
-    return np.asarray(found * scale / scale[:, None])
+    return np.asarray(over_period * scale / scale[:, None])
 
 
 def _slices(wave: Wave, steps: float) -> Iterator[tuple[float, Any]]:
@@ -75,21 +75,21 @@ def ready(system: Linear, wave: Wave, clock: Clock) -> None:
 
 def multipliers(system: Linear, wave: Wave, frequency: float) -> NDArray[np.complex128]:
     """Return the Floquet multipliers, (2 n,), the largest first; any beyond 1 is unstable."""
-    found = np.linalg.eigvals(monodromy(system, wave, frequency)).astype(complex)
-    return np.asarray(found[np.argsort(-np.abs(found))])
+    eigenvalues = np.linalg.eigvals(monodromy(system, wave, frequency)).astype(complex)
+    return np.asarray(eigenvalues[np.argsort(-np.abs(eigenvalues))])
 
 
 def _one_by_one(system: Linear, wave: Wave, frequencies: Array, clock: Clock | None) -> Array:
     """Return the largest |multiplier| at the first mesh frequencies, until the clock stops."""
-    found = list[float]()
+    largest_each = list[float]()
     for frequency in frequencies:
         if clock is not None and not clock.tell():
             break
         over = monodromy(system, wave, float(frequency), clock)
         if np.isnan(over).any() and clock is not None and clock.stopped:
             break
-        found.append(float(np.max(np.abs(np.linalg.eigvals(over)))))
-    return np.array(found)
+        largest_each.append(float(np.max(np.abs(np.linalg.eigvals(over)))))
+    return np.array(largest_each)
 
 
 def largest(system: Linear, wave: Wave, frequencies: Array, clock: Clock | None = None) -> Array:
@@ -99,15 +99,15 @@ def largest(system: Linear, wave: Wave, frequencies: Array, clock: Clock | None 
     """
     if not wave.stepped:
         return _one_by_one(system, wave, frequencies, clock)
-    top, found = _top(system, wave), np.eye(2 * system.mass.size, dtype=complex)
+    top, over_period = _top(system, wave), np.eye(2 * system.mass.size, dtype=complex)
     for length, k in zip(wave.lengths, wave.after, strict=True):
         rates = _rates(system, float(k), top)
         values, vectors = np.linalg.eig(rates)
         if np.linalg.cond(vectors) > CONDITION:
             return _one_by_one(system, wave, frequencies, clock)
         grown = np.exp(values * length / np.asarray(frequencies)[:, None])
-        found = (vectors * grown[:, None, :]) @ np.linalg.inv(vectors) @ found
-    return np.asarray(np.max(np.abs(np.linalg.eigvals(found)), axis=-1))
+        over_period = (vectors * grown[:, None, :]) @ np.linalg.inv(vectors) @ over_period
+    return np.asarray(np.max(np.abs(np.linalg.eigvals(over_period)), axis=-1))
 
 
 def stability_map(
@@ -145,8 +145,8 @@ def _top(system: Linear, wave: Wave) -> float:
 def _rates(system: Linear, k: float, top: float) -> Any:
     """Return A of y' = A y, velocities divided by `top`."""
     n, inverse = system.mass.size, 1.0 / system.mass[:, None]
-    found = np.zeros((2 * n, 2 * n))
-    found[:n, n:] = top * np.eye(n)
-    found[n:, :n] = -inverse * system.with_mesh(k) / top
-    found[n:, n:] = -inverse * system.damping
-    return found
+    matrix = np.zeros((2 * n, 2 * n))
+    matrix[:n, n:] = top * np.eye(n)
+    matrix[n:, :n] = -inverse * system.with_mesh(k) / top
+    matrix[n:, n:] = -inverse * system.damping
+    return matrix

@@ -43,8 +43,8 @@ class Timeline:
 
     def between(self, first: int, last: int) -> tuple[Array, Array, Array, Array]:
         """Return starts, lengths, k0 and k1 of the intervals from first to last - 1."""
-        one = slice(first, last)
-        return self.starts[one], self.lengths[one], self.k0[one], self.k1[one]
+        part = slice(first, last)
+        return self.starts[part], self.lengths[part], self.k0[part], self.k1[part]
 
     def counts(self, longest: float) -> NDArray[np.int64]:
         """Return how many equal steps of at most `longest` [s] each interval takes."""

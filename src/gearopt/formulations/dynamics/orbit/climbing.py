@@ -61,10 +61,10 @@ class Climbed(NamedTuple):
 
 def posed(task: Task, methods: dict[str, Any] | None = None) -> Problem:
     """Return the problem of a task: with collocated motions where teeth may part."""
-    own = {"screened": _guess} if methods is None else methods
+    solvers = {"screened": _guess} if methods is None else methods
     if task.backlash is None:
-        return orbit_text.problem(task, own)
-    return parting_text.problem(task, own)
+        return orbit_text.problem(task, solvers)
+    return parting_text.problem(task, solvers)
 
 
 def begun(task: Task, point: Sequence[float]) -> Problem:
@@ -114,8 +114,8 @@ def _value(problem: Problem, found: Outcome) -> float | None:
 def _contact(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbed | None:
     if clock.over:
         return _with_its_motions(task, problem, point)
-    made = _ipopt(problem, orbit_text.start(task, problem, point), clock)
-    return made and Climbed(problem, made[1], made[0], made[0])
+    optimum = _ipopt(problem, orbit_text.start(task, problem, point), clock)
+    return optimum and Climbed(problem, optimum[1], optimum[0], optimum[0])
 
 
 def _steadied(task: Task, problem: Problem, found: Climbed, clock: Clock) -> Climbed | None:
@@ -127,12 +127,12 @@ def _steadied(task: Task, problem: Problem, found: Climbed, clock: Clock) -> Cli
     cuts = list[Cut]()
     while largest_multiplier(task, found.point, clock) > _most(task) + WITHIN:
         cuts += _tangents(task, found.point, clock)[:1]
-        made = None
+        optimum = None
         if len(cuts) <= PEAKS and not clock.over:
-            made = _contact(task, with_cuts(problem, cuts), found.point, clock)
-        if made is None:
+            optimum = _contact(task, with_cuts(problem, cuts), found.point, clock)
+        if optimum is None:
             return None
-        found = made
+        found = optimum
     worth = found.objective < WORTH * clock.best
     return _improved(task, problem, found, clock) if cuts and worth else found
 
@@ -152,20 +152,24 @@ def _improved(task: Task, problem: Problem, best: Climbed, clock: Clock) -> Clim
             for unit in units
             for sign in (1.0, -1.0)
         ]
-        made: Climbed | None = best
+        stepped: Climbed | None = best
         for _ in range(CORRECTED):  # a step that ends beyond the limit is taken again from there
-            assert made is not None
-            rows = [*_tangents(task, made.point, clock), *region]
+            assert stepped is not None
+            rows = [*_tangents(task, stepped.point, clock), *region]
             if clock.over:
                 return best
-            made = _contact(task, with_cuts(problem, rows), made.point, clock)
-            if made is None or largest_multiplier(task, made.point, clock) <= _most(task) + WITHIN:
+            stepped = _contact(task, with_cuts(problem, rows), stepped.point, clock)
+            if (
+                stepped is None
+                or largest_multiplier(task, stepped.point, clock) <= _most(task) + WITHIN
+            ):
                 break
         within = (
-            made is not None and largest_multiplier(task, made.point, clock) <= _most(task) + WITHIN
+            stepped is not None
+            and largest_multiplier(task, stepped.point, clock) <= _most(task) + WITHIN
         )
-        if made is not None and within and made.objective < (1.0 - GAIN) * best.objective:
-            best = made
+        if stepped is not None and within and stepped.objective < (1.0 - GAIN) * best.objective:
+            best = stepped
         else:
             reach /= 4.0
     rows = _tangents(task, best.point, clock)
@@ -231,8 +235,8 @@ def largest_multiplier(task: Task, point: Array, clock: Clock | None = None) -> 
 def _multipliers(task: Task, point: Array, clock: Clock | None) -> Array:
     speeds = np.linspace(task.speeds_rpm[0], task.speeds_rpm[-1], SPEEDS_CHECKED)
     pair = pair_of(task, point, float(speeds[0]))
-    found = largest(linear(pair, "line"), pair.wave, task.teeth * speeds / 60.0, clock)
-    return np.pad(found, (0, SPEEDS_CHECKED - len(found)), constant_values=np.inf)
+    magnitudes = largest(linear(pair, "line"), pair.wave, task.teeth * speeds / 60.0, clock)
+    return np.pad(magnitudes, (0, SPEEDS_CHECKED - len(magnitudes)), constant_values=np.inf)
 
 
 def multiplier_slopes(task: Task, point: Array, clock: Clock | None = None) -> Array:
@@ -259,20 +263,20 @@ def _parting(task: Task, problem: Problem, point: Array, clock: Clock) -> Climbe
     speeds = np.array(task.speeds_rpm)
     motions = worst_motions(task, point, speeds, clock)
     for _ in range(AGAIN if motions else 0):
-        start, made = parting_text.start(task, problem, point, motions), None
+        start, optimum = parting_text.start(task, problem, point, motions), None
         for width in parting_text.WIDTHS:
-            made = _ipopt(parting_text.rounded(task, problem, width), start, clock)
-            if made is None or clock.over:
+            optimum = _ipopt(parting_text.rounded(task, problem, width), start, clock)
+            if optimum is None or clock.over:
                 break
-            start = _point(made[1])
-        if made is None:
+            start = _point(optimum[1])
+        if optimum is None:
             break
-        point = _point(made[1])[:5]
+        point = _point(optimum[1])[:5]
         motions = worst_motions(task, point, speeds, clock)
         judged = max((size(task, motion) for motion in motions), default=np.inf)
         if best is None or judged < best.judged:
-            best = Climbed(problem, made[1], made[0], judged)
-        if judged <= (1.0 + JUDGE_MARGIN) * made[0] or clock.over:
+            best = Climbed(problem, optimum[1], optimum[0], judged)
+        if judged <= (1.0 + JUDGE_MARGIN) * optimum[0] or clock.over:
             break
     return best
 

@@ -79,12 +79,12 @@ def mesh_force(moving: Moving, k: Any, delta: Any, rate: Any) -> Any:
     the least of x and 0; the same of the coast flank at backlash - delta. The error of p is w/2 at
     0, and w^2/(4 |x|) far from it.
     """
-    found = moving.drag * rate
+    force = moving.drag * rate
     for sign, gap in ((1.0, delta), (-1.0, moving.backlash - delta)):
         root = np.sqrt(gap**2 + moving.width**2)
         share = 0.5 * (1.0 - gap / root)
-        found = found + sign * k * 0.5 * (gap - root) + share * moving.damping * rate
-    return found
+        force = force + sign * k * 0.5 * (gap - root) + share * moving.damping * rate
+    return force
 
 
 class Timing(NamedTuple):
@@ -170,12 +170,12 @@ def _motion(
     """Return the equations of motion at a point, forces over the load."""
     (q, v, a), n = stage, moving.size
     force = mesh_force(moving, k, q[n // 2], rate * v[n // 2])
-    found, apart = [], 0.0
+    equations, apart = [], 0.0
     for i, sign, (mass, held, damped) in zip((0, 2), (1.0, -1.0), moving.axes, strict=False):
         pulled = held * q[i] + damped * rate * v[i]
-        found.append((rate**2 * mass * a[i] + pulled - sign * force) / MICRO / moving.load)
+        equations.append((rate**2 * mass * a[i] + pulled - sign * force) / MICRO / moving.load)
         apart = apart - sign * rate**2 * a[i]
     shaken = moving.shaken(phase) if moving.shaken is not None else 0.0
     turned = rate**2 * a[n // 2] - apart - shaken
-    found.append((moving.mesh_mass * turned + force) / MICRO / moving.load + 1.0)
-    return found
+    equations.append((moving.mesh_mass * turned + force) / MICRO / moving.load + 1.0)
+    return equations

@@ -45,11 +45,13 @@ def impossible(task: Task) -> Outcome | None:
     over = {n: float(v) for n, v in least_limits(task).items() if v > 1.0 + FEASIBLE}
     if not over:
         return None
-    told = [f"{WORDS[n]} is {v:.4g} times what is allowed" for n, v in over.items() if n != "ramp"]
-    told += [f"{WORDS['ramp']} is {over['ramp'] - 1.0:.4g} too long"] if "ramp" in over else []
+    excesses = [
+        f"{WORDS[n]} is {v:.4g} times what is allowed" for n, v in over.items() if n != "ramp"
+    ]
+    excesses += [f"{WORDS['ramp']} is {over['ramp'] - 1.0:.4g} too long"] if "ramp" in over else []
     proof: dict[str, Any] = {"method": "corner", "conflict": list(over), "sentence": SENTENCE}
     proof |= {"arithmetic": "double", "least_violation": max(over.values()) - 1.0}
-    return Outcome(None, infeasible=True, proof=proof, message="; ".join(told))
+    return Outcome(None, infeasible=True, proof=proof, message="; ".join(excesses))
 
 
 def limited(task: Task) -> Problem:

@@ -65,8 +65,8 @@ def methods(task: Task) -> dict[str, Callable[..., Outcome]]:
         clock = Clock(budget, watch)
         ends = climbed(task, problem, starts(task, screened(task, clock, seed), clock), clock)
         message = "no start led to a design"
-        found = ends[0].outcome if ends else Outcome(None, True, message=message)
-        return replace(found, finished=not clock.stopped, evaluations=clock.evaluations)
+        outcome = ends[0].outcome if ends else Outcome(None, True, message=message)
+        return replace(outcome, finished=not clock.stopped, evaluations=clock.evaluations)
 
     return {"screened": run}
 
@@ -93,10 +93,10 @@ def climbed(task: Task, problem: Problem, points: Array, clock: Clock) -> list[C
     """Return the local optima that designs (N, 5) lead to, the best first."""
     ends = []
     for point in points:
-        made = climb(task, problem, point, clock)
-        if made is not None:
-            ends.append(made)
-            clock.best = min(made.judged, clock.best)
+        summit = climb(task, problem, point, clock)
+        if summit is not None:
+            ends.append(summit)
+            clock.best = min(summit.judged, clock.best)
         if not clock.tell():
             break
     return sorted(ends, key=lambda end: end.judged)
@@ -218,10 +218,10 @@ def response_over_speed(
     point, speeds = np.array(values, float), dense(task)
     kb, ratio, ramp, width, rim = (float(v) for v in point)
     built = orbit_parts(task, kb, ratio, width, rim)
-    found, highest, repeats = _motions(task, point, speeds)
+    response, highest, repeats = _motions(task, point, speeds)
     coarse = np.linspace(speeds[0], speeds[-1], SPEEDS_BEFORE)
     grown = largest_multiplier_in_time(task, point, clock)
-    told = np.full(SPEEDS_BEFORE, np.nan) if clock.stopped else _before(task, before, coarse)
+    before_rms = np.full(SPEEDS_BEFORE, np.nan) if clock.stopped else _before(task, before, coarse)
     return Chosen(
         bearing_stiffness_N_per_mm=kb,
         contact_ratio=ratio,
@@ -234,9 +234,9 @@ def response_over_speed(
         speed_rpm=parts.columns(task.speeds_rpm),
         rounds=tuple(_record(one) for one in rounds),
         dense_rpm=parts.columns(speeds),
-        dense_mm=parts.columns(found / MICRO, 7),
-        before_mm=parts.gaps(np.interp(speeds, coarse, told), 7),
-        dense_maximum_mm=float(found.max()) / MICRO,
+        dense_mm=parts.columns(response / MICRO, 7),
+        before_mm=parts.gaps(np.interp(speeds, coarse, before_rms), 7),
+        dense_maximum_mm=float(response.max()) / MICRO,
         largest_multiplier=grown if math.isfinite(grown) else None,
         highest_mm=float(highest.max()) / MICRO,
         parting_speeds=int(np.sum(highest > 0.0)),

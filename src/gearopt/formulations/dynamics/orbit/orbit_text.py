@@ -34,13 +34,13 @@ Cut = tuple[Array, float]  # slopes (5,) and offset
 def shared(task: Task) -> tuple[Var, ...]:
     """Return the five variables, with the middle of their ranges as the guess."""
     low, high = task.box()
-    found = []
+    variables = []
     for k, name in enumerate(VARIABLES):
         log = name in LOGARITHMIC
         guess = math.sqrt(low[k] * high[k]) if log else 0.5 * (low[k] + high[k])
         key = f"optimise.{name}"
-        found.append(Var(name, UNITS[k], low[k], high[k], guess, log=log, key=key))
-    return tuple(found)
+        variables.append(Var(name, UNITS[k], low[k], high[k], guess, log=log, key=key))
+    return tuple(variables)
 
 
 def parameters(task: Task) -> tuple[Param, ...]:
@@ -106,15 +106,15 @@ def problem(task: Task, methods: dict[str, Any] | None = None) -> Problem:
 def _of_a_speed(task: Task) -> tuple[Var, ...]:
     """Return the variables of a speed: coefficients of delta, and its ends where they count."""
     largest = -LARGEST, LARGEST
-    own = [
+    variables = [
         Var("mean", "um", *largest, -15.0, search=True),
         Var("cosines", "um", *largest, 0.0, task.harmonics, search=True),
         Var("sines", "um", *largest, 0.0, task.harmonics, search=True),
     ]
     if task.measure == "peak_to_peak":
-        own += [Var("lowest", "um", *largest, -20.0, search=True)]
-        own += [Var("highest", "um", *largest, -10.0, search=True)]
-    return tuple(own)
+        variables += [Var("lowest", "um", *largest, -20.0, search=True)]
+        variables += [Var("highest", "um", *largest, -10.0, search=True)]
+    return tuple(variables)
 
 
 def _cut(x: Any, p: Any) -> tuple[Any, ...]:
@@ -216,15 +216,15 @@ def _as(x: Any, values: Array) -> Any:
 def start(task: Task, whole: Problem, point: Array) -> Array:
     """Return the point of the whole problem that a design (5,) and its own motions make."""
     count, speeds = task.harmonics, np.array(task.speeds_rpm)
-    found = fourier_coefficients(task, np.asarray(point)[None], speeds, count)
-    value, _ = measured(task, found)
+    coefficients = fourier_coefficients(task, np.asarray(point)[None], speeds, count)
+    value, _ = measured(task, coefficients)
     rows = []
-    for row in found[0] * MICRO:
-        own = [[row[count].real], 2.0 * row[count + 1 :].real, -2.0 * row[count + 1 :].imag]
+    for row in coefficients[0] * MICRO:
+        of_speed = [[row[count].real], 2.0 * row[count + 1 :].real, -2.0 * row[count + 1 :].imag]
         if task.measure == "peak_to_peak":
             delta = (wave_samples(count) @ row).real
-            own.append([delta.min(), delta.max()])
-        rows.append(np.concatenate(own))
+            of_speed.append([delta.min(), delta.max()])
+        rows.append(np.concatenate(of_speed))
     low, high, _ = whole.bounds()
-    made = np.concatenate([point, [value.max()], *rows])
-    return np.asarray(np.clip(made, low, high))
+    point_of_all = np.concatenate([point, [value.max()], *rows])
+    return np.asarray(np.clip(point_of_all, low, high))

@@ -72,17 +72,22 @@ def elements(task: Task) -> list[int]:
 
 def pieces(task: Task, ratio: Any, ramp: Any, single: Any) -> list[Piece]:
     """Return the pieces of all periods of a motion, each a share of the whole."""
-    one, two = single, (1.0 + PAIR_SHARE) * single
-    ends = [(one, two), (two, two), (two, one), (one, one)]
-    found = []
+    single_pair, two_pairs = single, (1.0 + PAIR_SHARE) * single
+    ends = [
+        (single_pair, two_pairs),
+        (two_pairs, two_pairs),
+        (two_pairs, single_pair),
+        (single_pair, single_pair),
+    ]
+    of_a_period = []
     for length, count, (low, high) in zip(lengths(ratio, ramp), elements(task), ends, strict=True):
 
         def stiffness(share: float, low: Any = low, high: Any = high) -> Any:
             return low + share * (high - low)
 
         shares = [k / count for k in range(count + 1)]
-        found.append(Piece(length / task.periods, shares, stiffness))
-    return found * task.periods
+        of_a_period.append(Piece(length / task.periods, shares, stiffness))
+    return of_a_period * task.periods
 
 
 def moving(task: Task, stiffness: Any, made: Parts, width: Any) -> Moving:
@@ -108,17 +113,21 @@ def problem(task: Task, methods: dict[str, Any] | None = None) -> Problem:
 
     def motion(x: Any, p: Any, row: Any) -> Terms:
         built = parts(task, x.bearing_stiffness, x.contact_ratio, x.face_width, x.rim)
-        found = collocated(
+        collocated_motion = collocated(
             moving(task, x.bearing_stiffness, built, p.width),
             pieces(task, x.contact_ratio, x.ramp, built.single),
             POINTS,
             x,
             Timing(row.period, rate(task)),
         )
-        mean = sum(w * d for w, d in zip(found.weights, found.delta, strict=True))
-        equal = {name: tuple(1.0 + r for r in rows) for name, rows in found.rows.items()}
+        mean = sum(
+            w * d for w, d in zip(collocated_motion.weights, collocated_motion.delta, strict=True)
+        )
+        equal = {
+            name: tuple(1.0 + r for r in rows) for name, rows in collocated_motion.rows.items()
+        }
         equal["mean"] = (1.0 + (mean - x.mean) / TENS,)
-        return Terms({}, {}, judged(task, x, found), equal)
+        return Terms({}, {}, judged(task, x, collocated_motion), equal)
 
     omega = 2.0 * math.pi * task.teeth / 60.0 * np.array(task.speeds_rpm)
     rows = {"period": 2.0 * math.pi * task.periods * rate(task) / omega}
@@ -131,16 +140,16 @@ def problem(task: Task, methods: dict[str, Any] | None = None) -> Problem:
 def _of_a_speed(task: Task) -> tuple[Var, ...]:
     """Return the variables of a speed: the mean, and the motion in its elements."""
     count, wide = 3 * sum(elements(task)) * task.periods, (-LARGEST, LARGEST)
-    own = [
+    variables = [
         Var("mean", "um", *wide, -15.0, search=True),
         Var("places", "um", *wide, 0.0, count, search=True),
         Var("speeds", "um", -LARGEST_RATE, LARGEST_RATE, 0.0, count, search=True),
         Var("bends", "um", -LARGEST_RATE, LARGEST_RATE, 0.0, count * POINTS, search=True),
     ]
     if task.measure == "peak_to_peak":
-        own += [Var("lowest", "um", *wide, -20.0, search=True)]
-        own += [Var("highest", "um", *wide, -10.0, search=True)]
-    return tuple(own)
+        variables += [Var("lowest", "um", *wide, -20.0, search=True)]
+        variables += [Var("highest", "um", *wide, -10.0, search=True)]
+    return tuple(variables)
 
 
 def rounded(task: Task, problem: Problem, width: float) -> Problem:
@@ -194,11 +203,11 @@ def _row(task: Task, pair: MovingPair, motion: Motion, cut: Sequence[Piece], law
     for i, sign, (mass, held, damped) in zip((0, 2), (1.0, -1.0), law.axes, strict=True):
         bends[:, i] = (sign * force - held * inner[:, i] - damped * inner[:, 3 + i]) / mass
     bends[:, 1] = bends[:, 2] - bends[:, 0] - (law.load * MICRO + force) / law.mesh_mass
-    own: list[Any] = [[weights @ inner[:, 1]], first[:, :3].ravel()]
-    own += [first[:, 3:].ravel() / unit, bends.ravel() / unit**2]
+    blocks: list[Any] = [[weights @ inner[:, 1]], first[:, :3].ravel()]
+    blocks += [first[:, 3:].ravel() / unit, bends.ravel() / unit**2]
     if task.measure == "peak_to_peak":
-        own.append([inner[:, 1].min(), inner[:, 1].max()])
-    return np.concatenate(own)
+        blocks.append([inner[:, 1].min(), inner[:, 1].max()])
+    return np.concatenate(blocks)
 
 
 HARMONICS = 20  # of motions in contact, and of the first guess of those that part
@@ -212,10 +221,10 @@ def worst_motions(task: Task, point: Array, speeds_rpm: Array, clock: Clock) -> 
     """
     pair = pair_of(task, point, float(speeds_rpm[0]))
     frequencies = task.teeth * np.asarray(speeds_rpm) / 60.0
-    own = Clock(replace(clock.left, evaluations=None), lambda event: clock.tell())
-    contacts = in_contact(pair, "line", frequencies, HARMONICS, own)
-    rising = followed(pair, "line", contacts, own)
-    falling = followed(pair, "line", contacts[::-1], own)[::-1]
+    unlimited = Clock(replace(clock.left, evaluations=None), lambda event: clock.tell())
+    contacts = in_contact(pair, "line", frequencies, HARMONICS, unlimited)
+    rising = followed(pair, "line", contacts, unlimited)
+    falling = followed(pair, "line", contacts[::-1], unlimited)[::-1]
     if min(len(rising), len(falling)) < len(speeds_rpm):
         return []
     return [

@@ -44,10 +44,10 @@ def narrowed(
         unit = space.unit(points)
         moves = step * rng.standard_normal((MOVES, *unit.shape))
         moved = within(task, space.points((unit + moves).reshape(-1, 5)))
-        found = merit(task, moved, clock)
-        if len(found) < len(moved):
+        merits = merit(task, moved, clock)
+        if len(merits) < len(moved):
             break
-        each = found.reshape(MOVES, -1)
+        each = merits.reshape(MOVES, -1)
         best, column = each.argmin(axis=0), np.arange(len(points))
         better = each[best, column] < value
         points[better] = moved.reshape(MOVES, -1, 5)[best, column][better]
@@ -60,15 +60,15 @@ def merit(task: Task, points: Array, clock: Clock) -> Array:
 
     Of the first designs alone where the clock stops.
     """
-    found, text = [np.empty(0)], reduced(task)
+    merits, text = [np.empty(0)], reduced(task)
     for first in range(0, len(points), CHUNK):
         part = points[first : first + CHUNK]
         value, excess = violation(text, part)
-        found.append(np.log(value) + PENALTY * excess)
+        merits.append(np.log(value) + PENALTY * excess)
         clock.evaluations += len(part)
         if not clock.tell():
             break
-    return np.concatenate(found)
+    return np.concatenate(merits)
 
 
 def within(task: Task, points: Array) -> Array:

@@ -158,10 +158,10 @@ def samples(harmonics: int) -> int:
 
 def worst(task: Task, point: Array, speeds_rpm: Array, harmonics: int) -> Array:
     """Return the measure [um] of one design at speeds (K,)."""
-    found = measured(
+    measures = measured(
         task, fourier_coefficients(task, np.asarray(point)[None], speeds_rpm, harmonics)
     )[0]
-    return np.asarray(found[0])
+    return np.asarray(measures[0])
 
 
 def pair_of(task: Task, point: Sequence[float] | Array, speed_rpm: float) -> MovingPair:

@@ -72,10 +72,10 @@ class Profile:
     def place(self) -> Any:
         """Numbers of points (p, n), -1 of pairs that are not in contact."""
         there = self.mesh.cycle.present
-        found = np.searchsorted(
+        numbers = np.searchsorted(
             self.points, np.where(there, self.mesh.cycle.positions, 0.0) - POSITION_TIE
         )
-        return np.where(there, found, -1)
+        return np.where(there, numbers, -1)
 
     @cached_property
     def middle(self) -> int:
@@ -93,13 +93,13 @@ class Profile:
         size, middle = len(self.points), self.middle
         steps = np.diff(np.eye(size), axis=0)  # rises from point to point
         steps[middle:] *= -1.0
-        found = [steps]
+        blocks = [steps]
         if self.shape.convex:
             slopes = np.diff(np.eye(size), axis=0) / np.diff(self.points)[:, None]
             bends = -np.diff(slopes, axis=0) * np.diff(self.points).max()
             at = np.arange(1, size - 1)
-            found.append(bends[at != middle])
-        return np.vstack(found)
+            blocks.append(bends[at != middle])
+        return np.vstack(blocks)
 
     @cached_property
     def upper(self) -> Array:
@@ -272,9 +272,9 @@ class Program:
     @cached_property
     def cost(self) -> Array:
         """Costs: of the peak, and of leaving ranges."""
-        found = np.zeros(self.columns[2])
-        found[-2:] = 1.0, PENALTY
-        return found
+        costs = np.zeros(self.columns[2])
+        costs[-2:] = 1.0, PENALTY
+        return costs
 
     def solved(self, low: Array, high: Array) -> tuple[float, Array]:
         """Return a bound [um] of a node, from multipliers, and the program's point."""
@@ -323,7 +323,7 @@ class _Search:
 
     def cuts(self, node: Node) -> list[tuple[int, float]]:
         """Return positions and kinks [um] where approaches are too low, the worst first."""
-        program, found = self.program, dict[tuple[int, float], float]()
+        program, lacking = self.program, dict[tuple[int, float], float]()
         first, second = program.profile.place[program.double].T
         ahead = node.point[first] - node.point[second]
         for q in range(len(program.loads)):
@@ -333,12 +333,12 @@ class _Search:
             lacks = program.law(q, ahead) + node.point[second]
             lacks = np.maximum(lacks - node.point[program.at(q, program.double)], 0.0)
             for side in range(2):
-                own = np.where(inside[side] & (away[side] <= away[1 - side]), lacks, 0.0)
-                if own.max(initial=0.0) > SLACK:
-                    half = int(np.searchsorted(own.cumsum(), 0.5 * own.sum()))
-                    for k in (int(own.argmax()), half):
-                        found[k, float(kinks[side, k])] = float(own[k])
-        return sorted(found, key=lambda cut: -found[cut])[:TRIED]
+                shortfall = np.where(inside[side] & (away[side] <= away[1 - side]), lacks, 0.0)
+                if shortfall.max(initial=0.0) > SLACK:
+                    half = int(np.searchsorted(shortfall.cumsum(), 0.5 * shortfall.sum()))
+                    for k in (int(shortfall.argmax()), half):
+                        lacking[k, float(kinks[side, k])] = float(shortfall[k])
+        return sorted(lacking, key=lambda cut: -lacking[cut])[:TRIED]
 
     def halves(self, node: Node, cut: tuple[int, float]) -> list[Node]:
         """Nodes that a cut leaves: d falls along the travel, so one range narrows the others."""
@@ -393,12 +393,12 @@ def search(profile: Profile) -> Callable[..., Outcome]:
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Cut ranges at kinks until no node may hold a better relief; the seed changes nothing."""
         clock = Clock(budget, watch)
-        found = _Search(Program(profile), clock)
-        bound, ended = found.run()
+        searching = _Search(Program(profile), clock)
+        bound, ended = searching.run()
         said = SENTENCE if ended else STOPPED
         proof = {"method": "patterns", "programs": clock.evaluations, "sentence": said}
         proof |= {"scope": profile.mesh.sampled}
-        x, spent = found.removed / MICRO, clock.evaluations
+        x, spent = searching.removed / MICRO, clock.evaluations
         return Outcome(x, ended, bound=max(bound, 0.0) / MICRO, proof=proof, evaluations=spent)
 
     return run

@@ -127,9 +127,9 @@ class Criteria:
         """Return the criteria of one of the loads, counted from 1."""
         k = number - 1
         forces, approach, gaps = self.sharing
-        own = slice(k, k + 1)
-        part = Sharing(forces[..., own, :, :], approach[..., own, :], gaps[..., own, :, :])
-        return Criteria(replace(self.mesh, loads=self.mesh.loads[own]), part)
+        only = slice(k, k + 1)
+        part = Sharing(forces[..., only, :, :], approach[..., only, :], gaps[..., only, :, :])
+        return Criteria(replace(self.mesh, loads=self.mesh.loads[only]), part)
 
     @property
     def peak_to_peak(self) -> Array:

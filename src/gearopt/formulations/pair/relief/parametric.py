@@ -94,8 +94,8 @@ def _objective_and_limits(mesh: Mesh, name: str, limits: dict[str, float]) -> Go
 
     def which(of: str) -> Any:
         head, _, number = of.partition("_at_")
-        own = loads == int(number) if number else loads > 0
-        return np.array([own & (head == sort) for sort in PROVEN])
+        counted = loads == int(number) if number else loads > 0
+        return np.array([counted & (head == sort) for sort in PROVEN])
 
     ends = [np.where(which(of), MICRO * most, np.inf) for of, most in limits.items()]
     return Goal(which(name), np.min([np.full((2, len(loads)), np.inf), *ends], axis=0))

@@ -69,21 +69,21 @@ def _repeat(
 ) -> Repeat:
     """Return the positions with so many pairs, at all loads."""
     there = mesh.cycle.present[rows]
-    own = MICRO * (mesh.compliances - mesh.coupling)[rows][there].reshape(-1, pairs)
+    uncoupled = MICRO * (mesh.compliances - mesh.coupling)[rows][there].reshape(-1, pairs)
     tips = [x[rows][there].reshape(-1, pairs) for x in mesh.from_tips]
     loads, data = mesh.loads, dict[str, Array]()
     for i in range(pairs):
-        data[f"own{i}"] = np.concatenate([w * own[:, i] for w in loads])
+        data[f"own{i}"] = np.concatenate([w * uncoupled[:, i] for w in loads])
         for gear in range(2):
             data[f"tip{gear}{i}"] = np.tile(tips[gear][:, i], len(loads))
     for q in range(len(loads)):
-        data[f"at{q}"] = np.repeat(np.arange(len(loads)) == q, len(own)).astype(float)
+        data[f"at{q}"] = np.repeat(np.arange(len(loads)) == q, len(uncoupled)).astype(float)
 
     def evaluate(x: Any, p: Any, row: Any) -> Terms:
         shares, delta = each(getattr(x, f"share{pairs}")), getattr(x, f"delta{pairs}")
         apart = [_removed(x, p, row, i, exponents) for i in range(pairs)]
-        own = [getattr(row, f"own{i}") for i in range(pairs)]
-        gaps = [k * f + e - delta for k, f, e in zip(own, shares, apart, strict=True)]
+        uncoupled = [getattr(row, f"own{i}") for i in range(pairs)]
+        gaps = [k * f + e - delta for k, f, e in zip(uncoupled, shares, apart, strict=True)]
         low = sum(getattr(row, f"at{q}") * v for q, v in enumerate(each(x.low)))
         defines = {
             "open": tuple(1.0 - gap for gap in gaps),
@@ -100,11 +100,11 @@ def _repeat(
 
 def _removed(x: Any, p: Any, row: Any, pair: int, exponents: tuple[float, float]) -> Any:
     """Depth that both gears' reliefs remove from a pair [um], its beginning rounded."""
-    found = 0.0
+    depth = 0.0
     for gear, power in enumerate(exponents):
         u = 1.0 - getattr(row, f"tip{gear}{pair}") / x.length[gear]
-        found = found + x.amount[gear] * (0.5 * (u + np.sqrt(u**2 + p.smoothing**2))) ** power
-    return found
+        depth = depth + x.amount[gear] * (0.5 * (u + np.sqrt(u**2 + p.smoothing**2))) ** power
+    return depth
 
 
 def local(mesh: Mesh, exponents: tuple[float, float]) -> Callable[..., Outcome]:
@@ -118,10 +118,10 @@ def local(mesh: Mesh, exponents: tuple[float, float]) -> Callable[..., Outcome]:
             if k >= STARTS and budget.seconds is None and budget.evaluations is None:
                 break
             x = _followed(posed, _point(mesh, posed, start, exponents), clock)
-            found = np.clip(np.array([*x[:2] / MICRO, *x[2:4]]), low, high)
-            value = float(problem.batch(found[None]).F[0, 0])
+            local_point = np.clip(np.array([*x[:2] / MICRO, *x[2:4]]), low, high)
+            value = float(problem.batch(local_point[None]).F[0, 0])
             if best is None or value < clock.best:
-                best, clock.best = found, value
+                best, clock.best = local_point, value
             if not clock.tell():
                 break
         return Outcome(best, not clock.stopped, evaluations=clock.evaluations)
@@ -153,8 +153,8 @@ def _point(mesh: Mesh, posed: Problem, start: Array, exponents: tuple[float, flo
     there = mesh.cycle.present
     for repeat in posed.repeats:
         rows = there.sum(axis=1) == repeat.variables[0].size
-        own = shares[:, rows][:, there[rows]].reshape(len(loads) * int(rows.sum()), -1)
-        parts.append(np.hstack([own, delta[:, rows].reshape(-1, 1)]).ravel())
+        forces = shares[:, rows][:, there[rows]].reshape(len(loads) * int(rows.sum()), -1)
+        parts.append(np.hstack([forces, delta[:, rows].reshape(-1, 1)]).ravel())
     return np.concatenate(parts)
 
 

@@ -128,19 +128,23 @@ def search(mesh: Mesh, exponents: tuple[float, float], goal: Goal) -> Callable[.
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Halve boxes until none may hold a better relief; the seed changes nothing."""
         clock = Clock(budget, watch)
-        made, code = numbers(mesh, *problem.bounds()[:2], exponents), kernel(KERNEL)
+        mesh_numbers, code = numbers(mesh, *problem.bounds()[:2], exponents), kernel(KERNEL)
         ones = np.ones(goal.most.shape)
-        if not compiled(lambda: made.bound(ones, made.low, made.high, 0.0), (code.bound,), watch):
+        if not compiled(
+            lambda: mesh_numbers.bound(ones, mesh_numbers.low, mesh_numbers.high, 0.0),
+            (code.bound,),
+            watch,
+        ):
             return Outcome(None, False, message=UNREADY)
         clock.start = Clock().start
-        known = _allowed(made, goal, clock) if goal.limited else _first(made, goal)
+        known = _allowed(mesh_numbers, goal, clock) if goal.limited else _first(mesh_numbers, goal)
         if isinstance(known, Outcome):
             return known
-        point, bound, ended = _searched(made, goal, clock, *known)
+        point, bound, ended = _searched(mesh_numbers, goal, clock, *known)
         said = SENTENCE if ended else STOPPED
         proof = {"method": "boxes", "boxes": clock.evaluations, "sentence": said}
         proof |= {"scope": mesh.sampled}
-        x, spent = made.variables(point), clock.evaluations
+        x, spent = mesh_numbers.variables(point), clock.evaluations
         lowest = max(bound, 0.0) / MICRO if ended or not goal.limited else None  # never below 0
         return Outcome(x, ended, bound=lowest, proof=proof, evaluations=spent)
 

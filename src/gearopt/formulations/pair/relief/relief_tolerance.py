@@ -46,10 +46,10 @@ class Tolerance:
 
     def moved(self, nominal: Any, parts: Any) -> Array:
         """Return points (..., 4) [mm] that lie so many half widths from the nominal ones."""
-        found = nominal + self.widths * parts
+        points = nominal + self.widths * parts
         shortest = SHORTEST * np.asarray(nominal)[..., 2:]
         return np.concatenate(
-            [np.maximum(found[..., :2], 0.0), np.maximum(found[..., 2:], shortest)], axis=-1
+            [np.maximum(points[..., :2], 0.0), np.maximum(points[..., 2:], shortest)], axis=-1
         )
 
 
@@ -149,8 +149,8 @@ def robust_problem(mesh: Mesh, ranges: Ranges, tolerance: Tolerance) -> Problem:
     def evaluate(x: Any, p: Any) -> Terms:
         nominal = np.stack(np.broadcast_arrays(*x.amount, *x.length), axis=-1)
         points = tolerance.moved(nominal[..., None, :], signs)
-        found = _values(mesh, points, ranges.exponents)
-        report: Mapping[str, Any] = {"nominal": found[..., 0]}
-        return Terms({"worst_peak_to_peak": found.max(axis=-1)}, report=report)
+        values = _values(mesh, points, ranges.exponents)
+        report: Mapping[str, Any] = {"nominal": values[..., 0]}
+        return Terms({"worst_peak_to_peak": values.max(axis=-1)}, report=report)
 
     return Problem("robust relief", variables(ranges), (), evaluate, vectorised=True)

@@ -31,8 +31,8 @@ def tip_amounts(
     behind = np.arange(1, int(path.transverse_ratio) + 1) * path.base_pitch
     rows = (path.end - behind, path.start + behind)
     rows = tuple(s[(s >= path.start) & (s <= path.end)] for s in rows)
-    found = [share(compliance(s), np.zeros(len(s)), load, coupling).approach for s in rows]
-    pinion, wheel = (float(delta) - coupling * load for delta in found)
+    approaches = [share(compliance(s), np.zeros(len(s)), load, coupling).approach for s in rows]
+    pinion, wheel = (float(delta) - coupling * load for delta in approaches)
     return pinion, wheel
 
 

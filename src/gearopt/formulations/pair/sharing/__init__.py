@@ -30,8 +30,8 @@ def problem(compliances: Any, separations: Any, load: float, coupling: float = 0
     def evaluate(x: Any, p: Any) -> Terms:
         shares, c, e = ([a] if count == 1 else list(a) for a in (x.f, p.c, p.e))
         whole = sum(f + 0.0 for f in shares)
-        own = sum((soft - p.c12) * f**2 for soft, f in zip(c, shares, strict=True))
-        energy = 0.5 * p.W * (own + p.c12 * whole**2)
+        uncoupled = sum((soft - p.c12) * f**2 for soft, f in zip(c, shares, strict=True))
+        energy = 0.5 * p.W * (uncoupled + p.c12 * whole**2)
         energy = energy + sum(apart * f for apart, f in zip(e, shares, strict=True))
         return Terms(
             {"energy": energy},
@@ -50,9 +50,9 @@ def problem(compliances: Any, separations: Any, load: float, coupling: float = 0
 def conic(compliances: Any, separations: Any, load: float, coupling: float = 0.0) -> Conic:
     """Pose the sharing for `conic`: products of parameters are parameters of their own (DPP)."""
     count = len(compliances)
-    own = load * (np.asarray(compliances, float) - coupling)
+    energies = load * (np.asarray(compliances, float) - coupling)
     parameters = (
-        Param("root", "mm^(1/2)", tuple(np.sqrt(own)), count),
+        Param("root", "mm^(1/2)", tuple(np.sqrt(energies)), count),
         Param("e", "mm", tuple(np.asarray(separations, float)), count),
         Param("common", "mm^(1/2)", float(np.sqrt(load * coupling))),
     )
@@ -61,9 +61,9 @@ def conic(compliances: Any, separations: Any, load: float, coupling: float = 0.0
         import cvxpy as cp
 
         shares = cp.reshape(x.f, (count,), order="C")
-        own = cp.sum_squares(cp.multiply(p.root, shares))
+        uncoupled = cp.sum_squares(cp.multiply(p.root, shares))
         apart = cp.sum(cp.multiply(p.e, shares))
-        energy = 0.5 * (own + cp.square(p.common * cp.sum(shares))) + apart
+        energy = 0.5 * (uncoupled + cp.square(p.common * cp.sum(shares))) + apart
         return Terms(
             {"energy": energy}, {"pull": 1.0 - shares}, equal={"equilibrium": cp.sum(shares)}
         )

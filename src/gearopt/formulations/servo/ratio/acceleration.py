@@ -53,13 +53,13 @@ def acceleration(drive: Drive, load_speed: float = 0.0) -> Problem:
         return _exact(drive.of(values), values.get("load_speed", 0.0))
 
     if line or capped:
-        own = (
+        parameters = (
             Param("load_speed", "rad/s", load_speed, key="duty.load_speed", role="given"),
             *drive.parameters(),
         )
     else:
-        own = drive.parameters("no_load_speed", "speed_limit")
-    return Problem("ratio", variables, own, evaluate, methods={"exact": exact})
+        parameters = drive.parameters("no_load_speed", "speed_limit")
+    return Problem("ratio", variables, parameters, evaluate, methods={"exact": exact})
 
 
 def _speeds(drive: Drive) -> tuple[float, float]:
@@ -115,7 +115,7 @@ def _stationary(drive: Drive, load_speed: float) -> float:
 def law_of(drive: Drive, load_speed: float, ratio: float) -> float:
     """Return the acceleration [rad/s2] of the drive's load at a load speed [rad/s] and ratio."""
     slope = torque_slope(drive.torque, load_speed, drive.no_load_speed)
-    found: float = load_acceleration(
+    rate: float = load_acceleration(
         ratio,
         drive.load_inertia,
         drive.inertia,
@@ -124,7 +124,7 @@ def law_of(drive: Drive, load_speed: float, ratio: float) -> float:
         drive.efficiency,
         slope,
     )
-    return found
+    return rate
 
 
 def _exact(drive: Drive, load_speed: float) -> Outcome:
@@ -162,10 +162,10 @@ def standstill(drive: Drive, load_speed: float, ratio: float, best: float) -> st
 
 def unopposed(drive: Drive, ratio: float) -> float:
     """Return the acceleration [rad/s2] at a ratio without friction and falling line."""
-    found: float = load_acceleration(
+    rate: float = load_acceleration(
         ratio, drive.load_inertia, drive.inertia, drive.net_torque, 0.0, drive.efficiency
     )
-    return found
+    return rate
 
 
 def proof(root: bool = False) -> dict[str, Any]:
@@ -181,8 +181,8 @@ def proof(root: bool = False) -> dict[str, Any]:
 
 def impossible(reason: str) -> Outcome:
     """Outcome for a drive that cannot meet its duty."""
-    found = proof() | {"reason": reason, "sentence": f"Proof: {reason}."}
-    return Outcome(None, infeasible=True, proof=found, message=reason, evaluations=1)
+    reasons = proof() | {"reason": reason, "sentence": f"Proof: {reason}."}
+    return Outcome(None, infeasible=True, proof=reasons, message=reason, evaluations=1)
 
 
 def unbounded(what: str, remedy: str) -> Outcome:
@@ -219,10 +219,10 @@ def convex_bound(
         """Return the minimum rise on one side within a factor `width`; -inf: not known."""
         if width <= 1.0:
             return math.inf
-        back, one, two = (rise(sign * k) for k in (-1.0, 1.0, 2.0))
-        if one < 0.0 and math.log(width) > STEP * room:
+        back, near, far = (rise(sign * k) for k in (-1.0, 1.0, 2.0))
+        if near < 0.0 and math.log(width) > STEP * room:
             return -math.inf
-        lines = (-back, min(2.0 * one - two, one))  # the least of each secant on one step
+        lines = (-back, min(2.0 * near - far, near))  # the least of each secant on one step
         return max((s for s in lines if math.isfinite(s)), default=-math.inf)
 
     value = law(at)

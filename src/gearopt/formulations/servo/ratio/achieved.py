@@ -67,11 +67,11 @@ def _speeds(duty: ServoDuty, ratio: float) -> dict[str, float]:
         speed = min(peak, axis.speed_limit / ratio)
     if not speed:
         return {}
-    found = {"motor_speed_rpm": RPM * ratio * speed}
+    figures = {"motor_speed_rpm": RPM * ratio * speed}
     top = min(axis.speed_limit, axis.no_load_speed)
     if math.isfinite(top):
-        found["motor_speed_used_percent"] = 100.0 * ratio * speed / top
-    return found
+        figures["motor_speed_used_percent"] = 100.0 * ratio * speed / top
+    return figures
 
 
 def _torques(duty: ServoDuty, ratio: float, value: float) -> dict[str, float]:
@@ -81,10 +81,10 @@ def _torques(duty: ServoDuty, ratio: float, value: float) -> dict[str, float]:
     friction = axis.motor_friction + axis.load_friction / (axis.efficiency * ratio)
     if duty.motion == "swing":
         peak = duty.peak_acceleration * (to_load + ratio * axis.inertia) + friction
-        found = {"peak_motor_torque_Nm": 1e-3 * peak}
+        figures = {"peak_motor_torque_Nm": 1e-3 * peak}
         if axis.torque:
-            found["motor_torque_used_percent"] = 1e5 * value / axis.torque
-        return found
+            figures["motor_torque_used_percent"] = 1e5 * value / axis.torque
+        return figures
     speeding, there = float(duty.acceleration(ratio)), axis.torque - duty.slope * ratio
     gears = {"gears": speeding * ratio * axis.gear_inertia} if axis.gear_inertia else {}
     rotor = speeding * ratio * axis.motor_inertia
@@ -128,11 +128,11 @@ def landmarks(duty: ServoDuty) -> dict[str, float]:
     load = axis.load_inertia / axis.efficiency
     if load == 0.0:
         return {}
-    found = {"matched_inertia_ratio": math.sqrt(load / axis.motor_inertia)}
+    figures = {"matched_inertia_ratio": math.sqrt(load / axis.motor_inertia)}
     if duty.motion == "swing" or duty.load_speed:
-        return found
+        return figures
     inertias = load, axis.motor_inertia
-    return found | {
+    return figures | {
         "frictionless_load_acceleration_rad_per_s2": best_acceleration(*inertias, axis.torque),
         "load_acceleration_without_load_friction_rad_per_s2": best_acceleration(
             *inertias, axis.net_torque

@@ -101,8 +101,8 @@ class Drive:
         """Return the drive with other values of its `parameters`."""
         given = values.get("ratio")
         low, high = values.get("ratio_low", given), values.get("ratio_high", given or math.inf)
-        own: dict[str, Any] = {f.name: values[f.name] for f in fields(self) if f.name in values}
-        return replace(self, **own | {"ratio": (low, high)})
+        numbers: dict[str, Any] = {f.name: values[f.name] for f in fields(self) if f.name in values}
+        return replace(self, **numbers | {"ratio": (low, high)})
 
     def ratio_variable(self, scales: tuple[float, ...], free: bool) -> Var:
         """Return the variable of the total ratio; free: nothing holds it from above.
@@ -132,19 +132,19 @@ class Drive:
 
 def friction_torque(drive: Drive, p: Any, ratio: Any, efficiency: Any) -> Any:
     """Return the text of the motor torque lost to friction: F_M + F_L/(eta N) [N mm]."""
-    found = p.motor_friction if drive.motor_friction else 0.0
+    torque = p.motor_friction if drive.motor_friction else 0.0
     if drive.load_friction:
-        found = found + p.load_friction / (efficiency * ratio)
-    return found
+        torque = torque + p.load_friction / (efficiency * ratio)
+    return torque
 
 
 def inertia_at_motor(drive: Drive, p: Any, ratio: Any, efficiency: Any) -> Any:
     """Return the text of motor torque per load acceleration: J_L/(eta N) + N J [t mm2]."""
-    found = p.load_inertia / (efficiency * ratio) if drive.load_inertia else 0.0
+    inertia = p.load_inertia / (efficiency * ratio) if drive.load_inertia else 0.0
     for name in ("motor_inertia", "gear_inertia"):
         if getattr(drive, name):
-            found = found + getattr(p, name) * ratio
-    return found
+            inertia = inertia + getattr(p, name) * ratio
+    return inertia
 
 
 def present(problem: Problem) -> dict[str, float]:

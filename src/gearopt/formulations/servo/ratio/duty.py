@@ -55,8 +55,8 @@ class ServoDuty:
     @property
     def slope(self) -> float:
         """Return the torque [N mm] that the motor loses per unit of ratio at the load's speed."""
-        found: float = torque_slope(self.drive.torque, self.speed, self.drive.no_load_speed)
-        return found if self.motion == "acceleration" else 0.0
+        slope: float = torque_slope(self.drive.torque, self.speed, self.drive.no_load_speed)
+        return slope if self.motion == "acceleration" else 0.0
 
     @property
     def peak_acceleration(self) -> float:
@@ -80,9 +80,15 @@ class ServoDuty:
 
         gears: inertia of the train at the motor [t mm2], beside that of the drive.
         """
-        own = self.drive
-        inertia = own.inertia + gears
-        numbers = own.load_inertia, inertia, own.net_torque, own.load_friction, own.efficiency
+        drive = self.drive
+        inertia = drive.inertia + gears
+        numbers = (
+            drive.load_inertia,
+            inertia,
+            drive.net_torque,
+            drive.load_friction,
+            drive.efficiency,
+        )
         return load_acceleration(ratio, *numbers, self.slope)
 
     def deceleration(self, ratio: Any, gears: Any = 0.0) -> Any:
@@ -93,18 +99,18 @@ class ServoDuty:
 
     def value(self, ratio: Any, gears: Any = 0.0) -> Any:
         """Objective [s2/rad, s or N mm]; very large where the load does not move."""
-        own = self.drive
+        drive = self.drive
         if self.motion == "swing":
-            inertias = own.load_inertia, own.inertia + gears
-            frictions = own.load_friction, own.motor_friction
+            inertias = drive.load_inertia, drive.inertia + gears
+            frictions = drive.load_friction, drive.motor_friction
             return rms_torque(ratio, *inertias, self.peak_acceleration, *frictions)
         # no ratio gives 1/FAINT times less than the torque on the load alone
-        slowest = FAINT * own.torque / max(own.load_inertia, own.inertia)
-        found = np.maximum(self.acceleration(ratio, gears), slowest)
+        slowest = FAINT * drive.torque / max(drive.load_inertia, drive.inertia)
+        rate = np.maximum(self.acceleration(ratio, gears), slowest)
         if self.motion == "acceleration":
-            return 1.0 / found
-        ramp = mean_ramp(found, self.deceleration(ratio, gears))
-        return shortest_move_time(self.angle, own.speed_limit / ratio, ramp)
+            return 1.0 / rate
+        ramp = mean_ramp(rate, self.deceleration(ratio, gears))
+        return shortest_move_time(self.angle, drive.speed_limit / ratio, ramp)
 
     def carried_torque(self, ratio: Any, gears: Any, beyond: Any) -> Any:
         """Return the peak torque [N mm] through a mesh, seen at the motor.
@@ -142,12 +148,12 @@ class ServoDuty:
 
         friction_torque: torque that friction takes over that which the motor has at its speed.
         """
-        own, found = self.drive, {}
+        drive, used = self.drive, {}
         if self.motion != "swing":
-            lost = own.load_friction / (own.efficiency * ratio) + self.slope * ratio
-            found["friction_torque"] = (own.motor_friction + lost) / own.torque
-        elif own.torque:
-            found["motor_torque"] = value / own.torque
-        if self.speed and math.isfinite(own.speed_limit):
-            found["motor_speed"] = ratio * self.speed / own.speed_limit
-        return found
+            lost = drive.load_friction / (drive.efficiency * ratio) + self.slope * ratio
+            used["friction_torque"] = (drive.motor_friction + lost) / drive.torque
+        elif drive.torque:
+            used["motor_torque"] = value / drive.torque
+        if self.speed and math.isfinite(drive.speed_limit):
+            used["motor_speed"] = ratio * self.speed / drive.speed_limit
+        return used

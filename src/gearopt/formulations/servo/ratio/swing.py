@@ -45,7 +45,7 @@ def swing(drive: Drive, amplitude: float, angular_frequency: float) -> Problem:
     ratio = _stationary(drive, amplitude * angular_frequency**2)
     most = drive.ratios(amplitude * angular_frequency)[1]
     variable = drive.ratio_variable((ratio, most), math.isinf(ratio) and math.isinf(most))
-    own = (
+    of_swing = (
         Param("amplitude", "rad", amplitude, key="duty.amplitude", role="given"),
         Param("angular_frequency", "rad/s", angular_frequency, key="duty.frequency", role="given"),
     )
@@ -55,7 +55,7 @@ def swing(drive: Drive, amplitude: float, angular_frequency: float) -> Problem:
         values = present(problem)
         return _exact(drive.of(values), values["amplitude"], values["angular_frequency"])
 
-    parameters = (*drive.parameters("no_load_speed", "efficiency"), *own)
+    parameters = (*drive.parameters("no_load_speed", "efficiency"), *of_swing)
     return Problem("ratio", (variable,), parameters, evaluate, methods={"exact": exact})
 
 

@@ -47,14 +47,14 @@ def rows(bodies: Bodies, pairs: Pairs) -> dict[str, Any]:
     shaft, output, motor = (float(d) for d in (bodies.shaft, bodies.output_shaft, bodies.motor))
     first, second = pairs
     d1, d2, d3, d4 = (gear.reference_diameter for pair in pairs for gear in pair.gears)
-    found: dict[str, Any] = {
+    limits: dict[str, Any] = {
         "output_shaft": (first.wheel.tip_diameter + output) / (d3 + d4),
         "hub": output / second.wheel.root_diameter,
         "shaft": (shaft / first.wheel.root_diameter, shaft / second.pinion.root_diameter),
     }
     if motor > 0.0:
-        found["motor"] = (motor + shaft) / (d1 + d2)
-    return found
+        limits["motor"] = (motor + shaft) / (d1 + d2)
+    return limits
 
 
 def broken(bodies: Bodies, pairs: Pairs) -> list[str]:
@@ -72,14 +72,14 @@ def clear_rows(shaft: Any, output: Any, motor: Any, pairs: Pairs) -> dict[str, A
     m1, m2, root = first.normal_module, second.normal_module, float(ROOT)
     _, d2, d3, d4 = (gear.reference_diameter for pair in pairs for gear in pair.gears)
     beside = first.wheel.tip_diameter if output is None else first.wheel.tip_diameter + output
-    found: dict[str, Any] = {"output_shaft": beside / (2.0 * d4)}
+    limits: dict[str, Any] = {"output_shaft": beside / (2.0 * d4)}
     if output is not None:
-        found["hub"] = (output + root * m2) / d4
+        limits["hub"] = (output + root * m2) / d4
     if shaft is not None:
-        found["shaft"] = ((shaft + root * m1) / d2, (shaft + root * m2) / d3)
+        limits["shaft"] = ((shaft + root * m1) / d2, (shaft + root * m2) / d3)
     if motor is not None:
-        found["motor"] = (motor if shaft is None else motor + shaft) / (2.0 * d2)
-    return found
+        limits["motor"] = (motor if shaft is None else motor + shaft) / (2.0 * d2)
+    return limits
 
 
 @dataclass(frozen=True)

@@ -65,11 +65,11 @@ def core(ratio: float, stages: int, goal: str = "inertia") -> Problem:
 
 def inertia_index(ratios: tuple[Any, ...]) -> Any:
     """Return the inertia sum_i (1 + n_i^2)/prod_{j<i} n_j^2 at the motor, in that of a pinion."""
-    found, through = 0.0, 1.0
+    index, through = 0.0, 1.0
     for n in ratios:
-        found = found + (1.0 + n**2) / through**2
+        index = index + (1.0 + n**2) / through**2
         through = through * n
-    return found
+    return index
 
 
 def stage_counts(ratio: float, maximum: int = 4, goal: str = "inertia") -> tuple[Result, ...]:
@@ -122,11 +122,11 @@ def staged(drive: Drive, pinion_inertia: float, stages: int, load_speed: float =
     def evaluate(x: Any, p: Any) -> Terms:
         ratios = each(x.stage_ratio)
         total = math.prod(ratios)
-        found = plain.evaluate(SimpleNamespace(ratio=total, acceleration=x.acceleration), p)
+        terms = plain.evaluate(SimpleNamespace(ratio=total, acceleration=x.acceleration), p)
         gears = p.pinion_inertia * inertia_index(ratios) * total * x.acceleration / p.torque
-        limits = dict(found.limits) | {"motor_torque": found.limits["motor_torque"] + gears}
+        limits = dict(terms.limits) | {"motor_torque": terms.limits["motor_torque"] + gears}
         limits["stage_ratio_low"] = tuple(1.0 / n for n in ratios)
-        return Terms(found.minimise, limits, equal=found.equal)
+        return Terms(terms.minimise, limits, equal=terms.equal)
 
     guess = max(1.0, float(np.max(ratio.guess)) ** (1.0 / stages))
     each_ratio = Var(

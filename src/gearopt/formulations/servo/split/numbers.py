@@ -66,10 +66,10 @@ def duty_numbers(duty: ServoDuty | None) -> Array:
     """
     if duty is None:
         return np.array([-1.0, *[0.0] * 11])
-    own = duty.drive
-    loads = own.load_inertia, own.inertia, own.net_torque, own.load_friction
-    motor = own.efficiency, duty.slope, duty.angle, own.speed_limit, own.motor_friction
-    most = own.torque if duty.motion == "swing" and own.torque else math.inf
+    drive = duty.drive
+    loads = drive.load_inertia, drive.inertia, drive.net_torque, drive.load_friction
+    motor = drive.efficiency, duty.slope, duty.angle, drive.speed_limit, drive.motor_friction
+    most = drive.torque if duty.motion == "swing" and drive.torque else math.inf
     kind = list(MOTIONS).index(duty.motion)
     return np.array([kind, *loads, *motor, duty.peak_acceleration, most])
 

@@ -62,8 +62,8 @@ def _moved(train: ServoTrain, goal: str) -> Problem | None:
     if train.duty is None or goal != train.duty.goal:
         return None
     smallest = disc_inertia(train.density, train.face_width, _size(train)[0])
-    own = replace(train.duty.drive, gear_inertia=float(smallest), ratio=(1.0, math.inf))
-    return replace(train.duty, drive=own).problem()
+    drive = replace(train.duty.drive, gear_inertia=float(smallest), ratio=(1.0, math.inf))
+    return replace(train.duty, drive=drive).problem()
 
 
 def _terms(train: ServoTrain, goal: str, moved: Problem | None, x: Any, p: Any) -> Terms:
@@ -99,7 +99,7 @@ def _limits(train: ServoTrain, both: Pairs, x: Any, p: Any) -> dict[str, Any]:
     torques = torque / x.ratio[1], torque
     low, high = train.pinion_teeth
     sizes = list(zip(x.pinion_diameter, x.module, strict=True))
-    found = {
+    limits = {
         "stage_ratio_low": tuple(1.0 / n for n in x.ratio),
         "second_pinion_diameter_low": p.second_pinion_diameter / x.pinion_diameter[1],
         "wheel_tip_diameter": tuple(
@@ -111,16 +111,16 @@ def _limits(train: ServoTrain, both: Pairs, x: Any, p: Any) -> dict[str, Any]:
         "module_high": tuple(m / ends[1] for m in x.module),
     }
     if torque > 0.0:
-        found["bending_stress"] = tuple(
+        limits["bending_stress"] = tuple(
             bending_stress(t, pair, law) / p.bending_stress
             for t, pair in zip(torques, both, strict=True)
         )
     if (most := train.max_wheel_teeth) is not None:
         wheels = [pair.wheel.reference_diameter for pair in both]
-        found["wheel_teeth_high"] = tuple(
+        limits["wheel_teeth_high"] = tuple(
             d / (most * m) for d, m in zip(wheels, x.module, strict=True)
         )
-    return found
+    return limits
 
 
 def _torque(train: ServoTrain) -> float:

@@ -153,9 +153,9 @@ def gear_mass(density: Any, pairs: Pairs, sector: Any) -> Any:
 
     density [t/mm3].
     """
-    one, two = pairs
-    first = one.pinion.mass(density) + one.wheel.mass(density)
-    second = two.pinion.mass(density) + sector * two.wheel.mass(density)
+    stage_1, stage_2 = pairs
+    first = stage_1.pinion.mass(density) + stage_1.wheel.mass(density)
+    second = stage_2.pinion.mass(density) + sector * stage_2.wheel.mass(density)
     return 1000.0 * (first + second)
 
 
@@ -175,12 +175,12 @@ def objectives(train: ServoTrain, names: tuple[str, ...], pairs: Pairs) -> dict[
     if unknown := set(names) - set(train.goals):
         raise ValueError(f"no objective {unknown.pop()!r}; known: {', '.join(train.goals)}")
     inertia = train_inertia(train.density, pairs, train.shaft, train.sector)
-    found = {"inertia": inertia, "mass": gear_mass(train.density, pairs, train.sector)}
+    values = {"inertia": inertia, "mass": gear_mass(train.density, pairs, train.sector)}
     if train.lost_motion is not None:
-        found["error"] = train_error(train.lost_motion, pairs)
+        values["error"] = train_error(train.lost_motion, pairs)
     if train.duty is not None and train.duty.goal in names:
-        found[train.duty.goal] = train.duty.value(pairs[0].ratio * pairs[1].ratio, inertia)
-    return {name: found[name] for name in names}
+        values[train.duty.goal] = train.duty.value(pairs[0].ratio * pairs[1].ratio, inertia)
+    return {name: values[name] for name in names}
 
 
 def ratio_parameters(low: float, high: float) -> tuple[Param, ...]:
@@ -203,5 +203,5 @@ def bending_stress(wheel_torque: Any, pair: GearPair, law: Law = LEWIS) -> Any:
 
     law: another of `lewis`, where teeth are no variables or are bounded.
     """
-    (found,) = law.indices(pair, wheel_torque / pair.ratio, 0.0)
-    return found
+    (stress,) = law.indices(pair, wheel_torque / pair.ratio, 0.0)
+    return stress

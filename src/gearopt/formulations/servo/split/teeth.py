@@ -52,9 +52,9 @@ def problem(train: ServoTrain, *goals: str) -> Problem:
         first, second = both = pairs((*x.pinion_teeth, *x.wheel_teeth, *x.module), train.face_width)
         ratios = (first.ratio, second.ratio)
         bounded = () if math.isinf(train.error) else ("error",)
-        found = objectives(train, (*goals, *bounded), both)
+        values = objectives(train, (*goals, *bounded), both)
         tips = [pair.wheel.tip_diameter for pair in both]
-        limits = {name: found[name] / train.error for name in bounded} | {
+        limits = {name: values[name] / train.error for name in bounded} | {
             "ratio_low": low / (ratios[0] * ratios[1]),
             "ratio_high": ratios[0] * ratios[1] / high,
             "stage_ratio_low": tuple(1.0 / n for n in ratios),
@@ -68,10 +68,10 @@ def problem(train: ServoTrain, *goals: str) -> Problem:
             ),
         }
         if train.duty is not None and (goal := train.duty.goal) in goals:
-            limits |= train.duty.limits(ratios[0] * ratios[1], found[goal])
+            limits |= train.duty.limits(ratios[0] * ratios[1], values[goal])
         if train.bodies is not None:
             limits |= rows(train.bodies, both)
-        return Terms({g: found[g] for g in goals}, limits)
+        return Terms({g: values[g] for g in goals}, limits)
 
     methods = {}
     if len(goals) == 1:
@@ -101,12 +101,12 @@ def method(train: ServoTrain, goal: str, whole: bool) -> Any:
         (given, aim), moved = posed(train, goal), bool(GOALS[goal].motion)
         code = kernel(DUTY if moved and not whole else KERNEL)
         look = code.every if whole else code.useful
-        found, count = np.zeros(6, np.int64), kernel(KERNEL).first_stages(given)[0]
-        look(given, aim, 0, 0, math.inf, found)  # compiled before the clock starts
+        teeth, count = np.zeros(6, np.int64), kernel(KERNEL).first_stages(given)[0]
+        look(given, aim, 0, 0, math.inf, teeth)  # compiled before the clock starts
         clock, best, feasible = Clock(budget, watch), math.inf, 0
         first, (steps, most) = 0, KERNEL_STEPS
         while first < count:
-            best, more, good, first = look(given, aim, first, steps, best, found)
+            best, more, good, first = look(given, aim, first, steps, best, teeth)
             feasible, steps = feasible + good, min(2 * steps, most)
             clock.evaluations, clock.best = clock.evaluations + more, best
             if first < count and not clock.tell():
@@ -116,19 +116,19 @@ def method(train: ServoTrain, goal: str, whole: bool) -> Any:
         if moved and best > given.duty[-1] * (1.0 + ROUNDING):  # of a swing, rms torque
             best = math.inf
         slack = FLAT if moved else ROUNDING
-        return _outcome(given, found, best, looked, proof, first == count, slack)
+        return _outcome(given, teeth, best, looked, proof, first == count, slack)
 
     return run
 
 
 def exhaustion(looked: int, feasible: int | None, done: bool) -> dict[str, Any]:
     """Return how an enumeration is proven, or how far it came; feasible: where counted."""
-    found: dict[str, Any] = {
+    proof: dict[str, Any] = {
         "method": "exhausted" if done else "enumeration, stopped early",
         "arithmetic": "ratios and diameters in whole numbers; the rest in double",
         "trains_looked_at": looked,
     }
-    return found if feasible is None else {**found, "feasible_trains": feasible}
+    return proof if feasible is None else {**proof, "feasible_trains": feasible}
 
 
 def sentence(proof: Mapping[str, Any], infeasible: bool) -> str:

@@ -61,12 +61,12 @@ def problem(stack: Stack) -> Problem:
 def _parameters(stack: Stack) -> tuple[Param, ...]:
     """Return the errors allowed, and minimum and maximum tolerances that were given."""
     errors, keys = (tuple(getattr(b, n) for b in stack.budgets) for n in ("error", "key"))
-    found = [Param("error", "", errors, len(errors), keys, "limit")]
+    parameters = [Param("error", "", errors, len(errors), keys, "limit")]
     for name, given in zip(ENDS, _given(stack), strict=True):
         if given:
             values = tuple(getattr(stack.components[k], name) for k in given)
-            found.append(Param(name, "mm", values, len(given), ENDS[name], "limit"))
-    return tuple(found)
+            parameters.append(Param(name, "mm", values, len(given), ENDS[name], "limit"))
+    return tuple(parameters)
 
 
 def _given(stack: Stack) -> tuple[list[int], list[int]]:
@@ -98,11 +98,11 @@ def _ends(stack: Stack, t: tuple[Any, ...], p: Any) -> Mapping[str, Any]:
     least, most = _given(stack)
     low = {k: q / t[k] for k, q in zip(least, each(p.least) if least else (), strict=True)}
     high = {k: t[k] / q for k, q in zip(most, each(p.most) if most else (), strict=True)}
-    found: dict[str, Any] = {}
+    limits: dict[str, Any] = {}
     for k in range(len(t)):
-        found |= {f"least[{k + 1}]": low[k]} if k in low else {}
-        found |= {f"most[{k + 1}]": high[k]} if k in high else {}
-    return found
+        limits |= {f"least[{k + 1}]": low[k]} if k in low else {}
+        limits |= {f"most[{k + 1}]": high[k]} if k in high else {}
+    return limits
 
 
 def search(stack: Stack) -> tuple[Array, Array, Array]:
@@ -117,8 +117,8 @@ def search(stack: Stack) -> tuple[Array, Array, Array]:
     guess = np.maximum(low + share * (high - low), np.where(low > 0.0, low, 1e-9 * high))
     k = stack.exponent
     with np.errstate(all="ignore"):  # a cost beyond doubles leaves the end of the search far away
-        own, total = stack.costs(high), float(stack.costs(guess).sum())
-        highest = np.fmax(total - (own.sum() - own), own)
+        costs, total = stack.costs(high), float(stack.costs(guess).sum())
+        highest = np.fmax(total - (costs.sum() - costs), costs)
         power = np.where(k > 0.0, np.log(stack.cost / highest) / k, -highest / stack.cost)
     narrowest = np.exp(np.clip(power, np.log(SMALLEST), np.log(guess)))
     return 0.5 * np.maximum(np.minimum(narrowest, guess), low), 2.0 * high, guess
@@ -130,14 +130,14 @@ def _exact(stack: Stack) -> Any:
 
         Nothing here is random.
         """
-        clock, own = Clock(budget, watch), _at(stack, problem)
-        if (conflict := impossible(own)) is not None:
+        clock, posed = Clock(budget, watch), _at(stack, problem)
+        if (conflict := impossible(posed)) is not None:
             return conflict
         try:
             with np.errstate(over="raise"):
-                return _proven(own, clock)
+                return _proven(posed, clock)
         except TimeoutError as early:
-            return Outcome(search(own)[2], finished=False, message=str(early))
+            return Outcome(search(posed)[2], finished=False, message=str(early))
         except ArithmeticError as extreme:
             return Outcome(None, message=f"beyond the range of doubles: {extreme}")
 

@@ -37,8 +37,8 @@ def several(
         t = cp.reshape(x.t, (size,), order="C")
         cost = 0.0
         for k in sorted(set(stack.exponent)):
-            own = np.flatnonzero(stack.exponent == k)
-            cost = cost + cp.sum(cp.multiply(stack.cost[own], cp.power(t[own], -k)))
+            columns = np.flatnonzero(stack.exponent == k)
+            cost = cost + cp.sum(cp.multiply(stack.cost[columns], cp.power(t[columns], -k)))
         limits, goals, called = {}, {"cost": cost}, {label: n for n, label in errors.items()}
         for budget, linear, square in zip(stack.budgets, stack.linear, stack.square, strict=True):
             used = linear @ t
@@ -58,14 +58,16 @@ def milp(choice: Choice) -> Conic:
     """Pose the cheapest grades with one 0-1 variable per grade."""
     weights, costs = (np.concatenate(rows).astype(float) for rows in (choice.weights, choice.costs))
     counts = [len(row) for row in choice.costs]
-    own = np.repeat(np.eye(len(counts)), counts, axis=1)
+    membership = np.repeat(np.eye(len(counts)), counts, axis=1)
 
     def evaluate(x: Any, p: Any) -> Terms:
         import cvxpy as cp
 
         chosen = cp.reshape(x.chosen, (len(costs),), order="C")
         return Terms(
-            {"cost": costs @ chosen}, {choice.rule: weights @ chosen}, equal={"one": own @ chosen}
+            {"cost": costs @ chosen},
+            {choice.rule: weights @ chosen},
+            equal={"one": membership @ chosen},
         )
 
     chosen = Var("chosen", "", 0.0, 1.0, 0.0, len(costs), integer=True)

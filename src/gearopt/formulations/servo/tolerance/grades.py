@@ -55,9 +55,13 @@ class Choice:
     def __post_init__(self) -> None:
         if self.rule not in get_args(Rule) or not self.error > 0 or not self.components:
             raise ValueError("a choice needs components, an error > 0, worst_case or rss")
-        for one in self.components:
-            if not one.grades or one.sensitivity < 0 or any(t <= 0 for t, _ in one.grades):
-                raise ValueError(f"{one.name}: needs grades t > 0 and a sensitivity >= 0")
+        for component in self.components:
+            if (
+                not component.grades
+                or component.sensitivity < 0
+                or any(t <= 0 for t, _ in component.grades)
+            ):
+                raise ValueError(f"{component.name}: needs grades t > 0 and a sensitivity >= 0")
 
     @property
     def rational(self) -> bool:
@@ -121,16 +125,16 @@ def _exact(choice: Choice) -> Any:
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Run a dynamic program over all picks; the seed changes nothing."""
         clock = Clock(budget, watch)
-        found, none = _picked(choice, clock)
+        picks, none = _picked(choice, clock)
         if none is not None:
             return none
-        position = found.positions(np.array([found.count - 1]))[0]
+        position = picks.positions(np.array([picks.count - 1]))[0]
         costs = [float(row[k]) for row, k in zip(choice.costs, position, strict=True)]
         rounding = ROUNDING * sum(map(abs, costs))
         return Outcome(
             position + 1.0,
             bound=sum(costs) - (0.0 if choice.rational else rounding),
-            proof=_proof(choice, found, clock),
+            proof=_proof(choice, picks, clock),
             evaluations=clock.evaluations,
         )
 
@@ -141,14 +145,14 @@ def _front(choice: Choice) -> Any:
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """All picks that none beats: those that the dynamic program keeps in the end."""
         clock = Clock(budget, watch)
-        found, none = _picked(choice, clock)
+        picks, none = _picked(choice, clock)
         if none is not None:
             return replace(none, x=None)
-        points, known = found.positions(np.arange(found.count)) + 1.0, caps(problem)
+        points, known = picks.positions(np.arange(picks.count)) + 1.0, caps(problem)
         values, names = problem.batch(points).F, problem.rows.objectives
         limits = np.array([known.get(name, np.inf) for name in names])
         inside = points[(values <= limits * (1.0 + TIE)).all(axis=1)]
-        proof, looked = _proof(choice, found, clock), clock.evaluations
+        proof, looked = _proof(choice, picks, clock), clock.evaluations
         if len(inside):
             return Outcome(inside[0], others=tuple(inside[1:]), proof=proof, evaluations=looked)
         text = "no grades within the budget keep to the largest values of interest"

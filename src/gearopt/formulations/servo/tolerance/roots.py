@@ -56,9 +56,9 @@ def roots(stack: Stack, clock: Clock) -> Solution:
     TimeoutError when the clock, asked before each step of the outermost root, is over.
     ArithmeticError for costs or multipliers beyond doubles.
     """
-    one, unit, cost = scaled(stack)
-    lam, u = _settled(one, (), (), dict.fromkeys(range(len(stack.budgets)), 0.0), clock)
-    over = float((one.used(u) / np.maximum(1.0, one.used(one.least))).max())
+    unit_stack, unit, cost = scaled(stack)
+    lam, u = _settled(unit_stack, (), (), dict.fromkeys(range(len(stack.budgets)), 0.0), clock)
+    over = float((unit_stack.used(u) / np.maximum(1.0, unit_stack.used(unit_stack.least))).max())
     t = np.maximum(stack.least, unit * u / max(1.0, over))
     return t, cost * np.array(lam)
 

@@ -75,8 +75,10 @@ def errors(stack: Stack, t: Array, count: int, seed: int) -> Array:
     """Draw `count` errors, (count,): one component after the other, from one generator."""
     generator = np.random.default_rng(seed)
     total = np.zeros(count)
-    for one, width in zip(stack.components, t, strict=True):
-        total += one.sensitivity * float(width) * one.distribution.draw(generator, count)
+    for component, width in zip(stack.components, t, strict=True):
+        total += (
+            component.sensitivity * float(width) * component.distribution.draw(generator, count)
+        )
     return total
 
 

@@ -132,10 +132,10 @@ class Stack:
         labels = [b.label for b in self.budgets]
         if not self.components or not labels or len(set(labels)) < len(labels):
             raise ValueError("a stack needs components, and budgets of different names")
-        for one, weight in zip(self.components, (self.linear + self.square).T, strict=True):
-            if not weight.any() and one.most == math.inf:
+        for component, weight in zip(self.components, (self.linear + self.square).T, strict=True):
+            if not weight.any() and component.most == math.inf:
                 raise ValueError(
-                    f"{one.name} has no influence on any budget: give it an upper end (most)"
+                    f"{component.name} has no influence on any budget: give it an upper end (most)"
                 )
 
     @cached_property
@@ -187,5 +187,5 @@ class Stack:
     def costs(self, t: Array) -> Array:
         """Return the cost of every component at tolerances t [mm], (components,)."""
         log = self.exponent == 0.0
-        found: Array = np.where(log, -self.cost * np.log(t), self.cost * t**-self.exponent)
-        return found
+        costs: Array = np.where(log, -self.cost * np.log(t), self.cost * t**-self.exponent)
+        return costs

@@ -27,7 +27,7 @@ REACHED = 1e-6  # relative: a side that exceeds what is asked by less does not
 
 @dataclass(frozen=True, kw_only=True)
 class NearestLayout:
-    """What a result holds of the layout with its first remedy; fields are its keys."""
+    """The layout with its first remedy, as a result holds it; fields are its keys."""
 
     layout: LayoutDesign
     keep_outs: tuple[KeepOutDesign, ...]

@@ -1,4 +1,4 @@
-"""What every gear of a rating bears and lasts, by every standard: spectrum, factors and sources."""
+"""Capacity and life of every gear of a rating, by every standard: spectrum, factors, sources."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

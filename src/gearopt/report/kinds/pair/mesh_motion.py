@@ -38,7 +38,7 @@ CAPTION = (
 
 @dataclass(frozen=True)
 class Carried:
-    """What the pairs of teeth carry over one base pitch; N moments, K pairs.
+    """Loads of the pairs of teeth over one base pitch; N moments, K pairs.
 
     travels (N,): of the pairs, in base pitches, from 0 to 1, a jump being one travel twice.
     positions (N, K) [mm] on the line of action, 0 at the pitch point, NaN where a pair is not in

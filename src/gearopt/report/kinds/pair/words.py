@@ -1,4 +1,4 @@
-"""What an engineer asks of a pair's contact, answered in sentences."""
+"""Answers to an engineer's questions on a pair's contact, in sentences."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What a servo axis achieves over its total ratio: in sentences, as a curve, in a table."""
+"""Performance of a servo axis over its total ratio: in sentences, as a curve, in a table."""
 
 from collections.abc import Sequence
 from typing import Any

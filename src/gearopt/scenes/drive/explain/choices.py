@@ -66,7 +66,7 @@ def nearest_ratio(case: Case, away: Fraction | None) -> Remedy | None:
 
 
 def _nearest(case: Case, best: Reached) -> tuple[Reached, str]:
-    """Return what is reached next to the ratio asked for; and whether nothing is nearer.
+    """Return the nearest ratio that designs reach, and whether a nearer one is infeasible.
 
     Whole teeth are known to be next in exact numbers, real-valued ones but for SLACK_TRIED of the
     distance, as limits are met in doubles.

@@ -159,7 +159,7 @@ def _raw(value: Any, path: Path) -> Any:
 
 
 def _value(scene: Scene, end: int | None, now: Any, factor: float, move: Move) -> Any:
-    """Return what to write for a factor; None where no module of [teeth] is left."""
+    """Return the value to write for a factor; None where no module of [teeth] is left."""
     if move.path[-1] == "ratio_tolerance":
         return max(now, eased(tolerance(now, end, factor), 1.0, 1))
     if not isinstance(now, tuple):

@@ -277,7 +277,7 @@ def _with_grades(scene: Scene) -> Scene:
 
 
 def _own(table: Any, best: dict[str, Any]) -> dict[str, Any]:
-    """Return what a gear's own table has better."""
+    """Return the values that a gear's own table has better."""
     return {key: value for key, value in best.items() if getattr(table, key) is not None}
 
 
