@@ -94,8 +94,8 @@ def smooth_problem(train: Train, choice: Choice) -> Problem:
             rows: dict[str, Any] = {}
             for j, standard in enumerate(_standards(train.stages[k])):
                 suffix = standard.suffix
-                unknowns = {n: each(getattr(x, n + suffix))[k] for n in standard.unknowns}
-                smooth_form = standard.smooth(pair, torque, speed, choice[k][j], unknowns)
+                of_standard = {n: each(getattr(x, n + suffix))[k] for n in standard.unknowns}
+                smooth_form = standard.smooth(pair, torque, speed, choice[k][j], of_standard)
                 for i, (mode, actual) in enumerate(zip(MODES, smooth_form.safeties, strict=True)):
                     rows[mode + suffix] = safety[i // 2] / (actual * p.trim[8 * k + 4 * j + i])
                 rows |= {n + suffix: v for n, v in smooth_form.limits.items()}

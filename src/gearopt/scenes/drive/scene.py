@@ -316,7 +316,7 @@ class Scene(Table):
             raise refuse(rule, tell, ("shift", "pinion_shift"), "tell")
 
     def _lacks(self, what: str) -> str:
-        """What the file lacks for gears that are chosen with such distances, angles or limits."""
+        """The table that the file lacks to choose gears with such numbers; "" for none."""
         if self.teeth is None:
             return f"a table [teeth]: whole teeth are chosen {what}"
         if self.rating is None or self.limits.loaded:

@@ -99,11 +99,11 @@ def explained(
 
     def solved(other: Any) -> float | None:
         try:
-            optimum = run(posed(other), None, clock.left, watch=clock.watch)[0]
+            solution = run(posed(other), None, clock.left, watch=clock.watch)[0]
         except SolveError as reason:  # of a changed file: the answer stands
             undecided.append(str(reason))
             return None
-        return optimum.value if optimum.status in CERTAIN else None
+        return solution.value if solution.status in CERTAIN else None
 
     problem = posed(scene)
     optimum, outcome = run(problem, None, clock.left, watch=clock.watch)

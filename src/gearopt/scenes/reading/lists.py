@@ -48,8 +48,8 @@ def span(item: Reads, example: Any, single: bool = False) -> Reads:
 
     def ordered(values: list[Any]) -> list[Any]:
         """Return two right values as a file has them: by number, also of diametral pitches."""
-        ends = [item.reader(value, item.example) for value in values]
-        numbers = [_number(one, all(map(_reciprocal, ends))) for one in ends]
+        quantities = [item.reader(value, item.example) for value in values]
+        numbers = [_number(one, all(map(_reciprocal, quantities))) for one in quantities]
         return values if numbers[0] <= numbers[1] else values[::-1]
 
     def read(value: Any, example: Any) -> tuple[Any, Any]:

@@ -55,8 +55,8 @@ def explained(
     def solved(other: Scene) -> float | None:
         if not whole:  # a difference to what is not the best means nothing
             return None
-        result = answer(other)
-        return result.value if result.status in CERTAIN else None
+        answered = answer(other)
+        return answered.value if answered.status in CERTAIN else None
 
     spelt = _spelt(scene)
     wanted = [
