@@ -7,7 +7,8 @@ from graph import OPERATIONS, boxes, graph
 
 from gearopt.errors import SolveError
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.spatial.columns import Affine, Builder, columns, divided, powered
+from gearopt.optimise.spatial.columns import Affine, Builder, divided, powered
+from gearopt.optimise.spatial.columns_of_text import columns
 from gearopt.optimise.spatial.step import Stepper
 from gearopt.optimise.terms import Param, Repeat, Terms, Var
 

@@ -18,7 +18,7 @@ from gearopt.optimise.pareto.posed import Limit, posed
 from gearopt.optimise.problem import Batch, Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Watch
 from gearopt.optimise.scale import violation
-from gearopt.optimise.spatial.columns import columns
+from gearopt.optimise.spatial.columns_of_text import columns
 
 NSGA, ANNEALING, HYBRID = "nsga2", "annealing", "hybrid"
 SAMPLERS: Mapping[str, Callable[..., Found]] = {

@@ -15,7 +15,8 @@ from gearopt.optimise.kernels import compiling_aside, kernel
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.spatial import enumeration
-from gearopt.optimise.spatial.columns import ROOM, Columns, columns
+from gearopt.optimise.spatial.columns import ROOM, Columns
+from gearopt.optimise.spatial.columns_of_text import columns
 from gearopt.optimise.spatial.enumeration import Boxes, Enumerated, enumerated
 from gearopt.optimise.spatial.incumbent import Incumbent
 from gearopt.optimise.spatial.step import Record, Stepper

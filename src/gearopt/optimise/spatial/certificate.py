@@ -15,7 +15,8 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE
 from gearopt.optimise.scale import violation
 from gearopt.optimise.spatial import enumeration
-from gearopt.optimise.spatial.columns import LISTED, WHOLE, Columns, columns
+from gearopt.optimise.spatial.columns import LISTED, WHOLE, Columns
+from gearopt.optimise.spatial.columns_of_text import columns
 from gearopt.optimise.spatial.enumeration import Enumerated
 from gearopt.optimise.spatial.step import (
     ROOT_SWEEPS,

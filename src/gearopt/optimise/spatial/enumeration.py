@@ -16,7 +16,7 @@ from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE
 from gearopt.optimise.scale import violation
 from gearopt.optimise.spatial.columns import CONTINUOUS, EXACT, ROOM, ROOT_SWEEPS, Columns
-from gearopt.optimise.spatial.columns import columns as columns_of
+from gearopt.optimise.spatial.columns_of_text import columns as columns_of
 from gearopt.optimise.terms import Array
 
 SWEEPS = 2
