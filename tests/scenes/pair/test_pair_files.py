@@ -320,3 +320,14 @@ def test_what_couplings_overstate_is_as_the_page_says():
     page = (problems.parent / "docs" / "pair.md").read_text(encoding="utf-8")
     for model in models:
         assert f"{found[model, 'reference_pair']:.1f} µm" in page
+
+
+def test_finite_elements_are_not_begun_in_a_short_time():
+    """They take a second, which no clock divides; other levels have their answer at once."""
+    file, short = "problems/relief_two_loads.toml", gearopt.Budget(seconds=0.2)
+    level = {"sharing.level": "finite elements"}
+    result = gearopt.solve(file, level, budget=short)
+    assert result.status == "limit" and not result.design
+    assert "allow more time, or write another level" in result.message
+    with pytest.raises(gearopt.SolveError, match="allow more time"):
+        gearopt.pareto(file, level, objectives="peak_to_peak,rms", budget=short)

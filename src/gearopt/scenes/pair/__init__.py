@@ -65,17 +65,23 @@ def sized(scene: Scene, ask: Ask, known: Result | None) -> Result:
     return drive.KIND.solve(scene.drive, ask)
 
 
-def _mesh(scene: Scene, result: Result) -> tuple[DriveDesign, PairMesh]:
-    """Return the design of a result, and its pair in mesh."""
+def _mesh(
+    scene: Scene, result: Result, seconds: float | None = None
+) -> tuple[DriveDesign, PairMesh]:
+    """Return the design of a result, and its pair in mesh; seconds: as of `mesh_of`."""
     design = drive_design(result.design)
     stage = design.stages[0]
-    return design, mesh_of(scene, stage.pair, (stage.pinion_material, stage.wheel_material))
+    materials = stage.pinion_material, stage.wheel_material
+    return design, mesh_of(scene, stage.pair, materials, seconds)
 
 
 def with_contact(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Gears with their contact."""
     assert known is not None
-    design, mesh = _mesh(scene, known)
+    try:
+        design, mesh = _mesh(scene, known, ask.budget.seconds)
+    except TimeoutError as reason:
+        return replace(known, name="pair", status="limit", design={}, message=str(reason))
     stage = design.stages[0]
     contact = contact_of(scene, mesh, (stage.pinion_material, stage.wheel_material))
     assumptions = [
@@ -195,7 +201,10 @@ def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
 def _mesh_of_gears(scene: Scene, ask: Ask) -> PairMesh:
     """Return the gears in mesh, sized where they are not given; SolveError where there are none."""
     if scene.given:
-        return mesh_of(scene, scene.given_pair)
+        try:
+            return mesh_of(scene, scene.given_pair, seconds=ask.budget.seconds)
+        except TimeoutError as reason:
+            raise SolveError(str(reason)) from None
     sized = drive.KIND.solve(scene.drive, ask.beforehand)
     if sized.status == "infeasible":
         raise SolveError("no pair of gears meets the limits, so that there is none to relieve")

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from gearopt.errors import SolveError
-from gearopt.formulations.pair.contact import PairMesh, contact
+from gearopt.formulations.pair.contact import DEAR, PairMesh, contact
 from gearopt.formulations.pair.design import PairContact
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair
@@ -25,6 +25,7 @@ from gearopt.units import Quantity
 
 Materials = tuple[str, str]
 UNBORED = 3.0  # root circle over the circle at which a gear without a bore is held
+LEAST_SECONDS = 0.5  # of a budget in which a dear level is begun: it takes up to twice as long
 BORNE = 4000.0  # MPa; from it on hardened rollers keep dents (static rating of ISO 76)
 NEAR_WHOLE = 0.02  # of a contact ratio to a whole number, where TE is discontinuous
 
@@ -46,10 +47,13 @@ def contact_of(scene: Scene, made: PairMesh, materials: Materials) -> PairContac
     return replace(computed, validity=(*computed.validity, said))
 
 
-def mesh_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> PairMesh:
+def mesh_of(
+    scene: Scene, pair: GearPair, materials: Materials = ("", ""), seconds: float | None = None
+) -> PairMesh:
     """Return a pair of a file in mesh at its loads; SolveError where contact does not go on.
 
-    materials: names of those chosen for pinion and wheel; "": there was no choice.
+    materials: names of those chosen for pinion and wheel; "": there was no choice. TimeoutError
+    where so few seconds are left that finite elements of its teeth are not begun.
     """
     fatal = [flaw.sentence for flaw in flaws(pair) if flaw.fatal]
     if fatal:
@@ -62,6 +66,11 @@ def mesh_of(scene: Scene, pair: GearPair, materials: Materials = ("", "")) -> Pa
     level = level_of(scene, elastic)
     if excluded := refused(elastic, level):
         raise SolveError(f'[sharing] level = "{level}" does not suit the gears. {excluded[0]}')
+    if seconds is not None and seconds < LEAST_SECONDS and LEVELS[level].cost > DEAR:
+        raise TimeoutError(
+            f'level = "{level}" in [sharing] takes a second or two: allow more time, or write '
+            "another level"
+        )
     try:
         coupled = coupling.value if isinstance(coupling, Quantity) else COUPLINGS[coupling](elastic)
         mesh = PairMesh.of(elastic, level, moved, coupled, asked.positions, loads)
