@@ -203,12 +203,9 @@ def _group(
     """Return the methods of one model with their runs, judged by its reference front."""
     trials = [t for e in members for kind in KINDS for t in runs.get((e.method, kind), [])]
     method, reference_front = standard or ("", Found(()))
-    every = (
-        [reference_front.values]
-        if reference_front.complete
-        else [reference_front.values, *(t.values for t in trials)]
-    )
-    values = np.vstack([v for v in every if len(v)] or [np.empty((0, count))])
+    others = [] if reference_front.complete else [t.values for t in trials]
+    every = [v for v in (reference_front.values, *others) if len(v)]
+    values = np.vstack(every or [np.empty((0, count))])
     values = values[unbeaten(values)]
     corner = reference(values) if len(values) else np.empty(0)
     whole = hypervolume(values, corner) if len(values) else 0.0
@@ -221,10 +218,8 @@ def _group(
             (s.seconds, s.evaluations, _missing(s.values, corner, whole))
             for s in _thin(trial.steps)
         )
-        result = replace(
-            trial.run, objective=missing, steps=steps, distance=igd(trial.values, values)
-        )
-        return clipped(result)
+        distance = igd(trial.values, values)
+        return clipped(replace(trial.run, objective=missing, steps=steps, distance=distance))
 
     def row(entry: Entry) -> Row:
         by_count, by_time = (
