@@ -9,7 +9,7 @@ from gearopt.optimise.pareto.measures import neighbours
 from gearopt.report.design_tables import OF_TEETH
 from gearopt.report.measures import METRIC, Measures, read_in, rounded
 from gearopt.report.section import Cell, Table, cell
-from gearopt.report.words import MODULE, SECONDS, number
+from gearopt.report.words import MODULE, SECONDS, number, sentence
 
 ROWS_ON_TERMINAL = 24  # rows on the terminal; the page and the CSV hold all
 VERDICTS = {
@@ -86,9 +86,7 @@ def decided(front: Front, measures: Measures = METRIC) -> list[str]:
             f"{steps} skipped: no design meets the limits on the objectives there "
             f"({proven} proven)."
         )
-    if front.message:
-        sentences.append(f"{front.message[0].upper()}{front.message[1:]}.")
-    return list(filter(None, sentences))
+    return [one for one in (*sentences, sentence(front.message)) if one]
 
 
 def _span(front: Front, k: int, measures: Measures) -> str:

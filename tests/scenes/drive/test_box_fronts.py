@@ -6,7 +6,7 @@ import pytest
 
 import gearopt
 from gearopt import SolveError
-from gearopt.report.front import verdict
+from gearopt.report.front import decided, verdict
 from gearopt.scenes.drive import trades
 
 FILE = Path(__file__).parents[3] / "problems" / "elevator_box.toml"
@@ -45,6 +45,7 @@ def test_gears_that_cannot_be_laid_out_have_no_front():
     assert verdict(front)[0] == (
         "impossible with these gears, proven (gears sized first for least gear volume)"
     )
+    assert all(one.endswith(".") and not one.endswith("..") for one in decided(front))
 
 
 def test_gears_of_a_front_of_their_box_are_sized_within_its_seconds(monkeypatch):
