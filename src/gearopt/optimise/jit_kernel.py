@@ -116,11 +116,11 @@ inlined = _kernel(no_cpython_wrapper=True, forceinline=True, error_model="numpy"
 
 @cache
 def _law(function: FunctionType, instead: tuple[tuple[str, Any], ...]) -> Any:
-    own = dict(function.__globals__)
+    names = dict(function.__globals__)
     for name in function.__code__.co_names:
-        if isinstance(own.get(name), FunctionType):
-            own[name] = dict(instead).get(name) or _law(own[name], instead)
-    return light(FunctionType(function.__code__, own))
+        if isinstance(names.get(name), FunctionType):
+            names[name] = dict(instead).get(name) or _law(names[name], instead)
+    return light(FunctionType(function.__code__, names))
 
 
 def law(function: Any, instead: dict[str, Any]) -> Any:

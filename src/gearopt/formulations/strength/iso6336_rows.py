@@ -68,11 +68,11 @@ def way_of(standard: "Iso6336") -> IsoWay:
 
 def _wearing(kinds: tuple[tuple[str, float], ...]) -> tuple[float, float, float]:
     """`IsoWay.wearing0` of families and sigma_Hlim [MPa]."""
-    found = {"tempered": 0.0, "cast": 0.0, "hard": 0.0}
+    shares = {"tempered": 0.0, "cast": 0.0, "hard": 0.0}
     for family, limit in kinds:
         kind = running_in.kind(family)
-        found[kind] = max(found[kind], 320.0 / limit if kind == "tempered" else 1.0)
-    return found["tempered"], found["cast"], found["hard"]
+        shares[kind] = max(shares[kind], 320.0 / limit if kind == "tempered" else 1.0)
+    return shares["tempered"], shares["cast"], shares["hard"]
 
 
 @dataclass(frozen=True)

@@ -46,8 +46,8 @@ class Compiled:
         self.rows += count
         if self.kernel is None and self.rows > FEW:
             self.kernel = kernels.kernel(KERNEL)
-        found = getattr(self.kernel, name, None)
-        return None if found is None or kernels.warm().waits(found) else found
+        entry = getattr(self.kernel, name, None)
+        return None if entry is None or kernels.warm().waits(entry) else entry
 
 
 compiled = cache(Compiled)
@@ -68,7 +68,7 @@ class Standing:
         self, place: Index, low: Array, high: Array, close: float, steps: int = MAX_STEPS
     ) -> Array:
         """`first_width` of the rows at places, which are among those of the first call."""
-        found, here = np.full(len(low), np.inf), np.array(low, float)
+        first, here = np.full(len(low), np.inf), np.array(low, float)
         moved = np.flatnonzero(here <= high * (1.0 + ALLOWANCE))
         while len(moved):
             before = here.copy()
@@ -78,12 +78,12 @@ class Standing:
                 here[moved] = widths
                 moved = moved[np.isfinite(widths)]
             if steps != MAX_STEPS or len(self.makers) == 1:  # steps: lower bounds
-                found[moved] = here[moved]
+                first[moved] = here[moved]
                 break
             still = here[moved] > before[moved]
-            found[moved[~still]] = here[moved[~still]]
+            first[moved[~still]] = here[moved[~still]]
             moved = moved[still]
-        return found
+        return first
 
     def _rows(self, k: int, place: Index) -> Rows:
         if k == len(self.kept):
@@ -109,30 +109,30 @@ def first_width(
     kernel = None if posed is None else compiled().of(posed[0], len(low))
     if posed is None or kernel is None:
         begun = time.process_time()
-        found = _of_arrays(rows, low, high, close, steps)
+        first = _of_arrays(rows, low, high, close, steps)
         kernels.warm().seconds += (time.process_time() - begun) * (posed is not None)
     elif kernel.signatures:
-        found = kernel(*posed[1], low, high, close, steps)
+        first = kernel(*posed[1], low, high, close, steps)
     else:
-        made: list[Array] = []
+        results: list[Array] = []
 
         def goes_on(event: Event) -> bool:
             tick()
             return True
 
         def work() -> None:
-            made.append(kernel(*posed[1], low, high, close, steps))
+            results.append(kernel(*posed[1], low, high, close, steps))
 
         kernels.compiled(work, (kernel,), goes_on)
-        (found,) = made
-    if steps == MAX_STEPS and np.isnan(found).any():
+        (first,) = results
+    if steps == MAX_STEPS and np.isnan(first).any():
         raise ArithmeticError(f"no narrowest face width was found in {MAX_STEPS} steps")
-    return np.asarray(found)
+    return np.asarray(first)
 
 
 def _of_arrays(rows: Rows, low: Array, high: Array, close: float, steps: int) -> Array:
     """First widths; NaN where so many steps are too few, of MAX_STEPS."""
-    found, here, top = np.full(len(low), np.inf), np.array(low, float), np.asarray(high, float)
+    first, here, top = np.full(len(low), np.inf), np.array(low, float), np.asarray(high, float)
     active = np.flatnonzero(here <= top * (1.0 + ALLOWANCE))
     rows = rows.take(active)
     here, top, power = here[active], top[active], np.ones(len(active))
@@ -141,7 +141,7 @@ def _of_arrays(rows: Rows, low: Array, high: Array, close: float, steps: int) ->
             break
         now = _used(rows, here, here)
         carries = now <= 1.0 + close
-        found[active[carries]] = here[carries]
+        first[active[carries]] = here[carries]
         goes = ~carries & (here < top)
         if not goes.all():
             active, rows = active[goes], rows.take(goes)
@@ -151,13 +151,13 @@ def _of_arrays(rows: Rows, low: Array, high: Array, close: float, steps: int) ->
             there = tried(here, np.minimum(top, border), now, power)
             bound = _used(rows, here, there)
             here, power = stepped(here, there, now, bound, border)
-    found[active] = np.nan if steps == MAX_STEPS else here  # what is left is bounded from below
-    return found
+    first[active] = np.nan if steps == MAX_STEPS else here  # what is left is bounded from below
+    return first
 
 
 def _used(rows: Rows, low: Array, high: Array) -> Array:
-    found = rows.used(low, high)
-    return np.asarray(np.where(np.isnan(found), np.inf, found))
+    part = rows.used(low, high)
+    return np.asarray(np.where(np.isnan(part), np.inf, part))
 
 
 def tried(here: Any, end: Any, now: Any, power: Any) -> Any:

@@ -126,8 +126,8 @@ def remaining(
     shaft: Any, alignment: Any, line_load: Any, slope: Any, parts: tuple[float, float]
 ) -> Any:
     """F_betax of `initial_misalignment` of parts B_1, B_2."""
-    found = 1.33 * parts[0] * shaft + parts[1] * alignment
-    return np.maximum(found, np.maximum(LEAST_PER_LOAD * line_load, 0.5 * slope))
+    initial = 1.33 * parts[0] * shaft + parts[1] * alignment
+    return np.maximum(initial, np.maximum(LEAST_PER_LOAD * line_load, 0.5 * slope))
 
 
 def face_load_factor(misalignment: Any, stiffness: Any, line_load: Any) -> Any:

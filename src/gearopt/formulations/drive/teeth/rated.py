@@ -504,12 +504,12 @@ class RatedTable(Table):
         def maker(standard: Standard, prepared: Any) -> Callable[[Index], Rows]:
             def rows(place: Index) -> Rows:
                 every = len(place) == len(pair)
-                made = one if every else self.made(self.modules[module[place]], pair[place])
+                gears = one if every else self.made(self.modules[module[place]], pair[place])
                 ends = torque[0][place], torque[1][place]
                 speed = self.train.speed_at(ends[0]), self.train.speed_at(ends[1])
                 scale = np.ones(len(place)) if self._by_module else self.modules[module[place]]
                 teeth = prepared.take(shapes[place]).scaled(scale)
-                return standard.rows(teeth, made, ends, speed, self.train.safety)
+                return standard.rows(teeth, gears, ends, speed, self.train.safety)
 
             return rows
 

@@ -265,8 +265,8 @@ def pressed(at: IsoRow, way: IsoWay, box: IsoBox, after: Any, share: Any) -> Any
 def transverse(at: IsoRow, way: IsoWay, box: IsoBox, after: Any) -> tuple[Any, Any]:
     """Return K_alpha without limits of the least line load, and of an endless one."""
     stiff, total = mesh(at, way, box.single0), box.total0
-    found = transverse_load_factor(stiff, at.deviation0, after, total)
-    return found, transverse_load_factor(stiff, 0.0, after, total)
+    of_least = transverse_load_factor(stiff, at.deviation0, after, total)
+    return of_least, transverse_load_factor(stiff, 0.0, after, total)
 
 
 def bent(
@@ -280,11 +280,10 @@ def bent(
     face = (after / before) ** power if np.isnan(way.K_Fbeta) else way.K_Fbeta
     if not np.isnan(way.K_Falpha):
         return before * face * way.K_Falpha
-    found, endless = shares
-    factor = found
+    factor, endless = shares
     if way.any_load or not box.same:
-        above = least_at(at, way, box, power, after, found / endless - 1.0)
-        factor = above**power * (endless + (found - endless) / above)
+        above = least_at(at, way, box, power, after, factor / endless - 1.0)
+        factor = above**power * (endless + (factor - endless) / above)
     most = box.total0 / (at.contact * (0.25 + 0.75 / (at.virtual if way.newer else at.contact)))
     return before * face * limited(factor, most)
 
@@ -336,8 +335,8 @@ def iso_border(at: IsoRow, way: IsoWay, width: Any) -> Any:
     """Return the next width [mm] at which a refusal ends, K_v has other laws, or f_Hbeta a step."""
     first = at.overlap * at.axial * BEFORE
     second = (2.0 - at.contact) * at.axial * BEFORE
-    found = choose(width <= first, first, np.inf)
-    found = np.minimum(found, choose(width <= second, second, np.inf))
+    border = choose(width <= first, first, np.inf)
+    border = np.minimum(border, choose(width <= second, second, np.inf))
     for step in way.widths:
-        found = np.minimum(found, choose(width <= step, step, np.inf))
-    return found
+        border = np.minimum(border, choose(width <= step, step, np.inf))
+    return border
