@@ -101,8 +101,8 @@ class Basis:
     def _of_same(self, scene: Any) -> tuple[float | None, float]:
         """Return the objective of a changed file with the whole numbers and choices of the point.
 
-        None where no minimum over the others is certain, inf where there is none for sure. With the
-        relative difference of values that counts as none.
+        None where a point was found that need not be their minimum, inf where none was found. With
+        the relative difference of values that counts as none.
         """
         assert self.posed is not None and self.point is not None
         problem = self.posed(scene)
@@ -110,7 +110,7 @@ class Basis:
         if (lower == upper).all():
             return float(problem.batch(lower[None]).F[0, 0]), OBJECTIVE_TIE  # the file's own sizes
         result = solve(problem.starting(self.point), "ipopt")
-        if result.status == "infeasible":
+        if result.value is None:
             return math.inf, SOLVED
         return (result.value if result.status in CERTAIN else None), SOLVED
 
