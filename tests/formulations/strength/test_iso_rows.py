@@ -203,6 +203,24 @@ def test_no_width_uses_less_near_the_main_resonance_at_one_torque():
         assert np.all(found <= one * (1.0 + 1e-12))
 
 
+def test_the_dynamic_load_of_a_virtual_way_is_the_least_of_any_tip_relief():
+    """|W0 - c' C_a| is 0 where C_a may be W0/c'; else it is least at an end of C_a."""
+    standard, helix = KINDS["short life"]
+    pair, width, torque, power, rng = pairs(helix, 11)
+    at, way = rows(standard, pair, (torque, torque), power).row, standard.way
+    box = use.box_of(at, way, width, width, same=True)
+    pace = rng.uniform(0.4, 2.5, COUNT) * np.sqrt(use.mesh(at, way, box.single0))
+    neutral = box.line0 / box.single0
+    ends = np.sort(neutral * rng.uniform(0.5, 1.5, (2, COUNT)), axis=0)
+
+    def load(least, most):
+        here = at._replace(pace0=pace, pace1=pace, relief0=least, relief1=most)
+        return use.dynamic(here, way, box, use.LOWER)
+
+    every = [load(relief, relief) for relief in (*ends, np.clip(neutral, *ends))]
+    np.testing.assert_allclose(load(*ends), np.min(every, axis=0), rtol=1e-12)
+
+
 @pytest.mark.parametrize(("loads", "wide"), [(2.0, 1.5), (1.02, 1.01)])
 def test_the_least_root_load_may_be_within_a_box(loads, wide):
     """W2^N_F K_alpha(W2) on a grid of line loads: least above the least one for some pairs."""
