@@ -150,7 +150,7 @@ def test_both_stages_are_moved_together():
     told = lead(replace(posed(changed(FILE, *both)), scene="servo"))
     assert told == (
         "the limits on minimum backlash of stages 1 and 2 cannot be met, even if all other "
-        "limits are dropped"
+        "given limits are dropped"
     )
 
 
