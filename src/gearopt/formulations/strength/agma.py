@@ -17,7 +17,13 @@ from gearopt.formulations.strength.agma_cells import needed
 from gearopt.formulations.strength.agma_floor import AgmaFloor, agma_floor
 from gearopt.formulations.strength.cells import Cells
 from gearopt.formulations.strength.rated import Box, Load, Posed, Smooth, table_of
-from gearopt.formulations.strength.use.agma import AgmaRow, AgmaWay, agma_border, agma_use
+from gearopt.formulations.strength.use.agma import (
+    AgmaRow,
+    AgmaWay,
+    agma_border,
+    agma_nominal,
+    agma_use,
+)
 from gearopt.formulations.strength.virtual import Strength, may_be_best
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma import factors
@@ -40,6 +46,7 @@ from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import GearPair
 from gearopt.physics.rating import Operation
 
+BARE = {"I": 1.0, "J": (1.0, 1.0), "K_m": 1.0, "K_s": (1.0, 1.0)}  # of rows, for `agma_use`
 UNIT = GearPair.of_teeth(1.0, 20.0, 20.0, 1.0)  # on which strengths of steels do not depend
 
 
@@ -182,12 +189,39 @@ class Agma:
         safety: tuple[float, float],
     ) -> "AgmaRows":
         """Return rows at the smaller torque, which is the least loaded one."""
-        bare = {"I": 1.0, "J": (1.0, 1.0), "K_m": 1.0, "K_s": (1.0, 1.0)}
+        return self._rows(prepared, pair, torque[0], speed[0], safety, BARE)
+
+    def nominal(
+        self,
+        prepared: FactorTable,
+        pair: GearPair,
+        torque: tuple[Array, Array],
+        speed: tuple[Array, Array],
+        safety: tuple[float, float],
+        widths: tuple[Array, Array],
+    ) -> Array:
+        """Least widths [mm] over the torque [N mm] without K_v; lives at the slow end."""
+        one = {**BARE, "K_v": 1.0}
+        rows = self._rows(prepared, pair, torque[1], speed[1], safety, one)
+        with np.errstate(invalid="ignore"):
+            most = np.asarray(agma_nominal(rows.row, self.way, *widths) / torque[1])
+        return np.where(np.isnan(most), np.inf, most)
+
+    def _rows(
+        self,
+        prepared: FactorTable,
+        pair: GearPair,
+        torque: Array,
+        speed: Array,
+        safety: tuple[float, float],
+        given: Mapping[str, Any],
+    ) -> "AgmaRows":
+        """Rows at a torque and speed, with given factors."""
         unit = pair.of_width(1.0)
         places = range(len(self.loads))
         every = []
         for way in self._strongest_ways:
-            cases = [way.case(unit, torque[0], speed[0], bare, place) for place in places]
+            cases = [way.case(unit, torque, speed, given, place) for place in places]
             if len(cases) == 1:
                 every.append(safeties(cases[0], 1.0, (1.0, 1.0)))
             else:
@@ -200,7 +234,7 @@ class Agma:
             for gear in pair.gears
         ]
         columns = (*used, pair.working_diameters[0], *lengths)
-        return AgmaRows(self, prepared, table_of(columns, len(torque[0])))
+        return AgmaRows(self, prepared, table_of(columns, len(torque)))
 
 
 @dataclass(frozen=True)

@@ -247,6 +247,19 @@ class Iso6336:
         }
         return IsoRows(self, columns | {f"{n}1": columns[f"{n}0"] for n in AT_ENDS if same})
 
+    def nominal(
+        self,
+        prepared: ToothTable,
+        pair: GearPair,
+        torque: tuple[Array, Array],
+        speed: tuple[Array, Array],
+        safety: tuple[float, float],
+        widths: tuple[Array, Array],
+    ) -> Array:
+        """Least widths [mm] over the torque [N mm] by W0 and the strengths of any torque."""
+        rows = self.rows(prepared, pair, torque, speed, safety)
+        return np.asarray(rows.nominal(*widths) / torque[0])
+
     def _columns(
         self,
         table: ToothTable,

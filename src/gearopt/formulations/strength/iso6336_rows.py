@@ -1,6 +1,7 @@
 """Rows of pairs by ISO 6336: their columns, and what is used of them under levels of load."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
@@ -14,6 +15,7 @@ from gearopt.formulations.strength.use.iso6336 import (
     IsoWay,
     iso_border,
     least_part,
+    nominal_part,
     refused,
 )
 from gearopt.optimise.terms import Array
@@ -106,6 +108,18 @@ class IsoRows:
         most = np.maximum.reduce(parts) if single else self._spectrum(list(parts))
         return np.where(refused(at, high) | np.isnan(most), np.inf, most)
 
+    @np.errstate(invalid="ignore", divide="ignore", over="ignore")
+    def nominal(self, low: Array, high: Array) -> Array:
+        """Least widths [mm] from low to high that the nominal load leaves at the first torque.
+
+        Of several levels each has to be carried alone.
+        """
+        parts = nominal_part(self.row, self.standard.way, low, high)
+        if len(self.standard.loads) > 1:
+            parts = tuple(alone for alone, _ in self._ends(parts))
+        most = np.maximum.reduce(parts)
+        return np.where(refused(self.row, high) | np.isnan(most), np.inf, most)
+
     @cached_property
     def row(self) -> IsoRow:
         """The columns that all numbers of levels have."""
@@ -116,11 +130,7 @@ class IsoRows:
 
         Near 1 it is continuous, so that secants on it find where it is 1.
         """
-        at = self.columns
-        ends = [
-            [np.max(part / at[f"{name}{k}_{end}"], axis=0) for end in ("own", "all")]
-            for part, (name, k) in zip(parts, MODES, strict=True)
-        ]
+        ends = self._ends(parts)
         most = np.maximum.reduce([np.where(every <= 1.0, every, alone) for alone, every in ends])
         for part, (alone, every), mode in zip(parts, ends, MODES, strict=True):
             some = np.flatnonzero((most <= FAR) & (every > np.maximum(most, 1.0)))
@@ -128,6 +138,13 @@ class IsoRows:
                 used = self._together(part[:, some], alone[some], every[some], mode, some)
                 most[some] = np.maximum(most[some], used)
         return most
+
+    def _ends(self, parts: Iterable[Any]) -> list[list[Any]]:
+        """What each mode uses by the worst level alone, and by it with the cycles of all."""
+        return [
+            [np.max(part / self.columns[f"{name}{k}_{end}"], axis=0) for end in ("own", "all")]
+            for part, (name, k) in zip(parts, MODES, strict=True)
+        ]
 
     def _together(self, part: Any, alone: Any, every: Any, mode: tuple[str, int], some: Any) -> Any:
         """Number above 1 where Miner's sum of some rows is, from `alone` to `every`.

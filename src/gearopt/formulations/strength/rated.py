@@ -146,6 +146,21 @@ class Standard(Protocol):
         speed: at the two ends, the first of which is the faster one.
         """
 
+    def nominal(
+        self,
+        prepared: Any,
+        pair: GearPair,
+        torque: tuple[Array, Array],
+        speed: tuple[Array, Array],
+        safety: tuple[float, float],
+        widths: tuple[Array, Array],
+    ) -> Array:
+        """Return the least face widths over the torque [mm/(N mm)] by nominal stresses.
+
+        No width between two ends [mm] carries a torque between the ends of `rows` below this times
+        the torque; inf: none carries any.
+        """
+
 
 @dataclass(frozen=True)
 class Option:

@@ -393,6 +393,9 @@ class RatedTable(Table):
         rows, pair, module = tried
         one = self.made(self.modules[module], pair)
         narrow = ends[0]
+        if self._by_module:  # few modules a pair, so that these are met at many torques
+            least = self._nominal(module, pair, ends) * torque[0][rows] * (1.0 - EDGE)
+            narrow = np.where(least <= ends[1], np.maximum(narrow, least), np.inf)
         bounded = until[1] == MAX_STEPS and self._virtual is not None
         for option in (VIRTUAL, *self._by_price) if bounded else self._by_price:
             limit = np.minimum(most[rows], best.cost[rows])
@@ -413,6 +416,49 @@ class RatedTable(Table):
                 narrow[some] = widths
             else:
                 self._improve(best, rows[some], *sizes, option, widths)
+
+    def _nominal(self, module: Index, pair: Index, ends: tuple[Array, Array]) -> Array:
+        """Least face widths over the torque [mm/(N mm)] of pairs with modules (indices)."""
+        shape, known = self._shape(module, pair), self._nominal_widths
+        _, new = np.unique(np.where(np.isnan(known[shape]), shape, -1), return_index=True)
+        new = new[np.isnan(known[shape[new]])]
+        if len(new):
+            options = [VIRTUAL] if self._virtual else range(len(self.stage.options))
+            sizes, widths = (module[new], pair[new]), (ends[0][new], ends[1][new])
+            least = [self._nominal_of(option, *sizes, widths) for option in options]
+            known[shape[new]] = np.minimum.reduce(least)
+        return known[shape]
+
+    @cached_property
+    def _nominal_widths(self) -> Array:
+        """What `_nominal` has by `_shapes`; NaN: not yet."""
+        return np.full(int(self._counts.sum()), np.nan)
+
+    def _nominal_of(
+        self, option: int, module: Index, pair: Index, widths: tuple[Array, Array]
+    ) -> Array:
+        """`_nominal` of one option, for every torque of the train."""
+        low = np.full(len(pair), self.train.torque)
+        ends = low, low * float(self.train.highest_ratio)
+        speed, safety = tuple(self.train.speed_at(end) for end in ends), self.train.safety
+        gears = self.made(self.modules[module], pair)
+        least = [
+            standard.nominal(self._taken(ready, module, pair), gears, ends, speed, safety, widths)
+            for standard, ready in self._standards(option)
+        ]
+        return np.asarray(np.maximum.reduce(least))
+
+    def _standards(self, option: int) -> Iterator[tuple[Standard, Any]]:
+        """Standards of an option, and what each has prepared of all pairs."""
+        chosen = self._virtual if option == VIRTUAL else self.stage.options[option]
+        assert chosen is not None
+        return zip(chosen.standards, self._prepared[max(option, 0)], strict=True)
+
+    def _taken(self, prepared: Any, module: Index, pair: Index) -> Any:
+        """What a standard has prepared of pairs with modules (indices)."""
+        if self._by_module:
+            return prepared.take(self._shape(module, pair))
+        return prepared.take(pair).scaled(self.modules[module])
 
     @cached_property
     def _virtual(self) -> Option | None:
@@ -496,25 +542,18 @@ class RatedTable(Table):
         module: Index,
         option: int,
     ) -> Standing:
-        shapes = self._shape(module, pair) if self._by_module else pair
-        virtual = option == VIRTUAL
-        chosen = self._virtual if virtual else self.stage.options[option]
-        assert chosen is not None
-
         def maker(standard: Standard, prepared: Any) -> Callable[[Index], Rows]:
             def rows(place: Index) -> Rows:
                 every = len(place) == len(pair)
                 gears = one if every else self.made(self.modules[module[place]], pair[place])
                 ends = torque[0][place], torque[1][place]
                 speed = self.train.speed_at(ends[0]), self.train.speed_at(ends[1])
-                scale = np.ones(len(place)) if self._by_module else self.modules[module[place]]
-                teeth = prepared.take(shapes[place]).scaled(scale)
+                teeth = self._taken(prepared, module[place], pair[place])
                 return standard.rows(teeth, gears, ends, speed, self.train.safety)
 
             return rows
 
-        standards = zip(chosen.standards, self._prepared[0 if virtual else option], strict=True)
-        makers = [maker(standard, prepared) for standard, prepared in standards]
+        makers = [maker(standard, prepared) for standard, prepared in self._standards(option)]
         if self.train.law.limits:
             assert self.load is not None
             needed = self.load[pair] * torque[0] / self.modules[module] ** 2

@@ -52,13 +52,35 @@ def agma_use(at: AgmaRow, way: AgmaWay, low: Any, high: Any, same: bool) -> Any:
     K_m and K_s do not fall with the width; b I and b J follow the least length of the lines of
     contact above m_F = 1, which does not fall; below, I and J are largest at one of the ends.
     """
-    pitting, first, second = geometry(at, low, high, same)
+    return part(at, way, low, geometry(at, low, high, same), high)
+
+
+def agma_nominal(at: AgmaRow, way: AgmaWay, low: Any, high: Any) -> Any:
+    """Return a lower bound of the width times what is used at any width between two (Lemma 83).
+
+    Up to m_F = 1 I and J are greatest at an end of the widths; above, L_min/b is at most the
+    contact ratio over the cosine of the base helix angle.
+    """
+    most, above = at.contact / at.cosine, high > at.axial
+    rise = np.maximum(1.0, 1.0 - np.minimum(high / at.axial, 1.0) * at.slope)
+    pitting, first, second = (
+        choose(above, np.fmax(narrow, wide * most), narrow)
+        for narrow, wide in zip(
+            (at.low[0] * rise, at.low[1] * rise**0.5, at.low[2] * rise**0.5), at.high, strict=True
+        )
+    )
+    return part(at, way, low, (pitting, first, second), 1.0)
+
+
+def part(at: AgmaRow, way: AgmaWay, low: Any, factors: Three, width: Any) -> Any:
+    """Return what is used at a width, with I and J and with K_m and K_s of a width up to it."""
+    pitting, first, second = factors
     spread = distributed(low, at.diameter, way.curve, way.shared) if np.isnan(way.K_m) else 1.0
     sizes = (1.0, 1.0)
     if way.sized:
         sizes = size_factor(low, at.length0, 1.0), size_factor(low, at.length1, 1.0)
-    pressed = high * (pitting if np.isnan(way.I) else 1.0)
-    bent = high * (first if np.isnan(way.J) else 1.0), high * (second if np.isnan(way.J) else 1.0)
+    pressed = width * (pitting if np.isnan(way.I) else 1.0)
+    bent = width * (first if np.isnan(way.J) else 1.0), width * (second if np.isnan(way.J) else 1.0)
     pinion = np.maximum(at.bending0 / bent[0], at.contact0 / pressed) * sizes[0]
     wheel = np.maximum(at.bending1 / bent[1], at.contact1 / pressed) * sizes[1]
     return spread * np.maximum(pinion, wheel)

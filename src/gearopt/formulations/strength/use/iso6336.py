@@ -163,8 +163,14 @@ def least_part(at: IsoRow, way: IsoWay, low: Any, high: Any, same: bool) -> tupl
     before = dynamic(at, way, box, LOWER)
     after = spread(at, way, box, before, LOWER)
     shares = transverse(at, way, box, after)
-    bending = bent(at, way, box, before, after, shares) * root_factor(at, way, box)
-    contact = pressed(at, way, box, after, shares[0]) * ratio_factor(at, way, box.overlap1) ** 2
+    bending = bent(at, way, box, before, after, shares)
+    return parts(at, way, box, bending, pressed(at, way, box, after, shares[0]))
+
+
+def parts(at: IsoRow, way: IsoWay, box: IsoBox, bent: Any, pressed: Any) -> tuple[Any, ...]:
+    """Parts of `least_part` of the least W1 K_Fbeta K_Falpha and W2 K_Halpha."""
+    bending = bent * root_factor(at, way, box)
+    contact = pressed * ratio_factor(at, way, box.overlap1) ** 2
     first = least_single(way.Z_BD0, at.single0, way, box)
     second = least_single(way.Z_BD1, at.single1, way, box)
     return (
@@ -173,6 +179,22 @@ def least_part(at: IsoRow, way: IsoWay, low: Any, high: Any, same: bool) -> tupl
         contact * first**2 * at.contact_used0,
         contact * second**2 * at.contact_used1,
     )
+
+
+def nominal_part(at: IsoRow, way: IsoWay, low: Any, high: Any) -> tuple[Any, ...]:
+    """Least parts as of `least_part`, times the width, by the nominal load W0 (Lemma 83).
+
+    At any width between two; K_v is at least 1, above the main resonance C_v7, the others 1.
+    """
+    box = box_of(at, way, low, high, False)
+    fastest = resonance(at, way, at.pace1, box.single0)
+    dynamic = choose(fastest > MAIN, coefficients(box.total0)[6], 1.0)
+    load = at.force0 * (dynamic if np.isnan(way.K_v) else way.K_v)
+    face = 1.0 if np.isnan(way.K_Hbeta) else way.K_Hbeta
+    root = np.minimum(face, 1.0) if np.isnan(way.K_Fbeta) else way.K_Fbeta
+    pressed = face * (1.0 if np.isnan(way.K_Halpha) else way.K_Halpha)
+    bent = root * (1.0 if np.isnan(way.K_Falpha) else way.K_Falpha)
+    return parts(at, way, box, load * bent, load * pressed)
 
 
 def refused(at: IsoRow, high: Any) -> Any:
