@@ -40,11 +40,15 @@ def test_a_process_of_many_rows_takes_the_kernel(monkeypatch):
     pair, width, torque, power, _ = pairs(helix, 3)
     made = rows(standard, pair, (torque, torque), power)
     monkeypatch.setattr(kernels.warm(), "seconds", kernels.PATIENCE)
-    ticks, of_arrays = [], []
+    of_arrays = []
     real = widths._of_arrays
     monkeypatch.setattr(widths, "_of_arrays", lambda *a: of_arrays.append(a) or real(*a))
-    first, second = (
-        widths.first_width(made, 0.4 * width, width, tick=lambda: ticks.append(1)) for _ in range(2)
-    )
+    first, second = (widths.first_width(made, 0.4 * width, width) for _ in range(2))
     np.testing.assert_allclose(first, second, rtol=1e-12)
     assert len(of_arrays) == 1
+
+
+def test_kernels_are_not_loaded_where_little_time_is_left():
+    own = widths.Compiled(widths.FEW)
+    assert own.of("agma_widths", 1, lambda: 0.5 * widths.LOADING) is None
+    assert own.kernel is None

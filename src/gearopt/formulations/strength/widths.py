@@ -6,6 +6,7 @@ several standards each goes on from where the others carry, so that it rates wha
 and kernels take the same steps.
 """
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -29,7 +30,8 @@ SHY = 0.97  # of a step that would lead to a bound of 1
 LARGEST_POWER = 4.0  # power of what is used, of a step
 SHORT = 1e-14  # relative length of a step that ends a row
 KERNEL = "gearopt.formulations.strength.use.rating_kernel"
-FEW = 30_000  # rows of a process that arrays are quick enough for: loading kernels takes 0.4 s
+FEW = 30_000  # rows of a process that arrays are quick enough for
+LOADING = 1.0  # s that loading kernels may take
 
 Index = Any
 
@@ -41,10 +43,13 @@ class Compiled:
     rows: int = 0
     kernel: ModuleType | None = None
 
-    def of(self, name: str, count: int) -> Any:
-        """Kernel for so many rows more; None: arrays are as quick, or it is not compiled."""
+    def of(self, name: str, count: int, left: Callable[[], float]) -> Any:
+        """Kernel for so many rows more; None: it is not compiled, or arrays are as quick.
+
+        left: the seconds left.
+        """
         self.rows += count
-        if self.kernel is None and self.rows > FEW:
+        if self.kernel is None and self.rows > FEW and left() > LOADING:
             self.kernel = kernels.kernel(KERNEL)
         entry = getattr(self.kernel, name, None)
         return None if entry is None or kernels.warm().waits(entry) else entry
@@ -61,7 +66,7 @@ class Standing:
     """
 
     makers: Sequence[Callable[[Index], Rows]]
-    tick: Callable[[], None] = lambda: None
+    tick: Callable[[], float] = lambda: math.inf
     kept: list[tuple[Index, Rows]] = field(default_factory=list)
 
     def first_width(
@@ -98,15 +103,16 @@ def first_width(
     high: Array,
     close: float = ALLOWANCE,
     steps: int = MAX_STEPS,
-    tick: Callable[[], None] = lambda: None,
+    tick: Callable[[], float] = lambda: math.inf,
 ) -> Array:
     """Return the first face width [mm] (n,) from low to high that carries; inf: none.
 
     A lower bound of it where close, what may be used above 1, is more than rounding, or after so
-    many steps. tick: called before every function that is compiled; what it raises ends that.
+    many steps. tick: the seconds left, called before kernels are loaded and before every function
+    that is compiled; what it raises ends that.
     """
     posed = rows.posed
-    kernel = None if posed is None else compiled().of(posed[0], len(low))
+    kernel = None if posed is None else compiled().of(posed[0], len(low), tick)
     if posed is None or kernel is None:
         begun = time.process_time()
         first = _of_arrays(rows, low, high, close, steps)

@@ -37,7 +37,7 @@ class _Rows:
     steps: tuple[Array, Array] | None
 
 
-def columns(train: Train, position: int, cut: Fraction, tick: Callable[[], None]) -> Columns:
+def columns(train: Train, position: int, cut: Fraction, tick: Callable[[], float]) -> Columns:
     """Return the fields of the table of a stage (counted from 0) for ratios up to `cut`.
 
     tick: called several times a second; what it raises ends the work.

@@ -143,11 +143,13 @@ class Search:
             found.append((pairs, tuple(map(int, self.made.option[k]))))
         return found
 
-    def tick(self) -> None:
-        """Raise SearchEnded where budget and watcher stop the search."""
+    def tick(self) -> float:
+        """Seconds left; SearchEnded is raised where budget and watcher stop the search."""
         self.clock.best = float(self.values[:, 0].min(initial=math.inf))
         if not self.clock.tell():
             raise SearchEnded
+        seconds = self.clock.left.seconds
+        return math.inf if seconds is None else seconds
 
 
 def fronts(train: Train, most: Array, clock: Clock) -> Designs:

@@ -61,7 +61,7 @@ def bound(
     train: Train,
     tables: list[Table],
     delta: float,
-    tick: Callable[[], None],
+    tick: Callable[[], float],
     useful: list[Mask] | None = None,
     most: float = math.inf,
     coarse: Bound | None = None,
@@ -152,7 +152,7 @@ def _last(
     table: Table,
     cells: int,
     delta: float,
-    tick: Callable[[], None],
+    tick: Callable[[], float],
     useful: Mask | None,
     most: float,
 ) -> Array:

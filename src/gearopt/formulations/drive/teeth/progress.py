@@ -72,12 +72,11 @@ class Progress:
             best = self.found[0][0] if self.found else math.inf
             self.lower = max(self.lower, min(bound, self.beside, best))
 
-    def tick(self) -> None:
-        """Raise SearchEnded where budget and watcher stop the search."""
-        if self.continues():
-            return
-        if self.clock.refused or self.late >= self.patience:
+    def tick(self) -> float:
+        """Seconds left; SearchEnded is raised where budget and watcher stop the search."""
+        if not self.continues() and (self.clock.refused or self.late >= self.patience):
             raise SearchEnded
+        return -self.late
 
     @property
     def late(self) -> float:

@@ -56,12 +56,12 @@ class Found:
 class RatedTable(Table):
     """Tooth pairs (n,) of a stage with options.
 
-    others: tables that may have these pairs, too. tick: called between options and modules, about
-    a hundred times a second; what it raises ends the work.
+    others: tables that may have these pairs, too. tick: the seconds left, called between options
+    and modules, about a hundred times a second; what it raises ends the work.
     """
 
     others: tuple["RatedTable", ...] = ()
-    tick: Callable[[], None] = field(default=lambda: None, compare=False, repr=False)
+    tick: Callable[[], float] = field(default=lambda: math.inf, compare=False, repr=False)
 
     def made(self, module: Any, pair: Any) -> GearPair:
         """Return the gear pairs (indices) with modules [mm] of the series, of face width 1 mm.
@@ -268,7 +268,7 @@ class RatedTable(Table):
                 rough &= ~np.isin(group, group[~rough & np.isfinite(cost)])
         return cost
 
-    def grid(self, cells: Cells, tick: Callable[[], None]) -> Grid:
+    def grid(self, cells: Cells, tick: Callable[[], float]) -> Grid:
         """Minimum cost (torque cells, ratio cells), and first modules of use (torque cells, pairs).
 
         A lower bound: the least over the torques of a cell, of its pairs the best.

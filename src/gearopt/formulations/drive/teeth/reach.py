@@ -36,7 +36,7 @@ def reach(
     cut: Fraction,
     maximum: Fraction,
     threshold: float,
-    tick: Callable[[], None] = lambda: None,
+    tick: Callable[[], float] = lambda: math.inf,
     shelf: list[RatedTable] | None = None,
 ) -> Fraction:
     """Return the largest stage ratio that a train at least as good as `threshold` may have.

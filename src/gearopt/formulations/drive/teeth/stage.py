@@ -139,7 +139,7 @@ class Table:
         """Return the largest ratio whose share of a train is at most so much; at least `least`."""
         return float(max(self.ratio.max(initial=0.0), least))
 
-    def grid(self, cells: Cells, tick: Callable[[], None]) -> Grid:
+    def grid(self, cells: Cells, tick: Callable[[], float]) -> Grid:
         """Minimum cost (torque cells, ratio cells), and first modules of use where they serve.
 
         A lower bound: of the torques of a cell the smallest, of its pairs the best.

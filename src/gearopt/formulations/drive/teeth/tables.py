@@ -1,5 +1,6 @@
 """Pairs of teeth that a stage may have: by load limits (`Table`) or by ratings (`RatedTable`)."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -19,7 +20,7 @@ def table(
     train: Train,
     position: int,
     cut: Fraction,
-    tick: Callable[[], None] = lambda: None,
+    tick: Callable[[], float] = lambda: math.inf,
     others: Sequence[RatedTable] = (),
 ) -> Table:
     """Return the table of a stage (counted from 0) for ratios up to `cut`.
@@ -39,7 +40,7 @@ def table(
 def stage_tables(
     train: Train,
     cut: Fraction,
-    tick: Callable[[], None] = lambda: None,
+    tick: Callable[[], float] = lambda: math.inf,
     shelf: list[RatedTable] | None = None,
 ) -> list[Table]:
     """Return the tables of all stages; equal inner stages share one.
