@@ -283,7 +283,7 @@ UNKNOWN = "of the front {} not known, as steps there are not proven: b of it "
     [
         ([(0.0, 1.0, epsilon.OPEN)], "", ""),  # no more than that is missing
         ([(0.0, 1.0, 0.1), (1.0, 2.0, 0.1)], "", "1 part " + UNKNOWN.format("is") + "0 to 2"),
-        ([(-math.inf, 1.0, 0.0), (2.0, 3.0, 0.1)], "", "2 parts {}-inf to 1, 2 to 3"),
+        ([(-math.inf, 1.0, 0.0), (2.0, 3.0, 0.1)], "", "2 parts {}up to 1, 2 to 3"),
         (
             [(2.0 * k, 2.0 * k + 1.0, 0.1) for k in range(5)],
             "No bounds.",

@@ -147,6 +147,13 @@ def test_other_criteria_have_no_proven_search_and_say_so():
     assert "of shares of the load there is no bound" in result.message
 
 
+def test_a_criterion_without_derivatives_has_no_sensitivities_but_keeps_its_answer():
+    file = COARSE | {"relief": COARSE["relief"] | {"minimise": "peak_load"}}
+    explained = gearopt.explain(file, budget=gearopt.Budget(0.3))
+    assert 0.0 < explained.result.value <= 1.0 and not explained.influences
+    assert "not proven optimal" in explained.message
+
+
 @pytest.mark.slow
 def test_duty_in_relieved_gears_out(solved):
     """The paper's program from one file: the gears are those of the file without [relief]."""

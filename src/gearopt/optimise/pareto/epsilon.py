@@ -570,7 +570,10 @@ def _left_open(run: Run, left: list[Strip]) -> str:
     if not pieces:
         return run.refused
     name = run.names[1].replace("_", " ")
-    places = ", ".join(f"{low:.6g} to {high:.6g}" for low, high in pieces[:NAMED])
+    places = ", ".join(
+        f"{low:.6g} to {high:.6g}" if low > -math.inf else f"up to {high:.6g}"
+        for low, high in pieces[:NAMED]
+    )
     more = f" and {len(pieces) - NAMED} others" if len(pieces) > NAMED else ""
     what = "part of the front is" if len(pieces) == 1 else "parts of the front are"
     why = f". {run.refused}" if run.refused else ""

@@ -106,7 +106,11 @@ def explained(
         return solution.value if solution.status in CERTAIN else None
 
     problem = posed(scene)
-    optimum, outcome = run(problem, None, clock.left, watch=clock.watch)
+    try:
+        optimum, outcome = run(problem, None, clock.left, watch=clock.watch)
+    except SolveError as reason:  # of texts without derivatives: the answer stands
+        why = str(reason) if result.status in CERTAIN else UNPROVEN
+        return Explanation(result, (), (), binding(result), (), why, clock.seconds)
     if optimum.value is None or optimum.status not in CERTAIN:
         return Explanation(result, (), (), binding(result), (), UNPROVEN, clock.seconds)
     basis, held = Basis(optimum.value, solved), False

@@ -36,7 +36,8 @@ def _choices(train: Train, teeth: Teeth) -> tuple[float, tuple[GearPair, ...], t
     torque, value, pairs, options = train.torque, 0.0, [], []
     loaded: list[tuple[Table, float]] = []
     for k, (z1, z2) in enumerate(teeth):
-        loaded.append((table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio), torque))
+        only = table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio, _no_kernels)
+        loaded.append((only, torque))
         torque *= z2 / z1
     rows = _best_rows(train, loaded)
     if len(rows) < len(teeth):
@@ -51,6 +52,11 @@ def _choices(train: Train, teeth: Teeth) -> tuple[float, tuple[GearPair, ...], t
             else math.inf
         )
     return value, tuple(pairs), tuple(options)
+
+
+def _no_kernels() -> float:
+    """No seconds left to load kernels: the rows of one train are few."""
+    return 0.0
 
 
 def _best_rows(train: Train, loaded: list[tuple[Table, float]]) -> list[int]:
