@@ -9,7 +9,13 @@ from gearopt.physics.gears import ISO_53_A, GearPair
 from gearopt.physics.geometry.contact import contact_path, specific_sliding
 from gearopt.physics.geometry.fillet import NEGLIGIBLE
 from gearopt.physics.geometry.flaws import flaws
-from gearopt.physics.geometry.profile_shift import RULES, Meshing, Shifting, equal_sliding
+from gearopt.physics.geometry.profile_shift import (
+    RULES,
+    Meshing,
+    Shifting,
+    equal_root_safety,
+    equal_sliding,
+)
 from gearopt.physics.geometry.tooth import tip_thickness
 
 # m_n, z1, z2, beta [deg], a [mm]; x1 + x2 and alpha_wt [deg] as printed (None: computed, by another
@@ -123,3 +129,23 @@ def test_gears_within_the_limits_do_not_interfere(x1):
         assert not good or (used["interference"] > 1.0) == interferes
         excluded += good and interferes
     assert excluded
+
+
+ROOTS = {  # x1 of equal sliding is 0.4884; sides of a made-up ln(S_F1/S_F2), and the root
+    "rising": (lambda x: x - 0.3, 0.3),
+    "falling": (lambda x: 0.3 - x, 0.3),
+    "nearest of two below": (lambda x: (x - 0.1) * (x - 0.35), 0.35),
+    "nearest of two on either side": (lambda x: (x - 0.2) * (x - 0.9), 0.2),
+    "and above": (lambda x: (x - 0.05) * (x - 0.8), 0.8),
+    "none": (lambda x: 0.1 + 0.0 * x, np.nan),
+    "of a gear that is undercut": (lambda x: x + 0.6, np.nan),
+    "a jump is none": (lambda x: np.where(x > 0.3, 0.2, -0.2), np.nan),
+    "where it is not known": (lambda x: np.where(x > 0.4, x - 0.3, np.nan), np.nan),
+}
+
+
+@pytest.mark.parametrize(("sides", "expected"), ROOTS.values(), ids=ROOTS)
+def test_equal_root_safety_takes_the_root_nearest_to_equal_sliding(sides, expected):
+    columns = (np.full(3, v) for v in (2.5, 24.0, 74.0, 0.0, 125.0))
+    found = equal_root_safety(meshing(*columns), lambda made, x: np.exp(sides(x)))
+    assert found == pytest.approx([expected] * 3, abs=1e-12, nan_ok=True)

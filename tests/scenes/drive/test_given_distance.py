@@ -240,3 +240,27 @@ def test_what_teeth_at_a_distance_may_be_is_explained(tmp_path, table, key):
     nearest = explained.remedies[0]
     assert nearest.what == key and nearest.kind == "least"
     assert gearopt.solve(file, nearest.edits, remedies=False).status == "optimal"
+
+
+ROOTS = "[shift]\nrule = 'equal root safety'\n"
+
+
+@pytest.mark.parametrize("standard", ["both", pytest.param("agma", marks=pytest.mark.slow)])
+def test_roots_are_equally_safe_of_gears_that_are_chosen(tmp_path, standard):
+    text = PAIR.replace("[14, 40]", "[25, 25]").replace('"both"', f'"{standard}"')
+    if standard == "agma":
+        text = text.replace("12 deg", "0 deg").split("[rating.iso6336]")[0]
+        text = text.replace('iso_material = "Eh"\niso_quality = "MQ"\n', "")
+        text = text.replace('flank_rz = "4.8 um"\nroot_rz = "20 um"\n', "")
+    result = gearopt.solve(written(tmp_path, text + ROOTS))
+    rating = result.design["rating"]
+    first, second = (g["bending_safety"] for g in rating.get("beside", rating)["gears"])
+    assert result.status == "optimal" and first == pytest.approx(second, rel=1e-9)
+    words = "AGMA 2001" if standard == "agma" else "ISO 6336"
+    assert any(f"(S_F1 = S_F2 by {words}" in line for line in result.report["assumptions"])
+
+
+def test_equal_root_safety_takes_one_load(tmp_path):
+    loads = '[[load]]\nshare = "40 %"\npower = "15 kW"\n[[load]]\nshare = "60 %"\npower = "7 kW"\n'
+    with pytest.raises(SceneError, match="needs one load and one material of each gear"):
+        load(written(tmp_path, PAIR + ROOTS + loads))

@@ -91,6 +91,18 @@ class Agma:
             ratings = spectrum_rows(pair, operations, *made)
         return (*ratings.bending, *ratings.contact)
 
+    def root_balance(self, pair: GearPair, speed: Any) -> Any:
+        """Return S_F1/S_F2 of pairs (n,) under the first load, whatever the torque.
+
+        Of helical gears that of an overlap ratio above 1, K_s of b = d1. speed [rad/s] of the
+        pinion, by which the life factors count.
+        """
+        table = self.prepared(pair)
+        bending = table.low[1:] if table.spur else table.high[1:]
+        wide = pair.of_width(pair.pinion.reference_diameter)
+        made = safeties(self.case(wide, 1.0, speed, {"K_m": 1.0}), 1.0, bending)
+        return made[0] / made[1]
+
     def choices(self, helical: bool) -> tuple[str, ...]:
         """Return the regimes of which one is fixed beforehand in the smooth form."""
         return agma_smooth.REGIMES[helical]

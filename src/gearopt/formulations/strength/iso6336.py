@@ -112,6 +112,20 @@ class Iso6336:
             ratings = spectrum_rows(pair, operations, *made)
         return (*ratings.bending, *ratings.contact)
 
+    def root_balance(self, pair: GearPair, speed: Any) -> Any:
+        """Return S_F1/S_F2 of pairs (n,) under the first load, whatever the width and the torque.
+
+        speed [rad/s] of the pinion, by which the life factors count.
+        """
+        table, unit = self.prepared(pair), pair.of_width(1.0)
+        case = self.case(unit, 1.0, speed)
+        ends, bent = (case, case), self._bending(table, case, self.found)
+        safe = [
+            _strength(self, ends, table, k, False, self.found).greatest(ends) / bent[k]
+            for k in GEARS
+        ]
+        return safe[0] / safe[1]
+
     @property
     def unknowns(self) -> dict[str, tuple[float, float, bool]]:
         """Ends of the unknowns of the smooth form: none, for it has no unknowns."""

@@ -90,6 +90,9 @@ class Standard(Protocol):
         torque [N mm] and speed [rad/s] of the pinion; arrays of one shape or floats.
         """
 
+    def root_balance(self, pair: GearPair, speed: Any) -> Any:
+        """Return S_F1/S_F2 of pairs (n,); speed [rad/s] of the pinion."""
+
     @property
     def unknowns(self) -> dict[str, tuple[float, float, bool]]:
         """Return the ends of the unknowns of `smooth` by name, and whether they are log."""

@@ -5,12 +5,18 @@ x2), which leaves the clearance of the tools.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from gearopt.physics.gears import GearPair, Rack, reference_diameter, transverse_pressure_angle
+from gearopt.physics.gears import (
+    Gear,
+    GearPair,
+    Rack,
+    reference_diameter,
+    transverse_pressure_angle,
+)
 from gearopt.physics.geometry.contact import contact_path, specific_sliding
 from gearopt.physics.geometry.fillet import NEGLIGIBLE, form_diameter, undercut_depth
 from gearopt.physics.geometry.involute import angle_at_distance, shift_sum
@@ -18,6 +24,9 @@ from gearopt.physics.geometry.tooth import tip_thickness
 
 HALVINGS = 52  # of an interval of shifts: to the last digit
 SUMS = -1.0, 2.0  # of x1 + x2 that are looked at: 0 to 1 is usual
+STRIDE = 0.1  # of x1, from equal sliding to where root safeties change sides
+ROOT_STEPS, CLOSE = 40, 1e-13  # towards equal root safeties, within this of x1
+EQUAL = 1e-9  # of ln(S_F1/S_F2): farther off is a jump, no root
 
 
 @dataclass(frozen=True)
@@ -68,6 +77,29 @@ class Meshing:
         """Shortening k = (a - a_0)/m_n - (x1 + x2) <= 0 of both gears, in normal modules."""
         return (self.distance - sum(self.reference_radii)) / self.module - self.shift_sum
 
+    @property
+    def base_radii(self) -> tuple[Any, Any]:
+        """Radii of the base circles [mm]."""
+        first, second = (r * np.cos(self.pressure_angles[1]) for r in self.reference_radii)
+        return first, second
+
+    def take(self, place: Any) -> "Meshing":
+        """Some of many (n,); place: an index of arrays, as numpy takes it."""
+        first, second = (z[place] for z in self.teeth)
+        module, helix, distance = self.module[place], self.helix_angle[place], self.distance[place]
+        return Meshing(module, (first, second), helix, self.racks, distance)
+
+    def clear(self) -> tuple[Any, Any]:
+        """Ends of x1 between which no tip reaches the tangent point of its mate's base circle."""
+        line = self.distance * np.sin(self.working_angle)
+        lift = (self.distance - sum(self.reference_radii)) / self.module
+        rows = zip(self.base_radii, self.reference_radii, self.racks, strict=True)
+        first, second = (
+            (np.hypot(base, line) - r) / self.module - rack.addendum - lift
+            for base, r, rack in rows
+        )
+        return -second, first + self.shift_sum
+
 
 @np.errstate(invalid="ignore", divide="ignore")
 def equal_sliding(meshing: Meshing) -> Any:
@@ -79,20 +111,11 @@ def equal_sliding(meshing: Meshing) -> Any:
     Source: ISO 21771:2007, specific sliding; the rule is met by four published stages
     (tests/physics/geometry).
     """
-    normal, transverse = meshing.pressure_angles
     line = meshing.distance * np.sin(meshing.working_angle)
-    radii, bases = (
-        meshing.reference_radii,
-        [r * np.cos(transverse) for r in meshing.reference_radii],
-    )
+    radii, bases = meshing.reference_radii, meshing.base_radii
     lift = (meshing.distance - sum(radii)) / meshing.module
-    highest = [np.hypot(base, line) for base in bases]  # radii of tips that reach the mate's T
-    room = [
-        (top - r) / meshing.module - rack.addendum - lift
-        for top, r, rack in zip(highest, radii, meshing.racks, strict=True)
-    ]
     total, ratio = meshing.shift_sum, meshing.ratio
-    low, high = -room[1], room[0] + total
+    low, high = meshing.clear()
     good = low < high
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
@@ -130,6 +153,79 @@ def after_henriot(meshing: Meshing) -> Any:
     return (0.7 * (u - 1.0) + meshing.shift_sum) / (u + 1.0)
 
 
+Balance = Callable[[Meshing, Any], Any]
+
+
+@np.errstate(invalid="ignore", divide="ignore")
+def equal_root_safety(meshing: Meshing, balance: Balance) -> Any:
+    """Return x1 of equal safety of both roots, of many pairs (n,); NaN where there is none.
+
+    balance(meshing, x1): S_F1/S_F2. It rises with x1 but of a few pairs, of which it turns near an
+    end: the root nearest to equal sliding is taken, by strides from there, within the shifts of
+    gears that are not undercut and do not interfere.
+    """
+    low, high = _usable(meshing)
+    middle = np.clip(equal_sliding(meshing), low, high)
+    start = np.log(balance(meshing, middle))
+    inner, outer = np.full_like(middle, np.nan), np.full_like(middle, np.nan)
+    known = {1.0: [middle.copy(), start.copy()], -1.0: [middle.copy(), start.copy()]}
+    left = np.isfinite(start) & (low <= high)
+    while left.any():
+        place = np.flatnonzero(left)
+        some, nearest = meshing.take(place), np.full(len(place), np.inf)
+        for sign, (last, value) in known.items():
+            x = np.clip(last[place] + sign * STRIDE, low[place], high[place])
+            new = np.log(balance(some, x))
+            share = value[place] / (value[place] - new)
+            far = np.abs(last[place] + share * (x - last[place]) - middle[place])
+            crossed = (value[place] * new <= 0.0) & (far < nearest)
+            inner[place[crossed]], outer[place[crossed]] = last[place][crossed], x[crossed]
+            nearest = np.where(crossed, far, nearest)
+            last[place], value[place] = x, new
+        ended = (known[1.0][0] >= high) & (known[-1.0][0] <= low)
+        left &= np.isnan(outer) & ~ended
+    return _between(meshing, balance, inner, outer)
+
+
+def _usable(meshing: Meshing) -> tuple[Any, Any]:
+    """Ends of x1 of gears that are not undercut, and whose tips do not interfere."""
+    rows = zip(meshing.teeth, meshing.reference_radii, meshing.racks, strict=True)
+    first, second = (
+        undercut_depth(Gear(meshing.module, z, 2.0 * r, 1.0, meshing.helix_angle, rack))
+        / meshing.module
+        - NEGLIGIBLE
+        for z, r, rack in rows
+    )
+    low, high = meshing.clear()
+    return np.maximum(low, first), np.minimum(high, meshing.shift_sum - second)
+
+
+def _between(meshing: Meshing, balance: Balance, low: Any, high: Any) -> Any:
+    """Return x1 of S_F1 = S_F2 between two of opposite sides; NaN: there are none, or it jumps.
+
+    By chords, halving the value of an end that stays (Illinois).
+    """
+    root = np.full_like(low, np.nan)
+    place = np.flatnonzero(np.isfinite(high))
+    some, a, b = meshing.take(place), low[place], high[place]
+    fa, fb = np.log(balance(some, a)), np.log(balance(some, b))
+    for _ in range(ROOT_STEPS):
+        x = np.where(fa == fb, b, b - fb * (b - a) / (fb - fa))
+        f = np.log(balance(some, x))
+        other = f * fb < 0.0
+        a, fa = np.where(other, b, a), np.where(other, fb, 0.5 * fa)
+        shorter = np.abs(x - b)
+        b, fb = x, f
+        done = (f == 0.0) | (np.minimum(shorter, np.abs(b - a)) <= CLOSE)
+        root[place[done]] = np.where(np.abs(f) <= EQUAL, x, np.nan)[done]
+        place, some = place[~done], some.take(~done)
+        a, b, fa, fb = (v[~done] for v in (a, b, fa, fb))
+        if not len(place):
+            break
+    return root
+
+
+ROOT_SAFETY = "equal root safety"  # which takes the strength of the roots, beside the teeth
 RULES: dict[str, Callable[[Meshing], Any]] = {
     "equal sliding": equal_sliding,
     "after Roloff": after_roloff,
@@ -141,14 +237,16 @@ RULES: dict[str, Callable[[Meshing], Any]] = {
 class Shifting:
     """How shifts follow from a centre distance, and what the teeth may become by them.
 
-    rule: a key of RULES. tip_thickness: least s_an of either gear, in normal modules;
-    contact_ratio: least eps_alpha; sliding: largest specific sliding of either root, without sign.
+    rule: a key of RULES, or ROOT_SAFETY, which needs a balance, S_F1/S_F2 of a meshing and x1;
+    tip_thickness: least s_an of either gear, in normal modules; contact_ratio: least eps_alpha;
+    sliding: largest specific sliding of either root, without sign.
     """
 
     rule: str = "equal sliding"
     tip_thickness: float = 0.2
     contact_ratio: float = 1.1
     sliding: float = 3.0
+    balance: Balance | None = field(default=None, hash=False)
 
     @np.errstate(invalid="ignore")
     def shifts(self, meshing: Meshing, given: Any = None) -> tuple[Any, Any, Any]:
@@ -163,10 +261,13 @@ class Shifting:
         module, first, second, helix, distance = (column[near] for column in columns)
         inside = Meshing(module, (first, second), helix, meshing.racks, distance)
         pinion = np.full(total.shape, np.nan)
-        if given is None:
-            pinion[near] = RULES[self.rule](inside)
-        else:
+        if given is not None:
             pinion[near] = np.broadcast_to(given, total.shape)[near]
+        elif self.rule == ROOT_SAFETY:
+            assert self.balance is not None
+            pinion[near] = equal_root_safety(inside, self.balance)
+        else:
+            pinion[near] = RULES[self.rule](inside)
         return pinion[()], (total - pinion)[()], (meshing.tip_alteration + 0.0 * pinion)[()]
 
     @np.errstate(invalid="ignore", divide="ignore")

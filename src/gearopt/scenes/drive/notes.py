@@ -5,6 +5,7 @@ from dataclasses import replace
 from gearopt.formulations.drive.train import STEEL_DENSITY
 from gearopt.optimise.result import Result
 from gearopt.physics.gears import ISO_53_A, MEMBERS
+from gearopt.physics.geometry.profile_shift import ROOT_SAFETY
 from gearopt.scenes.drive.rating.assumptions import every_gear, rating_assumptions, unused_materials
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.blanks import blank, body_flaws
@@ -176,6 +177,12 @@ def _teeth(scene: Scene) -> list[str]:
             "whose profile shifts follow from the given centre distances, shared out by the rule "
             f"{given.shifting.rule}, with both tips shortened alike"
         )
+        if given.shifting.rule == ROOT_SAFETY:
+            by = "AGMA 2001" if scene.rating and scene.rating.standard == "agma" else "ISO 6336"
+            shifts += (
+                f" (S_F1 = S_F2 by {by} at equal stage ratios; pairs of which no shift does that "
+                "are left out)"
+            )
         if given.pinion_shift is not None:
             shifts = (
                 "whose pinions have the profile shift of the file, that of their wheels following "

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
 from gearopt.formulations.drive.layout.gearbox import Gearbox
+from gearopt.formulations.drive.root_balance import RootBalance
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength import RATED, Law
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair, transverse_pressure_angle
-from gearopt.physics.geometry.profile_shift import SUMS
+from gearopt.physics.geometry.profile_shift import ROOT_SAFETY, SUMS
 from gearopt.physics.loads import torque
 from gearopt.scenes.drive.distances import rows_together, together
 from gearopt.scenes.drive.face_widths import check_width, face_width
@@ -303,6 +304,10 @@ class Scene(Table):
                 rule = "changes nothing beside pinion_shift"
                 raise refuse(rule, at=("shift", "rule"), action="remove")
             self._check_ways(shifted)
+        if self._by_root_safety and (self.load or self.material):
+            name = "load" if self.load else "material"
+            rule = f"needs one load and one material of each gear, without [[{name}]]"
+            raise refuse(rule, "equal sliding", ("shift", "rule"), "sample")
         for k, table in enumerate(self.stage if self.to_size else ()):  # else a rating refuses it
             if k not in shifted:
                 check_mesh(self._stage(table), k, table, self.gears)
@@ -350,6 +355,30 @@ class Scene(Table):
         if not self.shifted(own):
             return toothings(own, self.gears)
         return toothings(own, self.gears, self._reach(own), self.shift or ShiftTable())
+
+    def _cut(self, own: StageTable) -> tuple[Toothing, ...]:
+        """Ways in which the teeth of a stage may be cut, with the strength of their roots.
+
+        Where shifts follow from that; the speed is the one of equal stage ratios.
+        """
+        ways = self.toothings(own)
+        if self.rating is None or not self._by_root_safety or not self.shifted(own):
+            return ways
+        tables = self.stage_tables
+        place = next(k for k, table in enumerate(tables) if table is own)
+        slower = float(self.duty.total_ratio) ** (place / len(tables))
+        made = self.rating, (own,), self.gears, self.material, self.duty, self.load
+        standard = of_stages(*made)[0][0].standards[-1]
+        speed, cut = self.duty.input_speed.value / slower, ways[0]
+        assert cut.shifting is not None
+        balance = RootBalance(standard, speed, cut.thickness_allowances)
+        return tuple(replace(way, shifting=replace(cut.shifting, balance=balance)) for way in ways)
+
+    @property
+    def _by_root_safety(self) -> bool:
+        """Whether chosen shifts make both roots equally safe."""
+        shift = self.shift
+        return shift is not None and shift.pinion_shift is None and shift.rule == ROOT_SAFETY
 
     def _reach(self, own: StageTable) -> tuple[float, float]:
         """Ends of the centre distances [mm] that teeth of a stage may have, whatever their shifts.
@@ -531,7 +560,7 @@ class Scene(Table):
                 off += abs(teeth.pinion_shift - stage.pinion_profile_shift)
             return abs(math.degrees(teeth.helix_angle) - stage.helix_angle_deg) + off
 
-        return min(self.toothings(own), key=away)
+        return min(self._cut(own), key=away)
 
     @property
     def blanks(self) -> tuple[tuple[Blank, Blank], ...]:
@@ -558,7 +587,7 @@ class Scene(Table):
             wheel_teeth=own.wheel_teeth or limits.wheel_teeth or (1, None),
             ratio=own.stage_ratio or limits.stage_ratio or (Fraction(1), None),
             wheel_diameter=diameter.exact[0] if diameter else None,
-            toothings=self.toothings(own),
+            toothings=self._cut(own),
             blanks=self._blanks(own),
             overlap=float(own.overlap_ratio or limits.overlap_ratio or 0),
             axial_force=force.value if force else math.inf,

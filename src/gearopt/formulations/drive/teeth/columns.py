@@ -235,11 +235,13 @@ def _shiftable(
     module, row = np.nonzero(near)
     allowed = np.zeros_like(near)
     sizes = np.array([float(m) for m in stage.modules])
+    shifts = stage.toothing_of(toothing[row]).shifts(sizes[module], z1[row], z2[row])
     for limits in (shifting.used_by_gears, shifting.used_in_mesh):
         cut = stage.toothing_of(toothing[row])
-        pair = cut.pair(sizes[module], z1[row], z2[row], 1.0)
+        pair = cut.pair(sizes[module], z1[row], z2[row], 1.0, shifts)
         keep = np.logical_and.reduce([used <= 1.0 for used in limits(pair).values()])
         module, row = module[keep], row[keep]
+        shifts = shifts[0][keep], shifts[1][keep], shifts[2][keep]
     allowed[module, row] = True
     return allowed
 

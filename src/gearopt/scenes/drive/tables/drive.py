@@ -11,7 +11,7 @@ from gearopt.formulations.drive.processes import ProcessOne, ProcessTwo
 from gearopt.formulations.drive.train import OBJECTIVES
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.physics.geometry.profile_shift import RULES, Shifting
+from gearopt.physics.geometry.profile_shift import ROOT_SAFETY, RULES, Shifting
 from gearopt.scenes.drive.tables.iso6336 import IsoGiven
 from gearopt.scenes.drive.tables.rating import GearKeys, GearTable, GivenTable
 from gearopt.scenes.reading.choices import Choice, Preferred, Steps, to_choose
@@ -293,10 +293,11 @@ PINION_SHIFT = to_choose(
 class ShiftTable(Table):
     """How profile shifts follow from a centre distance, and what teeth may become by them."""
 
-    rule: Annotated[str, choice(*RULES)] = Field(
+    rule: Annotated[str, choice(*RULES, ROOT_SAFETY)] = Field(
         Shifting.rule,
         description="Distribution of the sum: equal sliding (specific sliding at both root ends "
-        "alike), after Roloff, after Henriot (both from memory: unverified)",
+        "alike), equal root safety (S_F1 = S_F2 by the rating, the root nearest to equal sliding), "
+        "after Roloff, after Henriot (both from memory: unverified)",
     )
     pinion_shift: Annotated[Choice | None, PINION_SHIFT] = Field(
         None,
@@ -325,8 +326,8 @@ class ShiftTable(Table):
     @property
     def shifting(self) -> Shifting:
         """The rule and its limits in plain numbers."""
-        limits = self.tip_thickness, self.contact_ratio, self.specific_sliding
-        return Shifting(self.rule, *map(float, limits))
+        thin, contact = float(self.tip_thickness), float(self.contact_ratio)
+        return Shifting(self.rule, thin, contact, float(self.specific_sliding))
 
 
 class Teeth(Table):
