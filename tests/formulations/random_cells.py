@@ -1,12 +1,17 @@
 """Random cells of designs of a stage, and random designs within them."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from gearopt.formulations.strength.cells import Cells
 
 
-def random_cells(rng, count, toothing, width):
-    """Return cells of up to twice a width in logarithms, about sizes of a large range."""
+def random_cells(rng, count, toothing, width, helices=None):
+    """Return cells of up to twice a width in logarithms, about sizes of a large range.
+
+    helices [rad]: between which the tangents of their helix angles are cells, too.
+    """
 
     def between(low, high):
         middle = rng.uniform(np.log(low), np.log(high), count)
@@ -16,9 +21,13 @@ def random_cells(rng, count, toothing, width):
     z, u, d = between(18.0, 60.0), np.maximum(between(1.2, 6.0), 1.0), between(15.0, 300.0)
     slim, torque = between(0.2, 1.2), between(1e4, 1e7)
     power = np.exp(rng.uniform(np.log(1e5), np.log(1e9), count))
-    module = d * toothing.cosine / z[::-1]
-    speed = power / torque[::-1]
-    return Cells(toothing, z, u, d, d * u, module, slim * d, slim, torque, speed)
+    speed, helix, cosines = power / torque[::-1], None, toothing.cosine
+    if helices is not None:
+        low, high = np.tan(helices)
+        helix = np.arctan(np.clip(between(low, high), low, high))
+        cosines = np.cos(helix[::-1])
+    module = d * cosines / z[::-1]
+    return Cells(toothing, z, u, d, d * u, module, slim * d, slim, torque, speed, helix)
 
 
 def designs_within(rng, cells):
@@ -33,8 +42,10 @@ def designs_within(rng, cells):
 
     z, u, d = some(cells.teeth), some(cells.ratio), some(cells.diameter)
     slim, torque = some(cells.slim), some(cells.torque)
-    module = d * cells.toothing.cosine / z
-    pair = cells.toothing.of_diameter(module, z, d, u, slim * d)
+    cut = cells.toothing
+    if cells.helix is not None:
+        cut = replace(cut, helix_angle=np.arctan(some(np.tan(cells.helix))))
+    pair = cut.of_diameter(d * np.cos(cut.helix_angle) / z, z, d, u, slim * d)
     return pair, torque, cells.torque[0] * cells.speed[1] / torque
 
 

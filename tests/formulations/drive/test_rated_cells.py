@@ -23,6 +23,7 @@ from rated_drives import (
 from gearopt.formulations.drive import sizing, sizing_text, teeth
 from gearopt.formulations.drive.rated import cells as rated_cells
 from gearopt.formulations.drive.rated.boxes import ROWS, bounded, first_boxes, shafts_about
+from gearopt.formulations.drive.rated.cells import _halves
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth
 from gearopt.formulations.strength.rated import Load
@@ -183,15 +184,21 @@ def run(train, seconds=20.0, close=1e-3, known=(), most=math.inf):
     return rated_cells.search(train, known, most, Clock(Budget(seconds)), close)
 
 
-def test_made_smaller_boxes_hold_all_designs_that_are_accepted():
+@pytest.mark.parametrize("helix", [None, (0.15, 0.5)])
+def test_made_smaller_boxes_hold_all_designs_that_are_accepted(helix):
     """Random designs of one stage that the ratings accept lie in a box, and its share is less."""
     train = rated_drive(4, [FREE], options=by("agma", "iso"), pinion_teeth=(20, 40))
+    stage = replace(train.stages[0], helix=helix)
+    train = replace(train, stages=(stage,))
     shafts, rng = shafts_about(train, 8), np.random.default_rng(5)
-    stage = train.stages[0]
     boxes, least = bounded(shafts, 0, first_boxes(shafts, 0))
+    if helix is not None:
+        halves = _halves(shafts, 0, boxes)
+        boxes, least = bounded(shafts, 0, _halves(shafts, 0, halves))
     low, high = np.log([[20, 0.3, 30, 3.96], [40, 0.75, 400, 4.04]])
     z, slim, d, u = np.exp(rng.uniform(low, high, (4000, 4))).T
-    pair = stage.toothing.of_diameter(d * stage.toothing.cosine / z, z, d, u, slim * d)
+    cut = stage.toothing if helix is None else stage.inclined(rng.uniform(*helix, len(z)))
+    pair = cut.of_diameter(d * np.cos(cut.helix_angle) / z, z, d, u, slim * d)
     load = np.full(len(z), train.torque), np.full(len(z), train.speed)
     used = stage.options[0].utilisations(pair, *load, train.safety)
     module = pair.normal_module
@@ -205,6 +212,7 @@ def test_made_smaller_boxes_hold_all_designs_that_are_accepted():
         "width": slim * d,
     }
     at |= {"wheel": u * d, "ratio": u}
+    at["helix"] = np.ones_like(z) if helix is None else np.tan(cut.helix_angle)
     point = np.log([at[name][good] for name in ROWS])[:, None, :]
     low, high = (boxes.sizes[:, end, :, None] for end in (0, 1))
     inside = (low <= point[:, 0, None] + 1e-12) & (point[:, 0, None] <= high + 1e-12)

@@ -82,6 +82,49 @@ def test_where_no_helix_angle_is_chosen_a_list_is_refused(tmp_path, helix, old, 
     assert told in str(refusal.value)
 
 
+ALL = '{ from = "8 deg", to = "30 deg" }'
+
+
+@pytest.mark.slow
+def test_real_valued_sizes_choose_from_all_angles_of_a_range(tmp_path):
+    """None of one angle is below the bound; the design is rated as it is when it is given."""
+    free = "pinion_teeth = [17, 60]\n"
+    path = written(tmp_path, ALL, "pinion_teeth = [20, 21]\n[teeth]\n", free)
+    result = gearopt.solve(path, gap=0.01, budget=gearopt.Budget(30.0))
+    stage = result.design["stages"][0]
+    assert result.status in ("feasible", "optimal") and result.design["rating"]["safe"]
+    assert 8.0 < stage["helix_angle_deg"] < 30.0 and result.value == pytest.approx(
+        248.8e3, rel=0.01
+    )
+    assert 0.98 * result.value < result.bound <= result.value
+    assert "chosen from all values from 8 deg to 30 deg." in str(result.report["notes"])
+    assert any("no proof does" in note for note in result.report["notes"])
+    for angle, volume in ((8, 289.1e3), (15, 256.3e3), (22, 250.5e3)):
+        alone = written(tmp_path, f'"{angle} deg"', "pinion_teeth = [20, 21]\n[teeth]\n", free)
+        value = gearopt.solve(alone, remedies=False).value
+        assert value >= result.bound and value == pytest.approx(volume, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("HELIX", "HELIX", "need real-valued sizes, without a table [teeth] (or give a step)"),
+        ("[teeth]\n", "[[load]]\nshare = '1'\npower = '1 kW'\n", "one load and one material"),
+        ("[teeth]\n", "k_factor = '2 MPa'\nunit_load = '9 MPa'\n", "limits by [rating] alone"),
+        ("[[stage]]\n", "[[stage]]\nwheel.bore = '20 mm'\n[teeth]\n", "solid gears"),
+        ("[teeth]\n", "", 'begins below 1 deg: spur gears.*Write, for example, { from = "1 deg"'),
+    ],
+)
+def test_where_real_valued_helix_angles_are_refused(tmp_path, old, new, told):
+    helix = ALL.replace("8", "0") if "spur" in told else ALL
+    path = tmp_path / "pair.toml"
+    text = PAIR.replace("[teeth]\n", "") if "solid" in told else PAIR
+    path.write_text(text.replace(old, new.replace("[teeth]\n", "")).replace("HELIX", helix))
+    with pytest.raises(SceneError) as refusal:
+        load(path)
+    assert all(part in str(refusal.value) for part in told.split(".*"))
+
+
 def test_real_valued_teeth_have_one_helix_angle(tmp_path):
     with pytest.raises(SolveError, match="several helix angles"):
         gearopt.solve(written(tmp_path, LIST), method="smooth")

@@ -175,6 +175,7 @@ def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
         of_search = _of_pairs(train, exact, of_cells)
         bound, designs = max(bound, of_cells.bound), [*designs, *([of_search] if of_search else [])]
     more = train.hollow or not bounded and not (designs and _stepped(train))
+    more = more and not train.inclining  # of one helix angle alone are there smooth forms
     if more and bound < math.inf:
         designs += _by_ipopt(train, exact, [*(d.x for d in designs), *starts(exact)], clock)
     return _claim(min(designs, key=lambda d: d.value, default=None), bound, clock)
@@ -211,7 +212,7 @@ def _searched(train: Train, best: _Design | None, clock: Clock, seconds: float |
     most = math.inf if best is None else best.value
     close = max(GAP_SHARE * clock.budget.gap, GAP_TOLERANCE)
     inner = Clock(replace(clock.left, seconds=seconds), clock.inner())
-    if known and _stepped(train):
+    if known and (_stepped(train) or train.inclining):
         spent = None if seconds is None else POLISHING * seconds
         known, most = polished(train, (tuple(known), most), Clock(Budget(spent), clock.inner()))
     result = search(train, known, most, inner, close)
@@ -286,6 +287,8 @@ def _claim(best: _Design | None, bound: float, clock: Clock) -> Outcome:
 
 def _all_bounded(train: Train) -> bool:
     """Return whether every standard has a bounding law, from whose optimum a search may start."""
+    if train.inclining:
+        return False
     boxes = [(stage, stage_box(train, k, math.inf)) for k, stage in enumerate(train.stages)]
     return all(
         standard.floor(own, standard.choices(bool(stage.toothing.helix_angle))[0]) is not None
@@ -383,6 +386,7 @@ FINER = (1.0, 1.4, 2.0)  # times the least teeth, of starts without a bounding p
 # teeth above the least of a pinion without a limit, of a search among whole teeth
 TEETH_SEARCHED = 20
 SECONDS = 5.0  # at most, for that search
+HELICES = 5  # of a range, of which that search chooses
 
 
 def point_of(train: Train, pairs: tuple[GearPair, ...]) -> Array:
@@ -393,6 +397,7 @@ def point_of(train: Train, pairs: tuple[GearPair, ...]) -> Array:
             "pinion_teeth": pair.pinion_teeth,
             "ratio": pair.ratio,
             "face_width": pair.face_width,
+            sizing_text.HELIX: pair.pinion.helix_angle,
         }
         for pair in pairs
     ]
@@ -421,8 +426,12 @@ def whole(train: Train, clock: Clock) -> list[Array]:
         else:
             series = tuple(sorted({least, most, *(m for m in SERIES_I if least < m < most)}))
         low, high = stage.pinion_teeth
+        cut = stage.toothings
+        if stage.helix is not None:
+            cut = tuple(stage.inclined(float(b)) for b in np.linspace(*stage.helix, HELICES))
+        teeth_limits = low, high or low + TEETH_SEARCHED
         stages.append(
-            replace(stage, modules=series, pinion_teeth=(low, high or low + TEETH_SEARCHED))
+            replace(stage, modules=series, pinion_teeth=teeth_limits, toothings=cut, helix=None)
         )
     near = replace(train, stages=tuple(stages))
     answer = solve(teeth.problem(near), budget=Budget(clock.within(SECONDS)))

@@ -30,6 +30,7 @@ TEETH = (1.0, 1e6)
 RATIO = (1.0, 1e7)
 TYPICAL = 1.0  # MPa, K-factor of rated gears from which a search starts
 VARIABLES = {"module": "mm", "pinion_teeth": "", "ratio": "", "face_width": "mm"}
+HELIX = "helix_angle"  # [rad], a variable where stages have a range of it
 
 _PARAMETER_UNITS = {
     "torque": "N mm",
@@ -149,13 +150,16 @@ def text_pairs(train: Train, x: Any, numbers: Any) -> tuple[GearPair, ...]:
     gear_pairs = []
     for k, stage in enumerate(train.stages):
         m, z, u = each(x.module)[k], each(x.pinion_teeth)[k], each(x.ratio)[k]
-        cosine = each(numbers.helix_cosine)[k]
+        cut, cosine = stage.toothing, each(numbers.helix_cosine)[k]
+        if stage.helix is not None:
+            cut = stage.inclined(each(getattr(x, HELIX))[k])
+            cosine = np.cos(cut.helix_angle)
         d = reference_diameter(m / cosine, z)
         if stage.face_width.tied:
             width = each(numbers.width_high)[k] * reference_diameter(m / cosine, z)
         else:
             width = each(x.face_width)[k]
-        gear_pairs.append(stage.toothing.of_diameter(m, z, d, u, width))
+        gear_pairs.append(cut.of_diameter(m, z, d, u, width))
     return tuple(gear_pairs)
 
 
@@ -195,6 +199,11 @@ def variables(train: Train) -> tuple[Var, ...]:
     for name, rows in columns.items():
         low, high, guess = zip(*rows, strict=True)
         posed.append(Var(name, VARIABLES[name], low, high, guess, len(rows), log=True, search=True))
+    if train.inclining:
+        ends = [s.helix or (s.toothing.helix_angle,) * 2 for s in train.stages]
+        low, high = zip(*ends, strict=True)
+        guess = tuple(math.sqrt(a * b) for a, b in ends)
+        posed.append(Var(HELIX, "rad", low, high, guess, len(ends)))
     return tuple(posed)
 
 

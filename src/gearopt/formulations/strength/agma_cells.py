@@ -42,7 +42,7 @@ def needed(standard: "Agma", cells: Cells, safety: tuple[float, float]) -> tuple
     bare["K_B"] = _rims(standard, cells)
     bare["K_s"] = tuple(sizes) if practice.size else (1.0, 1.0)
     module, d = cells.module[LOWER], cells.diameter[LOWER]
-    pair = cells.toothing.of_diameter(module, cells.teeth[LOWER], d, cells.ratio[UPPER], 1.0)
+    pair = cells.cut(LOWER).of_diameter(module, cells.teeth[LOWER], d, cells.ratio[UPPER], 1.0)
     case = standard.case(pair, 1.0, cells.speed[LOWER], bare)
     made = safeties(case, 1.0, (1.0, 1.0))
     own = pair.working_diameters[0]
@@ -69,7 +69,7 @@ def _rims(standard: "Agma", cells: Cells) -> tuple[Any, Any]:
 
 def _regimes(cells: Cells) -> tuple[str, ...]:
     """Return the regimes of AGMA 908 that some cells may be in."""
-    if not cells.toothing.helix_angle:
+    if not np.any(cells.angles[1]):
         return ("spur",)
     low, high = cells.overlap
     found = ("low",) if np.any(low <= 1.0) else ()
@@ -101,7 +101,7 @@ def _lines(cells: Cells, ratio: Array) -> Any:
     (eps_alpha - lost/m_F)/cos(beta_b); of the fractions r and a of eps_alpha and m_F the smaller of
     a r and (1 - a)(1 - r) is lost.
     """
-    helix = np.cos(base_helix_angle(cells.toothing.pair(1.0, 20.0, 40.0, 1.0).pinion))
+    helix = np.cos(base_helix_angle(cells.cut(UPPER).pair(1.0, 20.0, 40.0, 1.0).pinion))
     fractions = []
     for low, high in (ratio, np.maximum(cells.overlap, 1.0)):
         within = np.floor(low) == np.floor(high)

@@ -15,13 +15,15 @@ from gearopt.physics.gears import Gear, GearPair
 Law = Callable[[Gear], tuple[Any, Any, Any]]
 LOWER, UPPER = 0, 1
 NUDGE = 1e-11  # relative
+ROUNDER = 2.0  # of a parabola the middle is off the mean by all that it rises above both ends
 
 
 @dataclass(frozen=True)
 class Cells:
     """Cells (n,) of designs, each between two ends; every field but the first is (2, n).
 
-    toothing: of the gears; teeth z1; ratio u; diameter d1 and wheel d2, module m_n, width b [mm];
+    toothing: of the gears, but for a helix angle between the two of helix [rad], None: its own;
+    teeth z1; ratio u; diameter d1 and wheel d2, module m_n, width b [mm];
     slim b/d1; torque [N mm] and speed [rad/s] of the pinion.
     """
 
@@ -35,22 +37,38 @@ class Cells:
     slim: Array
     torque: Array
     speed: Array
+    helix: Array | None = None
+
+    @property
+    def angles(self) -> tuple[Any, Any]:
+        """The least and the greatest helix angle [rad], without sign."""
+        if self.helix is None:
+            return (abs(self.toothing.helix_angle),) * 2
+        return self.helix[LOWER], self.helix[UPPER]
+
+    def cut(self, end: int) -> Toothing:
+        """The toothing of the least or the greatest helix angle."""
+        if self.helix is None:
+            return self.toothing
+        return replace(self.toothing, helix_angle=self.helix[end])
 
     @property
     def overlap(self) -> Array:
         """Overlap ratios b sin(beta)/(pi m_n)."""
-        per_tooth = abs(np.tan(self.toothing.helix_angle)) / np.pi
-        return np.asarray(self.slim * self.teeth * per_tooth)
+        per_tooth = np.stack(np.broadcast_arrays(*self.angles, self.teeth[0])[:2])
+        return np.asarray(self.slim * self.teeth * np.tan(per_tooth) / np.pi)
 
     def corner(self, end: int) -> GearPair:
         """Return pairs of the least or the greatest sizes: modules, teeth, diameters, widths.
 
-        They are one pair of gears only where the cell is a point. Lengths are by NUDGE within the
-        cell, so that an end at a border of a law counts to the side on which the cell lies.
+        They are one pair of gears only where the cell is a point. Helix angles are those of the
+        least or greatest base pitch deviation f_pt cos(alpha_t): the other way round. Lengths are
+        by NUDGE within the cell, so that an end at a border of a law counts to the side on which
+        the cell lies.
         """
         inside = (1.0 + NUDGE, 1.0 - NUDGE)[end]
         sizes = self.module * inside, self.teeth, self.diameter * inside, self.ratio
-        made = self.toothing.of_diameter(*(size[end] for size in (*sizes, self.width * inside)))
+        made = self.cut(1 - end).of_diameter(*(size[end] for size in (*sizes, self.width * inside)))
         wheel = replace(made.wheel, reference_diameter=self.wheel[end] * inside)
         return replace(made, wheel=wheel)
 
@@ -83,20 +101,32 @@ class Cells:
     def teeth_alone(self, law: Callable[[GearPair], dict[str, Any]]) -> dict[str, Array]:
         """Ranges (2, n) by name of quantities that follow from the teeth alone.
 
-        Thickness allowances are lengths: of teeth that have some the module counts, too.
+        Thickness allowances are lengths: of teeth that have some the module counts, too. Between
+        two helix angles ranges are widened by what the middle one is off the mean, ROUNDER times.
         """
         thinner = any(self.toothing.thickness_allowances)
         module = self.module if thinner else np.ones_like(self.module)
-        rows = np.stack([*self.teeth, *self.ratio, *module])
+        helix = np.zeros_like(module) if self.helix is None else self.helix
+        rows = np.stack([*self.teeth, *self.ratio, *module, *helix])
         order = np.lexsort(rows)
         fresh = np.append(True, np.any(np.diff(rows[:, order]) != 0.0, axis=0))
-        teeth, ratio, module = rows[:, order[fresh]].reshape(3, 2, -1)
+        teeth, ratio, module, helix = rows[:, order[fresh]].reshape(4, 2, -1)
         place = np.empty(len(order), int)
         place[order] = np.cumsum(fresh) - 1
         corners = product(teeth, ratio, module if thinner else module[:1])
-        made = [law(self.toothing.pair(m, z, z * u, m)) for z, u, m in corners]
+        angles = (None,) if self.helix is None else (helix[LOWER], helix[UPPER], helix.mean(axis=0))
+        cuts = [
+            self.toothing if one is None else replace(self.toothing, helix_angle=one)
+            for one in angles
+        ]
+        made = [law(cut.pair(m, z, z * u, m)) for z, u, m in corners for cut in cuts]
         found = {}
         for name in made[0]:
             values = np.array([np.broadcast_to(one[name], teeth[0].shape) for one in made])
-            found[name] = np.stack([values.min(axis=0), values.max(axis=0)])[:, place]
+            values = values.reshape(-1, len(cuts), len(teeth[0]))
+            ends, off = values[:, :2], 0.0
+            if len(cuts) > 1:
+                off = ROUNDER * np.abs(values[:, 2] - ends.mean(axis=1)).max(axis=0)
+            least, most = ends.min(axis=(0, 1)) - off, ends.max(axis=(0, 1)) + off
+            found[name] = np.stack([least, most])[:, place]
         return found

@@ -88,8 +88,9 @@ class Iso6336:
         (low, high), (u_low, u_high) = cells.teeth, cells.ratio
         apart = sum(cells.toothing.profile_shifts) > 0.0
         z = low * (1.0 + u_low) / (1.0 + u_high) if apart else high  # of the greatest alpha_wt
-        pair = cells.toothing.of_diameter(cells.module[0], z, cells.diameter[1], u_high, 1.0)
-        far = cells.toothing.of_diameter(cells.module[0], z, cells.diameter[1], u_low, 1.0)
+        cut = cells.cut(1)
+        pair = cut.of_diameter(cells.module[0], z, cells.diameter[1], u_high, 1.0)
+        far = cut.of_diameter(cells.module[0], z, cells.diameter[1], u_low, 1.0)
         slow, fast = (self.case(pair, 1.0, speed) for speed in cells.speed)
         last = self.case(far, 1.0, cells.speed[1])
         strength = _strength(self, (slow, fast), ends, member, contact, made.found)

@@ -7,6 +7,7 @@ W2 = W1 K_Hbeta [N/mm] all is a matter of lengths [mm]: deviations and deflectio
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -145,11 +146,14 @@ class IsoCells:
         inner = self._inner_parts()
         for end in (LOWER, UPPER):
             z, d = cells.teeth[end], cells.diameter[end]
-            module = d * cells.toothing.cosine / z
-            pair = cells.toothing.of_diameter(module, z, d, cells.ratio[end], 1.0)
-            rows = zip(inner, pair.gears, strict=True)
-            first, second = (part[1 - end] * stiffness.mean_diameter(gear) for part, gear in rows)
-            mass = stiffness.reduced_mass(pair, densities, (first, second))
+            masses = []
+            for i, j in product((LOWER, UPPER)[: 1 if cells.helix is None else 2], repeat=2):
+                module = d * np.cos(cells.angles[i]) / z
+                pair = cells.cut(j).of_diameter(module, z, d, cells.ratio[end], 1.0)
+                rows = zip(inner, pair.gears, strict=True)
+                first, second = (p[1 - end] * stiffness.mean_diameter(gear) for p, gear in rows)
+                masses.append(stiffness.reduced_mass(pair, densities, (first, second)))
+            mass = (np.minimum, np.maximum)[end].reduce(masses)
             stiff = self.mesh(1 - end) * self.single(1 - end, 1 - end)
             speed = standard.loads[0].speed * cells.speed[end]
             pace = speed * z * np.sqrt(mass / stiff)
@@ -307,7 +311,7 @@ class IsoCells:
             low = contact.contact_ratio_factor(ratio, self.cells.overlap[LOWER])
             most = self.total[LOWER] / (ratio * low**2)
         factor = self.dynamic * self.spread * self.transverse("K_Halpha", most)
-        helix = self.cells.toothing.helix_angle
+        helix = self.cells.angles[LOWER]
         z = given.get("Z_H", self.teeth["zone"][LOWER]) * self.found["Z_E"]
         z = z * given.get("Z_beta", contact.helix_factor(helix)) * self._ratio_factor
         used = [
@@ -339,7 +343,7 @@ class IsoCells:
         ratio = self.teeth["virtual" if edition == "2019" else "contact"][LOWER]
         most = self.total[LOWER] / (self.teeth["contact"][LOWER] * (0.25 + 0.75 / ratio))
         factor = self.dynamic * self._root_spread() * self.transverse("K_Falpha", most)
-        module = cells.teeth[LOWER] / cells.toothing.cosine
+        module = cells.teeth[LOWER] / np.cos(cells.angles[LOWER])
         used = []
         for k in GEARS:
             form = given["Y_F"][k] if "Y_F" in given else self.teeth[f"form{k}"][LOWER]
@@ -356,7 +360,7 @@ class IsoCells:
             return self.spread
         racks = self.cells.toothing.racks
         deep = max(rack.addendum + rack.dedendum for rack in racks)
-        over = self.cells.slim[LOWER] * self.cells.teeth[LOWER] / self.cells.toothing.cosine
+        over = self.cells.slim[LOWER] * self.cells.teeth[LOWER] / np.cos(self.cells.angles[LOWER])
         return self.spread ** loads.root_exponent(over, deep)
 
     def _root_factor(self) -> Any:
@@ -367,8 +371,10 @@ class IsoCells:
             virtual = self.teeth["virtual"]
             made = [load_sharing(v, o) for v in virtual for o in self.cells.overlap]
             factor = np.minimum.reduce(made)
-        helix = self.cells.toothing.helix_angle
-        own = bending.helix_factor(helix, self.cells.overlap[UPPER], practice.edition)
+        least, most = self.cells.angles
+        own = bending.helix_factor(most, self.cells.overlap[UPPER], practice.edition)
+        if practice.edition != "2006":  # over the third power of a cosine, which falls
+            own = own * (np.cos(most) / np.cos(least)) ** 3
         deep = bending.deep_tooth_factor(self.teeth["virtual"][UPPER], max(practice.grades))
         return factor * given.get("Y_beta", own) * given.get("Y_DT", deep)
 

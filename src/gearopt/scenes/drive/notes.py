@@ -12,6 +12,7 @@ from gearopt.scenes.drive.tables.blanks import blank, body_flaws
 from gearopt.scenes.drive.tables.drive import ORIGINS
 from gearopt.scenes.drive.tables.layout import Layout
 from gearopt.scenes.drive.tables.rating import with_shared
+from gearopt.scenes.drive.tables.teeth import inclination
 from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.choices import in_words
 from gearopt.scenes.reading.module_series import unverified
@@ -38,8 +39,14 @@ def notes(scene: Scene, exact: bool) -> list[str]:
         sentences.append("No limit on wheel teeth, stage ratio or wheel diameter was set.")
     if exact and scene.gears.same_materials and scene.by_ratings:
         sentences.append("All pinions have one material, and all wheels have one.")
-    if exact:
+    inclining = any(inclination(own, scene.gears) for own in scene.stage_tables)
+    if exact or inclining:
         sentences += _chosen(scene)
+    if inclining:
+        sentences.append(
+            "The bound takes what teeth alone decide at the ends of cells of helix angles, with a "
+            "margin that random designs confirm and no proof does."
+        )
     if exact and scene.teeth is not None:
         sentences += unverified(scene.teeth.modules)
     if scene.objective.density is None and not _dense(scene):

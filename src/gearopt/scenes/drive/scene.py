@@ -49,10 +49,16 @@ from gearopt.scenes.drive.tables.layout import (
     gearbox,
 )
 from gearopt.scenes.drive.tables.rating import LoadTable, RatingTable, with_shared
-from gearopt.scenes.drive.tables.teeth import check_follows, check_mesh, check_teeth, toothings
+from gearopt.scenes.drive.tables.teeth import (
+    check_follows,
+    check_mesh,
+    check_teeth,
+    inclination,
+    toothings,
+)
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty
-from gearopt.scenes.reading.choices import Choice, values_of
+from gearopt.scenes.reading.choices import Between, Choice, values_of
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
 from gearopt.scenes.reading.lists import span
 from gearopt.units import Quantity
@@ -95,6 +101,7 @@ RANGE = (
 MOST_STAGES = 6
 IN_LINE = PlaceTable.model_validate({"shaft": 3, "y": "0 mm", "z": "0 mm"})  # coaxial drives
 MOST_WAYS = 10_000  # helix angles times distances times shifts of a stage
+LEAST_HELIX = 1  # deg, of real-valued helix angles
 HELIX_LIMITS = ("overlap_ratio", "axial_force")
 PROCESSES = ("process_one", "process_two")  # tables; as methods with a hyphen
 STAGES = span(whole(2, 1, MOST_STAGES), 2, single=True)
@@ -403,7 +410,8 @@ class Scene(Table):
 
     def choosing(self, own: StageTable) -> bool:
         """Whether the teeth of a stage may be cut in several ways, or shifts are chosen."""
-        return self.shifted(own) or len(self.helix_angles(own)) > 1
+        several = len(self.helix_angles(own)) > 1 and not inclination(own, self.gears)
+        return self.shifted(own) or several
 
     def helix_angles(self, own: StageTable) -> tuple[Quantity, ...]:
         """Helix angles that a stage may have."""
@@ -419,6 +427,9 @@ class Scene(Table):
         for place, value in held:
             if value is None or isinstance(value, Quantity):
                 continue
+            if isinstance(value, Between):
+                self._check_inclination(value, place)
+                continue
             lacks = "gears that are to be chosen: these are all given" if self.given else ""
             lacks = lacks or self._lacks("with one of several values")
             if self.layout is not None and self.layout.together:
@@ -427,6 +438,25 @@ class Scene(Table):
                 first = values_of(value, (100.0, 100.0))[0]
                 rule = f"has several values to choose from, which need {lacks}"
                 raise refuse(rule, str(first), place, "sample")
+
+    def _check_inclination(self, value: Between, place: tuple[str | int, ...]) -> None:
+        """Refuse all helix angles of a range where no search of real-valued sizes chooses them."""
+        lacks = "gears that are to be chosen: these are all given" if self.given else ""
+        if self.teeth is not None:
+            lacks = lacks or "real-valued sizes, without a table [teeth] (or give a step)"
+        if not self.rated_real or self.limits.loaded:
+            lacks = lacks or "limits by [rating] alone, one load and one material of each gear"
+        if self.several:
+            lacks = lacks or "one number of stages"
+        if any(blank.has_web or blank.bore for both in self.blanks for blank in both):
+            lacks = lacks or "solid gears"
+        if lacks:
+            rule = f"has all values of a range to choose from, which need {lacks}"
+            raise refuse(rule, str(value.low), place, "sample")
+        if value.low.value < math.radians(LEAST_HELIX):
+            rule = f"begins below {LEAST_HELIX} deg: spur gears are rated by laws of their own"
+            way = f'Write, for example, {{ from = "{LEAST_HELIX} deg", to = "30 deg" }}'
+            raise refuse(rule, way, place, "tell")
 
     def _check_layout(self) -> None:
         """Check the tables of a layout against the drive and each other."""
@@ -560,7 +590,10 @@ class Scene(Table):
                 off += abs(teeth.pinion_shift - stage.pinion_profile_shift)
             return abs(math.degrees(teeth.helix_angle) - stage.helix_angle_deg) + off
 
-        return min(self._cut(own), key=away)
+        cut = min(self._cut(own), key=away)
+        if inclination(own, self.gears):
+            return replace(cut, helix_angle=math.radians(stage.helix_angle_deg))
+        return cut
 
     @property
     def blanks(self) -> tuple[tuple[Blank, Blank], ...]:
@@ -588,6 +621,7 @@ class Scene(Table):
             ratio=own.stage_ratio or limits.stage_ratio or (Fraction(1), None),
             wheel_diameter=diameter.exact[0] if diameter else None,
             toothings=self._cut(own),
+            helix=inclination(own, self.gears),
             blanks=self._blanks(own),
             overlap=float(own.overlap_ratio or limits.overlap_ratio or 0),
             axial_force=force.value if force else math.inf,

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import PydanticCustomError
 
 from gearopt.optimise.explaining.explanation import DIGITS, FEASIBILITY_MARGIN
-from gearopt.scenes.reading.choices import Preferred, Steps
+from gearopt.scenes.reading.choices import Between, Preferred, Steps
 from gearopt.scenes.reading.fields import Reads
 from gearopt.scenes.reading.toml_writing import dotted, exact, toml_text
 from gearopt.units import Quantity
@@ -179,7 +179,7 @@ def written(value: Any, path: Path) -> Any:
         return f"{exact(value.number)} {value.unit}".rstrip()
     if isinstance(value, Fraction):
         return exact(value) if _is_decimal(value) or not _is_ratio(path) else str(value)
-    if isinstance(value, Steps | Preferred):
+    if isinstance(value, Steps | Between | Preferred):
         return value.written
     if isinstance(value, tuple):
         ends: list[Any] = [written(v, path) for v in value]

@@ -56,6 +56,24 @@ class Steps:
 
 
 @dataclass(frozen=True)
+class Between:
+    """Every value between two ends, of quantities of one unit."""
+
+    low: Quantity
+    high: Quantity
+
+    @property
+    def values(self) -> tuple[Quantity, Quantity]:
+        """Both ends."""
+        return self.low, self.high
+
+    @property
+    def written(self) -> dict[str, str]:
+        """The range as a file has it."""
+        return dict(zip(KEYS_OF_RANGE[:2], map(str, self.values), strict=True))
+
+
+@dataclass(frozen=True)
 class Preferred:
     """Preferred numbers [mm] of a series of ISO 3 from low to high; None: as far as they serve."""
 
@@ -83,12 +101,15 @@ class Preferred:
 
 
 # what `to_choose` reads: of quantities, or of pure numbers
-Choice = Quantity | Fraction | tuple[Any, ...] | Steps | Preferred
+Choice = Quantity | Fraction | tuple[Any, ...] | Steps | Between | Preferred
 
 
 def values_of(value: Choice, reach: tuple[float, float] = (0.0, 0.0)) -> tuple[Any, ...]:
-    """The values that a key of `to_choose` holds; reach [mm]: those of a series without ends."""
-    if isinstance(value, Steps):
+    """The values that a key of `to_choose` holds, of `Between` the ends.
+
+    reach [mm]: those of a series without ends.
+    """
+    if isinstance(value, Steps | Between):
         return value.values
     if isinstance(value, Preferred):
         return value.within(*reach)
@@ -100,24 +121,29 @@ def in_words(value: Choice) -> str:
     if isinstance(value, Preferred):
         ends = "" if value.low is None else f", {value.low} to {value.high}"
         return f"the series {value.series} of ISO 3 (unverified){ends}"
+    if isinstance(value, Between):
+        return f"all values from {value.low} to {value.high}"
     values = sorted(values_of(value), key=lambda one: getattr(one, "value", one))
     low, high = (v if isinstance(v, Quantity) else exact(v) for v in (values[0], values[-1]))
     return f"{len(values)} values, {low} to {high}" if len(values) > 1 else ""
 
 
-def to_choose(item: Reads, sample: Steps | Preferred) -> Reads:
+def to_choose(item: Reads, sample: Steps | Preferred, between: bool = False) -> Reads:
     """Read one value, or several to choose from: a list, or a range {from, to, step}.
 
-    sample: a right range. A list or range of one value is that value. With a series as the sample
-    also one by its name, or between two ends {from, to, series}.
+    between: a range {from, to} without a step, too. sample: a right range. A list or range of one
+    value is that value. With a series as the sample also one by its name, or between two ends
+    {from, to, series}.
     """
     way = f"Write, for example, {toml_text(sample.written)}"
     in_series = isinstance(sample, Preferred)
     listed = several(item, [item.example])
 
     def read(value: Any, example: Any) -> Choice:
-        if isinstance(value, Steps | Preferred):
+        if isinstance(value, Steps | Between | Preferred):
             return value
+        if between and isinstance(value, dict) and set(value) == set(KEYS_OF_RANGE[:2]):
+            return _between(item, value, way)
         if in_series and isinstance(value, str) and value in PREFERRED:
             return Preferred(value)
         if isinstance(value, dict):
@@ -136,7 +162,15 @@ def to_choose(item: Reads, sample: Steps | Preferred) -> Reads:
         distinct = tuple({getattr(entry, "exact", entry): entry for entry in entries}.values())
         return cast(Choice, distinct[0]) if len(distinct) == 1 else distinct
 
-    return Reads(read, item.example, {"anyOf": _ways(item, listed, in_series)})
+    return Reads(read, item.example, {"anyOf": _ways(item, listed, in_series, between)})
+
+
+def _between(item: Reads, value: dict[str, Any], way: str) -> Choice:
+    """Read a range without a step; way: what to write instead of a wrong one."""
+    low, high = _entries(item, [value[name] for name in KEYS_OF_RANGE[:2]], way)
+    if low.value > high.value:
+        raise refuse("has its ends in the wrong order", way, action="tell")
+    return Between(low, high) if low.value < high.value else cast(Choice, low)
 
 
 def _stepped(item: Reads, value: dict[str, Any], way: str, or_series: str) -> Choice:
@@ -176,10 +210,11 @@ def _entries(item: Reads, values: list[Any], way: str) -> list[Any]:
     return [item.reader(entry, item.example) for entry in right]
 
 
-def _ways(item: Reads, listed: Reads, in_series: bool) -> list[dict[str, Any]]:
+def _ways(item: Reads, listed: Reads, in_series: bool, between: bool) -> list[dict[str, Any]]:
     """The schemas of what may be written."""
     ends = {name: item.schema for name in KEYS_OF_RANGE}
-    table = {"type": "object", "properties": ends, "required": [*KEYS_OF_RANGE]}
+    needed = [*KEYS_OF_RANGE[: 2 if between else 3]]
+    table = {"type": "object", "properties": ends, "required": needed}
     ways: list[dict[str, Any]] = [item.schema, listed.schema, table]
     if in_series:
         ends = {"from": item.schema, "to": item.schema, "series": {"enum": [*PREFERRED]}}

@@ -17,9 +17,12 @@ from gearopt.formulations.strength.cells import LOWER, Cells
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
-ROWS = ("teeth", "width_over_diameter", "diameter", "end", "module", "width", "wheel", "ratio")
-Z, B_OVER_D, D, END, M, B, D2, U = range(len(ROWS))
-FREE = (Z, B_OVER_D, D, END)  # from which the others follow
+ROWS = (
+    *("teeth", "width_over_diameter", "diameter", "end", "helix"),
+    *("module", "width", "wheel", "ratio"),
+)
+Z, B_OVER_D, D, END, T, M, B, D2, U = range(len(ROWS))
+FREE = (Z, B_OVER_D, D, END, T)  # from which the others follow
 LENGTHS = 1e-3, 1e5  # mm: of diameters
 NARROWEST, WIDEST = 1e-3, 1e3  # b/d1 without limits
 TEETH = 1e6
@@ -32,7 +35,8 @@ class Boxes:
     """Boxes (n,) of designs of a stage.
 
     sizes (rows, 2, n): logarithms of both ends of ROWS; end: the total ratio behind the last stage,
-    else 0. before, after (n,): cells of the shafts before and after the stage.
+    else 0; helix: tan(beta) of a stage with a range of it, else 0. before, after (n,): cells of the
+    shafts before and after the stage.
     """
 
     sizes: Array
@@ -41,7 +45,7 @@ class Boxes:
 
     @property
     def widths(self) -> Array:
-        """Widths (4, n) of the rows in FREE."""
+        """Widths (rows, n) of the rows in FREE."""
         return np.asarray(self.sizes[list(FREE), 1] - self.sizes[list(FREE), 0])
 
     def take(self, place: Any) -> "Boxes":
@@ -119,6 +123,7 @@ def first_boxes(shafts: Shafts, k: int) -> Boxes:
     sizes[D] = LENGTHS
     total = float(train.lowest_ratio), float(train.highest_ratio)
     sizes[END] = total if last else (1.0, 1.0)
+    sizes[T] = (1.0, 1.0) if stage.helix is None else np.tan(stage.helix)
     sizes[M] = max(numbers["module_low"][k], 1e-6), min(numbers["module_high"][k], LENGTHS[1])
     sizes[B] = max(float(face.least), 1e-9), LENGTHS[1] * wide
     if face.fixed is not None:
@@ -150,7 +155,8 @@ def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
     size = np.exp(sizes)
     speed = shafts.train.speed_at(torque)[::-1]
     ends = size[Z], size[U], size[D], size[D2], size[M], size[B], size[B_OVER_D]
-    cells = Cells(stage.toothing, *ends, torque, speed)
+    helix = None if stage.helix is None else np.arctan(size[T])
+    cells = Cells(stage.toothing, *ends, torque, speed, helix)
     needed = _needed(shafts.train, stage, cells)
     weak = _needed_by_weak(stage, cells, shafts.train.safety, needed[0])
     most = np.maximum(weak * (1.0 + 1.0 / size[U, 1]), needed[1]) * torque[0]
@@ -177,7 +183,7 @@ def _possible(sizes: Array) -> Array:
 def _follow(train: Train, k: int, sizes: Array) -> None:
     """Make boxes smaller by the rows that tie their sides, in place."""
     stage = train.stages[k]
-    cosine = math.log(stage.toothing.cosine)
+    straight, cosine = cosines(stage, sizes)
     numbers = dict[str, Any](train.numbers())
     for name, row in (("wheel_low", 0), ("wheel_high", 1)):
         with np.errstate(divide="ignore"):
@@ -188,17 +194,27 @@ def _follow(train: Train, k: int, sizes: Array) -> None:
     if low is not None:
         sizes[B_OVER_D, 0] = np.maximum(sizes[B_OVER_D, 0], math.log(low) + cosine - sizes[Z, 1])
     if high is not None:
-        sizes[B_OVER_D, 1] = np.minimum(sizes[B_OVER_D, 1], math.log(high) + cosine - sizes[Z, 0])
-        sizes[Z, 1] = np.minimum(sizes[Z, 1], math.log(high) + cosine - sizes[B_OVER_D, 0])
+        high_over_d = math.log(high) + straight
+        sizes[B_OVER_D, 1] = np.minimum(sizes[B_OVER_D, 1], high_over_d - sizes[Z, 0])
+        sizes[Z, 1] = np.minimum(sizes[Z, 1], high_over_d - sizes[B_OVER_D, 0])
+    ties = (D, M, Z, (-straight, -cosine)), (B, B_OVER_D, D, (0.0, 0.0)), (D2, D, U, (0.0, 0.0))
     for _ in range(2):
-        for whole, side, other, by in ((D, M, Z, -cosine), (B, B_OVER_D, D, 0.0), (D2, D, U, 0.0)):
-            (a_low, a_high), (b_low, b_high) = sizes[side] + by, sizes[other]
-            c_low, c_high = sizes[whole]
+        for whole, side, other, (least, most) in ties:
+            (a_low, a_high), (b_low, b_high) = sizes[side], sizes[other]
+            a_low, a_high, (c_low, c_high) = a_low + least, a_high + most, sizes[whole]
             sizes[whole] = np.maximum(c_low, a_low + b_low), np.minimum(c_high, a_high + b_high)
             c_low, c_high = sizes[whole]
-            sizes[side] = np.maximum(a_low, c_low - b_high), np.minimum(a_high, c_high - b_low)
+            sizes[side, 0] = np.maximum(a_low - least, c_low - b_high - most)
+            sizes[side, 1] = np.minimum(a_high - most, c_high - b_low - least)
             sizes[other] = np.maximum(b_low, c_low - a_high), np.minimum(b_high, c_high - a_low)
-            sizes[side] -= by
+
+
+def cosines(stage: Stage, sizes: Array) -> tuple[Any, Any]:
+    """Logarithms of cos(beta), the greatest and the least, of boxes."""
+    if stage.helix is None:
+        return (math.log(stage.toothing.cosine),) * 2
+    least, most = -0.5 * np.log1p(np.exp(2.0 * sizes[T]))
+    return least, most
 
 
 def _needed(train: Train, stage: Stage, cells: Cells) -> tuple[Array, Array]:

@@ -16,6 +16,7 @@ from gearopt.formulations.drive.rated.boxes import (
     B,
     D,
     M,
+    T,
     U,
     Z,
     first_boxes,
@@ -90,11 +91,14 @@ def _around(train: Train, k: int, pair: GearPair, size: float) -> Array:
     limits = first_boxes(shafts_about(train, 1), k).sizes[:, :, 0]
     box = limits.copy()
     d = pair.pinion.reference_diameter
-    for row, value, wide in (
+    rows = [
         (Z, pair.pinion_teeth, size),
         (B_OVER_D, pair.face_width / d, size),
         (D, d, 2.0 * size),
-    ):
+    ]
+    if train.stages[k].helix is not None:
+        rows.append((T, math.tan(pair.pinion.helix_angle), size))
+    for row, value, wide in rows:
         ends = np.log(float(value)) + np.array([-wide, wide])
         box[row] = np.clip(ends, *limits[row])
     return box
@@ -106,19 +110,20 @@ def smallest(
     """Return the pair of the least share that the ratings accept among some of a box.
 
     before, after: ln of the torques over the input's, the latter as near as the box has it; sides:
-    so many teeth and b/d1 are tried, with TRIED diameters each.
+    so many teeth, b/d1 and helix angles are tried, with TRIED diameters each.
     """
     stage, ratio = train.stages[k], math.exp(float(np.clip(after - before, *box[U])))
     spread = [
         np.linspace(box[row, 0], box[row, 1], sides if np.ptp(box[row]) > ROUND else 1)
-        for row in (Z, B_OVER_D)
+        for row in (Z, B_OVER_D, T)
     ]
     diameters = np.linspace(box[D, 0], max(box[D, 1], box[D, 0] + ABOVE), TRIED)
     sizes = np.exp([side.ravel() for side in np.meshgrid(*spread, diameters)])
 
-    def pairs(z: Array, b_over_d: Array, d: Array) -> GearPair:
-        module = d * stage.toothing.cosine / z
-        return stage.toothing.of_diameter(module, z, d, ratio, b_over_d * d)
+    def pairs(z: Array, b_over_d: Array, tangent: Array, d: Array) -> GearPair:
+        cut = stage.toothing if stage.helix is None else stage.inclined(np.arctan(tangent))
+        module = d * np.cos(cut.helix_angle) / z
+        return cut.of_diameter(module, z, d, ratio, b_over_d * d)
 
     sizes = sizes[:, _allowed(train, k, pairs(*sizes))]
     if not sizes.shape[1]:

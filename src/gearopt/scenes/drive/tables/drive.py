@@ -37,7 +37,9 @@ DISTANCES = to_choose(
     LENGTH, Preferred("R20", units.parse("100 mm", "length"), units.parse("200 mm", "length"))
 )
 ONE_HELIX = quantity("angle", "25 deg", "45 deg", zero=True)
-HELIX = to_choose(ONE_HELIX, Steps(*(units.parse(f"{n} deg", "angle") for n in (8, 20, 1))))
+HELIX = to_choose(
+    ONE_HELIX, Steps(*(units.parse(f"{n} deg", "angle") for n in (8, 20, 1))), between=True
+)
 PRESSURE = quantity("angle", "20 deg", "45 deg")
 TOOTH_COUNT = whole(21, 5, 1000)
 WHEEL_TEETH = advised(
@@ -121,7 +123,7 @@ class Gears(GearKeys):
         default_factory=lambda: units.parse("0 deg", "angle"),
         description="Helix angle at the reference cylinder; where ratings limit whole teeth also "
         'several to choose from: a list, or a range { from = "8 deg", to = "20 deg", step = '
-        '"1 deg" }',
+        '"1 deg" }; of real-valued sizes all angles of a range without a step',
         json_schema_extra={"default": "0 deg"},
     )
     pressure_angle: Annotated[Quantity, PRESSURE] = Field(

@@ -11,7 +11,7 @@ from gearopt.formulations.drive.train import LENGTHS, Stage
 from gearopt.physics.gears import ISO_53_A, MEMBERS, Rack
 from gearopt.scenes.drive.tables.drive import Gears, ShiftTable, StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, with_shared
-from gearopt.scenes.reading.choices import values_of
+from gearopt.scenes.reading.choices import Between, values_of
 from gearopt.scenes.reading.fields import refuse
 
 USUAL = {"profile_shift": 0, "tip_alteration": 0, "addendum": 1, "tool_addendum": 1.25}
@@ -50,11 +50,18 @@ def toothings(
         first = replace(first, shifting=shift.shifting)
         if shift.pinion_shift is not None:
             shifts = [float(x1) for x1 in values_of(shift.pinion_shift)]
-    rows = itertools.product([helix.value for helix in helices], distances, shifts)
+    ways = helices[:1] if inclination(own, gears) else helices
+    rows = itertools.product([helix.value for helix in ways], distances, shifts)
     return tuple(
         replace(first, helix_angle=helix, working_distance=a, pinion_shift=x1)
         for helix, a, x1 in rows
     )
+
+
+def inclination(own: StageTable, gears: Gears) -> tuple[float, float] | None:
+    """The least and the greatest helix angle [rad] of a range without a step, if there is one."""
+    helix = gears.helix_angle if own.helix_angle is None else own.helix_angle
+    return (helix.low.value, helix.high.value) if isinstance(helix, Between) else None
 
 
 def toothing(own: StageTable, gears: Gears) -> Toothing:
