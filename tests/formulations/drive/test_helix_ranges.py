@@ -32,7 +32,8 @@ def inclining(train, low, high):
 @pytest.mark.parametrize(("name", "kind", "width", "seed"), few(CASES, QUICK))
 def test_no_design_needs_less_than_its_cell(name, kind, width, seed):
     rng, standard = np.random.default_rng(seed), STANDARDS[name]
-    cells = random_cells(rng, 250 if seed == 0 and width == 0.05 else 600, KINDS[kind], width, ENDS)
+    few_cells = (name, kind, width, seed) in QUICK
+    cells = random_cells(rng, 60 if few_cells else 600, KINDS[kind], width, ENDS)
     with np.errstate(all="ignore"):
         least = standard.needed(cells, SAFETY)
         for _ in range(3):
@@ -80,20 +81,18 @@ def smallest(train, exact, rng, count):
     return np.array(values)
 
 
-@pytest.mark.parametrize(
-    ("name", "count"),
-    [("agma", 40), *(pytest.param(n, 2000, marks=pytest.mark.slow) for n in ("agma", "iso"))],
-)
-def test_no_random_design_is_below_the_bound(name, count):
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["agma", "iso"])
+def test_no_random_design_is_below_the_bound(name):
     """Of which some are near the best one; and no designs of one angle are."""
     train = inclining(rated_drive(4, [FREE], options=by(name)), 8.0, 30.0)
     exact = sizing.problem(train)
-    result = solve(exact, budget=Budget(1.0 if count < 100 else 120.0, gap=0.01))
-    values = smallest(train, exact, np.random.default_rng(count), count)
-    assert len(values) > 0.9 * count and result.bound > 0.0
+    result = solve(exact, budget=Budget(120.0, gap=0.01))
+    values = smallest(train, exact, np.random.default_rng(7), 2000)
+    assert len(values) > 1800 and result.bound > 0.0
     assert values.min() >= result.bound and values.min() < 1.1 * result.value
     assert result.value >= result.bound
-    for angle in (10.0, 20.0, 30.0) if count > 100 else ():
+    for angle in (10.0, 20.0, 30.0):
         alone = rated_drive(4, [FREE], options=by(name), helix=math.radians(angle))
         assert solve(sizing.problem(alone), budget=Budget(10.0)).value >= result.bound
 

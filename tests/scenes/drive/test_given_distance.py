@@ -245,7 +245,8 @@ def test_what_teeth_at_a_distance_may_be_is_explained(tmp_path, table, key):
 ROOTS = "[shift]\nrule = 'equal root safety'\n"
 
 
-@pytest.mark.parametrize("standard", ["both", pytest.param("agma", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("standard", ["both", "agma"])
 def test_roots_are_equally_safe_of_gears_that_are_chosen(tmp_path, standard):
     text = PAIR.replace("[14, 40]", "[25, 25]").replace('"both"', f'"{standard}"')
     if standard == "agma":

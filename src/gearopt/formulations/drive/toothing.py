@@ -11,6 +11,8 @@ import numpy as np
 from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack, reference_diameter
 from gearopt.physics.geometry.profile_shift import Meshing, Shifting
 
+SAME = 1e-9  # of sums of profile shifts
+
 
 @dataclass(frozen=True)
 class Toothing:
@@ -20,8 +22,9 @@ class Toothing:
     pressure angle; profile_shifts x and tip_alterations k in normal modules; thickness_allowances
     A_sn [mm]; working_distance: a given centre distance [mm], None: the one without backlash of
     nominal teeth. shifting: how profile shifts and tip alterations follow from it, None: they are
-    given. pinion_shift: x1 at a given distance, None: that of the rule of shifting. Of many pairs
-    (n,) helix angle, distance and pinion_shift may be arrays. ValueError for other angles.
+    given. shift_sum: a given x1 + x2, from which the distance follows in place of a given one.
+    pinion_shift: x1 of the sum, None: that of the rule of shifting. Of many pairs (n,) helix angle,
+    distance, shift_sum and pinion_shift may be arrays. ValueError for other angles.
     Source: ISO 21771:2007.
     """
 
@@ -33,6 +36,7 @@ class Toothing:
     working_distance: Any = None
     shifting: Shifting | None = None
     pinion_shift: Any = None
+    shift_sum: Any = None
 
     def __post_init__(self) -> None:
         if not np.all(np.abs(self.helix_angle) < math.pi / 3.0):  # whose cosine is rational
@@ -56,11 +60,16 @@ class Toothing:
     @property
     def on_reference(self) -> bool:
         """Whether the centre distance is that of the reference circles: x1 + x2 = 0, none given."""
-        return self.working_distance is None and sum(self.profile_shifts) == 0
+        shifted = self.working_distance is not None or self.shift_sum is not None
+        return not shifted and sum(self.profile_shifts) == 0
 
     def made(self, pair: GearPair) -> bool:
-        """Whether a pair of floats has this helix angle and, where given, this distance and x1."""
+        """Whether a pair of floats has this helix angle and given distance, x1 + x2 and x1."""
         helix, distance = pair.pinion.helix_angle, pair.working_distance
+        if self.shift_sum is not None:
+            total = pair.pinion.profile_shift + pair.wheel.profile_shift
+            if abs(total - self.shift_sum) > SAME:
+                return False
         shifted = self.pinion_shift is None or pair.pinion.profile_shift == self.pinion_shift
         return bool(helix == self.helix_angle and distance == self.working_distance and shifted)
 
@@ -82,11 +91,14 @@ class Toothing:
         return self._made(module, (pinion_teeth, wheel_teeth), diameters, face_width, shifts)
 
     def shifts(self, module: Any, pinion_teeth: Any, wheel_teeth: Any) -> tuple[Any, Any, Any]:
-        """Profile shifts x1, x2 and shortening k of both tips that follow from the distance."""
+        """Profile shifts x1, x2 and shortening k of tips that follow from the distance or sum."""
         assert self.shifting is not None
-        numbers = module, (pinion_teeth, wheel_teeth), self.helix_angle
-        meshing = Meshing(*numbers, self.racks, self.working_distance)
-        return self.shifting.shifts(meshing, self.pinion_shift)
+        numbers = module, (pinion_teeth, wheel_teeth), self.helix_angle, self.racks
+        if self.shift_sum is None:
+            return self.shifting.shifts(Meshing(*numbers, self.working_distance), self.pinion_shift)
+        meshing = Meshing.of_sum(*numbers, self.shift_sum)
+        first, _, shorter = self.shifting.shifts(meshing, self.pinion_shift)
+        return first, self.shift_sum - first, shorter
 
     def of_diameter(
         self, module: Any, pinion_teeth: Any, pinion_diameter: Any, ratio: Any, face_width: Any
@@ -149,7 +161,7 @@ class Toothing:
         )
 
 
-COLUMNS = ("helix_angle", "working_distance", "pinion_shift")  # in which toothings may differ
+COLUMNS = ("helix_angle", "working_distance", "pinion_shift", "shift_sum")  # that may differ
 ALIKE = ("racks", "profile_shifts", "tip_alterations", "thickness_allowances", "shifting")
 _columns_of, _alike_of = attrgetter(*COLUMNS), attrgetter(*ALIKE)
 

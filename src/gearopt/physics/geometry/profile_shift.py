@@ -19,7 +19,11 @@ from gearopt.physics.gears import (
 )
 from gearopt.physics.geometry.contact import contact_path, specific_sliding
 from gearopt.physics.geometry.fillet import NEGLIGIBLE, form_diameter, undercut_depth
-from gearopt.physics.geometry.involute import angle_at_distance, shift_sum
+from gearopt.physics.geometry.involute import (
+    angle_at_distance,
+    shift_sum,
+    working_pressure_angle,
+)
 from gearopt.physics.geometry.tooth import tip_thickness
 
 HALVINGS = 52  # of an interval of shifts: to the last digit
@@ -42,6 +46,22 @@ class Meshing:
     helix_angle: Any
     racks: tuple[Rack, Rack]
     distance: Any
+
+    @classmethod
+    def of_sum(
+        cls,
+        module: Any,
+        teeth: tuple[Any, Any],
+        helix_angle: Any,
+        racks: tuple[Rack, Rack],
+        total: Any,
+    ) -> "Meshing":
+        """The meshing of gears whose shifts have a sum x1 + x2, without backlash."""
+        made = cls(module, teeth, helix_angle, racks, np.nan)
+        normal, transverse = made.pressure_angles
+        working = working_pressure_angle(total, teeth[0] + teeth[1], normal, transverse)
+        shorter = np.cos(transverse) / np.cos(working)
+        return cls(module, teeth, helix_angle, racks, sum(made.reference_radii) * shorter)
 
     @property
     def ratio(self) -> Any:

@@ -84,18 +84,23 @@ def _chosen(scene: Scene) -> list[str]:
     stages: dict[tuple[str, str], list[int]] = {}
     for k, table in enumerate(scene.stage_tables, 1):
         helix = scene.gears.helix_angle if table.helix_angle is None else table.helix_angle
-        shift = scene.shift.pinion_shift if scene.shift and scene.shifted(table) else None
+        asked = scene.shift if scene.shifted(table) else None
+        shift, total = (asked.pinion_shift, asked.sum) if asked else (None, None)
         choices = {
             "helix angle": helix,
             "centre distance": table.centre_distance,
             "profile shift of the pinion": shift,
+            "sum of profile shifts": total,
         }
         for name, held in choices.items():
             if held is not None and (words := in_words(held)):
                 stages.setdefault((name, words), []).append(k)
     sentences = []
     for (name, words), where in stages.items():
-        several = f"{name}s" if "pinion" not in name else "profile shifts of the pinions"
+        several = {
+            "profile shift of the pinion": "profile shifts of the pinions",
+            "sum of profile shifts": "sums of profile shifts",
+        }.get(name, f"{name}s")
         are = f"{several} of stages {' and '.join(map(str, where))} were"
         are = are if len(where) > 1 else f"{name} of stage {where[0]} was"
         sentences.append(f"The {are} chosen from {words}.")
@@ -145,8 +150,8 @@ def _bodies(scene: Scene) -> str:
     if all(blank(table, None).solid and not table.web_thickness for table in tables):
         if any(map(scene.shifted, stages)):
             return (
-                "Volumes are those of solid cylinders of face width; where shifts follow from a "
-                "centre distance their diameter is d + 2 x m_n, else the reference one"
+                "Volumes are those of solid cylinders of face width; where shifts are "
+                "chosen their diameter is d + 2 x m_n, else the reference one"
             )
         return "Volumes are those of solid cylinders of reference diameter and face width"
     return (
@@ -180,8 +185,9 @@ def _teeth(scene: Scene) -> list[str]:
     shifts = "with the profile shifts of the file" if shifted else "without profile shift"
     given = next((cut for cut in each if cut.shifting is not None), None)
     if given is not None and given.shifting is not None:
+        source = "the given centre distances" if given.shift_sum is None else "their given sum"
         shifts = (
-            "whose profile shifts follow from the given centre distances, shared out by the rule "
+            f"whose profile shifts follow from {source}, shared out by the rule "
             f"{given.shifting.rule}, with both tips shortened alike"
         )
         if given.shifting.rule == ROOT_SAFETY:
@@ -193,7 +199,7 @@ def _teeth(scene: Scene) -> list[str]:
         if given.pinion_shift is not None:
             shifts = (
                 "whose pinions have the profile shift of the file, that of their wheels following "
-                "from the given centre distances, with both tips shortened alike"
+                f"from {source}, with both tips shortened alike"
             )
     ends = "losses in mesh and bearings are neglected"
     sentences = [f"The gears are external cylindrical ones {shifts}; {ends}."]

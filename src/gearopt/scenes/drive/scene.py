@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
 from gearopt.formulations.drive.layout.gearbox import Gearbox
-from gearopt.formulations.drive.root_balance import RootBalance
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength import RATED, Law
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair, transverse_pressure_angle
-from gearopt.physics.geometry.profile_shift import ROOT_SAFETY, SUMS
+from gearopt.physics.geometry.profile_shift import SUMS
 from gearopt.physics.loads import torque
 from gearopt.scenes.drive.distances import rows_together, together
 from gearopt.scenes.drive.face_widths import check_width, face_width
@@ -30,6 +29,7 @@ from gearopt.scenes.drive.rating.checks import (
 )
 from gearopt.scenes.drive.rating.materials import MaterialTable, check_materials, check_same
 from gearopt.scenes.drive.rating.options import of_stages, required
+from gearopt.scenes.drive.shifts import balanced, check_inclination, check_shift
 from gearopt.scenes.drive.tables.blanks import blank, check_blanks
 from gearopt.scenes.drive.tables.drive import (
     Gears,
@@ -100,8 +100,6 @@ RANGE = (
 )
 MOST_STAGES = 6
 IN_LINE = PlaceTable.model_validate({"shaft": 3, "y": "0 mm", "z": "0 mm"})  # coaxial drives
-MOST_WAYS = 10_000  # helix angles times distances times shifts of a stage
-LEAST_HELIX = 1  # deg, of real-valued helix angles
 HELIX_LIMITS = ("overlap_ratio", "axial_force")
 PROCESSES = ("process_one", "process_two")  # tables; as methods with a hyphen
 STAGES = span(whole(2, 1, MOST_STAGES), 2, single=True)
@@ -300,32 +298,15 @@ class Scene(Table):
             self._distances(self.stage_tables)
         lacks = "" if self.given else self._lacks("at a given centre distance")
         check_teeth(self.stage, self.gears, lacks, aim, asked)
-        shifted = [k for k, own in enumerate(self.stage) if self.shifted(own)]
+        tables = self.stage_tables
+        shifted = [k for k, own in enumerate(tables) if self.shifted(own)]
         for k in shifted:
-            check_follows(k, self.stage[k])
-        if self.shift is not None and not shifted:
-            rule = "changes nothing: no gears are chosen at a given centre_distance of a [[stage]]"
-            raise refuse(rule, at=("shift",), action="remove")
-        if self.shift is not None and self.shift.pinion_shift is not None:
-            if "rule" in self.shift.model_fields_set:
-                rule = "changes nothing beside pinion_shift"
-                raise refuse(rule, at=("shift", "rule"), action="remove")
-            self._check_ways(shifted)
-        if self._by_root_safety and (self.load or self.material):
-            name = "load" if self.load else "material"
-            rule = f"needs one load and one material of each gear, without [[{name}]]"
-            raise refuse(rule, "equal sliding", ("shift", "rule"), "sample")
+            check_follows(k, tables[k])
+        lacks = "" if self.given else self._lacks("by sums of their profile shifts")
+        check_shift(self, shifted, lacks, asked)
         for k, table in enumerate(self.stage if self.to_size else ()):  # else a rating refuses it
             if k not in shifted:
                 check_mesh(self._stage(table), k, table, self.gears)
-
-    def _check_ways(self, stages: list[int]) -> None:
-        """Refuse more ways to cut the teeth of stages (from 0) than are looked at."""
-        ways = max(len(self.toothings(self.stage[k])) for k in stages)
-        if ways > MOST_WAYS:
-            rule = f"makes {ways:,} ways of cutting a stage with its helix angles and distances"
-            tell = f"Give fewer of these, for {MOST_WAYS:,} ways at most"
-            raise refuse(rule, tell, ("shift", "pinion_shift"), "tell")
 
     def _lacks(self, what: str) -> str:
         """The table that the file lacks to choose gears with such numbers; "" for none."""
@@ -354,38 +335,16 @@ class Scene(Table):
                 raise refuse(rule, "15 deg", ("gears", "helix_angle"), "sample")
 
     def shifted(self, own: StageTable) -> bool:
-        """Whether profile shifts of a stage follow from its centre distance."""
-        return own.centre_distance is not None and not self.given
+        """Whether profile shifts of a stage follow from its centre distance or a sum of them."""
+        summed = self.shift is not None and self.shift.sum is not None
+        return (own.centre_distance is not None or summed) and not self.given
 
     def toothings(self, own: StageTable) -> tuple[Toothing, ...]:
         """Ways in which the teeth of a stage may be cut."""
         if not self.shifted(own):
             return toothings(own, self.gears)
-        return toothings(own, self.gears, self._reach(own), self.shift or ShiftTable())
-
-    def _cut(self, own: StageTable) -> tuple[Toothing, ...]:
-        """Ways in which the teeth of a stage may be cut, with the strength of their roots.
-
-        Where shifts follow from that; the speed is the one of equal stage ratios.
-        """
-        ways = self.toothings(own)
-        if self.rating is None or not self._by_root_safety or not self.shifted(own):
-            return ways
-        tables = self.stage_tables
-        place = next(k for k, table in enumerate(tables) if table is own)
-        slower = float(self.duty.total_ratio) ** (place / len(tables))
-        made = self.rating, (own,), self.gears, self.material, self.duty, self.load
-        standard = of_stages(*made)[0][0].standards[-1]
-        speed, cut = self.duty.input_speed.value / slower, ways[0]
-        assert cut.shifting is not None
-        balance = RootBalance(standard, speed, cut.thickness_allowances)
-        return tuple(replace(way, shifting=replace(cut.shifting, balance=balance)) for way in ways)
-
-    @property
-    def _by_root_safety(self) -> bool:
-        """Whether chosen shifts make both roots equally safe."""
-        shift = self.shift
-        return shift is not None and shift.pinion_shift is None and shift.rule == ROOT_SAFETY
+        reach = (0.0, 0.0) if own.centre_distance is None else self._reach(own)
+        return toothings(own, self.gears, reach, self.shift or ShiftTable())
 
     def _reach(self, own: StageTable) -> tuple[float, float]:
         """Ends of the centre distances [mm] that teeth of a stage may have, whatever their shifts.
@@ -428,7 +387,7 @@ class Scene(Table):
             if value is None or isinstance(value, Quantity):
                 continue
             if isinstance(value, Between):
-                self._check_inclination(value, place)
+                check_inclination(self, value, place)
                 continue
             lacks = "gears that are to be chosen: these are all given" if self.given else ""
             lacks = lacks or self._lacks("with one of several values")
@@ -438,25 +397,6 @@ class Scene(Table):
                 first = values_of(value, (100.0, 100.0))[0]
                 rule = f"has several values to choose from, which need {lacks}"
                 raise refuse(rule, str(first), place, "sample")
-
-    def _check_inclination(self, value: Between, place: tuple[str | int, ...]) -> None:
-        """Refuse all helix angles of a range where no search of real-valued sizes chooses them."""
-        lacks = "gears that are to be chosen: these are all given" if self.given else ""
-        if self.teeth is not None:
-            lacks = lacks or "real-valued sizes, without a table [teeth] (or give a step)"
-        if not self.rated_real or self.limits.loaded:
-            lacks = lacks or "limits by [rating] alone, one load and one material of each gear"
-        if self.several:
-            lacks = lacks or "one number of stages"
-        if any(blank.has_web or blank.bore for both in self.blanks for blank in both):
-            lacks = lacks or "solid gears"
-        if lacks:
-            rule = f"has all values of a range to choose from, which need {lacks}"
-            raise refuse(rule, str(value.low), place, "sample")
-        if value.low.value < math.radians(LEAST_HELIX):
-            rule = f"begins below {LEAST_HELIX} deg: spur gears are rated by laws of their own"
-            way = f'Write, for example, {{ from = "{LEAST_HELIX} deg", to = "30 deg" }}'
-            raise refuse(rule, way, place, "tell")
 
     def _check_layout(self) -> None:
         """Check the tables of a layout against the drive and each other."""
@@ -588,9 +528,12 @@ class Scene(Table):
             off = 0.0 if distance is None else abs(distance - stage.centre_distance_mm)
             if teeth.pinion_shift is not None:
                 off += abs(teeth.pinion_shift - stage.pinion_profile_shift)
+            if teeth.shift_sum is not None:
+                total = stage.pinion_profile_shift + stage.wheel_profile_shift
+                off += abs(teeth.shift_sum - total)
             return abs(math.degrees(teeth.helix_angle) - stage.helix_angle_deg) + off
 
-        cut = min(self._cut(own), key=away)
+        cut = min(balanced(self, own, self.toothings(own)), key=away)
         if inclination(own, self.gears):
             return replace(cut, helix_angle=math.radians(stage.helix_angle_deg))
         return cut
@@ -620,7 +563,7 @@ class Scene(Table):
             wheel_teeth=own.wheel_teeth or limits.wheel_teeth or (1, None),
             ratio=own.stage_ratio or limits.stage_ratio or (Fraction(1), None),
             wheel_diameter=diameter.exact[0] if diameter else None,
-            toothings=self._cut(own),
+            toothings=balanced(self, own, self.toothings(own)),
             helix=inclination(own, self.gears),
             blanks=self._blanks(own),
             overlap=float(own.overlap_ratio or limits.overlap_ratio or 0),

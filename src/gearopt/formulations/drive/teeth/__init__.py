@@ -336,7 +336,9 @@ def _unfit(train: Train) -> str:
 
 
 def _distances(stage: Stage) -> str:
-    """The given centre distances of a stage in words."""
+    """The given centre distances of a stage in words, or its sums of profile shifts."""
+    if stage.toothing.working_distance is None:
+        return "the sums of profile shifts"
     given = sorted({float(toothing.working_distance) for toothing in stage.toothings})
     if len(given) == 1:
         return f"the centre distance of {given[0]:.6g} mm"

@@ -109,7 +109,9 @@ def _block(stage: Stage, z1: Index, z2: Index, toothings: list[int]) -> _Rows:
     cut = stage.toothings[toothings[0]]
     cosine, stage = cut.cosine, _overlapping(stage, cut)
     toothing, ends = np.full(len(z1), toothings[0]), None
-    if stage.toothing.shifting is not None:
+    if stage.toothing.shift_sum is not None:
+        z1, z2, toothing = _of_sums(stage, z1, z2, np.array(toothings))
+    elif stage.toothing.shifting is not None:
         z1, z2, toothing, ends = _meshing(stage, z1, z2, np.array(toothings))
     first, last = _allowed(stage, z1, z2, cosine)
     if ends is not None:
@@ -153,7 +155,8 @@ def _pairs(train: Train, position: int, cut: Fraction) -> tuple[Index, Index]:
     SolveError where there are too many for the memory.
     """
     ranges = spans(train, position, cut)
-    helices = len(_helices(train.stages[position]))
+    stage = train.stages[position]
+    helices = len(_helices(stage) if stage.toothing.shift_sum is None else stage.toothings)
     count = sum(stop - start + 1 for _, start, stop in ranges) * helices
     if count > PAIRS:
         raise SolveError(
@@ -268,6 +271,17 @@ def _meshing(
     if np.any(allowed.sum(axis=0) != last - first + 1):
         raise SolveError("modules so close to each other leave gaps at a given centre distance")
     return z1[keep], z2[keep], toothing, (first, last)
+
+
+def _of_sums(stage: Stage, z1: Index, z2: Index, toothings: Index) -> tuple[Index, Index, Index]:
+    """Return the pairs that sums of shifts allow, and their toothing: of some of the stage's.
+
+    Of one module: teeth of any have the same shape.
+    """
+    pair, way = np.nonzero(np.ones((len(z1), len(toothings)), bool))
+    z1, z2, toothing = z1[pair], z2[pair], toothings[way]
+    keep = _shiftable(stage, z1, z2, toothing, np.ones((1, len(z1)), bool))[0]
+    return z1[keep], z2[keep], toothing[keep]
 
 
 def _modules(stage: Stage, span: tuple[Fraction, Fraction | None]) -> tuple[int, int]:

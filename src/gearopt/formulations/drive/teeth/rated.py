@@ -70,6 +70,12 @@ class RatedTable(Table):
         """
         if self.stage.toothing.shifting is None:
             return super().made(module, pair)
+        if not self._by_module:
+            first, second, shorter = (s[pair] for s in self._shifts)
+            toothing = self.stage.toothing_of(self.toothing[pair])
+            return toothing.pair(
+                module, self.z1[pair], self.z2[pair], 1.0, (first, second, shorter)
+            )
         index = np.searchsorted(self.modules, module)
         allowed = (self.first[pair] <= index) & (index <= self.last[pair])
         place = self._shape(index, pair)
@@ -80,7 +86,10 @@ class RatedTable(Table):
 
     @cached_property
     def _shifts(self) -> tuple[Any, Any, Any]:
-        """Profile shifts and shortening of pairs and modules of `_shapes`."""
+        """Profile shifts and shortening of pairs and modules of `_shapes`, or of pairs alone."""
+        if not self._by_module:
+            toothing = self.stage.toothing_of(self.toothing)
+            return toothing.shifts(np.ones(len(self.z1)), self.z1, self.z2)
         module, pair = self._shapes
         toothing = self.stage.toothing_of(self.toothing[pair])
         return toothing.shifts(self.modules[module], self.z1[pair], self.z2[pair])
@@ -490,7 +499,8 @@ class RatedTable(Table):
 
     def _floor(self, pair: GearPair, width: Array) -> Array:
         """Return a lower bound of `_worth` that larger modules and options do not fall below."""
-        if self.stage.toothing.shifting is not None:  # a larger module may be the lighter one
+        shifted = self.stage.toothing.shifting is not None
+        if shifted and (self._by_module or self.train.hollow):  # a larger one may be the lighter
             return np.zeros(np.shape(width))
         fewest = pair.pinion_teeth, pair.wheel_teeth
         shares = least_share(self._cheapest, self.position, pair.of_width(width), fewest=fewest)

@@ -89,7 +89,7 @@ def _chooses(scene: Scene) -> bool:
     return (
         not all(one is None or isinstance(one, Quantity) for one in lists)
         or limits.sum_of_centre_distances is not None
-        or (shift is not None and shift.pinion_shift is not None)
+        or (shift is not None and (shift.pinion_shift is not None or shift.sum is not None))
     )
 
 

@@ -111,7 +111,7 @@ def _of_stage(scene: Scene, own: StageTable, stage: Stage) -> Iterator[str]:
     yield from ["wheel_diameter"] * (stage.wheel_diameter is not None)
     yield from ["overlap_ratio"] * bool(stage.overlap)
     yield from ["axial_force"] * math.isfinite(stage.axial_force)
-    yield from [DISTANCE] * (stage.toothing.shifting is not None)
+    yield from [DISTANCE] * (stage.toothing.working_distance is not None)
 
 
 def _ends(name: str, low: Any, high: Any, least: int = 0) -> list[str]:

@@ -292,6 +292,12 @@ PINION_SHIFT = to_choose(
 )
 
 
+SHIFT_SUM = to_choose(
+    number(0.5, Fraction(-1, 2), Fraction(3, 2), zero=True),
+    Steps(*(Fraction(n, 10) for n in (0, 10, 2))),
+)
+
+
 class ShiftTable(Table):
     """How profile shifts follow from a centre distance, and what teeth may become by them."""
 
@@ -306,6 +312,11 @@ class ShiftTable(Table):
         description="Profile shift of the pinions instead of a rule, the wheels' follow from the "
         "distance: a number, or several to choose from, a list or a range { from = 0, to = 0.6, "
         "step = 0.1 }",
+    )
+    sum: Annotated[Choice | None, SHIFT_SUM] = Field(
+        None,
+        description="Sum x1 + x2 of stages without a given centre distance, which follows from it: "
+        "a number, or several to choose from, as of pinion_shift",
     )
     tip_thickness: Annotated[Fraction, number(0.4, 0, 1)] = Field(
         Fraction(1, 5),

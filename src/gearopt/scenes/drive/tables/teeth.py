@@ -44,17 +44,20 @@ def toothings(
     )
     distances: list[float | None] = [None]
     shifts: list[float | None] = [None]
+    sums: list[float | None] = [None]
     if own.centre_distance is not None:
         distances = [a.value for a in values_of(own.centre_distance, reach)]
     if shift is not None:
         first = replace(first, shifting=shift.shifting)
         if shift.pinion_shift is not None:
             shifts = [float(x1) for x1 in values_of(shift.pinion_shift)]
+        if own.centre_distance is None and shift.sum is not None:
+            sums = [float(total) for total in values_of(shift.sum)]
     ways = helices[:1] if inclination(own, gears) else helices
-    rows = itertools.product([helix.value for helix in ways], distances, shifts)
+    rows = itertools.product([helix.value for helix in ways], distances, shifts, sums)
     return tuple(
-        replace(first, helix_angle=helix, working_distance=a, pinion_shift=x1)
-        for helix, a, x1 in rows
+        replace(first, helix_angle=helix, working_distance=a, pinion_shift=x1, shift_sum=total)
+        for helix, a, x1, total in rows
     )
 
 
@@ -120,7 +123,12 @@ def check_follows(k: int, own: StageTable) -> None:
     for member in MEMBERS:
         for key in ("profile_shift", "tip_alteration"):
             if getattr(getattr(own, member), key) is not None:
-                rule = f"follows from the centre distance of stage {k + 1} and [shift]"
+                of = (
+                    ""
+                    if own.centre_distance is None
+                    else f"the centre distance of stage {k + 1} and "
+                )
+                rule = f"follows from {of}[shift]"
                 raise refuse(rule, at=("stage", k, member, key), action="remove")
 
 

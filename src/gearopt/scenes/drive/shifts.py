@@ -1,0 +1,117 @@
+"""What a file asks of teeth that are chosen: sums of profile shifts, their rule, helix angles."""
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from gearopt.formulations.drive.root_balance import RootBalance
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import LENGTHS
+from gearopt.physics.geometry.profile_shift import ROOT_SAFETY
+from gearopt.scenes.drive.rating.options import of_stages
+from gearopt.scenes.drive.tables.drive import ShiftTable, StageTable
+from gearopt.scenes.reading.choices import Between
+from gearopt.scenes.reading.fields import refuse
+
+if TYPE_CHECKING:
+    from gearopt.scenes.drive.scene import Scene
+
+LEAST_HELIX = 1  # deg, of real-valued helix angles
+MOST_WAYS = 10_000  # helix angles times distances or sums times shifts of a stage
+
+
+def by_root_safety(shift: ShiftTable | None) -> bool:
+    """Whether chosen shifts make both roots equally safe."""
+    return shift is not None and shift.pinion_shift is None and shift.rule == ROOT_SAFETY
+
+
+def balanced(scene: "Scene", own: StageTable, ways: tuple[Toothing, ...]) -> tuple[Toothing, ...]:
+    """Ways in which the teeth of a stage may be cut, with the strength of their roots.
+
+    Where shifts follow from that; the speed is the one of equal stage ratios.
+    """
+    if scene.rating is None or not by_root_safety(scene.shift) or not scene.shifted(own):
+        return ways
+    tables = scene.stage_tables
+    place = next(k for k, table in enumerate(tables) if table is own)
+    slower = float(scene.duty.total_ratio) ** (place / len(tables))
+    made = scene.rating, (own,), scene.gears, scene.material, scene.duty, scene.load
+    standard = of_stages(*made)[0][0].standards[-1]
+    speed, cut = scene.duty.input_speed.value / slower, ways[0]
+    assert cut.shifting is not None
+    balance = RootBalance(standard, speed, cut.thickness_allowances)
+    return tuple(replace(way, shifting=replace(cut.shifting, balance=balance)) for way in ways)
+
+
+def check_shift(scene: "Scene", shifted: list[int], lacks: str, asked: str) -> None:
+    """Refuse a table [shift] that changes nothing, or that the search does not take.
+
+    shifted: stages (from 0) whose shifts follow from it; lacks: what a file lacks for them; asked:
+    what takes reference circles beside the objective, or nothing.
+    """
+    shift = scene.shift
+    if shift is None:
+        return
+    if not shifted:
+        rule = "changes nothing: no gears are chosen at a given centre_distance of a [[stage]]"
+        raise refuse(rule, at=("shift",), action="remove")
+    if shift.sum is not None:
+        _check_sum(scene, lacks, asked)
+    if shift.pinion_shift is not None and "rule" in shift.model_fields_set:
+        rule = "changes nothing beside pinion_shift"
+        raise refuse(rule, at=("shift", "rule"), action="remove")
+    if shift.pinion_shift is not None or shift.sum is not None:
+        _check_ways(scene, shifted)
+    if by_root_safety(shift) and (scene.load or scene.material):
+        name = "load" if scene.load else "material"
+        rule = f"needs one load and one material of each gear, without [[{name}]]"
+        raise refuse(rule, "equal sliding", ("shift", "rule"), "sample")
+
+
+def _check_sum(scene: "Scene", lacks: str, asked: str) -> None:
+    """Refuse sums of shifts where no search chooses gears by them."""
+    given = next((k for k, t in enumerate(scene.stage) if t.centre_distance is not None), None)
+    if given is not None:
+        rule = f"follows from the centre distance of stage {given + 1}"
+        raise refuse(rule, at=("shift", "sum"), action="remove")
+    lacks = lacks or ("one number of stages" if scene.several else "")
+    if any(any(scene.toothings(own)[0].thickness_allowances) for own in scene.stage_tables):
+        lacks = lacks or "gears without thickness_allowance"
+    if lacks:
+        raise refuse(f"needs {lacks}", at=("shift", "sum"), action="remove")
+    aim = scene.objective.minimise
+    if aim in LENGTHS or asked:
+        what = f"minimise = {aim}" if aim in LENGTHS else asked
+        rule = f"moves the centre distance, which {what} takes from the reference circles"
+        raise refuse(rule, at=("shift", "sum"), action="remove")
+
+
+def _check_ways(scene: "Scene", stages: list[int]) -> None:
+    """Refuse more ways to cut the teeth of stages (from 0) than are looked at."""
+    assert scene.shift is not None
+    ways = max(len(scene.toothings(scene.stage_tables[k])) for k in stages)
+    if ways > MOST_WAYS:
+        rule = f"makes {ways:,} ways of cutting a stage with its helix angles and distances"
+        tell = f"Give fewer of these, for {MOST_WAYS:,} ways at most"
+        key = "sum" if scene.shift.pinion_shift is None else "pinion_shift"
+        raise refuse(rule, tell, ("shift", key), "tell")
+
+
+def check_inclination(scene: "Scene", value: Between, place: tuple[str | int, ...]) -> None:
+    """Refuse all helix angles of a range where no search of real-valued sizes chooses them."""
+    lacks = "gears that are to be chosen: these are all given" if scene.given else ""
+    if scene.teeth is not None:
+        lacks = lacks or "real-valued sizes, without a table [teeth] (or give a step)"
+    if not scene.rated_real or scene.limits.loaded:
+        lacks = lacks or "limits by [rating] alone, one load and one material of each gear"
+    if scene.several:
+        lacks = lacks or "one number of stages"
+    if any(blank.has_web or blank.bore for both in scene.blanks for blank in both):
+        lacks = lacks or "solid gears"
+    if lacks:
+        rule = f"has all values of a range to choose from, which need {lacks}"
+        raise refuse(rule, str(value.low), place, "sample")
+    if value.low.value < math.radians(LEAST_HELIX):
+        rule = f"begins below {LEAST_HELIX} deg: spur gears are rated by laws of their own"
+        way = f'Write, for example, {{ from = "{LEAST_HELIX} deg", to = "30 deg" }}'
+        raise refuse(rule, way, place, "tell")
