@@ -32,6 +32,7 @@ SOLVED = (
 BY_CHANCE = {  # the ratio of 1000 makes 31.831 N m of the motor 31,831 N m
     "five_stages_continuous": {"31831": "in 2 tables"}
 }
+LAYERS_MEET = {"394": "2 times outside tables"}  # at 10 mm
 SEVERAL = re.compile(r"\d[;,] +\d|\d/\d|\d x \d|m_n")  # of values in one cell
 
 
@@ -48,7 +49,8 @@ def test_the_reader_of_numbers():
 @pytest.mark.parametrize("make", CASES, ids=lambda f: f.__name__)
 @pytest.mark.parametrize("measures", few([METRIC, INCH], CASES[::2]), ids=lambda m: m.name)
 def test_no_number_stands_twice(make, measures):
-    assert repeated(page(make(), "gearopt solve x.toml", measures)) == {}
+    shared = LAYERS_MEET if (make, measures) == (layout_cases.packing, INCH) else {}
+    assert repeated(page(make(), "gearopt solve x.toml", measures)) == shared
 
 
 @pytest.mark.slow

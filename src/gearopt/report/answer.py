@@ -97,7 +97,8 @@ def _tiles(result: Result, measures: Measures) -> list[Tile]:
     if value is not None:
         tiles.append(Tile(name, amount(value, unit, measures), certainty(result)[0]))
     if bound is not None and (value is None or (result.gap or 0.0) > EXACT):
-        title = f"proven bound{scope(result)}"
+        kind = "checked" if "checked" in result.proof else "proven"
+        title = f"{kind} bound{scope(result)}"
         text = measures.amount(bound, unit, WAYS[side])
         tiles.append(Tile(title, text, gap_words(result)))
     return tiles
@@ -184,7 +185,7 @@ def _method(result: Result) -> list[str]:
 
 def meaning(result: Result) -> str:
     """Meaning of the status of a result, and its limits."""
-    known, status = result.bound is not None, result.status
+    bounded, status = result.bound is not None, result.status
     if status == "optimal":
         return (
             f"No feasible design{scope(result)} is better by more than the gap. gearopt computed "
@@ -193,7 +194,8 @@ def meaning(result: Result) -> str:
     if status == "infeasible":
         if of_gears_first(result):
             return "Proven: no layout of these gears meets all limits. Other gears were not tried."
-        return "Proven: no design meets all limits."
+        known = "Checked, not proven" if "checked" in result.proof else "Proven"
+        return f"{known}: no design meets all limits."
     if result.given:
         met = "meets all limits" if result.feasible else "does not meet all limits"
         ends = f"; it {met}" if result.limits else ""
@@ -204,7 +206,7 @@ def meaning(result: Result) -> str:
     if result.value is None:
         return "No design was found; that is no proof that there is none."
     early = "The run ended early. " if status == "limit" else ""
-    below = f", but none{scope(result)} is better than the bound" if known else ""
+    below = f", but none{scope(result)} is better than the bound" if bounded else ""
     return f"{early}The design meets all limits; a better one may exist{below}."
 
 

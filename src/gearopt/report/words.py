@@ -183,6 +183,8 @@ def certainty(result: Result) -> tuple[str, str]:
     if result.status == "optimal" and (result.gap or 0.0) > EXACT:
         of = "the least for these gears" if these else "the optimum"
         words = f"proven within {gap_percent(result.gap or 0.0)} of {of}"
+    if result.status == "infeasible" and "checked" in result.proof:
+        words = "impossible by a bound that is checked, not proven"
     if "achieved" in result.report:  # something is come near to
         words = words.replace("optimal", result.report.get("best", "nearest"))
     return f"{words} ({scope})" if scope else words, colour
