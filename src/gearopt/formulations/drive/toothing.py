@@ -63,6 +63,11 @@ class Toothing:
         shifted = self.working_distance is not None or self.shift_sum is not None
         return not shifted and sum(self.profile_shifts) == 0
 
+    @property
+    def given(self) -> bool:
+        """Whether the centre distance is given, and profile shifts follow from it."""
+        return self.working_distance is not None and self.shifting is not None
+
     def made(self, pair: GearPair) -> bool:
         """Whether a pair of floats has this helix angle and given distance, x1 + x2 and x1."""
         helix, distance = pair.pinion.helix_angle, pair.working_distance

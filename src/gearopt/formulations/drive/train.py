@@ -174,7 +174,8 @@ class Train:
     """A drive: input torque [N mm], total ratio and its relative tolerance, and its stages.
 
     coprime: z1 and z2 without common divisor (hunting teeth). objective: a key of OBJECTIVES; mass
-    needs density [t/mm3]; LENGTHS are those of reference circles: profile shifts must cancel.
+    needs density [t/mm3]; LENGTHS are those of reference circles, for which profile shifts must
+    cancel, or of given centre distances that shifts follow from.
     others: further objectives, of a Pareto front; weights: what the objective WEIGHTED adds. law:
     what limits the stages. speed: that of the input [rad/s], for laws that depend on it. safety:
     S_F and S_H asked for of stages with options. same_option: all stages take their options of
@@ -216,7 +217,8 @@ class Train:
 
     def _check(self, objective: str) -> None:
         """Raise ValueError where an objective needs a number that the drive lacks."""
-        if objective in LENGTHS and not self.on_reference:
+        cuts = [cut for stage in self.stages for cut in stage.toothings]
+        if objective in LENGTHS and not all(c.on_reference or c.given for c in cuts):
             raise ValueError(f"the objective {objective} needs profile shifts that cancel")
         solid = self.density is not None or all(
             stage.options and all(all(option.densities) for option in stage.options)

@@ -162,9 +162,9 @@ def smallest(
     asked: FeasibilityQuestions, moves: Moves, bound: float | None = None
 ) -> FactorBracket | None:
     """Return the common factor of moves that is known roughly to suffice; None: none is known."""
-    steps = moves[0][0].steps if len(moves) == 1 else ()
-    if steps:
-        return _first_step(asked, moves[0][0], steps, bound)
+    steps = moves[0][0].steps
+    if steps and all(move.steps == steps for move, _ in moves):
+        return _first_step(asked, [move for move, _ in moves], bound)
     if any(factor > 1.0 for _, factor in moves):  # a floor, which often suffices
         first = asked.verdict(moves)
         if first is not None and first.answer:
@@ -179,20 +179,53 @@ def smallest(
 
 
 def _first_step(
-    asked: FeasibilityQuestions, move: Move, steps: Sequence[float], bound: float | None
+    asked: FeasibilityQuestions, numbers: Sequence[Move], bound: float | None
 ) -> FactorBracket | None:
-    """Return the first step of a number with which the file is possible."""
-    sure, before = True, 1.0
-    for factor in steps:
-        verdict = asked.verdict(((move, factor),))
-        if verdict is None or asked.clock.over:
+    """Return the first step of numbers that take the same ones with which the file is possible."""
+    steps = numbers[0].steps
+    few = _too_few(asked, numbers)
+    sure, before = True, steps[few - 1] if few else 1.0
+    for factor in steps[few:]:
+        moves = tuple((move, factor) for move in numbers)
+        verdict = asked.verdict(moves)
+        if asked.clock.over:
             return None
+        if verdict is None:  # a list may have a value already that another lacks
+            if numbers[0].together is None:
+                return None
+            continue
         if verdict.answer:
-            return FactorBracket(
-                ((move, factor),), before / factor, 1.0, sure, bound=bound, stepped=True
-            )
+            return FactorBracket(moves, before / factor, 1.0, sure, bound=bound, stepped=True)
         sure, before = sure and verdict.answer is False, factor
     return None
+
+
+def _too_few(asked: FeasibilityQuestions, numbers: Sequence[Move]) -> int:
+    """Return how many steps, near ones first, are known not to suffice, even all together.
+
+    Halves their number; 0 of steps that cannot be taken together.
+    """
+    steps, every = numbers[0].steps, [m.together for m in numbers if m.together]
+    if len(every) < len(numbers):
+        return 0
+    together = [replace(move, write=write) for move, write in zip(numbers, every, strict=True)]
+
+    def suffice(count: int) -> bool | None:
+        return asked.possible_with(tuple((move, steps[count - 1]) for move in together))
+
+    low, high = 0, len(steps)
+    if suffice(1):
+        return 0
+    if suffice(high) is False:
+        return high
+    low = 1 if suffice(1) is False else 0
+    while high - low > 1:
+        middle = (low + high) // 2
+        answer = suffice(middle)
+        if answer is None:
+            break
+        low, high = (low, middle) if answer else (middle, high)
+    return low
 
 
 def _by_secants(asked: FeasibilityQuestions, moves: Moves, excess: float) -> FactorBracket | None:

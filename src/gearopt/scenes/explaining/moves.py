@@ -39,8 +39,9 @@ class Move:
     utilisations go with, about. handles: what of a relaxed form it moves. inherits(scene, path):
     what holds there; write(now, factor, move): what to write; back(now, before, part): the same a
     little less; text(value, path): what a file holds; factor(before, after): how far it moved.
-    listed: its values are of a list, so that none is rounded. switch: of what is set, not moved:
-    its key, what stands there, and what to write.
+    listed: its values are of a list, so that none is rounded. together(now, factor, move): of steps
+    that may be added to each other, what holds all steps up to one. switch: of what is set, not
+    moved: its key, what stands there, and what to write.
     """
 
     path: Path
@@ -59,11 +60,33 @@ class Move:
     listed: bool = False
     switch: tuple[str, str, str] | None = None
     factor: Callable[[Any, Any], float] = apart
+    together: Callable[[Any, float, "Move"], Any] | None = None
 
     def to_values(self, now: Any, values: Sequence[Any]) -> "Move":
         """Return the move of a number that takes steps: to one of some values, near ones first."""
         known = {apart(now, value): value for value in values}
         return replace(self, steps=tuple(known), write=lambda now, f, move: known[f], listed=True)
+
+    def to_choices(
+        self, now: Any, factors: Sequence[float], values: Sequence[Any], every: Sequence[Any]
+    ) -> "Move":
+        """Return the move of what is chosen from to one of some values, near ones first.
+
+        factors: of the values; every: what holds all values up to each.
+        """
+        known, upto = (dict(zip(factors, held, strict=True)) for held in (values, every))
+
+        def factor(before: Any, after: Any) -> float:
+            return next((f for f, value in known.items() if value == after), 1.0)
+
+        return replace(
+            self,
+            steps=tuple(known),
+            write=lambda now, f, move: known[f],
+            together=lambda now, f, move: upto[f],
+            listed=True,
+            factor=factor,
+        )
 
     @property
     def words(self) -> str:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -12,15 +13,17 @@ from numpy.typing import NDArray
 from gearopt.errors import SolveError
 from gearopt.formulations.drive.shares import least_share
 from gearopt.formulations.drive.toothing import Toothing
-from gearopt.formulations.drive.train import Stage, Train
+from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.profile_shift import SUMS, Meshing
 
 Index = NDArray[np.int64]
 Columns = tuple[Any, ...]
+Ranges = tuple[tuple[int, int, int], ...]  # pinion teeth, with the first and last of the wheel
 
 PAIRS = 3_000_000  # tooth pairs of one stage: about 1 GB of tables
+KEPT, KEPT_PAIRS = 128, 200_000  # tables of teeth at given distances that are kept; their pairs
 NO_WIDTH = 1e12  # in modules: of teeth that never overlap
 NEAR = 1e-9  # of a sum of profile shifts beside its ends, which is looked at
 
@@ -44,11 +47,11 @@ def columns(train: Train, position: int, cut: Fraction, tick: Callable[[], float
     """
     tick()
     stage = train.stages[position]
-    pairs = _pairs(train, position, cut)
+    ranges = tuple(spans(train, position, cut))
     blocks = []
     for toothings in _helices(stage):
         tick()
-        blocks.append(_block(stage, *pairs, toothings))
+        blocks.append(_block(stage, _checked(stage, ranges), train.coprime, toothings))
     rows = blocks[0] if len(blocks) == 1 else _joined(blocks)
     ratio = rows.z2 / rows.z1
     load, need, exponent, slope = closed(train, position, rows.z1, ratio)
@@ -104,15 +107,22 @@ def _helices(stage: Stage) -> list[list[int]]:
     return list(by_angle.values())
 
 
-def _block(stage: Stage, z1: Index, z2: Index, toothings: list[int]) -> _Rows:
-    """Return tooth pairs as they are cut by some toothings of one helix angle."""
+def _block(stage: Stage, ranges: Ranges, coprime: bool, toothings: list[int]) -> _Rows:
+    """Return tooth pairs of some ranges as they are cut by some toothings of one helix angle."""
     cut = stage.toothings[toothings[0]]
     cosine, stage = cut.cosine, _overlapping(stage, cut)
-    toothing, ends = np.full(len(z1), toothings[0]), None
-    if stage.toothing.shift_sum is not None:
-        z1, z2, toothing = _of_sums(stage, z1, z2, np.array(toothings))
-    elif stage.toothing.shifting is not None:
-        z1, z2, toothing, ends = _meshing(stage, z1, z2, np.array(toothings))
+    if cut.shift_sum is not None:
+        z1, z2, toothing = _of_sums(stage, *_pairs(ranges, coprime), np.array(toothings))
+        ends = None
+    elif cut.shifting is None:
+        (z1, z2), ends = _pairs(ranges, coprime), None
+        toothing = np.full(len(z1), toothings[0])
+    else:
+        cuts = tuple(stage.toothings[k] for k in toothings)
+        few = sum(stop - start + 1 for _, start, stop in ranges) * len(cuts) <= KEPT_PAIRS
+        meshing = _meshing if few else _meshing.__wrapped__
+        z1, z2, row, ends = meshing(stage.modules, cuts, ranges, coprime)
+        toothing = np.array(toothings)[row]
     first, last = _allowed(stage, z1, z2, cosine)
     if ends is not None:
         first, last = np.maximum(first, ends[0]), np.minimum(last, ends[1])
@@ -149,13 +159,8 @@ def _joined(blocks: list[_Rows]) -> _Rows:
     return _Rows(z1[order], z2[order], toothing[order], first, last, steps)
 
 
-def _pairs(train: Train, position: int, cut: Fraction) -> tuple[Index, Index]:
-    """Return all (z1, z2) of a stage with ratios up to cut, by ratio, then by teeth.
-
-    SolveError where there are too many for the memory.
-    """
-    ranges = spans(train, position, cut)
-    stage = train.stages[position]
+def _checked(stage: Stage, ranges: Ranges) -> Ranges:
+    """The ranges of the wheels of a stage; SolveError where they are too many for the memory."""
     helices = len(_helices(stage) if stage.toothing.shift_sum is None else stage.toothings)
     count = sum(stop - start + 1 for _, start, stop in ranges) * helices
     if count > PAIRS:
@@ -163,10 +168,15 @@ def _pairs(train: Train, position: int, cut: Fraction) -> tuple[Index, Index]:
             f"a stage has {count:,} tooth pairs to choose from: narrow its pinion teeth, or limit "
             "its wheel teeth or ratio (pinion_teeth, wheel_teeth, stage_ratio)"
         )
+    return ranges
+
+
+def _pairs(ranges: Ranges, coprime: bool) -> tuple[Index, Index]:
+    """Return all (z1, z2) of ranges, by ratio, then by teeth."""
     wheels = [np.arange(start, stop + 1, dtype=np.int64) for _, start, stop in ranges]
     z1 = np.repeat([z for z, _, _ in ranges], [len(w) for w in wheels]).astype(np.int64)
     z2 = np.concatenate(wheels)
-    if train.coprime:
+    if coprime:
         keep = np.gcd(z1, z2) == 1
         z1, z2 = z1[keep], z2[keep]
     order = np.argsort(z2 / z1, kind="stable")
@@ -249,16 +259,20 @@ def _shiftable(
     return allowed
 
 
+@lru_cache(KEPT)
 def _meshing(
-    stage: Stage, z1: Index, z2: Index, toothings: Index
+    modules: tuple[Fraction, ...], cuts: tuple[Toothing, ...], ranges: Ranges, coprime: bool
 ) -> tuple[Index, Index, Index, tuple[Index, Index]]:
     """Return the pairs that centre distances allow, their toothing, first and last module index.
 
-    toothings: which of the stage's. SolveError where a module between them is not allowed: a sum
-    of shifts from -1 to 2 leaves room for few.
+    cuts: toothings of one helix angle. SolveError where a module between them is not allowed: a sum
+    of shifts from -1 to 2 leaves room for few. Kept, since safety factors and face widths, which
+    remedies move, do not matter.
     """
+    stage = Stage((), FaceWidth(Fraction(0), None), modules, (0, None), toothings=cuts)
+    toothings, (z1, z2) = np.arange(len(cuts)), _pairs(ranges, coprime)
     sums, place = np.unique(z1 + z2, return_inverse=True)
-    distances = np.array([stage.toothings[k].working_distance for k in toothings])
+    distances = np.array([cut.working_distance for cut in cuts])
     _, first_of, distance = np.unique(distances, return_index=True, return_inverse=True)
     near = _near(stage, sums, toothings[first_of])
     pair, way = np.nonzero(np.asarray(near.any(axis=0))[:, distance][place])

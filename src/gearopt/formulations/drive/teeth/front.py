@@ -11,7 +11,7 @@ import heapq
 import itertools
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -186,10 +186,13 @@ def _searched(train: Train, most: Array, clock: Clock) -> Search:
 
 
 def _ends(run: Search) -> bool:
-    """Begin with the trains that are best in one objective; return whether there are any."""
+    """Begin with the trains that are best in one objective; return whether there are any.
+
+    Of many that tie, as at given centre distances all do in their sum, the first will do.
+    """
     for objective in run.train.objectives:
-        watch = run.clock.inner(values=False)
-        best = search(run.train.minimising(objective), 1, run.clock.left, watch)
+        watch, budget = run.clock.inner(values=False), replace(run.clock.left, gap=TIE)
+        best = search(run.train.minimising(objective), 1, budget, watch)
         for _, teeth in best.found:
             _add_teeth(run, teeth)
         run.tick()

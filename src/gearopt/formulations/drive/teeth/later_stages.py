@@ -80,7 +80,8 @@ def bound(
     first: list[NDArray[np.int16] | None] = [None] * count
     to_go = [np.full(cells + ratio_cells + 2, np.inf) for _ in range(count)]
     last = None if useful is None else useful[-1]
-    to_go[-1][:cells] = _last(train, tables[-1], cells, delta, tick, last, most)
+    if count > 1:  # a single stage has its exact costs alone
+        to_go[-1][:cells] = _last(train, tables[-1], cells, delta, tick, last, most)
     for k in range(count - 2, 0, -1):
         ahead = _ahead(to_go[k + 1], ratio_cells)[:cells]
         mask = None if useful is None else useful[k][:cells, :ratio_cells]

@@ -8,6 +8,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 
 TIE = 1e-12  # trains whose objectives differ by less are ties: the fewest teeth are kept
+MOST_TIES = 100  # trains of the least objective that are kept
 MARGIN = 1e-11  # a node is dropped only when its bound exceeds the best by this, so ties survive
 
 Teeth = tuple[tuple[int, int], ...]
@@ -55,14 +56,16 @@ class Progress:
         return value * (1.0 + MARGIN if self.wanted == 1 else 1.0 - TIE)
 
     def add(self, totals: Array, trains: Iterator[Teeth]) -> None:
-        """Keep the wanted best (and, for a single one, its ties)."""
+        """Keep the wanted best (and, for a single one, its ties, of many those of few teeth)."""
         least = {teeth: value for value, teeth in self.found}
         for value, teeth in zip(totals, trains, strict=True):
             known = least.get(teeth, math.inf)
             least[teeth] = float(value) if value < known * (1.0 - TIE) else known
         best = sorted((value, teeth) for teeth, value in least.items())
         if self.wanted == 1:
-            self.found = [f for f in best if f[0] <= best[0][0] * (1.0 + TIE)]
+            ties = [f for f in best if f[0] <= best[0][0] * (1.0 + TIE)]
+            few = sorted(ties, key=lambda f: (sum(map(sum, f[1])), f[1]))[:MOST_TIES]
+            self.found = ties if len(ties) <= MOST_TIES else sorted({ties[0], *few})
         else:
             self.found = best[: self.wanted]
 

@@ -50,7 +50,8 @@ def reach(
         names = (train.objective, *(name for name, _ in train.weights))
         if "total_length" not in names:  # equal stages have the same shares
             every = [t for k, t in enumerate(every) if train.stages[k] not in train.stages[:k]]
-        return Fraction(max(t.useful_ratio(float(cut), threshold) for t in every))
+        far = max(t.useful_ratio(float(cut), threshold) for t in every)
+        return max(cut, Fraction(far)) if far > float(cut) else cut
     if not train.law.proportional or train.objective not in ("gear_volume", "mass", *LENGTHS):
         return maximum
     ratios = np.geomspace(float(cut), float(maximum), 2000)

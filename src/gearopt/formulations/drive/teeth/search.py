@@ -8,6 +8,7 @@ train.
 
 import heapq
 import math
+import operator
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -83,7 +84,8 @@ def search(
 
     A first look at stage ratios near the even split gives a train; what it does not exclude by
     the ratio of a single stage is then searched to the end. Of rated drives that look is a dive,
-    in each material alone where there is a choice; where time ends first, among far fewer. floor: a
+    in each material alone where there is a choice; where time ends first, among far fewer; where it
+    gives no train all ratios are searched at once. floor: a
     bound known from elsewhere. whole: False where its own bound is of no use, as that of a part of
     the caller's drive. shelf: tables of like drives, which spare this one work; its own are added.
     """
@@ -98,8 +100,10 @@ def search(
             _glance(train, one, cut, progress, shelf)
             if parts > 1 and progress.found and progress.lower == -math.inf:
                 _bound_apart(train, cut, progress, shelf)
-        closed = not progress.found and _look(train, cut, progress, FIRST_LOOK, shelf)
-        far = reach(train, cut, maximum, progress.threshold, progress.tick, shelf)
+        closed, far = False, maximum
+        if progress.found or not train.rated:  # else dives found none, and there may be none
+            closed = not progress.found and _look(train, cut, progress, FIRST_LOOK, shelf)
+            far = reach(train, cut, maximum, progress.threshold, progress.tick, shelf)
         progress.whole = whole
         if not (closed and far <= cut):
             _look(train, max(cut, far), progress, math.inf, shelf)
@@ -132,9 +136,12 @@ def _glance(
     """
     progress.patience = 0.0 if progress.found else math.inf
     tables = stage_tables(own, cut, progress.tick, shelf)
-    for few in (thinned(tables), tables):
+    few = thinned(tables)
+    for some in (few, tables):
         before = progress.found[:1]
-        _first_dive(own, tables, few, progress)
+        if some is not few and not before and all(map(operator.is_, few, tables)):
+            break  # the same again
+        _first_dive(own, tables, some, progress)
         if own is not train and progress.found[:1] != before:
             best = progress.found[0][1]
             progress.add(np.array([valued(train, best)[0]]), iter([best]))

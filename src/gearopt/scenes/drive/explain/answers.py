@@ -7,7 +7,6 @@ from gearopt.optimise.certified import GAP
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.result import Result
-from gearopt.scenes.drive.explain import box_remedies
 from gearopt.scenes.drive.explain.counts import remedies_of_counts
 from gearopt.scenes.drive.explain.influences import explained
 from gearopt.scenes.drive.explain.rated import conflict_soon
@@ -46,6 +45,8 @@ def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies
 
 def _of_box(scene: Scene, clock: Clock, gears: Result) -> Remedies:
     """Remedies of a box for these gears."""
+    from gearopt.scenes.drive.explain import box_remedies
+
     held = scene.held(len(gears.design["stages"]))
     return box_remedies.remedies(held, gears, clock)
 
@@ -90,6 +91,8 @@ def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
         words = f"the number of stages is held at {count}"
         return replace(held, message="; ".join(filter(None, (held.message, words))))
     if scene.layout is not None:
+        from gearopt.scenes.drive.explain import box_remedies
+
         return box_remedies.explained(scene, result, clock)
 
     def answer(other: Scene) -> Result:

@@ -1,12 +1,14 @@
 """Remedies of an impossible drive that ratings limit: each number or choice of the file alone."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Remedies
 from gearopt.optimise.explaining.handles import REACH
 from gearopt.optimise.result import Budget
+from gearopt.scenes.drive.explain.choice_moves import choice_groups
 from gearopt.scenes.drive.explain.influences import GRADES, eases
 from gearopt.scenes.drive.explain.moves import WIDTH, next_module
 from gearopt.scenes.drive.explain.rated_choices import choices
@@ -24,25 +26,25 @@ from gearopt.scenes.explaining.engine import (
 from gearopt.scenes.explaining.moves import DUTY, LIMIT, Move
 from gearopt.scenes.explaining.numbers import Number, apart, numbers, one_at
 from gearopt.scenes.explaining.possible import Verdict, of_status
-from gearopt.units import Quantity
 
 POWER = ("duty", "power")
 # at most, for the conflict beside an answer, and beside remedies
-CONFLICT_SECONDS, CONFLICT_SECONDS_BESIDE_REMEDIES = 3.0, 6.0
+CONFLICT_SECONDS, CONFLICT_SECONDS_BESIDE_REMEDIES = 1.5, 5.0
 # s, at most, for the numbers that help, and for one question
 ROUGH_SECONDS, QUESTION_SECONDS = 7.0, 2.0
 FARTHEST_FACTOR = 3.0  # of a remedy of use
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, for each of these
 SHARPEN_SECONDS, CHOICE_SECONDS = 2.0, 4.0  # s, at most, to make them sharper, and for choices
+CHOSEN = (DISTANCE, "sum_of_centre_distances", "helix_angle", "pinion_shift")
 STEPPED = (*GRADES, "accuracy_grade", "grade")  # moved by ones
 
 
 def conflict_soon(scene: Scene, clock: Clock) -> Remedies | None:
     """Conflict of an impossible drive alone; None where it is not found soon."""
     known = conflict(Case(scene, Clock(Budget(clock.within(CONFLICT_SECONDS)), clock.watch)))
-    if not known.proven:
+    if not known.names:
         return None
-    return Remedies(known.names, any_resolves=known.any_resolves, untried=True)
+    return Remedies(known.names, (), "", known.any_resolves, known.unsure, untried=True)
 
 
 def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Remedies:
@@ -69,7 +71,7 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
         first = clock
         ways = singles(asked, _groups(scene, Conflict(), REACH), SHARPEN_SECONDS)
     last = soon(CHOICE_SECONDS)
-    untried = first.over or _chooses(scene)
+    untried = first.over
     chosen = choices(scene, known, lambda other: None if last.over else works(other))
     ways += chosen
     complete = not (untried or clock.over or case.open)
@@ -78,18 +80,6 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
     words = "; ".join(filter(None, (_doubts(known), late)))
     return Remedies(
         known.names, with_least(ways, complete), words, known.any_resolves, known.unsure
-    )
-
-
-def _chooses(scene: Scene) -> bool:
-    """Whether a file has lists or sums to choose from, whose entries are not moved."""
-    limits, shift = scene.limits, scene.shift
-    lists = [own.centre_distance for own in scene.stage]
-    lists += [own.helix_angle or scene.gears.helix_angle for own in scene.stage_tables]
-    return (
-        not all(one is None or isinstance(one, Quantity) for one in lists)
-        or limits.sum_of_centre_distances is not None
-        or (shift is not None and (shift.pinion_shift is not None or shift.sum is not None))
     )
 
 
@@ -111,14 +101,24 @@ def _groups(scene: Scene, known: Conflict, far: float = FARTHEST_FACTOR) -> Iter
     What is in no conflict keeps the drive impossible however it is moved.
     """
     dropped = known.names and {name.split("[")[0] for name in known.names}
+    yield from _of_distances(scene, far, 1)
     for number in sorted(numbers(scene), key=_rank):
-        if number.path[-1] == DISTANCE:
-            yield from (Group((_move(scene, number, way, far),)) for way in (1, -1))
+        if any(step in CHOSEN for step in number.path):
             continue
         way = -1 if number.path == POWER else eases(scene, number) or _wider(number)
         name = _name(number) if way else ""
         if way and not (dropped and name in _PROVEN and name not in dropped):
             yield Group((_move(scene, number, way, far),))
+    yield from _of_distances(scene, far, -1)
+
+
+def _of_distances(scene: Scene, far: float, way: int) -> Iterator[Group]:
+    """Yield given centre distances and what stages choose from, up (way +1) or down (-1)."""
+    given = [n for n in numbers(scene) if n.path[-1] == DISTANCE]
+    if not scene.limits.coaxial and scene.limits.sum_of_centre_distances is None:
+        for number in given:
+            yield Group((replace(_move(scene, number, way, far), far_first=False),))
+    yield from choice_groups(scene, way)
 
 
 def _move(scene: Scene, number: Number, way: int, far: float) -> Move:
@@ -169,8 +169,6 @@ def _wider(number: Number) -> int:
 
 def _rank(number: Number) -> tuple[bool, int]:
     """Sort key of numbers: ranges of teeth take longest, and likely conflicts come first."""
-    if number.path[-1] == DISTANCE:
-        return False, -1
     slow = any(str(step).endswith("_teeth") for step in number.path)
     likely, name = ORDER[0], _name(number)
     return slow, likely.index(name) if name in likely else len(likely)

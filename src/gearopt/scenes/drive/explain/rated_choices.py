@@ -1,13 +1,15 @@
-"""Choices of an impossible rated drive that make it possible alone: steels, series, stages."""
+"""Choices of an impossible rated drive that make it possible alone: steels, series, stages ..."""
 
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.physics.iso6336.materials import QUALITIES, Material
+from gearopt.scenes.drive.explain.choice_moves import finer_series
 from gearopt.scenes.drive.explain.rated_conflict import Conflict
+from gearopt.scenes.drive.explain.requirements import DISTANCE
 from gearopt.scenes.drive.scene import MOST_STAGES, Scene
-from gearopt.scenes.explaining.numbers import allowed, content
+from gearopt.scenes.explaining.numbers import allowed, content, written
 from gearopt.scenes.reading.module_series import SERIES, family, series_of
 from gearopt.scenes.reading.toml_writing import toml_text
 
@@ -25,10 +27,15 @@ def choices(scene: Scene, known: Conflict, works: Works) -> Iterator[Remedy]:
         ("same_materials", _own_materials),
         ("materials", _materials),
         ("material_grade", _with_better_grades),
+        ("coaxial", _not_coaxial),
+        ("sum_of_centre_distances", _of_any_sum),
+        ("", _by_rule),
+        (DISTANCE, _finer_distances),
         ("", _others),
     )
+    families = {name.split("[")[0] for name in known.names}
     for name, ways in every:
-        if name and known.names and name not in known.names:
+        if name and families and name not in families:
             continue
         for changes, other in ways(scene):
             if allowed(other) and works(other):
@@ -73,6 +80,51 @@ def _with_better_grades(scene: Scene) -> Ways:
                 for key, (was, new) in update.items()
             )
             yield changes, _with_gears(scene, {key: new for key, (_, new) in update.items()})
+
+
+def _not_coaxial(scene: Scene) -> Ways:
+    """Yield the drive whose stages need not have one centre distance."""
+    if scene.limits.coaxial:
+        yield (Change("limits.coaxial", "true", "false", 1.0),), _limited(scene, {"coaxial": False})
+
+
+def _of_any_sum(scene: Scene) -> Ways:
+    """Yield the drive whose centre distances may have any sum."""
+    now = scene.limits.sum_of_centre_distances
+    if now is not None:
+        key = "sum_of_centre_distances"
+        was = toml_text(written(now, ("limits", key)))
+        yield (Change(f"limits.{key}", was, "", 1.0),), _limited(scene, {key: None})
+
+
+def _by_rule(scene: Scene) -> Ways:
+    """Yield the drive whose profile shifts are those of a rule."""
+    shift = scene.shift
+    if shift is not None and shift.pinion_shift is not None:
+        was = toml_text(written(shift.pinion_shift, ("shift", "pinion_shift")))
+        other = shift.model_copy(update={"pinion_shift": None})
+        change = Change("shift.pinion_shift", was, "", 1.0)
+        yield (change,), scene.model_copy(update={"shift": other})
+
+
+def _finer_distances(scene: Scene) -> Ways:
+    """Yield the drives whose stages choose of a finer series of distances, each alone or all."""
+    finer = {k: [*finer_series(own.centre_distance)] for k, own in enumerate(scene.stage)}
+    finer = {k: series for k, series in finer.items() if series}
+    alone = [(k,) for k in finer] if not scene.limits.coaxial else []
+    for places in [*alone, tuple(finer)] if len(finer) > 1 else [tuple(finer)][: len(finer)]:
+        for step in range(min(len(finer[k]) for k in places)):
+            changes, stages = [], list(scene.stage)
+            for k in places:
+                was, new = stages[k].centre_distance, finer[k][step]
+                old, write = (toml_text(written(one, ("stage", k, DISTANCE))) for one in (was, new))
+                changes.append(Change(f"stage[{k + 1}].{DISTANCE}", old, write, 1.0))
+                stages[k] = stages[k].model_copy(update={DISTANCE: new})
+            yield tuple(changes), scene.model_copy(update={"stage": tuple(stages)})
+
+
+def _limited(scene: Scene, update: dict[str, Any]) -> Scene:
+    return scene.model_copy(update={"limits": scene.limits.model_copy(update=update)})
 
 
 def _own_materials(scene: Scene) -> Ways:

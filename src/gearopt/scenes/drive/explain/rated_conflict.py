@@ -1,8 +1,9 @@
 """Which requirements of an impossible drive that ratings limit exclude each other.
 
-A family of requirements without which, everything else kept, a design exists is in every conflict.
-Of the others a deletion filter keeps what is needed: what can be dropped with the rest still proven
-impossible, by a search of all teeth, modules and materials, is dropped for good.
+A family of requirements without which, everything else kept, a design exists is in every conflict:
+such a design is mostly found soon, so that each family is asked for a short time. All others are
+then dropped at once; where that is not proven impossible, by a search of all teeth, modules and
+materials, a deletion filter drops for good what can be dropped.
 """
 
 from collections.abc import Sequence
@@ -13,7 +14,8 @@ from gearopt.formulations.strength.rated import Option
 from gearopt.scenes.drive.explain.requirements import (
     BENDING,
     CONTACT,
-    DISTANCE,
+    GIVEN,
+    OF_DISTANCES,
     Dropped,
     requirements,
     without,
@@ -21,6 +23,7 @@ from gearopt.scenes.drive.explain.requirements import (
 from gearopt.scenes.drive.explain.tried import Case, any_possible
 from gearopt.scenes.drive.rating.options import STANDARDS
 
+GLANCE, PROOF = 0.5, 4.0  # s, for a design without one family; for the proof without all others
 RATED_BY = {"agma": "rating_by_AGMA", "iso6336": "rating_by_ISO_6336"}
 
 
@@ -54,12 +57,29 @@ class _Filter:
     dropped: Dropped = frozenset()
     needed: set[str] = field(default_factory=set)
 
-    def possible(self, dropped: Sequence[str] | Dropped) -> bool | None:
-        """Whether a design exists without the requirements dropped; None: not known."""
+    def possible(self, dropped: Sequence[str] | Dropped, seconds: float = 0.0) -> bool | None:
+        """Whether a design exists without the requirements dropped; None: not known.
+
+        seconds: at most; 0: those of the case. Of fewer an answer that stays open is not kept.
+        """
         key = frozenset(dropped)
         if key not in self.answers:
-            self.answers[key] = any_possible(self.case, without(self.case.scene, key))
+            case = replace(self.case, seconds=seconds, open=[]) if seconds else self.case
+            answer = any_possible(case, without(case.scene, key))
+            if answer is None and 0.0 < seconds < self.case.seconds:
+                return None
+            self.answers[key] = answer
         return self.answers[key]
+
+    def look(self, families: Sequence[Sequence[str]]) -> None:
+        """Note the families without which, alone, a design is known soon: none without all."""
+        if families and self.possible([n for family in families for n in family], GLANCE):
+            if len(families) == 1:
+                self.needed |= {*families[0]}
+            else:
+                middle = len(families) // 2
+                self.look(families[:middle])
+                self.look(families[middle:])
 
     def drop(self, families: Sequence[Sequence[str]]) -> None:
         """Drop all of some families that can be, in halves where all together cannot be."""
@@ -96,15 +116,23 @@ def conflict(case: Case) -> Conflict:
         return Conflict()
     filtering, groups = _Filter(case), requirements(case.scene)
     families = [family for group in groups for family in group]
-    distances = [family for family in families if family[0].startswith(DISTANCE)]
-    for family in (*distances, *groups[0]):
-        if filtering.possible(family):
+    fixed = [family for family in families if family[0].split("[")[0] in GIVEN]
+    ties = [family for family in families if family[0] in OF_DISTANCES]
+    for family in (*ties, *fixed, *groups[0]):
+        if filtering.possible(family, GLANCE):
             filtering.needed |= {*family}
-    for group in groups[::-1]:
-        kept = [family for family in group if family not in distances]
-        filtering.drop([family for family in kept if not filtering.needed & {*family}])
+    filtering.look([family for family in groups[1] if family not in (*fixed, *ties)])
+    spare = [
+        [f for f in group if f not in fixed and not filtering.needed & {*f}] for group in groups
+    ]
+    rest = frozenset(name for group in spare for family in group for name in family)
+    if filtering.possible(rest, PROOF) is False:
+        filtering.dropped = rest
+    else:
+        for group in spare[::-1]:
+            filtering.drop(group)
     for family in families:
-        if len(family) > 1 and family not in distances and not filtering.dropped & {*family}:
+        if len(family) > 1 and family not in fixed and not filtering.dropped & {*family}:
             filtering.split(family)
     every = [name for family in families for name in family if name not in filtering.dropped]
     if not filtering.needed:

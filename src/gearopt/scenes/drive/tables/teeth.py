@@ -105,7 +105,7 @@ def check_teeth(
             rule = f"needs gears that are all given, or {lacks}"
             raise refuse(rule, at=("stage", k, "centre_distance"), action="remove")
         given = table.centre_distance is not None
-        if not (objective in LENGTHS or asked):
+        if not (asked or objective in LENGTHS and (not given or lacks)):
             continue
         if not given and toothing(table, gears).on_reference:
             continue
