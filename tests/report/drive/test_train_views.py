@@ -213,3 +213,21 @@ def test_several_trains_are_drawn_to_one_scale():
         meant = sorted(s[f"{m}_tip_diameter_mm"] / 2 for _, s, m in gears(stages))
         assert np.allclose(tips, np.multiply(meant, scales[-1]), atol=0.01)
     assert np.ptp(scales) < 1e-3 * max(scales)
+
+
+def test_the_output_of_two_stages_of_one_distance_is_drawn_in_line_with_the_input():
+    found = result(((2.0, 20, 80, 30.0), (2.0, 24, 76, 40.0)))
+    stages = found.design["stages"]
+    shown = page(found, "gearopt solve x.toml")
+    front, side = drawings(shown)
+    axes = sorted({numbers(e, "cx")[0] for e in marks(front, "circle", "tip")})
+    tips = {s[f"{m}_tip_diameter_mm"] for s in stages for m in ("pinion", "wheel")}
+    scale = 2.0 * max(numbers(e, "r")[0] for e in marks(front, "circle", "tip")) / max(tips)
+    assert len(axes) == 2
+    assert axes[1] - axes[0] == pytest.approx(scale * stages[0]["centre_distance_mm"], abs=0.03)
+    assert [t.text for t in front.iter("text")].count("1") == 1  # a balloon of each shaft
+    middles = [
+        y + h / 2 for y, h in (numbers(e, "y", "height") for e in marks(side, "rect", "tip"))
+    ]
+    assert len({round(m, 1) for m in middles}) == 2
+    assert "the output in line with the input" in shown

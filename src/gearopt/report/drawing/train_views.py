@@ -1,4 +1,4 @@
-"""A train without a layout, drawn to scale with all its shafts in one line."""
+"""A train without a layout, drawn to scale with all its shafts in one line, or folded."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -63,9 +63,11 @@ def section(result: Result, measures: Measures, hint: str = "") -> Section | Non
     name, sign, unit = measures.module
     webs = [circles(s, m) for s in result.design["stages"] for m in MEMBERS]
     inside = ", thin ones the insides of rims, hubs and bores" if any(webs) else ""
+    folded = is_folded(_picked(result.design["stages"]))
+    lie = ", the output in line with the input, as both stages have one distance" * folded
     plural = f"modules {sign} in {unit}" if unit == "mm" else f"{name}es {sign} in {unit}"
     words = (
-        "All shafts are drawn in one plane: their positions are not optimised, and the gaps "
+        f"All shafts are drawn in one plane{lie}: their positions are not optimised, and the gaps "
         f"between the stages are only as wide as the labels need.{hint}",
         f"Drawn to one scale; dimensions in {measures.lengths}: centre distances, length over "
         "tip circles (the total length of the design is that over reference circles), face widths "
@@ -80,7 +82,7 @@ def beside(
     designs: Mapping[str, Sequence[Mapping[str, Any]]], measures: Measures
 ) -> tuple[Drawing, ...]:
     """Draw trains along their shafts, all at one scale; designs: stages by what they are called."""
-    rows = {name: in_one_line(_picked(stages))[0] for name, stages in designs.items()}
+    rows = {name: _in_plane(_picked(stages))[0] for name, stages in designs.items()}
     ends = [_ends(train) for train in rows.values()]
     scale = (BESIDE - 2.0 * EDGE) / max(right - left for left, right in ends)
 
@@ -110,7 +112,7 @@ def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Draw
     """Draw a train along its shafts and across them; nothing where a size is not known."""
     if not is_drawn(stages):
         return ()
-    train, scale = in_one_line(_picked(stages))
+    train, scale = _in_plane(_picked(stages))
     inner = {g.name: circles(stages[g.stage - 1], g.member) for g in train.gears}
     front = along_shafts(train, scale, measures.length, lambda g: meaning(g, measures), inner)
     return front, _side(train, scale, measures)
@@ -125,17 +127,30 @@ def circles(stage: Mapping[str, Any], member: str) -> list[float]:
     return [diameter for diameter in diameters if diameter is not None]
 
 
-def in_one_line(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
+def is_folded(stages: Sequence[DrawnStage]) -> bool:
+    """Whether the output is drawn in line with the input: two stages of one centre distance."""
+    distances = [stage.centre_distance_mm for stage in stages]
+    return len(distances) == 2 and math.isclose(*distances)
+
+
+def _in_plane(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
+    """Shafts and gears in one plane, folded where they may be; and the scale [px/mm]."""
+    return in_one_line(stages, is_folded(stages))
+
+
+def in_one_line(stages: Sequence[DrawnStage], folded: bool = False) -> tuple[Bodies, float]:
     """Shafts and gears with every shaft at z = 0; and the scale [px/mm].
 
-    Diameters of shafts are 0: they are not known. ValueError for stages that cannot be drawn: more
-    than MAX_STAGES, or of no finite size.
+    folded: the second of two stages runs back. Diameters of shafts are 0: they are not known.
+    ValueError for stages that cannot be drawn: more than MAX_STAGES, or of no finite size.
     """
     if len(stages) > MAX_STAGES:
         raise ValueError(f"{len(stages):,} stages cannot be drawn")
     axes = [0.0]
     for stage in stages:
         axes.append(axes[-1] + stage.centre_distance_mm)
+    if folded:
+        axes[2] = axes[0]
     rims = [
         (axes[k + end], 0.5 * tip)
         for k, stage in enumerate(stages)
@@ -210,7 +225,7 @@ def along_shafts(
     high = max(0.5 * g.tip_diameter_mm for g in train.gears)
     if scale * high < LOW:
         high += NAMES / scale
-    axes = [s.y_mm for s in train.shafts]
+    axes = sorted({s.y_mm for s in train.shafts})
     texts = [length(b - a) for a, b in pairwise(axes)]
     narrow = sum(
         scale * (b - a) < _room(text) for (a, b), text in zip(pairwise(axes), texts, strict=True)
@@ -223,12 +238,14 @@ def along_shafts(
         for diameter in (inner or {}).get(gear.name, ()):
             sheet.circle(*places[gear.shaft], 0.5 * diameter, "body", series(gear.stage))
     level = sheet.at(0.0, -high)[1] + CHAIN
-    for shaft in train.shafts:
-        x = sheet.at(shaft.y_mm, 0.0)[0]
-        sheet.line((shaft.y_mm, high + 16.0 / scale), (shaft.y_mm, -high), "axis")
+    for y in axes:
+        x = sheet.at(y, 0.0)[0]
+        sheet.line((y, high + 16.0 / scale), (y, -high), "axis")
         sheet.tick((x, level - CHAIN), (x, level + 5.0))
-        spots = [Place(x + dx, 16.0, 0.0, abs(dx), (x, 28.0)) for dx in (0.0, -12.0, 12.0)]
-        sheet.balloon(str(shaft.shaft), spots)
+        ways = (0.0, -12.0, 12.0, -24.0, 24.0)
+        spots = [Place(x + dx, 16.0, 0.0, abs(dx), (x, 28.0)) for dx in ways]
+        for shaft in (s for s in train.shafts if s.y_mm == y):
+            sheet.balloon(str(shaft.shaft), spots)
     sheet.line((left - 6.0 / scale, 0.0), (right + 6.0 / scale, 0.0), "axis")
     away = sheet.height - 18.0 - sheet.at(0.0, -high)[1]
     sheet.dimension((left, -high), (right, -high), away, length(right - left))
@@ -276,8 +293,10 @@ def _side(train: Bodies, scale: float, measures: Measures) -> Drawing:
         sheet.label(f"{measures.module[1]} {number(module)}", [Place(x, LEVEL - MODULES)], "size")
     face_widths(sheet, train, tops, measures)
     for shaft in shafts:
-        x, y = sheet.at(shaft.to_mm, shaft.y_mm)
-        spots = [Place(x + 20.0, y + dy, 0.0, abs(dy), (x, y)) for dy in (0.0, -14.0, 14.0)]
+        folded = any(s.y_mm == shaft.y_mm and s.shaft > shaft.shaft for s in shafts)
+        end, beside = (shaft.from_mm, -20.0) if folded else (shaft.to_mm, 20.0)
+        x, y = sheet.at(end, shaft.y_mm)
+        spots = [Place(x + beside, y + dy, 0.0, abs(dy), (x, y)) for dy in (0.0, -14.0, 14.0)]
         sheet.balloon(str(shaft.shaft), spots)
     for gear in sorted(train.gears, key=lambda g: -g.tip_diameter_mm):
         side_name(sheet, gear, places[gear.shaft], f"z {number(gear.teeth)}")
