@@ -103,6 +103,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
     "Gears and box at once": {
         "three_stage_together": "Teeth, modules and places together make a smaller box.",
         "elevator_box_rated": "Two stages, limited by the safety factors of AGMA 2001.",
+        "unit_in_box": "Two stages whose centre distances are preferred numbers, by ISO 6336.",
     },
     "How the teeth of a spur pair share the load": {
         "reference_pair": "Load shares, stiffness and transmission error of given gears.",

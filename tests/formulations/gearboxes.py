@@ -2,6 +2,8 @@
 
 import math
 from fractions import Fraction as F
+from functools import cache
+from itertools import product
 
 import numpy as np
 from brute_force import k_factor_width, width
@@ -9,6 +11,8 @@ from brute_force import k_factor_width, width
 from gearopt.formulations.drive.layout.chain import chain, turns
 from gearopt.formulations.drive.layout.gearbox import Clearances, Gearbox, Shaft
 from gearopt.formulations.drive.layout.slabs import arrangements, clashes
+from gearopt.formulations.drive.teeth.search import within
+from gearopt.formulations.drive.teeth.tables import table
 from gearopt.optimise.kernels import kernel
 from gearopt.physics.gears import GearPair
 
@@ -132,12 +136,45 @@ def every(train, needed=k_factor_width, narrowest=None):
     return found
 
 
+def every_row(train):
+    """Gear pairs of all trains of rows of the tables of teeth, as narrow as their rating allows."""
+    tables = [table(train, k, train.highest_ratio) for k in range(len(train.stages))]
+    rows = [
+        [(p, m) for p in range(len(t.z1)) for m in range(t.first[p], t.last[p] + 1)] for t in tables
+    ]
+
+    @cache
+    def width(k, p, m, torque):
+        return tables[k].width(np.array([torque]), np.array([p]), m).item()
+
+    for chosen in product(*rows):
+        teeth = [(int(t.z1[p]), int(t.z2[p])) for t, (p, _) in zip(tables, chosen, strict=True)]
+        cuts = [t.toothing[p] for t, (p, _) in zip(tables, chosen, strict=True)]
+        stages = zip(train.stages, cuts, strict=True)
+        distances = tuple(stage.toothings[cut].working_distance for stage, cut in stages)
+        if not within(train, teeth) or train.distances and distances not in train.distances:
+            continue
+        torque, pairs = train.torque, []
+        for k, (t, (p, m)) in enumerate(zip(tables, chosen, strict=True)):
+            b = width(k, p, m, torque)
+            pairs.append(train.pair(k, float(t.modules[m]), *map(float, teeth[k]), b, cuts[k]))
+            torque *= teeth[k][1] / teeth[k][0]
+        if all(math.isfinite(pair.face_width) for pair in pairs):
+            yield tuple(pairs)
+
+
 def smallest_box(train, make, rel, needed=k_factor_width, narrowest=None):
     """The minimum objective of all trains in all arrangements, within rel; inf if none fits."""
+    return smallest_around(every(train, needed, narrowest), make, rel)
+
+
+def smallest_around(trains, make, rel):
+    """The same of trains of gear pairs that are known."""
     branch = kernel("gearopt.formulations.drive.layout.branch_kernel").branch
-    best, links = math.inf, len(train.stages)
-    theta, cells, bounds = np.zeros(links), np.zeros((4000, 2, links)), np.zeros(4000)
-    for pairs in every(train, needed, narrowest):
+    best = math.inf
+    for pairs in trains:
+        links = len(pairs)
+        theta, cells, bounds = np.zeros(links), np.zeros((4000, 2, links)), np.zeros(4000)
         box = make(pairs)
         for order in arrangements(box):
             if clashes(box, order):

@@ -342,10 +342,17 @@ class Train:
         """Maximum total ratio."""
         return self.ratio * (1 + self.tolerance)
 
-    def fixed_teeth(self, stage: int, pinion: int, wheel: int) -> "Train":
-        """Return the drive with the teeth of one stage (counted from 0) given."""
+    def fixed_teeth(
+        self, stage: int, pinion: int, wheel: int, toothing: int | None = None
+    ) -> "Train":
+        """Return the drive with the teeth of one stage (counted from 0) given.
+
+        toothing: which of its toothings cuts them, from 0; None: any of them.
+        """
+        own = self.stages[stage]
+        cuts = own.toothings if toothing is None else (own.toothings[toothing],)
         changed = replace(
-            self.stages[stage], pinion_teeth=(pinion, pinion), wheel_teeth=(wheel, wheel)
+            own, pinion_teeth=(pinion, pinion), wheel_teeth=(wheel, wheel), toothings=cuts
         )
         return replace(self, stages=self.stages[:stage] + (changed,) + self.stages[stage + 1 :])
 

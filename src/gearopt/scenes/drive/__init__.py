@@ -37,6 +37,8 @@ def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
 
     if scene.layout.together and scene.several:
         return Step(layout.of_best_count), *last
+    if layout.box_first(scene):
+        return *layout.steps(scene), *last
     gears = *sizing.steps(scene, ask, False), *processes.steps(scene, ask, False)
     return *gears, *layout.steps(scene), *last
 

@@ -18,6 +18,7 @@ from gearopt.formulations.drive.layout.gearbox import Gearbox
 from gearopt.formulations.drive.layout.layout_text import read
 from gearopt.formulations.drive.layout.slabs import Arrangement, Slabs, arrange, arrangements
 from gearopt.formulations.drive.together import continuous
+from gearopt.formulations.drive.together.tables import frame
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.certified import limits, point_of, run
 from gearopt.optimise.clock import Clock, following, in_part
@@ -35,6 +36,7 @@ from gearopt.scenes.drive.layout_design import (
 )
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.sizing import Drive, drive_of, ideal_of_count, noted, of_count
+from gearopt.scenes.drive.sizing import sized as sized_gears
 from gearopt.scenes.drive.without import without
 from gearopt.scenes.plan import Step, carried_out
 from gearopt.scenes.reading.ask import Ask
@@ -48,10 +50,26 @@ UNFIT = "These gears cannot be arranged with these clearances and positions."
 Start = tuple[Slabs, tuple[GearPair, ...], tuple[float, ...]]
 
 
+def box_first(scene: Scene) -> bool:
+    """Whether gears and box are sought at once before the gears are sized: they take less time."""
+    asked = scene.layout is not None and scene.layout.together
+    return asked and any(map(scene.shifted, scene.stage))
+
+
 def steps(scene: Scene) -> tuple[Step[Scene], ...]:
-    """Steps to the layout of a sized drive; of gears and box at once it is the start."""
+    """Steps to the layout of a sized drive; of gears and box at once it is the start.
+
+    Where the box is sought first, from no gears on, they are for comparison.
+    """
     if scene.layout is None or not scene.layout.together:
         return (Step(lay_out),)
+    if box_first(scene):
+        return (
+            Step(at_once, drive_to_box),
+            Step(with_sized_first, own=False, always=True),
+            Step(with_gears, drive_to_box),
+            Step(drawn, drive_to_box),
+        )
     return (
         Step(lay_out, own=False),
         Step(at_once, drive_to_box, always=True),
@@ -153,7 +171,8 @@ def _with_layout(
     drawing = handed(described(box, order, angles, gears), hands)
     if any(part.name == "gears" for part in result.parts) and not scene.given:
         result = _of_gears_first(scene, result, sized)
-    before = sum(p.seconds for p in result.parts), sum(p.evaluations for p in result.parts)
+    parts = () if box_first(scene) else result.parts
+    before = sum(p.seconds for p in parts), sum(p.evaluations for p in parts)
     seconds, spent = before[0] + result.seconds, before[1] + result.evaluations
     last = {"seconds": seconds, "evaluations": spent, "best": result.value, "bound": result.bound}
     steps = [
@@ -200,29 +219,56 @@ def others_may_fit(scene: Scene, box: Gearbox) -> bool:
 def at_once(drive: Drive, ask: Ask, known: Result | None) -> Result:
     """Smallest box over gears and places, as values of its variables.
 
-    known: the layout of gears sized first, which is a part of the result.
+    known: the layout of gears sized first, which is a part of the result; None: they are not.
     """
-    assert known is not None
+    if known is None:
+        return _at_once(drive, ask, None)
     sized = _sized_first(known)
     if sized is None:  # no gears to lay out
         return known
-    clock = Clock(ask.budget)
-    scene = drive.scene
-    together.ready(ask.watch)
-    apart = replace(known, name=APART)
+    scene, apart = drive.scene, replace(known, name=APART)
     box = scene.gearbox(scene.pairs(drive_design(sized.design)))
     if apart.status == "infeasible" and not others_may_fit(scene, box):
         return replace(apart, name="drive")
-    problem = _problem_at_once(scene, drive.train, ask.method or "exact", apart)
-    watch, events = following(in_part(ask.watch, box.unit))
+    return _beside(_at_once(drive, ask, apart), apart)
+
+
+def _at_once(drive: Drive, ask: Ask, apart: Result | None) -> Result:
+    """Smallest box, without parts; apart: the layout of gears sized first, a start."""
+    clock, unit = Clock(ask.budget), frame(drive.train, drive.scene.gearbox).unit
+    together.ready(ask.watch)
+    problem = _problem_at_once(drive.scene, drive.train, ask.method or "exact", apart)
+    watch, events = following(in_part(ask.watch, unit))
     gap = ask.gap if ask.budget.gap or ask.method in REAL else together.GAP
     result, _ = run(problem, ask.method, clock.left, ask.seed, watch, gap)
-    objective, first = result.objective | {"unit": box.unit}, replace(apart, report={})
-    result = replace(result, objective=objective, parts=(first,))
-    if result.value is not None:
-        return replace(result, report={"progress": events})
-    spent = result.seconds + apart.seconds
-    return replace(result, name="drive", seconds=spent, **_why(result, apart))
+    objective = result.objective | {"unit": unit}
+    report = {"progress": events} if result.value is not None else {}
+    return replace(result, name="drive", objective=objective, report=report)
+
+
+def _beside(box: Result, apart: Result) -> Result:
+    """The smallest box with the layout of gears sized first as a part."""
+    box = replace(box, parts=(replace(apart, report={}),))
+    if box.value is not None:
+        return box
+    return replace(box, seconds=box.seconds + apart.seconds, **_why(box, apart))
+
+
+def with_sized_first(scene: Scene, ask: Ask, box: Result | None) -> Result:
+    """The smallest box, or that there is none, beside the layout of gears sized first.
+
+    Those are the start where no box is known yet.
+    """
+    assert box is not None
+    clock = Clock(ask.budget)
+    gears = sized_gears(without(scene, "layout"), ask)
+    if not gears.design:
+        impossible = gears.status == "infeasible"
+        return gears if impossible else _beside(box, replace(gears, name=APART))
+    known = lay_out(scene, replace(ask, budget=clock.left), gears)
+    if box.value is None and box.status != "infeasible":
+        return at_once(drive_to_box(scene), replace(ask, budget=clock.left), known)
+    return _beside(box, replace(known, name=APART))
 
 
 def _sized_first(result: Result) -> Result | None:
@@ -239,10 +285,9 @@ def with_gears(drive: Drive, ask: Ask, box: Result | None) -> Result:
     point = point_of(box.design)[: sum(v.size for v in problem.variables)]
     pairs, options = teeth.gears(train, point) if whole else (sizing_text.pairs(train, point), ())
     design = describe(train, pairs, options)
-    sized = _sized_first(box.parts[0])
-    assert sized is not None
-    gears = replace(sized, name=IN_BOX, design=untyped(design), limits=limits(problem, point))
-    return replace(box, parts=(*box.parts, replace(gears, report={})))
+    values = {"design": untyped(design), "limits": limits(problem, point)}
+    gears = replace(box, name=IN_BOX, parts=(), report={}, **values)
+    return replace(box, parts=(*box.parts, gears))
 
 
 def with_real_values(drive: Drive, ask: Ask, box: Result | None) -> Result:
@@ -309,14 +354,14 @@ def posed(scene: Scene, method: str, sized: Result) -> Model:
     return Model(layout.problem(box, method), f"{words}, of gears that were chosen first", box.unit)
 
 
-def _problem_at_once(scene: Scene, train: Train, method: str, apart: Result) -> Problem:
+def _problem_at_once(scene: Scene, train: Train, method: str, apart: Result | None) -> Problem:
     """Problem that a method gets; apart: the layout of gears sized first, a start."""
     make = scene.gearbox
     if method == "exact":
         import numpy as np
 
         known = None
-        if apart.value is not None:
+        if apart is not None and apart.value is not None:
             slabs, pairs, angles = _start(scene, apart)
             gears = pairs, _options(train, drive_design(apart.design))
             known = (gears, arrange(make(pairs), slabs), np.array(angles))
@@ -325,6 +370,7 @@ def _problem_at_once(scene: Scene, train: Train, method: str, apart: Result) -> 
         raise SolveError(f"together = true is for exact and {' and '.join(REAL)}, not for {method}")
     if scene.by_ratings:
         raise SolveError(f"{method} takes no gears and box at once that ratings limit; exact does")
+    assert apart is not None
     if apart.value is None:
         raise SolveError(f"{method} needs a start: {apart.message}")
     slabs, pairs, angles = _start(scene, apart)

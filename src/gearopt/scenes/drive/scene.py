@@ -297,7 +297,8 @@ class Scene(Table):
         if not self.several:
             self._distances(self.stage_tables)
         lacks = "" if self.given else self._lacks("at a given centre distance")
-        check_teeth(self.stage, self.gears, lacks, aim, asked)
+        follows = asked == "together" and not self.given
+        check_teeth(self.stage, self.gears, lacks, aim, asked, follows)
         tables = self.stage_tables
         shifted = [k for k, own in enumerate(tables) if self.shifted(own)]
         for k in shifted:
@@ -324,8 +325,6 @@ class Scene(Table):
             for name in (n for n in HELIX_LIMITS if getattr(table, n) is not None):
                 lacks = "gears that are to be chosen: these are all given" if self.given else ""
                 lacks = lacks or self._lacks("within such a limit")
-                if self.layout is not None and self.layout.together:
-                    lacks = "together = false in [layout]"
                 if lacks:
                     raise refuse(f"needs {lacks}", at=(*place, name), action="remove")
         for stage in self.stage_tables if not self.several else ():
@@ -391,8 +390,6 @@ class Scene(Table):
                 continue
             lacks = "gears that are to be chosen: these are all given" if self.given else ""
             lacks = lacks or self._lacks("with one of several values")
-            if self.layout is not None and self.layout.together:
-                lacks = "together = false in [layout]"
             if lacks:
                 first = values_of(value, (100.0, 100.0))[0]
                 rule = f"has several values to choose from, which need {lacks}"

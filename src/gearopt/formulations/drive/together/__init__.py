@@ -5,7 +5,7 @@ box that is smaller than the answer by more than its gap.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
 from typing import Any
@@ -26,6 +26,7 @@ from gearopt.formulations.drive.layout.layout_text import (
 from gearopt.formulations.drive.layout.slabs import Arrangement, Slabs, arrange, orders
 from gearopt.formulations.drive.teeth.choices import best_choices
 from gearopt.formulations.drive.teeth.search import search as sizing
+from gearopt.formulations.drive.teeth.stage import Table
 from gearopt.formulations.drive.together.search import (
     MARGINS,
     Made,
@@ -35,7 +36,7 @@ from gearopt.formulations.drive.together.search import (
     prepare,
     prove,
 )
-from gearopt.formulations.drive.together.tables import KERNELS, Make, numbers
+from gearopt.formulations.drive.together.tables import KERNELS, Make, frame, numbers
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.k_factor import K_FACTOR
 from gearopt.optimise.clock import Clock
@@ -48,7 +49,7 @@ from gearopt.physics.gears import GearPair
 Start = tuple[Made, Arrangement, Array]
 GAP = 1e-3  # proven where the budget requests none
 FIRST_SIZINGS = 40  # best sizings that are laid out before the search
-FIRST_RATED_SIZINGS = 1  # the same of ratings, whose list takes long
+ANY = 1.0  # gap of a first sizing of ratings, whose list takes long: to the bound 0
 SLACK = 1e-6  # relative: margins are this much below the requested gap, for rounding
 
 RANDOM = False
@@ -56,21 +57,25 @@ COUNTS = "tooth pair or cell of angles bounded"
 SETTINGS = {"margins": MARGINS, "sizings laid out first": FIRST_SIZINGS}
 
 
-def problem(train: Train, make: Make, start: Start | None = None) -> Problem:
+def problem(
+    train: Train, make: Make, start: Start | None = None, tables: Sequence[Table] = ()
+) -> Problem:
     """Return the problem of a drive and its gearbox; `exact` finds the smallest box with its bound.
 
     make(pairs) -> Gearbox of these gear pairs; shaft k may grow with the torque T1 u_1 ... u_k that
     it carries, and nothing else depends on the pairs. The objective is the
     gearbox's. Variables are those of `text`. start: a layout known before, which is kept
-    unless a better one is found: gear pairs and options, arrangement and link angles.
+    unless a better one is found: gear pairs and options, arrangement and link angles. tables: of
+    the stages, where they are known; a search makes them otherwise.
     """
-    box = numbers(train, make)[1]
+    box = frame(train, make)
 
     def exact(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Depth-first passes with narrowing margins; the seed is that of first layouts."""
         if not ready(watch):
             return Outcome(None, False, message=UNREADY)
-        return _searched(Search(train, make, Clock(budget, watch), seed), start)
+        search = Search(train, make, Clock(budget, watch), seed, tables=tables)
+        return _searched(search, start)
 
     return text(train, make, box, {"exact": exact})
 
@@ -99,7 +104,7 @@ def _tiny() -> None:
 
 
 def _searched(search: Search, start: Start | None) -> Outcome:
-    drive, box = numbers(search.train, search.make)
+    drive, box = numbers(search.train, search.make, search.tables)
     if start is not None:
         keep(search, *start)
     possible = _first(search)
@@ -119,9 +124,12 @@ def _searched(search: Search, start: Start | None) -> Outcome:
 
 
 def _first(search: Search) -> bool:
-    """Lay out the best sizings; False if there is no train at all."""
-    count = FIRST_RATED_SIZINGS if search.train.rated else FIRST_SIZINGS
-    progress = sizing(search.train, count, Budget(), search.clock.inner(values=False))
+    """Lay out the best sizings, or a first one of ratings; False if there is no train at all."""
+    rated = search.train.rated
+    if rated and search.best is not None:
+        return True
+    count, enough = (1, Budget(gap=ANY)) if rated else (FIRST_SIZINGS, Budget())
+    progress = sizing(search.train, count, enough, search.clock.inner(values=False), floor=0.0)
     for _, node in progress.found[:count]:
         if search.clock.stopped:
             break

@@ -83,12 +83,25 @@ def worth(aim, length, area, big):
 @njit(cache=True, inline="always")
 def put(d, j, p, k, node, body):
     """Set a stage of a node: node[j] = centre distance, tip radii, width (unset), log ratio."""
+    node[j, 2] = d.log_ratio[p]
+    if d.sizes.size > 0:
+        node[j, 0], body[j, 1] = d.sizes[p, k, 0], d.sizes[p, k, 1]
+        body[j + 1, 0] = d.sizes[p, k, 2]
+        return
     half = 0.5 * d.modules[j, k] / d.cosine[j]
     m = d.modules[j, k]
     node[j, 0] = half * (d.z1[p] + d.z2[p])
     body[j, 1] = half * d.z1[p] + m * d.addenda[j, 0]
     body[j + 1, 0] = half * d.z2[p] + m * d.addenda[j, 1]
-    node[j, 2] = d.log_ratio[p]
+
+
+@inner
+def bound_distances(d, j, choice):
+    """Number of the given distances of the stages after j of a node, for `Drive.fits`."""
+    code = 0
+    for i in range(j + 1, choice.shape[0]):
+        code += d.stride[i] * d.distance[choice[i, 0]]
+    return code
 
 
 @inner
@@ -230,7 +243,7 @@ def bound(d, rest, first, node, body, need, cut, lengths, radius):
 @njit(cache=True, inline="always")
 def grows(d, j):
     """Whether a larger module only makes the wheel and the width larger."""
-    return d.kind[j] == 0 or d.kind[j] == 2
+    return d.sizes.size == 0 and (d.kind[j] == 0 or d.kind[j] == 2)
 
 
 @inner

@@ -10,9 +10,8 @@ above it, too. Cells are narrowed for the pairs that are still of use.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -27,7 +26,7 @@ from gearopt.formulations.drive.teeth.columns import Index
 from gearopt.formulations.drive.teeth.later_stages import slices
 from gearopt.formulations.drive.teeth.rated import RatedTable
 from gearopt.formulations.drive.teeth.search import within
-from gearopt.formulations.drive.teeth.stage import EDGE
+from gearopt.formulations.drive.teeth.stage import EDGE, TEETH, Table
 from gearopt.formulations.drive.teeth.tables import stage_tables, table
 from gearopt.formulations.drive.together.tables import (
     DELTA,
@@ -77,7 +76,7 @@ class Search:
 
     clock: counts choices and cells examined; has the best value and what is proven. best: the best
     design. Nodes by number of stages chosen: made, and left after a check of their layout. trains:
-    laid out to the end.
+    laid out to the end. tables: those of the stages, by default made.
     """
 
     train: Train
@@ -88,12 +87,10 @@ class Search:
     trains: int = 0
     made: dict[int, int] = field(default_factory=dict)
     left: dict[int, int] = field(default_factory=dict)
+    tables: Sequence[Table] = ()
 
-    @cached_property
-    def tables(self) -> list[RatedTable]:
-        """The tables of the stages of a drive that ratings limit."""
-        tables = stage_tables(self.train, self.train.highest_ratio)
-        return [t for t in tables if isinstance(t, RatedTable)]
+    def __post_init__(self) -> None:
+        self.tables = self.tables or stage_tables(self.train, self.train.highest_ratio)
 
     @property
     def value(self) -> float:
@@ -123,12 +120,13 @@ def sized(train: Train, drive: Drive, node: Nodes) -> Iterator[Made]:
 def _sized(train: Train, drive: Drive, node: Nodes) -> Made | None:
     torque, pairs, options = train.torque, [], []
     for j, (p, k) in enumerate(node):
-        z1, z2 = float(drive.z1[p]), float(drive.z2[p])
-        widths = widths_of(train.fixed_teeth(j, round(z1), round(z2)), j, torque, int(k))
+        z1, z2, cut = float(drive.z1[p]), float(drive.z2[p]), int(drive.toothing[p])
+        fixed = train.fixed_teeth(j, round(z1), round(z2), cut)
+        widths = widths_of(fixed, j, torque, int(k))
         option = min(range(len(widths)), key=widths.__getitem__)
         if (width := widths[option]) == math.inf:
             return None
-        pairs.append(train.pair(j, float(drive.modules[j, k]), z1, z2, width))
+        pairs.append(train.pair(j, float(drive.modules[j, k]), z1, z2, width, cut))
         options.append(option)
         torque *= z2 / z1
     return tuple(pairs), tuple(options)
@@ -316,7 +314,7 @@ ROWS = 6_000_000  # pairs, modules and cells that are bounded, at most
 SLICE = 50_000  # of them, between two checks of the clock
 CELL_TOLERANCE = 0.02  # of what is used above 1, over the width of a cell
 
-Tables = list[RatedTable]
+Tables = Sequence[Table]
 
 
 def narrower(
@@ -343,6 +341,7 @@ def narrower(
         return drive
     widths = np.full((int(row[-1]), drive.modules.shape[1]), np.inf)
     for k, rated in enumerate(tables):
+        assert isinstance(rated, RatedTable)
         first, stop = np.searchsorted(rows, row[[drive.start[k], drive.start[k + 1]]])
         places, shy = _places(rated, drive, k), EDGE if k else 0.0  # first: the input torque itself
         for part in slices(np.ones(stop - first, np.int64), SLICE):
@@ -378,6 +377,7 @@ def shortened(drive: Drive, cut: float) -> Drive:
     return drive._replace(
         bisected=np.ascontiguousarray(drive.bisected[:, :most]),
         modules=np.ascontiguousarray(drive.modules[:, :most]),
+        sizes=np.ascontiguousarray(drive.sizes[:, :most]),
         first=ends[0],
         last=np.where(some.any(axis=1), ends[1], 0),
         **steps,
@@ -412,11 +412,12 @@ def _window(drive: Drive, stage: int) -> tuple[Array, Array]:
     return low, high
 
 
-def _places(table: RatedTable, drive: Drive, stage: int) -> Index:
+def _places(table: Table, drive: Drive, stage: int) -> Index:
     """Return where the pairs of a stage of the drive stand in its table."""
     rows = slice(drive.start[stage], drive.start[stage + 1])
-    base = int(table.z2.max(initial=0)) + 1
-    known = table.z1 * base + table.z2
+    ways = len(table.stage.toothings)
+    known = table.names * ways + table.toothing
     order = np.argsort(known, kind="stable")
-    wanted = (np.rint(drive.z1[rows]) * base + np.rint(drive.z2[rows])).astype(np.int64)
+    teeth = (np.rint(drive.z1[rows]) * TEETH + np.rint(drive.z2[rows])).astype(np.int64)
+    wanted = teeth * ways + drive.toothing[rows]
     return np.asarray(order[np.searchsorted(known[order], wanted)])

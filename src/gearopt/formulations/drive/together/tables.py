@@ -6,7 +6,7 @@ short bearings beside gears: those are left to the last check of a train.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -44,7 +44,11 @@ class Drive(NamedTuple):
     as in `teeth.stage.Table`; for a law without one (size 0), bisected holds minimum widths (rows,
     modules) by log ratio reached, in cells of `step`: the rows of pair p are row[p] : row[p + 1],
     the first one that of `cell[p]`. cosine (N,): of the helix angles;
-    addenda (N, 2): of pinion and wheel in modules. shaft, bearing (N+1, cells): minimum
+    addenda (N, 2): of pinion and wheel in modules. sizes (pairs, modules, 3): centre distance and
+    tip radii of pinion and wheel, where they do not follow from these (else empty). toothing: which
+    of the stage's cuts a pair. distance: number of its given distance among those of the stage that
+    go together with others; fits (N, numbers): whether the distances of a stage and those after it
+    do, by the sum of strides (N,) times their numbers. shaft, bearing (N+1, cells): minimum
     radius by log ratio reached. gap: between gears, from shafts, to the wall, along the axis. faces
     (M, N+1, 4, N+1, 4): whether bodies of two shafts face each other: wheel, pinion, shaft,
     bearing. widths: minimum of each stage, others (M, N): minimum length that the stages before one
@@ -58,10 +62,15 @@ class Drive(NamedTuple):
     log_high: float
     cosine: Array
     addenda: Array
+    sizes: Array
+    distance: Index
+    stride: Index
+    fits: NDArray[np.bool_]
     delta: float
     start: Index
     z1: Array
     z2: Array
+    toothing: Index
     log_ratio: Array
     need: Array
     first: Index
@@ -105,20 +114,30 @@ class Rest(NamedTuple):
     front: Array
 
 
-def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
-    """Return the arrays of a drive, and a gearbox with its constants.
+def frame(train: Train, make: Make) -> Gearbox:
+    """Return a gearbox with the constants of all, whose shafts carry the input torque.
 
     SolveError where its pairs are not those it is made of, where face widths decide which bodies
-    face each other, or where centre distances are not those of reference circles.
+    face each other, or where profile shifts that are given do not cancel.
     """
-    stages = train.stages
-    tables = [table(train, k, train.highest_ratio) for k in range(len(stages))]
-    cells = int(math.log(train.highest_ratio) / DELTA) + 2
-    boxes = [make(_loaded_like(train, math.exp(c * DELTA))) for c in range(cells)]
-    box = boxes[0]
-    if box.pairs != _loaded_like(train, 1.0):
+    pairs = _loaded_like(train, 1.0)
+    box = make(pairs)
+    if box.pairs != pairs:
         raise SolveError("the gearbox must have the gear pairs that it is made of")
     _refuse(train, box)
+    return box
+
+
+def numbers(train: Train, make: Make, tables: Sequence[Table] = ()) -> tuple[Drive, Gearbox]:
+    """Return the arrays of a drive, and a gearbox with its constants; SolveError as in `frame`.
+
+    tables: those of the stages, where they are known.
+    """
+    stages = train.stages
+    tables = tables or [table(train, k, train.highest_ratio) for k in range(len(stages))]
+    cells = int(math.log(train.highest_ratio) / DELTA) + 2
+    box = frame(train, make)
+    boxes = [make(_loaded_like(train, math.exp(c * DELTA))) for c in range(cells)]
     slabs, faces = _facing(box)
     wide = max(s.bearing_width for s in box.shafts)
     gap = box.clearances
@@ -133,6 +152,8 @@ def numbers(train: Train, make: Make) -> tuple[Drive, Gearbox]:
         math.log(train.highest_ratio),
         np.array([s.toothing.cosine for s in stages]),
         np.array([s.toothing.addenda for s in stages]),
+        _sizes(train, tables),
+        *_distances(train, tables),
         DELTA,
         *_pairs(tables),
         *_stages(train, tables),
@@ -158,8 +179,60 @@ def _loaded_like(train: Train, ratio: float) -> tuple[GearPair, ...]:
     pairs = []
     for k, stage in enumerate(train.stages):
         z = float(stage.pinion_teeth[0])
-        pairs.append(train.pair(k, float(stage.modules[0]), z, z if k else z * ratio, 1.0))
+        pairs.append(GearPair.of_teeth(float(stage.modules[0]), z, z if k else z * ratio, 1.0))
     return tuple(pairs)
+
+
+def _follows(train: Train) -> bool:
+    """Whether the sizes of gears follow from more than teeth and module of their stage."""
+    return train.several_toothings or any(s.toothing.shifting is not None for s in train.stages)
+
+
+def _sizes(train: Train, tables: Sequence[Table]) -> Array:
+    """Return centre distances and tip radii of all pairs and modules; NaN: none of its modules."""
+    if not _follows(train):
+        return np.zeros((0, 0, 3))
+    count, most = sum(len(t.z1) for t in tables), max(len(t.modules) for t in tables)
+    if count * most > ENTRIES:
+        raise SolveError(
+            f"the stages have {count:,} ways of cutting a pair to choose from, too many beside a "
+            "box: give fewer teeth, distances, helix angles or shifts"
+        )
+    sizes = np.full((count, most, 3), np.nan)
+    stop = 0
+    for t in tables:
+        start, stop = stop, stop + len(t.z1)
+        every = np.arange(len(t.z1))
+        for k, module in enumerate(t.modules):
+            pair = t.made(np.full(len(every), module), every)
+            radii = (0.5 * gear.tip_diameter for gear in pair.gears)
+            for place, length in enumerate((pair.centre_distance, *radii)):
+                sizes[start:stop, k, place] = length
+    return sizes
+
+
+def _distances(train: Train, tables: Sequence[Table]) -> tuple[Index, Index, NDArray[np.bool_]]:
+    """Return distance, stride and fits of a `Drive`: all are 0 and fit where none are bound."""
+    count, pairs = len(tables), sum(len(t.z1) for t in tables)
+    if not train.distances:
+        return np.zeros(pairs, np.int64), np.zeros(count, np.int64), np.ones((count, 1), bool)
+    known = [sorted(set(column)) for column in zip(*train.distances, strict=True)]
+    rows = np.array(
+        [[k.index(a) for k, a in zip(known, row, strict=True)] for row in train.distances]
+    )
+    sizes = [len(k) + 1 for k in known]  # the last one: of a distance that goes with none
+    stride = np.cumprod([1, *sizes[:-1]])
+    fits = np.zeros((count, math.prod(sizes)), bool)
+    for j in range(count):
+        fits[j, rows[:, j:] @ stride[j:]] = True
+    numbers = []
+    for t, one in zip(tables, known, strict=True):
+        of_cut = [
+            one.index(a) if (a := cut.working_distance) in one else len(one)
+            for cut in t.stage.toothings
+        ]
+        numbers.append(np.array(of_cut, np.int64)[t.toothing])
+    return np.concatenate(numbers), stride, fits
 
 
 def _bearing(shaft: Shaft) -> float:
@@ -171,9 +244,9 @@ def _slab(slabs: Slabs, stage: int) -> int:
 
 
 def _refuse(train: Train, box: Gearbox) -> None:
-    if not train.on_reference:
+    if not all(t.on_reference or t.shifting is not None for s in train.stages for t in s.toothings):
         raise SolveError("together with its layout, a drive needs profile shifts that cancel")
-    if not all(s.face_width.plain for s in train.stages):
+    if not train.rated and not all(s.face_width.plain for s in train.stages):
         raise SolveError("together with its layout, face widths have limits of b/d1 alone")
     choice = any(not s.face_width.tied and s.face_width.fixed is None for s in train.stages)
     shared = box.slabs is None or any(len(s) > 1 for s in box.slabs)
@@ -189,7 +262,7 @@ def _objective(box: Gearbox) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the exponents of width and height; constant and factor of the length."""
     if box.objective == "longest_side":
         return (1.0, 1.0), (box.width or 0.0, 0.0)
-    wide = box.objective in ("box_volume", "plan_area", "face_area")
+    wide = box.objective in ("box_volume", "plan_area", "face_area", "width")
     high = box.objective in ("box_volume", "face_area", "height")
     size = box.width if box.width is not None and wide else 1.0
     factor = (0.0, size) if box.objective in ("box_volume", "plan_area") else (size, 0.0)
@@ -230,7 +303,7 @@ def _kind(name: str) -> int:
     return ("wheel", "pinion", "shaft", "bearing").index(name.split()[0])
 
 
-def _pairs(tables: list[Table]) -> tuple[Any, ...]:
+def _pairs(tables: Sequence[Table]) -> tuple[Any, ...]:
     """Return the start of each stage's pairs, and their numbers one after the other."""
     start = np.concatenate([[0], np.cumsum([len(t.z1) for t in tables])])
     columns = [
@@ -238,6 +311,7 @@ def _pairs(tables: list[Table]) -> tuple[Any, ...]:
         for name, kind in (
             ("z1", float),
             ("z2", float),
+            ("toothing", np.int64),
             ("log_ratio", float),
             ("need", float),
             ("first", np.int64),
@@ -256,7 +330,7 @@ def _pairs(tables: list[Table]) -> tuple[Any, ...]:
     return start, *columns, *steps
 
 
-def _stages(train: Train, tables: list[Table]) -> tuple[Array, ...]:
+def _stages(train: Train, tables: Sequence[Table]) -> tuple[Array, ...]:
     """Numbers of whole stages, from modules to face widths."""
     faces = [s.face_width for s in train.stages]
     modules = np.full((len(tables), max(len(t.modules) for t in tables)), np.inf)
@@ -275,7 +349,7 @@ def _stages(train: Train, tables: list[Table]) -> tuple[Array, ...]:
     )
 
 
-def _loads(train: Train, tables: list[Table]) -> tuple[Array, Array, Index, Index, float]:
+def _loads(train: Train, tables: Sequence[Table]) -> tuple[Array, Array, Index, Index, float]:
     """Return the loads of all pairs, or minimum widths by cells of torque (up to ENTRIES).
 
     Of ratings these are the narrowest widths, in one cell: `search.narrower` makes others of them.
@@ -313,7 +387,7 @@ def useful(drive: Drive, cut: float) -> Drive:
         count = drive.kind.size
         widths = np.array([kernels.useful(drive, j, cut, keep) for j in range(count)])
         kept = np.concatenate([[0], np.cumsum(keep)])[drive.start]
-        names = ("z1", "z2", "log_ratio", "need", "first", "last")
+        names = ("z1", "z2", "toothing", "distance", "log_ratio", "need", "first", "last")
         fewer = {n: getattr(drive, n)[keep] for n in names}
         fewer["load"] = drive.load[keep] if drive.load.size else drive.load
         if not drive.load.size:
@@ -324,6 +398,8 @@ def useful(drive: Drive, cut: float) -> Drive:
         if drive.least_steps.shape[1] == keep.size:
             steps = {n: getattr(drive, n)[:, keep] for n in ("least_steps", "most_steps")}
             fewer |= {n: np.ascontiguousarray(v) for n, v in steps.items()}
+        if drive.sizes.size:
+            fewer["sizes"] = drive.sizes[keep]
         widths = np.where(np.isfinite(widths), widths, 0.0)
         others = _others(drive, widths)
         drive = drive._replace(start=kept, widths=widths, others=others, **fewer)
@@ -363,12 +439,26 @@ def rest(drive: Drive, goes_on: GoesOn) -> Rest | None:
 def _edges(drive: Drive, j: int) -> Array:
     """Radii that divide those of the wheels of a stage (none before the first: zeros)."""
     rows = slice(drive.start[j], drive.start[j + 1]) if j >= 0 else slice(0, 0)
+    if drive.sizes.size:
+        return _bins(_of_wheels(drive, rows))
     modules = drive.modules[j][drive.first[rows]], drive.modules[j][drive.last[rows]]
     cosine, addendum = drive.cosine[j], drive.addenda[j, 1]
     radii = [m * (0.5 * drive.z2[rows] / cosine + addendum) for m in modules]
-    if j < 0 or not radii[0].size:
+    return _bins(np.concatenate(radii))
+
+
+def _of_wheels(drive: Drive, rows: slice) -> Array:
+    """Return the tip radii of wheels, of all their modules."""
+    first, last = drive.first[rows, None], drive.last[rows, None]
+    module = np.arange(drive.sizes.shape[1])
+    return np.asarray(drive.sizes[rows, :, 2][(first <= module) & (module <= last)])
+
+
+def _bins(radii: Array) -> Array:
+    """Return BINS radii from the least to the largest; zeros of none."""
+    if not radii.size:
         return np.zeros(BINS)
-    return np.geomspace(radii[0].min() * (1.0 - 1e-9), radii[1].max(), BINS)
+    return np.geomspace(radii.min() * (1.0 - 1e-9), radii.max(), BINS)
 
 
 def chains(drive: Drive, box: Gearbox) -> list[Chain]:

@@ -16,6 +16,7 @@ from gearopt.formulations.drive.together.node_kernel import (
     apart,
     bases,
     bound,
+    bound_distances,
     grows,
     least_area,
     length,
@@ -109,7 +110,10 @@ def fill(d, k, start, stop, rest):
     bins = np.zeros((end - begin, d.modules.shape[1]), np.int64)
     for p in range(end - begin):
         for q in range(d.first[begin + p], d.last[begin + p] + 1):
-            radius = d.modules[j, q] * (0.5 * d.z2[begin + p] / d.cosine[j] + d.addenda[j, 1])
+            if d.sizes.size > 0:
+                radius = d.sizes[begin + p, q, 2]
+            else:
+                radius = d.modules[j, q] * (0.5 * d.z2[begin + p] / d.cosine[j] + d.addenda[j, 1])
             above = place(rest.edge[k], ZERO, rest.edge.shape[1], radius)
             bins[p, q] = max(above - 1, 0)  # not above the radius
     for cell in range(start, stop):
@@ -228,10 +232,13 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
         for i in range(stages):
             kept[i] = node[i, 1]
         pinion = body[j + 1, 1] if j + 1 < stages else 0.0
+        code = bound_distances(d, j, choice)
         while start[1] < end and looked < limit and count + d.modules.shape[1] <= bounds.size:
             p = start[1]
             start[1] += 1
             looked += 1
+            if not d.fits[j, code + d.stride[j] * d.distance[p]]:
+                continue
             choice[j, 0] = p
             torque = weakest(d, j, p, ratio)
             for k in range(module(d, j, p, torque), d.last[p] + 1):

@@ -7,11 +7,11 @@ from itertools import combinations
 from typing import Any
 
 from gearopt.formulations.drive import layout
-from gearopt.formulations.drive.design import drive_design
+from gearopt.formulations.drive.design import DriveDesign, drive_design
 from gearopt.formulations.drive.layout.faults import faults, possible
 from gearopt.formulations.drive.layout.gearbox import Gearbox
 from gearopt.formulations.drive.layout.layout_text import placed, read
-from gearopt.formulations.drive.layout.slabs import arrangements
+from gearopt.formulations.drive.layout.slabs import Arrangement, arrangements
 from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explain import STEP
@@ -21,6 +21,16 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
+from gearopt.scenes.drive.explain import box_at_once
+from gearopt.scenes.drive.explain.box_at_once import (
+    LIMITS,
+    SIDES,
+    Search,
+    first_layout,
+    in_conflict,
+    least_side,
+    searches,
+)
 from gearopt.scenes.drive.explain.box_moves import (
     BoxMove,
     box_moves,
@@ -28,7 +38,7 @@ from gearopt.scenes.drive.explain.box_moves import (
     switches,
 )
 from gearopt.scenes.drive.explain.other_gears import other_gears
-from gearopt.scenes.drive.layout import others_may_fit
+from gearopt.scenes.drive.layout import box_first, others_may_fit
 from gearopt.scenes.drive.layout_design import described, keep_out_design
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import (
@@ -88,8 +98,10 @@ def remedies(scene: Scene, gears: Result, clock: Clock) -> Remedies:
     layout.ready(clock.watch)
     clock.start += clock.seconds - begun  # compiling takes no time of the remedies
     pairs = scene.pairs(drive_design(gears.design))
-    asked = questions(scene, pairs, clock)
     single, choices = box_moves(scene, pairs), switches(scene)
+    if box_first(scene):
+        return _of_any_gears(scene, single, choices, clock)
+    asked = questions(scene, pairs, clock)
     chosen = [r for m in choices if (r := _chosen(asked, m)) is not None]
     moved = [r for m in single if (r := _moved(asked, m)) is not None]
     sufficient = sorted(moved, key=_size) + chosen
@@ -116,6 +128,47 @@ def remedies(scene: Scene, gears: Result, clock: Clock) -> Remedies:
     return ways if drawn is None else replace(ways, drawn={"nearest_layout": drawn})
 
 
+def _of_any_gears(
+    scene: Scene, single: tuple[BoxMove, ...], choices: tuple[BoxMove, ...], clock: Clock
+) -> Remedies:
+    """Limits in conflict, and each change that alone lets some gears be laid out; else two sides.
+
+    Sides of the box first: their least sizes are minima.
+    """
+    search = searches(scene)
+    asked = box_at_once.questions(scene, search, clock)
+    names, unsure = in_conflict(asked)
+    sides = [m for m in single if m.path[-1] in LIMITS]
+    sufficient = [r for m in sides if (r := _side(asked, search, m)) is not None]
+    for move in (m for m in single if m not in sides):
+        if (remedy := _moved(asked, move)) is not None:
+            sufficient.append(remedy)
+    sufficient.sort(key=_size)
+    sufficient += [r for m in choices if (r := _chosen(asked, m)) is not None]
+    if not sufficient:
+        sufficient = sorted(_pairs(asked, tuple(sides)), key=_size)
+    message = "time ran out before all remedies were tried" if clock.over else ""
+    if not sufficient and not message:
+        none = "no layout was found by changing one number of the layout, or two sides of the box"
+        message = f"{none}: {', '.join(limits_of((*single, *choices)))}"
+    known = tuple(remedy for _, remedy, _ in sufficient)
+    ways = Remedies(names, known, message, unsure=unsure)
+    there = first_layout(search, sufficient[0][2], clock) if sufficient else None
+    return ways if there is None else replace(ways, drawn={"nearest_layout": _drawn(scene, *there)})
+
+
+def _side(asked: FeasibilityQuestions, search: Search, own: BoxMove) -> Found | None:
+    """Return the least size of a side of the box, if some gears fit with it."""
+    if own.key.removeprefix("layout.largest_") not in SIDES:
+        return _moved(asked, own)
+    known = least_side(search, asked.scene, own.move, asked.clock)
+    remedy = None if known is None else as_remedy(asked, known, "least")
+    there = None if known is None else asked.edited(((own.move, known.high),))
+    if known is None or remedy is None or there is None:
+        return None
+    return own.change(known.high), remedy, there.scene
+
+
 def _nearest(scene: Scene, changed: Scene, sized: Result, clock: Clock) -> dict[str, Any] | None:
     """A layout of a changed file, and what of the file as it is differs, for a drawing.
 
@@ -123,13 +176,19 @@ def _nearest(scene: Scene, changed: Scene, sized: Result, clock: Clock) -> dict[
     """
     design = drive_design(sized.design)
     pairs = scene.pairs(design)
-    asked, box = scene.gearbox(pairs), changed.gearbox(pairs)
+    box = changed.gearbox(pairs)
     budget = replace(clock.left, seconds=clock.within(SECONDS))
     result, outcome = run(layout.problem(box, None), None, budget, watch=clock.watch)
     if result.value is None or outcome.x is None:
         return None
-    angles, order = read(arrangements(box), outcome.x)
-    arranged = placed(box, order, angles)
+    return _drawn(scene, design, box, *read(arrangements(box), outcome.x))
+
+
+def _drawn(
+    scene: Scene, design: DriveDesign, box: Gearbox, angles: tuple[float, ...], order: Arrangement
+) -> dict[str, Any]:
+    """A layout of a changed file, and what of the file as it is differs."""
+    asked, arranged = scene.gearbox(box.pairs), placed(box, order, angles)
     gone = [keep_out_design(k, arranged) for k in asked.keep_outs if k not in box.keep_outs]
     return {
         "layout": untyped(described(box, order, angles, design)),

@@ -92,20 +92,26 @@ def _allowance(gear: GearTable) -> float:
 
 
 def check_teeth(
-    stages: tuple[StageTable, ...], gears: Gears, lacks: str, objective: str, asked: str
+    stages: tuple[StageTable, ...],
+    gears: Gears,
+    lacks: str,
+    objective: str,
+    asked: str,
+    follows: bool = False,
 ) -> None:
     """Refuse centre distances off the reference circles where the objective cannot take them.
 
     lacks: what a file lacks for gears to be chosen at a given centre distance, or nothing;
     objective: what is minimised; asked: what else takes reference circles, such as gears and box
-    at once, or nothing.
+    at once, or nothing. follows: whether it takes distances from which profile shifts follow.
     """
     for k, table in enumerate(stages):
         if table.centre_distance is not None and lacks:
             rule = f"needs gears that are all given, or {lacks}"
             raise refuse(rule, at=("stage", k, "centre_distance"), action="remove")
         given = table.centre_distance is not None
-        if not (asked or objective in LENGTHS and (not given or lacks)):
+        of_length = objective in LENGTHS and (not given or lacks)
+        if not (of_length or asked and not (given and follows)):
             continue
         if not given and toothing(table, gears).on_reference:
             continue
