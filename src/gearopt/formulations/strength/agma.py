@@ -213,8 +213,8 @@ class Agma:
         widths: tuple[Array, Array],
     ) -> Array:
         """Least widths [mm] over the torque [N mm] without K_v; lives at the slow end."""
-        one = {**BARE, "K_v": 1.0}
-        rows = self._rows(prepared, pair, torque[1], speed[1], safety, one)
+        given = {**BARE, "K_v": 1.0}
+        rows = self._rows(prepared, pair, torque[1], speed[1], safety, given)
         with np.errstate(invalid="ignore"):
             most = np.asarray(agma_nominal(rows.row, self.way, *widths) / torque[1])
         return np.where(np.isnan(most), np.inf, most)

@@ -7,7 +7,7 @@ tried, as a larger one may be the better one where the load-distribution factor 
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import chain
 from typing import Any
 
@@ -15,6 +15,7 @@ import numpy as np
 
 from gearopt.formulations.drive.shares import least_share, objective_share
 from gearopt.formulations.drive.teeth.columns import Index
+from gearopt.formulations.drive.teeth.prepared import Part, Prepared
 from gearopt.formulations.drive.teeth.stage import EDGE, Cells, Grid, Table
 from gearopt.formulations.drive.train import Train
 from gearopt.formulations.strength import ALLOWANCE
@@ -95,27 +96,31 @@ class RatedTable(Table):
         return toothing.shifts(self.modules[module], self.z1[pair], self.z2[pair])
 
     @cached_property
-    def _prepared(self) -> list[list[Any]]:
+    def _prepared(self) -> list[list[Prepared | Part]]:
         """Data that standards take, by option and standard: of pairs, by module those allowed."""
-        pair = (
-            self.made(self.modules[self._shapes[0]], self._shapes[1])
-            if self._by_module
-            else self.made(np.ones(len(self.z1)), slice(None))
-        )
-        found: list[list[Any]] = []
-        known: list[tuple[Standard, Any]] = []
+        prepared: list[list[Prepared | Part]] = []
+        known: list[tuple[Standard, Prepared | Part]] = []
         for option in self.stage.options:
-            made = []
+            prepared.append([])
             for standard in option.standards:
                 others = (p for table in self.others for p in table.known(self, standard))
-                own = (p for s, p in known if s.like(standard))
-                one = next(chain(own, others), None)
-                made.append(standard.prepared(pair) if one is None else one)
-                known.append((standard, made[-1]))
-            found.append(made)
-        return found
+                before = (p for s, p in known if s.like(standard))
+                data = next(chain(before, others), None)
+                if data is None:
+                    count = len(self._shapes[0]) if self._by_module else len(self.z1)
+                    data = Prepared(count, partial(self._made_ready, standard))
+                prepared[-1].append(data)
+                known.append((standard, data))
+        return prepared
 
-    def known(self, other: "RatedTable", standard: Standard) -> Iterator[Any]:
+    def _made_ready(self, standard: Standard, shapes: Index) -> Any:
+        """Data that a standard takes of some shapes: pairs, by module those allowed."""
+        module, pair = np.ones(len(shapes)), shapes
+        if self._by_module:
+            module, pair = self.modules[self._shapes[0][shapes]], self._shapes[1][shapes]
+        return standard.prepared(self.made(module, pair))
+
+    def known(self, other: "RatedTable", standard: Standard) -> Iterator[Prepared | Part]:
         """Data that a like standard took of another table's pairs, where this one has them all."""
         place = self._place(other)
         if place is None:
@@ -127,7 +132,7 @@ class RatedTable(Table):
         for option, made in zip(self.stage.options, self._prepared, strict=True):
             for one, own in zip(option.standards, made, strict=True):
                 if one.like(standard):
-                    yield own if len(place) == count else own.take(place)
+                    yield own if len(place) == count else own.part(place)
 
     @cached_property
     def _counts(self) -> Index:

@@ -1,0 +1,80 @@
+"""What standards take of the teeth of a table, made in blocks when rows first ask for them."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.drive.teeth.columns import Index
+
+BLOCK = 1000  # shapes of teeth that are made at once
+
+
+@dataclass
+class Prepared:
+    """Data of shapes of teeth (count,); it has state, as it keeps what was made.
+
+    make: data of some shapes, a dataclass of arrays, tuples of arrays and numbers.
+    """
+
+    count: int
+    make: Callable[[Index], Any]
+    blocks: dict[int, Any] = field(default_factory=dict)
+    every: Any = None
+
+    def take(self, shapes: Index) -> Any:
+        """Data of some shapes."""
+        if self.every is None:
+            wanted, row = np.unique(shapes // BLOCK, return_inverse=True)
+            last = -(-self.count // BLOCK)
+            if len(wanted) <= last // 2:
+                few = self._joined(wanted if len(wanted) else np.zeros(1, np.int64))
+                return few.take(row * BLOCK + shapes % BLOCK)
+            self.every = self._joined(np.arange(last))
+        return self.every.take(shapes)
+
+    def part(self, place: Index) -> "Part":
+        """Data of shapes at places."""
+        return Part(self, place)
+
+    def _joined(self, numbers: Index) -> Any:
+        for number in numbers.tolist():
+            if number not in self.blocks:
+                first = number * BLOCK
+                shapes = np.arange(first, min(first + BLOCK, self.count))
+                self.blocks[number] = self.make(shapes)
+        sizes = [min(BLOCK, self.count - number * BLOCK) for number in numbers.tolist()]
+        return joined([self.blocks[number] for number in numbers.tolist()], sizes)
+
+
+@dataclass(frozen=True)
+class Part:
+    """Data of the shapes at some places of others."""
+
+    whole: Prepared
+    place: Index
+
+    def take(self, shapes: Index) -> Any:
+        """Data of some shapes."""
+        return self.whole.take(self.place[shapes])
+
+    def part(self, place: Index) -> "Part":
+        """Data of shapes at places."""
+        return Part(self.whole, self.place[place])
+
+
+def joined(tables: Sequence[Any], sizes: Sequence[int]) -> Any:
+    """One table of all rows of several, which have so many each; equal numbers stay one."""
+    first = tables[0]
+    if len(tables) == 1:
+        return first
+    if isinstance(first, tuple):
+        return tuple(joined(columns, sizes) for columns in zip(*tables, strict=True))
+    if hasattr(first, "take") and not isinstance(first, np.ndarray | np.generic):
+        names = [each.name for each in fields(first)]
+        return type(first)(*(joined([getattr(t, n) for t in tables], sizes) for n in names))
+    if all(np.ndim(value) == 0 and value == first for value in tables):
+        return first
+    rows = zip(tables, sizes, strict=True)
+    return np.concatenate([np.broadcast_to(value, size) for value, size in rows])
