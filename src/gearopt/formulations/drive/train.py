@@ -349,10 +349,10 @@ class Train:
 
         toothing: which of its toothings cuts them, from 0; None: any of them.
         """
-        own = self.stages[stage]
-        cuts = own.toothings if toothing is None else (own.toothings[toothing],)
+        asked = self.stages[stage]
+        cuts = asked.toothings if toothing is None else (asked.toothings[toothing],)
         changed = replace(
-            own, pinion_teeth=(pinion, pinion), wheel_teeth=(wheel, wheel), toothings=cuts
+            asked, pinion_teeth=(pinion, pinion), wheel_teeth=(wheel, wheel), toothings=cuts
         )
         return replace(self, stages=self.stages[:stage] + (changed,) + self.stages[stage + 1 :])
 

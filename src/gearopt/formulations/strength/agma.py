@@ -100,8 +100,8 @@ class Agma:
         table = self.prepared(pair)
         bending = table.low[1:] if table.spur else table.high[1:]
         wide = pair.of_width(pair.pinion.reference_diameter)
-        made = safeties(self.case(wide, 1.0, speed, {"K_m": 1.0}), 1.0, bending)
-        return made[0] / made[1]
+        safety = safeties(self.case(wide, 1.0, speed, {"K_m": 1.0}), 1.0, bending)
+        return safety[0] / safety[1]
 
     def choices(self, helical: bool) -> tuple[str, ...]:
         """Return the regimes of which one is fixed beforehand in the smooth form."""

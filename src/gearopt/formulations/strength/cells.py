@@ -68,9 +68,9 @@ class Cells:
         """
         inside = (1.0 + NUDGE, 1.0 - NUDGE)[end]
         sizes = self.module * inside, self.teeth, self.diameter * inside, self.ratio
-        made = self.cut(1 - end).of_diameter(*(size[end] for size in (*sizes, self.width * inside)))
-        wheel = replace(made.wheel, reference_diameter=self.wheel[end] * inside)
-        return replace(made, wheel=wheel)
+        pair = self.cut(1 - end).of_diameter(*(size[end] for size in (*sizes, self.width * inside)))
+        wheel = replace(pair.wheel, reference_diameter=self.wheel[end] * inside)
+        return replace(pair, wheel=wheel)
 
     def of_bodies(self, blank: Blank, member: int, law: Law) -> tuple[Any, Any]:
         """Least and greatest value (n,) of a law of the blanks of a gear.
@@ -119,10 +119,10 @@ class Cells:
             self.toothing if one is None else replace(self.toothing, helix_angle=one)
             for one in angles
         ]
-        made = [law(cut.pair(m, z, z * u, m)) for z, u, m in corners for cut in cuts]
+        numbers = [law(cut.pair(m, z, z * u, m)) for z, u, m in corners for cut in cuts]
         found = {}
-        for name in made[0]:
-            values = np.array([np.broadcast_to(one[name], teeth[0].shape) for one in made])
+        for name in numbers[0]:
+            values = np.array([np.broadcast_to(row[name], teeth[0].shape) for row in numbers])
             values = values.reshape(-1, len(cuts), len(teeth[0]))
             ends, off = values[:, :2], 0.0
             if len(cuts) > 1:

@@ -372,11 +372,11 @@ class IsoCells:
             made = [load_sharing(v, o) for v in virtual for o in self.cells.overlap]
             factor = np.minimum.reduce(made)
         least, most = self.cells.angles
-        own = bending.helix_factor(most, self.cells.overlap[UPPER], practice.edition)
+        inclined = bending.helix_factor(most, self.cells.overlap[UPPER], practice.edition)
         if practice.edition != "2006":  # over the third power of a cosine, which falls
-            own = own * (np.cos(most) / np.cos(least)) ** 3
+            inclined = inclined * (np.cos(most) / np.cos(least)) ** 3
         deep = bending.deep_tooth_factor(self.teeth["virtual"][UPPER], max(practice.grades))
-        return factor * given.get("Y_beta", own) * given.get("Y_DT", deep)
+        return factor * given.get("Y_beta", inclined) * given.get("Y_DT", deep)
 
     def _rim(self, member: int) -> Any:
         """Return the least Y_B, which falls with the backup ratio."""

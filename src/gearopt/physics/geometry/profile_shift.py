@@ -57,11 +57,11 @@ class Meshing:
         total: Any,
     ) -> "Meshing":
         """The meshing of gears whose shifts have a sum x1 + x2, without backlash."""
-        made = cls(module, teeth, helix_angle, racks, np.nan)
-        normal, transverse = made.pressure_angles
+        unit = cls(module, teeth, helix_angle, racks, np.nan)
+        normal, transverse = unit.pressure_angles
         working = working_pressure_angle(total, teeth[0] + teeth[1], normal, transverse)
         shorter = np.cos(transverse) / np.cos(working)
-        return cls(module, teeth, helix_angle, racks, sum(made.reference_radii) * shorter)
+        return cls(module, teeth, helix_angle, racks, sum(unit.reference_radii) * shorter)
 
     @property
     def ratio(self) -> Any:

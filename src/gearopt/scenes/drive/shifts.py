@@ -35,8 +35,8 @@ def balanced(scene: "Scene", own: StageTable, ways: tuple[Toothing, ...]) -> tup
     tables = scene.stage_tables
     place = next(k for k, table in enumerate(tables) if table is own)
     slower = float(scene.duty.total_ratio) ** (place / len(tables))
-    made = scene.rating, (own,), scene.gears, scene.material, scene.duty, scene.load
-    standard = of_stages(*made)[0][0].standards[-1]
+    rating = scene.rating, (own,), scene.gears, scene.material, scene.duty, scene.load
+    standard = of_stages(*rating)[0][0].standards[-1]
     speed, cut = scene.duty.input_speed.value / slower, ways[0]
     assert cut.shifting is not None
     balance = RootBalance(standard, speed, cut.thickness_allowances)

@@ -73,7 +73,7 @@ def agma_nominal(at: AgmaRow, way: AgmaWay, low: Any, high: Any) -> Any:
 
 
 def part(at: AgmaRow, way: AgmaWay, low: Any, factors: Three, width: Any) -> Any:
-    """Return what is used at a width, with I and J and with K_m and K_s of a width up to it."""
+    """Part that is used at a width, with I and J and with K_m and K_s of a width up to it."""
     pitting, first, second = factors
     spread = distributed(low, at.diameter, way.curve, way.shared) if np.isnan(way.K_m) else 1.0
     sizes = (1.0, 1.0)
