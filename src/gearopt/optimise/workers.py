@@ -58,7 +58,8 @@ class Workers:
             self.pool.shutdown(wait=False, cancel_futures=True)
         for child in self.children:
             child.kill()
-            child.join()
+            while child.is_alive():  # as it seems until the pool, which may reap it first, knows
+                child.join(PAUSE)
         self.pool, self.children = None, ()
 
 
