@@ -315,10 +315,10 @@ def test_progress_counts_the_runs_and_the_time_left():
     watch = lambda p: seen.append(p) is None  # noqa: E731
     gearopt.compare(box(**methods), methods=("cube",), seeds=3, watch=watch, **SMALL)
     starts = [p for p in seen if p.event is None]
-    assert [(p.done, p.total, p.seed) for p in starts] == [
+    assert [(p.done, p.total, p.seed) for p in starts] == [(0, 0, 0)] + [  # the start-up
         (k, 6, seed) for k, seed in enumerate((0, 0, 1, 1, 2, 2))
     ]
-    assert all(p.left >= 0.0 for p in seen) and len(seen) == 12
+    assert all(p.left >= 0.0 for p in seen) and len(seen) == 13
     events = [p.event for p in seen if p.event is not None]
     assert {(e.part, e.objective, e.unit) for e in events} == {("box", "inverse", "")}
 

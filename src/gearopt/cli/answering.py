@@ -261,7 +261,7 @@ def _announced(watch: Callable[[Progress], bool]) -> Callable[[Progress], bool]:
 
 def _words(now: Progress) -> str:
     if not now.total:
-        return f"a bound from {now.method}"
+        return f"{'start-up of' if now.event is None else 'a bound from'} {now.method}"
     parts = [f"run {now.done + 1} of {now.total}: {now.method}, seed {now.seed}"]
     parts += [] if now.event is None else reached(now.event)
     return ", ".join([*parts, f"about {_time(now.left)} left"])

@@ -130,7 +130,7 @@ def compare(
     import casadi  # noqa: F401  # every check needs it: its import is no method's start-up
 
     plan = plan or Plan()
-    entries = entered(methods, lambda method: enter(method, model))
+    entries = entered(methods, lambda method: enter(method, model), watch)
     bound = None if bound_from is None else _bound(bound_from, model, watch)
     runs, message = work(entries, attempt, plan, watch)
     return compared(_groups(entries, runs, bound), entries, plan, message, bound_from=bound_from)

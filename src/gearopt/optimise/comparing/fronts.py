@@ -96,7 +96,7 @@ def compare_fronts(
     import casadi  # noqa: F401  # every check needs it: its import is no method's start-up
 
     plan, goal = plan or Plan(), Goal(tuple(names), dict(most or {}), limiting)
-    entries = entered(methods, lambda method: _enter(method, model, goal))
+    entries = entered(methods, lambda method: _enter(method, model, goal), watch)
     models = {e.model.problem.name: e.model for e in entries if e.model is not None}
     known = {name: _standard(one, goal, watch, bound_from) for name, one in models.items()}
 

@@ -45,9 +45,18 @@ class Entry:
     refused: str = ""
 
 
-def entered(methods: Sequence[str], enter: Callable[[str], Entry]) -> list[Entry]:
-    """Return the entry of every method; SolveError where none takes the problem."""
-    entries = [enter(method) for method in dict.fromkeys(methods)]
+def entered(
+    methods: Sequence[str], enter: Callable[[str], Entry], watch: Follow | None
+) -> list[Entry]:
+    """Return the entry of every method; SolveError where none takes the problem.
+
+    watch is told of each before its start-up, as run 0 of 0; to stop there is to make no run.
+    """
+    entries = []
+    for method in dict.fromkeys(methods):
+        if watch is not None:
+            watch(Progress(0, 0, method, 0, 0.0))
+        entries.append(enter(method))
     if not any(not e.refused for e in entries):
         raise SolveError(
             "; ".join(dict.fromkeys(e.refused for e in entries)) or "no method was named"
