@@ -24,9 +24,7 @@ FAMILIES = [(seed, QUICK, 1_000, 2) for seed in range(11)]
 MORE = [(seed, METHODS, 20_000, 12) for seed in range(11, 22, 2)]
 
 
-@pytest.mark.parametrize(
-    ("seed", "methods", "evaluations", "starts"), few([*FAMILIES, *MORE], len(FAMILIES))
-)
+@pytest.mark.parametrize(("seed", "methods", "evaluations", "starts"), few([*FAMILIES, *MORE], 7))
 def test_problems_of_every_family(seed, methods, evaluations, starts):
     own = case(seed)
     best, _ = reference(own, starts)

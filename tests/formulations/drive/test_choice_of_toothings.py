@@ -55,7 +55,7 @@ SLOW = pytest.mark.slow
 @pytest.mark.parametrize(
     ("options", "angles", "face"),
     [
-        (by("agma"), ((0.0, 25.0), (8.0,)), FREE),
+        pytest.param(by("agma"), ((0.0, 25.0), (8.0,)), FREE, marks=SLOW),
         (by("iso", "agma"), ((0.0, 12.0),), FaceWidth(F(1, 2), F(1, 2))),
         pytest.param(by("iso"), ((8.0, 15.0),), FaceWidth(F(3, 10), F(1), F(2)), marks=SLOW),
     ],

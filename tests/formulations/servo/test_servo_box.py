@@ -109,6 +109,7 @@ def test_between_the_degrees_of_a_grid_there_is_room_for_less_error():
     assert solve(servo_box.problem(better)).value < 1.0
 
 
+@pytest.mark.slow
 def test_annealing_finds_the_same_box():
     text = servo_box.problem(GEOMETRY)
     found = solve(text, "annealing", Budget(evaluations=10_000), seed=2)

@@ -39,11 +39,10 @@ def alone(tmp_path_factory):
     ("limit", "goes"),
     [
         ("coaxial = true", lambda a, b: a == b),
-        pytest.param(
-            'sum_of_centre_distances = ["237 mm", "240 mm"]', lambda a, b: a + b == 237, marks=slow
-        ),
+        ('sum_of_centre_distances = ["237 mm", "240 mm"]', lambda a, b: a + b == 237),
     ],
 )
+@slow
 def test_the_best_distances_are_those_of_each_row_alone(tmp_path, alone, limit, goes):
     result = gearopt.solve(written(tmp_path, asked(limit)), remedies=False)
     least = min(value for pair, value in alone.items() if goes(*pair))

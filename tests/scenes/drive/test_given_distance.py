@@ -132,7 +132,9 @@ def shares(train, k, torque, ratios, limits=(0.2, 1.1, 3.0), shift=None):
                     yield float(pair.of_width(width).volume), module, z1, z2
 
 
-@pytest.mark.parametrize("limits", [(0.2, 1.3, 3.0), (0.2, 1.1, 2.0)])
+@pytest.mark.parametrize(
+    "limits", [(0.2, 1.3, 3.0), pytest.param((0.2, 1.1, 2.0), marks=pytest.mark.slow)]
+)
 def test_the_best_pair_of_a_distance_is_that_of_all_pairs(limits, tmp_path, monkeypatch):
     """And of every pair its best module, whether they are tried at once or one by one.
 

@@ -33,6 +33,7 @@ def test_the_best_shift_of_the_pinion_is_that_of_all_pairs(tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_a_list_of_shifts_is_the_best_of_each_alone_at_several_distances(tmp_path):
     def solved(shifts, distances='["118 mm", "125 mm"]'):
         text = FEW.replace('"125 mm"', distances)
