@@ -133,7 +133,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
     },
     "Packing of cylinders": {
         "six_cylinders": "Three large and three small ones; the number of layers is chosen too.",
-        "six_cylinders_one_layer": "In one layer, which is the best known of all.",
+        "six_cylinders_one_layer": "In one layer, which is the best found of all.",
         "six_cylinders_two_layers": "In just two layers, proven.",
         "six_cylinders_three_layers": "In just three layers, proven.",
         "six_cylinders_row": "Some cylinders fixed by `at`: the large ones in a row.",

@@ -3,6 +3,7 @@
 import io
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -340,6 +341,22 @@ def test_every_option_has_help(here):
     for command in ("solve", "check", "schema", "new", "doctor", "bench"):
         done = here(command, "--help")
         assert done.returncode == 0 and "Usage" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("command", "file"),
+    [
+        ("explain", "unstable_speed"),
+        ("solve", "sandgren_train"),
+        ("rate", "shigley_14_4"),
+    ],
+)
+def test_what_a_command_says_names_its_own_options(command, file, here):
+    said = here(command, ROOT / "problems" / f"{file}.toml").stdout
+    options = set(re.findall(r"(?<!\S)--[a-z-]+", here(command, "--help").stdout))
+    named = [set(re.findall(r"(?<!\S)--[a-z-]+", line)) for line in said.splitlines()]
+    assert any(named)
+    assert set().union(*named) <= options
 
 
 @pytest.mark.slow

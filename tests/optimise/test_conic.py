@@ -244,7 +244,7 @@ def test_finite_sets_in_a_cone_program():
         assert result.status == "optimal" and result.gap < 1e-8
         assert result.value == pytest.approx(value, rel=1e-12)
         assert set(result.design["t_mm"]) <= set(problem.variables[0].values)
-        parts = f"{result.proof['nodes']:,} parts of its box."
+        parts = f"{result.proof['nodes']:,} parts of the ranges of variables."
         assert result.proof["nodes"] > 1 and result.proof["sentence"].endswith(parts)
     impossible = solve(problem.at(budget=0.03))
     assert impossible.status == "infeasible" and impossible.proof["conflict"] == ["rss"]

@@ -10,7 +10,7 @@ from gearopt.optimise.stationarity import evaluated, no_minimum
 from gearopt.optimise.terms import Terms, Var
 
 NAMES = "abcd"
-OPEN = "not known to be a minimum: limits are active with zero multipliers"
+OPEN = "not known to be a minimum: limits are active with Lagrange multipliers of zero"
 
 
 def word(minimise, at, ends=(-3.0, 3.0), guess=1.0, rows=(), prices=(), equal=(), forces=()):

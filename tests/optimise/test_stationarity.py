@@ -396,7 +396,7 @@ def test_limits_without_a_price_leave_a_minimum_open():
     verdict = certify(problem, Outcome(np.zeros(2)), 1e-6)
     assert (
         verdict.status == "feasible"
-        and "minimum: limits are active with zero multipliers" in verdict.message
+        and "minimum: limits are active with Lagrange multipliers of zero" in verdict.message
     )
     blocked = plane(lambda a, b: -a * b, -3.0, 3.0, (0.0, 0.0), lambda a, b: 1.0 + a + b)
     verdict = certify(blocked, Outcome(np.zeros(2)), 1e-6)

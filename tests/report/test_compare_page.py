@@ -157,7 +157,9 @@ def test_verdicts():
     )
     unknown = replace(group, proven=False, bound_from="")
     assert "Nothing is proven here" in words.reference(unknown)
-    assert "best known" in words.verdict(unknown, ipopt)
+    assert "best design found" in words.verdict(unknown, ipopt)
+    volume = replace(unknown, objective="volume")
+    assert "from the best container volume found, " in words.reference(volume, "packing")
 
 
 @pytest.mark.parametrize(
@@ -238,7 +240,7 @@ def test_gaps_to_a_bound_of_zero_are_said_in_the_scale_of_the_objective(found):
     (group,) = found.groups
     group = replace(group, reference=-1.4e-73, best=1.7e-3, scale=4.0, proven=True, bound_from="qp")
     said = words.reference(group)
-    assert "scale, 4" in said and "best known is 0.0017" in said and "e-73" not in said
+    assert "scale, 4" in said and "best found is 0.0017" in said and "e-73" not in said
     assert "%" not in said
     assert "a feasible point attains: it is the optimum" in words.reference(
         replace(group, best=1e-9)

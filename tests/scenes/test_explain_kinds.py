@@ -63,6 +63,21 @@ def test_a_changed_file_that_is_not_decided_does_not_cost_the_answer(monkeypatch
     assert found.message.endswith("solving again gave no certain answer: this is not decided")
 
 
+@pytest.mark.parametrize(("status", "words"), [("limit", "the time suff"), ("feasible", "method")])
+def test_a_proven_answer_is_not_called_unproven(status, words, monkeypatch):
+    """What solves the answer again may end early, or be a method that proves less."""
+    own = explanations.run
+
+    def early(*given, **more):
+        result, outcome = own(*given, **more)
+        return replace(result, status=status), outcome
+
+    monkeypatch.setattr(explanations, "run", early)
+    found = gearopt.explain(scene(TRAIN))
+    assert found.result.status == "optimal" and found.influences == ()
+    assert words in found.message and "not proven optimal" not in found.message
+
+
 def slope(text, old, new, step=1e-4):
     """D ln objective / d ln number by solving moved files; new: the text of a factor."""
     ends = [gearopt.solve(scene(text.replace(old, new(f)))) for f in (1 - step, 1 + step)]

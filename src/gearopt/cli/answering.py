@@ -174,7 +174,7 @@ def explain(
         from gearopt.report.shown import answered
         from gearopt.report.terminal import show as show_result
 
-        show_result(answered(explanation), console(), measures)
+        show_result(answered(explanation), console(), measures, explained=True)
     else:
         from gearopt.report.terminal import show_explanation
 

@@ -43,8 +43,13 @@ CONVEX_IN_LOGARITHMS, CONVEX_QUADRATIC = (
     f"Proof: {shape}; the bound is a dual one, computed from our own derivatives."
     for shape in ("the problem is convex in logarithms", "a convex quadratic program")
 )
-SEARCHED = "Proof: the box in parts, each bounded by duals of linear rows or by intervals."
-EMPTY = "Proof: the box in parts, each shown by linear rows or by intervals to hold no point."
+SEARCHED, EMPTY = (
+    f"Proof: the ranges of the variables in parts, each {shown}."
+    for shown in (
+        "bounded by linear programming or by intervals",
+        "shown by linear programming or by intervals to hold no point",
+    )
+)
 
 
 @dataclass(frozen=True)

@@ -208,7 +208,7 @@ def _curved(point: Point) -> Doubt:
     for value, d in _eigen(cone.curved, np.vstack([cone.firm, cone.loose])):
         if value <= -FLAT:
             return _down(point, cone, d)
-    return Doubt("not known to be a minimum: limits are active with zero multipliers")
+    return Doubt("not known to be a minimum: limits are active with Lagrange multipliers of zero")
 
 
 def _kinked(point: Point, name: str) -> Doubt:

@@ -51,14 +51,21 @@ PROOFS = {  # methods of proofs: what their names mean
     "dual": "dual bound",
     "exhausted": "exhaustive search",
     "patterns": "search of contact patterns",
+    "spatial": "spatial branch and bound",
     "subdivision": "subdivision of the width",
     "volume": "volume of the cylinders",
 }
 CHECKS = {  # of a certificate: what each number is
     "feasibility": "largest violation of a limit",
-    "stationarity": "largest gradient left in the Lagrangian, relative",
-    "complementarity": "largest product of multiplier and slack, relative",
+    "stationarity": "largest gradient of the Lagrangian, 0 at an optimum, relative",
+    "complementarity": "largest product of a Lagrange multiplier and the margin of its limit, "
+    "0 at an optimum, relative",
     "scale": "of the objective, which is zero: the gap is relative to it",
+}
+COUNTED = {  # further keys of a proof in words
+    "boxes": "parts of the ranges examined",
+    "nodes": "partial designs or ranges examined",
+    "pruning_margin": "relative margin of what is excluded",
 }
 ELSEWHERE = ("gearopt", "kind", "title", "source")  # keys of a file that stand at other places
 EARLIEST = 1e-4  # s; the logarithmic axis begins here at the earliest
@@ -202,7 +209,10 @@ def meaning(result: Result) -> str:
         early = "The run ended early. " if status == "limit" else ""
         return f"{early}The given design was evaluated, not optimised{ends}."
     if status == "stationary":
-        return "No small change improves the design; a better one may exist elsewhere."
+        return (
+            "First-order optimality conditions verified: no small change improves the design; a "
+            "better one may exist elsewhere."
+        )
     if result.value is None:
         return "No design was found; that is no proof that there is none."
     early = "The run ended early. " if status == "limit" else ""
@@ -274,7 +284,7 @@ def _checks(result: Result) -> Table | None:
     for key, value in result.proof.items():
         if key not in SHOWN_ELSEWHERE and not isinstance(value, Mapping | list):
             text = f"{value:.3g}" if isinstance(value, float) else number(value)
-            rows.append((key.replace("_", " "), Cell(value, text)))
+            rows.append((COUNTED.get(key, key.replace("_", " ")), Cell(value, text)))
             if text in str(result.proof.get("sentence", "")):
                 spoken.append(rows[-1][0])
     if not rows:
@@ -282,12 +292,14 @@ def _checks(result: Result) -> Table | None:
     return Table("checks", ("", ""), rows, csv_only=spoken, folded=len(spoken) == len(rows))
 
 
-def assumed(result: Result) -> list[str]:
-    """Where the assumptions of a result are listed, as one sentence; none where it has none."""
+def assumed(result: Result, lists: str = "--html and --json list") -> list[str]:
+    """Where the assumptions of a result are listed, as one sentence; none where it has none.
+
+    lists: what lists them, of the command or of Python, with its verb.
+    """
     count = len(result.report.get("assumptions", ()))
-    if count == 1:
-        return ["1 assumption; --html and --json list it."]
-    return [f"{count} assumptions; --html and --json list them."] if count else []
+    words = "1 assumption; {} it." if count == 1 else f"{count} assumptions; {{}} them."
+    return [words.format(lists)] if count else []
 
 
 def assumptions(result: Result | Front, measures: Measures) -> Section | None:

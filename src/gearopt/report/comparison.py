@@ -15,7 +15,7 @@ from gearopt.optimise.comparing.comparison import (
 )
 from gearopt.optimise.scale import is_known
 from gearopt.report.measures import read_in
-from gearopt.report.words import amount
+from gearopt.report.words import amount, goal_words
 
 GAP_ROUNDING = 1e-12  # a gap below it is rounding
 COLUMNS = (  # of a table: heading, unit, what it says
@@ -57,6 +57,11 @@ def cells(comparison: Comparison, sample: Sample) -> tuple[str, ...]:
     return (*row, percent(s.distance)) if comparison.objectives else row
 
 
+def counted(count: int, what: str) -> str:
+    """A number of things in words: "1 seed", "25 seeds"."""
+    return f"{count} {what}{'s' * (count != 1)}"
+
+
 def percent(gap: float | None) -> str:
     """A gap in percent; "none" where there is no feasible point."""
     if gap is None:
@@ -76,9 +81,15 @@ def kinds(comparison: Comparison) -> tuple[tuple[str, str, str], ...]:
     )
 
 
-def reference(group: Group) -> str:
-    """Reference from which the gaps of a group are measured."""
-    name = group.objective.replace("_", " ")
+def heading(comparison: Comparison, group: Group) -> str:
+    """What the methods of a group are compared on."""
+    names = [goal_words(name, comparison.scene) for name in comparison.objectives]
+    return f"Front of {', '.join(names)}" if names else group.words or group.model
+
+
+def reference(group: Group, scene: str | None = None) -> str:
+    """Reference from which the gaps of a group of a kind of file are measured."""
+    name = goal_words(group.objective, scene)
     proving = [row.method for row in group.rows if _impossible(row)]
     if proving:
         return f"No design meets all limits, proven ({', '.join(proving)}): there are no gaps."
@@ -90,7 +101,7 @@ def reference(group: Group) -> str:
     value = amount(0.0 if zero else group.reference, unit_of(group))
     if not group.proven:
         return (
-            f"Nothing is proven here: gaps are measured from the best {name} known, {value}, which "
+            f"Nothing is proven here: gaps are measured from the best {name} found, {value}, which "
             "may itself not be the optimum."
         )
     words = f"Gaps are measured from the proven lower bound of the {name}, {value}"
@@ -103,9 +114,9 @@ def reference(group: Group) -> str:
         return f"{words}), which a feasible point attains: it is the optimum."
     if zero:
         above = amount(group.best - group.reference, unit_of(group))
-        return f"{words}). The best known is {above} above it; the optimum lies between."
+        return f"{words}). The best found is {above} above it; the optimum lies between."
     apart = 100.0 * excess(group.best, group.reference, group.scale)
-    return f"{words}). The best known is {apart:.2g} % above it; the optimum lies between."
+    return f"{words}). The best found is {apart:.2g} % above it; the optimum lies between."
 
 
 def unit_of(group: Group) -> str:
@@ -149,8 +160,8 @@ def verdict(group: Group, row: Row) -> str:
     if s.without == s.seeds and not row.random:
         return f"no feasible point{' before the time ended its one run' if ended else ''}{why}"
     if s.without == s.seeds:
-        return f"no feasible point in any of {s.seeds} seeds{why}"
-    than = "proven optimum" if _closed(group) else "bound" if group.proven else "best known"
+        return f"no feasible point in any of {counted(s.seeds, 'seed')}{why}"
+    than = "proven optimum" if _closed(group) else "bound" if group.proven else "best design found"
     reaches, apart = f"reaches the {than}", f"% above the {than}"
     if group.front:
         reaches, apart = "has the whole front", "% of the hypervolume is missing"
@@ -160,7 +171,7 @@ def verdict(group: Group, row: Row) -> str:
             return f"{reaches} in {s.seconds:.2g} s, {once}"
         return f"{percent(s.median_gap)} {apart}, {once}"
     missed = f", {s.without} without a feasible point{why}" if s.without else ""
-    close = f"{round(s.close * s.seeds)} of {s.seeds} seeds within 0.1 %{missed}"
+    close = f"{round(s.close * s.seeds)} of {counted(s.seeds, 'seed')} within 0.1 %{missed}"
     if s.median_gap is None:
         return f"no feasible point in the median seed; {close}"
     if s.median_gap <= PROOF_GAP:
@@ -183,7 +194,7 @@ def ended(comparison: Comparison, row: Row) -> str:
     late = [run for run in runs if run.seconds >= patience and run.evaluations < planned]
     if not late:
         return ""
-    return f"{len(late)} runs of {row.method} ended by the clock, after {patience:g} s"
+    return f"{counted(len(late), 'run')} of {row.method} ended by the clock, after {patience:g} s"
 
 
 def settings(values: Mapping[str, Any]) -> str:
@@ -223,9 +234,9 @@ FAIRNESS = (
     "All methods of a table solve the same model from the same file, with settings fixed "
     "beforehand and none tuned to the problem.",
     "Equal evaluations: a run ends at the given number of evaluations, as its method counts them, "
-    "to within one generation, sweep or expansion. Equal time: a run ends at the given wall time "
-    "of the method alone; checking its answer is not counted. A method that is done earlier ends "
-    "earlier; a run by evaluations is stopped by the clock at ten times the time budget.",
+    "to within one generation, sweep or partial design. Equal time: a run ends at the given wall "
+    "time of the method alone; checking its answer is not counted. A method that is done earlier "
+    "ends earlier; a run by evaluations is stopped by the clock at ten times the time budget.",
     "Start-up (imports, tracing, building the model) is the time of a first short call less that "
     "of the same call again; no other number includes it. A library that methods share is charged "
     "to the first of them; CasADi, which our own check needs, to none.",

@@ -9,7 +9,7 @@ from gearopt.optimise.pareto.measures import neighbours
 from gearopt.report.design_tables import OF_TEETH
 from gearopt.report.measures import METRIC, Measures, read_in, rounded
 from gearopt.report.section import Cell, Table, cell
-from gearopt.report.words import MODULE, SECONDS, number, sentence
+from gearopt.report.words import MODULE, SECONDS, goal_words, number, sentence
 
 ROWS_ON_TERMINAL = 24  # rows on the terminal; the page and the CSV hold all
 VERDICTS = {
@@ -33,7 +33,7 @@ DEFAULTS = {"seconds": SECONDS, "seed": 0}
 def title(front: Front) -> str:
     """The name of a front: that of its file or problem, and its objectives."""
     of = front.title or front.file or front.name
-    return f"{of}: {' against '.join(words(name) for name in front.names)}"
+    return f"{of}: {' against '.join(words(front, name) for name in front.names)}"
 
 
 def verdict(front: Front) -> tuple[str, str]:
@@ -47,10 +47,11 @@ def verdict(front: Front) -> tuple[str, str]:
     return f"{words} ({scope})" if scope else words, colour
 
 
-def words(name: str) -> str:
+def words(front: Front, name: str) -> str:
     """The name of an objective as it is read, with the load in per cent that it is at."""
-    name, _, load = name.replace("_", " ").partition(" at ")
-    return f"{name} at {load.replace(' ', '.')} %" if load else name
+    name, _, load = name.partition("_at_")
+    said = goal_words(name, front.scene)
+    return f"{said} at {load.replace('_', '.')} %" if load else said
 
 
 def decided(front: Front, measures: Measures = METRIC) -> list[str]:
@@ -59,7 +60,7 @@ def decided(front: Front, measures: Measures = METRIC) -> list[str]:
     count = len(front.points)
     if count:
         ends = "; ".join(
-            f"{words(objective.name)} {_span(front, k, measures)}"
+            f"{words(front, objective.name)} {_span(front, k, measures)}"
             for k, objective in enumerate(front.objectives)
         )
         designs = "1 design" if count == 1 else f"{count:,} designs"
@@ -110,7 +111,7 @@ def picked(front: Front, measures: Measures = METRIC) -> list[str]:
 def _values(front: Front, place: int, measures: Measures) -> str:
     point = front.points[place]
     pairs = zip(front.objectives, point.values, strict=True)
-    text = ", ".join(f"{words(o.name)} {measures.amount(v, unit_of(o))}" for o, v in pairs)
+    text = ", ".join(f"{words(front, o.name)} {measures.amount(v, unit_of(o))}" for o, v in pairs)
     return text[0].upper() + text[1:]
 
 
@@ -122,7 +123,7 @@ def _beside(front: Front, place: int) -> str:
     rows = []
     for other in neighbours(values, place):
         changes = [
-            f"{words(objective.name)} {_change(after / before - 1.0)}"
+            f"{words(front, objective.name)} {_change(after / before - 1.0)}"
             for objective, before, after in zip(
                 front.objectives, values[place], values[other], strict=True
             )
@@ -144,7 +145,6 @@ def table(front: Front, measures: Measures = METRIC, most: int | None = None) ->
     most: rows; the picks and the ends are among them.
     """
     kept = chosen(front, most)
-    heads = [head(objective, measures) for objective in front.objectives]
     taken = rules(front)
     gears = any(stages_of(p.design) for p in front.points)
     apart = _apart(front, measures)
@@ -162,7 +162,7 @@ def table(front: Front, measures: Measures = METRIC, most: int | None = None) ->
         for k in kept
     ]
     last = [f"{measures.module[1]}, z1/z2", *apart] if gears else []
-    return Table("front", ("", *heads, "pick", *last), rows, wrap=10)
+    return Table("front", ("", *heads(front, measures), "pick", *last), rows, wrap=10)
 
 
 def rules(front: Front) -> dict[int, list[str]]:
@@ -187,10 +187,11 @@ def unit_of(objective: Objective) -> str:
     return read_in(objective.name, objective.unit)
 
 
-def head(objective: Objective, measures: Measures) -> str:
-    """Head of an objective's column, with the unit."""
-    sign = measures.unit(unit_of(objective))
-    return f"{words(objective.name)} [{sign}]" if sign else words(objective.name)
+def heads(front: Front, measures: Measures) -> tuple[str, ...]:
+    """Heads of the columns of the objectives, with their units."""
+    signs = [measures.unit(unit_of(objective)) for objective in front.objectives]
+    names = [words(front, name) for name in front.names]
+    return tuple(f"{n} [{s}]" if s else n for n, s in zip(names, signs, strict=True))
 
 
 def stages_of(design: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:

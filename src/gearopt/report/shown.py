@@ -170,7 +170,7 @@ def compared_lines(comparison: Comparison) -> str:
     """The verdict of every method, model by model."""
     rows = [f"{comparison.title}: methods compared"]
     for group in comparison.groups:
-        rows.append(comparison_words.reference(group))
+        rows.append(comparison_words.reference(group, comparison.scene))
         rows += (f"{row.method}: {comparison_words.verdict(group, row)}" for row in group.rows)
     return _joined(rows)
 
@@ -181,7 +181,7 @@ def fragment(result: Result) -> str:
     sections = (make(result, METRIC) for make in pages_of_result(result).terminal)
     blocks = [block for section in sections if section is not None for block in section.terminal]
     first = [decided(result), *leading(result), *pages_of_result(result).warns(result)]
-    return _html(_head(result), [*first, *blocks, *assumed(result)])
+    return _html(_head(result), [*first, *blocks, *assumed(result, 'report["assumptions"] lists')])
 
 
 def explained_fragment(explanation: Explanation) -> str:
@@ -199,7 +199,7 @@ def compared_fragment(comparison: Comparison) -> str:
     """A comparison as HTML for a notebook: verdicts and numbers of every method."""
     blocks: list[Block] = []
     for group in comparison.groups:
-        blocks += [comparison_words.reference(group)]
+        blocks += [comparison_words.reference(group, comparison.scene)]
         blocks += [f"{r.method}: {comparison_words.verdict(group, r)}" for r in group.rows]
         for field, name, budget in comparison_words.kinds(comparison):
             heads = [

@@ -96,8 +96,10 @@ def _text(cell: Cell) -> Text:
     return Text(cell.text if cell.short is None else cell.short, style="bold" if full else "")
 
 
-def show(result: Result, console: Console, measures: Measures = METRIC) -> None:
-    """Print a result."""
+def show(
+    result: Result, console: Console, measures: Measures = METRIC, explained: bool = False
+) -> None:
+    """Print a result; explained: by a command that writes no page."""
     words, colour = verdict(result)
     name, unit, value, _, _ = goal(result)
     known = "" if value is None or "achieved" in result.report else amount(value, unit, measures)
@@ -110,7 +112,7 @@ def show(result: Result, console: Console, measures: Measures = METRIC) -> None:
     for make in pages_of_result(result).terminal:
         if (section := make(result, measures)) is not None:
             _print(section.terminal, console)
-    for sentence in assumed(result):
+    for sentence in assumed(result, *["--json lists"] * explained):
         console.print(Text(sentence, style="dim"))
 
 
@@ -153,7 +155,9 @@ def show_comparison(comparison: Comparison, console: Console) -> None:
         _group(comparison, group, console)
     console.print()
     for row in (row for group in comparison.groups for row in group.rows if not row.refused):
-        kind = f"{len(comparison.seeds)} seeds" if row.random else "deterministic, one run"
+        kind = (
+            words.counted(len(comparison.seeds), "seed") if row.random else "deterministic, one run"
+        )
         settings = words.settings(comparison.settings[row.method])
         line = (
             f"{row.method}: {kind}; evaluation = {row.counts}; "
@@ -167,8 +171,8 @@ def show_comparison(comparison: Comparison, console: Console) -> None:
 
 def _group(comparison: Comparison, group: Group, console: Console) -> None:
     console.print()
-    console.print(Text(group.words or group.model, style="bold"))
-    console.print(Text(words.reference(group)))
+    console.print(Text(words.heading(comparison, group), style="bold"))
+    console.print(Text(words.reference(group, comparison.scene)))
     for row in group.rows:
         console.print(Text(f"- {row.method}: {words.verdict(group, row)}"))
     for field, name, budget in words.kinds(comparison):

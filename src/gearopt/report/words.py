@@ -34,6 +34,17 @@ GOALS = {  # objectives whose names alone do not say of what they are, by kind
     "packing.area": "plan area",
     "packing.volume": "container volume",
     "pair.peak_to_peak": "peak-to-peak transmission error",
+    "strain_wave.pressure": "contact pressure of conjugate pairs",
+}
+NAMES = {  # of numbers of designs, where their keys are not what is said
+    "sector": "last wheel, share of a disc",
+    "equal_pressure": "contact pressure of conjugate pairs",
+    "shared_pressure": "contact pressure, load shared",
+}
+LIMITS = {  # the same of limits
+    "multiplier": "Floquet multiplier",
+    "rss": "root-sum-square error",
+    "worst_case": "worst-case error",
 }
 INVERSE = {"inverse acceleration": ("acceleration", "rad/s²")}  # name and unit of the inverse
 SECONDS = 60.0  # that a run may take
@@ -44,9 +55,10 @@ DEFAULTS = {"seconds": SECONDS, "seed": 0, "top": TOP_ON_PAGE}
 def limit_words(name: str, staged: bool = True) -> str:
     """`k_factor[2]` as "K-factor of stage 2"; not staged, of a user's problem, as [2]."""
     stem, _, index = name.rstrip("]").partition("[")
+    said = LIMITS[stem] if staged and stem in LIMITS else _stem_words(stem)
     if not index:
-        return _stem_words(stem)
-    return f"{_stem_words(stem)} of stage {index}" if staged else f"{_stem_words(stem)}[{index}]"
+        return said
+    return f"{said} of stage {index}" if staged else f"{said}[{index}]"
 
 
 def has_stages(result: Result) -> bool:
@@ -109,7 +121,7 @@ def edit(change: Mapping[str, Any]) -> str:
 def heading(key: str, measures: Measures = METRIC) -> str:
     """`face_width_mm` as "face width [mm]", `left_mm` as "left side at [mm]"."""
     stem, suffix = parted(key, measures)
-    words = f"{stem} side at" if stem in SIDES else stem.replace("_", " ")
+    words = f"{stem} side at" if stem in SIDES else NAMES.get(stem, stem.replace("_", " "))
     return f"{words} [{measures.unit(suffix)}]" if suffix else words
 
 
@@ -228,7 +240,12 @@ def title(result: Result) -> str:
 def objective(result: Result) -> tuple[str, str]:
     """The name of the objective in words, and its unit as a key has it."""
     name, unit = (str(result.objective.get(key, "")) for key in ("name", "unit"))
-    return GOALS.get(f"{result.scene}.{name}", name.replace("_", " ")), read_in(name, unit)
+    return goal_words(name, result.scene), read_in(name, unit)
+
+
+def goal_words(name: str, scene: str | None) -> str:
+    """The name of an objective of a kind of file (None: of one's own problem) in words."""
+    return GOALS.get(f"{scene}.{name}", name.replace("_", " "))
 
 
 def goal(result: Result) -> tuple[str, str, float | None, float | None, str]:

@@ -213,6 +213,7 @@ def test_what_exact_claims():
     assert best.finished and not best.infeasible and best.others == () and best.message == ""
     assert best.bound == pytest.approx(trains.values.min(), rel=1e-12)
     assert best.proof["method"] == "exhausted" and best.proof["pruning_margin"] == MARGIN
+    assert f"(partial designs examined: {best.proof['nodes']:,})." in best.proof["sentence"]
     assert 0 < best.proof["trains_compared"] <= best.evaluations and best.proof["nodes"] > 0
     assert len(outcome(train, 2).others) == 1
     listed = outcome(train, 5)

@@ -25,7 +25,7 @@ HEADINGS = (
     "Result",
     "Total ratio",
     "Train",
-    "In the box",
+    "Train and box",
     "Error and inertia",
     "Error and mass",
     "Where the error comes from",
@@ -49,7 +49,7 @@ def found(result):
 
 
 def drawing(result):
-    (found,) = (s for s in sections(result) if s.heading == "In the box")
+    (found,) = (s for s in sections(result) if s.heading == "Train and box")
     return ET.fromstring(found.drawings[0].svg)
 
 
@@ -124,8 +124,14 @@ def test_steps_of_the_errors_add_up_to_the_total(result, found):
     limit = figure.layout["shapes"][0]
     assert limit["x0"] == limit["x1"] == pytest.approx(0.12, rel=1e-9)
     over = replace(result, limits=result.limits | {"error": 1.25})
-    said = {s.heading: s for s in sections(over)}["Where the error comes from"].words[0]
-    assert said == "All sources at their limits exceed the limit by 0.023950°."
+    section = {s.heading: s for s in sections(over)}["Where the error comes from"]
+    old = ", with the old tolerances"  # beside which new ones stand
+    assert section.words[0] == f"All sources at their limits exceed the limit by 0.023950°{old}."
+    assert section.figures[0].caption.endswith(f"{old}.")
+    assert section.tables[0].heads[3] == "old tolerance [µm]"
+    tile = next(t for t in found["Result"].tiles if t.name == "error at the output")
+    assert tile.remark == f"7.1850 arcmin{old}"
+    assert found["Tolerances"].tables[0].heads[6] == "of the new error, %"
 
 
 def test_equal_sources_are_bars_apart(result):
@@ -314,7 +320,7 @@ def test_generic_sections_look_right(result):
         (("train",), ["Train", "Error and inertia", "Error and mass"]),
         (("tolerances", "allocation", "drawn"), ["Tolerances", "Monte Carlo errors"]),
         (("errors",), ["Where the error comes from"]),
-        (("box",), ["In the box"]),
+        (("box",), ["Train and box"]),
         (("stiffness",), ["Stiffness"]),
     ],
 )

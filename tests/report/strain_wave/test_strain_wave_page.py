@@ -4,17 +4,23 @@ import math
 import re
 from dataclasses import replace
 
+import front_cases
 import numpy as np
 import pytest
+from page_reader import Reader
 
 from gearopt.formulations.strain_wave.design import WaveDesign
+from gearopt.optimise.pareto.front import Objective
 from gearopt.optimise.typed import typed
 from gearopt.report.drawing.sheet import Row
+from gearopt.report.front import heads
 from gearopt.report.kinds.strain_wave import cutter, moving, numbers, search, shift, tiles, warns
 from gearopt.report.kinds.strain_wave.cutter import drawing
 from gearopt.report.kinds.strain_wave.motion import drawn, running
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.frame import templates
+from gearopt.report.pages.result import page, tables
+from gearopt.report.words import goal_words
 
 
 @pytest.fixture(scope="module")
@@ -157,12 +163,12 @@ def test_the_grid_of_a_high_or_wide_cutter_has_few_lines(found):
 def test_sections_say_what_was_found(result, found):
     told = {tile.name: tile for tile in tiles(result, METRIC)}
     assert told["teeth that carry"].value == "6 per lobe"
-    assert "117.38 MPa" in told["largest pressure, shared loads"].remark
+    assert "117.38 MPa" in told["contact pressure, load shared"].remark
     assert not warns(result) and search(result, METRIC) is None
     mesh = moving(result, METRIC)
     assert [f.follows for f in mesh.figures] == [mesh.animations[0].name] * 2
     curve = shift(result, METRIC).figures[0].data
-    assert [line["name"] for line in curve] == ["equal loads", "whole pairs", "shared loads"]
+    assert [line["name"] for line in curve] == ["conjugate pairs", "whole pairs", "load shared"]
     assert all(np.all(np.diff(line["y"]) < 0.0) for line in curve)
     sizes = dict((row[0], row[1]) for row in numbers(result, METRIC).tables[0].rows)
     assert sizes["teeth of the flexspline"].value == 160
@@ -175,6 +181,20 @@ def test_sections_say_what_was_found(result, found):
     assert {name: sizes[name].value for name in built} == pytest.approx(built, abs=2e-5)
     minor = sizes["minor diameter [mm]"].value
     assert 77.4 < minor < 77.45  # 2 (39.625 - 0.5 - 0.4) less the 13 um by which its length is kept
+
+
+def test_the_stress_of_the_teeth_has_one_name(result):
+    """On its page, in all tables, and as an objective, in fronts and comparisons, too."""
+    shown = Reader(page(replace(result, asked={}), "x")).text
+    shown += tables(result).values()
+    before = re.findall(r"(\w*)\W*\bpressures?\b(?!.angle)", " ".join(shown), re.IGNORECASE)
+    assert len(before) > 8 and set(map(str.lower, before)) == {"contact"}
+    name = "contact pressure of conjugate pairs"
+    assert goal_words("pressure", "strain_wave") == name != goal_words("pressure", None)
+    made = replace(
+        front_cases.own(), scene="strain_wave", objectives=(Objective("pressure", "MPa"),)
+    )
+    assert heads(made, METRIC) == (f"{name} [MPa]",)
 
 
 def test_the_gearing_of_a_report_is_the_one_it_was_made_of(found):

@@ -174,7 +174,7 @@ def test_an_impossible_request_is_one_message_and_exit_2(tmp_path):
 def test_words_without_a_proof_say_so():
     short = gearopt.Budget(evaluations=4_000)
     result = gearopt.solve(PROBLEMS / "six_cylinders_one_layer.toml", budget=short)
-    assert result.report["notes"][0].startswith("Best known, not proven")
+    assert result.report["notes"][0].startswith("Best found, not proven")
 
 
 @pytest.mark.parametrize("method", few(["sa", "ipopt", "annealing", "nsga2"], 0))

@@ -208,6 +208,14 @@ def test_the_output_shaft_is_told_and_may_be_given():
         assert any(said + words in line for line in assumptions(scene))
 
 
+@pytest.mark.parametrize("required", [True, False])
+def test_a_box_is_said_to_be_checked_whether_the_train_fits_or_not(required):
+    scene = changed(EXAMPLE, (("space", "required"), required))
+    (line,) = (line for line in assumptions(scene) if "wherever it swings" in line)
+    assert line.startswith("Checked against the box of [space]: all gears")
+    assert ("As required = false, no train is refused" in line) is not required
+
+
 WEIGHED = "inertia", "mass", "error"
 FEW = [
     (("train", "modules"), ["0.3 mm", "0.5 mm"]),

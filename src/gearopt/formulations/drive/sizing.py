@@ -261,7 +261,7 @@ def _claim(best: _Design | None, bound: float, clock: Clock) -> Outcome:
     proof = {
         "method": "branch and bound",
         "arithmetic": "double, with a rounding allowance",
-        "sentence": "Proof: branch and bound over cells of teeth, ratios and sizes, in each of "
+        "sentence": "Proof: branch and bound over ranges of teeth, ratios and sizes, in each of "
         "which a geometric program with limits and objective at most those of the drive bounds it.",
     }
     done = not clock.stopped

@@ -166,8 +166,8 @@ def _searched(box: ServoBox, budget: Budget, watch: Watch | None) -> Outcome:
         "arithmetic": "intervals in double, widened by 1e-12",
         "nodes": looked,
         "pruning_margin": rel,
-        "sentence": f"Proof: {looked:,} cells of link angles, each bounded by intervals "
-        f"({method}).",
+        "sentence": f"Proof: {looked:,} ranges of link angles, each bounded by interval "
+        f"arithmetic ({method}).",
     }
     if done and not fits:
         text = "in no layout does the motor clear the hub of the output shaft"

@@ -67,7 +67,7 @@ class ToothLoad:
     wave_angle_deg: Annotated[float, Shown("on the wave", form=".3f")]
     clearance_mm: Annotated[float, Shown("clearance", unit="um")]
     force_N: Annotated[float, Shown("load")]
-    contact_pressure_MPa: Annotated[float, Shown("pressure")]
+    contact_pressure_MPa: Annotated[float, Shown("contact pressure")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,9 +77,9 @@ class ShiftRow:
     profile_shift: Annotated[float, Shown("profile shift", form="g")]
     pairs: Annotated[float, Shown("pairs")]
     radius_mm: Annotated[float, Shown("least R")]
-    equal_MPa: Annotated[float, Shown("equal loads")]
-    whole_MPa: Annotated[float, Shown("whole pairs")]
-    shared_MPa: Annotated[float, Shown("shared loads")]
+    equal_MPa: Annotated[float, Shown("contact pressure of conjugate pairs")]
+    whole_MPa: Annotated[float, Shown("contact pressure of whole pairs")]
+    shared_MPa: Annotated[float, Shown("contact pressure, load shared")]
     least_clearance_mm: Annotated[float, Shown("least clearance", unit="um")]
 
 
@@ -96,7 +96,7 @@ class RoundRow:
     """A round of the search: cuts so far, pressure, least clearance over the wave."""
 
     cuts: Annotated[int, Shown("passages held clear")]
-    pressure_MPa: Annotated[float, Shown("pressure")]
+    pressure_MPa: Annotated[float, Shown("contact pressure of conjugate pairs")]
     least_clearance_mm: Annotated[float, Shown("least clearance", unit="um")]
     iterations: Annotated[int, Shown("iterations")]
 
@@ -151,9 +151,9 @@ class WaveDesign:
     carrying_teeth: Annotated[int, Shown("teeth that carry, per lobe", "loads")]
     effective_teeth: Annotated[float, Shown("equivalent number, equally loaded", "loads")]
     windup_mrad: Annotated[float, Shown("windup", "loads")]
-    shared_pressure_MPa: Annotated[float, Shown("pressure, shared loads", "loads")]
-    equal_pressure_MPa: Annotated[float, Shown("pressure, equal loads", "loads")]
-    whole_pairs_pressure_MPa: Annotated[float, Shown("pressure, whole pairs", "loads")]
+    shared_pressure_MPa: Annotated[float, Shown("contact pressure, load shared", "loads")]
+    equal_pressure_MPa: Annotated[float, Shown("contact pressure of conjugate pairs", "loads")]
+    whole_pairs_pressure_MPa: Annotated[float, Shown("contact pressure of whole pairs", "loads")]
     rim_bending_MPa: Annotated[float, Shown("bending of the rim", "loads")]
     rim_shear_MPa: Annotated[float, Shown("shear of the rim", "loads")]
     ratcheting_torque_Nm: Annotated[float, Shown("ratcheting torque", "loads")]
@@ -182,7 +182,7 @@ class WaveDesign:
     wave_clearance_mm: Annotated[Columns, Shown("clearance", CLEARANCE, "um")]
     load_angle_deg: Annotated[Columns, Shown("on the wave", LOAD, form=".4f")]
     load_N: Annotated[Columns, Shown("load", LOAD)]
-    load_pressure_MPa: Annotated[Columns, Shown("pressure", LOAD)]
+    load_pressure_MPa: Annotated[Columns, Shown("contact pressure", LOAD)]
     teeth: tuple[ToothLoad, ...]
     shifts: tuple[ShiftRow, ...] = ()
     deflections: tuple[Deflected, ...]

@@ -111,7 +111,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Group:
-    """The methods that solve one model; proven: the reference is a bound, else the best known.
+    """The methods that solve one model; proven: the reference is a bound, else the best found.
 
     scale: the objective's own at the best point. front: of fronts, what their reference is, in
     words.

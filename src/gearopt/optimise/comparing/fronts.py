@@ -269,7 +269,7 @@ def _thin(steps: Sequence[Step]) -> list[Step]:
 
 def _words(method: str, made: Found, count: int) -> str:
     """Sentence on the reference front."""
-    start = "Gaps are the part of the hypervolume that is missing"
+    start = "Gaps are the part of the hypervolume (of what a front dominates) that is missing"
     designs = f"{count} design" + ("" if count == 1 else "s")
     if not count:
         return "No method found a feasible point: there is no front."
@@ -279,4 +279,4 @@ def _words(method: str, made: Found, count: int) -> str:
         error = "" if made.error is None else f", which leave an error of {made.error:.1g} between"
         proven = f"{len(made.points)} of them each proven ({method}){error}"
         return f"{start}, relative to {designs}, {proven}."
-    return f"{start}, relative to the best {designs} known: of this front nothing is proven."
+    return f"{start}, relative to the best {designs} found: of this front nothing is proven."

@@ -60,7 +60,9 @@ def certify(problem: Conic, outcome: Outcome, gap: float) -> Verdict:
         message = f"{loose} {outcome.message}".strip()
         return Verdict(status, value, certificate=certificate, message=message)
     nodes = len(outcome.leaves)
-    parts = f", the minimum of those of {nodes:,} parts of its box" if nodes > 1 else ""
+    parts = (
+        f", the minimum of those of {nodes:,} parts of the ranges of variables" if nodes > 1 else ""
+    )
     sentence = f"{CONVEX_CONIC}{parts}."
     proof = {"method": "dual", "arithmetic": ARITHMETIC, "nodes": nodes, "sentence": sentence}
     before = Verdict(status, value, certificate=certificate, proof=proof, message=outcome.message)

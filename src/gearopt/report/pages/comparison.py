@@ -37,7 +37,7 @@ def page(comparison: Comparison) -> str:
         colours=colour,
         methods=[(row, words.settings(comparison.settings[row.method])) for row in rows],
         fairness=words.FAIRNESS,
-        clipped=f" (it was so in {clipped} runs)" if clipped else "",
+        clipped=f" (it was so in {words.counted(clipped, 'run')})" if clipped else "",
     )
 
 
@@ -56,7 +56,7 @@ def tables(comparison: Comparison) -> dict[str, str]:
         for row in group.rows
         for kind, sample in (("evaluations", row.equal_evaluations), ("time", row.equal_time))
         if sample is not None
-        for place in [(group.words or group.model, row.method, kind)]
+        for place in [(words.heading(comparison, group), row.method, kind)]
         for run in sample.runs
     ]
     return {"runs.csv": Table("runs", HEADS, rows).csv()}
@@ -82,7 +82,7 @@ def _subtitle(comparison: Comparison) -> str:
     methods = ", ".join(row.method for group in comparison.groups for row in group.rows)
     budget = comparison.budget
     return (
-        f"{methods}; {len(comparison.seeds)} seeds for random methods; "
+        f"{methods}; {words.counted(len(comparison.seeds), 'seed')} for random methods; "
         f"{budget['evaluations']:,} evaluations or {budget['seconds']:g} s per run"
     )
 
@@ -105,8 +105,8 @@ def _block(comparison: Comparison, group: Group, colour: dict[str, str]) -> dict
         side = {"heading": heading, "budget": budget, "rows": rows, "figures": figures}
         sides.append(side | {"ended": "; ".join(filter(None, late))})
     return {
-        "heading": group.words or group.model,
-        "reference": words.reference(group),
+        "heading": words.heading(comparison, group),
+        "reference": words.reference(group, comparison.scene),
         "verdicts": [(row.method, words.verdict(group, row)) for row in group.rows],
         "sides": sides,
     }

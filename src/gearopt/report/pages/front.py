@@ -97,12 +97,12 @@ def _summary(front: Front, measures: Measures) -> Section:
     for k, objective in enumerate(front.objectives if count else ()):
         values = [p.values[k] for p in front.points]
         low, high = (measures.amount(v, unit_of(objective)) for v in (min(values), max(values)))
-        tiles.append(Tile(words(objective.name), low, f"to {high}" if high != low else ""))
+        tiles.append(Tile(words(front, objective.name), low, f"to {high}" if high != low else ""))
     lines = front_words.decided(front, measures)[bool(count) :]  # the tiles say the first
     if front.status == "infeasible" and front.file:
         lines.append(f"Which limits are in conflict: gearopt explain {front.file}.")
     limited = [
-        f"{words(o.name)} at most {measures.amount(o.most, unit_of(o))}"
+        f"{words(front, o.name)} at most {measures.amount(o.most, unit_of(o))}"
         for o in front.objectives
         if o.most is not None
     ]
@@ -117,7 +117,7 @@ def _drawn(front: Front, measures: Measures) -> list[Section]:
     names = {place: ", ".join(own) for place, own in rules(front).items()}
     for k, objective in enumerate(front.objectives if front.points else ()):
         values = [p.values[k] for p in front.points]
-        names.setdefault(values.index(min(values)), f"least {words(objective.name)}")
+        names.setdefault(values.index(min(values)), f"least {words(front, objective.name)}")
     drawings = _views(front, names, measures)
     if not drawings:
         return []

@@ -7,7 +7,7 @@ from typing import Any
 
 from gearopt.optimise.pareto.front import Front, FrontPoint, Impossible
 from gearopt.report.design_tables import STAGE_ROWS, stage_label
-from gearopt.report.front import head, rules, stages_of, table, unit_of
+from gearopt.report.front import heads, rules, stages_of, table, unit_of
 from gearopt.report.measures import Measures
 from gearopt.report.section import Cell, Table, cell
 from gearopt.report.words import MODULE, heading, is_module, limit_words, parted
@@ -135,9 +135,8 @@ def beaten(front: Front, measures: Measures) -> Table | None:
     """The values of designs that others beat, of which the page shows a plot."""
     if not front.beaten:
         return None
-    heads = [head(objective, measures) for objective in front.objectives]
     rows = [_values(front, values, measures) for values in front.beaten]
-    return Table("dominated designs", heads, rows, folded=True)
+    return Table("dominated designs", heads(front, measures), rows, folded=True)
 
 
 def _values(front: Front, values: Sequence[float], measures: Measures) -> list[Cell]:
@@ -149,7 +148,7 @@ def impossible(front: Front, measures: Measures) -> Table | None:
     """The limits on objectives under which there is no design; None where all had one."""
     if not front.impossible:
         return None
-    heads = [f"{head(objective, measures)}, at most" for objective in front.objectives]
+    most = [f"{head}, at most" for head in heads(front, measures)]
     rows = [
         [
             k,
@@ -158,7 +157,7 @@ def impossible(front: Front, measures: Measures) -> Table | None:
         ]
         for k, step in enumerate(front.impossible, 1)
     ]
-    return Table("limits without a design", ("", *heads, "result"), rows, texts=("result",))
+    return Table("limits without a design", ("", *most, "result"), rows, texts=("result",))
 
 
 def _most(front: Front, step: Impossible, measures: Measures) -> list[Cell]:
@@ -184,7 +183,6 @@ def data(
     shown: names of main numbers. parts: heads and first and last row of each table; in the one of
     limits shares are drawn as bars. values: of the objectives, in full, to sort by.
     """
-    heads = [head(objective, measures) for objective in front.objectives]
     worded = [n for n in _different(each, _names(front, each, measures)) if _is_word(each, n)]
     main = [*shown, *(n for n in worded if n not in shown)]
     names = [n for n in _names(front, each, measures) if n not in main]
@@ -201,7 +199,7 @@ def data(
         for p, named in zip(front.points, each, strict=True)
     ]
     staged = front.scene is not None
-    ends = [0, len(heads) + len(main)]
+    ends = [0, len(front.objectives) + len(main)]
     ends += [ends[-1] + len(limits), ends[-1] + len(limits) + len(others)]
     titles = (
         "Objectives and main numbers",
@@ -211,7 +209,7 @@ def data(
     return {
         "parts": [[t, a, b] for t, a, b in zip(titles, ends, ends[1:], strict=False) if b > a],
         "limits": ends[1:3],
-        "rows": [*heads, *main, *(_limit(n, staged) for n in limits), *others],
+        "rows": [*heads(front, measures), *main, *(_limit(n, staged) for n in limits), *others],
         "points": points,
         "values": [p.values for p in front.points],
         "shares": [[_share(p.limits.get(n)) for n in limits] for p in front.points],
@@ -222,7 +220,7 @@ def data(
 
 def _names(front: Front, each: Sequence[Numbers], measures: Measures) -> list[str]:
     """The names of all numbers of designs that are no objective."""
-    known = {head(objective, measures) for objective in front.objectives}
+    known = heads(front, measures)
     return [name for name in dict.fromkeys(chain.from_iterable(each)) if name not in known]
 
 

@@ -9,7 +9,7 @@ from gearopt.optimise.pareto.front import Front
 from gearopt.report.drawing.number_line import even_ticks
 from gearopt.report.drawing.sheet import Drawing, Place, Sheet, Window, around
 from gearopt.report.drawing.still import edges, outside, view
-from gearopt.report.front import head, rules, unit_of
+from gearopt.report.front import heads, rules, unit_of
 from gearopt.report.measures import Measures
 from gearopt.report.pages.front_designs import Numbers
 from gearopt.report.plots import LOOK, Figure, axis, layout
@@ -68,7 +68,7 @@ def drawn(front: Front, measures: Measures) -> Drawn:
         for step in front.impossible
     ]
     return Drawn(
-        tuple(head(objective, measures) for objective in front.objectives),
+        heads(front, measures),
         [shown(p.values) for p in front.points],
         [shown(p) for p in near(front)],
         corners,

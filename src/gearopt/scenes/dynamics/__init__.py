@@ -37,8 +37,8 @@ from gearopt.scenes.reading.ask import Ask, without_method
 METHODS = ("screened",)  # its own
 HARMONICS = 20  # of a motion at the pair's own speed
 ONCE = (
-    "numbers are solved again only where teeth stay in contact, without a limit of the multiplier, "
-    "and the answer is locally optimal"
+    "numbers are solved again only where teeth stay in contact, without a limit of the Floquet "
+    "multiplier, and the answer is locally optimal"
 )
 NOTHING = "the file has no table [optimise], so that nothing is chosen"
 
@@ -166,7 +166,7 @@ def _missing(scene: Scene, design: DynamicsDesign) -> str:
     if design.chosen is not None and set(design.chosen.before_mm) == {None}:
         missing.append("the motions of the file's own pair over speed")
     if design.chosen is not None and design.chosen.largest_multiplier is None:
-        missing.append("the largest multiplier")
+        missing.append("the largest Floquet multiplier")
     return f"Stopped early: {', '.join(missing)} missing." if missing else ""
 
 

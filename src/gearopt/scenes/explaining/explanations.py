@@ -39,6 +39,10 @@ SLOPE_TOLERANCE = 0.02  # between sensitivities by multipliers and by solving ag
 STEP = 1e-3  # of the change up to which whole numbers and choices stay: the step of a re-solve
 UNDECIDED = "where a cell is empty, solving again gave no certain answer"
 UNPROVEN = "numbers are not solved again, because the answer is not proven optimal"
+LATE = "the time sufficed for no sensitivity, as the answer is solved once more before them"
+OTHER = (
+    "numbers are not solved again, because method {}, which does that, does not prove this answer"
+)
 
 
 def explanation(kind: Kind[S], scene: S, ask: Ask, result: Result | None = None) -> Explanation:
@@ -112,7 +116,8 @@ def explained(
         why = str(reason) if result.status in CERTAIN else UNPROVEN
         return Explanation(result, (), (), binding(result), (), why, clock.seconds)
     if optimum.value is None or optimum.status not in CERTAIN:
-        return Explanation(result, (), (), binding(result), (), UNPROVEN, clock.seconds)
+        why = _unsolved(result, optimum)
+        return Explanation(result, (), (), binding(result), (), why, clock.seconds)
     basis, held = Basis(optimum.value, solved), False
     if isinstance(problem, Problem) and outcome.x is not None:
         x, held = outcome.x, any(variable.discrete for variable, _ in problem.columns)
@@ -122,6 +127,13 @@ def explained(
         return of_optimum
     gaps = f"{UNDECIDED}: {undecided[0]}"
     return replace(of_optimum, message="; ".join(filter(None, (of_optimum.message, gaps))))
+
+
+def _unsolved(result: Result, again: Result) -> str:
+    """Reason why the answer, solved again without its method, is no basis for sensitivities."""
+    if result.status not in CERTAIN:
+        return UNPROVEN
+    return LATE if again.status == "limit" else OTHER.format(again.method)
 
 
 def _impossible(

@@ -59,7 +59,7 @@ UNTRIED = (
     "sensitivities are those of this arrangement; whole numbers are not tried, because the packing "
     "is not proven to be the best"
 )
-UNPROVEN = "Best known, not proven: a smaller packing may exist, but none below the bound."
+UNPROVEN = "Best found, not proven: a smaller packing may exist, but none below the bound."
 
 
 class CylinderTable(Table):
@@ -374,7 +374,7 @@ def compared(scene: Scene) -> tuple[str, ...]:
 def posed(scene: Scene, method: str) -> Model:
     """Return the problem that a method solves, without a bound that proves nothing."""
     plan = scene.plan()
-    words = "Places and layers" if plan.free_layers else "Places"
+    words = f"Places{' and layers' * bool(plan.free_layers)} of the cylinders"
     return Model(_problem(plan, method, loose=False), words, plan.unit())
 
 

@@ -383,6 +383,6 @@ def _message(scene: Scene, least: Result) -> str:
     rows = sorted(errors(scene, of_point(scene, point)), key=lambda row: -row.error_deg)
     largest = ", ".join(f"{row.source} {row.error_deg:.4f} deg" for row in rows[:NAMED])
     return (
-        f"the most accurate train has an error of {least.value:.5f} deg; its largest parts "
-        f"are {largest}"
+        f"with the deviations of the file the most accurate train has an error of "
+        f"{least.value:.5f} deg; its largest parts are {largest}"
     )

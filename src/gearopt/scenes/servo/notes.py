@@ -101,10 +101,11 @@ def _of_train(scene: Scene) -> list[str]:
                 "any source."
             )
     if scene.space is not None:
+        chosen = "" if scene.space.required else " As required = false, no train is refused for it."
         sentences.append(
-            "The box holds all gears, the last wheel wherever it swings, shafts, hub and motor, "
-            "seen along the shafts, without clearances; its depth is not checked. Lists and plots "
-            "of other trains ignore the box."
+            "Checked against the box of [space]: all gears, the last wheel wherever it swings, "
+            "shafts, hub and motor, seen along the shafts, without clearances; the depth is not "
+            f"checked. Lists and plots of other trains ignore the box.{chosen}"
         )
     return sentences
 

@@ -60,7 +60,7 @@ from gearopt.scenes.strain_wave.scene import Scene
 METHODS = ("exchange",)  # its own
 SAMPLERS = ("annealing", "nsga2")
 NOTHING = "the gearing is given, so that nothing is chosen"
-UNPROVEN = "sensitivities need a design that is certified as locally optimal, and this one is not"
+UNPROVEN = "sensitivities need a local optimum; the first-order conditions of one do not hold here"
 NEAREST = "The nearest design of this size that was found reaches: {}."
 INTERFERING = "Stopped before the interference was removed."
 NUMBERS = "numbers"  # the part of a gearing's numbers, until they are described
@@ -321,7 +321,7 @@ def _limited(known: Result, limits: dict[str, float]) -> Result:
     if known.status == "evaluated":
         certificate = {"feasibility": max(0.0, excess)}
         over = [name for name, value in limits.items() if value > 1.0 + FEASIBLE]
-        message = f"{', '.join(over)}: limits are exceeded" if over else ""
+        message = f"limits exceeded: {', '.join(over).replace('_', ' ')}" if over else ""
     elif message.startswith(INTERFERING):
         certificate = {**certificate, "feasibility": excess}
     return replace(known, limits=limits, certificate=certificate, message=message)

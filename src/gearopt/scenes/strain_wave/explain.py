@@ -98,5 +98,7 @@ def costs(multipliers: Mapping[str, float]) -> str:
         step, part = (1e-3 / GAP_UNIT, "1 µm") if name == "interference" else (0.01, "1 %")
         words.append(f"{name.replace('_', ' ')} {total[name] * step:.3g} MPa for {part}")
     return (
-        f"to first order, relaxing a limit lowers the pressure: {', '.join(words)}" if words else ""
+        f"to first order, relaxing a limit lowers the contact pressure: {', '.join(words)}"
+        if words
+        else ""
     )

@@ -33,8 +33,8 @@ def assumptions(scene: Scene) -> list[str]:
     ]
     if not scene.involute:
         model.append(
-            "A tooth that touches at two points is taken to carry at the one of higher pressure; "
-            "ratcheting is computed with the pressure angle at the middle of the flank."
+            "A tooth that touches at two points is taken to carry at the one of higher contact "
+            "pressure; ratcheting is computed with the pressure angle at the middle of the flank."
         )
     limits = (
         f"Limits of every gearing: lands and root spaces of {LAND:g} modules, tip circle "
@@ -150,8 +150,8 @@ def range_notes(scene: Scene, ends: Sequence[RangeEnd]) -> list[str]:
     if gains:
         shown = _series([f"{end.gain:.2g} MPa by {_name(end.name)}" for end in gains])
         sentences.append(
-            f"With a range {100.0 * WIDER:g} % wider the pressure would fall, to first order, by "
-            f"{shown}: {_name(gains[0].name)} counts most."
+            f"With a range {100.0 * WIDER:g} % wider the contact pressure would fall, to first "
+            f"order, by {shown}: {_name(gains[0].name)} counts most."
         )
     return sentences
 

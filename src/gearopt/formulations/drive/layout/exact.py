@@ -22,7 +22,7 @@ from gearopt.optimise.terms import Array
 
 BRANCH = "gearopt.formulations.drive.layout.branch_kernel"
 RANDOM = False
-COUNTS = "layout measured or cell bounded"
+COUNTS = "layout measured or range of link angles bounded"
 GAPS = (0.1, 0.01, 1e-3, 1e-4, 1e-5)  # each is proven before the next is tried
 GAP = 1e-6  # the last one where the budget requests none
 INSIDE = 1e-2  # a gap is proven smaller by this part of it, so that rounding leaves it there
@@ -97,8 +97,8 @@ def _outcome(search: Search, proven: float | None) -> Outcome:
         "arithmetic": "intervals in double, widened by 1e-12",
         "nodes": search.nodes,
         "pruning_margin": proven,
-        "sentence": f"Proof: {search.nodes:,} cells of link angles, each bounded by intervals "
-        f"({method}).",
+        "sentence": f"Proof: {search.nodes:,} ranges of link angles, each bounded by interval "
+        f"arithmetic ({method}).",
     }
     if search.empty:
         return Outcome(None, infeasible=True, proof=proof, evaluations=clock.evaluations)

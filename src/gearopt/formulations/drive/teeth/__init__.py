@@ -47,8 +47,8 @@ RATED = (
 UNLIMITED = 1e18  # teeth, steps or mm: no limit
 
 RANDOM = False
-COUNTS = "tooth pair sized, in whole expansions of a node"
-SETTINGS = {"nodes followed at once": BEAM, "pruning margin": MARGIN}
+COUNTS = "tooth pair sized, to the end of a partial design"
+SETTINGS = {"partial designs extended at once": BEAM, "relative margin of exclusion": MARGIN}
 
 
 def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
@@ -232,7 +232,7 @@ def _outcome(
         "pruning_margin": MARGIN,
     }
     compared = f"Proof: {progress.compared:,} trains compared,"
-    opened = f"(nodes opened: {progress.nodes:,})."
+    opened = f"(partial designs examined: {progress.nodes:,})."
     if progress.clock.stopped or progress.enough:
         lower = progress.bound if math.isfinite(progress.bound) else None
         words = f"{compared} those not examined are bounded from below {opened}"
@@ -269,7 +269,7 @@ def _front(train: Train, problem: Problem, budget: Budget, watch: Watch | None) 
     limits = np.array([most.get(name, math.inf) for name in names])
     run = fronts(asked, limits, Clock(budget, watch))
     chosen = run.trains
-    opened = f"{run.compared:,} trains compared, nodes opened: {run.opened:,}"
+    opened = f"{run.compared:,} trains compared, {run.opened:,} partial designs examined"
     finished = not run.clock.stopped
     words = (
         f"Proof: these are all Pareto-optimal designs; {opened}, all others excluded by "

@@ -53,7 +53,7 @@ ANY = 1.0  # gap of a first sizing of ratings, whose list takes long: to the bou
 SLACK = 1e-6  # relative: margins are this much below the requested gap, for rounding
 
 RANDOM = False
-COUNTS = "tooth pair or cell of angles bounded"
+COUNTS = "tooth pair or range of link angles bounded"
 SETTINGS = {"margins": MARGINS, "sizings laid out first": FIRST_SIZINGS}
 
 

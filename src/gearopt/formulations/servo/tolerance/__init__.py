@@ -27,7 +27,10 @@ from gearopt.optimise.terms import Array, Param, Terms, Var, each, spread
 RANDOM = False
 COUNTS = "solution in closed form or by roots"
 LEVELS = 4  # roots inside each other that `exact` takes on: some 0.3 s for 14 components
-DUAL = "Proof: costs and budgets are convex; the bound is that of the multipliers of the budgets."
+DUAL = (
+    "Proof: costs and budgets are convex; the bound follows from Lagrange multipliers of the "
+    "budgets."
+)
 TIE = 1e-12  # by which minimum tolerances may exceed a budget
 ENDS = {"least": "tolerances.least_factor", "most": "tolerances.largest_factor"}  # keys in a file
 SMALLEST = 1e-290  # mm, the end of a search

@@ -180,8 +180,8 @@ def _proof(choice: Choice, found: "Picked", clock: Clock) -> dict[str, Any]:
         "arithmetic": _numbers(choice)[2],
         "pairs": clock.evaluations,
         "pairs_kept": found.largest,
-        "sentence": f"Proof: a dynamic program over all choices, {clock.evaluations:,} pairs of "
-        "weight and cost looked at.",
+        "sentence": f"Proof: dynamic programming over all choices, {clock.evaluations:,} pairs of "
+        "error and cost examined.",
     }
 
 

@@ -11,7 +11,7 @@ from gearopt.report.kinds.servo import accuracy as axis_accuracy
 from gearopt.report.kinds.servo import housing as axis_housing
 from gearopt.report.kinds.servo import motion as axis_motion
 from gearopt.report.kinds.servo import trains as axis_trains
-from gearopt.report.kinds.servo.words import arc_minutes, degrees, design_of, report_of
+from gearopt.report.kinds.servo.words import aged, arc_minutes, degrees, design_of, report_of
 from gearopt.report.measures import Measures, error_of
 from gearopt.report.section import Section, Tile
 from gearopt.report.words import REACHED, amount, goal, number
@@ -53,7 +53,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     if design.ratio is not None:
         figures += _ratio(design.ratio, name, measures)
     if design.train is not None:
-        figures += _train(design.train, name, measures)
+        figures += _train(design.train, name, aged(design), measures)
     if (chain := design.stiffness) is not None:
         stiff, frequency = amount(chain.output_Nm_per_rad, "Nm_per_rad", measures), ""
         if chain.frequency_Hz is not None:
@@ -78,13 +78,14 @@ def _ratio(ratio: RatioDesign, name: str, measures: Measures) -> list[Tile]:
     return [*figures, Tile("best total ratio", number(ratio.total_ratio), without)]
 
 
-def _train(train: TrainDesign, name: str, measures: Measures) -> list[Tile]:
+def _train(train: TrainDesign, name: str, of: str, measures: Measures) -> list[Tile]:
+    """Figures of a train; of: its tolerances, in words."""
     error, angle = train.ratio_error_percent, train.error_deg
     off = "" if error is None else f", {error_of(error)}"
     teeth = ", ".join(f"{s.pinion_teeth}/{s.wheel_teeth}" for s in train.stages)
     figures = [Tile("ratio of the train", number(train.ratio), f"{teeth}{off}")]
     if name != "error" and angle is not None:
-        figures.append(Tile("error at the output", degrees(angle), arc_minutes(angle)))
+        figures.append(Tile("error at the output", degrees(angle), f"{arc_minutes(angle)}{of}"))
     if name != "inertia" and train.inertia_kg_m2 is not None:
         inertia = amount(train.inertia_kg_m2, "kg_m2", measures)
         figures.append(Tile("inertia at the motor", inertia))

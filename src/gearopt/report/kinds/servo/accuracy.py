@@ -18,6 +18,8 @@ from gearopt.optimise.result import Result
 from gearopt.report.drawing.sheet import series
 from gearopt.report.kinds.servo.words import (
     ARCMIN,
+    OLD,
+    aged,
     arc_minutes,
     degrees,
     design_of,
@@ -60,11 +62,12 @@ def errors(result: Result, measures: Measures) -> Section | None:
     up["showgrid"] = False
     high = round(LEGEND_AND_AXIS + ROW * len(order))
     plot = layout(across, up, high, barmode="overlay", bargap=0.25, shapes=shapes)
+    of = aged(design)
     caption = (
-        "Each bar begins where the last one ends: the worst case, all at their limits at once."
+        f"Each bar begins where the last one ends: the worst case, all at their limits at once{of}."
     )
     backlash = [Table("backlash", *records(design.backlash, measures))] if design.backlash else []
-    words, table = _error_words(total, limit), _error_table(sources, total, measures)
+    words, table = _error_words(total, limit, of), _error_table(sources, total, of, measures)
     tables = (table, *backlash)
     return Section(
         "Where the error comes from",
@@ -75,20 +78,25 @@ def errors(result: Result, measures: Measures) -> Section | None:
     )
 
 
-def _error_words(total: float, limit: float | None) -> list[str]:
-    """Sum of all sources [deg] where no limit shows it, and its excess over the limit."""
+def _error_words(total: float, limit: float | None, of: str) -> list[str]:
+    """Sum of all sources [deg] where no limit shows it, and its excess over the limit.
+
+    of: their tolerances, in words.
+    """
     if limit is None:
-        return [f"All sources at their limits add up to {arc_minutes(total)} at the output."]
+        return [f"All sources at their limits add up to {arc_minutes(total)} at the output{of}."]
     if total <= limit * (1.0 + 1e-9):
         return []
-    return [f"All sources at their limits exceed the limit by {degrees(total - limit)}."]
+    return [f"All sources at their limits exceed the limit by {degrees(total - limit)}{of}."]
 
 
-def _error_table(sources: Sequence[ErrorSource], total: float, measures: Measures) -> Table:
-    """Every source, and on the terminal their sum."""
-    heads = ["source", "kind", "stage", f"tolerance [{measures.unit('um')}]"]
+def _error_table(
+    sources: Sequence[ErrorSource], total: float, of: str, measures: Measures
+) -> Table:
+    """Every source, and on the terminal their sum; of: their tolerances, in words."""
+    heads = ["source", "kind", "stage", f"{'old ' if of else ''}tolerance [{measures.unit('um')}]"]
     short = {
-        "source": "error at the output",
+        "source": "error, old tolerances" if of else "error at the output",
         "stage": "where",
         "error at the output [°]": "°",
         "of the sum, %": "%",
@@ -165,20 +173,20 @@ def tolerances(result: Result, measures: Measures) -> Section | None:
         return None
     unit = measures.unit("um")
     heads = ["tolerance", "stage", "kind", f"old [{unit}]", f"new [{unit}]", "new/old"]
-    heads += ["of the error, %", "cost, old", "cost, new"]
+    heads += ["of the new error, %", "cost, old", "cost, new"]
     total = sum(r.sensitivity_deg_per_mm * r.new_mm for r in rows)
     highest = max(max(r.old_cost, r.new_cost) for r in rows)
     table = Table(
         "tolerances",
         heads,
         [*(_row(r, total, highest, measures) for r in rows), _sums(rows, measures)],
-        page_only=("stage", "kind", "of the error, %"),
+        page_only=("stage", "kind", "of the new error, %"),
         short={"cost, old": "cost", "cost, new": "new cost"},
     )
     words = _cost_words(cost, None if design.train is None else design.train.error_deg)
     ends = (
-        "Share of the error: sensitivity times new tolerance over the sum of these. Min and max: "
-        "the new tolerance is the minimum or the maximum that the file allows."
+        "Share of the new error: sensitivity times new tolerance over the sum of these. Min and "
+        "max: the new tolerance is the minimum or the maximum that the file allows."
     )
     terminal = (table, "\n".join(words))
     return Section("Tolerances", words=[*words, ends], tables=(table,), terminal=terminal)
@@ -188,7 +196,7 @@ def _cost_words(allocation: Allocation, error: float | None) -> list[str]:
     """Say how the cost changes, and what the budgets are; error: of the train [deg]."""
     change = 100.0 * (allocation.cost / allocation.old_cost - 1.0)
     limits = (
-        f"{_rule(b)}, limit equal to the error at the output"
+        f"{_rule(b)}, limit equal to the error {OLD}"
         if error is not None and degrees(b.limit_deg) == degrees(error)
         else f"{_rule(b)} {degrees(b.limit_deg)}"
         for b in allocation.budgets

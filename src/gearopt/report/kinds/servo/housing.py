@@ -139,7 +139,9 @@ def box(result: Result, measures: Measures) -> Section | None:
     )
     drawing = _drawing(fit, train, measures)
     half = train is not None
-    return Section("In the box", words=words, drawings=(drawing,), half=half, terminal=(terminal,))
+    return Section(
+        "Train and box", words=words, drawings=(drawing,), half=half, terminal=(terminal,)
+    )
 
 
 def _box_words(fit: BoxDesign, measures: Measures) -> str:

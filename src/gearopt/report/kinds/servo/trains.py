@@ -24,6 +24,7 @@ from gearopt.optimise.typed import untyped
 from gearopt.report.design_tables import stage_table
 from gearopt.report.drawing import train_views
 from gearopt.report.kinds.servo.words import (
+    aged,
     degrees,
     design_of,
     error_limit,
@@ -69,7 +70,9 @@ def section(result: Result, measures: Measures) -> Section | None:
     carried = _carried(train, measures)
     words += carried
     if train.error_deg is not None:
-        words.append("The error is the worst case of backlash and pitch at the output.")
+        words.append(
+            f"The error is the worst case of backlash and pitch at the output{aged(design)}."
+        )
     if train.inertia_kg_m2 is not None:
         words.append("Inertia is referred to the motor shaft.")
     drawn = train_views.views(stages, measures) if design.box is None else ()

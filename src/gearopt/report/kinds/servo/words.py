@@ -10,6 +10,7 @@ from gearopt.report.measures import Measures
 from gearopt.report.words import module_words, number
 
 ARCMIN = 60.0  # a degree
+OLD = "with the old tolerances"  # of an error, where new ones are chosen
 
 
 def design_of(result: Result) -> ServoDesign:
@@ -21,6 +22,11 @@ def design_of(result: Result) -> ServoDesign:
 def report_of(result: Result) -> ServoReport:
     """Report beside the design, typed."""
     return ServoReport.from_dict(result.report)
+
+
+def aged(design: ServoDesign) -> str:
+    """Which tolerances the errors of a design are of, where it has old and new ones; else ""."""
+    return f", {OLD}" if design.tolerances else ""
 
 
 def degrees(value: float) -> str:

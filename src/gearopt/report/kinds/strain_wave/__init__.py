@@ -47,9 +47,9 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     least = max(0.0, design.least_clearance_mm) if touching else design.least_clearance_mm
     return [
         Tile(
-            "largest pressure, shared loads",
+            "contact pressure, load shared",
             amount(design.shared_pressure_MPa, "MPa", measures),
-            f"{equal} if conjugate pairs alone carried",
+            f"{equal} if the conjugate pairs alone carried",
         ),
         Tile(
             "teeth that carry",
@@ -100,8 +100,8 @@ def warns(result: Result) -> Sequence[str]:
     if design.least_clearance_mm < CUTTING:
         warnings.append(
             f"Interference: teeth overlap by {-1e3 * design.least_clearance_mm:.3g} µm, at "
-            f"{design.least_clearance_at_deg:.3g}° from the major axis: loads and pressures are "
-            "not valid."
+            f"{design.least_clearance_at_deg:.3g}° from the major axis: loads and contact "
+            "pressures are not valid."
         )
     if design.cutter and not design.cutter.regular:
         warnings.append(f"No such cutter: its edge would have a cusp. {_least(design.cutter)}")
@@ -170,20 +170,20 @@ def shift(result: Result, measures: Measures) -> Section | None:
         return None
     factor, x = measures.of(1.0, "MPa"), [r.profile_shift for r in design.shifts]
     curves = [
-        _line(x, [factor * r.equal_MPa for r in design.shifts], "equal loads", 1),
+        _line(x, [factor * r.equal_MPa for r in design.shifts], "conjugate pairs", 1),
         _line(x, [factor * r.whole_MPa for r in design.shifts], "whole pairs", 2),
-        _line(x, [factor * r.shared_MPa for r in design.shifts], "shared loads", 4),
+        _line(x, [factor * r.shared_MPa for r in design.shifts], "load shared", 4),
     ]
     plot = layout(
         axis("profile shift, modules"),
-        axis(f"largest pressure [{measures.unit('MPa')}]", rangemode="tozero"),
+        axis(f"largest contact pressure [{measures.unit('MPa')}]", rangemode="tozero"),
         hovermode="x",
     )
     plot["margin"] |= {"t": 34}
     plot["shapes"] = [upright(design.profile_shift, layer="above")]
-    caption = "Pressure against profile shift, all else unchanged; dotted: this gearing."
+    caption = "Contact pressure against profile shift, all else unchanged; dotted: this gearing."
     return Section(
-        "Pressure against profile shift",
+        "Contact pressure against profile shift",
         words=_ends_of_shift(design),
         figures=[Figure(curves, plot, caption)],
         tables=[tables.shifts(design, measures)],
@@ -192,7 +192,9 @@ def shift(result: Result, measures: Measures) -> Section | None:
 
 def _ends_of_shift(gearing: WaveDesign) -> list[str]:
     """Limits that end a search over the profile shift."""
-    words = ["The pressure has no minimum over the profile shift: other limits end the search."]
+    words = [
+        "No contact pressure has a minimum over the profile shift: other limits end the search."
+    ]
     if gearing.shift_of_one_pair is not None:
         words.append(
             f"One conjugate pair always touches up to a shift of {gearing.shift_of_one_pair:.3f}."
