@@ -138,7 +138,7 @@ def random_drive(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [23, 36, 1, 2])  # two cost more than free
+@pytest.mark.parametrize("seed", [23, 2])  # one costs more than free
 def test_random_drives_of_the_same_materials_as_by_brute_force(seed):
     train = random_drive(seed)
     free, alike = (search(t, 1, Budget()) for t in (train, replace(train, same_option=True)))

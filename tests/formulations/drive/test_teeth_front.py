@@ -136,9 +136,8 @@ def test_fronts_of_random_drives_equal_brute_force(seed):
     assert same(train, found) == len(found.values)
 
 
-RATED_SEEDS = [(1, seed) for seed in range(12)] + [
-    (2, seed) for seed in (43, 44, 46)
-]  # stages and seed; of two stages those of few candidates
+RATED_SEEDS = [(2, 43), (2, 44)]  # stages and seed; of two stages those of few candidates
+RATED_SEEDS += [(1, seed) for seed in range(12)]
 
 
 @pytest.mark.parametrize(("stages", "seed"), few(RATED_SEEDS, [(1, 4), (1, 1)]))
