@@ -67,13 +67,13 @@ inches: `diametral_pitch = 10`, `"1.5 in"`, `"4 hp"`, `"50 ksi"`.
 - **safe, with warnings**: what a designer may accept is said first: undercut, thin tips, a contact
   ratio below 1.2, a backlash of more than four times the recommended least one, a face that is
   loaded in part (K_Hbeta above 2), a ratio that is not the one asked for.
-- **S_F**, **S_H**: permissible over existing stress. S_H is of stress; of load it is its square,
-  {square} here for the pinion.
-- **permissible**: the allowable stress number of the steel, s_at or s_ac, times Y_N or Z_N (and C_H
-  for a softer wheel), over K_T K_R: what the tooth bears for the required life.
+- **S_F**, **S_H**: the stress limit over the actual stress. S_H is of stress; of load it is its
+  square, {square} here for the pinion.
+- **limit**: the allowable stress number of the steel, s_at or s_ac, times Y_N or Z_N (and C_H for a
+  softer wheel), over K_T K_R: what the tooth bears for the required life, without a safety factor.
 - **power capacity**: the power at which the least safety factor is just the required one.
-- **life**: until a safety factor has fallen to 1. The curves of Y_N and Z_N end at 1e10 cycles;
-  beyond them no number is told.
+- **life**: until a safety factor has fallen to 1, of the gear that governs. The curves of Y_N and
+  Z_N end at 1e10 cycles: of a gear that lasts longer the hours to there are told, as *over* that.
 - **efficiency**: of the mesh alone, from `oil_viscosity` or `friction_coefficient`. A computed
   coefficient of friction may be {friction} % off, which is what ± stands for and is unverified.
 - **unverified**: at most one source has it, or no published value confirms it. I and J of helical
@@ -142,9 +142,11 @@ is printed: `iso_tr_6336_30.toml` and `wind_pair.toml`.
 - By both, the pair is safe if every safety factor of either standard is met; the first sentence
   says by which it is. The table of gears has both beside each other, factors a table each. `limits`
   holds those of ISO as `pinion_bending_iso[1]` and so on.
-- Symbols are those of ISO: sigma_F and sigma_H against sigma_FG and sigma_HG. Pages and terminal
-  show them in Greek; `--json` and `--csv` have them in letters. Deviations are in µm or µin,
-  stiffnesses in N/(mm µm) or lbf/(in µin); `--json` has both in mm and MPa, as its key `unit` says.
+- Symbols are those of ISO: sigma_F and sigma_H against the tooth root and pitting stress limits
+  sigma_FG and sigma_HG (permissible are sigma_FP and sigma_HP, those over the required safety
+  factors). Pages and terminal show them in Greek; `--json` and `--csv` have them in letters.
+  Deviations are in µm or µin, stiffnesses in N/(mm µm) or lbf/(in µin); `--json` has both in mm and
+  MPa, as its key `unit` says.
 - Power capacity by ISO is rated at that power: K_v and the other load factors depend on the load.
 
 ## A load spectrum

@@ -123,6 +123,7 @@ def _of(status, limits, value=1.0, **more):
             "the limits on a of stages 1 and 2 are active",
         ),
         (_of("feasible", {"a": 1.0}), "the limit on a is active"),
+        (_of("limit", {"a": 1.0}), "in the best design found the limit on a is active"),
         (
             _of("optimal", {"a": 0.5, "b": 0.9996}),
             "no limit is active; the closest is b, at 99.9 %",
@@ -145,7 +146,7 @@ def test_the_first_sentence_says_what_decides(result, words):
 def test_a_ratio_tolerance_is_used_as_far_as_its_error_goes(solved):
     """-0.632 % of 1 % allowed."""
     result = solved("elevator")
-    assert "the ratio uses 63 % of its tolerance" in lead(result)
+    assert "the ratio error is 63 % of its tolerance" in lead(result)
     assert isinstance(result, gearopt.Result)
 
 

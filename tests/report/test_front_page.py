@@ -19,8 +19,8 @@ from page_reader import drawings as drawn
 from plotly.offline import get_plotlyjs
 
 from gearopt import Front
-from gearopt.report.front import table
-from gearopt.report.measures import INCH
+from gearopt.report.front import decided, table, value_cells
+from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages import frame
 from gearopt.report.pages.front import page, tables
 
@@ -56,6 +56,22 @@ def test_nothing_is_loaded_from_anywhere(two):
     for name in ("front.html", "front.css", "front.js", "section.html"):
         text = (ROOM / name).read_text(encoding="utf-8").replace("http://www.w3.org/2000/svg", "")
         assert not re.search(r"https?://|@import|url\(|fetch\(|import\(", text), name
+
+
+def test_losses_have_the_digits_that_tell_designs_apart():
+    """Of 1.2343 and 1.2344 % five; of 2, 1 and 0.66667 % three."""
+    front = cases.drive()
+    points = [
+        replace(p, values=(p.values[0], 1.2343 + 1e-4 * k)) for k, p in enumerate(front.points)
+    ]
+    close = replace(front, points=tuple(points))
+    texts = [
+        [row[1].text for row in value_cells(f, [p.values for p in f.points], METRIC)]
+        for f in (close, front)
+    ]
+    assert texts == [["1.2343", "1.2344", "1.2345"], ["2", "1", "0.667"]]
+    assert "mesh loss 1.2343 % to 1.2345 %" in decided(close)[0]
+    assert "1.2344" in page(close) and "0.667" in page(front)
 
 
 def test_names_are_escaped():

@@ -87,13 +87,13 @@ def test_a_process_without_a_design_is_a_sentence(three):
     )
     heads, _, missing = side_by_side(replace(three, parts=(three.parts[0], one, none)))
     assert heads[1:] == ["exact", "process one"]
-    assert missing == ["No design by process two: K-factor of stage 2 is violated by 0.03."]
+    assert missing == ["No design by process two: K-factor of stage 2 exceeds its limit by 3 %."]
     assert missing[0] in printed(replace(three, parts=(one, none)))
     made = replace(none, design=two.design)
     heads, rows, missing = side_by_side(replace(three, parts=(three.parts[0], one, made)))
     assert heads[1:] == ["exact", "process one", "process two"]
     assert rows[0][3] == "1.25, 27/237" and rows[-1][3].value is None
-    assert missing == ["The design by process two: K-factor of stage 2 is violated by 0.03."]
+    assert missing == ["The design by process two: K-factor of stage 2 exceeds its limit by 3 %."]
 
 
 def test_another_objective_has_its_row():

@@ -8,7 +8,7 @@ from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
 from gearopt.optimise.scale import gap
 from gearopt.report.explained import remedy_words
-from gearopt.report.headline import headline, lead
+from gearopt.report.headline import RATIO_ENDS, headline, lead
 from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, Measures, gap_percent
 from gearopt.report.plots import TEXT, Figure, axis, layout, lines
@@ -140,6 +140,10 @@ def limits(result: Result, measures: Measures) -> Section | None:
     table = Table("limits", heads, cells, csv_only=elsewhere)
     sized = next((part.limits for part in result.parts if part.name == "sizing"), {})
     words: tuple[str, ...] = ("At 100 % a limit is active.",)
+    if {*RATIO_ENDS} <= {*result.limits}:
+        words += (
+            "Those of minimum and maximum ratio are parts of the ratio, not of its tolerance.",
+        )
     if any(result.limits.get(n, 1.0) < 1.0 - REACHED <= used for n, used in sized.items()):
         words += (
             "Limits that determine the result may stay below 100 %, as teeth and modules come in "
@@ -200,7 +204,10 @@ def meaning(result: Result) -> str:
         )
     if status == "infeasible":
         if of_gears_first(result):
-            return "Proven: no layout of these gears meets all limits. Other gears were not tried."
+            return (
+                f"Proven: no layout of {result.proof['scope']} meets all limits. Other gears were "
+                "not tried."
+            )
         known = "Checked, not proven" if "checked" in result.proof else "Proven"
         return f"{known}: no design meets all limits."
     if result.given:

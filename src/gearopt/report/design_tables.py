@@ -1,5 +1,6 @@
 """The numbers of a design as tables: its stages, and whatever lists and groups it holds."""
 
+import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import MISSING, fields
 from itertools import zip_longest
@@ -8,9 +9,9 @@ from typing import Any
 from gearopt.formulations.drive.design import StageDesign
 from gearopt.formulations.strength import laws
 from gearopt.optimise.result import Result
-from gearopt.report.measures import Measures, error_of
-from gearopt.report.section import Cell, Section, Table, Tile, cell, listed, percent
-from gearopt.report.words import EXACT, MODULE, heading, is_module, number, objective, parted
+from gearopt.report.measures import DIGITS, Measures, error_of, rounded
+from gearopt.report.section import ABSENT, Cell, Section, Table, Tile, cell, listed, percent
+from gearopt.report.words import EXACT, LENGTH, MODULE, heading, is_module, objective, parted
 
 VOLUME = "gear_volume_mm3"
 SIZES = {it.key: (it.label, it.unit) for it in listed(StageDesign)}
@@ -30,6 +31,7 @@ PAGE_ONLY = {
     *("transverse_contact_ratio", "overlap_ratio", "pitch_line_velocity_m_per_s"),
     *("pinion_mass_kg", "wheel_mass_kg", "mass_kg"),
 }
+EXACT_RATIO = 1e-11  # relative error of a ratio below which it is rounding
 LISTED = {"between": ("from", "to")}  # lists of as many values: what each is called
 
 
@@ -68,7 +70,7 @@ def stage_table(
     chosen: keys of the teeth that were chosen from several of the file.
     """
     heads = ["", *(f"stage {k}" for k in range(1, len(stages) + 1))]
-    rows, hidden = [], []
+    rows, hidden, absent = [], [], False
     for key, (_, unit) in STAGE_ROWS.items():
         every_stage = _own_teeth(key, stages) if key in OF_TEETH else all(key in s for s in stages)
         if not (every_stage or key in chosen):
@@ -78,13 +80,17 @@ def stage_table(
             rows.append([label, *(measures.of_module(s[key]) for s in stages)])
             continue
         values = [s.get(key, OF_TEETH.get(key)) for s in stages]
-        rows.append([label, *(cell(value, unit, measures) for value in values)])
+        absent = absent or None in values
+        rows.append(
+            [label, *(Cell(v, ABSENT) if v is None else cell(v, unit, measures) for v in values)]
+        )
         if key in page_only:
             hidden.append(label)
         if key == VOLUME and len(stages) > 1:
             whole = sum(s[key] for s in stages)
             rows.append([SHARE, *(percent(s[key] / whole) for s in stages)])
-    return Table("stages", heads, rows, page_only=[*hidden, SHARE], across=True)
+    caption = f"{ABSENT}: the gear has none." if absent else ""
+    return Table("stages", heads, rows, caption, page_only=[*hidden, SHARE], across=True)
 
 
 def _own_teeth(key: str, stages: Sequence[Mapping[str, Any]]) -> bool:
@@ -107,9 +113,19 @@ def stage_label(key: str, measures: Measures) -> str:
     return f"{words} [{measures.unit(unit)}]" if unit else words
 
 
+def ratio_text(ratio: float, error_percent: float) -> str:
+    """A ratio with the digits that tell its error from the ratio asked for, to a tenth of it."""
+    error, digits = abs(ratio * error_percent) / 100.0, DIGITS
+    if error > EXACT_RATIO * ratio:
+        digits += max(
+            0, math.ceil(1.0 - math.log10(error)) + math.floor(math.log10(ratio)) + 1 - digits
+        )
+    return rounded(ratio, digits)
+
+
 def ratio_tile(ratio: float, error_percent: float) -> Tile:
     """The total ratio and its error from the one that is asked for."""
-    return Tile("total ratio", number(ratio), f"error {error_of(error_percent)}")
+    return Tile("total ratio", ratio_text(ratio, error_percent), f"error {error_of(error_percent)}")
 
 
 def trains(result: Result, measures: Measures) -> Section | None:
@@ -196,6 +212,11 @@ def tables_of(name: str, group: Mapping[str, Any], measures: Measures) -> list[T
             lists += tables_of(heading(key, measures), value, measures)
         elif _records(value):
             lists.append(records(heading(key, measures), value, measures))
+        elif key == "ratio" and "ratio_error_percent" in group:
+            text = ratio_text(value, group["ratio_error_percent"])
+            single.append([heading(key, measures), Cell(value, text)])
+        elif key == "total_length_mm" and "sum_of_centre_distances_mm" in group:
+            single.append([f"{LENGTH} [{measures.unit('mm')}]", cell(value, "mm", measures)])
         elif value is not None and value != []:
             single.append([heading(key, measures), *_cells(key, value, measures)])
     if not single:

@@ -2,6 +2,7 @@
 
 import shlex
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from gearopt.optimise.pareto.front import Front, Objective
@@ -19,6 +20,7 @@ VERDICTS = {
     "infeasible": ("impossible, proven", "red"),
     "limit": ("stopped early", "yellow"),
 }
+PERCENT_DIGITS = (3, 5)  # significant ones of parts in per cent, where they tell designs apart
 COARSE_ERROR = 0.1  # of the ranges of the objectives: an error at which a pick is told with care
 CHOICES = {  # of stages, beside modules and teeth: head of a column, keys
     "materials": ("pinion_material", "wheel_material"),
@@ -43,7 +45,7 @@ def verdict(front: Front) -> tuple[str, str]:
     words, colour = VERDICTS[front.status]
     scope = front.proof.get("scope")
     if scope and front.status == "infeasible":
-        words = "impossible with these gears, proven"
+        return f"impossible with {scope}, proven", colour
     return f"{words} ({scope})" if scope else words, colour
 
 
@@ -91,8 +93,8 @@ def decided(front: Front, measures: Measures = METRIC) -> list[str]:
 
 
 def _span(front: Front, k: int, measures: Measures) -> str:
-    values, unit = [p.values[k] for p in front.points], unit_of(front.objectives[k])
-    low, high = (measures.amount(v, unit) for v in (min(values), max(values)))
+    values = [p.values[k] for p in front.points]
+    low, high = (amount_of(front, k, v, measures) for v in (min(values), max(values)))
     return low if low == high else f"{low} to {high}"
 
 
@@ -111,7 +113,10 @@ def picked(front: Front, measures: Measures = METRIC) -> list[str]:
 def _values(front: Front, place: int, measures: Measures) -> str:
     point = front.points[place]
     pairs = zip(front.objectives, point.values, strict=True)
-    text = ", ".join(f"{words(front, o.name)} {measures.amount(v, unit_of(o))}" for o, v in pairs)
+    text = ", ".join(
+        f"{words(front, objective.name)} {amount_of(front, k, value, measures)}"
+        for k, (objective, value) in enumerate(pairs)
+    )
     return text[0].upper() + text[1:]
 
 
@@ -148,13 +153,11 @@ def table(front: Front, measures: Measures = METRIC, most: int | None = None) ->
     taken = rules(front)
     gears = any(stages_of(p.design) for p in front.points)
     apart = _apart(front, measures)
+    values = value_cells(front, [p.values for p in front.points], measures)
     rows = [
         (
             k + 1,
-            *(
-                cell(v, unit_of(objective), measures)
-                for v, objective in zip(front.points[k].values, front.objectives, strict=True)
-            ),
+            *values[k],
             ", ".join(taken.get(k, ())),
             *([_gears(front.points[k].design, measures)] if gears else []),
             *(texts[k] for texts in apart.values()),
@@ -180,6 +183,35 @@ def chosen(front: Front, most: int | None) -> list[int]:
         return list(range(count))
     spread = {round(k * (count - 1) / (most - 1)) for k in range(most)}
     return sorted(spread | {pick.place for pick in front.picks})
+
+
+def digits_of(front: Front, k: int, measures: Measures) -> int:
+    """Significant digits of an objective in per cent: more where its designs would look alike."""
+    unit, values = unit_of(front.objectives[k]), [p.values[k] for p in front.points]
+    few, many = ({rounded(measures.of(v, unit), n) for v in values} for n in PERCENT_DIGITS)
+    return PERCENT_DIGITS[len(few) < len(many)]
+
+
+def value_cells(
+    front: Front, rows: Sequence[Sequence[float]], measures: Measures
+) -> list[list[Cell]]:
+    """Values of all objectives in the units that are shown, a row for every design."""
+    columns = []
+    for k, objective in enumerate(front.objectives):
+        unit, values = unit_of(objective), [row[k] for row in rows]
+        cells = [cell(value, unit, measures) for value in values]
+        if unit == "percent":
+            digits = digits_of(front, k, measures)
+            cells = [replace(it, text=rounded(it.value, digits)) for it in cells]
+        columns.append(cells)
+    return [list(row) for row in zip(*columns, strict=True)]
+
+
+def amount_of(front: Front, k: int, value: float, measures: Measures) -> str:
+    """A value of an objective with its unit, for sentences."""
+    if (unit := unit_of(front.objectives[k])) != "percent":
+        return measures.amount(value, unit)
+    return f"{rounded(value, digits_of(front, k, measures))} %"
 
 
 def unit_of(objective: Objective) -> str:

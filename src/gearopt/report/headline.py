@@ -118,7 +118,8 @@ def of_limits(result: Result, shown: Collection[str] = ()) -> str:
         else []
     )
     parts += _nearest(rest, not decisive and not ends, has_stages(result)) + _tolerance(result)
-    return "; ".join(parts) or _free(result)
+    best = "in the best design found " if result.status == "limit" and parts else ""
+    return best + "; ".join(parts) or _free(result)
 
 
 def _is_end(name: str) -> bool:
@@ -184,7 +185,8 @@ def _tolerance(result: Result) -> list[str]:
     room = 1.0 - low * ratio / asked if error < 0.0 else ratio / high / asked - 1.0
     if room <= REACHED:
         return []
-    return [f"the ratio uses {_whole(abs(error) / 100.0 / room)} % of its tolerance"]
+    used = _whole(abs(error) / 100.0 / room)
+    return [f"the ratio error is {used} % of its tolerance"]
 
 
 def _free(result: Result) -> str:

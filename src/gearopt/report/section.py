@@ -24,6 +24,7 @@ from gearopt.report.words import number, parted, share
 # What spreadsheets take for formulas (wide signs in East Asian ones), unless it is a number.
 FORMULA = re.compile(r"\s*[=+\-@\uff1d\uff0b\uff0d\uff20]|[\t\r\n]")
 NUMBER = re.compile(r"[+-]?[0-9]*\.?[0-9]+([eE][+-]?[0-9]+)?")
+ABSENT = "–"  # in place of a value that there is none of; a sentence gives the reason
 LONG_TABLE = 24  # rows; a longer table may break between rows when it is printed
 
 

@@ -28,7 +28,9 @@ SIDES = ("left", "right", "front", "bottom", "top")  # keys of where a box ends
 RULED = ("process one", "process two")  # parts that are designs by rules
 EXACT = 1e-6  # a gap below it is called optimal, one above it is named
 
+LENGTH = "total length in one line"  # of a drive, in whichever way it is drawn
 GOALS = {  # objectives whose names alone do not say of what they are, by kind
+    "drive.total_length": LENGTH,
     "dynamics.peak_to_peak": "peak-to-peak deformation",
     "dynamics.rms": "RMS of the deformation",
     "packing.area": "plan area",
@@ -187,7 +189,7 @@ def certainty(result: Result) -> tuple[str, str]:
     if result.status == "stationary" and result.bound is not None:
         words = "locally optimal"  # its gap is told beside
     if of_gears_first(result):
-        return "impossible with these gears, proven", colour
+        return f"impossible with {result.proof['scope']}, proven", colour
     scope = "" if result.value is None else str(result.proof.get("scope", ""))
     these = bool(scope) and any(part.name == "gears" for part in result.parts)
     if result.status == "optimal" and these:

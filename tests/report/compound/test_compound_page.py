@@ -1,12 +1,14 @@
 """A compound train drawn in modules, and a ratio out of reach on a line with those in reach."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from page_reader import drawings, extents, marks, numbers
 
 import gearopt
+from gearopt.report.design_tables import ratio_text
 from gearopt.report.pages.result import page
 
 
@@ -37,6 +39,16 @@ def legible(svg):
         assert (at - half >= 0.0).all() and (at + half <= size).all(), word
         for other, there, reach in texts[:k]:
             assert (abs(at - there) >= half + reach).any(), (word, other)
+
+
+def test_a_ratio_has_the_digits_that_tell_its_error():
+    """Sandgren's 43 49/(16 19) = 6.930921 for 6.931: five digits would show 6.9309."""
+    off = 100.0 * (43 * 49 / (16 * 19) / 6.931 - 1.0)
+    assert ratio_text(43 * 49 / (16 * 19), off) == "6.930921"
+    assert ratio_text(31.95118, -2.85) == "31.951" and ratio_text(6.0, 0.0) == "6"
+    made = result([16, 19], [43, 49])
+    made = replace(made, design=made.design | {"ratio_error_percent": off})
+    assert page(made, "").count("6.930921") == 2  # key figure and table
 
 
 @pytest.mark.parametrize("seed", range(6))

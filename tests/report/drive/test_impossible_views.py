@@ -10,6 +10,7 @@ from page_reader import drawings, extents, marks, numbers
 import gearopt
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Terms, Var
+from gearopt.report.measures import rounded
 from gearopt.report.pages.result import page
 
 NAMES = ("k_factor", "unit_load", "wheel_diameter", "pinion_teeth_low", "module_low")
@@ -91,6 +92,7 @@ def test_dots_are_where_a_change_is_enough(seed):
     assert np.allclose([x + w for x, w in proven], ends, atol=0.02)
     texts = [t.text for t in svg.iter("text")]
     assert sum(t.startswith("limits.size_") for t in texts) == len(factors)
+    assert {f"× {rounded(f, 5)}" for f in factors} <= set(texts)
     legible(svg)
 
 

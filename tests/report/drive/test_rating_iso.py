@@ -1,6 +1,7 @@
 """What is shown of a rating by ISO 6336, alone and beside AGMA."""
 
 import re
+from dataclasses import replace
 
 import pytest
 import rating_cases as cases
@@ -9,6 +10,7 @@ from test_rating_page import page, rows, sections, text, told
 
 import gearopt
 from gearopt.report.answer import decided, opening
+from gearopt.report.kinds.drive import rating_words
 from gearopt.report.kinds.drive.rating_words import greek
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.words import limit_words
@@ -53,7 +55,8 @@ def test_symbols_are_greek_where_they_are_read_and_ascii_in_data():
         re.findall(r">([^<]+)<", html)
     )
     shown = text(html)
-    assert "contact stress σ_H [MPa]" in shown and "permissible σ_FG [MPa]" in shown
+    assert "contact stress σ_H [MPa]" in shown and "stress limit σ_FG [MPa]" in shown
+    assert "σ_HG are the tooth root and the pitting stress limit; permissible are σ_FP" in shown
     assert not re.search(r"K_Hbeta|sigma_|Z_eps|delta", shown.partition("What was asked")[0])
     assert all(symbol.isascii() for symbol in found)
     symbols = [f["symbol"] for f in cases.iso().design["rating"]["factors"]]
@@ -121,9 +124,15 @@ def test_key_figures_are_the_least_by_each_standard():
     assert tiles["minimum S_H, contact by AGMA"][0] == "0.8348"
     assert tiles["minimum S_H, contact by ISO 6336"] == ("1.028", "pinion; 1 required")
     assert {"minimum S_F, bending by AGMA", "minimum S_F, bending by ISO 6336"} < set(tiles)
+    own, other = cases.both().design["rating"], cases.both().design["rating"]["beside"]
+    assert own["power_capacity_kW"] < other["power_capacity_kW"] and own["life_h"] < other["life_h"]
     assert re.fullmatch(
-        r"[\d,.]+ h by ISO 6336; 50,000 h required", tiles["life at S = 1 by AGMA"][1]
+        r"pinion; [\d,.]+ h by ISO 6336; 50,000 h required", tiles["life at S = 1 by AGMA"][1]
     )
+    assert "power capacity by AGMA" in tiles
+    weak = replace(cases.both(), design={"rating": own | {"power_capacity_kW": 1e3}})
+    tiles = {t.name: t.remark for t in rating_words.tiles(weak, METRIC)}
+    assert tiles["power capacity by ISO 6336"].startswith("1,000 kW by AGMA; ")
 
 
 def test_factors_have_a_table_for_each_standard_and_teeth_one():

@@ -81,6 +81,25 @@ def test_factors_are_those_of_the_book():
     assert found["s_at"][1] == "psi" and found["s_at"][5] != "given" == found["I"][5]
 
 
+def test_the_words_of_a_rating_name_sources_and_what_governs():
+    book, own = cases.shigley().design["rating"], cases.train().design["rating"]
+    assert book["standard"].endswith("(2101), I and J of the file")
+    assert own["standard"].endswith("(2101), geometry factors of AGMA 908-B89")
+    shown = text(page(cases.train(), ""))
+    assert "stage 1, contact (S_H) of the wheel; stage 2, " in shown
+    assert "losses are neglected" not in shown.lower()
+    narrow = {'face_width = "40 mm"': 'face_width = "8 mm"'}
+    few = cases.rated(cases.TRAIN, narrow)
+    teeth = next(s for s in sections(few) if s.heading == "Teeth")
+    span = next(row for row in teeth.tables[0].rows if row[0].startswith("span W_k"))
+    assert [cell.text for cell in span[1:]].count("–") == 1
+    assert teeth.words[-1].startswith("–: a span cannot be measured")
+    names = {f["symbol"]: f["name"] for f in cases.iso().design["rating"]["factors"]}
+    assert names["C_a"] == "tip relief"  # that of the file
+    worn = cases.rated(cases.ISO, {'tip_relief = "70 um"\n': ""}).design["rating"]["factors"]
+    assert "tip relief by running-in, C_ay" in {f["name"] for f in worn}
+
+
 def test_safe_or_not_is_said_first():
     said = (
         "Safe: all required safety factors are met; contact of the wheel governs.",
@@ -167,10 +186,12 @@ def test_key_figures_name_gear_capacity_and_life():
     assert list(gears)[1 + least] == "wheel 1"
     assert tiles["minimum S_F, bending"][1] == "wheel of stage 1; 1.2 required"
     assert tiles["power capacity"][1] == "30 kW required"
-    assert tiles["life at S = 1"][1] == "20,000 h required"
+    assert tiles["life at S = 1"][1] == "wheel of stage 1; 20,000 h required"
     assert tiles["efficiency"][0].endswith(" %")
-    beyond = {t.name: t.value for t in sections(cases.shigley())[0].tiles}
-    assert beyond["life at S = 1"] == "beyond 1e10 cycles" and "efficiency" not in beyond
+    beyond = {t.name: (t.value, t.remark) for t in sections(cases.shigley())[0].tiles}
+    life, words = beyond["life at S = 1"]
+    assert life == f"over {int(1e10 / 60 / 1800):,} h" and "efficiency" not in beyond
+    assert words.startswith("pinion, beyond 1e10 cycles; ")
     assert {t.name: t.value for t in sections(cases.unsafe(), INCH)[0].tiles}[
         "power capacity"
     ].endswith(" hp")

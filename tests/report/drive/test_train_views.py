@@ -231,3 +231,5 @@ def test_the_output_of_two_stages_of_one_distance_is_drawn_in_line_with_the_inpu
     ]
     assert len({round(m, 1) for m in middles}) == 2
     assert "the output in line with the input" in shown
+    assert "the design is not of this drawing but of all shafts in one line, over" in shown
+    assert "total length in one line [mm]" in shown

@@ -1,8 +1,11 @@
 """The page of a pair on moving axes: what is told of speeds, and axes that move as they did."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from gearopt.formulations.dynamics.design import (
+    Chosen,
     DynamicsDesign,
     Equilibrium,
     Response,
@@ -10,8 +13,8 @@ from gearopt.formulations.dynamics.design import (
 )
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
+from gearopt.report.kinds.dynamics import chosen, speeds
 from gearopt.report.kinds.dynamics import plots as dynamics_plots
-from gearopt.report.kinds.dynamics import speeds
 from gearopt.report.measures import METRIC
 
 REST = Equilibrium(
@@ -124,3 +127,27 @@ def test_axes_move_on_the_page_as_they_did():
     marked = [dynamics_plots.spectrum(found, f, METRIC) for f in (300.0, 1e-8, 0.0)]
     assert [len(plot.layout["shapes"]) for plot in marked] == [3, 0, 0]
     assert ["multiples" in plot.caption for plot in marked] == [True, False, False]
+
+
+def test_the_least_vibration_names_its_measure_its_sign_and_the_curves_that_are_drawn():
+    best = Chosen(
+        **dict.fromkeys(("bearing_stiffness_N_per_mm", "contact_ratio", "ramp"), 1.0),
+        **dict.fromkeys(("face_width_mm", "rim", "mass_kg", "displacement_mm"), 1.0),
+        **{"dense_maximum_mm": 0.0051, "highest_mm": -0.003429, "largest_multiplier": None},
+        **{"harmonics": 3, "speed_rpm": (1e3,), "rounds": (), "dense_rpm": (1e3, 2e3)},
+        **{"dense_mm": (0.005, 0.0051), "before_mm": (None, None)},
+        **{"parting_speeds": 0, "longest_repeat": 1},
+    )
+    design = DynamicsDesign(
+        kinematics="exact", axes="line", mesh_frequency_Hz=0.0, equilibrium=REST, chosen=best
+    )
+    found = Result("dynamics", "limit", "screened", {"name": "rms"}, design=untyped(design))
+    section = chosen(found, METRIC)
+    rows = dict(section.tables[0].rows)
+    assert rows["highest deformation δ, negative in compression [µm]"].text == "-3.429"
+    assert rows["largest RMS of the deformation over all speeds [µm]"].text == "5.1"
+    (figure,) = section.figures
+    assert [t["name"] for t in figure.data] == ["least vibration", "speeds of the problem"]
+    assert "over speed, of the pair of least vibration; only" in figure.caption
+    figure = dynamics_plots.before_and_after(replace(best, before_mm=(0.01, None)), "RMS", METRIC)
+    assert len(figure.data) == 3 and "of the pair of the file and of that of" in figure.caption

@@ -32,7 +32,9 @@ FILE = {
 @pytest.fixture(scope="module")
 def drawn():
     result = gearopt.rate(FILE)
-    (one,) = section(result, METRIC).drawings
+    shown = section(result, METRIC)
+    (one,) = shown.drawings
+    assert shown.words[0].endswith("of contact; from B to D one pair of spur teeth carries alone.")
     return drive_design(result.design).stages[0].pair, one.svg
 
 
@@ -70,6 +72,18 @@ def test_the_line_of_action_is_as_long_as_contact(drawn):
     assert math.dist(a, e) / scale == pytest.approx(ratio * base, abs=0.01)
     assert math.dist(a, d) / scale == pytest.approx(base, abs=0.01)
     assert math.dist(b, e) / scale == pytest.approx(base, abs=0.01)
+
+
+def test_of_helical_teeth_no_pair_is_said_to_carry_alone():
+    """Overlap keeps a second pair in contact for most of the way."""
+    helical = FILE | {"gears": FILE["gears"] | {"helix_angle": "10 deg"}}
+    result = gearopt.rate(helical)
+    shown, mesh = section(result, METRIC), result.design["rating"]["meshes"][0]
+    ratio = mesh["transverse_contact_ratio"] + mesh["overlap_ratio"]
+    assert 1.0 < ratio < 2.0 and "alone" not in shown.words[0]
+    words = f"Total contact ratio {ratio:.4g}: 1 or 2 pairs of teeth touch at once."
+    assert shown.drawings[0].caption == words
+    assert not {"B", "D"} & set(re.findall(r">([A-E])<", shown.drawings[0].svg))
 
 
 def _away(p, a, b):

@@ -187,5 +187,12 @@ def test_the_page_of_a_relief_shows_what_to_grind_and_what_it_does(solved):
     assert ends[0][0] == pytest.approx(156.0) and 13.0 < ends[0][2] < 14.5
     said = " ".join(relief.words)
     assert "varies by up to 1.239 µm at the loads this relief is made for, not 1.203 µm" in said
-    assert len(found["Teeth in mesh"].animations[0].views) == 2
+    mesh = found["Teeth in mesh"]
+    assert len(mesh.animations[0].views) == 2
+    assert "B to D, shaded: without relief one pair of teeth carries alone" in mesh.words[0]
+    points = next(t for t in found["Contact"].tables if t.name == "points of contact")
+    assert points.caption.endswith("one pair of teeth carries the load, without relief.")
+    assert "carries alone without relief" in found["Tooth sections"].words[0]
+    train = found["Gears with all shafts in one plane"].words[0]
+    assert train == "Both shafts are drawn in one plane: their positions are not optimised."
     assert len(found["Harmonics of the transmission error"].figures[0].data) == 6

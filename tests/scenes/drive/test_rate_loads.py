@@ -7,6 +7,8 @@ from rated_files import pair, two_stages
 from scipy.optimize import brentq
 
 import gearopt
+from gearopt.formulations.drive.rating import DriveRating
+from gearopt.optimise.typed import typed
 
 BENDING = ((6.1514, 0.1192), (1.3558, 0.0178))  # Y_N of carburised steel: A N^-B, the larger
 PITTING = ((2.466, 0.056), (1.4488, 0.023))  # Z_N
@@ -127,12 +129,15 @@ def test_lives_beyond_the_curves_are_not_told():
 
 
 def test_the_gear_that_fails_first_has_the_life_of_the_drive():
-    """A pinion beyond the curves, 1.2e10 cycles, before its wheel of 8e9, with a third of them."""
+    """A pinion known to 1e10 cycles, before its wheel of 5e9, with a third of them."""
     stress = rated(pair())["gears"][0]["contact_stress_MPa"]
-    strengths = [f"{stress / (1.4488 * n**-0.023)!r} MPa" for n in (1.2e10, 8e9)]
+    strengths = [f"{stress / (1.4488 * n**-0.023)!r} MPa" for n in (3e10, 5e9)]
     found = rated(pair({"given": {"s_ac": strengths}}))
-    assert [g.get("life_h") for g in found["gears"]] == [None, pytest.approx(8e9 / 60 / 1450 * 3)]
+    assert [g.get("life_h") for g in found["gears"]] == [None, pytest.approx(5e9 / 60 / 1450 * 3)]
     assert found.get("life_h") is None
+    rating = typed(DriveRating, found, "rating")
+    assert rating.shortest_lived.member == "pinion"
+    assert rating.known_life_h(rating.gears[0]) == pytest.approx(1e10 / 60 / 1450)
 
 
 def test_a_life_in_revolutions_of_the_input():

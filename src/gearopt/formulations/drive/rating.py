@@ -8,26 +8,30 @@ from typing import Annotated
 
 from gearopt.optimise.result import FEASIBLE
 from gearopt.optimise.typed import Shown
+from gearopt.physics.agma.life import LONGEST_LIFE
+
+GIVEN = "given"  # source of a factor of the file
 
 
 @dataclass(frozen=True, kw_only=True)
 class GearRating:
     """One gear in its mesh.
 
-    permissible stresses: allowable stress numbers times factors of life, hardness, temperature and
-    reliability, without a safety factor. Of a load spectrum stresses are those of the level where
-    they are largest, safety factors those of all levels. Lives: None beyond the end of the
-    curves; 0 where it fails at once. damages: Miner's sums, of a spectrum.
+    permissible stresses, for a safety factor of 1: allowable stress numbers times factors of life,
+    hardness, temperature and reliability; by ISO 6336 the limits sigma_FG and sigma_HG. Of a load
+    spectrum stresses are those of the level where they are largest, safety factors those of all
+    levels. Lives: None beyond the end of the curves; 0 where it fails at once. damages: Miner's
+    sums, of a spectrum.
     """
 
     stage: int
     member: str
     material: Annotated[str, Shown("material")]
     bending_stress_MPa: Annotated[float, Shown("bending stress")]
-    permissible_bending_stress_MPa: Annotated[float, Shown("permissible")]
+    permissible_bending_stress_MPa: Annotated[float, Shown("bending stress limit")]
     bending_safety: Annotated[float, Shown("S_F")]
     contact_stress_MPa: Annotated[float, Shown("contact stress")]
-    permissible_contact_stress_MPa: Annotated[float, Shown("permissible")]
+    permissible_contact_stress_MPa: Annotated[float, Shown("contact stress limit")]
     contact_safety: Annotated[float, Shown("S_H")]
     cycles: Annotated[float, Shown("load cycles")]
     bending_damage: Annotated[float | None, Shown("Miner's sum, bending")] = None
@@ -158,10 +162,10 @@ class DriveRating:
     """The rating of all stages.
 
     safe: whether every gear meets the safety factors that are asked for, and the gears fit. life_h:
-    the shortest of all gears, None beyond the end of the curves. unverified: symbols of factors,
-    and what else no second source has. misfits: sentences on gears that cannot be assembled or
-    cannot run. flaws: on what a designer may accept, and on the ratio of given gears that is not
-    the one asked for. by: the standard in short; beside: the rating by another one.
+    that of the `shortest_lived` gear, None beyond the end of its curve. unverified: symbols of
+    factors, and what else no second source has. misfits: sentences on gears that cannot be
+    assembled or cannot run. flaws: on what a designer may accept, and on the ratio of given gears
+    that is not the one asked for. by: the standard in short; beside: the rating by another one.
     """
 
     standard: str
@@ -190,6 +194,17 @@ class DriveRating:
     def each(self) -> tuple["DriveRating", ...]:
         """Return the ratings by all standards, this one first."""
         return (self,) if self.beside is None else (self, self.beside)
+
+    def known_life_h(self, gear: GearRating) -> float:
+        """Life of a gear [h] as far as its curve reaches: at least that."""
+        if gear.life_h is not None:
+            return gear.life_h
+        return LONGEST_LIFE / gear.cycles * self.required_life_h
+
+    @property
+    def shortest_lived(self) -> GearRating:
+        """The gear whose life, as far as it is known, is shortest: it governs that of the drive."""
+        return min(self.gears, key=self.known_life_h)
 
     @property
     def met(self) -> bool:

@@ -17,7 +17,7 @@ class Equilibrium:
     normal_load_N: Annotated[float, Shown("normal load")]
     mean_stiffness_N_per_mm: Annotated[float, Shown("mean mesh stiffness")]
     mesh_mass_kg: Annotated[float, Shown("reduced mass of the mesh")]
-    deformation_mm: Annotated[float, Shown("deformation", unit="um")]
+    deformation_mm: Annotated[float, Shown("deformation δ, negative in compression", unit="um")]
     centre_distance_mm: Annotated[float, Shown("centre distance")]
     centre_distance_growth_mm: Annotated[float, Shown("growth of the centre distance")]
     pressure_angle_deg: Annotated[float, Shown("pressure angle")]
@@ -129,8 +129,10 @@ class Chosen:
     rim: Annotated[float, Shown("rim factor")]
     mass_kg: Annotated[float, Shown("mass of both gears")]
     displacement_mm: Annotated[float, Shown("displacement of an axis at rest", unit="um")]
-    dense_maximum_mm: Annotated[float, Shown("largest vibration over all speeds", unit="um")]
-    highest_mm: Annotated[float, Shown("largest deformation", unit="um")]
+    dense_maximum_mm: Annotated[
+        float, Shown("largest RMS of the deformation over all speeds", unit="um")
+    ]
+    highest_mm: Annotated[float, Shown("highest deformation δ, negative in compression", unit="um")]
     largest_multiplier: Annotated[float | None, Shown("largest Floquet multiplier of all speeds")]
     harmonics: int
     speed_rpm: Columns

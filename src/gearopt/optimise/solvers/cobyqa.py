@@ -86,7 +86,8 @@ def run(
         pass
     finished = not clock.stopped
     if not following.excess <= FEASIBLE:
-        words = f"no point meets all limits; the least violation is {following.excess:.3g}"
+        least = 100.0 * following.excess
+        words = f"no point meets all limits; the least violation of a limit is {least:.3g} %"
         return Outcome(None, finished, evaluations=clock.evaluations, message=words)
     best = space.points(following.best[None])[0]
     return Outcome(best, finished, evaluations=clock.evaluations)

@@ -7,7 +7,7 @@ from typing import Any
 from gearopt.optimise.result import Result
 from gearopt.report.drawing.number_line import WIDE, Guide, Span, number_line
 from gearopt.report.drawing.sheet import Drawing, Place, Sheet, Window
-from gearopt.report.measures import Measures
+from gearopt.report.measures import DIGITS, Measures, rounded
 from gearopt.report.section import Section
 from gearopt.report.words import has_stages, limit_words, share
 
@@ -82,7 +82,8 @@ def remedies(ways: Sequence[Mapping[str, Any]]) -> Drawing | None:
         write = (change.get("short") or change["write"]).strip('"')
         blocked = None if way["bound"] is None else min(way["bound"], factor)
         name = f"{change['key']}: {was} → {write}"
-        rows.append(Span(name, 1.0, factor, blocked=blocked, reached=True))
+        ends = "", f"× {rounded(factor, DIGITS)}"
+        rows.append(Span(name, 1.0, factor, ends, blocked, reached=True))
     if not rows:
         return None
     proven = any(row.blocked is not None for row in rows)

@@ -8,8 +8,9 @@ from gearopt.physics.gears import MEMBERS, Gear, GearPair
 from gearopt.physics.geometry.contact import ContactPath, contact_path
 from gearopt.physics.geometry.fillet import half_angle, profile
 from gearopt.report.drawing.sheet import Drawing, Place, Point, Sheet, Window, series
-from gearopt.report.measures import Measures
+from gearopt.report.measures import Measures, rounded
 from gearopt.report.section import Section
+from gearopt.report.words import sentence
 
 WIDE, HIGH = 560.0, 340.0  # px of a drawing, at most
 ALONG, ACROSS = 4.6, 0.9  # normal modules: to either side of the pitch point, below the roots
@@ -18,8 +19,14 @@ DOT = 2.6  # px: radius of a point of contact
 WORDS = (
     "Transverse sections of the teeth as their tools cut them, touching at the pitch point C; the "
     "pinion, below, turns clockwise and drives. Dash-dotted: working pitch circles. The line of "
-    "action from A to E is that of contact; from B to D one pair of teeth carries alone."
+    "action from A to E is that of contact"
 )
+ALONE = "; from B to D one pair of spur teeth carries alone"
+HELICAL = (
+    " in this section. Helical teeth touch along slanting lines: other sections are in contact at "
+    "other moments, so that more pairs of teeth touch than one section shows"
+)
+ROUNDING = 1e-9  # of a contact ratio: so near to a whole number it is that
 
 
 def section(result: Result, measures: Measures) -> Section | None:
@@ -29,10 +36,34 @@ def section(result: Result, measures: Measures) -> Section | None:
     """
     if not result.design.get("rating"):
         return None
-    stages = drive_design(result.design).stages
-    drawn = [_mesh(stage.pair, k, len(stages)) for k, stage in enumerate(stages, 1)]
-    meshes = tuple(drawing for drawing in drawn if drawing is not None)
-    return Section("Teeth in mesh", words=(WORDS,), drawings=meshes) if meshes else None
+    pairs = [stage.pair for stage in drive_design(result.design).stages]
+    drawn = [(pair, _mesh(pair, k, len(pairs))) for k, pair in enumerate(pairs, 1)]
+    meshes = [(pair, drawing) for pair, drawing in drawn if drawing is not None]
+    if not meshes:
+        return None
+    helical = HELICAL * any(pair.pinion.helix_angle for pair, _ in meshes)
+    alone = ALONE * any(carries_alone(pair, contact_path(pair)) for pair, _ in meshes)
+    return Section(
+        "Teeth in mesh",
+        words=(f"{WORDS}{helical}{alone}.",),
+        drawings=tuple(drawing for _, drawing in meshes),
+    )
+
+
+def carries_alone(pair: GearPair, path: ContactPath) -> bool:
+    """Whether one pair of teeth carries alone on a part of its path, not all of it.
+
+    Only of spur gears is that so along the whole face width.
+    """
+    return not pair.pinion.helix_angle and bool(1.0 < path.transverse_ratio < 2.0)
+
+
+def _touching(pair: GearPair) -> str:
+    """Least and most pairs of helical teeth that touch at once, of the total contact ratio."""
+    ratio = float(pair.transverse_contact_ratio + pair.overlap_ratio)
+    low, high = math.floor(ratio + ROUNDING), math.ceil(ratio - ROUNDING)
+    pairs = f"{low} pairs" if low == high else f"{low} or {high} pairs"
+    return f"total contact ratio {rounded(ratio, 4)}: {pairs} of teeth touch at once"
 
 
 def _mesh(pair: GearPair, stage: int, stages: int) -> Drawing | None:
@@ -47,8 +78,9 @@ def _mesh(pair: GearPair, stage: int, stages: int) -> Drawing | None:
         sheet.shape(path_, "tip", series(stage), f"{name} {stage}" if stages > 1 else name)
         pitch_circle(sheet, at, pair.normal_module, series(stage))
     action(sheet, pair, path)
-    caption = f"Stage {stage}." if stages > 1 else ""
-    return sheet.drawing(f"teeth of stage {stage} in mesh", caption, cut=True)
+    caption = [f"Stage {stage}"] if stages > 1 else []
+    caption += [_touching(pair)] if pair.pinion.helix_angle else []
+    return sheet.drawing(f"teeth of stage {stage} in mesh", sentence("; ".join(caption)), cut=True)
 
 
 def sheet_of(pair: GearPair, free: tuple[float, float, float, float], larger: float = 1.0) -> Sheet:
@@ -105,9 +137,9 @@ def tooth(gear: Gear, at: float, number: int) -> list[Point]:
 
 
 def action(sheet: Sheet, pair: GearPair, path: ContactPath) -> None:
-    """Draw the line of action with the points A to E; B and D where one pair carries alone."""
+    """Draw the line of action with the points A to E; B and D of `carries_alone`."""
     places = {"A": path.start, "E": path.end, "C": 0.0}
-    if 1.0 < float(path.transverse_ratio) < 2.0:
+    if carries_alone(pair, path):
         places |= {"B": path.lowest_single, "D": path.highest_single}
     sheet.line(on_action(pair, path.start), on_action(pair, path.end), "size")
     for name, s in places.items():

@@ -63,17 +63,19 @@ def section(result: Result, measures: Measures, hint: str = "") -> Section | Non
     name, sign, unit = measures.module
     webs = [circles(s, m) for s in result.design["stages"] for m in MEMBERS]
     inside = ", thin ones the insides of rims, hubs and bores" if any(webs) else ""
-    folded = is_folded(_picked(result.design["stages"]))
+    folded, single = is_folded(_picked(result.design["stages"])), len(result.design["stages"]) == 1
     lie = ", the output in line with the input, as both stages have one distance" * folded
+    gaps = ", and the gaps between the stages are only as wide as the labels need" * (not single)
+    unfolded = "not of this drawing but of all shafts in one line, " if folded else "that "
+    total = f"{unfolded}over reference circles"
     plural = f"modules {sign} in {unit}" if unit == "mm" else f"{name}es {sign} in {unit}"
     words = (
-        f"All shafts are drawn in one plane{lie}: their positions are not optimised, and the gaps "
-        f"between the stages are only as wide as the labels need.{hint}",
+        f"{'Both' if single else 'All'} shafts are drawn in one plane{lie}: their positions are "
+        f"not optimised{gaps}.{hint}",
         f"Drawn to one scale; dimensions in {measures.lengths}: centre distances, length over "
-        "tip circles (the total length of the design is that over reference circles), face widths "
-        f"b; {plural}; teeth z. Solid lines are tip circles, "
-        f"dash-dotted ones reference circles{inside}; numbers in circles name the "
-        "shafts, which are not drawn.",
+        f"tip circles (the total length of the design is {total}), face widths b; {plural}; teeth "
+        f"z. Solid lines are tip circles, dash-dotted ones reference circles{inside}; numbers in "
+        "circles name the shafts, which are not drawn.",
     )
     return Section("Gears with all shafts in one plane", words=words, drawings=drawn)
 

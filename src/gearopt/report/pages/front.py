@@ -96,7 +96,8 @@ def _summary(front: Front, measures: Measures) -> Section:
     tiles = [Tile("designs", f"{count:,}", front_words.verdict(front)[0])] if count else []
     for k, objective in enumerate(front.objectives if count else ()):
         values = [p.values[k] for p in front.points]
-        low, high = (measures.amount(v, unit_of(objective)) for v in (min(values), max(values)))
+        ends = min(values), max(values)
+        low, high = (front_words.amount_of(front, k, value, measures) for value in ends)
         tiles.append(Tile(words(front, objective.name), low, f"to {high}" if high != low else ""))
     lines = front_words.decided(front, measures)[bool(count) :]  # the tiles say the first
     if front.status == "infeasible" and front.file:

@@ -7,7 +7,7 @@ from typing import Any
 
 from gearopt.optimise.pareto.front import Front, FrontPoint, Impossible
 from gearopt.report.design_tables import STAGE_ROWS, stage_label
-from gearopt.report.front import heads, rules, stages_of, table, unit_of
+from gearopt.report.front import heads, rules, stages_of, table, unit_of, value_cells
 from gearopt.report.measures import Measures
 from gearopt.report.section import Cell, Table, cell
 from gearopt.report.words import MODULE, heading, is_module, limit_words, parted
@@ -135,13 +135,8 @@ def beaten(front: Front, measures: Measures) -> Table | None:
     """The values of designs that others beat, of which the page shows a plot."""
     if not front.beaten:
         return None
-    rows = [_values(front, values, measures) for values in front.beaten]
+    rows = value_cells(front, front.beaten, measures)
     return Table("dominated designs", heads(front, measures), rows, folded=True)
-
-
-def _values(front: Front, values: Sequence[float], measures: Measures) -> list[Cell]:
-    pairs = zip(values, front.objectives, strict=True)
-    return [cell(v, unit_of(objective), measures) for v, objective in pairs]
 
 
 def impossible(front: Front, measures: Measures) -> Table | None:
@@ -189,14 +184,15 @@ def data(
     alike = set.intersection(*map(set, each)).difference(_different(each, names))
     others = [n for n in names if len(each) == 1 or n not in alike]
     limits = list(dict.fromkeys(name for p in front.points for name in p.limits))
+    shown_values = value_cells(front, [p.values for p in front.points], measures)
     points = [
         [
-            *(c.text for c in _values(front, p.values, measures)),
+            *(c.text for c in values),
             *[named.get(n, NONE).text for n in main],
             *[_used(p, n) for n in limits],
             *[named.get(n, NONE).text for n in others],
         ]
-        for p, named in zip(front.points, each, strict=True)
+        for values, p, named in zip(shown_values, front.points, each, strict=True)
     ]
     staged = front.scene is not None
     ends = [0, len(front.objectives) + len(main)]

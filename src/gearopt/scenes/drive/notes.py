@@ -201,7 +201,7 @@ def _teeth(scene: Scene) -> list[str]:
                 "whose pinions have the profile shift of the file, that of their wheels following "
                 f"from {source}, with both tips shortened alike"
             )
-    ends = "losses in mesh and bearings are neglected"
+    ends = "torques are those without losses in mesh and bearings"
     sentences = [f"The gears are external cylindrical ones {shifts}; {ends}."]
     usual = {replace(ISO_53_A, pressure_angle=r.pressure_angle) for cut in each for r in cut.racks}
     if {rack for cut in each for rack in cut.racks} <= usual:
@@ -234,7 +234,7 @@ def _layout_assumptions(layout: Layout) -> list[str]:
     bearings = (
         "Bearings are those of the file; their life is not checked."
         if layout.bearing_diameters
-        else "The file gives no bearings: there is no room for them in the box."
+        else "The file gives no bearings: the box is made without room for them."
     )
     ends = "run from wall to wall" if layout.span == "full" else "end beside their gears"
     return [

@@ -132,8 +132,9 @@ def told(best: Chosen, result: Result, periods: int) -> list[str]:
     sentences, objective = [], result.value or 0.0
     if best.dense_maximum_mm > (1.0 + JUDGE_MARGIN) * objective:
         more = 100.0 * (best.dense_maximum_mm / objective - 1.0)
+        measure = "RMS of the" if result.objective["name"] == "rms" else "peak-to-peak"
         sentences.append(
-            f"Between the {len(best.speed_rpm)} speeds the deformation reaches "
+            f"Between the {len(best.speed_rpm)} speeds the {measure} deformation reaches "
             f"{MICRO * best.dense_maximum_mm:.4g} µm, {more:.0f} % above the objective: "
             "exchange = true adds the speeds of its maxima."
         )

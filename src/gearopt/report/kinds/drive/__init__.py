@@ -1,5 +1,6 @@
 """Drives of cylindrical gears, laid out or not: drawings, stages, processes, next best trains."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -9,6 +10,7 @@ from gearopt.formulations.drive.layout.layout_design import LayoutDesign
 from gearopt.optimise.result import Result
 from gearopt.report.answer import asked, assumptions, limits, summary
 from gearopt.report.design_tables import (
+    ratio_text,
     ratio_tile,
     teeth_head,
     teeth_heads,
@@ -57,11 +59,29 @@ STAGED = {  # tables of a layout: keys that the table of stages or the box shows
     "obstacles": ("from_mm", "to_mm"),
 }
 OF_STAGE = {"ratio": "ratio u", "centre_distance_mm": "a", "face_width_mm": "b"}
+EXCESS = re.compile(r"is violated by ([0-9.e+-]*[0-9])(.*)")  # a part of the limit
 OF_DRIVE = ("ratio", "ratio_error_percent", "gear_volume_mm3")
+
+
+def _with_gears(result: Result) -> tuple[Result, str]:
+    """The result, or the gears of a box that has no design; their heading."""
+    gears = next((part for part in result.parts if part.name == "gears" and part.design), None)
+    if result.design or gears is None:
+        return result, ""
+    return replace(gears, scene=result.scene), "Gears to be laid out"
+
+
+def gears_first(result: Result, measures: Measures) -> Section | None:
+    """The gears that were sized first and cannot be laid out, for the terminal."""
+    shown, heading = _with_gears(result)
+    if not heading or (sized := rating_tables.design(shown, measures)) is None:
+        return None
+    return replace(sized, terminal=(f"{heading}:", *sized.terminal))
 
 
 def numbers(result: Result, measures: Measures) -> Section | None:
     """All tables of the design; of a layout what its stages and drawings do not show."""
+    result, sized = _with_gears(result)
     if (whole := rating_tables.design(result, measures)) is None:
         return None
     if result.design.get("rating"):
@@ -75,7 +95,8 @@ def numbers(result: Result, measures: Measures) -> Section | None:
         else replace(t, folded=t.name in DRAWN)
         for t in whole.tables
     ]
-    return replace(whole, tables=sorted(shown, key=lambda t: t.folded))
+    named = sized or whole.heading
+    return replace(whole, heading=named, tables=sorted(shown, key=lambda t: t.folded))
 
 
 def clearances(result: Result) -> set[str]:
@@ -198,7 +219,11 @@ def _labels(stages: int, *labels: str) -> list[str]:
 def _totals(designs: Sequence[Result], bound: float | None, measures: Measures) -> list[list[Any]]:
     rows: list[list[Any]] = []
     for key in OF_DRIVE:
-        values = (cell(design.design[key], parted(key)[1], measures) for design in designs)
+        values = [cell(design.design[key], parted(key)[1], measures) for design in designs]
+        if key == "ratio":
+            errors = (design.design["ratio_error_percent"] for design in designs)
+            both = zip(values, errors, strict=True)
+            values = [replace(shown, text=ratio_text(shown.value, error)) for shown, error in both]
         rows.append([heading(key, measures), *values])
     name, unit = objective(designs[0])
     if name != "gear volume":
@@ -218,6 +243,8 @@ def _over(result: Result, bound: float) -> float | None:
 def _missing(part: Result) -> str:
     """Say why a process has no design that counts, and which limit is violated."""
     first, _, rest = part.message.partition(" ")
+    if over := EXCESS.fullmatch(rest):
+        rest = f"exceeds its limit by {100.0 * float(over[1]):.3g} %{over[2]}"
     shown = "The design" if part.design else "No design"
     return f"{shown} by {part.name}: {limit_words(first)} {rest}".rstrip(". ") + "."
 
@@ -355,8 +382,10 @@ def _instead(part: Result, measures: Measures) -> list[str]:
 def _in_one_line(result: Result, measures: Measures) -> Section | None:
     """Draw the gears; None where they are laid out."""
     asks = " A [layout] table in the file places the gears in the smallest box."
-    hint = "" if result.status == "evaluated" else asks
-    return train_views.section(result, measures, hint)
+    shown, sized = _with_gears(result)
+    hint = "" if sized or result.status == "evaluated" else asks
+    drawn = train_views.section(shown, measures, hint)
+    return replace(drawn, heading=f"{sized}, all shafts in one plane") if drawn and sized else drawn
 
 
 DRAWINGS = (layout_views.section, layout_solid.section, _in_one_line)
@@ -387,6 +416,7 @@ PAGES = Pages(
     ),
     terminal=(
         rating_tables.design,
+        gears_first,
         places,
         counts,
         limits,

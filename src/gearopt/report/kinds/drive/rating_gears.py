@@ -4,7 +4,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from gearopt.formulations.drive.rating import DriveRating, GearRating, LoadLevel, RatingFactor
+from gearopt.formulations.drive.rating import (
+    GIVEN,
+    DriveRating,
+    GearRating,
+    LoadLevel,
+    RatingFactor,
+)
 from gearopt.optimise.result import Result
 from gearopt.report.kinds.drive.rating_tables import figure, name, names, single
 from gearopt.report.kinds.drive.rating_words import (
@@ -14,12 +20,13 @@ from gearopt.report.kinds.drive.rating_words import (
     STANDARD_HEADS,
     efficiency,
     greek,
+    hours,
     life,
+    life_governed,
     nearest,
     of_standards,
     rated_sentence,
     rating_of,
-    safety,
     stress_words,
     unsure,
     unverified,
@@ -30,11 +37,14 @@ from gearopt.report.words import RATING, parted, series_of
 
 ONCE = 4  # fields of a load level that hold for all gears
 DAMAGE_DIGITS = 3
+PERMISSIBLE = (
+    "σ_FG and σ_HG are the tooth root and the pitting stress limit; permissible are σ_FP and σ_HP, "
+    "the limits over the required safety factors."
+)
 LOAD_FACTORS = (
     "By ISO 6336, K_v and the face and transverse load factors depend on the load: the power "
     "capacity is rated with their values at that power."
 )
-GIVEN = "given"  # source of a factor of the file
 ABREAST = {"AGMA": 3, "ISO 6336": 2}  # stages whose factors fit side by side on a terminal
 
 
@@ -56,18 +66,21 @@ def _said(rating: DriveRating) -> list[str]:
     """Standards, and meaning of safety factors and lives."""
     words = [
         _standards(rating),
-        "S_F and S_H are permissible over actual stress; S_H squared is the safety factor of the "
-        "load.",
+        "S_F and S_H are the stress limit, without a safety factor, over the actual stress; S_H "
+        "squared is the safety factor of the load.",
     ]
     if any(rated.by == "ISO 6336" for rated in rating.each):
-        words.append(LOAD_FACTORS)
+        words += [PERMISSIBLE, LOAD_FACTORS]
     if len(rating.meshes) > 1:
-        words.append(f"Nearest to its required safety factor is {series_of(nearest(rating))}.")
+        words.append(f"Nearest to the required safety factors: {'; '.join(nearest(rating))}.")
     if rating.levels:
         words.append("Safety factors are those of all load levels together, by Miner's rule.")
     lives = [(g.bending_life_cycles, g.contact_life_cycles) for _, g in _columns(rating)]
     if any(None in both for both in lives):
-        words.append(f"Beyond: more than {LONGEST_LIFE}, where the life curves end.")
+        words.append(
+            f"The life curves end at {LONGEST_LIFE} cycles: a gear that lasts longer has a life of "
+            "over so many, and over the hours that they take."
+        )
     return words
 
 
@@ -103,6 +116,9 @@ def _gear_rows(rating: DriveRating, measures: Measures) -> Iterator[list[Any]]:
         head = it.head(measures)
         if it.key == "material":
             yield [head, *(Cell(s, s.replace(", ", "\n")) for s in values)]
+        elif it.key == "life_h":
+            lives = (life(*column).removesuffix(" h") for column in _columns(rating))
+            yield [head, *(Cell(value, text) for value, text in zip(values, lives, strict=True))]
         elif "life" in it.key:
             yield [head, *(_life(value, it.key, measures) for value in values)]
         elif not it.key.endswith("_damage"):
@@ -119,10 +135,10 @@ def _used(asked: float, safety_factor: float) -> Cell:
 
 
 def _life(value: float | None, key: str, measures: Measures) -> Cell:
-    """A life; None beyond the end of the curves, 0 before they begin."""
+    """A life in cycles; None beyond the end of the curves, 0 before they begin."""
     if not value:
-        return Cell(value, "beyond" if value is None else AT_ONCE)
-    return Cell(value, safety(value)) if key == "life_h" else cell(value, parted(key)[1], measures)
+        return Cell(value, f"over {LONGEST_LIFE}" if value is None else AT_ONCE)
+    return cell(value, parted(key)[1], measures)
 
 
 def _damage(value: float | None) -> Cell:
@@ -134,7 +150,7 @@ def _on_terminal(result: Result, rating: DriveRating, measures: Measures) -> lis
     """All gears for the terminal; of an optimum first how it is rated."""
     keys = [it.key for it in listed(GearRating) if it.key.endswith(("_MPa", "_safety"))]
     sign, named = measures.unit("MPa"), rating.beside is not None
-    strong = f"permissible\n{sign}"
+    strong = f"limit\n{sign}"
     short = (f"bending\n{sign}", strong, "S_F", f"contact\n{sign}", strong, "S_H")
     rows = [
         [
@@ -147,8 +163,11 @@ def _on_terminal(result: Result, rating: DriveRating, measures: Measures) -> lis
     heads = ["gear", *["by"] * named, *keys]
     read = dict(zip(keys, short, strict=True))
     table = Table("gears", heads, rows, short=read, left=1 + named, wrap=9)
-    lives = of_standards(rating, [life(rated.life_h) for rated in rating.each])
-    asked = f"{';' if named else ','} {life(rating.required_life_h)} required."
+    each = [
+        f"{life(rated, rated.shortest_lived)} ({life_governed(rated)})" for rated in rating.each
+    ]
+    asked = f"{';' if named else ','} {hours(rating.required_life_h)} required."
+    lives = f"{each[0]} by both" if named and len(set(each)) == 1 else of_standards(rating, each)
     lasts = f"Life at safety factors of 1: {lives}{asked}"
     if rating.efficiency_percent is not None:
         lasts += f" Efficiency of the meshes: {efficiency(rating)}{unsure(rating)}."

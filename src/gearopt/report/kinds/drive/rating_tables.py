@@ -1,6 +1,6 @@
 """A rating as sections of tables: forces and contact, teeth; names and rows of its tables."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import isclose
 from typing import Any
@@ -10,7 +10,7 @@ from gearopt.optimise.result import Result
 from gearopt.report.design_tables import stage_label, tables
 from gearopt.report.kinds.drive.rating_words import FRICTION, ROUNDING, rating_of, safety
 from gearopt.report.measures import Measures
-from gearopt.report.section import Cell, Section, Table, cell, listed, side_by_side
+from gearopt.report.section import ABSENT, Cell, Section, Table, cell, listed, side_by_side
 from gearopt.report.words import MODULE, heading, module_words, number, parted
 
 IN_DESIGN = {  # keys of stages and totals that tables of a rating show
@@ -19,6 +19,13 @@ IN_DESIGN = {  # keys of stages and totals that tables of a rating show
     *("transverse_contact_ratio", "overlap_ratio", "pitch_line_velocity_m_per_s"),
     *("working_pressure_angle_deg", "pinion_profile_shift", "wheel_profile_shift"),
     *("pinion_torque_Nm", "output_torque_Nm"),
+}
+REASONS = {  # why a gear or a mesh may lack a value that others have, by field
+    "usable_contact_ratio": "undercut leaves all of the transverse contact ratio",
+    "mesh_efficiency_percent": "the loss is too large for the formula of the efficiency",
+    "active_root_diameter_mm": "the mate's tip passes the end of the involute",
+    "span_mm": "a span cannot be measured, as it would not touch the flanks within the face width",
+    "over_balls_mm": "balls would not touch the flanks, or not stand out of the tips",
 }
 ABREAST = 2  # stages whose teeth fit beside another table
 
@@ -67,12 +74,28 @@ def figure(value: Any, key: str, measures: Measures) -> Any:
     return Cell(measures.of(value, unit), text)
 
 
+def _lacking(items: Sequence[Any], measures: Measures) -> tuple[list[list[Any]], list[str]]:
+    """A row for every field, a dash where one is lacking, and the reasons in a sentence."""
+    rows = [
+        [label, *(replace(c, text=ABSENT) if c.value is None else c for c in cells)]
+        for label, *cells in side_by_side(items, measures)
+    ]
+    held = {it.key for it in listed(items[0].__class__)}
+    reasons = [
+        reason
+        for key, reason in REASONS.items()
+        if key in held and {getattr(item, key) is None for item in items} == {True, False}
+    ]
+    return rows, [f"{ABSENT}: {'; '.join(reasons)}."] if reasons else []
+
+
 def forces(result: Result, measures: Measures) -> Section | None:
     """Contact and forces of every mesh, and what shafts carry; None without a rating."""
     if (rating := rating_of(result)) is None:
         return None
     heads = ["", *(f"stage {mesh.stage}" for mesh in rating.meshes)]
-    rows = [*_least_rows(rating, measures), *side_by_side(rating.meshes, measures)]
+    shown, lacking = _lacking(rating.meshes, measures)
+    rows = [*_least_rows(rating, measures), *shown]
     meshes = Table("meshes", heads, rows, across=True)
     heads = ["", *(f"shaft {shaft.shaft}" for shaft in rating.shafts)]
     *rows, (axial, *_) = side_by_side(rating.shafts, measures)
@@ -90,6 +113,7 @@ def forces(result: Result, measures: Measures) -> Section | None:
             "Efficiencies are those of tooth friction alone, without bearings, seals and oil "
             "churning" + ("." if rating.efficiency_error_percent is None else f"; {FRICTION}.")
         )
+    words += lacking
     stages = result.design["stages"]
     sentences = "\n".join(
         f"{_mesh_words(rating, stage, k, measures)}" for k, stage in enumerate(stages)
@@ -138,12 +162,13 @@ def teeth(result: Result, measures: Measures) -> Section | None:
     """The geometry of the teeth of every gear; None without a rating."""
     if (rating := rating_of(result)) is None:
         return None
-    rows = side_by_side(rating.teeth, measures)
+    rows, lacking = _lacking(rating.teeth, measures)
     table = Table("teeth", ["", *names(rating)], rows, across=True)
     words = [
         "Terms are those of ISO 21771, shifts are in normal modules. The generating shift is that "
         "of the tool, with the allowance of the tooth thickness; contact with the mate ends at the "
-        "active root diameter."
+        "active root diameter.",
+        *lacking,
     ]
     return Section("Teeth", words=words, tables=(table,), half=len(rating.meshes) <= ABREAST)
 

@@ -18,16 +18,14 @@ ROUNDING = 1e-8  # relative; a safety factor so near to a shorter number is that
 FRICTION = (  # `mesh_loss.FRICTION_ERROR`
     f"the error is that of the friction, which may be {100 * FRICTION_ERROR:.0f} % off (unverified)"
 )
-LONGEST_LIFE = f"{life_curves.LONGEST_LIFE:g} cycles".replace("e+", "e")
+LONGEST_LIFE = f"{life_curves.LONGEST_LIFE:g}".replace("e+", "e")  # cycles
 AT_ONCE = "fails at once"
 MODES = {"bending": "S_F", "contact": "S_H"}
 STANDARD_HEADS = {"AGMA": "AGMA", "ISO 6336": "ISO"}  # a standard in a column's head
 SYMBOLS = {  # of stresses, by standard
     "AGMA": {
         "bending_stress_MPa": "s_t",
-        "permissible_bending_stress_MPa": "s_t",
         "contact_stress_MPa": "s_c",
-        "permissible_contact_stress_MPa": "s_c",
     },
     "ISO 6336": {
         "bending_stress_MPa": "sigma_F",
@@ -183,11 +181,15 @@ def _governing(rating: DriveRating) -> tuple[str, str, float, float]:
 
 
 def nearest(rating: DriveRating) -> list[str]:
-    """The gear of every stage nearest to the safety factors asked for, in words."""
+    """The safety factor of every stage nearest to the one asked for, and its gear, in words."""
     words = []
     for mesh in rating.meshes:
         rows = [
-            (reached / asked, f"{mode} of the {gear.member}", rated.by)
+            (
+                reached / asked,
+                f"{mode} ({MODES[mode]}) of the {gear.member}",
+                rated.by,
+            )
             for rated in rating.each
             for gear in rated.gears
             if gear.stage == mesh.stage
@@ -198,7 +200,7 @@ def nearest(rating: DriveRating) -> list[str]:
         ]
         _, what, by = min(rows)
         of = f" by {by}" if rating.beside is not None else ""
-        words.append(f"{what} in stage {mesh.stage}{of}")
+        words.append(f"stage {mesh.stage}, {what}{of}")
     return words
 
 
@@ -277,12 +279,17 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
         return []
     power, capacities = _powers(rating)
     asked, capacities = measures.words(power), [measures.words(each) for each in capacities]
-    lives = [life(rated.life_h) for rated in rating.each]
+    powers = [rated.power_capacity_kW for rated in rating.each]
+    lives = [life(rated, rated.shortest_lived) for rated in rating.each]
+    ends = [rated.known_life_h(rated.shortest_lived) for rated in rating.each]
     shown = [
         *(_safety_tile(rated, "bending", rating) for rated in rating.each),
         *(_safety_tile(rated, "contact", rating) for rated in rating.each),
-        _tile(rating, "power capacity", capacities, asked),
-        _tile(rating, "life at S = 1", lives, life(rating.required_life_h)),
+        _tile(rating, "power capacity", powers, capacities, [], asked),
+        _tile(
+            *(rating, "life at S = 1", ends, lives),
+            *([life_governed(rated) for rated in rating.each], hours(rating.required_life_h)),
+        ),
     ]
     if rating.efficiency_percent is not None:
         remark = "tooth friction alone"
@@ -300,20 +307,40 @@ def _safety_tile(rating: DriveRating, mode: str, whole: DriveRating) -> Tile:
     return Tile(f"minimum {MODES[mode]}, {mode}{of}", reached, remark)
 
 
-def _tile(rating: DriveRating, name: str, values: Sequence[str], asked: str) -> Tile:
-    """A key figure: its value, or by each of two standards in the remark the second."""
-    if rating.beside is None:
-        return Tile(name, values[0], f"{asked} required")
-    first, second = rating.each
-    remark = f"{values[1]} by {second.by}; {asked} required"
-    return Tile(f"{name} by {first.by}", values[0], remark)
+def _tile(
+    rating: DriveRating,
+    name: str,
+    sizes: Sequence[float],
+    values: Sequence[str],
+    remarks: Sequence[str],
+    asked: str,
+) -> Tile:
+    """A key figure: of two standards the smaller size in its words, the other in the remark."""
+    order = sorted(range(len(values)), key=sizes.__getitem__)
+    said = [remarks[order[0]]] if remarks else []
+    for k in order[1:]:
+        same = values[k] == values[order[0]]
+        said.append(f"{'the same' if same else values[k]} by {rating.each[k].by}")
+    by = "" if rating.beside is None else f" by {rating.each[order[0]].by}"
+    return Tile(f"{name}{by}", values[order[0]], "; ".join([*said, f"{asked} required"]))
 
 
-def life(hours: float | None) -> str:
-    """A life for reading; None: beyond the end of the curves, 0: before they begin."""
-    if not hours:
-        return f"beyond {LONGEST_LIFE}" if hours is None else AT_ONCE
-    return f"{safety(hours)} h"
+def life(rating: DriveRating, gear: GearRating) -> str:
+    """The life of a gear for reading: to the end of its curve, or none before it begins."""
+    over = "over " if gear.life_h is None else ""
+    return AT_ONCE if gear.life_h == 0.0 else f"{over}{hours(rating.known_life_h(gear))}"
+
+
+def hours(value: float) -> str:
+    """A number of hours for reading, never larger than it is."""
+    return f"{safety(value)} h"
+
+
+def life_governed(rating: DriveRating) -> str:
+    """The gear that governs the life of a drive, and that its curve ends there, if it does."""
+    gear = rating.shortest_lived
+    beyond = f", beyond {LONGEST_LIFE} cycles" if gear.life_h is None else ""
+    return f"{gear_words(rating, gear)}{beyond}"
 
 
 def unverified(rating: DriveRating) -> list[str]:

@@ -23,6 +23,7 @@ TWO_MOTIONS = (
     0.02  # of an RMS by which rising and falling speeds differ where there are two motions
 )
 MEASURES = {"rms": "RMS", "peak_to_peak": "peak to peak"}
+HIGHEST = "highest δ, negative in compression"
 
 
 def design_of(result: Result) -> DynamicsDesign | None:
@@ -43,7 +44,8 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     ]
     if (chosen := design.chosen) is not None:
         worst = amount(chosen.dense_maximum_mm, "um", measures)
-        figures.append(Tile("largest vibration over all speeds", worst, "on the dense grid"))
+        largest = f"largest {_measure(result)} of the deformation"
+        figures.append(Tile(largest, worst, "over all speeds, on the dense grid"))
     if (moved := design.response) is not None:
         figures.append(
             Tile(
@@ -57,6 +59,11 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
         figures.append(Tile("largest Floquet multiplier", number(design.stability.here), verdict))
     fastest = f"{rest.frequencies_Hz[-1]:,.0f} Hz"
     return [*figures, Tile("highest natural frequency", fastest, "at the mean stiffness")]
+
+
+def _measure(result: Result) -> str:
+    """What is minimised of the deformation, in words."""
+    return MEASURES.get(result.objective.get("name", ""), "vibration")
 
 
 def binding_limit(result: Result) -> str:
@@ -88,9 +95,9 @@ def motion(result: Result, measures: Measures) -> Section | None:
         ["error reached, of the largest deformation", f"{moved.error:.2e}"],
         ["steps", moved.steps],
         ["times that teeth part", moved.separations],
-        [f"RMS [{measures.unit('um')}]", cell(moved.rms_mm, "um", measures)],
+        [f"RMS about the mean [{measures.unit('um')}]", cell(moved.rms_mm, "um", measures)],
         [f"peak to peak [{measures.unit('um')}]", cell(moved.peak_to_peak_mm, "um", measures)],
-        [f"largest [{measures.unit('um')}]", cell(moved.highest_mm, "um", measures)],
+        [f"{HIGHEST} [{measures.unit('um')}]", cell(moved.highest_mm, "um", measures)],
     ]
     table = Table("response", ("", ""), rows, "RMS and peak to peak of the second half.")
     moving = [plots.orbit(moved, measures)] if moved.axes_mm else []
@@ -181,7 +188,7 @@ def _two(held: Speeds) -> list[str]:
 def _speeds(held: Speeds, measures: Measures) -> Table:
     """Every speed's motion as a table, of falling speeds beside the rising ones."""
     micro = measures.unit("um")
-    heads = [f"RMS [{micro}]", f"peak to peak [{micro}]", f"largest [{micro}]", "motion"]
+    heads = [f"RMS [{micro}]", f"peak to peak [{micro}]", f"{HIGHEST} [{micro}]", "motion"]
     rising = held.rms_mm, held.peak_to_peak_mm, held.highest_mm, held.repeats
     falling = (
         held.falling_rms_mm,
@@ -216,14 +223,16 @@ def chosen(result: Result, measures: Measures) -> Section | None:
     if gearing is None or (best := gearing.chosen) is None:
         return None
     micro = measures.unit("um")
-    design = Table("design", ("", ""), names_and_values(best, measures))
+    measure = _measure(result)
+    largest = f"largest {measure} of the deformation over all speeds [{micro}]"
+    rows = names_and_values(best, measures, labels={"dense_maximum_mm": largest})
+    design = Table("design", ("", ""), rows)
     heads = ("speeds", "harmonics", f"objective [{micro}]", f"over all speeds [{micro}]")
     rounds = [
         [int(n), int(h), *(cell(1e-3 * v, "um", measures) for v in values)]
         for n, h, *values in best.rounds
     ]
     exchange = Table("exchange", heads, rounds, "Speeds added until the dense grid agrees.")
-    measure = MEASURES.get(result.objective.get("name", ""), "vibration")
     tables = (design, exchange) if rounds else (design,)
     figures = (plots.before_and_after(best, measure, measures),)
     return Section("Least vibration", figures=figures, tables=tables, terminal=tables)

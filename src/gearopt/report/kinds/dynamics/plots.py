@@ -229,7 +229,8 @@ def before_and_after(best: Chosen, measure: str, measures: Measures) -> Figure:
         ),
         line(best.dense_rpm, after, "least vibration", 1),
     ]
-    traces = traces[set(best.before_mm) == {None} :]  # none where the run was stopped
+    alone = set(best.before_mm) == {None}  # where the run was stopped
+    traces = traces[alone:]
     judged = [float(np.interp(n, best.dense_rpm, after)) for n in best.speed_rpm]
     marks = line(best.speed_rpm, judged, "speeds of the problem")
     traces.append(marks | {"mode": "markers", "marker": {"color": series(1), "size": 6}})
@@ -240,7 +241,11 @@ def before_and_after(best: Chosen, measure: str, measures: Measures) -> Figure:
         hovermode="x",
     )
     plot["margin"] |= {"t": 44}
-    caption = "Vibration over speed of both pairs; only the marked speeds enter the objective."
+    pairs = (
+        "pair of least vibration" if alone else "pair of the file and of that of least vibration"
+    )
+    caption = f"{measure[0].upper()}{measure[1:]} of the deformation over speed, of the {pairs}; "
+    caption += "only the marked speeds enter the objective."
     return Figure(traces, plot, caption)
 
 

@@ -13,7 +13,15 @@ from gearopt.report.kinds import Pages, drive
 from gearopt.report.kinds.drive import rating_words
 from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
 from gearopt.report.kinds.pair import relief as pair_relief
-from gearopt.report.kinds.pair.contact import TABLES, in_space, moving, pair_of, teeth, travel
+from gearopt.report.kinds.pair.contact import (
+    TABLES,
+    in_space,
+    moving,
+    pair_of,
+    points,
+    teeth,
+    travel,
+)
 from gearopt.report.kinds.pair.relief import relief_of
 from gearopt.report.kinds.pair.words import answers, of_duty
 from gearopt.report.measures import METRIC, Measures
@@ -99,8 +107,9 @@ def contact(result: Result, measures: Measures) -> Section | None:
     """Say how the load passes from tooth to tooth, with tables; None without contact."""
     if (pair_contact := contact_of(result)) is None:
         return None
-    tables = [table(pair_contact, measures) for table in TABLES]
     relieved = bool(result.design.get("relief"))
+    tables = [points(pair_contact, measures, relieved)]
+    tables += [table(pair_contact, measures) for table in TABLES]
     sentences = answers(pair_contact, pair_of(result), _frequency(result), relieved)
     words = list(map(measures.words, sentences))
     shown = [table for table in tables if not table.folded]

@@ -11,6 +11,7 @@ from gearopt.optimise.result import Result
 from gearopt.physics.blanks import Body
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.contact import usable_path
+from gearopt.report.drawing.mesh_view import carries_alone
 from gearopt.report.drawing.solid import undrawn
 from gearopt.report.kinds.pair import solid as pair_solid
 from gearopt.report.kinds.pair import tooth_section
@@ -66,7 +67,7 @@ def moving(
     figures = [*_of_loads(contact, relief, pair, measures), _stiffness(contact, pair, measures)]
     return Section(
         "Teeth in mesh",
-        words=(f"Line of action and plots: {zone_words(path)}",),
+        words=(f"Line of action and plots: {zone_words(path, relief is not None)}",),
         animations=[in_mesh(pair, MESH, shown, measures, at)],
         figures=figures,
     )
@@ -137,8 +138,10 @@ def teeth(result: Result, measures: Measures) -> Section | None:
     """Draw a tooth of each gear with its dimensions; None without gears of whole teeth."""
     if (pair := pair_of(result)) is None:
         return None
-    single = tooth_section.carries_alone(usable_path(pair))
-    where = "one pair of teeth carries alone, farthest out" if single else "contact reaches the tip"
+    single = carries_alone(pair, usable_path(pair))
+    without = " without relief" if result.design.get("relief") else ""
+    where = f"one pair of teeth carries alone{without}, farthest out"
+    where = where if single else "contact reaches the tip"
     words = SECTIONS.format(unit=measures.lengths, where=where)
     return Section(
         "Tooth sections", words=(words,), drawings=tooth_section.sections(pair, measures)
@@ -174,15 +177,16 @@ def bodies(stage: StageDesign) -> tuple[Body, Body]:
     )
 
 
-def points(contact: PairContact, measures: Measures) -> Table:
-    """Points where pairs of teeth come and go, and how stiff one pair is there."""
+def points(contact: PairContact, measures: Measures, relieved: bool) -> Table:
+    """Points where pairs of teeth come and go without relief, and how stiff one pair is there."""
     heads, rows = records(contact.points, measures)
     caption = (
         "Points of the path of contact; s on the line of action from the pitch point, positive "
         "towards the pinion's tip."
     )
     if contact.contact_ratio < 2.0:
-        caption += " Between LPSTC and HPSTC one pair of teeth carries the load."
+        caption += " Between LPSTC and HPSTC one pair of teeth carries the load"
+        caption += f"{', without relief' * relieved}."
     length, stiff = measures.unit("mm"), measures.unit(STIFFNESS)
     brief = f"d_1 [{length}]", f"d_2 [{length}]", "pinion roll [°]", f"pair [{stiff}]"
     short = dict(zip(heads[2:], brief, strict=True))
@@ -259,4 +263,4 @@ def columns(name: str, listed: Columns, measures: Measures) -> Table:
     return Table(name, heads, list(zip(*cells, strict=True)), folded=True)
 
 
-TABLES: tuple[MakeTable, ...] = (points, loads, path, travel)
+TABLES: tuple[MakeTable, ...] = (loads, path, travel)

@@ -73,10 +73,12 @@ def over_path(
     return Figure(traces, plot, caption, follows=follows)
 
 
-def zone_words(path: ContactPath) -> str:
+def zone_words(path: ContactPath, relieved: bool = False) -> str:
     """Meaning of the letters and the shading of `over_path`."""
-    alone = "B to D, shaded: one pair of teeth carries alone"
-    shaded = alone if path.transverse_ratio < 2.0 else "shaded: the fewest pairs of teeth carry"
+    without = "without relief " * relieved
+    alone = f"B to D, shaded: {without}one pair of teeth carries alone"
+    fewest = f"shaded: {without}the fewest pairs of teeth carry"
+    shaded = alone if path.transverse_ratio < 2.0 else fewest
     return f"A to E: path of contact; {shaded}; C: pitch point."
 
 

@@ -16,6 +16,7 @@ from gearopt.physics.geometry.fillet import (
     profile_angle,
 )
 from gearopt.physics.geometry.tooth import tip_thickness, transverse_thickness
+from gearopt.report.drawing.mesh_view import carries_alone
 from gearopt.report.drawing.sheet import SIZE, Drawing, Place, Point, Sheet, Window, series
 from gearopt.report.measures import Measures
 
@@ -55,19 +56,14 @@ def sections(pair: GearPair, measures: Measures) -> tuple[Drawing, Drawing]:
     return first, second
 
 
-def outermost(path: ContactPath) -> tuple[float, float]:
+def outermost(pair: GearPair, path: ContactPath) -> tuple[float, float]:
     """Radii of curvature [mm] where one pair of teeth touches farthest out on either flank.
 
     HPSTC on the pinion and LPSTC on the wheel; the tips where two pairs or more always touch.
     """
-    single = carries_alone(path)
+    single = carries_alone(pair, path)
     high, low = (path.highest_single, path.lowest_single) if single else (path.end, path.start)
     return float(path.radii_of_curvature(high)[0]), float(path.radii_of_curvature(low)[1])
-
-
-def carries_alone(path: ContactPath) -> bool:
-    """Whether one pair of teeth carries alone on a part of its path, not all of it."""
-    return bool(1.0 < path.transverse_ratio < 2.0)
 
 
 def _drawing(pair: GearPair, path: ContactPath, k: int, measures: Measures) -> Drawing:
@@ -80,7 +76,7 @@ def _drawing(pair: GearPair, path: ContactPath, k: int, measures: Measures) -> D
     sheet.line((0.0, window.bottom), (0.0, window.top), "axis")
     _thickness(sheet, gear, measures)
     _pressure_angle(sheet, gear)
-    _load(sheet, gear, outermost(path)[k])
+    _load(sheet, gear, outermost(pair, path)[k])
     _fillet(sheet, gear, measures)
     caption = f"Tooth of the {member}, z {gear.teeth:.6g}."
     return sheet.drawing(f"tooth of the {member}", caption, cut=True)

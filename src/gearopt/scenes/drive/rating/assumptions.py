@@ -17,7 +17,7 @@ def rating_assumptions(scene: Scene) -> list[str]:
     by_agma, by_iso = asked.standard != "iso6336", asked.standard != "agma"
     sentences = [
         "The rating is of external cylindrical steel gears on parallel shafts; the pinions drive. "
-        "Losses are neglected, but for those of the mesh where they are reported.",
+        "Torques and forces are those without losses.",
         "The standards themselves were not read: formulas and values are those of textbooks, "
         "tables and public programs; those from a single source are marked unverified.",
         *(_agma_assumptions(asked) if by_agma else []),

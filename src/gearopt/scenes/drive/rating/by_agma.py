@@ -1,8 +1,10 @@
 """Rating by AGMA 2001: a stage from its tables, factors by name, materials in words."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
+from gearopt.formulations.drive.rating import GIVEN, RatingFactor
 from gearopt.formulations.strength.agma import Agma
 from gearopt.physics.agma.allowables import CURVES
 from gearopt.physics.agma.factors import quality_of_accuracy
@@ -44,9 +46,18 @@ PROPORTIONAL = True  # stresses, or their squares, grow with the load
 UNVERIFIED_SPECTRUM = ()  # of a load spectrum: what no second source has
 
 
-def title(asked: RatingTable) -> str:
-    """The standard that the rating follows."""
-    return f"{TITLES[asked.edition]}, geometry factors of AGMA 908-B89"
+def title(asked: RatingTable, factors: Sequence[RatingFactor]) -> str:
+    """The standard that the rating follows, and where its geometry factors are from."""
+    geometry = [factor for factor in factors if factor.symbol in ("I", "J")]
+    given = dict.fromkeys(f.symbol for f in geometry if f.source == GIVEN)
+    parts = ["geometry factors of AGMA 908-B89"] if any(f.source != GIVEN for f in geometry) else []
+    parts += [f"{' and '.join(given)} of the file"] if given else []
+    return ", ".join([TITLES[asked.edition], *parts])
+
+
+def names(asked: RatingTable) -> dict[str, str]:
+    """Names of factors that are computed."""
+    return NAMES
 
 
 def material(table: GearTable) -> str:

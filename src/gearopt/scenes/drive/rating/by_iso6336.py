@@ -1,7 +1,9 @@
 """Rating by ISO 6336: a stage from its tables, factors by name, materials in words."""
 
+from collections.abc import Sequence
 from typing import Any
 
+from gearopt.formulations.drive.rating import RatingFactor
 from gearopt.formulations.strength.iso6336 import Iso6336
 from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336.case import Practice, of_blanks
@@ -23,7 +25,16 @@ PROPORTIONAL = False  # stresses, or their squares, grow with the load
 UNVERIFIED_SPECTRUM = ("load spectrum by part 6",)  # what no second source has
 
 
-def title(asked: RatingTable) -> str:
+def names(asked: RatingTable) -> dict[str, str]:
+    """Names of factors that are computed: without a relief of the file C_a is that of running-in.
+
+    Source: ISO 6336-1:2006, 6.5.
+    """
+    worn = {} if asked.iso6336.tip_relief else {"C_a": "tip relief by running-in, C_ay"}
+    return NAMES | worn
+
+
+def title(asked: RatingTable, factors: Sequence[RatingFactor]) -> str:
     """The standard that the rating follows."""
     return f"ISO 6336 parts 1, 2, 3 and 5, method B, edition {asked.iso6336.edition}"
 

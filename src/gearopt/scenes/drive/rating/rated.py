@@ -29,7 +29,6 @@ from gearopt.scenes.drive.rating.rows import (
     factor_rows,
     gear_row,
     level_rows,
-    life_hours,
     mesh_row,
     shaft_rows,
 )
@@ -240,20 +239,18 @@ def _by(
     rows = tuple(mesh_row(asked, mesh, wanted) for mesh in meshes)
     least = min(rows, key=lambda row: row.power_capacity_kW)
     gears = tuple(gear_row(mesh, k) for mesh in meshes for k in (0, 1))
-    factors = tuple(row for mesh in meshes for row in factor_rows(mesh))
+    factors = tuple(row for mesh in meshes for row in factor_rows(asked, mesh))
     turned = hands([table.pinion_hand for table in scene.stage] or [None] * len(pairs))
-    hours = [life_hours(mesh, k) for mesh in meshes for k in (0, 1)]
-    shortest = gears[min(range(len(gears)), key=hours.__getitem__)]
     efficiency, error = _efficiency(rows)
     rated = DriveRating(
-        standard=standard.title(asked),
+        standard=standard.title(asked, factors),
         safe=False,
         governs=f"{least.governs}, stage {least.stage}",
         minimum_bending_safety=wanted[0],
         minimum_contact_safety=wanted[1],
         power_capacity_kW=least.power_capacity_kW,
         required_life_h=required_hours(asked, scene.duty),
-        life_h=shortest.life_h,
+        life_h=None,
         efficiency_percent=efficiency,
         efficiency_error_percent=error,
         gears=gears,
@@ -277,7 +274,7 @@ def _by(
         ),
         by=standard.NAME,
     )
-    return replace(rated, safe=rated.met)
+    return replace(rated, safe=rated.met, life_h=rated.shortest_lived.life_h)
 
 
 def _efficiency(rows: Sequence[MeshRating]) -> tuple[float | None, float | None]:

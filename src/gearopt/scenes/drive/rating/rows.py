@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from gearopt.formulations.drive.rating import (
+    GIVEN,
     GearRating,
     LoadLevel,
     MeshRating,
@@ -45,7 +46,7 @@ def gear_row(mesh: Mesh, k: int) -> GearRating:
     stresses = hardest.bending_stress[k], hardest.contact_stress[k]
     safeties = hardest.bending_safety[k], hardest.contact_safety[k]
     cycles = sum(level.cycles[k] for level in mesh.levels)
-    lives, life = _lives(mesh, k), life_hours(mesh, k)
+    lives = _lives(mesh, k)
     return GearRating(
         stage=mesh.stage,
         member=MEMBERS[k],
@@ -59,7 +60,7 @@ def gear_row(mesh: Mesh, k: int) -> GearRating:
         cycles=cycles,
         bending_life_cycles=_within(lives[0]),
         contact_life_cycles=_within(lives[1]),
-        life_h=None if _within(min(lives)) is None else life,
+        life_h=None if _within(min(lives)) is None else _hours(mesh, min(lives), cycles),
         bending_damage=None if mesh.damages is None else mesh.damages[0][k],
         contact_damage=None if mesh.damages is None else mesh.damages[1][k],
     )
@@ -81,11 +82,9 @@ def _within(life: float) -> float | None:
     return life if life <= LONGEST_LIFE else None
 
 
-def life_hours(mesh: Mesh, k: int) -> float:
-    """Return the shorter life of a gear in hours, extrapolated beyond the end of the curves."""
-    cycles = sum(level.cycles[k] for level in mesh.levels)
-    hours = sum(level.hours for level in mesh.operations)
-    return float(min(_lives(mesh, k)) / cycles * hours)
+def _hours(mesh: Mesh, life: float, cycles: float) -> float:
+    """A life of a gear in hours; life: in cycles, and cycles of the hours asked for."""
+    return float(life / cycles * sum(level.hours for level in mesh.operations))
 
 
 def mesh_row(rating: RatingTable, mesh: Mesh, wanted: tuple[float, float]) -> MeshRating:
@@ -178,9 +177,9 @@ def _friction(rating: RatingTable, mesh: Mesh) -> tuple[float | None, bool]:
     return float(friction_coefficient(mesh.pair, *known)), False
 
 
-def factor_rows(mesh: Mesh) -> list[RatingFactor]:
+def factor_rows(rating: RatingTable, mesh: Mesh) -> list[RatingFactor]:
     """Return the factors of a mesh at its hardest level."""
-    rows = []
+    rows, computed = [], mesh.standard.names(rating)
     for symbol, factor in mesh.hardest.factors.items():
         value = factor.value
         first, second = value if isinstance(value, tuple) else (value, None)
@@ -188,7 +187,7 @@ def factor_rows(mesh: Mesh) -> list[RatingFactor]:
             RatingFactor(
                 stage=mesh.stage,
                 symbol=symbol,
-                name=mesh.standard.NAMES[symbol],
+                name=(mesh.standard.NAMES if factor.clause == GIVEN else computed)[symbol],
                 pinion=first,
                 wheel=second,
                 unit=mesh.standard.UNITS.get(symbol, ""),
