@@ -99,10 +99,10 @@ def test_packings_at_random():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", range(4, 148, 36))
+@pytest.mark.parametrize("first", range(4, 148, 18))
 def test_many_packings_at_random(first):
-    found = [check(seed) for seed in range(first, first + 18)]
-    assert found.count(None) < 8 and found.count(True) > 3
+    found = [check(seed) for seed in range(first, first + 9)]
+    assert found.count(None) < 5 and found.count(True) > 1
 
 
 EIGHT = tuple(

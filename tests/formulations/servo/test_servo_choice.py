@@ -106,10 +106,10 @@ def test_stiff_trains_in_boxes_are_what_looking_at_all_finds():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", range(0, 155, 31))
+@pytest.mark.parametrize("first", range(0, 160, 16))
 def test_hundreds_of_stiff_trains_in_boxes_are_what_looking_at_all_finds(first):
-    answered, impossible = compared(range(first, first + 31))
-    assert answered > 8 and impossible > 2
+    answered, impossible = compared(range(first, first + 16))
+    assert answered > 3 and impossible
 
 
 def test_a_look_at_a_range_of_links_excludes_no_layout():
