@@ -140,13 +140,23 @@ class Agma:
         """Return the least d1^2 b/(T (1 + 1/u)) of contact and d1^2 b/T of bending."""
         return needed(self, cells, safety)
 
+    @property
+    def levels(self) -> tuple[Self, ...]:
+        """The standard under each of its loads alone."""
+        return tuple(
+            replace(
+                self, loads=(load,), rivals=tuple(replace(r, loads=(load,)) for r in self.rivals)
+            )
+            for load in self.loads
+        )
+
     def best_with(self, rivals: Sequence[Self]) -> Self | None:
         """Return the virtual way with every strength at its best; None: they differ in more."""
         alike = all(replace(rival, steels=self.steels) == self for rival in rivals)
         return replace(self, rivals=tuple(rivals)) if alike else None
 
     @cached_property
-    def _strongest_ways(self) -> tuple["Agma", ...]:
+    def strongest_ways(self) -> tuple["Agma", ...]:
         """Return ways of which one is the strongest in every mode."""
         if not self.rivals:
             return (self,)
@@ -232,7 +242,7 @@ class Agma:
         unit = pair.of_width(1.0)
         places = range(len(self.loads))
         every = []
-        for way in self._strongest_ways:
+        for way in self.strongest_ways:
             cases = [way.case(unit, torque, speed, given, place) for place in places]
             if len(cases) == 1:
                 every.append(safeties(cases[0], 1.0, (1.0, 1.0)))

@@ -43,8 +43,9 @@ def needed(standard: "Agma", cells: Cells, safety: tuple[float, float]) -> tuple
     bare["K_s"] = tuple(sizes) if practice.size else (1.0, 1.0)
     module, d = cells.module[LOWER], cells.diameter[LOWER]
     pair = cells.cut(LOWER).of_diameter(module, cells.teeth[LOWER], d, cells.ratio[UPPER], 1.0)
-    case = standard.case(pair, 1.0, cells.speed[LOWER], bare)
-    made = safeties(case, 1.0, (1.0, 1.0))
+    cases = [way.case(pair, 1.0, cells.speed[LOWER], bare) for way in standard.strongest_ways]
+    every = zip(*(safeties(case, 1.0, (1.0, 1.0)) for case in cases), strict=True)
+    made = [np.maximum.reduce(values) for values in every]
     own = pair.working_diameters[0]
     first, *both = _geometry(cells, teeth)
     first = 1.0 + 1.0 / cells.ratio[LOWER] if "I" in given else first  # `made` has what is given

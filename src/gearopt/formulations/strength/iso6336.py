@@ -92,9 +92,12 @@ class Iso6336:
         pair = cut.of_diameter(cells.module[0], z, cells.diameter[1], u_high, 1.0)
         far = cut.of_diameter(cells.module[0], z, cells.diameter[1], u_low, 1.0)
         slow, fast = (self.case(pair, 1.0, speed) for speed in cells.speed)
-        last = self.case(far, 1.0, cells.speed[1])
-        strength = _strength(self, (slow, fast), ends, member, contact, made.found)
-        return strength.greatest((slow, last))
+        last, strengths = self.case(far, 1.0, cells.speed[1]), []
+        for way in self.strongest_ways[contact, member]:
+            at = [replace(case, materials=way.materials) for case in (slow, fast, last)]
+            strength = _strength(way, (at[0], at[1]), ends, member, contact, way.found)
+            strengths.append(strength.greatest((at[0], at[2])))
+        return np.maximum.reduce(strengths)
 
     def _practice(self, pair: GearPair) -> Practice:
         made = of_blanks(self.practice, pair, self.blanks)
@@ -155,6 +158,16 @@ class Iso6336:
 
     def floor(self, box: Box, choice: str) -> None:
         """Lower bounds of the used capacity as posynomials: None, for none are known."""
+
+    @property
+    def levels(self) -> tuple[Self, ...]:
+        """The standard under each of its loads alone."""
+        return tuple(
+            replace(
+                self, loads=(load,), rivals=tuple(replace(r, loads=(load,)) for r in self.rivals)
+            )
+            for load in self.loads
+        )
 
     def best_with(self, rivals: Sequence[Self]) -> Self | None:
         """Return the virtual way with every factor at its best; None where rows cannot be compared.

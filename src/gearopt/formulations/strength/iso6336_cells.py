@@ -6,7 +6,7 @@ W2 = W1 K_Hbeta [N/mm] all is a matter of lengths [mm]: deviations and deflectio
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property, partial, reduce
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -55,8 +55,14 @@ class IsoCells:
 
     @cached_property
     def found(self) -> dict[str, Any]:
-        """Numbers of the materials alone."""
-        return self.standard.found
+        """Numbers of the materials alone, of a virtual way the best Z_E."""
+        return self.standard.found | {"Z_E": min(way.found["Z_E"] for way in self.standard.each)}
+
+    @cached_property
+    def _reliefs(self) -> tuple[Any, Any]:
+        """The least and the greatest C_a [mm] of all ways."""
+        reliefs = [way.found["C_a"] for way in self.standard.each]
+        return min(reliefs), max(reliefs)
 
     @cached_property
     def line(self) -> Array:
@@ -123,10 +129,10 @@ class IsoCells:
         made = [case.deviations for case in self.cases]
         pitches = [self.given.get("f_pb", one.base_pitch) for one in made]
         forms = [self.given.get("f_falpha", one.profile_form) for one in made]
-        found = []
+        found, wears = [], (True, not self.standard.rivals)  # virtual ways are the softest
         for end, case in enumerate(self.cases):
             own, other, form = (
-                size - self.standard.running_in_allowance(case, worn)
+                size - (wears[end] and self.standard.running_in_allowance(case, worn))
                 for size, worn in (
                     (pitches[end], pitches[end]),
                     (forms[end], pitches[1 - end]),
@@ -179,7 +185,7 @@ class IsoCells:
         c7 = loads.coefficients(self.total[LOWER])[6]
         pitch, form, _ = self.deviations[LOWER]
         s, slow = self.deflection, self.resonance[LOWER]
-        ratios = [1.0 - self.found["C_a"] / x for x in s]
+        ratios = [1.0 - relief / x for relief, x in zip(self._reliefs[::-1], s, strict=True)]
         relief = np.where(ratios[0] * ratios[1] < 0.0, 0.0, np.minimum(*np.abs(ratios)))
         shared = (c1 * pitch + c2 * form) / s[1]
         low = 1.0 + slow * (shared + c3 * relief)
@@ -208,7 +214,7 @@ class IsoCells:
         c1, c2, c3, c4, c5, c6, _ = loads.coefficients(self.total[LOWER])
         c7 = loads.coefficients(self.total[UPPER])[6]
         pitch, form, _ = self.deviations[UPPER]
-        relief = np.maximum(*(np.abs(x - self.found["C_a"]) for x in s))
+        relief = np.maximum(s[1] - self._reliefs[0], self._reliefs[1] - s[0])
         shared = c1 * pitch + c2 * form
         low = s[1] + self.resonance[UPPER] * (shared + c3 * relief)
         main = s[1] + shared + np.maximum(c4, 0.0) * relief
@@ -250,10 +256,12 @@ class IsoCells:
         Of each gear y_beta = min(k F_betax, most).
         """
         speed, found = self.cases[LOWER].speed, [(1.0, 0.0)]
-        for k, material in enumerate(self.standard.materials):
-            limit = self.found["sigma_Hlim"][k]
+        for kinds in self.standard.wearing:
             share, most = (
-                running_in.helix_allowance(material.family, size, limit, speed) / size
+                reduce(
+                    np.maximum,
+                    (running_in.helix_allowance(f, size, soft, speed) / size for f, soft in kinds),
+                )
                 for size in (1e-9, ENDLESS)
             )
             found = [
@@ -275,11 +283,11 @@ class IsoCells:
         before = loads.initial_misalignment(
             shaft, alignment, line, slope, practice.helix_modification
         )
-        worn = [
-            running_in.helix_allowance(m.family, before, self.found["sigma_Hlim"][k], fast.speed)
-            for k, m in enumerate(self.standard.materials)
-        ]
-        after = before - 0.5 * (worn[0] + worn[1])
+        worn: Any = 0.0
+        for k, m in enumerate(() if self.standard.rivals else self.standard.materials):
+            limit = self.found["sigma_Hlim"][k]
+            worn = worn + 0.5 * running_in.helix_allowance(m.family, before, limit, fast.speed)
+        after = before - worn
         return self.loaded * loads.face_load_factor(
             after, self.c_gamma_beta_over_c_prime(UPPER), self.loaded
         )

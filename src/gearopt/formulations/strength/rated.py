@@ -124,6 +124,10 @@ class Standard(Protocol):
     def floor(self, box: "Box", choice: str) -> "Floor | None":
         """Lower bounds of the used capacity over a box; None where there are none."""
 
+    @property
+    def levels(self) -> "tuple[Standard, ...]":
+        """The standard under each of its loads alone."""
+
     def best_with(self, rivals: Sequence[Any]) -> "Standard | None":
         """Return a virtual way of making the gears whose `rows` use no more than those of any way.
 

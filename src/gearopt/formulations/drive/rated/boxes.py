@@ -145,8 +145,8 @@ def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
     sizes = boxes.sizes.copy()
     sizes[U, 0] = np.maximum(sizes[U, 0], after[0] - before[1] - ROUND)
     sizes[U, 1] = np.minimum(sizes[U, 1], after[1] - before[0] + ROUND)
-    _follow(shafts.train, k, sizes)
-    some = np.flatnonzero(_possible(sizes))
+    follow(shafts.train, k, sizes)
+    some = np.flatnonzero(possible(sizes))
     boxes = Boxes(sizes, boxes.before, boxes.after).take(some)
     before, after, sizes = before[:, some], after[:, some], boxes.sizes
     if not len(boxes):
@@ -157,30 +157,30 @@ def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
     ends = size[Z], size[U], size[D], size[D2], size[M], size[B], size[B_OVER_D]
     helix = None if stage.helix is None else np.arctan(size[T])
     cells = Cells(stage.toothing, *ends, torque, speed, helix)
-    needed = _needed(shafts.train, stage, cells)
+    needed = needed_by_cells(shafts.train, stage, cells)
     weak = _needed_by_weak(stage, cells, shafts.train.safety, needed[0])
     most = np.maximum(weak * (1.0 + 1.0 / size[U, 1]), needed[1]) * torque[0]
     with np.errstate(divide="ignore"):
         least = np.log(most * (1.0 - MARGIN))  # of d1^2 b = d1^3 (b/d1)
     sizes[D, 0] = np.maximum(sizes[D, 0], (least - sizes[B_OVER_D, 1]) / 3.0)
     sizes[B_OVER_D, 0] = np.maximum(sizes[B_OVER_D, 0], least - 3.0 * sizes[D, 1])
-    _follow(shafts.train, k, sizes)
+    follow(shafts.train, k, sizes)
     parts = [(needed[0], True, True), (needed[1], False, True), (weak, True, False)]
     value = _of_sizes(shafts, k, sizes, before, after)
     for part in parts:
         value = np.maximum(value, _of_ratings(shafts, k, sizes, part, before, after))
-    some = np.flatnonzero(_possible(sizes))
+    some = np.flatnonzero(possible(sizes))
     return boxes.take(some), value[some]
 
 
-def _possible(sizes: Array) -> Array:
+def possible(sizes: Array) -> Array:
     """Mask of boxes that are not empty; a box empty by rounding alone is made a point."""
     filled = (sizes[:, 1] >= sizes[:, 0] - ROUND).all(axis=0)
     sizes[:, 1] = np.maximum(sizes[:, 0], sizes[:, 1])
     return np.asarray(filled)
 
 
-def _follow(train: Train, k: int, sizes: Array) -> None:
+def follow(train: Train, k: int, sizes: Array) -> None:
     """Make boxes smaller by the rows that tie their sides, in place."""
     stage = train.stages[k]
     straight, cosine = cosines(stage, sizes)
@@ -217,7 +217,7 @@ def cosines(stage: Stage, sizes: Array) -> tuple[Any, Any]:
     return least, most
 
 
-def _needed(train: Train, stage: Stage, cells: Cells) -> tuple[Array, Array]:
+def needed_by_cells(train: Train, stage: Stage, cells: Cells) -> tuple[Array, Array]:
     """Return the least d1^2 b/(T (1 + 1/u)) of contact and d1^2 b/T of bending [1/MPa].
 
     An index of a proportional law over 1 + 1/u falls neither with z1 nor with u (`Law`).

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
+from gearopt.formulations.drive.rated.quick_bound import quick_bound
 from gearopt.formulations.drive.teeth.choices import valued
 from gearopt.formulations.drive.teeth.later_stages import (
     SLICE,
@@ -93,13 +94,15 @@ def search(
     progress = Progress(wanted, Clock(budget, watch), floor)
     maximum = largest_ratio(train)
     cut = min(maximum, first_cut(train))
-    progress.whole = whole and cut == maximum
+    progress.whole = whole
     try:
-        parts = len(train.of_one_option) * len(train.of_one_row)
+        apart = cut == maximum and len(train.of_one_option) * len(train.of_one_row) > 1
         for one in _glimpses(train):
             _glance(train, one, cut, progress, shelf)
-            if parts > 1 and progress.found and progress.lower == -math.inf:
+            if apart and progress.found:
                 _bound_apart(train, cut, progress, shelf)
+                apart = False
+        progress.whole = whole and cut == maximum
         closed, far = False, maximum
         if progress.found or not train.rated:  # else dives found none, and there may be none
             closed = not progress.found and _look(train, cut, progress, FIRST_LOOK, shelf)
@@ -145,6 +148,8 @@ def _glance(
         if own is not train and progress.found[:1] != before:
             best = progress.found[0][1]
             progress.add(np.array([valued(train, best)[0]]), iter([best]))
+        if progress.whole and progress.found and not before:
+            progress.raise_lower(quick_bound(train, progress.found[0][0]))
         progress.patience = 0.0
     progress.patience = -math.inf
     progress.tick()
@@ -477,7 +482,7 @@ def any_train(
         return event.best is None and wanted  # one train is enough
 
     try:
-        progress = search(train, 1, Budget(seconds=seconds), first, shelf=shelf)
+        progress = search(train, 1, Budget(seconds=seconds), first, whole=False, shelf=shelf)
     except SolveError:  # too many pairs to examine
         return None
     if progress.found:
