@@ -83,6 +83,9 @@ def _shares(train: Train, k: int, most: float) -> Array:
     reached = k < len(train.stages) - 1 or (i + rows + j + 1) * wide >= low
     keep = (i + j <= WIDE) & reached
     sizes, i, j = _sizes(train, k, most, i[keep], j[keep])
+    share = np.full((WIDE * PARTS if rows else 1, WIDE * PARTS), np.inf)
+    if not len(i):
+        return share
     at, overlap = np.stack([i, i + rows]) * wide, EDGE * np.array([[-1.0], [1.0]])
     torque, size = train.torque * np.exp(at + overlap), np.exp(sizes)
     ends = size[Z], size[U], size[D], size[D2], size[M], size[B], size[B_OVER_D]
@@ -100,7 +103,6 @@ def _shares(train: Train, k: int, most: float) -> Array:
     inside = (need <= largest) & (u + step >= lowest - EDGE) & (u <= highest + EDGE)
     need = np.maximum(need, least) / (1.0 if train.by_width else thick)
     value = np.where(inside, need**power * grown * (1.0 - MARGIN), np.inf)
-    share = np.full((WIDE * PARTS if rows else 1, WIDE * PARTS), np.inf)
     np.minimum.at(share, (row[:, :, None], column[:, None, :]), value)
     return np.where(share <= most, share, np.inf)
 

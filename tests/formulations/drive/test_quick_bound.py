@@ -1,0 +1,105 @@
+"""The quick bound of rated drives lies below every train, and below every row in its cells."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from campaigns import few
+from rated_drives import MODULES, TREATMENTS, F, agma, rated_drive, some_face, some_iso
+
+from gearopt.formulations.drive.rated import quick_bound as quick
+from gearopt.formulations.drive.teeth.search import search
+from gearopt.formulations.drive.teeth.tables import stage_tables
+from gearopt.formulations.strength.rated import Load, Option
+from gearopt.optimise.result import Budget
+from gearopt.physics.blanks import Blank
+
+AIMS = "gear_volume", "mass", "cost", "sum_of_centre_distances", "total_length"
+LEVELS = Load(500.0, 1.3), Load(9000.0, 0.8, 0.9), Load(9000.0, 0.4, 1.1)
+
+
+def some_options(rng):
+    """Ways of making gears of one to three treatments, by AGMA, ISO 6336 or both."""
+    quality, hours = float(rng.integers(5, 12)), float(10.0 ** rng.uniform(1.0, 5.0))
+    laws = ((agma,), (some_iso,), (agma, some_iso))[rng.integers(3)]
+    levels = LEVELS if rng.random() < 0.3 else None
+    chosen = rng.permutation(len(TREATMENTS))[: rng.integers(1, 4)]
+    options = []
+    for steels in (TREATMENTS[k] for k in chosen):
+        made = [law(steels, quality, hours) for law in laws]
+        made = [replace(one, loads=levels) if levels else one for one in made]
+        prices = tuple(float(p) for p in rng.integers(1, 4, size=2))
+        options.append(Option(tuple(made), prices=prices))
+    return tuple(options)
+
+
+def some_drive(seed, stages=None):
+    """A random drive of up to three stages whose loads about fit its modules."""
+    rng = np.random.default_rng(seed)
+    count = stages or int(rng.integers(1, 4))
+    begin, low = int(rng.integers(0, 7)), int(rng.integers(18, 30))
+    modules, middle = MODULES[begin : begin + 5], float(MODULES[begin + 2])
+    rpm = float(10.0 ** rng.uniform(1.7, 3.6))
+    torque = 12.0 * float(10.0 ** rng.uniform(-0.8, 0.2)) * middle**3 * low**2 * 0.1
+    train = rated_drive(
+        F(int(rng.integers(20, (60, 160, 400)[count - 1])), 10),
+        [some_face(rng, middle, low) for _ in range(count)],
+        power=torque * rpm * math.pi / 30.0,
+        rpm=rpm,
+        helix=float(rng.choice([0.0, rng.uniform(0.1, 0.5)])),
+        options=some_options(rng),
+        modules=modules,
+        pinion_teeth=(low, low + int(rng.integers(1, 4))),
+    )
+    if rng.random() < 0.3:
+        web = Blank(rim_over_module=2.5, web_over_width=0.4)
+        train = replace(
+            train, stages=tuple(replace(s, blanks=(Blank(), web)) for s in train.stages)
+        )
+    safety = float(rng.uniform(0.9, 1.6)), float(rng.uniform(0.9, 1.3))
+    return replace(train, safety=safety, objective=str(rng.choice(AIMS)), density=7.8e-9)
+
+
+def least_beside_rows(seed, count):
+    """Least costs of random rows of a drive over those of their cells, where both are known."""
+    rng, train = np.random.default_rng(seed), some_drive(seed)
+    total, found = math.log(float(train.highest_ratio)), [np.ones(1)]
+    for k, table in enumerate(stage_tables(train, train.highest_ratio)):
+        kinds = quick._kinds(train, k)
+        if not len(table.ratio) or not kinds:
+            continue
+        pair = rng.integers(len(table.ratio), size=count)
+        u = table.log_ratio[pair]
+        reached = rng.uniform(0.0, np.maximum(total - u, 0.0)) * (k > 0)
+        if k == len(train.stages) - 1:
+            low = math.log(float(train.lowest_ratio))
+            reached = rng.uniform(np.maximum(low - u, 0.0), np.maximum(total - u, 0.0)) * (k > 0)
+            inside = (reached + u >= low) & (reached + u <= total)
+            pair, u, reached = pair[inside], u[inside], reached[inside]
+        cost = table.cost(train.torque * np.exp(reached), pair)
+        some = np.isfinite(cost)
+        most = np.quantile(cost[some], rng.uniform()) if some.any() else 1.0
+        share = np.minimum.reduce([quick._shares(kind, k, most) for kind in kinds])
+        step = total / (quick.WIDE * quick.PARTS)
+        last = quick.WIDE * quick.PARTS - 1
+        cell = [np.minimum((x / step).astype(int), last) for x in (reached, u)]
+        known = some & (cost <= most)
+        found.append(cost[known] / share[cell[0] * (k > 0), cell[1]][known])
+    return np.concatenate(found)
+
+
+@pytest.mark.parametrize("seed", few(range(400), 3))
+def test_no_row_costs_less_than_its_cell(seed):
+    """100,000 rows and more in all."""
+    assert np.all(least_beside_rows(seed, 60 if seed < 3 else 400) >= 1.0 - 1e-11)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(30))
+def test_no_train_is_better_than_the_bound(seed):
+    train = some_drive(1000 + seed, stages=1 + seed % 2)
+    found = search(train, 1, Budget()).found
+    for value, _ in found[:1]:
+        assert quick.quick_bound(train, value) <= value * (1.0 + 1e-11)
+        assert quick.quick_bound(train, 1.5 * value) <= value * (1.0 + 1e-11)
