@@ -89,10 +89,10 @@ def least_beside_rows(seed, count):
     return np.concatenate(found)
 
 
-@pytest.mark.parametrize("seed", few(range(400), 3))
+@pytest.mark.parametrize("seed", few([*range(400), 5002, 5079], 3))
 def test_no_row_costs_less_than_its_cell(seed):
-    """100,000 rows and more in all."""
-    assert np.all(least_beside_rows(seed, 60 if seed < 3 else 400) >= 1.0 - 1e-11)
+    """100,000 rows and more in all; the last seeds have modules at a step of the tolerances."""
+    assert np.all(least_beside_rows(seed, 60 if seed < 3 else 700) >= 1.0 - 1e-11)
 
 
 @pytest.mark.slow
