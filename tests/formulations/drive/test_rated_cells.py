@@ -21,6 +21,7 @@ from rated_drives import (
 )
 
 from gearopt.formulations.drive import sizing, sizing_text, teeth
+from gearopt.formulations.drive.rated import boxes as rated_boxes
 from gearopt.formulations.drive.rated import cells as rated_cells
 from gearopt.formulations.drive.rated.boxes import ROWS, bounded, first_boxes, shafts_about
 from gearopt.formulations.drive.rated.cells import _halves
@@ -228,6 +229,24 @@ def test_first_boxes_hold_face_widths_of_any_proportion(slim):
     boxes = first_boxes(shafts, 0)
     assert np.exp(boxes.sizes[ROWS.index("width_over_diameter")]) == pytest.approx(float(slim))
     assert len(bounded(shafts, 0, boxes)[0]) == len(boxes)
+
+
+@pytest.mark.parametrize(("power", "fixed"), [(1e5, None), (1e5, 20), (2e5, 20), (3e5, 40)])
+def test_boxes_hold_gears_at_a_step_of_the_tolerances(power, fixed):
+    """Modules of 2 mm and widths of 20 and 40 mm have the smaller deviations of ISO 1328."""
+    face = FREE if fixed is None else FaceWidth(F(0), None, fixed=F(fixed))
+    stages = {"modules": (F(2), F(9, 4)), "pinion_teeth": (20, 24)}
+    train = rated_drive(3, [face], power=power, helix=0.0, options=by("iso"), **stages)
+    whole = solve(teeth.problem(train))
+    (pair,) = teeth.pairs(train, np.array([*whole.design.values()], float))
+    shafts = shafts_about(train, 1)
+    boxes, d = first_boxes(shafts, 0), pair.pinion.reference_diameter
+    rows = {"Z": pair.pinion_teeth, "D": d, "B_OVER_D": pair.face_width / d, "U": pair.ratio}
+    for name, value in rows.items():
+        row = boxes.sizes[getattr(rated_boxes, name), :, 0]
+        row[:] = np.clip(math.log(float(value)) + np.array([-1e-3, 1e-3]), *row)
+    (share,) = bounded(shafts, 0, boxes)[1]
+    assert 0.99 * whole.value < share <= whole.value
 
 
 @pytest.mark.parametrize("empty", [0, 1])

@@ -13,7 +13,7 @@ import numpy as np
 
 from gearopt.formulations.drive.shares import least_share
 from gearopt.formulations.drive.train import Stage, Train
-from gearopt.formulations.strength.cells import LOWER, Cells
+from gearopt.formulations.strength.cells import LOWER, NUDGE, Cells
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
@@ -28,6 +28,8 @@ NARROWEST, WIDEST = 1e-3, 1e3  # b/d1 without limits
 TEETH = 1e6
 ROUND = 1e-12  # of logarithms: a box this narrow is a point
 MARGIN = 1e-9  # relative, of what is needed: rounding
+BEYOND = 1.0 + 3.0 * NUDGE * np.array([-1.0, 1.0])  # so that a module or a width that is given
+# counts, at a step of the tolerances, on its better side, too
 
 
 @dataclass(frozen=True)
@@ -128,6 +130,8 @@ def first_boxes(shafts: Shafts, k: int) -> Boxes:
     sizes[B] = max(float(face.least), 1e-9), LENGTHS[1] * wide
     if face.fixed is not None:
         sizes[B] = float(face.fixed)
+    for row in (M, B):
+        sizes[row] *= BEYOND
     sizes[D2] = 1e-6, min(numbers["wheel_diameter"][k], LENGTHS[1] * TEETH)
     sizes[U] = float(stage.ratio[0]), min(float(stage.ratio[1] or total[1]), total[1])
     cells = np.arange(shafts.count)

@@ -14,7 +14,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from gearopt.formulations.drive.rated import boxes
 from gearopt.formulations.drive.rated.boxes import B_OVER_D, D2, MARGIN, B, D, M, U, Z
 from gearopt.formulations.drive.train import LENGTHS, Train
-from gearopt.formulations.strength.cells import NUDGE, Cells
+from gearopt.formulations.strength.cells import Cells
 from gearopt.formulations.strength.rated import Option
 from gearopt.optimise.terms import Array
 
@@ -23,7 +23,6 @@ SIZES, SIZE = 16, 0.15  # cells of ln(d1) below the largest of use, and their wi
 SLIM, MOST_SLIM = 0.5, 4  # width of cells of ln(b/d1), of at most so many
 MOST_KINDS = 6  # toothings and options of a stage that are looked at
 EDGE = 1e-9  # cells overlap by this much in logarithms
-BEYOND = 3.0 * NUDGE  # so that sizes at a step of the tolerances count on its better side, too
 
 
 def quick_bound(train: Train, most: float) -> float:
@@ -88,8 +87,7 @@ def _shares(train: Train, k: int, most: float) -> Array:
     if not len(i):
         return share
     at, overlap = np.stack([i, i + rows]) * wide, EDGE * np.array([[-1.0], [1.0]])
-    torque, beyond = train.torque * np.exp(at + overlap), BEYOND * np.array([[-1.0], [1.0]])
-    size = np.exp(sizes) * (1.0 + beyond)
+    torque, size = train.torque * np.exp(at + overlap), np.exp(sizes)
     ends = size[Z], size[U], size[D], size[D2], size[M], size[B], size[B_OVER_D]
     stage = train.stages[k]
     cells = Cells(stage.toothing, *ends, torque, train.speed_at(torque)[::-1])
