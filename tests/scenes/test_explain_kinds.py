@@ -253,6 +253,21 @@ def test_of_held_whole_numbers_that_are_not_decided_no_range_is_told(monkeypatch
     assert known.influences and "the same design is best" not in known.message
 
 
+def test_where_the_time_ends_while_a_range_is_sought_none_is_told(monkeypatch):
+    """What is not solved in time would count as the same design."""
+    ended = []
+
+    def late(self, scene, number):
+        ended.append(number)
+        return 1e-5, 2e-5
+
+    monkeypatch.setattr(influences.Basis, "kept", late)
+    monkeypatch.setattr(explanations.Clock, "over", property(lambda self: bool(ended)))
+    own = {"bar": FILE["bar"] | {"most": 8, "safety": Decimal("1.4")}}
+    known = explanation(KIND, Bars.model_validate(own), Ask())
+    assert "sensitivities" in known.message and "the same design" not in known.message
+
+
 AXIS = """
 gearopt = 1
 kind = "servo"

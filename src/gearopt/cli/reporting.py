@@ -141,7 +141,7 @@ def compared(found: "Comparison", files: Files) -> list[str]:
     """Write the page and the table of a comparison, once both are made; a line for each."""
     from gearopt.report.pages.comparison import page, tables
 
-    html = "" if files.html is None else page(found)
+    html = "" if files.html is None else page(found, str(files.html))
     return _kept(files, html, {} if files.csv is None else tables(found))
 
 

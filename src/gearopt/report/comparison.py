@@ -208,8 +208,8 @@ def _setting(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def command(comparison: Comparison) -> str:
-    """The command that repeats the comparison."""
+def command(comparison: Comparison, html: str = "") -> str:
+    """The command that repeats the comparison; html: where it writes the page."""
     methods = [row.method for group in comparison.groups for row in group.rows]
     budget = comparison.budget
     if comparison.file is None or comparison.changes:
@@ -226,7 +226,7 @@ def command(comparison: Comparison) -> str:
     return (
         f"gearopt compare {shlex.quote(comparison.file)} --methods {','.join(methods)} "
         f"--seeds {len(comparison.seeds)} --evaluations {budget['evaluations']} "
-        f"--seconds {budget['seconds']:g}{more}"
+        f"--seconds {budget['seconds']:g}{more}{f' --html {shlex.quote(html)}' if html else ''}"
     )
 
 

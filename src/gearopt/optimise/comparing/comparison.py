@@ -244,8 +244,13 @@ def _judged(run: Run, reference: float | None, scale: float) -> Run:
 
 
 def quantile(values: Sequence[float], share: float) -> float | None:
-    """Return the value that `share` of the values lie below, the worse of two; None for inf."""
-    value = sorted(values)[min(int(share * len(values)), len(values) - 1)]
+    """The value that `share` of the values lie below, the mean of two between which it is.
+
+    None: inf.
+    """
+    place, sizes = share * len(values), sorted(values)
+    k = min(int(place), len(values) - 1)
+    value = 0.5 * (sizes[k - 1] + sizes[k]) if 0 < place == k else sizes[k]
     return value if math.isfinite(value) else None
 
 

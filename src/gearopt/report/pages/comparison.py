@@ -19,8 +19,8 @@ SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "x", "star", "
 ZERO = "0"  # tick of the floor
 
 
-def page(comparison: Comparison) -> str:
-    """One self-contained HTML page."""
+def page(comparison: Comparison, html: str = "comparison.html") -> str:
+    """One self-contained HTML page; html: where the command writes it that makes it again."""
     colour = colours([row.method for group in comparison.groups for row in group.rows])
     rows = [row for group in comparison.groups for row in group.rows if not row.refused]
     samples = [s for row in rows for s in (row.equal_evaluations, row.equal_time) if s]
@@ -30,7 +30,7 @@ def page(comparison: Comparison) -> str:
         f"{comparison.title}: methods compared",
         _subtitle(comparison),
         {"gearopt": comparison.gearopt, **comparison.versions},
-        words.command(comparison),
+        words.command(comparison, html),
         comparison=comparison,
         blocks=[_block(comparison, group, colour) for group in comparison.groups],
         columns=words.columns(comparison),
