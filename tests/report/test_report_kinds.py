@@ -37,6 +37,9 @@ def test_only_a_drive_is_proven_impossible_with_real_valued_teeth():
     assert answer.proof(own)[0] == words and "teeth" not in " ".join(answer.proof(own))
     drive = answer.proof(replace(own, scene="drive"))
     assert drive[:2] == [words, "This holds even with real-valued teeth and modules."]
+    fewer = {"ways_out": {"conflict": ["span"]}}
+    more = replace(own, proof=rows | {"conflict": ["span", "height"]}, report=fewer)
+    assert "even if all other limits are dropped" in answer.proof(more)[1]
 
 
 DESIGNED = {  # a file of every kind, which other tests solve too

@@ -191,6 +191,13 @@ def _method(result: Result) -> list[str]:
             "Proof: whatever the design, one of these limits is violated by at least "
             f"{violation} %: {series_of(grouped(proof['conflict'], has_stages(result)))}."
         )
+        ways = result.report.get("ways_out") or {}
+        fewer = {*(ways.get("conflict") or proof["conflict"])} < {*proof["conflict"]}
+        if fewer and not ways.get("unsure"):
+            lines.append(
+                "The limits named in the first sentence are in conflict even if all other limits "
+                "are dropped; what else the file gives is kept."
+            )
     return lines
 
 
