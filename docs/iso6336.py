@@ -179,16 +179,16 @@ FORMULAS = (
         "Y_deltarelT",
         "(1 + sqrt(rho' chi))/(1 + sqrt(rho' chi_T)); rho' of St and cast iron, and a yield "
         "point that is estimated, *unverified*",
-        "part 3, 11",
+        "part 3, 13",
         "`bending_factors.notch_factor`",
     ),
     (
         "Y_RrelT",
         "1.674 - 0.529 (R_z + 1)^0.1 and two more, of cast iron *unverified*",
-        "part 3, 12",
+        "part 3, 14",
         "`bending_factors.surface_factor`",
     ),
-    ("Y_X", "1.05 - 0.01 m_n and two more", "part 3, 13", "`bending_factors.size_factor`"),
+    ("Y_X", "1.05 - 0.01 m_n and two more", "part 3, 15", "`bending_factors.size_factor`"),
     (
         "Z_NT, Y_NT",
         "straight in log-log from static to reference strength, to 0.85 at 1e10 cycles",

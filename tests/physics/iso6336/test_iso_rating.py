@@ -139,6 +139,9 @@ def test_doubts_are_named():
     assert {"Y_F", "Z_BD", "K_Falpha"} <= set(new.unverified)
     assert new.factors["Z_H"].clause == "6336-2:2019, 6"
     assert new.factors["f_pb"].clause == "ISO 1328-1:1995"
+    clauses = {"Y_NT": 12, "Y_deltarelT": 13, "Y_RrelT": 14, "Y_X": 15}
+    for symbol, clause in clauses.items():
+        assert CLAUSES[symbol][0] == f"6336-3, {clause}, method B"
 
 
 def test_numbers_and_words_that_mean_nothing_are_refused():

@@ -77,7 +77,7 @@ def slip_layer(family: str, yield_strength: float) -> float:
 def notch_factor(slip: Any, notch: Any) -> Any:
     """Return Y_deltarelT = (1 + sqrt(rho' chi))/(1 + sqrt(rho' chi_T)), chi = (1 + 2 q_s)/5.
 
-    chi_T = 1.2, of q_s = 2.5; slip rho' [mm]; notch q_s. Source: ISO 6336-3:2006, 11.
+    chi_T = 1.2, of q_s = 2.5; slip rho' [mm]; notch q_s. Source: ISO 6336-3:2006, 13.
     """
     gradient = 0.2 * (1.0 + 2.0 * notch)
     return (1.0 + np.sqrt(slip * gradient)) / (1.0 + np.sqrt(slip * 1.2))
@@ -86,7 +86,7 @@ def notch_factor(slip: Any, notch: Any) -> Any:
 def static_notch_factor(family: str, concentration: Any, yield_strength: float) -> Any:
     """Return Y_deltarelT of static strength, a line in Y_S that is 1 at Y_S = 2.
 
-    Source: ISO 6336-3:2006, 11; hanslhansl/din3990 has it, GTS is of memory.
+    Source: ISO 6336-3:2006, 13; hanslhansl/din3990 has it, GTS is of memory.
     """
     lines = {
         **dict.fromkeys(("Eh", "IF"), 0.44),
@@ -102,7 +102,7 @@ def static_notch_factor(family: str, concentration: Any, yield_strength: float) 
     return (1.0 + slope * (concentration - 1.0)) / (1.0 + slope)
 
 
-# Y_RrelT: value below 1 um, then a - b (R_z + 1)^c. Source: ISO 6336-3:2006, 12; rules of the
+# Y_RrelT: value below 1 um, then a - b (R_z + 1)^c. Source: ISO 6336-3:2006, 14; rules of the
 # Korean Register, part 5, have all three lines (IACS UR M56, 3.12), of nitrided steels the third
 SURFACES = {
     **dict.fromkeys(("V", "GTS", "GGG", "Eh", "IF"), (1.12, 1.674, 0.529, 0.1)),
@@ -123,7 +123,7 @@ def surface_factor(family: str, roughness: Any) -> Any:
     return choose(roughness < 1e-3, smooth, line)
 
 
-# Y_X = a - b m_n between 5 mm and the module where it ends. Source: ISO 6336-3:2006, 13;
+# Y_X = a - b m_n between 5 mm and the module where it ends. Source: ISO 6336-3:2006, 15;
 # hanslhansl/din3990 has it (its 0.85 for the end of grey cast iron is not on its own line)
 SIZES = {
     **dict.fromkeys(("St", "V", "GTS", "GGG"), (1.03, 0.006, 30.0)),
