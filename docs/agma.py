@@ -157,7 +157,7 @@ FORMULAS = (
     (
         "C_p",
         "(pi ((1 - nu_1²)/E_1 + (1 - nu_2²)/E_2))^(-1/2)",
-        "2001-D04, 11",
+        "2001-D04, 12",
         "`factors.elastic_coefficient`",
     ),
     (

@@ -199,7 +199,7 @@ def _temperature(case: Case) -> Factor:
 
 def _elastic(case: Case) -> Factor:
     moduli = [number for steel in case.steels for number in (steel.modulus, steel.poisson)]
-    return Factor("C_p", float(factors.elastic_coefficient(*moduli)), "2001-D04, 11", "sqrt(MPa)")
+    return Factor("C_p", float(factors.elastic_coefficient(*moduli)), "2001-D04, 12", "sqrt(MPa)")
 
 
 def _pitting(case: Case) -> Factor:

@@ -1,4 +1,4 @@
-"""Stresses, safety factors, permissible power and life by AGMA 2001-D04, clauses 5 and 10.
+"""Stresses, safety factors, permissible power and life by AGMA 2001-D04, clauses 5 and 7.
 
 Arguments are floats, arrays of one shape or casadi scalars. Two definitions of safety against
 pitting are in use: S_H of stresses, as the standard has it, and S_H^2 of loads, which alone
