@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 import rating_cases as cases
@@ -9,12 +10,17 @@ from read_numbers import repeated
 from test_rating_page import page, rows, sections, text, told
 
 import gearopt
+from gearopt.formulations.drive.rating import MIDWAY
 from gearopt.report.answer import decided, opening
 from gearopt.report.kinds.drive import rating_words
 from gearopt.report.kinds.drive.rating_words import greek
 from gearopt.report.measures import INCH, METRIC
+from gearopt.report.pages import result as pages
 from gearopt.report.words import limit_words
+from gearopt.scenes.drive.notes import assumptions
+from gearopt.scenes.reading.load import read
 
+PROBLEMS = Path(__file__).parents[3] / "problems"
 PRINTED = {  # ISO/TR 6336-30, example 1: pinion and wheel
     "S_H": (1.02853, 1.08696),
     "contact stress sigma_H [MPa]": (1301.35, 1301.35),
@@ -214,6 +220,18 @@ def test_what_is_taken_for_granted_is_that_of_the_standard():
     assert "K_m" not in iso and "AGMA" not in iso and "reliability" not in iso
     assert "K_m follows the curve" in both and "through-hardened as V alloy" in both
     assert all("Scuffing, micropitting" in words for words in (agma, iso, both))
+
+
+@pytest.mark.parametrize(
+    ("file", "factor"), [("elevator_box_rated", "C_pm"), ("unit_in_box", "K_Hβ"), ("elevator", "")]
+)
+def test_pinions_are_midway_in_a_rating_and_elsewhere_in_a_box(file, factor):
+    scene = read((PROBLEMS / f"{file}.toml").read_bytes())[1]
+    said = [line for line in assumptions(scene) if line.startswith(MIDWAY)]
+    assert len(said) == bool(factor) and all(f", {factor} may be larger" in s for s in said)
+    result = replace(cases.iso(), report={"assumptions": said})
+    shown = next(s for s in pages.sections(result, METRIC) if s.heading == "Rating")
+    assert [line for line in shown.words if line.startswith(MIDWAY)] == said
 
 
 def test_both_are_kept_and_told_by_the_command(here, tmp_path):

@@ -6,7 +6,12 @@ from gearopt.formulations.drive.train import STEEL_DENSITY
 from gearopt.optimise.result import Result
 from gearopt.physics.gears import ISO_53_A, MEMBERS
 from gearopt.physics.geometry.profile_shift import ROOT_SAFETY
-from gearopt.scenes.drive.rating.assumptions import every_gear, rating_assumptions, unused_materials
+from gearopt.scenes.drive.rating.assumptions import (
+    every_gear,
+    pinions_in_box,
+    rating_assumptions,
+    unused_materials,
+)
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.blanks import blank, body_flaws
 from gearopt.scenes.drive.tables.drive import ORIGINS
@@ -140,7 +145,9 @@ def assumptions(scene: Scene) -> list[str]:
     if scene.limits.preset is not None:
         name = scene.limits.preset
         sentences.insert(3, f"The load limits are those of preset {name}: {ORIGINS[name]}.")
-    return sentences if scene.layout is None else [*sentences, *_layout_assumptions(scene.layout)]
+    if scene.layout is None:
+        return sentences
+    return [*sentences, *_layout_assumptions(scene.layout), *pinions_in_box(scene)]
 
 
 def _bodies(scene: Scene) -> str:

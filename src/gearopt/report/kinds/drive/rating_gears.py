@@ -6,6 +6,7 @@ from typing import Any
 
 from gearopt.formulations.drive.rating import (
     GIVEN,
+    MIDWAY,
     DriveRating,
     GearRating,
     LoadLevel,
@@ -59,7 +60,9 @@ def gears(result: Result, measures: Measures) -> Section | None:
     table = Table("gears", ["", *heads], rows, csv_only=hidden, across=True)
     half = single(rating) and rating.beside is None
     shown = _on_terminal(result, rating, measures)
-    return Section("Rating", words=_said(rating), tables=(table,), half=half, terminal=shown)
+    assumed = result.report.get("assumptions") or ()
+    words = [*_said(rating), *(line for line in assumed if line.startswith(MIDWAY))]
+    return Section("Rating", words=words, tables=(table,), half=half, terminal=shown)
 
 
 def _said(rating: DriveRating) -> list[str]:

@@ -2,8 +2,10 @@
 
 from collections.abc import Iterator
 
+from gearopt.formulations.drive.rating import MIDWAY
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.case import Practice
+from gearopt.scenes.drive.rating import by_agma, by_iso6336
 from gearopt.scenes.drive.rating.iso_material import steel
 from gearopt.scenes.drive.rating.materials import Named, choices, unused
 from gearopt.scenes.drive.scene import Scene
@@ -64,6 +66,27 @@ def _iso_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
         f"shaft; {modified}. Bending by method B: the load acts at the outer point of single pair "
         "contact.",
         *[f"K_A = {float(asked.overload_factor):g} multiplies every level of load."][:overloaded],
+    ]
+
+
+def pinions_in_box(scene: Scene) -> list[str]:
+    """Return that a rating does not know where a layout puts pinions; nothing where none is so."""
+    asked = scene.rating
+    if asked is None or scene.layout is None:
+        return []
+    stages = scene.stage_tables
+    iso = asked.standard != "agma" and any(
+        "K_Hbeta" not in by_iso6336.given(asked, own) for own in stages
+    )
+    agma = (asked.standard != "iso6336" and not asked.pinion_offset) and any(
+        "K_m" not in by_agma.given(asked, own) for own in stages
+    )
+    if not (iso or agma):
+        return []
+    factor = "K_Hβ (C_pm by AGMA)" if iso and agma else "K_Hβ" if iso else "C_pm"
+    return [
+        f"{MIDWAY}; where the layout puts it elsewhere, {factor} may be larger than rated: this "
+        "is not fed back."
     ]
 
 
