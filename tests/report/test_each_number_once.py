@@ -126,7 +126,11 @@ def _of(status, limits, value=1.0, **more):
         (_of("limit", {"a": 1.0}), "in the best design found the limit on a is active"),
         (
             _of("optimal", {"a": 0.5, "b": 0.9996}),
-            "no limit is active; the closest is b, at 99.9 %",
+            "no limit is active; the closest is b, at 99.96 %",
+        ),
+        (
+            _of("optimal", {"a": 1.0, "b": 0.9968}),
+            "the limit on a determines the mass; b is at 99.7 %",
         ),
         (
             _of("evaluated", {"a": 1.25, "b": 0.9}),

@@ -1,6 +1,5 @@
 """The first sentence of page and terminal: what decides the answer, or keeps one from existing."""
 
-import math
 from collections.abc import Collection, Mapping, Sequence
 
 from gearopt.optimise.result import Result
@@ -14,6 +13,7 @@ from gearopt.report.words import (
     objective,
     sentence,
     series_of,
+    share,
     verdict,
 )
 
@@ -128,10 +128,10 @@ def _is_end(name: str) -> bool:
 
 
 def _whole(used: float) -> str:
-    """A part in whole per cent; 100 only where it is reached."""
+    """A part in whole per cent; where that would be 100 and is not reached, as tables have it."""
     percent = round(100.0 * used)
     below = percent == 100 and used < 1.0 - REACHED
-    return f"{math.floor(1000.0 * used) / 10.0:.1f}" if below else f"{percent:,}"
+    return share(used) if below else f"{percent:,}"
 
 
 def _stem(name: str) -> str:
