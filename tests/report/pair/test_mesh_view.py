@@ -7,7 +7,7 @@ import pytest
 
 import gearopt
 from gearopt.formulations.drive.design import drive_design
-from gearopt.report.drawing.mesh_view import ALONG, WIDE, section
+from gearopt.report.drawing.mesh_view import ALONG, SEVERAL, WIDE, section
 from gearopt.report.measures import METRIC
 
 FILE = {
@@ -83,6 +83,8 @@ def test_of_helical_teeth_no_pair_is_said_to_carry_alone():
     assert 1.0 < ratio < 2.0 and "alone" not in shown.words[0]
     words = f"Total contact ratio {ratio:.4g}: 1 or 2 pairs of teeth touch at once."
     assert shown.drawings[0].caption == words
+    two = section(gearopt.rate(FILE | {"stage": FILE["stage"] * 2}), METRIC)
+    assert two.words[0].endswith(SEVERAL) and SEVERAL not in shown.words[0]
     assert not {"B", "D"} & set(re.findall(r">([A-E])<", shown.drawings[0].svg))
 
 

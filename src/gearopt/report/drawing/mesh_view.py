@@ -26,6 +26,7 @@ HELICAL = (
     " in this section. Helical teeth touch along slanting lines: other sections are in contact at "
     "other moments, so that more pairs of teeth touch than one section shows"
 )
+SEVERAL = " Each mesh is drawn as seen from the end from which its pinion turns clockwise."
 ROUNDING = 1e-9  # of a contact ratio: so near to a whole number it is that
 
 
@@ -45,7 +46,7 @@ def section(result: Result, measures: Measures) -> Section | None:
     alone = ALONE * any(carries_alone(pair, contact_path(pair)) for pair, _ in meshes)
     return Section(
         "Teeth in mesh",
-        words=(f"{WORDS}{helical}{alone}.",),
+        words=(f"{WORDS}{helical}{alone}.{SEVERAL * (len(pairs) > 1)}",),
         drawings=tuple(drawing for _, drawing in meshes),
     )
 
