@@ -85,7 +85,7 @@ def test_the_lines_of_a_drive(solved):
     assert repr(solved("elevator")).splitlines()[:4] == [
         "Two-stage elevator drive: gear volume 5,782.4 cm³, proven optimal",
         "  The limits on K-factor of stages 1 and 2 determine the gear volume; "
-        "the ratio error is 63 % of its tolerance.",
+        "the ratio error is 63 % of its tolerance of 1 %.",
         "  stage 1: m_n 2 mm, z 21/115",
         "  stage 2: m_n 3 mm, z 23/91",
     ]

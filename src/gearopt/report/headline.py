@@ -186,7 +186,7 @@ def _tolerance(result: Result) -> list[str]:
     if room <= REACHED:
         return []
     used = _whole(abs(error) / 100.0 / room)
-    return [f"the ratio error is {used} % of its tolerance"]
+    return [f"the ratio error is {used} % of its tolerance of {100.0 * room:.4g} %"]
 
 
 def _free(result: Result) -> str:
