@@ -220,6 +220,10 @@ def test_what_is_taken_for_granted_is_that_of_the_standard():
     assert "K_m" not in iso and "AGMA" not in iso and "reliability" not in iso
     assert "K_m follows the curve" in both and "through-hardened as V alloy" in both
     assert all("Scuffing, micropitting" in words for words in (agma, iso, both))
+    assert all("solid cylinders" in words and "7.85 kg/dm³" in words for words in (iso, agma))
+    assert "K_v is that of transmission accuracy Q_v 9 (A_v 8)" in agma
+    given = " ".join(cases.shigley().report["assumptions"])  # I and J of the file
+    assert "highest point of single tooth contact" in agma and "Bending stresses" not in given
 
 
 @pytest.mark.parametrize(

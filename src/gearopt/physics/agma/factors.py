@@ -15,6 +15,7 @@ from gearopt.physics.choosing import choose
 INCH = 25.4  # mm
 FEET_PER_MINUTE = 12.0 * INCH / 60.0  # mm/s, of one ft/min
 QUALITIES = (5.0, 11.0)  # of the curves of K_v
+ACCURACIES = 17.0  # Q_v + A_v of one curve
 WIDEST = 40.0 * INCH  # face width of the curves of K_m, mm
 THINNEST = 0.5  # backup ratio at which the chart of K_B begins
 WARM = 120.0  # degrees C up to which K_T is 1
@@ -88,7 +89,7 @@ def quality_of_accuracy(accuracy: Any) -> Any:
     """
     if isinstance(accuracy, int | float) and not 6.0 <= accuracy <= 12.0:
         raise ValueError(f"no curve of K_v for A_v = {accuracy:g}: 6 to 12; below, give K_v itself")
-    return 17.0 - accuracy
+    return ACCURACIES - accuracy
 
 
 def highest_speed(quality: Any) -> Any:

@@ -123,24 +123,17 @@ def _dense(scene: Scene) -> bool:
 
 def assumptions(scene: Scene) -> list[str]:
     """Assumptions of a design, in sentences."""
-    density, stages = scene.objective.density, scene.stage_tables
+    stages = scene.stage_tables
     angles = dict.fromkeys(str(own.pressure_angle or scene.gears.pressure_angle) for own in stages)
     angle = " and ".join(angles)
     stated = "pressure_angle" in scene.gears.model_fields_set or any(
         own.pressure_angle for own in stages
     )
     assumed = "" if stated else " (default)"
-    mass = (
-        f"the density of the file, {density}"
-        if density
-        else "the density of steel, because the file gives none"
-    )
-    if scene.material:
-        mass = f"the densities of the materials, else from {mass}"
     sentences = [
         *_teeth(scene),
         *_loads(scene, angle, assumed),
-        f"{_bodies(scene)}; masses follow from {mass}.",
+        masses(scene),
     ]
     if scene.limits.preset is not None:
         name = scene.limits.preset
@@ -148,6 +141,20 @@ def assumptions(scene: Scene) -> list[str]:
     if scene.layout is None:
         return sentences
     return [*sentences, *_layout_assumptions(scene.layout), *pinions_in_box(scene)]
+
+
+def masses(scene: Scene, noted: bool = True) -> str:
+    """Return the bodies of volumes and masses, and their density; noted: a note gives steel's."""
+    density = scene.objective.density
+    steel = "the density of steel" + f", {1e9 * STEEL_DENSITY:g} kg/dm³" * (not noted)
+    mass = (
+        f"the density of the file, {density}"
+        if density
+        else f"{steel}, because the file gives none"
+    )
+    if scene.material:
+        mass = f"the densities of the materials, else from {mass}"
+    return f"{_bodies(scene)}; masses follow from {mass}."
 
 
 def _bodies(scene: Scene) -> str:

@@ -16,36 +16,44 @@ def rating_assumptions(scene: Scene) -> list[str]:
     """Assumptions of a rating, in sentences."""
     asked = scene.rating
     assert asked
-    by_agma, by_iso = asked.standard != "iso6336", asked.standard != "agma"
+    agma, iso = asked.standard != "iso6336", asked.standard != "agma"
     sentences = [
         "The rating is of external cylindrical steel gears on parallel shafts; the pinions drive. "
         "Torques and forces are those without losses.",
         "The standards themselves were not read: formulas and values are those of textbooks, "
         "tables and public programs; those from a single source are marked unverified.",
-        *(_agma_assumptions(asked) if by_agma else []),
-        *(_iso_assumptions(scene, asked) if by_iso else []),
+        *(_agma_assumptions(scene, asked) if agma else []),
+        *(_iso_assumptions(scene, asked) if iso else []),
         "Scuffing, micropitting, wear, shafts and bearings are not rated.",
         "S_H is a ratio of contact stresses, its square one of loads. Lives are those at which a "
         "safety factor is 1.",
     ]
-    unstated = _unstated(asked, by_agma, by_iso)
+    unstated = _unstated(asked, agma, iso)
     return [*sentences, f"Not in the file: {', '.join(unstated)}."] if unstated else sentences
 
 
-def _agma_assumptions(asked: RatingTable) -> list[str]:
-    """Assumptions of a rating by AGMA."""
+def _agma_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
+    """Assumptions of a rating by AGMA; where J is given it has its own load."""
     load = (
         "at the highest point of single tooth contact"
         if asked.bending_load == "highest single"
         else "at the tip"
     )
+    known = [by_agma.given(asked, own) for own in scene.stage_tables]
+    bending = (
+        "Bending stresses of spur gears, and of helical ones of low overlap ratio, are those of a "
+        f"load {load}"
+        f"{' (AGMA)' * (asked.standard == 'both')}."
+    )
+    words = "" if all("K_v" in own for own in known) else by_agma.stated_accuracy(asked)
+    owned = any(table.quality is not None for table, _ in every_gear(scene))
+    others = ", or of the gear's own where the file gives it" if owned else ""
     return [
+        *([f"K_v is that of transmission accuracy {words}{others}."] if words else []),
         f"K_m follows the curve of {asked.mounting} gearing"
         + (", crowned" if asked.crowned else ", teeth without crowning")
         + f"; the pinion offset S_1/S is {float(asked.pinion_offset):g}.",
-        "Bending stresses of spur gears, and of helical ones of low overlap ratio, are those of a "
-        f"load {load}"
-        f"{' (AGMA)' * (asked.standard == 'both')}.",
+        *([] if all("J" in own for own in known) else [bending]),
     ]
 
 

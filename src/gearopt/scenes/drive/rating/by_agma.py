@@ -7,7 +7,7 @@ from typing import Any
 from gearopt.formulations.drive.rating import GIVEN, RatingFactor
 from gearopt.formulations.strength.agma import Agma
 from gearopt.physics.agma.allowables import CURVES
-from gearopt.physics.agma.factors import quality_of_accuracy
+from gearopt.physics.agma.factors import ACCURACIES, quality_of_accuracy
 from gearopt.physics.agma.rating import rate, rate_spectrum
 from gearopt.physics.agma.rating_factors import Practice, Steel
 from gearopt.physics.gears import GearPair
@@ -67,7 +67,7 @@ def material(table: GearTable) -> str:
     core = " core" if CURVES.get(table.treatment) == "nitrided" else ""
     words += [f"{table.hardness}{core}"] if table.hardness else []
     words += [table.surface_hardness] if table.surface_hardness else []
-    words += [f"Q_v {float(table.quality):g}"] if table.quality is not None else []
+    words += [accuracy(float(table.quality))] if table.quality is not None else []
     return ", ".join(words)
 
 
@@ -111,6 +111,17 @@ def bare_practice(asked: RatingTable, gears: Tables) -> Practice:
         load=asked.bending_load,
         edition=asked.edition,
     )
+
+
+def accuracy(quality: float) -> str:
+    """Return a transmission accuracy Q_v in words, with A_v = 17 - Q_v of D04."""
+    return f"Q_v {quality:g} (A_v {ACCURACIES - quality:g})"
+
+
+def stated_accuracy(asked: RatingTable) -> str:
+    """Return the accuracy that a file gives for all gears, in words; "" where it gives none."""
+    bare = asked.quality is None and asked.accuracy is None
+    return "" if bare else accuracy(_quality(asked))
 
 
 def _quality(asked: RatingTable) -> float:

@@ -14,6 +14,7 @@ from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
+from gearopt.scenes.drive.notes import masses
 from gearopt.scenes.drive.rating.assumptions import rating_assumptions, unused_materials
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.gears import (
@@ -67,7 +68,8 @@ def with_given_rating(scene: Scene, ask: Ask, known: Result | None) -> Result:
         certificate={"feasibility": max(0.0, *(used - 1.0 for used in limits.values()))},
         design={"rating": untyped(rated)},
         limits=limits,
-        report={"assumptions": rating_assumptions(scene)} | ({"notes": remarks} if remarks else {}),
+        report={"assumptions": [*rating_assumptions(scene), masses(scene, noted=False)]}
+        | ({"notes": remarks} if remarks else {}),
         evaluations=1,
         seed=ask.seed,
         versions=versions("numpy"),
