@@ -32,7 +32,7 @@ LENGTH = "total length in one line"  # of a drive, in whichever way it is drawn
 GOALS = {  # objectives whose names alone do not say of what they are, by kind
     "drive.total_length": LENGTH,
     "dynamics.peak_to_peak": "peak-to-peak deformation",
-    "dynamics.rms": "RMS of the deformation",
+    "dynamics.rms": "RMS of the deformation about its mean",
     "packing.area": "plan area",
     "packing.volume": "container volume",
     "pair.peak_to_peak": "peak-to-peak transmission error",

@@ -130,7 +130,7 @@ class Chosen:
     mass_kg: Annotated[float, Shown("mass of both gears")]
     displacement_mm: Annotated[float, Shown("displacement of an axis at rest", unit="um")]
     dense_maximum_mm: Annotated[
-        float, Shown("largest RMS of the deformation over all speeds", unit="um")
+        float, Shown("largest RMS of the deformation about its mean, over all speeds", unit="um")
     ]
     highest_mm: Annotated[float, Shown("highest deformation δ, negative in compression", unit="um")]
     largest_multiplier: Annotated[float | None, Shown("largest Floquet multiplier of all speeds")]

@@ -12,6 +12,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.answer import assumptions, limits, progress, proven, summary
 from gearopt.report.explained import remedies, sensitivities
+from gearopt.report.headline import of_limits
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.dynamics import plots
 from gearopt.report.kinds.generic import OPENING
@@ -22,7 +23,10 @@ from gearopt.report.words import amount, number
 TWO_MOTIONS = (
     0.02  # of an RMS by which rising and falling speeds differ where there are two motions
 )
-MEASURES = {"rms": "RMS", "peak_to_peak": "peak to peak"}
+MEASURES = {
+    "rms": "RMS of the deformation about its mean",
+    "peak_to_peak": "peak to peak of the deformation",
+}
 HIGHEST = "highest δ, negative in compression"
 
 
@@ -44,7 +48,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     ]
     if (chosen := design.chosen) is not None:
         worst = amount(chosen.dense_maximum_mm, "um", measures)
-        largest = f"largest {_measure(result)} of the deformation"
+        largest = f"largest {_measure(result)}"
         figures.append(Tile(largest, worst, "over all speeds, on the dense grid"))
     if (moved := design.response) is not None:
         figures.append(
@@ -67,9 +71,12 @@ def _measure(result: Result) -> str:
 
 
 def binding_limit(result: Result) -> str:
-    """Deformation of the mesh, in words."""
-    if (design := design_of(result)) is None or design.chosen is not None:
+    """Deformation of the mesh; of a pair that was chosen its speeds and limits, in words."""
+    if (design := design_of(result)) is None:
         return ""
+    if design.chosen is not None:
+        judged = len(design.chosen.speed_rpm)
+        return f"the objective is the largest of {judged} speeds; {of_limits(result)}"
     rest = abs(design.equilibrium.deformation_mm)
     moved = design.response
     at_rest = f"the mean load deforms the mesh by {1e3 * rest:.4g} µm"
@@ -166,7 +173,7 @@ def _worst(held: Speeds, measures: Measures) -> str:
         return "The motion is unstable at all speeds."
     rms, speed, way, height = max(ends)
     return (
-        f"The RMS of the deformation is largest at {speed:,.0f} rpm{way}: "
+        f"The RMS of the deformation about its mean is largest at {speed:,.0f} rpm{way}: "
         f"{amount(rms, 'um', measures)}, peak to peak {amount(height, 'um', measures)}."
     )
 
@@ -224,7 +231,7 @@ def chosen(result: Result, measures: Measures) -> Section | None:
         return None
     micro = measures.unit("um")
     measure = _measure(result)
-    largest = f"largest {measure} of the deformation over all speeds [{micro}]"
+    largest = f"largest {measure}, over all speeds [{micro}]"
     rows = names_and_values(best, measures, labels={"dense_maximum_mm": largest})
     design = Table("design", ("", ""), rows)
     heads = ("speeds", "harmonics", f"objective [{micro}]", f"over all speeds [{micro}]")

@@ -180,7 +180,7 @@ def over_speed(speeds: Speeds, measures: Measures) -> Figure:
         traces.append(marks | {"mode": "markers", "marker": look})
     plot = layout(
         axis("speed of the pinion [rpm]", tickformat=","),
-        axis(f"RMS of the deformation [{measures.unit('um')}]", rangemode="tozero"),
+        axis(f"RMS of the deformation about its mean [{measures.unit('um')}]", rangemode="tozero"),
         HEIGHT,
         hovermode="x",
     )
@@ -236,7 +236,7 @@ def before_and_after(best: Chosen, measure: str, measures: Measures) -> Figure:
     traces.append(marks | {"mode": "markers", "marker": {"color": series(1), "size": 6}})
     plot = layout(
         axis("speed of the pinion [rpm]", tickformat=","),
-        axis(f"{measure} of the deformation [{measures.unit('um')}]", rangemode="tozero"),
+        axis(f"{measure} [{measures.unit('um')}]", rangemode="tozero"),
         HEIGHT,
         hovermode="x",
     )
@@ -244,7 +244,7 @@ def before_and_after(best: Chosen, measure: str, measures: Measures) -> Figure:
     pairs = (
         "pair of least vibration" if alone else "pair of the file and of that of least vibration"
     )
-    caption = f"{measure[0].upper()}{measure[1:]} of the deformation over speed, of the {pairs}; "
+    caption = f"{measure[0].upper()}{measure[1:]} over speed, of the {pairs}; "
     caption += "only the marked speeds enter the objective."
     return Figure(traces, plot, caption)
 
