@@ -6,7 +6,7 @@ import typer
 from gearopt.api import solve
 from gearopt.cli.answering import solve as solve_command
 from gearopt.optimise.result import Result
-from gearopt.report.answer import decided
+from gearopt.report.answer import decided, meaning
 from gearopt.report.words import certainty
 
 PAIR = """gearopt = 1
@@ -68,4 +68,5 @@ def test_teeth_at_an_end_of_their_range_are_reached_and_not_said_to_decide(pair)
 )
 def test_a_local_optimum_with_a_bound_is_not_said_to_have_none(bound, told):
     objective = {"name": "volume", "value": 1.0, "unit": "mm3"}
-    assert certainty(Result("drive", "stationary", "smooth", objective, bound))[0] == told
+    result = Result("drive", "stationary", "smooth", objective, bound)
+    assert certainty(result)[0] == told and "first and second order" in meaning(result)

@@ -224,8 +224,8 @@ def meaning(result: Result) -> str:
         return f"{early}The given design was evaluated, not optimised{ends}."
     if status == "stationary":
         return (
-            "First-order optimality conditions verified: no small change improves the design; a "
-            "better one may exist elsewhere."
+            "Optimality conditions of first and second order verified numerically: no small change "
+            "within the limits improves the design; a better one may exist elsewhere."
         )
     if result.value is None:
         return "No design was found; that is no proof that there is none."
