@@ -168,6 +168,10 @@ def test_sections_say_what_was_found(result, found):
     mesh = moving(result, METRIC)
     assert [f.follows for f in mesh.figures] == [mesh.animations[0].name] * 2
     curve = shift(result, METRIC).figures[0].data
+    assert "always touch carries" in shift(result, METRIC).figures[0].caption
+    own = replace(result, design=result.design | {"largest_addendum": 0.9})
+    assert shift(own, METRIC).words[-1].endswith("interfere, with all other sizes unchanged.")
+    assert "generates the flank exactly, but for rounding" in cutter(result, METRIC).words[0]
     assert [line["name"] for line in curve] == ["conjugate pairs", "whole pairs", "load shared"]
     assert all(np.all(np.diff(line["y"]) < 0.0) for line in curve)
     sizes = dict((row[0], row[1]) for row in numbers(result, METRIC).tables[0].rows)

@@ -78,7 +78,7 @@ class ShiftRow:
     pairs: Annotated[float, Shown("pairs")]
     radius_mm: Annotated[float, Shown("least R")]
     equal_MPa: Annotated[float, Shown("contact pressure of conjugate pairs")]
-    whole_MPa: Annotated[float, Shown("contact pressure of whole pairs")]
+    whole_MPa: Annotated[float, Shown("contact pressure, by the whole pairs that always touch")]
     shared_MPa: Annotated[float, Shown("contact pressure, load shared")]
     least_clearance_mm: Annotated[float, Shown("least clearance", unit="um")]
 
@@ -153,7 +153,7 @@ class WaveDesign:
     windup_mrad: Annotated[float, Shown("windup", "loads")]
     shared_pressure_MPa: Annotated[float, Shown("contact pressure, load shared", "loads")]
     equal_pressure_MPa: Annotated[float, Shown("contact pressure of conjugate pairs", "loads")]
-    whole_pairs_pressure_MPa: Annotated[float, Shown("contact pressure of whole pairs", "loads")]
+    whole_pairs_pressure_MPa: Annotated[float, Shown("contact pressure, by the whole pairs that always touch", "loads")]
     rim_bending_MPa: Annotated[float, Shown("bending of the rim", "loads")]
     rim_shear_MPa: Annotated[float, Shown("shear of the rim", "loads")]
     ratcheting_torque_Nm: Annotated[float, Shown("ratcheting torque", "loads")]

@@ -12,7 +12,7 @@ from gearopt.formulations.strain_wave.demand import (
     Demand,
 )
 from gearopt.formulations.strain_wave.design import INVOLUTE, WaveDesign
-from gearopt.formulations.strain_wave.exchange import CUTTING, WIDER, RangeEnd
+from gearopt.formulations.strain_wave.exchange import CUTTING, RangeEnd
 from gearopt.formulations.strain_wave.swept_report import DOUBLE_ARC
 from gearopt.scenes.strain_wave.scene import STEEL, Scene
 
@@ -134,7 +134,7 @@ def _ranges(scene: Scene) -> Iterator[str]:
 
 
 def range_notes(scene: Scene, ends: Sequence[RangeEnd]) -> list[str]:
-    """Return which numbers lie at ends of their ranges, and what wider ones would give."""
+    """Return which numbers lie at ends of their ranges, and which ends limit the pressure."""
     if not ends:
         return []
     each = []
@@ -146,12 +146,10 @@ def range_notes(scene: Scene, ends: Sequence[RangeEnd]) -> list[str]:
             f"{'of [design]' if given else 'assumed'})"
         )
     sentences = [f"At ends of their ranges: {_series(each)}."]
-    gains = [end for end in ends if end.gain is not None]
-    if gains:
-        shown = _series([f"{end.gain:.2g} MPa by {_name(end.name)}" for end in gains])
+    if gains := [_name(end.name) for end in ends if end.gain is not None and end.gain > 0.0]:
         sentences.append(
-            f"With a range {100.0 * WIDER:g} % wider the contact pressure would fall, to first "
-            f"order, by {shown}: {_name(gains[0].name)} counts most."
+            f"The contact pressure is limited by the ends of the ranges of {_series(gains)}: with "
+            "wider ranges it would fall until other limits come first."
         )
     return sentences
 

@@ -27,6 +27,7 @@ RUNS = "strain wave gearing"  # the animation that plots follow
 ANGLE = "angle of the tooth on the wave [°]"
 NEAR_DEG = 25.0  # of the wave, that the plot of clearances shows at least on either side
 WIDEST = 1e4  # mm of a cutter's drawing
+ROUNDING = 1e-6  # µm of a flank: less is that of the computation
 BEYOND_DEG = 10.0  # and beyond the last contact
 
 
@@ -181,7 +182,8 @@ def shift(result: Result, measures: Measures) -> Section | None:
     )
     plot["margin"] |= {"t": 34}
     plot["shapes"] = [upright(design.profile_shift, layer="above")]
-    caption = "Contact pressure against profile shift, all else unchanged; dotted: this gearing."
+    caption = "Contact pressure against profile shift, all else unchanged; dotted: this gearing. "
+    caption += "Whole pairs: the whole number of pairs that always touch carries the load."
     return Section(
         "Contact pressure against profile shift",
         words=_ends_of_shift(design),
@@ -201,7 +203,8 @@ def _ends_of_shift(gearing: WaveDesign) -> list[str]:
         )
     if gearing.largest_addendum is not None:
         words.append(
-            f"With an addendum above {gearing.largest_addendum:.3f} modules teeth would interfere."
+            f"With an addendum above {gearing.largest_addendum:.3f} modules teeth would interfere, "
+            "with all other sizes unchanged."
         )
     return words
 
@@ -217,7 +220,7 @@ def cutter(result: Result, measures: Measures) -> Section | None:
     words = (
         f"{_tool(tool)}, rolling on a pitch radius of "
         f"{amount(tool.pitch_radius_mm, 'mm', measures)}: it is regular and generates the flank "
-        f"to within {1e3 * tool.round_trip_mm:.0e} µm. {_least(tool)}",
+        f"{_generates(tool)}. {_least(tool)}",
     )
     shown, pitch = result.report["cutter_drawing"], math.pi * design.module_mm
     grid = shown["grid_mm"]
@@ -237,6 +240,12 @@ def cutter(result: Result, measures: Measures) -> Section | None:
 
 def _tool(tool: CutterDesign) -> str:
     return f"A pinion-type cutter of {tool.teeth} teeth" if tool.teeth else "A rack (as of a hob)"
+
+
+def _generates(tool: CutterDesign) -> str:
+    """How near the flank that the cutter generates comes to that of the design, in words."""
+    off = 1e3 * tool.round_trip_mm
+    return "exactly, but for rounding" if off < ROUNDING else f"to within {off:.0e} µm"
 
 
 def _least(tool: CutterDesign) -> str:
