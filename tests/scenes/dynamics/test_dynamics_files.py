@@ -18,6 +18,7 @@ from gearopt.optimise.kernels import COMPILING
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor
 from gearopt.physics.motion.stiffness_wave import fourier, trapezoid
 from gearopt.scenes.dynamics import KIND
+from gearopt.scenes.dynamics.steps import at_ends
 from gearopt.scenes.dynamics.stiffness_of_teeth import of_teeth
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import load, read
@@ -107,6 +108,17 @@ def test_a_mass_that_no_pair_of_the_ranges_has(tmp_path):
     assert found["optimise.face_width[1]"] == '"2.98 mm"'
     told = gearopt.explain(path)
     assert {r.what for r in told.remedies} == set(found)
+
+
+def test_ends_of_ranges_and_numbers_without_use_are_told():
+    scene = gearopt.load(PROBLEMS / "least_vibration.toml")
+    (told,) = at_ends(scene.task, (501187.2336, 1.6, 0.25, 12.0, 0.6 + 1e-9))
+    assert told == (
+        "At ends of their ranges: bearing stiffness 501,190 N/mm (largest of 31,623 to 501,190), "
+        "ramp 0.25 (largest of 0.02 to 0.25), rim 0.6 (least of 0.6 to 1.4)."
+    )
+    assert not at_ends(scene.task, (2e5, 1.6, 0.1, 12.0, 1.0))
+    assert KIND.assumptions(scene)[-1].startswith("Not used: masses, inertias and bearing")
 
 
 def test_a_fourier_series_stays_above_zero():

@@ -153,7 +153,9 @@ class WaveDesign:
     windup_mrad: Annotated[float, Shown("windup", "loads")]
     shared_pressure_MPa: Annotated[float, Shown("contact pressure, load shared", "loads")]
     equal_pressure_MPa: Annotated[float, Shown("contact pressure of conjugate pairs", "loads")]
-    whole_pairs_pressure_MPa: Annotated[float, Shown("contact pressure, by the whole pairs that always touch", "loads")]
+    whole_pairs_pressure_MPa: Annotated[
+        float, Shown("contact pressure, by the whole pairs that always touch", "loads")
+    ]
     rim_bending_MPa: Annotated[float, Shown("bending of the rim", "loads")]
     rim_shear_MPa: Annotated[float, Shown("shear of the rim", "loads")]
     ratcheting_torque_Nm: Annotated[float, Shown("ratcheting torque", "loads")]

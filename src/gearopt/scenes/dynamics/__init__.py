@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.dynamics import parts
@@ -20,6 +21,7 @@ from gearopt.scenes.dynamics.notes import warnings
 from gearopt.scenes.dynamics.scene import Scene, wave_of
 from gearopt.scenes.dynamics.steps import (
     BEST,
+    at_ends,
     beside,
     optimised,
     possible,
@@ -89,7 +91,9 @@ def _least(scene: Scene, ask: Ask, before: MovingPair, clock: Clock) -> Result:
         text = f"{result.message} {_missing(scene, design)}".strip()
         result = replace(result, message=text)
     said = (*told(best, result, scene.optimise.periods), *warnings(design, scene.module))
-    report = {"assumptions": assumptions(scene)}
+    report: dict[str, Any] = {"assumptions": assumptions(scene)}
+    if notes := at_ends(task, values):
+        report["notes"] = notes
     return replace(result, design=untyped(replace(design, warnings=said)), report=report)
 
 
@@ -194,6 +198,11 @@ def assumptions(scene: Scene) -> list[str]:
         said.append(
             "Gears are discs of the pitch radii, times the rim factor; torques balance; the mesh "
             "stiffness changes between that of one and of two pairs of teeth as a trapezoid."
+        )
+        said.append(
+            "Not used: masses, inertias and bearing stiffnesses of [pinion] and [wheel] and the "
+            "wave of [mesh]. They are of the pair of the file, which is only compared; those of "
+            "the answer follow from its sizes."
         )
     return said
 

@@ -1,5 +1,6 @@
 """The table [optimise]: the search, what proves it impossible, and what is said of the best."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from gearopt.formulations.dynamics.design import Chosen
@@ -12,7 +13,7 @@ from gearopt.formulations.dynamics.orbit.least_vibration import (
     methods,
     response_over_speed,
 )
-from gearopt.formulations.dynamics.orbit.task import MICRO, VARIABLES, Task
+from gearopt.formulations.dynamics.orbit.task import MICRO, UNITS, VARIABLES, Task
 from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.explaining.explanation import Remedies
@@ -24,6 +25,7 @@ from gearopt.scenes.explaining.explanations import remedies as each_alone
 from gearopt.scenes.explaining.possible import Verdict, of_status
 from gearopt.scenes.reading.ask import Ask
 
+AT_END = 1e-5  # of a range, within which its end counts as reached
 PRICED = 1.0  # s: a budget that leaves time for multipliers, some half a second, once it is spent
 BEST = ("bearing_stiffness_N_per_mm", "contact_ratio", "ramp", "face_width_mm", "rim")
 
@@ -125,6 +127,25 @@ def _judged(result: Result, best: Chosen, task: Task) -> Result:
     objective = result.objective | {"value": value, "unit": "mm"}
     prices = {name: price / MICRO for name, price in result.multipliers.items()}
     return replace(result, objective=objective, limits=limits, multipliers=prices)
+
+
+def at_ends(task: Task, values: Sequence[float]) -> list[str]:
+    """Say which VARIABLES, given as they are, are at ends of their ranges."""
+    each = []
+    for name, unit, value in zip(VARIABLES, UNITS, values, strict=True):
+        low, high = task.ranges[name]
+        near = [
+            s for s, end in (("least", low), ("largest", high)) if _is_at(value, end, high - low)
+        ]
+        if low < high and near:
+            shown, *ends = (f"{float(f'{v:.5g}'):,.12g}" for v in (value, low, high))
+            words = f"{name.replace('_', ' ')} {shown} {unit}".rstrip()
+            each.append(f"{words} ({near[0]} of {' to '.join(ends)})")
+    return [f"At ends of their ranges: {', '.join(each)}."] if each else []
+
+
+def _is_at(value: float, end: float, width: float) -> bool:
+    return abs(value - end) <= AT_END * width
 
 
 def told(best: Chosen, result: Result, periods: int) -> list[str]:

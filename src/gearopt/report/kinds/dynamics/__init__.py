@@ -15,7 +15,7 @@ from gearopt.report.explained import remedies, sensitivities
 from gearopt.report.headline import of_limits
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.dynamics import plots
-from gearopt.report.kinds.generic import OPENING
+from gearopt.report.kinds.generic import OPENING, REQUEST
 from gearopt.report.measures import Measures, rounded
 from gearopt.report.section import Section, Table, Tile, cell, names_and_values, percent
 from gearopt.report.words import amount, number
@@ -263,7 +263,7 @@ def rest(result: Result, measures: Measures) -> Section | None:
 
 SECTIONS = (chosen, motion, speeds, stability, rest)
 PAGES = Pages(
-    sections=(*OPENING, *SECTIONS, limits, sensitivities, progress, proven, assumptions),
+    sections=(*OPENING, *SECTIONS, *REQUEST, progress, proven, assumptions),
     terminal=(rest, stability, motion, speeds, chosen, limits, sensitivities, remedies, summary),
     tiles=tiles,
     binding_limit=binding_limit,
