@@ -13,7 +13,7 @@ from gearopt.formulations.dynamics.design import (
 )
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
-from gearopt.report.kinds.dynamics import binding_limit, chosen, speeds
+from gearopt.report.kinds.dynamics import binding_limit, chosen, prices, speeds
 from gearopt.report.kinds.dynamics import plots as dynamics_plots
 from gearopt.report.measures import METRIC
 
@@ -44,6 +44,8 @@ FOUND = Speeds(  # in contact; two motions; two that take two periods or none; w
     jammed_rpm=(),
     harmonics_mm=((0.002, 0.002, 0.002, 0.02, None), (0.0, 0.0, 0.0, 0.0, None)),
 )
+
+PRICES = {"prices": {"influences": [], "message": "", "basis": ""}}
 
 
 def told(found):
@@ -147,6 +149,12 @@ def test_the_least_vibration_names_its_measure_its_sign_and_the_curves_that_are_
     assert rows["highest deformation δ, negative in compression [µm]"].text == "-3.429"
     assert rows["largest RMS of the deformation about its mean, over all speeds [µm]"].text == "5.1"
     assert binding_limit(found).startswith("the objective is the largest of 1 speeds; ")
+    told = replace(found, objective=found.objective | {"value": 0.005}, report=PRICES)
+    assert (
+        prices(told, METRIC)
+        .words[-1]
+        .endswith("not used: those of the answer follow from its sizes.")
+    )
     (figure,) = section.figures
     assert [t["name"] for t in figure.data] == ["least vibration", "speeds of the problem"]
     assert "over speed, of the pair of least vibration; only" in figure.caption

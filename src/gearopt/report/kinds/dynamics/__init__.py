@@ -1,6 +1,7 @@
 """A pair on moving axes: how it rests, moves, where it is unstable, and what vibrates least."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,12 +11,12 @@ from gearopt.formulations.dynamics.motion.stability import UNSTABLE
 from gearopt.formulations.dynamics.motions_over_speed import ranges, spans
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
-from gearopt.report.answer import assumptions, limits, progress, proven, summary
+from gearopt.report.answer import asked, assumptions, limits, progress, proven, summary
 from gearopt.report.explained import remedies, sensitivities
 from gearopt.report.headline import of_limits
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.dynamics import plots
-from gearopt.report.kinds.generic import OPENING, REQUEST
+from gearopt.report.kinds.generic import OPENING
 from gearopt.report.measures import Measures, rounded
 from gearopt.report.section import Section, Table, Tile, cell, names_and_values, percent
 from gearopt.report.words import amount, number
@@ -27,6 +28,10 @@ MEASURES = {
     "rms": "RMS of the deformation about its mean",
     "peak_to_peak": "peak to peak of the deformation",
 }
+NOT_USED = (
+    "Masses, inertias and bearing stiffnesses of [pinion] and [wheel] and the wave of [mesh] are "
+    "not used: those of the answer follow from its sizes."
+)
 HIGHEST = "highest δ, negative in compression"
 
 
@@ -261,10 +266,19 @@ def rest(result: Result, measures: Measures) -> Section | None:
     return Section("At rest", tables=(state, swing), terminal=(state, swing))
 
 
+def prices(result: Result, measures: Measures) -> Section | None:
+    """Show sensitivities, and say which numbers a design of least vibration does not use."""
+    section, design = sensitivities(result, measures), design_of(result)
+    if section is None or design is None or design.chosen is None:
+        return section
+    terminal = (*section.terminal, NOT_USED)
+    return replace(section, words=[*section.words, NOT_USED], terminal=terminal)
+
+
 SECTIONS = (chosen, motion, speeds, stability, rest)
 PAGES = Pages(
-    sections=(*OPENING, *SECTIONS, *REQUEST, progress, proven, assumptions),
-    terminal=(rest, stability, motion, speeds, chosen, limits, sensitivities, remedies, summary),
+    sections=(*OPENING, *SECTIONS, asked, limits, prices, progress, proven, assumptions),
+    terminal=(rest, stability, motion, speeds, chosen, limits, prices, remedies, summary),
     tiles=tiles,
     binding_limit=binding_limit,
     warns=warns,
