@@ -160,6 +160,16 @@ def test_histogram_holds_every_draw(result, found):
     assert high - low < 100.0 * (drawn["yield_high"] - drawn["yield_low"]) + 3e-4
 
 
+def test_where_the_worst_case_is_within_the_limit_the_yield_is_100_percent(result):
+    drawn = result.design["drawn"]
+    drawn = drawn | {"limit_deg": drawn["worst_case_deg"]}
+    made = sections(replace(result, design=result.design | {"drawn": drawn}))
+    told = words({s.heading: s for s in made})
+    assert "the yield is 100 %" in told and "confidence" not in told
+    tile = next(t for t in made[0].tiles if t.name == "worst-case error, new tolerances")
+    assert float(tile.value.rstrip("°")) == pytest.approx(drawn["worst_case_deg"], rel=1e-4)
+
+
 def words(found):
     return found["Monte Carlo errors"].words[0]
 

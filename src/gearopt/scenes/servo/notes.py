@@ -42,8 +42,8 @@ def assumptions(scene: Scene) -> list[str]:
     if scene.mesh:
         sides = "" if any(mesh.two_sided for mesh in scene.mesh) else "one-sided and "
         sentences.append(
-            "The error is the lost motion between both flanks at the output, by small angles; "
-            f"every deviation is {sides}at its limit at the same time."
+            "The error at the output is lost motion between both flanks plus pitch error, by small "
+            f"angles, in the worst case: every deviation is {sides}at its limit at the same time."
         )
     if any(mesh.two_sided or mesh.minimum_backlash for mesh in scene.mesh):
         sentences.append(

@@ -295,10 +295,10 @@ def _drawn_words(draws: DrawnErrors, said: bool) -> list[str]:
     high = f"{math.ceil(1e6 * draws.yield_high) / 1e4:.4f}"
     share, ends = f"{100.0 * draws.probability:g} %", _ends(draws)
     limit = "" if said else f" of {degrees(draws.limit_deg)}"
-    words = [
-        f"{100.0 * draws.yield_share:.4f} % of the Monte Carlo trains keep the limit{limit}; with "
-        f"{sure} confidence the yield lies between {low} and {high} %."
-    ]
+    kept = f"{100.0 * draws.yield_share:.4f} % of the Monte Carlo trains keep the limit{limit}"
+    words = [f"{kept}; with {sure} confidence the yield lies between {low} and {high} %."]
+    if draws.worst_case_deg <= draws.limit_deg * (1.0 + 1e-9):
+        words = [f"All trains keep the limit{limit}, as the worst case does: the yield is 100 %."]
     between = " (too few draws for an interval with this confidence)"
     if ends:
         interval = f"between {' and '.join(map(degrees, ends))}"
