@@ -9,7 +9,7 @@ import pytest
 from rich.console import Console
 
 from gearopt.physics.gears import Gear, GearPair
-from gearopt.report.kinds.pair import PAGES, contact_of
+from gearopt.report.kinds.pair import PAGES, contact_of, tiles
 from gearopt.report.kinds.pair.words import answers, graded, of_duty
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.result import tables
@@ -83,6 +83,11 @@ def test_the_page_shows_contact_and_the_rating_of_a_pair_that_was_sized(solved):
         assert words in html
     assert "proven optimal" in html and "power capacity" in html
     assert PAGES.pages_of_given is not None and PAGES.drawn
+
+
+def test_the_largest_load_is_that_at_the_torque_of_the_duty(solved):
+    tile = next(t for t in tiles(solved("relief_two_loads"), METRIC) if "largest load" in t.name)
+    assert tile.remark.endswith("at 100.0 % of the duty's torque")
 
 
 def test_what_models_do_not_cover_is_warned_of_once(solved):

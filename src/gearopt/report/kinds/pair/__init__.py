@@ -52,14 +52,15 @@ def _contact_tiles(
     pair_contact: PairContact, load: ContactLoad, measures: Measures, relieved: bool
 ) -> list[Tile]:
     """The figures of contact without relief; relieved: those with it stand beside."""
-    part = f"{share(load.largest_share)} % of the normal force"
+    torque = f"at {share(load.load)} % of the duty's torque"
+    part = f"{share(load.largest_share)} % of the normal force, {torque}"
     iso = amount(pair_contact.iso_mesh_stiffness_MPa, STIFFNESS, measures)
     return [
         Tile("largest load on a tooth", amount(load.largest_tooth_force_N, "N", measures), part),
         Tile(
             "peak to peak without relief" if relieved else "transmission error, peak to peak",
             amount(load.peak_to_peak_mm, "um", measures),
-            f"at {share(load.load)} % of the duty's torque",
+            torque,
         ),
         Tile(
             "mean mesh stiffness",
@@ -69,7 +70,7 @@ def _contact_tiles(
         Tile(
             "contact ratio",
             number(pair_contact.contact_ratio),
-            "without flanks lost to undercut",
+            "flanks removed by undercut are not counted",
         ),
     ]
 
