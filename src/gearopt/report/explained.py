@@ -117,7 +117,10 @@ def influence_words(prices: Mapping[str, Any], result: Result) -> list[str]:
             *lines,
             f"An effect is the change of the {name} as one number takes a step, solved again.",
         ]
-    slope = f"Sensitivities are changes of the {name} in % per 1 % of the number, if it changes little (d ln / d ln)"
+    slope = (
+        f"Sensitivities are changes of the {name} in % per 1 % of the number, if it changes little "
+        "(d ln / d ln)"
+    )
     known = any(i["sensitivity"] is not None for i in prices["influences"])
     lines.append(f"{slope}{prices.get('basis', '') if known else ', by solving again'}.")
     if any("|" in _sides(i["resolved"]) for i in prices["influences"]):
