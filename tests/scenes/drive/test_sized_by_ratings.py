@@ -394,10 +394,10 @@ def test_a_minimum_face_width_is_eased():
 
 @pytest.mark.slow
 def test_a_search_that_is_cut_short_has_the_bound_of_real_valued_sizes(monkeypatch):
-    """No whole teeth in no time: the bound is that of real-valued sizes, which are a part."""
+    """No whole teeth in no time: the bound is at least that of real-valued sizes, a part of it."""
     monkeypatch.setattr(sizing, "BOUND_SHARE", 0.999)
     monkeypatch.setattr(sizing, "Clock", lambda budget: SimpleNamespace(over=False))
     found = gearopt.solve(PROBLEMS / "elevator_by_both.toml", budget=Budget(0.4))
     (real,) = found.parts
     assert found.status == "limit" and real.name == "sizing"
-    assert 0.0 < found.bound == real.bound < 67020184.0
+    assert 0.0 < real.bound <= found.bound < 67020184.0

@@ -64,9 +64,10 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     if (drawn := design.drawn) is not None:
         good = f"{100.0 * drawn.yield_share:.4g} %"
         figures.append(Tile("yield", good, f"of {drawn.count:,} Monte Carlo trains"))
-        worst = drawn.worst_case_deg
-        remark = f"{arc_minutes(worst)}, all at their limits at once"
-        figures.append(Tile("worst-case error, new tolerances", degrees(worst), remark))
+        worst, remark = degrees(drawn.worst_case_deg), arc_minutes(drawn.worst_case_deg)
+        if worst not in {degrees(drawn.limit_deg), *(tile.value for tile in figures)}:
+            remark += ", all at their limits at once"
+            figures.append(Tile("worst-case error, new tolerances", worst, remark))
     return figures
 
 
