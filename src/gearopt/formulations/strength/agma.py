@@ -140,16 +140,6 @@ class Agma:
         """Return the least d1^2 b/(T (1 + 1/u)) of contact and d1^2 b/T of bending."""
         return needed(self, cells, safety)
 
-    @property
-    def levels(self) -> tuple[Self, ...]:
-        """The standard under each of its loads alone."""
-        return tuple(
-            replace(
-                self, loads=(load,), rivals=tuple(replace(r, loads=(load,)) for r in self.rivals)
-            )
-            for load in self.loads
-        )
-
     def best_with(self, rivals: Sequence[Self]) -> Self | None:
         """Return the virtual way with every strength at its best; None: they differ in more."""
         alike = all(replace(rival, steels=self.steels) == self for rival in rivals)

@@ -159,16 +159,6 @@ class Iso6336:
     def floor(self, box: Box, choice: str) -> None:
         """Lower bounds of the used capacity as posynomials: None, for none are known."""
 
-    @property
-    def levels(self) -> tuple[Self, ...]:
-        """The standard under each of its loads alone."""
-        return tuple(
-            replace(
-                self, loads=(load,), rivals=tuple(replace(r, loads=(load,)) for r in self.rivals)
-            )
-            for load in self.loads
-        )
-
     def best_with(self, rivals: Sequence[Self]) -> Self | None:
         """Return the virtual way with every factor at its best; None where rows cannot be compared.
 

@@ -129,7 +129,7 @@ class IsoCells:
         made = [case.deviations for case in self.cases]
         pitches = [self.given.get("f_pb", one.base_pitch) for one in made]
         forms = [self.given.get("f_falpha", one.profile_form) for one in made]
-        found, wears = [], (True, not self.standard.rivals)  # virtual ways are the softest
+        each, wears = [], (True, not self.standard.rivals)  # virtual ways are the softest
         for end, case in enumerate(self.cases):
             own, other, form = (
                 size - (wears[end] and self.standard.running_in_allowance(case, worn))
@@ -139,8 +139,8 @@ class IsoCells:
                     (forms[end], forms[end]),
                 )
             )
-            found.append((own, form, np.maximum(own, other)))
-        return found[0], found[1]
+            each.append((own, form, np.maximum(own, other)))
+        return each[0], each[1]
 
     @cached_property
     def resonance(self) -> tuple[Any, Any]:

@@ -43,6 +43,18 @@ def together(loads: Sequence[Load]) -> Load:
     return Load(*table.T[:, :, None])
 
 
+def under_each_load(standard: Any) -> tuple[Any, ...]:
+    """A standard, with its rivals, under each of its loads alone."""
+    return tuple(
+        replace(
+            standard,
+            loads=(load,),
+            rivals=tuple(replace(r, loads=(load,)) for r in standard.rivals),
+        )
+        for load in standard.loads
+    )
+
+
 def table_of(columns: Sequence[Any], count: int) -> Array:
     """Return a table of columns (n,) or numbers."""
     table = np.empty((len(columns), count))
@@ -123,10 +135,6 @@ class Standard(Protocol):
 
     def floor(self, box: "Box", choice: str) -> "Floor | None":
         """Lower bounds of the used capacity over a box; None where there are none."""
-
-    @property
-    def levels(self) -> "tuple[Standard, ...]":
-        """The standard under each of its loads alone."""
 
     def best_with(self, rivals: Sequence[Any]) -> "Standard | None":
         """Return a virtual way of making the gears whose `rows` use no more than those of any way.

@@ -15,7 +15,7 @@ from gearopt.formulations.drive.rated import boxes
 from gearopt.formulations.drive.rated.boxes import B_OVER_D, D2, MARGIN, B, D, M, U, Z
 from gearopt.formulations.drive.train import LENGTHS, Train
 from gearopt.formulations.strength.cells import Cells
-from gearopt.formulations.strength.rated import Option
+from gearopt.formulations.strength.rated import Option, under_each_load
 from gearopt.optimise.terms import Array
 
 WIDE, PARTS = 16, 12  # cells of the logarithm of the total ratio, and narrow ones of each
@@ -55,7 +55,7 @@ def _kinds(train: Train, k: int) -> list[Train]:
     stage, groups = train.stages[k], dict[Any, list[Option]]()
     for option in stage.options:
         alike = groups.setdefault((option.densities[1], option.prices[1]), [])
-        alike.append(replace(option, standards=option.standards[-1].levels))
+        alike.append(replace(option, standards=under_each_load(option.standards[-1])))
     best = [first.strongest_with(rest) if rest else first for first, *rest in groups.values()]
     cuts, kinds = stage.toothings, []
     plain = all(cut.shifting is None and cut.working_distance is None for cut in cuts)

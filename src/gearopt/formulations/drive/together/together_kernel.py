@@ -223,9 +223,7 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
         left_low, left_high, ratio = taken(d, j, parents[start[0]], choice, node, body)
         end = place(d.log_ratio, d.start[j], d.start[j + 1], left_high + EDGE)
         if start[1] < 0:
-            start[1] = d.start[j]
-            if j == 0:
-                start[1] = place(d.log_ratio, d.start[j], end, left_low - EDGE)
+            start[1] = d.start[j] if j else place(d.log_ratio, d.start[j], end, left_low - EDGE)
         if j < stages - 1:
             loaded(d, j + 1, choice, node)
         bases(d, j, node, base, shared)
