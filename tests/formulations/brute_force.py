@@ -13,7 +13,7 @@ from blank_rings import volume
 
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.physics.gears import MODULES
 
 SAME = 1e-12  # objectives closer than this are ties; loads may exceed a limit by this much

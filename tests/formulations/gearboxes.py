@@ -8,8 +8,8 @@ from itertools import product
 import numpy as np
 from brute_force import k_factor_width, width
 
+from gearopt.formulations.drive.gearbox import Clearances, Gearbox, Shaft
 from gearopt.formulations.drive.layout.chain import chain, turns
-from gearopt.formulations.drive.layout.gearbox import Clearances, Gearbox, Shaft
 from gearopt.formulations.drive.layout.slabs import arrangements, clashes
 from gearopt.formulations.drive.teeth.search import within
 from gearopt.formulations.drive.teeth.tables import table

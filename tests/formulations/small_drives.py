@@ -5,7 +5,7 @@ from fractions import Fraction
 from gearopt.formulations.drive.teeth.tables import table
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 
 F = Fraction
 FACES = {

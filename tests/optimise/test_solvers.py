@@ -12,7 +12,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing, teeth
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.optimise.own_methods import back_ends
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget

@@ -6,7 +6,7 @@ import gearopt
 from gearopt.formulations.drive.design import describe
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.optimise.typed import untyped
 
 HELIX = 25.0

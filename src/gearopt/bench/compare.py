@@ -13,7 +13,7 @@ from gearopt.bench.drive import CASES, train_of
 from gearopt.formulations.drive import sizing, teeth
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.optimise.comparing.compare import compare
 from gearopt.optimise.comparing.comparison import Comparison
 from gearopt.optimise.comparing.plan import Model, Plan

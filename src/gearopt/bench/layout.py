@@ -9,7 +9,7 @@ import statistics
 from typing import Any
 
 from gearopt.formulations.drive import layout
-from gearopt.formulations.drive.layout.gearbox import Clearances, Gearbox, Shaft
+from gearopt.formulations.drive.gearbox import Clearances, Gearbox, Shaft
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run as solved

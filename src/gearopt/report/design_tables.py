@@ -7,7 +7,7 @@ from itertools import zip_longest
 from typing import Any
 
 from gearopt.formulations.drive.design import StageDesign
-from gearopt.formulations.strength import laws
+from gearopt.formulations.strength.laws import laws
 from gearopt.optimise.result import Result
 from gearopt.report.measures import DIGITS, Measures, error_of, rounded
 from gearopt.report.section import ABSENT, Cell, Section, Table, Tile, cell, listed, percent

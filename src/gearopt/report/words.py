@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
-from gearopt.formulations.strength import laws
+from gearopt.formulations.strength.laws import laws
 from gearopt.optimise.result import Result
 from gearopt.report.measures import DIGITS, METRIC, Measures, gap_percent, read_in, rounded
 

@@ -11,9 +11,9 @@ from campaigns import few
 from gearboxes import gearbox, law, places, some_box
 
 from gearopt.errors import SolveError
+from gearopt.formulations.drive.gearbox import Clearances, Gearbox, KeepOut, Place, Shaft
 from gearopt.formulations.drive.layout import exact, problem
 from gearopt.formulations.drive.layout.chain import chain, turns
-from gearopt.formulations.drive.layout.gearbox import Clearances, Gearbox, KeepOut, Place, Shaft
 from gearopt.formulations.drive.layout.layout_text import positions, sides, smooth
 from gearopt.formulations.drive.layout.slabs import arrange, arrangements, clashes, in_order
 from gearopt.optimise.box import violation

@@ -8,8 +8,8 @@ from campaigns import few
 from gearboxes import gearbox
 
 from gearopt.errors import SolveError
+from gearopt.formulations.drive.gearbox import SIDES, KeepOut
 from gearopt.formulations.drive.layout import layout_front
-from gearopt.formulations.drive.layout.gearbox import SIDES, KeepOut
 from gearopt.optimise.pareto.measures import unbeaten
 from gearopt.optimise.pareto.objectives import Limiting
 from gearopt.optimise.pareto.tradeoff import found

@@ -9,9 +9,9 @@ from campaigns import few
 from gearboxes import gearbox, law, places, some_box
 from uncompiled import uncompiled
 
+from gearopt.formulations.drive.gearbox import Clearances, KeepOut, Place
 from gearopt.formulations.drive.layout import problem
 from gearopt.formulations.drive.layout.chain import chain
-from gearopt.formulations.drive.layout.gearbox import Clearances, KeepOut, Place
 from gearopt.formulations.drive.layout.slabs import arrangements
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget

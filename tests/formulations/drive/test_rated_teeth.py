@@ -21,7 +21,7 @@ from gearopt.formulations.drive.teeth.stage import Cells
 from gearopt.formulations.drive.teeth.tables import stage_tables
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.formulations.strength.rated import Option
 from gearopt.optimise.result import Budget
 from gearopt.physics.agma.rating_factors import Steel

@@ -11,7 +11,7 @@ from campaigns import few
 from gearopt.formulations.drive import sizing, sizing_text
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.optimise import tape
 from gearopt.optimise.certificate import certify
 from gearopt.optimise.result import Budget

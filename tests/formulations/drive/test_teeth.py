@@ -14,7 +14,7 @@ from gearopt.formulations.drive.teeth.reach import narrowed
 from gearopt.formulations.drive.teeth.search import possible
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import OBJECTIVES, FaceWidth, Stage, Train
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve
 from gearopt.physics.gears import SERIES_I

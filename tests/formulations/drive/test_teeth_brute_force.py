@@ -13,7 +13,7 @@ from campaigns import few
 from gearopt.formulations.drive.teeth import pairs, problem
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.optimise.solve import run
 
 

@@ -15,7 +15,7 @@ from gearopt.formulations.drive.teeth import columns as staging
 from gearopt.formulations.drive.teeth.stage import ALLOWANCE
 from gearopt.formulations.drive.teeth.tables import table
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 
 F = Fraction
 

@@ -15,13 +15,13 @@ from uncompiled import uncompiled
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import layout, teeth, together
-from gearopt.formulations.drive.layout.gearbox import Clearances, Gearbox, KeepOut, Place, Shaft
+from gearopt.formulations.drive.gearbox import Clearances, Gearbox, KeepOut, Place, Shaft
 from gearopt.formulations.drive.layout.slabs import arrangements, clashes, orders
 from gearopt.formulations.drive.together import continuous, search, tables
 from gearopt.formulations.drive.together.tables import numbers, rest
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.handles import handles
 from gearopt.optimise.result import Budget

@@ -11,7 +11,7 @@ from rated_brute_force import safe, widths
 from rated_drives import TREATMENTS, agma, some_iso, some_rated_drive
 
 from gearopt.formulations.drive import layout, teeth, together
-from gearopt.formulations.drive.layout.gearbox import Clearances, Gearbox, Shaft
+from gearopt.formulations.drive.gearbox import Clearances, Gearbox, Shaft
 from gearopt.formulations.drive.layout.slabs import arrangements, clashes
 from gearopt.formulations.drive.teeth.rated import RatedTable
 from gearopt.formulations.drive.together import search as together_search

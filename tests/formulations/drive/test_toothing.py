@@ -12,11 +12,11 @@ from gearopt.errors import SolveError
 from gearopt.formulations.drive import processes as process
 from gearopt.formulations.drive import sizing, sizing_text, teeth
 from gearopt.formulations.drive.design import describe
-from gearopt.formulations.drive.layout.gearbox import Gearbox, Shaft
+from gearopt.formulations.drive.gearbox import Gearbox, Shaft
 from gearopt.formulations.drive.processes import ProcessTwo
 from gearopt.formulations.drive.together.tables import numbers
 from gearopt.formulations.drive.toothing import Toothing
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.optimise.solve import run
 from gearopt.physics.gears import ISO_53_A, Rack
 

@@ -16,13 +16,14 @@ from small_drives import FACES, OBJECTIVES, drive
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import processes as process
 from gearopt.formulations.drive import sizing, teeth, together
-from gearopt.formulations.drive.layout.gearbox import Gearbox, Shaft
+from gearopt.formulations.drive.gearbox import Gearbox, Shaft
 from gearopt.formulations.drive.processes import ProcessOne
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength import Law, Limit, agma_floor, laws
-from gearopt.formulations.strength.k_factor import K_FACTOR
-from gearopt.formulations.strength.lewis import LEWIS
+from gearopt.formulations.strength import Law, Limit, agma_floor
+from gearopt.formulations.strength.laws import laws
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.lewis import LEWIS
 from gearopt.optimise import tape
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run, solve

@@ -13,7 +13,7 @@ import gearopt
 from gearopt.formulations.drive.design import describe
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.optimise.typed import untyped
 from gearopt.physics.blanks import Blank
 from gearopt.report.drawing.train_views import BESIDE, PITCH, WIDE, beside

@@ -13,7 +13,7 @@ from pydantic import Field
 
 from gearopt.formulations.drive import teeth
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength.lewis import LEWIS
+from gearopt.formulations.strength.laws.lewis import LEWIS
 from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.solve import run, solve
 from gearopt.physics.gears import MODULES, GearPair

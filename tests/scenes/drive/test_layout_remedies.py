@@ -13,8 +13,8 @@ from edits import edited, scene_of
 import gearopt
 from gearopt.formulations.drive import layout
 from gearopt.formulations.drive.design import drive_design
+from gearopt.formulations.drive.gearbox import KeepOut, Place
 from gearopt.formulations.drive.layout.faults import faults, possible
-from gearopt.formulations.drive.layout.gearbox import KeepOut, Place
 from gearopt.formulations.drive.layout.slabs import orders
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget

@@ -18,7 +18,7 @@ import numpy as np
 
 from gearopt.formulations.drive.shares import objective_share
 from gearopt.formulations.drive.train import WIDTHS, Stage, Train
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
 from gearopt.physics.gears import GearPair, reference_diameter

@@ -1,14 +1,11 @@
-"""Load limits of a gear pair at a torque and a speed: one file per law, and their common text.
+"""Load limits of a gear pair at a torque and a speed: what a law is, and their common text.
 
 A law gives indices (stresses, load factors) of a loaded pair, each with a limit that a stage sets.
 Searches ask it for utilisations or narrowest face widths and know no formula.
 """
 
-import pkgutil
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
-from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -120,14 +117,6 @@ class Law:
                 good = carries(middle)
                 low, found = np.where(good, low, middle), np.where(good, middle, found)
             return np.where(carries(narrowest), narrowest, found)
-
-
-@cache
-def laws() -> tuple[Law, ...]:
-    """Return the laws that the files of this folder hold."""
-    names = [f"{__name__}.{module.name}" for module in pkgutil.iter_modules(__path__)]
-    held = [value for name in names for value in vars(import_module(name)).values()]
-    return tuple(value for value in held if isinstance(value, Law) and value.limits)
 
 
 RATED = Law("ratings", (), lambda pair, torque, speed: (), kind="ratings")  # of stages with options

@@ -12,9 +12,9 @@ from gearopt.formulations.drive.design import (
     drive_design,
     gears_first,
 )
+from gearopt.formulations.drive.gearbox import Gearbox
 from gearopt.formulations.drive.layout.exact import GAP
 from gearopt.formulations.drive.layout.faults import faults, of_any_gears
-from gearopt.formulations.drive.layout.gearbox import Gearbox
 from gearopt.formulations.drive.layout.layout_text import read
 from gearopt.formulations.drive.layout.slabs import Arrangement, Slabs, arrange, arrangements
 from gearopt.formulations.drive.together import continuous

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from gearopt.formulations.drive.design import DriveDesign
-from gearopt.formulations.drive.layout.gearbox import Gearbox, KeepOut
+from gearopt.formulations.drive.gearbox import Gearbox, KeepOut
 from gearopt.formulations.drive.layout.layout_design import (
     BearingDesign,
     BoxDesign,

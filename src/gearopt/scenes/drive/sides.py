@@ -7,9 +7,9 @@ from typing import Any
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import layout
 from gearopt.formulations.drive.design import drive_design, gears_first
+from gearopt.formulations.drive.gearbox import SIDES
 from gearopt.formulations.drive.layout import layout_front
 from gearopt.formulations.drive.layout.faults import faults
-from gearopt.formulations.drive.layout.gearbox import SIDES
 from gearopt.formulations.drive.layout.layout_text import read
 from gearopt.formulations.drive.layout.slabs import arrangements
 from gearopt.optimise.pareto.front import Objective

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.formulations.drive.gearbox import Gearbox, Shaft
 from gearopt.formulations.drive.layout import annealing, exact
 from gearopt.formulations.drive.layout.chain import Chain, chain, turns
-from gearopt.formulations.drive.layout.gearbox import Gearbox, Shaft
 from gearopt.formulations.drive.layout.layout_text import direct, positions, sides, smooth
 from gearopt.formulations.drive.layout.slabs import Arrangement, arrangements
 from gearopt.optimise.box import violation

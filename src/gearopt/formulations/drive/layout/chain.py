@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gearopt.formulations.drive.layout.gearbox import Gearbox, Range
+from gearopt.formulations.drive.gearbox import Gearbox, Range
 from gearopt.formulations.drive.layout.slabs import TOUCH, Arrangement
 from gearopt.optimise.terms import Array
 

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.formulations.drive.gearbox import ANYWHERE, Gearbox, KeepOut, Place
 from gearopt.formulations.drive.layout.annealing import anneal
 from gearopt.formulations.drive.layout.chain import chain, turns
 from gearopt.formulations.drive.layout.exact import NODES, first_cell
-from gearopt.formulations.drive.layout.gearbox import ANYWHERE, Gearbox, KeepOut, Place
 from gearopt.formulations.drive.layout.slabs import (
     Arrangement,
     Clash,

@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.formulations.drive import layout
-from gearopt.formulations.drive.layout.gearbox import OBJECTIVES, SIDES, Gearbox
+from gearopt.formulations.drive.gearbox import OBJECTIVES, SIDES, Gearbox
 from gearopt.formulations.drive.layout.layout_text import direct
 from gearopt.formulations.drive.layout.slabs import Arrangement, arrangements
 from gearopt.optimise.problem import Problem

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.formulations.drive.gearbox import Gearbox
 from gearopt.formulations.drive.layout.chain import Chain, chain
-from gearopt.formulations.drive.layout.gearbox import Gearbox
 from gearopt.formulations.drive.layout.slabs import Arrangement
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var, each

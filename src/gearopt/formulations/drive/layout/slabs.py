@@ -6,7 +6,7 @@ from functools import cache, lru_cache
 
 import numpy as np
 
-from gearopt.formulations.drive.layout.gearbox import ANYWHERE, Gearbox, Range
+from gearopt.formulations.drive.gearbox import ANYWHERE, Gearbox, Range
 from gearopt.optimise.terms import Array
 
 Slabs = tuple[tuple[int, ...], ...]

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.drive import teeth
+from gearopt.formulations.drive.gearbox import Gearbox, Shaft
 from gearopt.formulations.drive.layout.annealing import ANNEAL
 from gearopt.formulations.drive.layout.chain import chain
-from gearopt.formulations.drive.layout.gearbox import Gearbox, Shaft
 from gearopt.formulations.drive.layout.layout_text import (
     given_places,
     largest,
@@ -38,7 +38,7 @@ from gearopt.formulations.drive.together.search import (
 )
 from gearopt.formulations.drive.together.tables import KERNELS, Make, frame, numbers
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import UNREADY, compiled, kernel
 from gearopt.optimise.problem import Problem

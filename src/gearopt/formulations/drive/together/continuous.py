@@ -13,8 +13,8 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing_text
+from gearopt.formulations.drive.gearbox import ANYWHERE, Gearbox
 from gearopt.formulations.drive.layout.chain import chain
-from gearopt.formulations.drive.layout.gearbox import ANYWHERE, Gearbox
 from gearopt.formulations.drive.layout.layout_text import given_places, outside, placed_by, sides
 from gearopt.formulations.drive.layout.slabs import (
     Arrangement,

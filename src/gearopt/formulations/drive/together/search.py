@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.formulations.drive import layout
+from gearopt.formulations.drive.gearbox import Gearbox
 from gearopt.formulations.drive.layout.chain import Chain, chain, turns
 from gearopt.formulations.drive.layout.exact import first_cell
-from gearopt.formulations.drive.layout.gearbox import Gearbox
 from gearopt.formulations.drive.layout.slabs import TOUCH, Arrangement, arrangements, clashes
 from gearopt.formulations.drive.teeth.columns import Index
 from gearopt.formulations.drive.teeth.later_stages import slices

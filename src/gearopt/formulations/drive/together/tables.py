@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
+from gearopt.formulations.drive.gearbox import ANYWHERE, Gearbox, Shaft
 from gearopt.formulations.drive.layout.chain import Chain
-from gearopt.formulations.drive.layout.gearbox import ANYWHERE, Gearbox, Shaft
 from gearopt.formulations.drive.layout.slabs import Slabs, arrange, face_each_other, orders
 from gearopt.formulations.drive.teeth.rated import RatedTable
 from gearopt.formulations.drive.teeth.stage import Table

@@ -10,7 +10,7 @@ from gearopt.formulations.servo.ratio.duty import ServoDuty
 from gearopt.formulations.servo.servo_design import GOALS, MOTIONS
 from gearopt.formulations.servo.split.bodies import LARGEST, TIP, minimum_teeth
 from gearopt.formulations.servo.split.servo_train import ServoTrain
-from gearopt.formulations.strength.lewis import LEWIS
+from gearopt.formulations.strength.laws.lewis import LEWIS
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair, disc_inertia, disc_mass
 

@@ -13,7 +13,7 @@ from gearopt.formulations.servo.split.servo_train import (
     ratio_parameters,
     ratio_rows,
 )
-from gearopt.formulations.strength.lewis import lewis
+from gearopt.formulations.strength.laws.lewis import lewis
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.gears import GearPair, disc_inertia

@@ -15,7 +15,7 @@ import numpy as np
 from gearopt.formulations.servo.ratio.duty import ServoDuty
 from gearopt.formulations.servo.split.bodies import TIP, Bodies, Pairs
 from gearopt.formulations.strength import Law
-from gearopt.formulations.strength.lewis import LEWIS
+from gearopt.formulations.strength.laws.lewis import LEWIS
 from gearopt.optimise.terms import Param
 from gearopt.physics.backlash import output_error
 from gearopt.physics.gears import GearPair, disc_inertia

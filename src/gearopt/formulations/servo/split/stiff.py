@@ -14,7 +14,7 @@ from gearopt.formulations.servo.split.servo_train import (
     train_error,
     train_inertia,
 )
-from gearopt.formulations.strength.lewis import lewis
+from gearopt.formulations.strength.laws.lewis import lewis
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.gears import Gear, GearPair, disc_mass

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from gearopt.formulations.drive import teeth, together
 from gearopt.formulations.drive.design import DriveDesign, describe
-from gearopt.formulations.drive.layout.gearbox import Gearbox
+from gearopt.formulations.drive.gearbox import Gearbox
 from gearopt.formulations.drive.layout.slabs import Arrangement
 from gearopt.formulations.drive.teeth.tables import stage_tables
 from gearopt.optimise.certified import point_of, run

@@ -8,8 +8,8 @@ from typing import Any
 
 from gearopt.formulations.drive import layout
 from gearopt.formulations.drive.design import DriveDesign, drive_design
+from gearopt.formulations.drive.gearbox import Gearbox
 from gearopt.formulations.drive.layout.faults import faults, possible
-from gearopt.formulations.drive.layout.gearbox import Gearbox
 from gearopt.formulations.drive.layout.layout_text import placed, read
 from gearopt.formulations.drive.layout.slabs import Arrangement, arrangements
 from gearopt.optimise.certified import run

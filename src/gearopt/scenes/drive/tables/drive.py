@@ -10,7 +10,7 @@ from gearopt import units
 from gearopt.formulations.drive.processes import ProcessOne, ProcessTwo
 from gearopt.formulations.drive.train import OBJECTIVES
 from gearopt.formulations.strength import Law
-from gearopt.formulations.strength.k_factor import K_FACTOR
+from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.physics.geometry.profile_shift import ROOT_SAFETY, RULES, Shifting
 from gearopt.scenes.drive.tables.iso6336 import IsoGiven
 from gearopt.scenes.drive.tables.rating import GearKeys, GearTable, GivenTable

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from gearopt import units
-from gearopt.formulations.drive.layout.gearbox import (
+from gearopt.formulations.drive.gearbox import (
     ANYWHERE,
     OBJECTIVES,
     Clearances,
