@@ -3,6 +3,7 @@
 A name is imported when it is first asked for: the command must answer Ctrl-C before numpy is read.
 """
 
+__version__ = "0.1.0"
 TYPE_CHECKING = False  # as in typing, which takes its time too
 if TYPE_CHECKING:
     from gearopt.api import compare, explain, load, pareto, rate, solve
@@ -58,11 +59,7 @@ _PLACES = {  # modules that hold names of `__all__`; `api` holds the others
 
 
 def __getattr__(name: str) -> object:
-    """The version, or a name of `__all__`, from the module that holds it."""
-    if name == "__version__":
-        from importlib.metadata import version
-
-        return version("gearopt")
+    """A name of `__all__`, from the module that holds it."""
     if name not in __all__:
         raise AttributeError(f"module 'gearopt' has no attribute {name!r}")
     from importlib import import_module

@@ -18,7 +18,6 @@ from gearopt.optimise.clock import Clock, of_others, tell_known, whole
 from gearopt.optimise.comparing.plan import EVALUATIONS, SECONDS, SEEDS, Follow, Model, Plan
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.evaluation import elementwise
-from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.options import check, in_turn, named
 from gearopt.optimise.pareto.objectives import Tradeoff, chosen_of, traded
 from gearopt.optimise.problem import Problem, one_objective
@@ -33,6 +32,7 @@ from gearopt.scenes.reading.load import load as load_file
 
 if TYPE_CHECKING:
     from gearopt.optimise.comparing.comparison import Comparison
+    from gearopt.optimise.explaining.explanation import Explanation
     from gearopt.optimise.pareto.front import Front
 
 File = str | Path | Mapping[str, Any] | BaseModel  # its path, its tables, or what `load` returns
@@ -138,7 +138,7 @@ def explain(
     *,
     budget: Budget | None = None,
     watch: Watch | None = None,
-) -> Explanation:
+) -> "Explanation":
     """Explain why the answer to a file, a scene or a problem is what it is.
 
     changes: of a file, as in `load`. Possible: the limits that bind, and the sensitivity to every

@@ -15,8 +15,9 @@ from gearopt.cli import reporting
 from gearopt.cli.app import told
 from gearopt.cli.reporting import report
 from gearopt.errors import GearoptError
-from gearopt.optimise.pareto.front import FrontPoint, Growth, Impossible, Objective
+from gearopt.optimise.pareto.front import FrontPoint, Growth, Impossible
 from gearopt.optimise.pareto.measures import Pick
+from gearopt.optimise.pareto.objectives import Objective
 
 ROOT = Path(__file__).parents[2]
 PICTURES = ROOT / "docs" / "pictures"  # kept results of drives, layouts and packings

@@ -12,7 +12,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.pareto import epsilon, evolution, scalarised
 from gearopt.optimise.pareto.corners import corners, useful
 from gearopt.optimise.pareto.found import Found, Point, sifted
-from gearopt.optimise.pareto.front import Front, FrontPoint, Objective
+from gearopt.optimise.pareto.front import Front, FrontPoint
 from gearopt.optimise.pareto.gaps import (
     Gap,
     Strip,
@@ -37,7 +37,7 @@ from gearopt.optimise.pareto.measures import (
     scaled,
     unbeaten,
 )
-from gearopt.optimise.pareto.objectives import impossible
+from gearopt.optimise.pareto.objectives import Objective, impossible
 from gearopt.optimise.pareto.posed import Limit, caps, kept, moved, posed, violation_scale
 from gearopt.optimise.pareto.tradeoff import Tradeoff, found, solved
 from gearopt.optimise.result import Event, Outcome, Result

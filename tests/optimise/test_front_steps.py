@@ -9,8 +9,9 @@ from test_front_parts import point, segment, steps_of
 from gearopt import Budget, Problem, Repeat, Terms, Var
 from gearopt.optimise.pareto import enumerated, epsilon, evolution, scalarised
 from gearopt.optimise.pareto.epsilon import Limiting, Line
-from gearopt.optimise.pareto.front import Front, FrontPoint, Objective
+from gearopt.optimise.pareto.front import Front, FrontPoint
 from gearopt.optimise.pareto.gaps import Strip, Tried
+from gearopt.optimise.pareto.objectives import Objective
 from gearopt.optimise.pareto.tradeoff import found
 from gearopt.optimise.result import Outcome, Result
 

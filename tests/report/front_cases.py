@@ -5,8 +5,9 @@ import json
 from pathlib import Path
 
 from gearopt import Front
-from gearopt.optimise.pareto.front import FrontPoint, Growth, Impossible, Objective
+from gearopt.optimise.pareto.front import FrontPoint, Growth, Impossible
 from gearopt.optimise.pareto.measures import Pick
+from gearopt.optimise.pareto.objectives import Objective
 
 KEPT = Path(__file__).parents[2] / "docs" / "pictures" / "elevator.json"
 KNEE = "the point furthest below the straight line"

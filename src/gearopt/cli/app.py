@@ -1,12 +1,12 @@
 """The typer application that the commands register with, and what they share."""
 
-from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 
+import gearopt
 from gearopt.cli.names import problem_files, system_words
 from gearopt.cli.watching import unbroken
 from gearopt.errors import GearoptError
@@ -73,7 +73,7 @@ Most = Annotated[
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        print(version("gearopt"))
+        print(gearopt.__version__)
         raise typer.Exit()
 
 

@@ -6,7 +6,7 @@ import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -136,15 +136,14 @@ def _line(screen: Screen, shown: bool, limit: float) -> Iterator["_Line | None"]
         yield None
         return
     line = _Line(limit)
-    status = screen.status(line)
-    begin = threading.Timer(PATIENCE, status.start)
-    begin.start()
-    try:
-        yield line
-    finally:
-        begin.cancel()
-        begin.join()
-        status.stop()
+    with ExitStack() as moving:
+        begin = threading.Timer(PATIENCE, lambda: moving.enter_context(screen.status(line)))
+        begin.start()
+        try:
+            yield line
+        finally:
+            begin.cancel()
+            begin.join()
 
 
 @contextmanager

@@ -15,6 +15,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
+from random import Random
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -370,8 +371,9 @@ def sample(problem: "Problem", count: int) -> Array:
     )
     low = np.where(guess > 0.0, np.maximum(low, guess / 2.0), low)  # a wide box is mostly its
     high = np.where(guess > 0.0, np.minimum(high, guess * 2.0), high)  # far end, where all is 0
-    points = low + (high - low) * np.random.default_rng(0).random((count, len(guess)))
-    points[0] = guess
+    draw = Random(0)  # what numpy draws with takes longer to load than most texts take to check
+    shares = [[draw.random() for _ in guess] for _ in range(count - 1)]
+    points = np.vstack([guess, *(low + (high - low) * np.array(row) for row in shares)])
     for k, (variable, _) in enumerate(problem.columns):
         if variable.values is not None:
             allowed = np.array(variable.values)

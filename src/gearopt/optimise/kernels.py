@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
-from importlib.metadata import version
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
@@ -241,7 +240,7 @@ def _key() -> str:
 
     With that of the laws that kernels import, too.
     """
-    text = hashlib.sha256(version("numba").encode())
+    text = hashlib.sha256(import_module("numba").__version__.encode())
     left, known = sorted(_SOURCES.rglob("*_kernel.py")), set[Path]()
     while left:
         path = left.pop(0)

@@ -1,11 +1,13 @@
 """Objectives that are maximised: their negatives are minimised, answers are in the user's own."""
 
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from gearopt.optimise.explaining.explanation import Explanation
 from gearopt.optimise.result import MAXIMISE, Result
 from gearopt.optimise.terms import FALLING
+
+if TYPE_CHECKING:
+    from gearopt.optimise.explaining.explanation import Explanation
 
 
 def as_asked(result: Result) -> Result:
@@ -27,7 +29,7 @@ def as_asked(result: Result) -> Result:
     )
 
 
-def explained_as_asked(known: Explanation) -> Explanation:
+def explained_as_asked(known: "Explanation") -> "Explanation":
     """An explanation in the user's objective."""
     result = as_asked(known.result)
     if not result.maximised:

@@ -3,11 +3,11 @@
 import json
 import math
 import platform
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass, replace
 from functools import cache
 from importlib import import_module
-from importlib.metadata import version
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from gearopt.optimise.spatial.step import Record
 
 FORMAT = 1
-_version = cache(version)  # reading package metadata takes a millisecond
 MAXIMISE = "maximise"
 CLOSED_FORM = "Proof: a closed form, and a bound that follows from convexity alone."
+THERE = ("optimal", "stationary", "feasible")  # a design exists
 STATUSES = ("optimal", "stationary", "feasible", "evaluated", "infeasible", "limit", "failed")
 FEASIBLE = 1e-8  # of its own scale a variable, of 1 a row is off; that is below any data error
 
@@ -32,6 +32,16 @@ FEASIBLE = 1e-8  # of its own scale a variable, of 1 a row is off; that is below
 def is_number(value: Any) -> bool:
     """Return whether a value is a finite real number."""
     return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+
+
+@cache
+def _version(name: str) -> str:
+    """Version of a package; where it is not loaded from its metadata, which takes time."""
+    if loaded := getattr(sys.modules.get(name), "__version__", ""):
+        return str(loaded)
+    from importlib.metadata import version
+
+    return version(name)
 
 
 @dataclass(frozen=True)

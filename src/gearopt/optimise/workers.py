@@ -4,18 +4,19 @@ They are for texts that are run point by point; what a method asks for together 
 that has not ended when the run does is ended.
 """
 
-import multiprocessing
 import pickle
 import signal
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
-from multiprocessing.process import BaseProcess
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gearopt.errors import SolveError
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future, ProcessPoolExecutor
+    from multiprocessing.process import BaseProcess
 
 PAUSE = 0.05  # s between two looks at the time that is left
 _problem: Any = None  # of a worker
@@ -26,11 +27,11 @@ class Workers:
     """The processes of a run; it has state because they begin with the first text they are for."""
 
     count: int
-    pool: ProcessPoolExecutor | None = None
+    pool: "ProcessPoolExecutor | None" = None
     problem: Any = None
-    children: tuple[BaseProcess, ...] = ()
+    children: "tuple[BaseProcess, ...]" = ()
 
-    def of(self, problem: Any) -> ProcessPoolExecutor:
+    def of(self, problem: Any) -> "ProcessPoolExecutor":
         """Processes that know the text of a problem; begun anew where they know another one."""
         if self.pool is None or not _same_text(self.problem, problem):
             self.end()
@@ -40,6 +41,9 @@ class Workers:
 
     def begin(self, problem: Any) -> None:
         """Fork them, so that any text goes; where that is impossible, it must be importable."""
+        import multiprocessing
+        from concurrent.futures import ProcessPoolExecutor
+
         forked = "fork" in multiprocessing.get_all_start_methods()
         if not forked:
             _check_importable(problem)
@@ -97,7 +101,7 @@ def shared_out(
     return _in_order([pool.submit(_work, work, values, task) for task in tasks], late)
 
 
-def _in_order(futures: Sequence[Future[Any]], late: Callable[[], bool]) -> Iterator[Any]:
+def _in_order(futures: "Sequence[Future[Any]]", late: Callable[[], bool]) -> Iterator[Any]:
     for k, future in enumerate(futures):
         while not future.done():
             if k and late():

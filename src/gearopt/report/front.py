@@ -5,8 +5,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from gearopt.optimise.pareto.front import Front, Objective
+from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.pareto.measures import neighbours
+from gearopt.optimise.pareto.objectives import Objective
 from gearopt.report.design_tables import OF_TEETH
 from gearopt.report.measures import METRIC, Measures, read_in, rounded
 from gearopt.report.section import Cell, Table, cell

@@ -7,20 +7,22 @@ field that is missing or misspelt fails when the kind is imported.
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Generic
+from typing import TYPE_CHECKING, Any, Generic
 
 from pydantic import BaseModel
 
 from gearopt.errors import SolveError
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.plan import Model
-from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.pareto.objectives import Tradeoff
 from gearopt.optimise.result import Result
-from gearopt.scenes.explaining.moves import Move
 from gearopt.scenes.explaining.possible import Possible
 from gearopt.scenes.plan import S, Step, carried_out
 from gearopt.scenes.reading.ask import Ask
+
+if TYPE_CHECKING:
+    from gearopt.optimise.explaining.explanation import Explanation, Remedies
+    from gearopt.scenes.explaining.moves import Move
 
 
 @dataclass(frozen=True)
@@ -111,10 +113,10 @@ class Kind(Generic[S]):
     compared: Callable[[S], tuple[str, ...]] = _nothing_compared
     methods: tuple[str, ...] = ()
     possible: Possible[S] | None = None
-    moves: Callable[[S], Iterable[Move]] | None = None
-    remedies: Callable[[S, Clock, Result, bool], Remedies | None] | None = None
+    moves: "Callable[[S], Iterable[Move]] | None" = None
+    remedies: "Callable[[S, Clock, Result, bool], Remedies | None] | None" = None
     remedied: Callable[[S], bool] = lambda scene: True
-    influences: Callable[[S, Ask, Result], Explanation] | None = None
+    influences: "Callable[[S, Ask, Result], Explanation] | None" = None
     assumptions: Callable[[S], list[str]] = _no_assumptions
     trades: Trades[S] = NO_TRADES
     rate: Callable[[S, Ask], Result] | None = None

@@ -10,7 +10,7 @@ import pytest
 from page_reader import Reader
 
 from gearopt.formulations.strain_wave.design import WaveDesign
-from gearopt.optimise.pareto.front import Objective
+from gearopt.optimise.pareto.objectives import Objective
 from gearopt.optimise.typed import typed
 from gearopt.report.drawing.sheet import Row
 from gearopt.report.front import heads

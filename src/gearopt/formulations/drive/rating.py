@@ -11,7 +11,6 @@ from gearopt.optimise.typed import Shown
 from gearopt.physics.agma.life import LONGEST_LIFE
 
 GIVEN = "given"  # source of a factor of the file
-MIDWAY = "The ratings take each pinion midway between its bearings"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,6 +18,7 @@ from gearopt.physics.rating import Operation
 
 MODES = ("pinion_bending", "wheel_bending", "pinion_contact", "wheel_contact")
 Posed = tuple[str, tuple[Any, ...]]
+MIDWAY = "The ratings take each pinion midway between its bearings"
 REFUSED = 1e9  # utilisation of pairs that a standard refuses to rate
 
 

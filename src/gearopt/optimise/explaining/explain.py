@@ -21,9 +21,6 @@ from gearopt.optimise.explaining.exclusion import (
     possible,
 )
 from gearopt.optimise.explaining.explanation import (
-    DIGITS,
-    FEASIBILITY_MARGIN,
-    THERE,
     Change,
     Explanation,
     Influence,
@@ -41,6 +38,7 @@ from gearopt.optimise.explaining.handles import (
     handles,
     numbered,
 )
+from gearopt.optimise.explaining.proposed import DIGITS, FEASIBILITY_MARGIN
 from gearopt.optimise.explaining.repair import (
     FACTOR_TOLERANCE,
     SLACK_TRIED,
@@ -53,7 +51,7 @@ from gearopt.optimise.explaining.repair import (
 )
 from gearopt.optimise.explaining.sensitivity import BINDS, sensitivities
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Budget, Outcome, Result, Watch
+from gearopt.optimise.result import THERE, Budget, Outcome, Result, Watch
 from gearopt.optimise.solve import BOXES, PROVER, solve_within
 from gearopt.optimise.terms import Array, spread
 

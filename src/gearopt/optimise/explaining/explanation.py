@@ -9,11 +9,6 @@ from gearopt.optimise.result import Result, as_dict, as_json, shown
 
 FORMAT = 1
 
-THERE = ("optimal", "stationary", "feasible")  # a design exists
-DIGITS = 6  # of a number that is proposed; rounded to relax the limit
-# a proposal asks for this much more than the factor found, to be feasible in doubles
-FEASIBILITY_MARGIN = 2e-7
-
 
 @dataclass(frozen=True)
 class Change:

@@ -5,20 +5,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from gearopt.optimise.pareto.measures import Pick
+from gearopt.optimise.pareto.objectives import Objective
 from gearopt.optimise.result import as_dict, as_json, loads, shown, versions
 from gearopt.optimise.typed import typed
 
 FORMAT = 1
 STATUSES = ("complete", "proven", "not proven", "infeasible", "limit")
-
-
-@dataclass(frozen=True)
-class Objective:
-    """An objective: its name and unit, and the largest value of interest (None: any)."""
-
-    name: str
-    unit: str = ""
-    most: float | None = None
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,9 @@ from gearopt.optimise.certified import design, limits_of
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.pareto.found import Found, Point
-from gearopt.optimise.pareto.front import Front, FrontPoint, Growth, Impossible, Objective
+from gearopt.optimise.pareto.front import Front, FrontPoint, Growth, Impossible
 from gearopt.optimise.pareto.measures import hypervolume, picks, reference, unbeaten
+from gearopt.optimise.pareto.objectives import Objective
 from gearopt.optimise.pareto.posed import posed
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array

@@ -10,7 +10,6 @@ from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.pareto.front import Objective
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Outcome
 from gearopt.optimise.terms import Array, Terms, Var
@@ -18,6 +17,15 @@ from gearopt.optimise.terms import Array, Terms, Var
 EXACT, EPSILON = "exact", "epsilon"  # methods of fronts that kinds of files choose by
 
 Caps = dict[str, float]  # largest values of objectives that the user states
+
+
+@dataclass(frozen=True)
+class Objective:
+    """An objective: its name and unit, and the largest value of interest (None: any)."""
+
+    name: str
+    unit: str = ""
+    most: float | None = None
 
 
 @dataclass(frozen=True)

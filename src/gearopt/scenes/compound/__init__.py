@@ -12,8 +12,7 @@ from gearopt.formulations import compound
 from gearopt.formulations.compound import wider
 from gearopt.optimise.certified import run
 from gearopt.optimise.comparing.plan import Model
-from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.objectives import EPSILON, Tradeoff
+from gearopt.optimise.pareto.objectives import EPSILON, Objective, Tradeoff
 from gearopt.optimise.result import Result
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped

@@ -6,12 +6,12 @@ need (layout, rating, remedies) is imported where it is asked for: the command a
 """
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive.sizing import problem as real_valued
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.plan import Model
-from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.result import Result
 from gearopt.scenes.drive import processes, sizing
 from gearopt.scenes.drive.notes import assumptions
@@ -23,6 +23,9 @@ from gearopt.scenes.explaining.possible import Verdict
 from gearopt.scenes.kind import Kind, Trades, examples_in
 from gearopt.scenes.plan import Step, carried_out
 from gearopt.scenes.reading.ask import Ask, unseeded
+
+if TYPE_CHECKING:
+    from gearopt.optimise.explaining.explanation import Explanation, Remedies
 
 METHODS = ("exact", "process-one", "process-two", "sa", "sa-polish", "sa-paper", "smooth")
 
@@ -124,14 +127,14 @@ def possible(scene: Scene, clock: Clock) -> Verdict:
     return answers.possible(scene, clock)
 
 
-def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies | None:
+def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> "Remedies | None":
     """Remedies of an impossible drive: `answers.remedies`."""
     from gearopt.scenes.drive.explain import answers
 
     return answers.remedies(scene, clock, result, soon)
 
 
-def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
+def influences(scene: Scene, ask: Ask, result: Result) -> "Explanation":
     """Sensitivities of a possible drive: `answers.influences`."""
     from gearopt.scenes.drive.explain import answers
 

@@ -12,8 +12,7 @@ from gearopt.formulations.drive.layout import layout_front
 from gearopt.formulations.drive.layout.faults import faults
 from gearopt.formulations.drive.layout.layout_text import read
 from gearopt.formulations.drive.layout.slabs import arrangements
-from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.objectives import Limiting, Tradeoff, impossible
+from gearopt.optimise.pareto.objectives import Limiting, Objective, Tradeoff, impossible
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.layout import others_may_fit

@@ -8,8 +8,7 @@ from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing, sizing_text, teeth
 from gearopt.formulations.drive.teeth import load_front
 from gearopt.formulations.drive.train import OBJECTIVES, Train
-from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.objectives import EPSILON, EXACT, Limiting, Tradeoff
+from gearopt.optimise.pareto.objectives import EPSILON, EXACT, Limiting, Objective, Tradeoff
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.scene import Scene

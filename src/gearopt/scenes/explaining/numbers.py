@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import PydanticCustomError
 
-from gearopt.optimise.explaining.explanation import DIGITS, FEASIBILITY_MARGIN
+from gearopt.optimise.explaining.proposed import DIGITS, FEASIBILITY_MARGIN
 from gearopt.scenes.reading.choices import Between, Preferred, Steps
 from gearopt.scenes.reading.fields import Reads
 from gearopt.scenes.reading.toml_writing import dotted, exact, toml_text

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.explaining.explanation import THERE
-from gearopt.optimise.result import Result
+from gearopt.optimise.result import THERE, Result
 
 S = TypeVar("S", contravariant=True)
 WORDS = {True: "feasible", False: "infeasible", None: "undecided"}

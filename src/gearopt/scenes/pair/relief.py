@@ -16,8 +16,7 @@ from gearopt.formulations.pair.relief_map import Removed, as_made, described
 from gearopt.optimise.certified import run
 from gearopt.optimise.clock import in_part
 from gearopt.optimise.comparing.plan import Model
-from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.objectives import Limiting, Tradeoff
+from gearopt.optimise.pareto.objectives import Limiting, Objective, Tradeoff
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import evaluate

@@ -9,8 +9,7 @@ from gearopt.formulations.servo.servo_design import GOALS, ServoDesign
 from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.formulations.servo.tolerance import conic, grades
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.objectives import EPSILON, EXACT, Tradeoff, impossible
+from gearopt.optimise.pareto.objectives import EPSILON, EXACT, Objective, Tradeoff, impossible
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped

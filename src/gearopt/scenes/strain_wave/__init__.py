@@ -44,8 +44,7 @@ from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.explaining.explain import binding
 from gearopt.optimise.explaining.explanation import Explanation
-from gearopt.optimise.pareto.front import Objective
-from gearopt.optimise.pareto.objectives import Limiting, Tradeoff
+from gearopt.optimise.pareto.objectives import Limiting, Objective, Tradeoff
 from gearopt.optimise.result import FEASIBLE, Budget, Result, versions
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped

@@ -6,12 +6,12 @@ from typing import Any
 
 from gearopt.formulations.drive.rating import (
     GIVEN,
-    MIDWAY,
     DriveRating,
     GearRating,
     LoadLevel,
     RatingFactor,
 )
+from gearopt.formulations.strength.rated import MIDWAY
 from gearopt.optimise.result import Result
 from gearopt.report.kinds.drive.rating_tables import figure, name, names, single
 from gearopt.report.kinds.drive.rating_words import (

@@ -7,7 +7,8 @@ from decimal import Context, Decimal
 from fractions import Fraction
 from typing import Any
 
-from gearopt.optimise.explaining.explanation import DIGITS, Change, Remedy
+from gearopt.optimise.explaining.explanation import Change, Remedy
+from gearopt.optimise.explaining.proposed import DIGITS
 from gearopt.optimise.explaining.repair import SLACK_TRIED
 from gearopt.scenes.drive.explain.moves import inherited
 from gearopt.scenes.drive.explain.together import is_real

@@ -10,8 +10,8 @@ from gearopt.formulations.drive.teeth.reach import narrowed
 from gearopt.formulations.drive.teeth.search import any_train, possible
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.explaining.explanation import THERE
 from gearopt.optimise.explaining.repair import FARTHEST
+from gearopt.optimise.result import THERE
 from gearopt.optimise.solve import solve_within
 from gearopt.scenes.drive.explain.moves import applied
 from gearopt.scenes.drive.scene import Scene

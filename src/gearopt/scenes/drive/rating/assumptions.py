@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
-from gearopt.formulations.drive.rating import MIDWAY
+from gearopt.formulations.strength.rated import MIDWAY
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.case import Practice
-from gearopt.scenes.drive.rating import by_agma, by_iso6336
 from gearopt.scenes.drive.rating.iso_material import steel
 from gearopt.scenes.drive.rating.materials import Named, choices, unused
+from gearopt.scenes.drive.rating.options import by
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.rating import GearTable, RatingTable
 
@@ -39,13 +39,13 @@ def _agma_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
         if asked.bending_load == "highest single"
         else "at the tip"
     )
-    known = [by_agma.given(asked, own) for own in scene.stage_tables]
+    known = [by("agma").given(asked, own) for own in scene.stage_tables]
     bending = (
         "Bending stresses of spur gears, and of helical ones of low overlap ratio, are those of a "
         f"load {load}"
         f"{' (AGMA)' * (asked.standard == 'both')}."
     )
-    words = "" if all("K_v" in own for own in known) else by_agma.stated_accuracy(asked)
+    words = "" if all("K_v" in own for own in known) else by("agma").stated_accuracy(asked)
     owned = any(table.quality is not None for table, _ in every_gear(scene))
     others = ", or of the gear's own where the file gives it" if owned else ""
     return [
@@ -84,10 +84,10 @@ def pinions_in_box(scene: Scene) -> list[str]:
         return []
     stages = scene.stage_tables
     iso = asked.standard != "agma" and any(
-        "K_Hbeta" not in by_iso6336.given(asked, own) for own in stages
+        "K_Hbeta" not in by("iso6336").given(asked, own) for own in stages
     )
     agma = (asked.standard != "iso6336" and not asked.pinion_offset) and any(
-        "K_m" not in by_agma.given(asked, own) for own in stages
+        "K_m" not in by("agma").given(asked, own) for own in stages
     )
     if not (iso or agma):
         return []

@@ -2,23 +2,28 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from importlib import import_module
 from typing import Any
 
 from gearopt.formulations.strength.rated import Load, Option
 from gearopt.physics.gears import MEMBERS
-from gearopt.scenes.drive.rating import by_agma, by_iso6336
 from gearopt.scenes.drive.rating.gears import blanks, loads, required_hours, unit_operation
 from gearopt.scenes.drive.rating.materials import Named, choices
 from gearopt.scenes.drive.tables.drive import Gears, StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, LoadTable, RatingTable
 from gearopt.scenes.parts import Duty
 
-STANDARDS: dict[str, tuple[Any, ...]] = {  # of the key standard
-    "agma": (by_agma,),
-    "iso6336": (by_iso6336,),
-    "both": (by_agma, by_iso6336),
+STANDARDS = {  # of the key standard
+    "agma": ("agma",),
+    "iso6336": ("iso6336",),
+    "both": ("agma", "iso6336"),
 }
 SECOND = "_iso"  # after the names of limits by the second of two standards
+
+
+def by(standard: str) -> Any:
+    """The module of a standard, `by_agma` or `by_iso6336`, imported where it is asked for."""
+    return import_module(f"{__package__}.by_{standard}")
 
 
 def of_stages(
@@ -67,7 +72,7 @@ def _option(
             bodies,
             standard.given(rating, own),
         )
-        for standard in STANDARDS[rating.standard]
+        for standard in map(by, STANDARDS[rating.standard])
     ]
     if len(standards) > 1:
         standards[1] = replace(standards[1], suffix=SECOND)

@@ -25,7 +25,7 @@ from gearopt.scenes.drive.rating.gears import (
 )
 from gearopt.scenes.drive.rating.geometry import tooth_geometry
 from gearopt.scenes.drive.rating.mesh import Materials, rated_meshes
-from gearopt.scenes.drive.rating.options import SECOND, STANDARDS, required
+from gearopt.scenes.drive.rating.options import SECOND, STANDARDS, by, required
 from gearopt.scenes.drive.rating.rows import (
     factor_rows,
     gear_row,
@@ -205,7 +205,7 @@ def rating(
     assert scene.rating
     names = materials or [("", "")] * len(pairs)
     first, *others = (
-        _by(scene, pairs, standard, names) for standard in STANDARDS[scene.rating.standard]
+        _by(scene, pairs, standard, names) for standard in map(by, STANDARDS[scene.rating.standard])
     )
     first = replace(first, beside=others[0]) if others else first
     return replace(first, flaws=tuple(_partial_contact(first)))
