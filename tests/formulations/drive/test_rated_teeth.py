@@ -243,6 +243,12 @@ def test_what_like_drives_have_in_common_is_computed_once(standards, monkeypatch
     assert shelf == [first]
 
 
+def test_a_first_train_is_not_looked_for_forever(monkeypatch):
+    monkeypatch.setattr(searching, "GRACE", 0.0)
+    progress = search(rated_drive(F(9), [TIED] * 2), 1, Budget(seconds=0.0))
+    assert progress.clock.stopped and not progress.found
+
+
 def test_without_time_a_first_train_is_looked_for_among_few_pairs(monkeypatch):
     """Two stages of 5 pinions, 400 or so pairs each: of 20 of them one is found, and it carries."""
     train, tables = rated_drive(F(9), [TIED] * 2, pinion_teeth=(20, 24)), []

@@ -43,6 +43,7 @@ FEW_WAYS = 16  # toothings of a stage that a first look is content with
 BEAM = 4  # nodes followed down at once; measured best for two to four stages
 LEAVES = 256  # nodes completed at once
 FIRST_LOOK = 20_000  # pairs examined for a first train
+GRACE = 0.5  # s beyond one and a half times those asked, for a first train
 PATIENCE = 2_000_000  # pairs examined before a finer grid pays
 # first cells of rated drives, times usual ones; the last coarse ones
 FIRST_CELLS, LAST_COARSE_CELL = 32.0, 0.006
@@ -134,10 +135,11 @@ def _glance(
     """Look for a first train among few, then among more, whatever the budget's evaluations.
 
     own: the drive of one material in which it is looked for; it is valued with the best materials.
-    The first look ends, however short the budget's seconds are, unless there is a train. What is
-    looked at in them does not depend on them, so that more seconds find nothing worse.
+    Where there is no train yet, the first look may end half the budget's seconds and GRACE after
+    them. What is looked at does not depend on them, so that more seconds find nothing worse.
     """
-    progress.patience = 0.0 if progress.found else math.inf
+    seconds = progress.clock.budget.seconds or 0.0
+    progress.patience = 0.0 if progress.found else 0.5 * seconds + GRACE
     tables = stage_tables(own, cut, progress.tick, shelf)
     few = thinned(tables)
     for some in (few, tables):
