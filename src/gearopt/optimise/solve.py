@@ -4,6 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,6 @@ from gearopt.optimise import certified
 from gearopt.optimise.certificate import Verdict, certify
 from gearopt.optimise.certified import GAP, head_of, key_of, result_of
 from gearopt.optimise.clock import Clock
-from gearopt.optimise.conic import certified as conic
-from gearopt.optimise.conic.certificate import certify as certify_conic
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.maximised import as_asked
 from gearopt.optimise.problem import Problem, one_objective
@@ -57,9 +56,16 @@ def run(
     Of several objectives the first counts; the outcome's other points are the rest of the Pareto
     front.
     """
-    if isinstance(problem, Conic):
-        return conic.run(problem, method, budget, seed, watch, gap)
-    return certified.run(problem, method, budget, seed, watch, gap)
+    answer: tuple[Result, Outcome] = _certifying(problem).run(
+        problem, method, budget, seed, watch, gap
+    )
+    return answer
+
+
+def _certifying(problem: Problem | Conic) -> Any:
+    """The module `certified` of a kind of problem; that of cones is imported for the first one."""
+    conic = isinstance(problem, Conic)
+    return import_module("gearopt.optimise.conic.certified") if conic else certified
 
 
 def evaluate(problem: Problem | Conic, point: Mapping[str, Any] | Array) -> Result:
@@ -80,7 +86,7 @@ def evaluate(problem: Problem | Conic, point: Mapping[str, Any] | Array) -> Resu
         certificate={"feasibility": excess},
         message="" if excess <= FEASIBLE else f"{worst} is violated by {excess:.3g}",
     )
-    libraries = conic.LIBRARIES if isinstance(problem, Conic) else certified.LIBRARIES
+    libraries = _certifying(problem).LIBRARIES
     outcome = Outcome(x, evaluations=1)
     seconds = clock.seconds
     return as_asked(result_of(problem, "evaluation", outcome, verdict, seconds, 0, libraries))
@@ -135,18 +141,20 @@ def solve_within(clock: Clock, problem: Problem | Conic, method: str | None = No
 
 def default_method(problem: Problem | Conic) -> str:
     """Return the method that is run where none is named."""
-    return conic.METHOD if isinstance(problem, Conic) else certified.default_method(problem)
+    if isinstance(problem, Conic):
+        return str(_certifying(problem).METHOD)
+    return certified.default_method(problem)
 
 
 def judge(problem: Problem | Conic, method: str, outcome: Outcome, gap: float) -> Verdict:
     """Verdict on a method's outcome, by the certificate of the problem's kind."""
     if isinstance(problem, Conic):
-        return certify_conic(problem, outcome, gap)
+        verdict: Verdict = _certifying(problem).certify(problem, outcome, gap)
+        return verdict
     return certify(problem, outcome, gap, exact=method in problem.methods)
 
 
 def method_of(problem: Problem | Conic, name: str) -> Callable[..., Outcome]:
     """Return the `run` of a method for a problem; SolveError lists the methods there are."""
-    if isinstance(problem, Conic):
-        return conic.method_of(problem, name)
-    return certified.method_of(problem, name)
+    method: Callable[..., Outcome] = _certifying(problem).method_of(problem, name)
+    return method
