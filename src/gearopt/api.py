@@ -333,8 +333,11 @@ def _traded(
     if left and (why := kind.trades.advice(scene, left)):
         raise SolveError(why)
     chosen = chosen_of(names, list(known), f'this file of kind "{about["scene"]}"')
-    report = {"assumptions": assumptions} if (assumptions := kind.assumptions(scene)) else {}
-    about |= {"title": getattr(scene, "title", ""), "report": report}
+    texts = {"assumptions": kind.assumptions(scene), "notes": kind.trades.notes(scene, chosen)}
+    about |= {
+        "title": getattr(scene, "title", ""),
+        "report": {key: said for key, said in texts.items() if said},
+    }
     return lambda ask: kind.trades.traded(scene, chosen, ask), chosen, about
 
 

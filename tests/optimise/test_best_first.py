@@ -1,6 +1,6 @@
 """Best-first search: order, ties, and nodes that a refusal leaves open."""
 
-from gearopt.optimise.best_first import best_first
+from gearopt.optimise.best_first import best_first, ending
 
 
 def test_the_least_bound_is_branched_next_and_ties_in_order():
@@ -29,3 +29,8 @@ def test_a_refused_node_stays_open():
     left = best_first([(1.0, 1)], goes_on, lambda bound, k: [(bound + 1.0, 2 * k), (9.0, k)])
     assert asked == [(1.0, 1), (2.0, 2), (3.0, 4)]
     assert left.least == 3.0 and [node for _, _, node in sorted(left.waiting)] == [4, 1, 2]
+
+
+def test_what_a_search_leaves_is_told_in_plain_words():
+    assert ending(True) == "none is left to examine"
+    assert ending(False) == "stopped before all were examined"

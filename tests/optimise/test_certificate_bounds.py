@@ -9,8 +9,9 @@ from gearopt.errors import CertificateError
 from gearopt.optimise.certificate import FARKAS, Verdict, bounded, certify, reconcile, reported_gap
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import Outcome, Result
+from gearopt.optimise.result import Budget, Outcome, Result
 from gearopt.optimise.solve import run, solve
+from gearopt.optimise.solvers import ipopt
 from gearopt.optimise.terms import Terms, Var
 
 
@@ -20,11 +21,14 @@ def test_true_infeasibility_is_proven_with_its_conflict():
         return Terms({"f": x.x * x.y}, rows)
 
     pair = (Var("x", "", 0.1, 10, 1.0, log=True), Var("y", "", 0.1, 10, 1.0, log=True))
-    result, _ = run(Problem("clash", pair, (), evaluate))
+    clash = Problem("clash", pair, (), evaluate)
+    result, _ = run(clash)
     assert result.status == "infeasible" and result.value is None
     assert sorted(result.proof["conflict"]) == ["large", "small"]
     # x = sqrt(6) violates both by sqrt(1.5) - 1, and nothing violates less
     assert result.proof["least_violation"] == pytest.approx(1.5**0.5 - 1.0, rel=1e-9)
+    told = ipopt.run(clash, Budget(), 0, None).message
+    assert told.endswith("the smallest relative violation of the limits reached is 22.5 %")
 
 
 def test_reconcile_keeps_the_better_bound_and_sees_contradictions():

@@ -197,6 +197,8 @@ def test_rows_that_exclude_each_other_are_proven_and_named():
     assert result.status == "infeasible"
     assert sorted(result.proof["conflict"]) == ["least", "most"]
     assert 0.5 - 1e-9 < result.proof["least_violation"] <= 0.5
+    told = qp.run(plane(evaluate), Budget(), 0, None).message
+    assert "smallest relative violation of the limits reached is 50 %" in told
     assert solve(plane(evaluate, -INF, INF), "qp").status == "failed"
 
 

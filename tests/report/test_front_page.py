@@ -23,6 +23,7 @@ from gearopt.report.front import decided, table, value_cells
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages import frame
 from gearopt.report.pages.front import page, tables
+from gearopt.report.words import goal_words
 
 ROOM = Path(frame.__file__).parent
 
@@ -72,6 +73,51 @@ def test_losses_have_the_digits_that_tell_designs_apart():
     assert texts == [["1.2343", "1.2344", "1.2345"], ["2", "1", "0.667"]]
     assert "mesh loss 1.2343 % to 1.2345 %" in decided(close)[0]
     assert "1.2344" in page(close) and "0.667" in page(front)
+
+
+def test_both_ends_of_a_range_have_one_unit():
+    """Below 10 dm³ volumes are read in cm³, above in dm³."""
+    front = cases.drive()
+    values = 6.4486e6, 8.0e6, 1.1194e7
+    points = tuple(
+        replace(p, values=(v, *p.values[1:])) for p, v in zip(front.points, values, strict=True)
+    )
+    limited = tuple(
+        replace(o, most=m) for o, m in zip(front.objectives, (2.0e7, None), strict=True)
+    )
+    wide = replace(front, points=points, objectives=limited)
+    assert "gear volume 6,448.6 cm³ to 11,194 cm³" in decided(wide)[0]
+    html = page(wide)
+    assert "to 11,194 cm³" in html and "at most 20,000 cm³" in html and "11.194 dm³" not in html
+
+
+def test_a_total_length_is_called_so_in_every_table():
+    told = page(cases.drive(objectives=3))
+    assert "total length in one line [mm]" in told
+    assert not re.findall(r"total length(?! in one line| of the design)", told)
+    assert goal_words("total_length", "pair") == "total length in one line"
+
+
+@pytest.mark.parametrize(
+    ("unknown", "said"),
+    [
+        ((), ""),
+        (((300.0, 301.5),), "1 part of the front is {}300 mm to 301.5 mm."),
+        (((None, 300.0), (310.0, None)), "2 parts of the front are {}up to 300 mm, from 310 mm."),
+        (
+            tuple((300.0 + k, 300.5 + k) for k in range(5)),
+            "5 parts of the front are {}300 mm to 300.5 mm, 301 mm to 301.5 mm, 302 mm to 302.5 mm "
+            "and 2 others.",
+        ),
+    ],
+)
+def test_pieces_that_are_not_known_are_named_by_label_and_unit(unknown, said):
+    front = cases.drive(objectives=3)
+    points = tuple(replace(p, values=(p.values[0], p.values[2])) for p in front.points)
+    front = replace(front, objectives=(front.objectives[0], front.objectives[2]), points=points)
+    known = Front.from_json(replace(front, unknown=unknown, message="no bounds").to_json())
+    said = said.format("not known, as steps there are not proven: total length in one line ")
+    assert decided(known)[-2:] == [said or decided(front)[-1], "No bounds."]
 
 
 def test_names_are_escaped():

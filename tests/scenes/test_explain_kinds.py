@@ -171,6 +171,7 @@ def test_packing_slopes_against_the_closed_form(row):
     lean = math.sqrt(21.0**2 - 6.0**2)
     depth = 24.0 + lean
     assert row.result.value == pytest.approx(30.0 * depth, rel=1e-8)
+    assert "hold for small changes only, while the same bodies touch" in row.message
     slopes = {key: i.sensitivity for key, i in by_key(row).items()}
     assert slopes["container.gap"] == pytest.approx(21.0 / lean / depth, rel=1e-6)
     assert slopes["container.width"] == pytest.approx(1.0 - 6.0 * 30.0 / lean / depth, rel=1e-6)

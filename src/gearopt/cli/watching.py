@@ -227,6 +227,6 @@ def reached(event: Event, measures: Measures = METRIC) -> list[str]:
     words = [] if best is None else [f"best {amount(best, unit, measures)}"]
     if bound is None:
         return words
-    words.append(f"bound {amount(bound, unit, measures)}")
+    words.append(f"bound {amount(bound, unit, measures, best)}")
     away = math.inf if best is None else gap(best, bound)
     return [*words, f"gap {100.0 * away:.2g} %"] if math.isfinite(away) else words

@@ -46,3 +46,8 @@ def best_first(
         bound, _, node = heapq.heappop(left.waiting)
         left.add(branch(bound, node))
     return left
+
+
+def ending(whole: bool) -> str:
+    """End of a sentence on the parts that a search has examined; whole: all of them."""
+    return "none is left to examine" if whole else "stopped before all were examined"

@@ -56,7 +56,7 @@ PROOFS = {  # methods of proofs: what their names mean
     "volume": "volume of the cylinders",
 }
 CHECKS = {  # of a certificate: what each number is
-    "feasibility": "largest violation of a limit",
+    "feasibility": "largest violation of a limit, relative",
     "stationarity": "largest gradient of the Lagrangian, 0 at an optimum, relative",
     "complementarity": "largest product of a Lagrange multiplier and the margin of its limit, "
     "0 at an optimum, relative",
@@ -106,7 +106,7 @@ def _tiles(result: Result, measures: Measures) -> list[Tile]:
     if bound is not None and (value is None or (result.gap or 0.0) > EXACT):
         kind = "checked" if "checked" in result.proof else "proven"
         title = f"{kind} bound{scope(result)}"
-        text = measures.amount(bound, unit, WAYS[side])
+        text = measures.amount(bound, unit, WAYS[side], value)
         tiles.append(Tile(title, text, gap_words(result)))
     return tiles
 
@@ -163,7 +163,7 @@ def bound_words(result: Result, measures: Measures) -> list[str]:
     if bound is None or result.gap is None or (value is not None and result.gap <= EXACT):
         return []
     known = "Lower" if side == "below" else "Upper"
-    text = measures.amount(bound, unit, WAYS[side])
+    text = measures.amount(bound, unit, WAYS[side], value)
     return [f"{known} bound of the {name}{scope(result)}: {text}; {gap_words(result)}."]
 
 

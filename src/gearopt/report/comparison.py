@@ -24,7 +24,7 @@ COLUMNS = (  # of a table: heading, unit, what it says
     ("within 0.1\u00a0%", "seeds", "Seeds whose feasible point is within 0.1 % of the reference"),
     ("within 1e-6", "seeds", "Seeds whose feasible point is within a millionth of it"),
     ("no point", "seeds", "Seeds without a feasible point"),
-    ("violation", "", "Largest violation of any limit by our own check, of all seeds"),
+    ("violation", "relative", "Largest violation of any limit by our own check, of all seeds"),
     ("spent", "evals", "Median of evaluations; what counts as one differs by method"),
     ("time", "s", "Median wall time, start-up left out"),
 )

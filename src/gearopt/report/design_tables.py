@@ -11,7 +11,7 @@ from gearopt.formulations.strength.laws import laws
 from gearopt.optimise.result import Result
 from gearopt.report.measures import DIGITS, Measures, error_of, rounded
 from gearopt.report.section import ABSENT, Cell, Section, Table, Tile, cell, listed, percent
-from gearopt.report.words import EXACT, LENGTH, MODULE, heading, is_module, objective, parted
+from gearopt.report.words import EXACT, MODULE, heading, is_module, objective, parted
 
 VOLUME = "gear_volume_mm3"
 SIZES = {it.key: (it.label, it.unit) for it in listed(StageDesign)}
@@ -215,8 +215,6 @@ def tables_of(name: str, group: Mapping[str, Any], measures: Measures) -> list[T
         elif key == "ratio" and "ratio_error_percent" in group:
             text = ratio_text(value, group["ratio_error_percent"])
             single.append([heading(key, measures), Cell(value, text)])
-        elif key == "total_length_mm" and "sum_of_centre_distances_mm" in group:
-            single.append([f"{LENGTH} [{measures.unit('mm')}]", cell(value, "mm", measures)])
         elif value is not None and value != []:
             single.append([heading(key, measures), *_cells(key, value, measures)])
     if not single:

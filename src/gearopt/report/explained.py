@@ -11,6 +11,7 @@ from gearopt.report.words import edit, grouped, objective, sentence, series_of
 
 ALIKE = 0.02  # of sensitivities from both sides shown as one; relative to those above 1
 FLAT = 0.5e-4  # sensitivity that would be shown as 0.0000
+STEEP = 1000.0  # sensitivity from which on 0.1 % changes the objective by more than its value
 NO_CHANGE = 1e-9  # relative: no change
 BOTH = ("number in the file", "value")
 TERMINAL_ONLY = ("sensitivity, %", "re-solved", "effect")
@@ -18,7 +19,7 @@ PAGE_ONLY = ("effect, %", "sensitivity, % per %")
 READ_ONLY = PAGE_ONLY[1:]
 CSV_ONLY = ("sensitivity", "sensitivity, re-solved below", "sensitivity, re-solved above")
 HEADS = (*BOTH, *TERMINAL_ONLY[:2], "relaxed by", TERMINAL_ONLY[2], *PAGE_ONLY, *CSV_ONLY)
-SLOPES = (*TERMINAL_ONLY[:2], PAGE_ONLY[1], *CSV_ONLY)  # left out where no number has one
+SLOPES = (*TERMINAL_ONLY[:2], PAGE_ONLY[1], *CSV_ONLY)  # left out where none is shown
 KINDS = {
     "least": "smallest change",
     "alone": "or this alone",
@@ -52,18 +53,19 @@ def of_influences(
     steps = [k for k, head in enumerate(HEADS) if _sloped(prices) or head not in SLOPES]
     rows = [[row[k] for k in steps] for row in rows]
     idle = [influence["key"] for influence in prices["influences"] if _is_idle(influence)]
+    bare = [i["key"] for i in prices["influences"] if _is_steep(i) and i["price"] is None]
     table = Table(
         "sensitivities",
         [HEADS[k] for k in steps],
         rows,
         page_only=PAGE_ONLY,
         terminal_only=TERMINAL_ONLY,
-        csv_only=(*CSV_ONLY, *idle),
+        csv_only=(*CSV_ONLY, *idle, *bare),
         read_only=READ_ONLY,
         wrap=0,
     )
     words = list(map(measures.words, influence_words(prices, result)))
-    tables = (table,) if len(idle) < len(rows) else ()
+    tables = (table,) if len(idle) + len(bare) < len(rows) else ()
     if idle:
         name = objective(result)[0]
         words.append(f"Small changes of these numbers do not change the {name}: {', '.join(idle)}.")
@@ -72,10 +74,9 @@ def of_influences(
 
 
 def _sloped(prices: Mapping[str, Any]) -> bool:
-    """Whether some number has a sensitivity, by multipliers or by solving again."""
-    return any(
-        s is not None for i in prices["influences"] for s in (i["sensitivity"], *i["resolved"])
-    )
+    """Whether a sensitivity is shown of some number, by multipliers or by solving again."""
+    shown = (i for i in prices["influences"] if not _is_steep(i))
+    return any(s is not None for i in shown for s in (i["sensitivity"], *i["resolved"]))
 
 
 def _is_idle(influence: Mapping[str, Any]) -> bool:
@@ -87,6 +88,12 @@ def _is_idle(influence: Mapping[str, Any]) -> bool:
     )
 
 
+def _is_steep(influence: Mapping[str, Any]) -> bool:
+    """Whether the objective is so near zero beside what a number does to it that % say nothing."""
+    slopes = (influence["sensitivity"], *influence["resolved"])
+    return any(s is not None and abs(s) > STEEP for s in slopes)
+
+
 def _row(influence: Mapping[str, Any]) -> list[Any]:
     """Values of HEADS of a number, in words and as plain numbers."""
     slope, both, effect = (
@@ -94,6 +101,8 @@ def _row(influence: Mapping[str, Any]) -> list[Any]:
         _sides(influence["resolved"]),
         price(influence["price"]),
     )
+    if _is_steep(influence):
+        slope = both = ""
     change = None if influence["price"] is None else 100.0 * clean(influence["price"])
     plain = [
         None if s is None else clean(s) for s in (influence["sensitivity"], *influence["resolved"])
@@ -112,22 +121,30 @@ def influence_words(prices: Mapping[str, Any], result: Result) -> list[str]:
     )
     if not prices["influences"]:
         return lines or ["No number of the file was examined."]
+    lines += _meaning(prices, name)
+    steep = [i["key"] for i in prices["influences"] if _is_steep(i)]
+    if steep:
+        lines.append(
+            f"No sensitivity is given of {series_of(steep)}: 0.1 % of it changes the {name} by "
+            "more than its whole value, so that a change in % says nothing."
+        )
+    if any("|" in _sides(i["resolved"]) for i in prices["influences"] if not _is_steep(i)):
+        lines.append(
+            "Of two values the first is for a smaller number, the second for a larger one."
+        )
+    return lines
+
+
+def _meaning(prices: Mapping[str, Any], name: str) -> list[str]:
+    """What sensitivities and effects are changes of."""
     if not _sloped(prices):
-        return [
-            *lines,
-            f"An effect is the change of the {name} as one number takes a step, solved again.",
-        ]
+        return [f"An effect is the change of the {name} as one number takes a step, solved again."]
     slope = (
         f"Sensitivities are changes of the {name} in % per 1 % of the number, if it changes little "
         "(d ln / d ln)"
     )
     known = any(i["sensitivity"] is not None for i in prices["influences"])
-    lines.append(f"{slope}{prices.get('basis', '') if known else ', by solving again'}.")
-    if any("|" in _sides(i["resolved"]) for i in prices["influences"]):
-        lines.append(
-            "Of two values the first is for a smaller number, the second for a larger one."
-        )
-    return lines
+    return [f"{slope}{prices.get('basis', '') if known else ', by solving again'}."]
 
 
 def clean(change: float) -> float:

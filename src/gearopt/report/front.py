@@ -22,6 +22,7 @@ VERDICTS = {
     "limit": ("stopped early", "yellow"),
 }
 PERCENT_DIGITS = (3, 5)  # significant ones of parts in per cent, where they tell designs apart
+NAMED = 3  # pieces of a front that are not known, by their places
 COARSE_ERROR = 0.1  # of the ranges of the objectives: an error at which a pick is told with care
 CHOICES = {  # of stages, beside modules and teeth: head of a column, keys
     "materials": ("pinion_material", "wheel_material"),
@@ -90,13 +91,39 @@ def decided(front: Front, measures: Measures = METRIC) -> list[str]:
             f"{steps} skipped: no design meets the limits on the objectives there "
             f"({proven} proven)."
         )
+    sentences += [_unknown(front, measures), *front.report.get("notes", [])]
     return [one for one in (*sentences, sentence(front.message)) if one]
 
 
+def _unknown(front: Front, measures: Measures) -> str:
+    """Pieces of a front that are not known, by their places; "" where there are none."""
+    if not (count := len(front.unknown)):
+        return ""
+    places = ", ".join(_piece(front, piece, measures) for piece in front.unknown[:NAMED])
+    more = f" and {count - NAMED} others" if count > NAMED else ""
+    parts = "1 part of the front is" if count == 1 else f"{count} parts of the front are"
+    name = words(front, front.names[1])
+    return f"{parts} not known, as steps there are not proven: {name} {places}{more}."
+
+
+def _piece(front: Front, piece: tuple[float | None, float | None], measures: Measures) -> str:
+    """Values of the second objective between which a front is not known."""
+    low, high = ("" if v is None else amount_of(front, 1, v, measures) for v in piece)
+    if low and high:
+        return f"{low} to {high}"
+    return f"from {low}" if low else f"up to {high}"
+
+
 def _span(front: Front, k: int, measures: Measures) -> str:
+    low, high = ends(front, k, measures)
+    return low if low == high else f"{low} to {high}"
+
+
+def ends(front: Front, k: int, measures: Measures) -> tuple[str, str]:
+    """Least and largest value of an objective, with their unit."""
     values = [p.values[k] for p in front.points]
     low, high = (amount_of(front, k, v, measures) for v in (min(values), max(values)))
-    return low if low == high else f"{low} to {high}"
+    return low, high
 
 
 def picked(front: Front, measures: Measures = METRIC) -> list[str]:
@@ -209,9 +236,10 @@ def value_cells(
 
 
 def amount_of(front: Front, k: int, value: float, measures: Measures) -> str:
-    """A value of an objective with its unit, for sentences."""
+    """A value of an objective with its unit, that of its least value, for sentences."""
     if (unit := unit_of(front.objectives[k])) != "percent":
-        return measures.amount(value, unit)
+        least = min((p.values[k] for p in front.points), key=abs, default=None)
+        return measures.amount(value, unit, beside=least or None)
     return f"{rounded(value, digits_of(front, k, measures))} %"
 
 

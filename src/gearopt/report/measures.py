@@ -152,14 +152,16 @@ class Measures:
         size = 0.0 if abs(value) < LENGTH_ROUNDING else self.of(value, suffix)
         return rounded(size, FEWEST["mm"], HUNDREDTHS + self.digits, way)
 
-    def amount(self, value: float, suffix: str, way: int = 0) -> str:
+    def amount(self, value: float, suffix: str, way: int = 0, beside: float | None = None) -> str:
         """A value with its unit for sentences and key figures.
 
         Volumes and areas have several units there; a length of fewer decimals is shown exactly.
-        way: as for `rounded`, for a bound that must stay true.
+        way: as for `rounded`, for a bound that must stay true. beside: the value whose unit it has,
+        where it is read with another, as the end of a range.
         """
+        size = abs(value if beside is None else beside)
         for end, sign, factor in self.scaled.get(suffix, ()):
-            if abs(value) < end:
+            if size < end:
                 return f"{rounded(value * factor, DIGITS, way=way)} {sign}"
         text = self.number(value, suffix, way)
         if "." in text and math.isclose(float(text.replace(",", "")), self.of(value, suffix)):

@@ -19,7 +19,7 @@ from gearopt.optimise.result import Result
 from gearopt.report import comparison as comparison_words
 from gearopt.report import front
 from gearopt.report.answer import WAYS, assumed, decided
-from gearopt.report.explained import of_influences
+from gearopt.report.explained import STEEP, of_influences
 from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, SYSTEMS, Measures, gap_percent
 from gearopt.report.pages import comparison as comparison_pages
@@ -31,6 +31,7 @@ from gearopt.report.section import Table
 from gearopt.report.words import (
     EXACT,
     MODULE,
+    NAMES,
     again,
     amount,
     edit,
@@ -58,7 +59,7 @@ def lines(result: Result) -> str:
     rows = [_head(result), decided(result), *pages_of_result(result).warns(result)]
     if bound is not None and (value is None or (result.gap or 0.0) > EXACT):
         gap = "" if result.gap is None else f", gap {gap_percent(result.gap)}"
-        rows.append(f"bound {METRIC.amount(bound, unit, WAYS[side])}{gap}")
+        rows.append(f"bound {METRIC.amount(bound, unit, WAYS[side], value)}{gap}")
     rows += _design(result)
     if "conflict" in result.proof and result.status == "infeasible":
         pass  # the first line names it
@@ -127,7 +128,7 @@ def _values(part: Mapping[str, Any], goal: Any) -> list[str]:
         if isinstance(value, list) and value and all(isinstance(v, int | float) for v in value):
             words.append(f"{name} {_list(value)} {METRIC.unit(unit)}".rstrip())
         elif isinstance(value, int | float) and name != goal:
-            words.append(f"{name} {amount(value, unit)}")
+            words.append(f"{NAMES.get(name, name)} {amount(value, unit)}")
     return [word.replace("_", " ") for word in words]
 
 
@@ -140,7 +141,11 @@ def explained_lines(explanation: Explanation) -> str:
     for remedy in explanation.remedies[:MAX_LISTED]:
         rows.append(f"possible with {' and '.join(map(_instead, remedy.changes))}")
     rows += _reached(explanation)
-    slopes = {i.key: i.sensitivity for i in explanation.influences if i.sensitivity is not None}
+    slopes = {
+        i.key: i.sensitivity
+        for i in explanation.influences
+        if i.sensitivity is not None and abs(i.sensitivity) <= STEEP
+    }
     if slopes:
         largest = sorted(slopes, key=lambda key: -abs(slopes[key]))
         words = [f"{key} {slopes[key]:+.4g}" for key in largest[:MAX_SLOPES]]

@@ -28,9 +28,7 @@ SIDES = ("left", "right", "front", "bottom", "top")  # keys of where a box ends
 RULED = ("process one", "process two")  # parts that are designs by rules
 EXACT = 1e-6  # a gap below it is called optimal, one above it is named
 
-LENGTH = "total length in one line"  # of a drive, in whichever way it is drawn
 GOALS = {  # objectives whose names alone do not say of what they are, by kind
-    "drive.total_length": LENGTH,
     "dynamics.peak_to_peak": "peak-to-peak deformation",
     "dynamics.rms": "RMS of the deformation about its mean",
     "packing.area": "plan area",
@@ -38,10 +36,11 @@ GOALS = {  # objectives whose names alone do not say of what they are, by kind
     "pair.peak_to_peak": "peak-to-peak transmission error",
     "strain_wave.pressure": "contact pressure of conjugate pairs",
 }
-NAMES = {  # of numbers of designs, where their keys are not what is said
+NAMES = {  # of numbers of designs and of objectives, where their keys are not what is said
     "sector": "last wheel, share of a disc",
     "equal_pressure": "contact pressure of conjugate pairs",
     "shared_pressure": "contact pressure, load shared",
+    "total_length": "total length in one line",  # of a drive, in whichever way it is drawn
 }
 LIMITS = {  # the same of limits
     "multiplier": "Floquet multiplier",
@@ -143,9 +142,9 @@ def parted(key: str, measures: Measures = METRIC) -> tuple[str, str]:
     return (key.removesuffix(f"_{unit}"), unit) if unit else (key, "")
 
 
-def amount(value: Any, unit: str, measures: Measures = METRIC) -> str:
-    """A number of a result with its unit, for reading."""
-    return measures.amount(value, unit)
+def amount(value: Any, unit: str, measures: Measures = METRIC, beside: float | None = None) -> str:
+    """A number of a result with its unit, for reading; beside: as of `Measures.amount`."""
+    return measures.amount(value, unit, beside=beside)
 
 
 def module_words(module: float, measures: Measures) -> str:
@@ -247,7 +246,8 @@ def objective(result: Result) -> tuple[str, str]:
 
 def goal_words(name: str, scene: str | None) -> str:
     """The name of an objective of a kind of file (None: of one's own problem) in words."""
-    return GOALS.get(f"{scene}.{name}", name.replace("_", " "))
+    known = GOALS.get(f"{scene}.{name}") or (NAMES.get(name) if scene else None)
+    return known or name.replace("_", " ")
 
 
 def goal(result: Result) -> tuple[str, str, float | None, float | None, str]:

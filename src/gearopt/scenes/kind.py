@@ -66,6 +66,10 @@ def _no_front(scene: BaseModel, names: Sequence[str], ask: Ask) -> Tradeoff:
     raise SolveError("this kind of file has no objectives to weigh against each other")
 
 
+def _no_notes(scene: BaseModel, names: Sequence[str]) -> list[str]:
+    return []
+
+
 def _no_advice(scene: BaseModel, unknown: Sequence[str]) -> str:
     return ""
 
@@ -77,12 +81,14 @@ class Trades(Generic[S]):
     objectives: name and unit of all that a front of a file may minimise. traded: the problem of
     these objectives for the method asked, None for the one that proves most; what must be solved
     before, within the budget asked. advice: what to write for
-    names that are no objectives of this file; "" where nothing would make them so.
+    names that are no objectives of this file; "" where nothing would make them so. notes: sentences
+    on how the objectives named are computed.
     """
 
     objectives: Callable[[S], Mapping[str, str]] = _no_objectives
     traded: Callable[[S, Sequence[str], Ask], Tradeoff] = _no_front
     advice: Callable[[S, Sequence[str]], str] = _no_advice
+    notes: Callable[[S, Sequence[str]], list[str]] = _no_notes
 
 
 NO_TRADES: Trades[Any] = Trades()

@@ -208,6 +208,7 @@ def test_exact_proves_what_no_grid_point_contradicts(name):
     result = solve(problem(box))
     assert result.status == "infeasible"
     assert result.proof["method"] == "exhausted"
+    assert result.proof["sentence"].endswith("interval arithmetic; none is left to examine.")
     assert best_on_grid(box) == math.inf
 
 

@@ -193,9 +193,9 @@ def test_why_a_search_ended_is_told():
     progress = Progress(1, Clock())
     assert _why(progress, 1) == "the search stopped before a train was found: allow more time"
     progress.found = [(1.0, teeth_of(17))]
-    assert _why(progress, 1).endswith("before it was exhausted; no lower bound is known yet")
+    assert _why(progress, 1).endswith("before it was complete; no lower bound is known yet")
     progress.lower = 0.5
-    assert _why(progress, 1) == "the search stopped before it was exhausted"
+    assert _why(progress, 1) == "the search stopped before it was complete"
     assert _why(progress, 5).endswith("so only the best train so far is listed, not 5")
     progress.enough = True
     assert _why(progress, 1) == "the requested gap is reached"

@@ -8,6 +8,7 @@ import pytest
 from page_reader import drawings, extents, marks, numbers
 
 import gearopt
+from gearopt.optimise.explaining.explanation import Explanation, Influence
 from gearopt.report.design_tables import ratio_text
 from gearopt.report.pages.result import page
 
@@ -102,3 +103,24 @@ def test_the_asked_ratio_stands_beside_the_ratios_in_reach(ratio, teeth, wider):
 
 def test_a_ratio_in_reach_has_no_line():
     assert len(shown(result([16, 19], [43, 49]))) == 1
+
+
+def influence(key, slope=None, price=None):
+    step = "+7" if price else ""
+    return Influence(key, "60", slope, (slope, slope), step, price)
+
+
+@pytest.mark.parametrize("others", [(), (influence("train.play", 0.25),)])
+def test_no_sensitivity_in_per_cent_is_given_of_an_objective_near_zero(others):
+    """The squared error 2.7e-12 of a ratio of 6.931 changes by 175,583 % per 1 % of the ratio."""
+    several = influence("train.ratio", 175583.6), influence("train.teeth[2]", price=-0.8), *others
+    known = Explanation(result((16, 19), (43, 49)), influences=several)
+    html = page(answered(known), "")
+    assert "No sensitivity is given of train.ratio: 0.1 % of it changes the squared error" in html
+    assert ("Sensitivities are changes of the squared error" in html) == bool(others)
+    assert "175583" not in html.replace(",", "") and "175583" not in repr(known).replace(",", "")
+    assert "train.teeth[2]" in html and ("train.play +0.25" in repr(known)) == bool(others)
+
+
+def answered(known):
+    return replace(known.result, report={**known.result.report, "prices": known.prices})

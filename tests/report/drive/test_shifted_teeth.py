@@ -12,8 +12,10 @@ from gearopt.formulations.drive.toothing import Toothing
 from gearopt.optimise.typed import typed, untyped
 from gearopt.physics.gears import ISO_53_A, Rack
 from gearopt.physics.geometry.tooth import circumferential_backlash
+from gearopt.report.drawing.bodies import meaning
 from gearopt.report.drawing.solid import BACKLASH, outline, twist
 from gearopt.report.kinds.drive.layout_solid import _toothed
+from gearopt.report.measures import METRIC
 
 HOB = Rack(math.radians(25.0), 1.0, 1.25, 0.3), Rack(math.radians(25.0), 1.0, 1.3, 0.25)
 BOTH = ISO_53_A, ISO_53_A
@@ -110,3 +112,16 @@ def test_drawn_teeth_have_the_diameters_and_tools_of_the_design():
             root = float(gear.root_diameter + deeper) / 2
             assert radius.min() == pytest.approx(root, rel=1e-9)
             assert solid.gear.rack == gear.rack
+
+
+def test_teeth_and_shift_of_a_drawn_gear_are_told_in_words():
+    """z and x are axes of the box."""
+    gear = GearDesign(
+        **{"name": "wheel 1", "stage": 1, "member": "wheel", "shaft": 2, "teeth": 135},
+        **{"normal_module_mm": 2.0, "reference_diameter_mm": 276.03, "tip_diameter_mm": 284.92},
+        **{"root_diameter_mm": 270.0, "helix_angle_deg": 12.0},
+        **{"from_mm": 0.0, "to_mm": 36.25, "profile_shift": 1.36},
+    )
+    assert meaning(gear, METRIC).startswith(
+        "wheel 1: 135 teeth, m_n 2 mm, profile shift coefficient 1.36, d 276.03 mm"
+    )

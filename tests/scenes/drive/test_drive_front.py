@@ -1,10 +1,11 @@
-"""What `gearopt pareto` says of drives that have no such front."""
+"""What `gearopt pareto` says of drives: why one has no such front, how losses are computed."""
 
 from pathlib import Path
 
 import pytest
 
 import gearopt
+from gearopt.report.front import decided
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
 
@@ -29,3 +30,24 @@ def test_an_impossible_drive_has_an_impossible_front_and_the_command_that_explai
     path = PROBLEMS / "elevator_small_wheels.toml"
     found = here("pareto", path, "--objectives", "gear_volume,mesh_loss")
     assert found.returncode == 3 and f"gearopt explain {path}" in found.stdout.replace("\n", "")
+
+
+FORMULA = "0.06 π (1/z1 + 1/z2) of the input power a stage"
+
+
+@pytest.mark.parametrize("minimised", ["mesh_loss", "gear_volume"])
+def test_the_formula_of_a_mesh_loss_is_told_beside_its_optimum(minimised):
+    known = gearopt.solve(PROBLEMS / "elevator.toml", {"objective.minimise": minimised})
+    told = [note for note in known.report["notes"] if FORMULA in note]
+    assert len(told) == (minimised == "mesh_loss") == (FORMULA in known.to_html())
+    assert all("not checked against any source" in note for note in told)
+
+
+@pytest.mark.parametrize("second", ["mesh_loss", "total_length"])
+def test_the_formula_of_a_mesh_loss_is_told_beside_a_front_of_it(second):
+    """The objectives of the front count, not the one that the file minimises."""
+    changes = {"objective.minimise": "mesh_loss"}
+    front = gearopt.pareto(PROBLEMS / "elevator.toml", changes, objectives=["gear_volume", second])
+    told = [line for line in decided(front) if FORMULA in line]
+    assert len(told) == (second == "mesh_loss") == (FORMULA in front.to_html())
+    assert all("not checked against any source" in line for line in told)

@@ -211,6 +211,7 @@ def test_a_method_that_only_sizes_says_so():
 def test_slopes_of_the_box():
     """Length 209.9 = 169.9 + 4 axial gaps; the gears do not touch the walls' slope otherwise."""
     found = gearopt.explain(scene(TABLE4))
+    assert "hold for small changes only, while the same bodies touch" in found.message
     slopes = {i.key: i.resolved for i in found.influences}
     assert slopes["layout.axial_clearance"] == pytest.approx((40 / 209.9,) * 2, abs=1e-4)
     wall = 10 * (2 / 411.98 + 2 / 873.29)

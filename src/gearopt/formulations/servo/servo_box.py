@@ -17,6 +17,7 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.formulations.servo.servo_design import BoxDesign
 from gearopt.formulations.servo.split.bodies import Pairs
+from gearopt.optimise.best_first import ending
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.problem import Problem
@@ -167,7 +168,7 @@ def _searched(box: ServoBox, budget: Budget, watch: Watch | None) -> Outcome:
         "nodes": looked,
         "pruning_margin": rel,
         "sentence": f"Proof: {looked:,} ranges of link angles, each bounded by interval "
-        f"arithmetic ({method}).",
+        f"arithmetic; {ending(done)}.",
     }
     if done and not fits:
         text = "in no layout does the motor clear the hub of the output shaft"

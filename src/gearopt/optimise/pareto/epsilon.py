@@ -486,14 +486,13 @@ def _values(run: Run, result: Result, x: Array) -> Array:
     return np.array([values[rows.index(name)] for name in run.names])
 
 
-NAMED = 3  # pieces left open, by their places
 STAIRS = (
-    "Proof: exhausted searches, one per design, each for a smaller {name} than the design before; "
-    "the last search found no design."
+    "Proof: complete searches, one per design, each for a smaller value of the second objective "
+    "than that of the design before; the last search found no design."
 )
 SHUT = (
-    "Proof: searches under limits on the {name} leave no design that is better than one of these, "
-    "in any objective, by more than {close:g} of the ranges of the objectives."
+    "Proof: searches under limits on the second objective leave no design that is better than one "
+    f"of these, in any objective, by more than {CLOSE:g} of the ranges of the objectives."
 )
 
 
@@ -521,7 +520,8 @@ def concluded(run: Run, complete: bool = False) -> Found:
         if none is None
         else none.proof,
         evaluations=run.clock.evaluations,
-        message=_left_open(run, left) if none is None else none.message or NO_DESIGN,
+        unknown=_left_open(run, left) if none is None else (),
+        message=run.refused if none is None else none.message or NO_DESIGN,
     )
 
 
@@ -544,7 +544,7 @@ def _strips(run: Run, points: tuple[Point, ...]) -> list[Strip]:
 def _sentence(run: Run, points: tuple[Point, ...], complete: bool, left: list[Strip]) -> str:
     """Sentence on the proof of the points."""
     if complete and points:
-        return (SHUT if left else STAIRS).format(name=run.names[1], close=CLOSE)
+        return SHUT if left else STAIRS
     count = sum(p.proven for p in points)
     if not count:
         starts = len(run.sample or ())
@@ -556,7 +556,7 @@ def _sentence(run: Run, points: tuple[Point, ...], complete: bool, left: list[St
     return f"{which} {verb} proven: no design dominates it {by}."
 
 
-def _left_open(run: Run, left: list[Strip]) -> str:
+def _left_open(run: Run, left: list[Strip]) -> tuple[tuple[float, float], ...]:
     """Pieces of the front that are not known: limits of the second objective between them."""
     known = any(math.isfinite(strip.worse) for strip in left)
     pieces = list[tuple[float, float]]()
@@ -567,16 +567,4 @@ def _left_open(run: Run, left: list[Strip]) -> str:
     if not known:
         every = [gap for line in run.lines for gap in line.open if gap.refused]
         pieces = [(gap.floor, gap.top) for gap in every]
-    if not pieces:
-        return run.refused
-    name = run.names[1].replace("_", " ")
-    places = ", ".join(
-        f"{low:.6g} to {high:.6g}" if low > -math.inf else f"up to {high:.6g}"
-        for low, high in pieces[:NAMED]
-    )
-    more = f" and {len(pieces) - NAMED} others" if len(pieces) > NAMED else ""
-    what = "part of the front is" if len(pieces) == 1 else "parts of the front are"
-    why = f". {run.refused}" if run.refused else ""
-    return (
-        f"{len(pieces)} {what} not known, as steps there are not proven: {name} {places}{more}{why}"
-    )
+    return tuple(pieces)

@@ -51,7 +51,9 @@ class Found:
     epsilon: how much worse than any design one of the points is at most, in the objective in which
     it is more so, in the same ranges; None: not proven.
     beaten (N, k): values of feasible points that others beat. infeasible: there is no point at all,
-    proven. steps: how the front grew. proof["sentence"] says it for a reader.
+    proven. unknown: values of the second objective between which the front is not known, as steps
+    there are not proven; infinite: no end. steps: how the front grew. proof["sentence"] says it for
+    a reader.
     """
 
     points: tuple[Point, ...]
@@ -61,6 +63,7 @@ class Found:
     beaten: Array = field(default_factory=lambda: np.empty((0, 0)))
     skipped: tuple[Skipped, ...] = ()
     infeasible: bool = False
+    unknown: tuple[tuple[float, float], ...] = ()
     finished: bool = True
     steps: tuple[Step, ...] = ()
     proof: Mapping[str, Any] = field(default_factory=dict)

@@ -55,7 +55,8 @@ class Front:
     known to `epsilon`), not proven, infeasible (proven: no design at all), limit (stopped early).
     epsilon: additive epsilon indicator, proven: of every design, one of the points is at most this
     part of the ranges of the objectives worse in each of them. error, of a convex problem: largest
-    distance of the true front to the line through its points, in the same ranges. beaten: values
+    distance of the true front to the line through its points, in the same ranges. unknown: values
+    of the second objective between which the front is not known, None: no end. beaten: values
     of dominated feasible designs. corner: the point from which the hypervolume is measured. picks:
     the designs that rules take.
     """
@@ -70,6 +71,7 @@ class Front:
     picks: tuple[Pick, ...] = ()
     beaten: tuple[tuple[float, ...], ...] = ()
     impossible: tuple[Impossible, ...] = ()
+    unknown: tuple[tuple[float | None, float | None], ...] = ()
     corner: tuple[float, ...] = ()
     hypervolume: float | None = None
     growth: tuple[Growth, ...] = ()

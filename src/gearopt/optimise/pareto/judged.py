@@ -53,6 +53,7 @@ def judged(
         picks=tuple(picks(values, [o.name for o in objectives], weights)),
         beaten=tuple(tuple(map(float, row)) for row in made.beaten),
         impossible=tuple(Impossible(dict(s.limits), s.proven) for s in made.skipped),
+        unknown=tuple((_finite(low), _finite(high)) for low, high in made.unknown),
         corner=tuple(map(float, corner)),
         hypervolume=whole,
         growth=_growth(made, corner),
@@ -62,6 +63,10 @@ def judged(
         seconds=clock.seconds,
         **names,
     )
+
+
+def _finite(end: float) -> float | None:
+    return float(end) if np.isfinite(end) else None
 
 
 def status(made: Found) -> str:
@@ -127,6 +132,7 @@ def united(fronts: Sequence[Front], weights: Mapping[str, float] | None) -> Fron
         picks=tuple(picks(values[kept], fronts[0].names, weights)),
         beaten=sum((front.beaten for front in fronts), lost),
         impossible=sum((front.impossible for front in fronts), ()),
+        unknown=(),
         corner=tuple(map(float, corner)),
         hypervolume=whole,
         growth=() if whole is None else (Growth(seconds, spent, whole),),

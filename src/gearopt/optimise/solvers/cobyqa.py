@@ -86,8 +86,10 @@ def run(
         pass
     finished = not clock.stopped
     if not following.excess <= FEASIBLE:
-        least = 100.0 * following.excess
-        words = f"no point meets all limits; the least violation of a limit is {least:.3g} %"
+        words = (
+            "no point meets all limits; the smallest relative violation of the limits reached is "
+            f"{100.0 * following.excess:.3g} %"
+        )
         return Outcome(None, finished, evaluations=clock.evaluations, message=words)
     best = space.points(following.best[None])[0]
     return Outcome(best, finished, evaluations=clock.evaluations)

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.errors import SolveError
-from gearopt.optimise import tape
+from gearopt.optimise import scale, tape
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.epigraphs import epigraph, raised
 from gearopt.optimise.form import Form, form, values, violation
@@ -123,13 +123,16 @@ def run(
     if not clock.stopped and violation(problem, shape, point.y) > STUCK:
         point, least = _least_violation(problem, shape, point, low, high, following)
         if least > STUCK and not clock.stopped and following.best is None:
+            x = shape.to_x(point.y)
+            reached, _ = scale.violation(problem, x, problem.batch(x[None]))
             return Outcome(
-                shape.to_x(point.y),
+                x,
                 lam_g=point.lam_g,
                 lam_h=point.lam_h,
                 infeasible=True,
                 evaluations=clock.evaluations,
-                message=f"Ipopt: {point.status}; the smallest violation reached is {least:.3g}",
+                message=f"Ipopt: {point.status}; the smallest relative violation of the limits "
+                f"reached is {100.0 * reached:.3g} %",
             )
         point = _ipopt(problem, shape, point.y, low, high, following)
     for _ in range(AGAIN):

@@ -228,5 +228,5 @@ def _nearest(problem: Problem, program: _Program, runs: int, words: str) -> Outc
         lam_h=s[program.count :],
         infeasible=True,
         evaluations=runs + 1,
-        message=f"the smallest violation reached is {worst:.3g}",
+        message=f"the smallest relative violation of the limits reached is {100.0 * worst:.3g} %",
     )

@@ -118,9 +118,12 @@ class Disc:
 def meaning(gear: GearDesign, measures: Measures) -> str:
     """Describe a gear in a line, as drawings do where the pointer rests."""
     unit = measures.unit("mm")
-    shift = f"x {gear.profile_shift:.4g}, " if gear.profile_shift else ""
+    module = module_words(gear.normal_module_mm, measures)
+    shift = ""
+    if gear.profile_shift:
+        shift = f"profile shift coefficient {gear.profile_shift:.4g}, "
     return (
-        f"{gear.name}: z {gear.teeth:.6g}, {module_words(gear.normal_module_mm, measures)}, {shift}"
+        f"{gear.name}: {gear.teeth:.6g} teeth, {module}, {shift}"
         f"d {measures.length(gear.reference_diameter_mm)} {unit}, "
         f"d_a {measures.length(gear.tip_diameter_mm)} {unit}, "
         f"b {measures.length(gear.to_mm - gear.from_mm)} {unit}"

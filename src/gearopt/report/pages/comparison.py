@@ -43,7 +43,7 @@ def page(comparison: Comparison, html: str = "comparison.html") -> str:
 
 HEADS = (
     *("model", "method", "held equal", "seed", "status", "objective", "bound", "unit"),
-    *("gap, %", "violation", "evaluations", "seconds"),
+    *("gap, %", "relative violation", "evaluations", "seconds"),
 )
 
 

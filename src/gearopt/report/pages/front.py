@@ -12,7 +12,7 @@ from gearopt.report import front as front_words
 from gearopt.report.answer import assumptions
 from gearopt.report.drawing import layout_views, train_views
 from gearopt.report.drawing.sheet import Drawing
-from gearopt.report.front import rules, stages_of, unit_of, words
+from gearopt.report.front import rules, stages_of, words
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.pages import front_designs, front_plots
 from gearopt.report.pages.frame import render
@@ -95,16 +95,14 @@ def _summary(front: Front, measures: Measures) -> Section:
     count = len(front.points)
     tiles = [Tile("designs", f"{count:,}", front_words.verdict(front)[0])] if count else []
     for k, objective in enumerate(front.objectives if count else ()):
-        values = [p.values[k] for p in front.points]
-        ends = min(values), max(values)
-        low, high = (front_words.amount_of(front, k, value, measures) for value in ends)
+        low, high = front_words.ends(front, k, measures)
         tiles.append(Tile(words(front, objective.name), low, f"to {high}" if high != low else ""))
     lines = front_words.decided(front, measures)[bool(count) :]  # the tiles say the first
     if front.status == "infeasible" and front.file:
         lines.append(f"Which limits are in conflict: gearopt explain {front.file}.")
     limited = [
-        f"{words(front, o.name)} at most {measures.amount(o.most, unit_of(o))}"
-        for o in front.objectives
+        f"{words(front, o.name)} at most {front_words.amount_of(front, k, o.most, measures)}"
+        for k, o in enumerate(front.objectives)
         if o.most is not None
     ]
     if limited:

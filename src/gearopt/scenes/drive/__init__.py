@@ -14,7 +14,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.result import Result
 from gearopt.scenes.drive import processes, sizing
-from gearopt.scenes.drive.notes import assumptions
+from gearopt.scenes.drive.notes import assumptions, of_objectives
 from gearopt.scenes.drive.scene import PROCESSES, Scene
 from gearopt.scenes.drive.sizing import SMOOTH, drive_of, takes_real_values, whole_teeth
 from gearopt.scenes.drive.trades import advice, objectives, to_choose, traded
@@ -157,7 +157,7 @@ KIND = Kind(
     remedies=remedies,
     influences=influences,
     assumptions=assumptions,
-    trades=Trades(objectives, traded, advice),
+    trades=Trades(objectives, traded, advice, of_objectives),
     rate=rate,
     idle=idle,
 )

@@ -1,7 +1,9 @@
 """Assumptions of a drive, and notes for the reader of its result."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
+from gearopt.formulations.drive.shares import FRICTION
 from gearopt.formulations.drive.train import STEEL_DENSITY
 from gearopt.optimise.result import Result
 from gearopt.physics.gears import ISO_53_A, MEMBERS
@@ -31,9 +33,21 @@ CLEARANCES = {
 }
 
 
+MESH_LOSS = (
+    f"The mesh loss is {FRICTION:g} π (1/z1 + 1/z2) of the input power a stage: a coefficient of "
+    f"friction of {FRICTION:g}, and no influence of the contact ratio. Formula and coefficient are "
+    "not checked against any source; they compare designs."
+)
+
+
+def of_objectives(scene: Scene, names: Sequence[str]) -> list[str]:
+    """How objectives are computed whose names alone do not say it."""
+    return [MESH_LOSS] if "mesh_loss" in names else []
+
+
 def notes(scene: Scene, exact: bool) -> list[str]:
     """Notes for the reader of a result beside the numbers."""
-    sentences = []
+    sentences = of_objectives(scene, [scene.objective.minimise])
     limits, stages = scene.limits, scene.stage
     if limits.preset is not None:
         sentences.append(f"The load limits are those of preset {limits.preset}, not of a standard.")

@@ -20,6 +20,7 @@ from gearopt.units import Quantity
 POSED = 1e-5  # of ln number, to either side, at most: where a problem is posed again
 STEP = 1e-4  # relative, of the re-solves: small enough for most choices to stay as they are
 NEAREST = 1e-10  # relative change of a number below which it is not asked whether they do
+SMALL_CHANGES = "and hold for small changes only, while the same bodies touch"
 HALVINGS = 12  # of the logarithm of the change up to which they do
 OBJECTIVE_TIE = 1e-9  # relative: objectives that are equal
 SOLVED = 1e-7  # relative: the same of what was solved to GAP

@@ -37,7 +37,7 @@ from gearopt.optimise.result import Budget, Result
 from gearopt.optimise.solve import solve_within
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.explaining.explanations import at_point, eases, of_design
-from gearopt.scenes.explaining.influences import Basis
+from gearopt.scenes.explaining.influences import SMALL_CHANGES, Basis
 from gearopt.scenes.explaining.numbers import rounded
 from gearopt.scenes.kind import Kind, examples_in
 from gearopt.scenes.plan import Step, carried_out
@@ -55,10 +55,8 @@ PLACE = pair(quantity("length", "10 mm", zero=True, signed=True))
 NONE = units.parse("0 mm", "length")
 SMOOTH = ("ipopt", "multistart")  # methods that need derivatives
 BOUND_SECONDS = 0.1  # seconds for a bound after a run that has spent all of its time
-UNTRIED = (
-    "sensitivities are those of this arrangement; whole numbers are not tried, because the packing "
-    "is not proven to be the best"
-)
+FOLLOWED = f"sensitivities are those of this arrangement, {SMALL_CHANGES}"
+UNTRIED = "whole numbers are not tried, because the packing is not proven to be the best"
 UNPROVEN = "Best found, not proven: a smaller packing may exist, but none below the bound."
 
 
@@ -362,7 +360,7 @@ def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
     if clock.over:  # a problem of many cylinders takes longer to pose than most budgets
         return of_design(scene, result, clock, Basis(result.value, followed), packed, "", {})
     basis = at_point(result.value, followed, posed, scene, x)
-    note = "" if result.status in CERTAIN else UNTRIED
+    note = FOLLOWED if result.status in CERTAIN else f"{FOLLOWED}; {UNTRIED}"
     return of_design(scene, result, clock, basis, packed, note, eases(posed(scene)))
 
 

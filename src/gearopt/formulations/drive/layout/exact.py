@@ -15,6 +15,7 @@ import numpy as np
 from gearopt.formulations.drive.layout import annealing
 from gearopt.formulations.drive.layout.annealing import ANNEAL, anneal, point
 from gearopt.formulations.drive.layout.chain import Chain
+from gearopt.optimise.best_first import ending
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import UNREADY, compiled, kernel, warm
 from gearopt.optimise.result import Budget, Outcome, Watch
@@ -98,7 +99,7 @@ def _outcome(search: Search, proven: float | None) -> Outcome:
         "nodes": search.nodes,
         "pruning_margin": proven,
         "sentence": f"Proof: {search.nodes:,} ranges of link angles, each bounded by interval "
-        f"arithmetic ({method}).",
+        f"arithmetic; {ending(not clock.stopped)}.",
     }
     if search.empty:
         return Outcome(None, infeasible=True, proof=proof, evaluations=clock.evaluations)

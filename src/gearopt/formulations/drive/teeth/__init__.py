@@ -275,7 +275,7 @@ def _front(train: Train, problem: Problem, budget: Budget, watch: Watch | None) 
         f"Proof: these are all Pareto-optimal designs; {opened}, all others excluded by "
         "lower bounds of every objective and of weighted sums."
         if finished
-        else f"Stopped before the search was exhausted: {opened}."
+        else f"Stopped before the search was complete: {opened}."
     )
     method = "exhausted" if finished else "branch and bound, stopped early"
     points = [point(train, *made) for made in chosen]
@@ -286,7 +286,7 @@ def _front(train: Train, problem: Problem, budget: Budget, watch: Watch | None) 
         proof={"method": method, "sentence": words if points or not finished else NO_TRAIN},
         others=tuple(points[1:]),
         evaluations=run.clock.evaluations,
-        message="" if finished else "stopped before the search was exhausted: allow more time",
+        message="" if finished else "stopped before the search was complete: allow more time",
     )
 
 
@@ -346,11 +346,11 @@ def _distances(stage: Stage) -> str:
 
 
 def _why(progress: Progress, count: int) -> str:
-    """Reason why a search ended before it was exhausted, and its consequence for the list."""
+    """Reason why a search ended before it was complete, and its consequence for the list."""
     if not progress.found:
         return "the search stopped before a train was found: allow more time"
     unknown = "" if math.isfinite(progress.bound) else "; no lower bound is known yet"
-    why = f"the search stopped before it was exhausted{unknown}"
+    why = f"the search stopped before it was complete{unknown}"
     why = "the requested gap is reached" if progress.enough else why
     return why if count == 1 else f"{why}, so only the best train so far is listed, not {count}"
 

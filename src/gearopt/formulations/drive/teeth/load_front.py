@@ -23,7 +23,7 @@ from gearopt.optimise.terms import Terms
 
 UTILISATION = "utilisation"
 LAST_IS_LEAST = (
-    "Proof: exhausted searches at smaller and smaller utilisations; the last one found no design."
+    "Proof: complete searches at smaller and smaller utilisations; the last one found no design."
 )
 OBJECTIVE_TOO_LARGE = (
     "the best train of this utilisation is beyond the largest value of its objective"

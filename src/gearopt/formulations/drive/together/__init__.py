@@ -39,6 +39,7 @@ from gearopt.formulations.drive.together.search import (
 from gearopt.formulations.drive.together.tables import KERNELS, Make, frame, numbers
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.laws.k_factor import K_FACTOR
+from gearopt.optimise.best_first import ending
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import UNREADY, compiled, kernel
 from gearopt.optimise.problem import Problem
@@ -148,7 +149,7 @@ def _outcome(search: Search, known: tuple[Any, ...], possible: bool) -> Outcome:
         "nodes_with_a_layout": {f"{stages - k}": n for k, n in sorted(search.left.items())},
         "trains_laid_out": search.trains,
         "sentence": f"Proof: {sum(search.made.values()):,} trains and parts of trains bounded, "
-        f"{search.trains:,} laid out in full ({method}).",
+        f"{search.trains:,} laid out in full; {ending(not stopped)}.",
     }
     if search.best is None:
         return Outcome(

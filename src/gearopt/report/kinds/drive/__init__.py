@@ -373,9 +373,10 @@ def _instead(part: Result, measures: Measures) -> list[str]:
     name, unit = objective(part)
     if part.value is None or part.bound is None:
         return []
+    least = amount(part.bound, unit, measures, part.value)
     return [
         f"With real-valued teeth and modules a {name} of {amount(part.value, unit, measures)} is "
-        f"feasible; with whole teeth no design is below {amount(part.bound, unit, measures)}."
+        f"feasible; with whole teeth no design is below {least}."
     ]
 
 

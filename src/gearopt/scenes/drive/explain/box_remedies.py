@@ -49,7 +49,7 @@ from gearopt.scenes.explaining.engine import (
     narrow,
     smallest,
 )
-from gearopt.scenes.explaining.influences import Basis, influences, smooth
+from gearopt.scenes.explaining.influences import SMALL_CHANGES, Basis, influences, smooth
 from gearopt.scenes.explaining.moves import SET, Move
 from gearopt.scenes.explaining.numbers import numbers
 from gearopt.scenes.explaining.possible import Verdict
@@ -328,6 +328,6 @@ def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:
         result,
         binding=tuple(n for n, v in result.limits.items() if v > 1.0 - SIZE_TIE),
         influences=sensitivities,
-        message=f"sensitivities are those of the box around these gears{late}",
+        message=f"sensitivities are those of the box around these gears, {SMALL_CHANGES}{late}",
         seconds=result.seconds + clock.seconds,
     )

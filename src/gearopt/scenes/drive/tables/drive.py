@@ -369,7 +369,8 @@ class Objective(Table):
         "gear_volume",
         description="gear_volume (solid reference cylinders), mass (or weight), cost (mass times "
         "the prices of [[material]]), "
-        "sum_of_centre_distances, or total_length (shafts in one line, over reference circles)",
+        "sum_of_centre_distances, total_length (shafts in one line, over reference circles), or "
+        "mesh_loss (0.06 π (1/z1 + 1/z2) of the input power a stage, not checked against a source)",
     )
     density: Annotated[Quantity | None, quantity("density", "7.85 kg/dm^3")] = Field(
         None, description="Density of the gears; mass and cost need it, or that of every material"
