@@ -53,7 +53,7 @@ Start = tuple[Slabs, tuple[GearPair, ...], tuple[float, ...]]
 def box_first(scene: Scene) -> bool:
     """Whether gears and box are sought at once before the gears are sized: they take less time."""
     asked = scene.layout is not None and scene.layout.together
-    return asked and any(map(scene.shifted, scene.stage))
+    return asked and any(map(scene.shifted, scene.stage_tables))
 
 
 def steps(scene: Scene) -> tuple[Step[Scene], ...]:

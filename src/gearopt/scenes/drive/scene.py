@@ -304,7 +304,7 @@ class Scene(Table):
         for k in shifted:
             check_follows(k, tables[k])
         lacks = "" if self.given else self._lacks("by sums of their profile shifts")
-        check_shift(self, shifted, lacks, asked)
+        check_shift(self, shifted, lacks, "" if follows else asked)
         for k, table in enumerate(self.stage if self.to_size else ()):  # else a rating refuses it
             if k not in shifted:
                 check_mesh(self._stage(table), k, table, self.gears)

@@ -1,4 +1,4 @@
-"""Moves of what stages choose from: centre distances, their sum, helix angles, profile shifts.
+"""Moves of what stages choose from: centre distances, their sum, helix angles, shifts, their sum.
 
 A list gets one entry more, a range with a step goes on by its steps, a series of preferred numbers
 ends later. Of many values that may be added it is asked first whether all of them together make a
@@ -17,7 +17,7 @@ from gearopt.scenes.drive.distances import MAX_ROWS
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import Group
 from gearopt.scenes.explaining.moves import Move
-from gearopt.scenes.explaining.numbers import Path, at
+from gearopt.scenes.explaining.numbers import Path, allowed, at, put
 from gearopt.scenes.reading.choices import Choice, Preferred, Steps, values_of
 from gearopt.units import Quantity, parse
 
@@ -25,6 +25,7 @@ FARTHEST = Fraction(5, 2)  # times the nearest distance of a file; of its sum, t
 MOST_VALUES, MOST_SUMS = 12, 60  # that are tried one way
 HELICES = tuple(parse(f"{n} deg", "angle") for n in range(0, 36, 5))
 SHIFTS = tuple(Fraction(n, 10) for n in range(-6, 13))
+SHIFT_SUMS = tuple(Fraction(n, 10) for n in range(-5, 16))
 TEN_DEGREES = math.radians(10.0)  # counts as the factor 2, where a helix angle is or becomes zero
 USUAL_SERIES = "R20"  # of distances that belong to none
 
@@ -41,7 +42,9 @@ def choice_groups(scene: Scene, way: int) -> Iterator[Group]:
     for path, usual in _of_teeth(scene):
         now = at(scene, path)
         step = now.step if isinstance(now, Steps) else None
-        yield from _group(scene, [path], _beyond(now, usual, step, way), way)
+        further = _beyond(now, usual, step, way)
+        within = [row for row in further if allowed(put(scene, path, with_value(now, row[1])))]
+        yield from _group(scene, [path], within, way)
 
 
 def _of_teeth(scene: Scene) -> Iterator[tuple[Path, Sequence[Any]]]:
@@ -53,8 +56,9 @@ def _of_teeth(scene: Scene) -> Iterator[tuple[Path, Sequence[Any]]]:
         yield ("gears", "helix_angle"), HELICES
     for path in own:
         yield path, HELICES
-    if scene.shift is not None and scene.shift.pinion_shift is not None:
-        yield ("shift", "pinion_shift"), SHIFTS
+    for name, usual in (("pinion_shift", SHIFTS), ("sum", SHIFT_SUMS)):
+        if getattr(scene.shift, name, None) is not None:
+            yield ("shift", name), usual
 
 
 def distances_of(scene: Scene) -> list[list[Fraction]]:

@@ -35,7 +35,7 @@ ROUGH_SECONDS, QUESTION_SECONDS = 7.0, 2.0
 FARTHEST_FACTOR = 3.0  # of a remedy of use
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, for each of these
 SHARPEN_SECONDS, CHOICE_SECONDS = 2.0, 4.0  # s, at most, to make them sharper, and for choices
-CHOSEN = (DISTANCE, "sum_of_centre_distances", "helix_angle", "pinion_shift")
+CHOSEN = (DISTANCE, "sum_of_centre_distances", "helix_angle", "pinion_shift", "sum")
 STEPPED = (*GRADES, "accuracy_grade", "grade")  # moved by ones
 
 

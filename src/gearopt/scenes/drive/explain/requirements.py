@@ -4,12 +4,12 @@ What is dropped: safety factors, limits of sizes, ratios and shifts, hunting tee
 materials as if they were not there; modules within the widest series of [teeth]; b/d1 from WIDTHS
 to three; numbers of pinion teeth a quarter fewer and more; the ratio within 5 %; a life to a ten-
 thousandth; materials to all of the file, and grades to the best there are; shifts of pinions to
-SHIFTS beside those of the file. A given centre distance gives way to that of reference circles: a
+SHIFTS and sums of shifts to SUMS beside those of the file. A given centre distance gives way to that of reference circles: a
 design without it proves it needed, none proves nothing.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -27,7 +27,7 @@ Dropped = frozenset[str]
 BENDING, CONTACT = "minimum_bending_safety", "minimum_contact_safety"
 DISTANCE = "centre_distance"
 OF_DISTANCES = "coaxial", "sum_of_centre_distances"  # of all stages together
-SHIFT = "pinion_shift"
+SHIFT, SUM = "pinion_shift", "sum_of_profile_shifts"
 GIVEN = (DISTANCE,)  # of which no design without them proves nothing
 OF_SHIFTS = "specific_sliding", "contact_ratio", "tip_thickness"  # of teeth at given distances
 ORDER = (  # the likeliest to be in conflict first; those of the second group are dear to drop
@@ -40,13 +40,14 @@ ORDER = (  # the likeliest to be in conflict first; those of the second group ar
     (
         *("pinion_teeth", "pinion_teeth_high", "pinion_teeth_low", "ratio_tolerance"),
         *("stage_ratio_low", "wheel_teeth_low", "module_low", "modules", "face_width_low"),
-        *("face_width_over_module_low", *OF_SHIFTS, SHIFT, DISTANCE, *OF_DISTANCES),
+        *("face_width_over_module_low", *OF_SHIFTS, SHIFT, SUM, DISTANCE, *OF_DISTANCES),
     ),
 )
 WIDTHS = Fraction(1, 20), Fraction(3)  # b/d1 of free widths
 TOLERANCE = Fraction(1, 20)
 TEETH = Fraction(5, 4)  # by which numbers of pinion teeth are dropped
 SHIFTS = tuple(Fraction(n, 5) for n in range(-3, 7))  # x1, from -0.6 to 1.2
+SUMS = tuple(Fraction(n, 10) for n in range(-5, 16, 2))  # x1 + x2, as far as a file may have
 LIFE = 1e-4  # times that asked for
 NO_SAFETY = 1e-6
 BEST_GRADES = (3, 2)
@@ -80,7 +81,8 @@ def _of_all(scene: Scene, train: Train) -> Iterator[str]:
     yield from ["same_materials"] * scene.gears.same_materials
     yield "ratio_tolerance"
     yield from (name for name in OF_DISTANCES if getattr(scene.limits, name))
-    yield from [SHIFT] * (scene.shift is not None and scene.shift.pinion_shift is not None)
+    for name, given in ((SHIFT, "pinion_shift"), (SUM, "sum")):
+        yield from [name] * (getattr(scene.shift, given, None) is not None)
     yield from OF_SHIFTS if any(stage.toothing.shifting for stage in train.stages) else ()
     if _with_materials(scene) != scene:
         yield "materials"
@@ -178,7 +180,8 @@ def _stage(scene: Scene, own: StageTable, stage: Stage, dropped: set[str]) -> St
             for cut in toothings
         ]
         toothings = tuple(dict.fromkeys(free))
-    toothings = _of_any_shift(toothings) if SHIFT in dropped else toothings
+    for name, field, values in ((SHIFT, "pinion_shift", SHIFTS), (SUM, "shift_sum", SUMS)):
+        toothings = _widened(toothings, field, values) if name in dropped else toothings
     toothings = tuple(_unlimited(cut, dropped) for cut in toothings)
     return replace(
         stage,
@@ -195,13 +198,15 @@ def _stage(scene: Scene, own: StageTable, stage: Stage, dropped: set[str]) -> St
     )
 
 
-def _of_any_shift(toothings: tuple[Toothing, ...]) -> tuple[Toothing, ...]:
-    """Return toothings of more profile shifts of the pinion, where these are given."""
-    every = {cut.pinion_shift for cut in toothings}
+def _widened(
+    toothings: tuple[Toothing, ...], field: str, values: Sequence[Fraction]
+) -> tuple[Toothing, ...]:
+    """Return toothings of more values of a field, profile shifts or their sums, where it is given."""
+    every = {getattr(cut, field) for cut in toothings}
     if None in every:
         return toothings
-    wide = sorted({*every, *map(float, SHIFTS)})
-    return tuple(dict.fromkeys(replace(cut, pinion_shift=x) for cut in toothings for x in wide))
+    wide = sorted({*every, *map(float, values)})
+    return tuple(dict.fromkeys(replace(cut, **{field: x}) for cut in toothings for x in wide))
 
 
 def _unlimited(cut: Toothing, dropped: set[str]) -> Toothing:
