@@ -17,6 +17,7 @@ from gearopt.scenes.drive.explain.tried import Case, any_possible
 from gearopt.scenes.explaining.engine import FeasibilityQuestions, smallest
 from gearopt.scenes.explaining.possible import Verdict
 from gearopt.scenes.reading.load import load
+from gearopt.scenes.reading.toml_writing import toml_text
 
 slow = pytest.mark.slow
 ISO = "".join(
@@ -29,6 +30,7 @@ STEPS = '{ from = "60 mm", to = "90 mm", step = "5 mm" }'
 SPUR = ISO.replace("12 deg", "0 deg")
 UNDERCUT = SPUR.replace("[14, 40]", "[8, 11]") + "[shift]\npinion_shift = 0\n"
 FEW_SPUR = SPUR.replace("[14, 40]", "[18, 22]")
+OF_SUM = SPUR.replace('centre_distance = "125 mm"\n', "").replace("[14, 40]", "[9, 11]")
 
 
 def at(distance, text=ISO):
@@ -61,6 +63,28 @@ def test_the_next_value_goes_on_as_the_file_does(tmp_path, distance, way, writte
     entries = value.values() if isinstance(value, dict) else value
     assert ", ".join(entries) == written_first
     assert move.steps[0] > 1.0 and len(set(move.steps)) == len(move.steps)
+
+
+@pytest.mark.parametrize(
+    ("sums", "way", "first", "last"),
+    [
+        ("-0.2", 1, "-0.1", "1"),
+        ("[0, 1.2]", 1, "[0, 1.2, 1.3]", "[0, 1.2, 1.5]"),
+        ("{ from = 0, to = 1, step = 0.2 }", 1, "0.0 1.2", "0.0 1.4"),
+        ("{ from = 0, to = 1, step = 0.2 }", -1, "-0.2 1.0", "-0.4 1.0"),
+        ("1.5", 1, "", ""),
+    ],
+)
+def test_sums_of_shifts_go_as_far_as_a_file_may_have_them(tmp_path, sums, way, first, last):
+    scene, found = groups(tmp_path, f"{OF_SUM}[shift]\nsum = {sums}\n", way)
+    moves = [move for group in found for move in group.numbers if move.path == ("shift", "sum")]
+    assert bool(moves) == bool(first)
+    for move in moves:
+        for factor, wanted in ((move.steps[0], first), (move.steps[-1], last)):
+            value = move.write(scene.shift.sum, factor, move)
+            ends = getattr(value, "low", None), getattr(value, "high", None)
+            of_range = " ".join(f"{float(end):.1f}" for end in ends if end is not None)
+            assert (of_range or toml_text(move.text(value, move.path))) == wanted
 
 
 def test_the_sum_moves_to_sums_that_stages_have(tmp_path):
@@ -99,6 +123,13 @@ def test_shifts_that_undercut_all_pinions_are_the_conflict(tmp_path):
     assert known.names == ("pinion_shift", "centre_distance[1]") and known.any_resolves
 
 
+def test_a_sum_of_shifts_that_slides_too_much_is_in_the_conflict(tmp_path):
+    scene = load(written(tmp_path, OF_SUM + "[shift]\nsum = -0.2\n")).scene
+    known = conflict(Case(scene, Clock(Budget(seconds=60.0), None), seconds=20.0))
+    assert known.names == ("pinion_teeth_high[1]", "specific_sliding", "sum_of_profile_shifts")
+    assert known.any_resolves
+
+
 def solved_with(file, remedy):
     return gearopt.solve(file, remedy.edits, remedies=False).status
 
@@ -110,6 +141,7 @@ def solved_with(file, remedy):
         (at('["80 mm", "90 mm"]'), "stage[1].centre_distance", '["80 mm", "90 mm", "100 mm"]'),
         (at(STEPS), "stage[1].centre_distance", '{from = "60 mm", to = "100 mm", step = "5 mm"}'),
         (UNDERCUT, "shift.pinion_shift", ""),
+        (OF_SUM + "[shift]\nsum = -0.2\n", "shift.sum", "0.1"),
         (ISO.replace("12 deg", "8 deg").replace("[limits]", "[limits]\noverlap_ratio = 3"),)
         + ("gears.helix_angle", '"15 deg"'),
     ],

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from gearopt.formulations.drive import together
 from gearopt.formulations.drive.together.tables import numbers
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run
+from gearopt.scenes.drive.layout import box_first
 from gearopt.scenes.reading.load import load
 
 GAP = 1e-3
@@ -139,6 +141,64 @@ def as_by_layouts(path):
 def test_random_drives_as_by_the_layout_of_every_row(tmp_path, seed):
     result, best = as_by_layouts(written(tmp_path, some_file(seed)))
     assert (result.value is None) == math.isinf(best)
+
+
+OF_DISTANCES = "centre_distance", "sum_of_centre_distances", "coaxial"
+
+
+def of_sums(seed, sums):
+    """The same without distances, with sums of shifts; of two stages few rows are left."""
+    lines = some_file(seed).splitlines()
+    text = "\n".join(line for line in lines if not line.startswith(OF_DISTANCES))
+    if text.count("[[stage]]") == 2:
+        u = float(re.search(r"\nratio = (.*)", text)[1]) ** 0.5
+        text = re.sub(r"pinion_teeth = \[(\d+), \d+\]", r"pinion_teeth = [\1, \1]", text)
+        text = re.sub(r"modules = \[(.*?),.*\]", r"modules = [\1]", text)
+        ends = f"stage_ratio = [{0.95 * u:.3f}, {1.05 * u:.3f}]"
+        text = text.replace("[limits]", f"[limits]\n{ends}")
+    return text.replace("[shift]", f"[shift]\nsum = {sums}")
+
+
+@pytest.mark.parametrize(
+    ("seed", "sums"),
+    [
+        (10, "0.4"),
+        *(
+            pytest.param(s, sums, marks=pytest.mark.slow)
+            for s, sums in ((4, "0.4"), (0, "[0, 0.5]"), (5, "[-0.2, 0.3]"), (14, "[-0.2, 0.3]"))
+        ),
+        *(
+            pytest.param(s, "{from = 0, to = 0.6, step = 0.3}", marks=pytest.mark.slow)
+            for s in (1, 9, 11, 12, 13, 15, 21)
+        ),
+    ],
+)
+def test_sums_of_shifts_as_by_the_layout_of_every_row(tmp_path, seed, sums):
+    path = written(tmp_path, of_sums(seed, sums))
+    assert box_first(load(path).scene)
+    result, best = as_by_layouts(path)
+    assert (result.value is None) == math.isinf(best)
+
+
+@pytest.mark.slow
+def test_a_box_of_gears_by_a_sum_of_shifts_is_drawn_and_explained(tmp_path):
+    text = of_sums(4, "0.4")
+    result = gearopt.solve(written(tmp_path, text), remedies=False)
+    stages, layout = result.design["stages"], result.design["layout"]
+    assert result.status == "optimal" and result.design["rating"]["safe"]
+    places = [np.array([s["y_mm"], s["z_mm"]]) for s in layout["shafts"]]
+    for k, stage in enumerate(stages):
+        total = stage["pinion_profile_shift"] + stage["wheel_profile_shift"]
+        there = np.linalg.norm(places[k + 1] - places[k])
+        assert total == pytest.approx(0.4) and stage["wheel_tip_alteration"] < 0.0
+        assert there == pytest.approx(stage["centre_distance_mm"], abs=1e-6)
+    sides = 'largest_width = "200 mm"\nlargest_height = "220 mm"\n'
+    file = written(tmp_path, "\n".join([text.split("largest_")[0].rstrip(), sides]))
+    known = gearopt.explain(file)
+    assert known.result.status == "infeasible" and known.remedies
+    assert {*known.conflict[:2]} == {"largest_width", "largest_height"}
+    for way in known.remedies:
+        assert gearopt.solve(file, way.edits, remedies=False).value is not None
 
 
 @pytest.mark.slow

@@ -4,8 +4,8 @@ What is dropped: safety factors, limits of sizes, ratios and shifts, hunting tee
 materials as if they were not there; modules within the widest series of [teeth]; b/d1 from WIDTHS
 to three; numbers of pinion teeth a quarter fewer and more; the ratio within 5 %; a life to a ten-
 thousandth; materials to all of the file, and grades to the best there are; shifts of pinions to
-SHIFTS and sums of shifts to SUMS beside those of the file. A given centre distance gives way to that of reference circles: a
-design without it proves it needed, none proves nothing.
+SHIFTS, and sums of shifts to SUMS, beside those of the file. A given centre distance gives way to
+that of reference circles: a design without it proves it needed, none proves nothing.
 """
 
 import math
@@ -201,7 +201,7 @@ def _stage(scene: Scene, own: StageTable, stage: Stage, dropped: set[str]) -> St
 def _widened(
     toothings: tuple[Toothing, ...], field: str, values: Sequence[Fraction]
 ) -> tuple[Toothing, ...]:
-    """Return toothings of more values of a field, profile shifts or their sums, where it is given."""
+    """Return toothings of more profile shifts of the pinion, or sums, where these are given."""
     every = {getattr(cut, field) for cut in toothings}
     if None in every:
         return toothings
