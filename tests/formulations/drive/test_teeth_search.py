@@ -15,15 +15,51 @@ from small_drives import FACES, OBJECTIVES, drive
 from gearopt.formulations.drive.teeth import _in_order
 from gearopt.formulations.drive.teeth import later_stages as bounds
 from gearopt.formulations.drive.teeth import stage as staging
+from gearopt.formulations.drive.teeth.columns import spans
 from gearopt.formulations.drive.teeth.later_stages import bound
 from gearopt.formulations.drive.teeth.progress import TIE
 from gearopt.formulations.drive.teeth.reach import first_cut, reach
-from gearopt.formulations.drive.teeth.search import any_train, possible, search, within
+from gearopt.formulations.drive.teeth.search import any_train, possible, reaches, search, within
 from gearopt.formulations.drive.teeth.tables import table
 from gearopt.optimise.result import Budget
 
 F = Fraction
 searching = import_module("gearopt.formulations.drive.teeth.search")  # not its function
+
+
+def in_reach(train):
+    """Whether numbers of teeth keep the ratio, by looking at all of them."""
+    stages = [
+        [
+            (z1, z2)
+            for z1, start, stop in spans(train, k, train.highest_ratio)
+            for z2 in range(start, stop + 1)
+            if not train.coprime or math.gcd(z1, z2) == 1
+        ]
+        for k in range(len(train.stages))
+    ]
+    return any(within(train, teeth) for teeth in product(*stages))
+
+
+def test_ratios_out_of_reach_are_those_of_no_numbers_of_teeth():
+    """Of random narrow ranges, with ties at the ends of the tolerance, and hunting teeth."""
+    rng = np.random.default_rng(5)
+    answers = []
+    for seed in range(300):
+        count = 1 + seed % 3
+        teeth = [tuple(sorted(rng.integers(12, 16, 2).tolist())) for _ in range(count)]
+        wheels = [tuple(sorted(rng.integers(24, 30, 2).tolist())) for _ in range(count)]
+        ends = [(rng.choice(z), rng.choice(w)) for z, w in zip(teeth, wheels, strict=True)]
+        total = math.prod(F(int(w), int(z)) for z, w in ends)
+        tolerance = F(int(rng.integers(0, 3)), 500)
+        total *= (1, 1 / (1 + tolerance), F(10**15 + 1, 10**15))[seed // 3 % 3]
+        train = drive(count, total=total, tolerance=tolerance, coprime=bool(seed % 2))
+        rows = zip(train.stages, teeth, wheels, strict=True)
+        stages = [replace(s, pinion_teeth=z, wheel_teeth=w, ratio=(F(1), None)) for s, z, w in rows]
+        train = replace(train, stages=tuple(stages))
+        answers.append(reaches(train))
+        assert answers[-1] is in_reach(train)
+    assert 60 < answers.count(False) < 240
 
 
 def test_within_is_decided_in_whole_numbers():

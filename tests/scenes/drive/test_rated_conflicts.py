@@ -6,6 +6,7 @@ import pytest
 from impossible_drives import has_a_design, some_file
 
 import gearopt
+from gearopt.formulations.drive.teeth.search import reaches
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.headline import lead
@@ -95,6 +96,57 @@ def test_of_many_requirements_that_may_not_matter_some_are_named(solved):
         "the limit on a of stage 1 cannot be met together with b of stage 1, c of stage 1, "
         "d of stage 1 and 2 other requirements"
     )
+
+
+OUT_OF_REACH = {
+    "gearopt": 1,
+    "kind": "drive",
+    "duty": {"power": "30 kW", "input_speed": "1000 rpm", "ratio": 12, "ratio_tolerance": "1 %"},
+    "gears": {"treatment": "carburised", "iso_material": "Eh", "helix_angle": "12 deg"}
+    | {"face_width_over_diameter": [0.3, 1.0]},
+    "stage": [{}, {}],
+    "limits": {"pinion_teeth": [20, 22], "wheel_teeth": [60, 62], "module": ["1 mm", "1.5 mm"]},
+    "teeth": {},
+    "rating": {"standard": "iso6336", "life": "20000 h", "minimum_bending_safety": 1.4}
+    | {"minimum_contact_safety": 1.1, "iso6336": {"accuracy_grade": 6}},
+}
+NARROW_TEETH = {"pinion_teeth": [20, 21], "wheel_teeth": [50, 52], "module": ["1 mm", "1.5 mm"]}
+
+
+@pytest.mark.parametrize(
+    ("changed", "families"),
+    [
+        ({}, {"wheel_teeth_high", "pinion_teeth_low"}),
+        (
+            {"stage": [{"centre_distance": "80 mm"}, {"centre_distance": "100 mm"}]},
+            {"wheel_teeth_high", "pinion_teeth_low"},
+        ),
+        ({"shift": {"sum": [0, 0.4]}}, {"wheel_teeth_high", "pinion_teeth_low"}),
+        (
+            {"duty": OUT_OF_REACH["duty"] | {"ratio": "127/21", "ratio_tolerance": "0.01 %"}}
+            | {"limits": NARROW_TEETH},
+            {"wheel_teeth_high", "pinion_teeth_low", "ratio_tolerance"},
+        ),
+        (
+            {"limits": {"pinion_teeth": [20, 22], "stage_ratio": [1, 3]}},
+            {"stage_ratio_high"},
+        ),
+    ],
+)
+def test_numbers_of_teeth_out_of_reach_are_the_conflict(changed, families):
+    """Though too weak as well; by themselves, and without any of them there are some."""
+    scene = load(OUT_OF_REACH | changed).scene
+    known = found_of(scene)
+    assert {name.split("[")[0] for name in known.names} == families and not known.unsure
+    every = {name for group in requirements(scene) for family in group for name in family}
+    rest = frozenset(every - {*known.names})
+    assert not any(map(reaches, without(scene, rest)))
+    assert all(any(map(reaches, without(scene, rest | {name}))) for name in known.names)
+
+
+def test_numbers_of_teeth_out_of_reach_are_told_at_once():
+    words = lead(gearopt.solve(OUT_OF_REACH))
+    assert "maximum wheel teeth of stages 1 and 2" in words and "safety" not in words
 
 
 @pytest.mark.slow

@@ -6,6 +6,7 @@ followed down to complete trains at once. The search ends when no open bound is 
 train.
 """
 
+import functools
 import heapq
 import math
 import operator
@@ -20,6 +21,7 @@ from numpy.typing import NDArray
 from gearopt.errors import SolveError
 from gearopt.formulations.drive.rated.quick_bound import quick_bound
 from gearopt.formulations.drive.teeth.choices import valued
+from gearopt.formulations.drive.teeth.columns import spans
 from gearopt.formulations.drive.teeth.later_stages import (
     SLICE,
     Bound,
@@ -30,7 +32,7 @@ from gearopt.formulations.drive.teeth.later_stages import (
 )
 from gearopt.formulations.drive.teeth.progress import TIE, Progress, SearchEnded, Teeth
 from gearopt.formulations.drive.teeth.rated import RatedTable
-from gearopt.formulations.drive.teeth.reach import first_cut, largest_ratio, reach
+from gearopt.formulations.drive.teeth.reach import PAIRS_AT_ONCE, first_cut, largest_ratio, reach
 from gearopt.formulations.drive.teeth.stage import EDGE, Table
 from gearopt.formulations.drive.teeth.tables import stage_tables, thinned
 from gearopt.formulations.drive.train import Train
@@ -50,6 +52,8 @@ FIRST_CELLS, LAST_COARSE_CELL = 32.0, 0.006
 PROMISING = 32  # children of a node that a first dive looks at
 DIVE = 1000  # pairs examined on each of these grids, for a train
 CELLS = 10_000_000  # largest grid of a stage, 80 MB
+MOST_PRODUCTS = 300_000  # of ratios of all stages but the last that are looked at
+SLACK = 1e-12  # relative: far above the rounding of a product of six ratios
 
 
 Places = tuple[NDArray[np.int64], NDArray[np.int64]]
@@ -458,6 +462,39 @@ def within(train: Train, teeth: Teeth) -> bool:
         low.numerator * pinions <= wheels * low.denominator
         and wheels * high.denominator <= high.numerator * pinions
     )
+
+
+def reaches(train: Train) -> bool | None:
+    """Whether numbers of teeth have a total ratio that is allowed, whatever they carry.
+
+    Exact: doubles leave out what is off by more than their rounding, the rest is compared in
+    integers. None: there are too many to look at.
+    """
+    tables, known = list[list[tuple[int, int]]](), list[Array]()
+    for k in range(len(train.stages)):
+        rows = spans(train, k, train.highest_ratio)
+        if sum(stop - start + 1 for _, start, stop in rows) > PAIRS_AT_ONCE:
+            return None
+        z1 = np.concatenate([np.full(stop - start + 1, z) for z, start, stop in rows])
+        z2 = np.concatenate([np.arange(start, stop + 1) for _, start, stop in rows])
+        kept = np.gcd(z1, z2) == 1 if train.coprime else np.ones(len(z1), bool)
+        ratios, first = np.unique((z2 / z1)[kept], return_index=True)
+        known.append(ratios)
+        columns = (column[kept][first].tolist() for column in (z1, z2))
+        tables.append([*zip(*columns, strict=True)])
+    shape = [len(ratios) for ratios in known[:-1]]
+    if math.prod(shape) > MOST_PRODUCTS:
+        return None
+    products = functools.reduce(np.multiply.outer, known[:-1], np.ones(())).ravel()
+    start = np.searchsorted(known[-1], float(train.lowest_ratio) * (1.0 - SLACK) / products)
+    stop = np.searchsorted(known[-1], float(train.highest_ratio) * (1.0 + SLACK) / products)
+    for row in np.flatnonzero(stop > start).tolist():
+        before = map(int, np.unravel_index(row, shape) if shape else ())
+        chosen = tuple(teeth[i] for teeth, i in zip(tables, before, strict=False))
+        near = tables[-1][start[row] : stop[row]]
+        if any(within(train, (*chosen, teeth)) for teeth in near):
+            return True
+    return False
 
 
 def possible(

@@ -3,12 +3,15 @@
 A family of requirements without which, everything else kept, a design exists is in every conflict:
 such a design is mostly found soon, so that each family is asked for a short time. All others are
 then dropped at once; where that is not proven impossible, by a search of all teeth, modules and
-materials, a deletion filter drops for good what can be dropped.
+materials, a deletion filter drops for good what can be dropped. Before all that it is asked whether
+there are teeth, whatever they carry, in integers and as they are cut: where none are, the conflict
+is of what decides on teeth.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
+from gearopt.formulations.drive.teeth.search import reaches
 from gearopt.formulations.drive.train import Train
 from gearopt.formulations.strength.rated import Option
 from gearopt.scenes.drive.explain.requirements import (
@@ -16,11 +19,13 @@ from gearopt.scenes.drive.explain.requirements import (
     CONTACT,
     GIVEN,
     OF_DISTANCES,
+    OF_NUMBERS,
+    OF_TEETH,
     Dropped,
     requirements,
     without,
 )
-from gearopt.scenes.drive.explain.tried import Case, any_possible
+from gearopt.scenes.drive.explain.tried import Case, any_of, any_possible
 from gearopt.scenes.drive.rating.options import STANDARDS
 
 GLANCE, PROOF = 0.5, 4.0  # s, for a design without one family; for the proof without all others
@@ -49,10 +54,12 @@ class Conflict:
 class _Filter:
     """FeasibilityQuestions and their answers; it has state because the filter fills it.
 
-    dropped: for good; needed: known to be in the conflict.
+    dropped: for good; needed: known to be in the conflict. exact: whether a design is numbers of
+    teeth alone.
     """
 
     case: Case
+    exact: bool = False
     answers: dict[Dropped, bool | None] = field(default_factory=dict)
     dropped: Dropped = frozenset()
     needed: set[str] = field(default_factory=set)
@@ -65,7 +72,10 @@ class _Filter:
         key = frozenset(dropped)
         if key not in self.answers:
             case = replace(self.case, seconds=seconds, open=[]) if seconds else self.case
-            answer = any_possible(case, without(case.scene, key))
+            if self.exact and case.clock.over:
+                return None
+            trains = without(case.scene, key)
+            answer = any_of([*map(reaches, trains)]) if self.exact else any_possible(case, trains)
             if answer is None and 0.0 < seconds < self.case.seconds:
                 return None
             self.answers[key] = answer
@@ -73,7 +83,8 @@ class _Filter:
 
     def look(self, families: Sequence[Sequence[str]]) -> None:
         """Note the families without which, alone, a design is known soon: none without all."""
-        if families and self.possible([n for family in families for n in family], GLANCE):
+        names = [name for family in families for name in family]
+        if families and self.possible(self.dropped | {*names}, GLANCE):
             if len(families) == 1:
                 self.needed |= {*families[0]}
             else:
@@ -110,22 +121,25 @@ class _Filter:
 def conflict(case: Case) -> Conflict:
     """Return requirements of an impossible drive that are in conflict with all others dropped.
 
-    None where everything can be dropped, nothing is known to be needed, or teeth are real-valued.
+    None where everything can be dropped, teeth are real-valued, or nothing is known to be needed,
+    unless there are no teeth whatever they carry.
     """
     if case.scene.teeth is None:
         return Conflict()
-    filtering, groups = _Filter(case), requirements(case.scene)
+    filtering, groups = _begun(case)
+    strength = filtering.dropped
     families = [family for group in groups for family in group]
-    fixed = [family for family in families if family[0].split("[")[0] in GIVEN]
+    fixed = [family for family in families if _base(family[0]) in GIVEN]
     ties = [family for family in families if family[0] in OF_DISTANCES]
     for family in (*ties, *fixed, *groups[0]):
-        if filtering.possible(family, GLANCE):
+        if filtering.possible(filtering.dropped | {*family}, GLANCE):
             filtering.needed |= {*family}
     filtering.look([family for family in groups[1] if family not in (*fixed, *ties)])
     spare = [
         [f for f in group if f not in fixed and not filtering.needed & {*f}] for group in groups
     ]
-    rest = frozenset(name for group in spare for family in group for name in family)
+    spared = (name for group in spare for family in group for name in family)
+    rest = filtering.dropped | frozenset(spared)
     if filtering.possible(rest, PROOF) is False:
         filtering.dropped = rest
     else:
@@ -135,11 +149,30 @@ def conflict(case: Case) -> Conflict:
         if len(family) > 1 and family not in fixed and not filtering.dropped & {*family}:
             filtering.split(family)
     every = [name for family in families for name in family if name not in filtering.dropped]
-    if not filtering.needed:
+    if not filtering.needed and not strength:
         return Conflict()
+    whole = _Filter(case) if filtering.exact else filtering
     unsure = tuple(name for name in every if name not in filtering.needed)
-    alone = len(every) > 1 and all(filtering.answers.get(frozenset([name])) for name in every)
+    alone = len(every) > 1 and all(whole.possible([name], GLANCE) for name in every)
     return Conflict((*every, *_standard(case, filtering.dropped, every)), unsure, alone)
+
+
+def _begun(case: Case) -> tuple[_Filter, tuple[tuple[tuple[str, ...], ...], ...]]:
+    """Return a filter and the requirements that it is of: those of teeth where none are left."""
+    groups = requirements(case.scene)
+    for exact, kept in ((True, OF_NUMBERS), (False, OF_TEETH)):
+        rest = frozenset(n for group in groups for f in group for n in f if _base(n) not in kept)
+        filtering = _Filter(case, exact, dropped=rest)
+        if filtering.possible(rest, GLANCE) is False:
+            return filtering, tuple(
+                tuple(f for f in group if _base(f[0]) in kept) for group in groups
+            )
+    return _Filter(case), groups
+
+
+def _base(name: str) -> str:
+    """Return the name of a requirement without its stage."""
+    return name.split("[")[0]
 
 
 def _standard(case: Case, dropped: Dropped, names: Sequence[str]) -> list[str]:

@@ -30,6 +30,13 @@ OF_DISTANCES = "coaxial", "sum_of_centre_distances"  # of all stages together
 SHIFT, SUM = "pinion_shift", "sum_of_profile_shifts"
 GIVEN = (DISTANCE,)  # of which no design without them proves nothing
 OF_SHIFTS = "specific_sliding", "contact_ratio", "tip_thickness"  # of teeth at given distances
+OF_NUMBERS = (  # what decides which numbers of teeth there are, in integers
+    *("pinion_teeth", "pinion_teeth_low", "pinion_teeth_high", "wheel_teeth", "wheel_teeth_low"),
+    *("wheel_teeth_high", "stage_ratio", "stage_ratio_low", "stage_ratio_high", "ratio_tolerance"),
+    *("coprime", "module", "module_low", "module_high", "modules", "wheel_diameter"),
+)
+# what decides which gears there are, whatever they carry
+OF_TEETH = (*OF_NUMBERS, *OF_SHIFTS, SHIFT, SUM, DISTANCE, *OF_DISTANCES)
 ORDER = (  # the likeliest to be in conflict first; those of the second group are dear to drop
     (
         *(CONTACT, BENDING, "face_width", "face_width_over_diameter", "face_width_high"),

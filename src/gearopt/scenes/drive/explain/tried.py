@@ -108,7 +108,11 @@ class Case:
 
 def any_possible(case: Case, trains: Sequence[Train]) -> bool | None:
     """Return whether one of some drives has a design; None where that is not known in time."""
-    answers = [case.possible(train) for train in trains]
+    return any_of([case.possible(train) for train in trains])
+
+
+def any_of(answers: Sequence[bool | None]) -> bool | None:
+    """Whether one of some answers is yes; None where that is not known."""
     return True if True in answers else (None if None in answers else False)
 
 
