@@ -120,11 +120,11 @@ def every(train, needed=k_factor_width, narrowest=None):
             return
         stage, last = train.stages[k], k == len(train.stages) - 1
         for z1 in range(stage.pinion_teeth[0], stage.pinion_teeth[1] + 1):
-            for z2 in range(z1, stage.wheel_teeth[1] + 1):
+            most = min(train.highest_ratio / ratio, stage.ratio[1] or math.inf)
+            least = max(z1, math.ceil(train.lowest_ratio / ratio * z1) if last else z1)
+            for z2 in range(least, min(math.floor(most * z1), stage.wheel_teeth[1]) + 1):
                 u = F(z2, z1)
-                if ratio * u > train.highest_ratio or (last and ratio * u < train.lowest_ratio):
-                    continue
-                if u > (stage.ratio[1] or u) or (train.coprime and math.gcd(z1, z2) > 1):
+                if train.coprime and math.gcd(z1, z2) > 1:
                     continue
                 for module in stage.modules:
                     b = (narrowest or of)(k, torque, module, (z1, z2))

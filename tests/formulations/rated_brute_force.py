@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 from blank_rings import backup, rings, volume
@@ -12,8 +13,11 @@ from gearopt.formulations.drive.teeth.search import within
 from gearopt.formulations.strength.iso6336 import Iso6336
 from gearopt.physics.agma.rating import rate as agma_rate
 from gearopt.physics.agma.rating import rate_spectrum as agma_spectrum
-from gearopt.physics.iso6336.rating import rate as iso_rate
+from gearopt.physics.agma.refusals import single_factors
+from gearopt.physics.iso6336 import chain
+from gearopt.physics.iso6336.case import Case, check
 from gearopt.physics.iso6336.rating import rate_spectrum as iso_spectrum
+from gearopt.physics.iso6336.refusals import refuse
 from gearopt.physics.rating import Operation
 
 
@@ -32,12 +36,35 @@ def safe(train, k, pair, torque):
         ]
         if len(operations) > 1:
             found = (iso_spectrum if iso else agma_spectrum)(pair, tuple(operations), *made)
+            bending, contact = found.bending_safety, found.contact_safety
         else:
-            found = (iso_rate if iso else agma_rate)(pair, operations[0], *made)
-        bending, contact = min(found.bending_safety), min(found.contact_safety)
+            bending, contact = (iso_safeties if iso else agma_safeties)(pair, operations[0], *made)
+        bending, contact = min(bending), min(contact)
         if min(bending / train.safety[0], contact / train.safety[1]) < 1.0 - 1e-11:
             return False
     return True
+
+
+def agma_safeties(pair, operation, steels, practice):
+    """Return S_F and S_H of both gears; I and J of a pair are the same at every load."""
+    found = agma_rate(pair, operation, steels, practice, geometry(pair, practice.load))
+    return found.bending_safety, found.contact_safety
+
+
+@cache
+def geometry(pair, load):
+    """Return I and J of a pair by symbol."""
+    factors = single_factors(pair, load)
+    return {"I": float(factors.pitting), "J": tuple(float(j) for j in factors.bending)}
+
+
+def iso_safeties(pair, operation, materials, practice):
+    """Return S_F and S_H of both gears as `iso6336.rating.rate` does, without their lives."""
+    check(practice)
+    refuse(pair, practice)
+    found = chain.quantities(Case(pair, operation, materials, practice))
+    names = ("sigma_FG", "sigma_F"), ("sigma_HG", "sigma_H")
+    return [[a / b for a, b in zip(found[s], found[t], strict=True)] for s, t in names]
 
 
 def practice(train, k, pair, standard):
