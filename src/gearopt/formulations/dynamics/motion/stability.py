@@ -29,7 +29,13 @@ def monodromy(system: Linear, wave: Wave, frequency: float, clock: Clock | None 
     by matrix exponentials; any other by RK8 from kink to kink. frequency of the mesh [Hz] > 0. NaN
     where the clock stops, which is asked after every SLICE steps.
     """
-    top = _top(system, wave)
+    return _over_period(system, wave, frequency, _top(system, wave), clock)
+
+
+def _over_period(
+    system: Linear, wave: Wave, frequency: float, top: float, clock: Clock | None
+) -> Array:
+    """Return `monodromy`; top: the highest angular frequency [rad/s], whatever the mesh's."""
     if wave.stepped:
         from scipy.linalg import expm
 
@@ -81,11 +87,11 @@ def multipliers(system: Linear, wave: Wave, frequency: float) -> NDArray[np.comp
 
 def _one_by_one(system: Linear, wave: Wave, frequencies: Array, clock: Clock | None) -> Array:
     """Return the largest |multiplier| at the first mesh frequencies, until the clock stops."""
-    largest_each = list[float]()
+    largest_each, top = list[float](), _top(system, wave)
     for frequency in frequencies:
         if clock is not None and not clock.tell():
             break
-        over = monodromy(system, wave, float(frequency), clock)
+        over = _over_period(system, wave, float(frequency), top, clock)
         if np.isnan(over).any() and clock is not None and clock.stopped:
             break
         largest_each.append(float(np.max(np.abs(np.linalg.eigvals(over)))))
