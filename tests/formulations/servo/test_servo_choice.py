@@ -12,7 +12,7 @@ from uncompiled import uncompiled
 from gearopt.formulations.servo import choice, servo_box, split
 from gearopt.formulations.servo.choice import Choice, Springs, train_problem
 from gearopt.formulations.servo.ratio import Drive, ServoDuty
-from gearopt.formulations.servo.servo_box import Room, ServoBox, first_that_fits, of_train
+from gearopt.formulations.servo.servo_box import Room, ServoBox, first_that_fits
 from gearopt.formulations.servo.split.servo_train import pairs
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
@@ -69,11 +69,20 @@ def brute_force(chosen, points):
     if least := chosen.minimum_stiffness:
         made = pairs(points[order].T, chosen.train.face_width)
         order = order[chosen.springs.output_stiffness(made) >= least * (1.0 - 1e-12)]
-    for k in order:
-        made = pairs(points[k], chosen.train.face_width)
-        if chosen.room is None or first_that_fits([of_train(made, chosen.room)]):
-            return float(worth[k])
-    return None
+    if chosen.room is None:
+        return float(worth[order[0]]) if len(order) else None
+    fit = first_that_fits(boxes(points[order], chosen))
+    return None if fit is None else float(worth[order[fit[0]]])
+
+
+def boxes(points, chosen):
+    """The boxes of trains, one by one, their sizes computed at once."""
+    made, room = pairs(points.T, chosen.train.face_width), chosen.room
+    tips = np.stack([0.5 * gear.tip_diameter for pair in made for gear in pair.gears], axis=1)
+    links = np.stack([pair.centre_distance for pair in made], axis=1)
+    radii = np.stack([tips[:, 0].clip(room.motor_radius), tips[:, 1:3].max(axis=1), tips[:, 3]])
+    for sizes, link in zip(radii.T.tolist(), links.tolist(), strict=True):
+        yield ServoBox(tuple(sizes), tuple(link), room.hub, room.half_sweep, room.box)
 
 
 def compared(seeds):
