@@ -74,15 +74,12 @@ def smallest(train, exact, rng, count):
     beta = np.arctan(np.exp(rng.uniform(*np.log(np.tan(stage.helix)), count)))
     ratio = rng.uniform(float(train.lowest_ratio), float(train.highest_ratio), count)
     slim[::2], ratio[::4], ratio[1::4] = 0.3, float(train.lowest_ratio), float(train.lowest_ratio)
-    values = []
-    for row in zip(z, slim, beta, ratio, strict=True):
-        teeth, over, angle, u = row
-        d = np.geomspace(30.0, 400.0, n)
-        columns = [d * np.cos(angle) / teeth, *(np.full(n, v) for v in (teeth, u)), over * d]
-        batch = exact.batch(np.stack([*columns, np.full(n, angle)], axis=1))
-        good = (batch.G <= 1.0).all(axis=1)
-        values += [float(batch.F[good, 0].min())] if good.any() else []
-    return np.array(values)
+    d = np.tile(np.geomspace(30.0, 400.0, n), count)
+    teeth, over, angle, u = (np.repeat(row, n) for row in (z, slim, beta, ratio))
+    batch = exact.batch(np.stack([d * np.cos(angle) / teeth, teeth, u, over * d, angle], axis=1))
+    good = (batch.G <= 1.0).all(axis=1)
+    values = np.where(good, batch.F[:, 0], np.inf).reshape(count, n).min(axis=1)
+    return values[np.isfinite(values)]
 
 
 @pytest.mark.slow

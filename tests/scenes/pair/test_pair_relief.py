@@ -196,7 +196,7 @@ def test_the_worst_case_within_tolerances_is_proven_and_drawn_ones_stay_below():
 def test_a_robust_relief_has_a_smaller_worst_case():
     plain, robust = (
         gearopt.solve(
-            with_relief(tolerance="2 um", robust=robust), budget=gearopt.Budget(evaluations=20_000)
+            with_relief(tolerance="2 um", robust=robust), budget=gearopt.Budget(evaluations=5_000)
         )
         for robust in (False, True)
     )
