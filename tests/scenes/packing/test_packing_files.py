@@ -3,8 +3,6 @@
 import dataclasses
 import json
 import re
-import subprocess
-import sys
 import tomllib
 from itertools import product
 from pathlib import Path
@@ -135,16 +133,10 @@ def test_units_and_signs_of_places():
     assert scene.plan().cylinders[2].at == pytest.approx((-25.4, 0.0))
 
 
-def gear(*words):
-    return subprocess.run(
-        [sys.executable, "-m", "gearopt", *map(str, words)], capture_output=True, text=True
-    )
-
-
 @pytest.mark.slow
-def test_the_terminal_shows_the_packing_and_json_its_design():
+def test_the_terminal_shows_the_packing_and_json_its_design(here):
     path = PROBLEMS / "six_cylinders_two_layers.toml"
-    done = gear("solve", path)
+    done = here("solve", path)
     assert done.returncode == 0
     assert all(line.startswith("Compiling, once") for line in done.stderr.splitlines())
     for words in (
@@ -155,17 +147,17 @@ def test_the_terminal_shows_the_packing_and_json_its_design():
         "10 to 20",
     ):
         assert words in done.stdout, words
-    found = json.loads(gear("solve", path, "--json").stdout)
+    found = json.loads(here("solve", path, "--json").stdout)
     assert found["scene"] == "packing" and found["objective"]["unit"] == "mm3"
     assert found["design"]["container"]["area_mm2"] == pytest.approx(800)
 
 
 @pytest.mark.slow
-def test_an_impossible_request_is_one_message_and_exit_2(tmp_path):
+def test_an_impossible_request_is_one_message_and_exit_2(tmp_path, here):
     path = tmp_path / "packing.toml"
     path.write_text(ROW.replace('["30 mm", "10 mm"]', '["28 mm", "10 mm"]'))
     for command in ("solve", "check", "compare"):
-        done = gear(command, path)
+        done = here(command, path)
         assert done.returncode == 2 and done.stdout == ""
         assert done.stderr.count("\n") == 1 and "is 2 mm too small" in done.stderr
 

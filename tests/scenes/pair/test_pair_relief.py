@@ -239,7 +239,7 @@ def test_fronts_trade_one_load_against_another():
     """The front passes the proven optimum: no design is better at both loads than it."""
     names = ("peak_to_peak_at_60", "peak_to_peak_at_100")
     front = gearopt.pareto(
-        FILE, objectives=names, method="nsga2", budget=gearopt.Budget(evaluations=4000)
+        FILE, objectives=names, method="nsga2", budget=gearopt.Budget(evaluations=2000)
     )
     values = [[point.values[k] for k in (0, 1)] for point in front.points]
     assert front.method == "nsga2" and len(values) > 20
