@@ -238,7 +238,9 @@ def test_what_teeth_at_a_distance_may_be_is_explained(tmp_path, table, key):
     text = PAIR.replace("[limits]\n", table) if table[1] == "l" else PAIR + table
     explained = gearopt.explain(file := written(tmp_path, text))
     named = {name.split("[")[0].removesuffix("_high") for name in explained.conflict}
-    assert named == {"centre_distance", key.split(".")[1].split("[")[0]}
+    of_numbers = key == "limits.wheel_teeth[2]"  # 40 teeth are too few for 14, at any distance
+    needed = set() if of_numbers else {"centre_distance"}
+    assert named == needed | {key.split(".")[1].split("[")[0]}
     nearest = explained.remedies[0]
     assert nearest.what == key and nearest.kind == "least"
     assert gearopt.solve(file, nearest.edits, remedies=False).status == "optimal"
