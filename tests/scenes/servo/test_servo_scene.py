@@ -31,10 +31,12 @@ from gearopt.optimise.result import Budget
 from gearopt.optimise.typed import typed
 from gearopt.report.explained import remedy_words
 from gearopt.report.kinds.servo.motion import best_words
+from gearopt.report.kinds.servo.words import design_of, report_of
+from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.servo import KIND, axis_steps
 from gearopt.scenes.servo.axis_steps import of_point
-from gearopt.scenes.servo.notes import UNLISTED, assumptions, given_overlap
+from gearopt.scenes.servo.notes import UNCOUNTED, UNLISTED, assumptions, given_overlap, notes
 
 EXAMPLE = KIND.example.text
 
@@ -303,7 +305,17 @@ def test_trains_that_are_not_listed_are_said_to_be(monkeypatch):
     monkeypatch.setattr(axis_steps, "neighbours", lambda scene, clock: ())
     result = gearopt.solve(PROBLEMS / "servo_gimbal_light.toml")
     assert result.status == "optimal" and result.report["trains"] == []
-    assert UNLISTED in result.report["notes"]
+    assert UNLISTED in result.report["notes"] and UNCOUNTED not in result.report["notes"]
+
+
+def test_without_time_other_trains_and_their_bounds_are_left_out_and_said_to_be(monkeypatch):
+    monkeypatch.setattr(axis_steps, "solve", None)  # nothing more is solved
+    scene = gearopt.load(PROBLEMS / "servo_gimbal_light.toml")
+    known = axis_steps.with_train(scene, Ask(), None)
+    late = axis_steps.with_other_trains(scene, Ask(budget=Budget(seconds=0.0)), known)
+    design, report = design_of(late), report_of(late)
+    assert late.value == known.value and report.trains == () and report.stage_counts is None
+    assert {UNLISTED, UNCOUNTED} <= set(notes(scene, (late,), design, report))
 
 
 def test_given_gears_stand_beside_the_best(solved):

@@ -218,11 +218,16 @@ def with_train(scene: Scene, ask: Ask, known: Result | None) -> Result:
 
 
 def with_other_trains(scene: Scene, ask: Ask, known: Result | None) -> Result:
-    """The best train with bounds, figures of other numbers of stages and the Pareto front."""
+    """The best train with bounds, figures of other numbers of stages and the Pareto front.
+
+    None of them where no time is left, which the notes say.
+    """
     assert known is not None
-    report, train = beside(scene, gears_of(scene, known)), known.value is not None
+    clock, train = Clock(ask.budget, of_others(ask.watch)), known.value is not None
+    report = ServoReport()
+    if clock.budget.seconds != 0.0:
+        report |= beside(scene, gears_of(scene, known))
     if train:
-        clock = Clock(ask.budget, of_others(ask.watch))
         report |= ServoReport(trains=neighbours(scene, clock))
     return added(known, None, report=report)
 

@@ -208,6 +208,7 @@ def _told(whose: str, broken: list[str]) -> str:
 
 
 UNLISTED = "Other trains are not listed: time ran out before all were compared."
+UNCOUNTED = "Bounds with real-valued sizes and other numbers of stages are left out: time ran out."
 
 
 def notes(
@@ -246,6 +247,8 @@ def notes(
     sentences += [said for said in (_overlaps(scene, results), given_overlap(scene)) if said]
     if report.trains == ():
         sentences.append(UNLISTED)
+    if scene.train is not None and report.stage_counts is None:
+        sentences.append(UNCOUNTED)
     sentences += [
         f"There is no answer for the part {part.name}: {(part.message or part.status).rstrip('.')}."
         for part in results[1:]
