@@ -241,11 +241,13 @@ def deflections_and_ends(made: Flank, extras: Extras) -> dict[str, Any]:
     deflections = other_deflections(extras, lambda by: _deflected(made, by))
     name = "the largest addendum"
     addendum = extras.of(name, lambda: largest_addendum(gearing), None, SOUGHT)
+    name = "the largest profile shift at which one pair always touches"
+    shift = extras.of(name, lambda: last_shift_of_one_pair(gearing), None, SOUGHT)
     return {
         "deflections": deflections,
         "largest_addendum": addendum,
         "least_deflection": least_deflection(gearing),
-        "shift_of_one_pair": last_shift_of_one_pair(gearing),
+        "shift_of_one_pair": shift,
     }
 
 
