@@ -99,8 +99,9 @@ def absent(name: str) -> str | None:
 
 @cache
 def _without(there: tuple[str, ...]) -> dict[str, str]:
-    """Return SENTENCES without those of gears that some kinds are called by."""
-    return {said: names for said, names in SENTENCES.items() if not {*names.split()} & {*there}}
+    """SENTENCES without those of gears that a kind, or a word of its name, is called by."""
+    words = {word for kind in there for word in (kind, *kind.split("_"))}
+    return {said: names for said, names in SENTENCES.items() if not {*names.split()} & words}
 
 
 def option(name: str) -> str | None:
