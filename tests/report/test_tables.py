@@ -317,3 +317,15 @@ def test_a_table_is_the_fields_that_name_it():
     assert [cell.text for cell in both[2][1:]] == ["", "3.00"]
     heads, ((share,),) = records([Held()], METRIC, "limits")
     assert heads == ["used, %"] and (share.text, share.share) == ("50.0", 0.5)
+
+
+def test_a_field_that_holds_a_module_has_its_unit_like_every_other_length():
+    @dataclass(frozen=True)
+    class Gear:
+        module_mm: Annotated[float, Shown("module m")]
+        face_width_mm: Annotated[float, Shown("face width b")]
+
+    ((metric, _), _) = names_and_values(Gear(2.54, 25.4), METRIC)
+    ((inch, cell), (width, _)) = names_and_values(Gear(2.54, 25.4), INCH)
+    assert metric == "module m [mm]" and inch == "module m [in]" and float(cell.text) == 0.1
+    assert width == "face width b [in]"

@@ -19,7 +19,7 @@ from gearopt.report.drawing.player import Animation
 from gearopt.report.drawing.sheet import Drawing, Row
 from gearopt.report.measures import Measures
 from gearopt.report.plots import Figure
-from gearopt.report.words import number, parted, share
+from gearopt.report.words import is_module, number, parted, share
 
 # What spreadsheets take for formulas (wide signs in East Asian ones), unless it is a number.
 FORMULA = re.compile(r"\s*[=+\-@\uff1d\uff0b\uff0d\uff20]|[\t\r\n]")
@@ -223,11 +223,16 @@ class Listed:
         return Cell(size, format(size, self.form))
 
 
+def _unit(key: str) -> str:
+    """The unit at the end of a field's name; a module is a length here, in inches, too."""
+    return "mm" if is_module(key) else parted(key)[1]
+
+
 @cache
 def listed(kind: type, table: str = "") -> tuple[Listed, ...]:
     """The fields of a dataclass that a table lists, in their order."""
     return tuple(
-        Listed(key, said.label, parted(key)[1] if said.unit is None else said.unit, said.form)
+        Listed(key, said.label, _unit(key) if said.unit is None else said.unit, said.form)
         for key, hint in get_type_hints(kind, include_extras=True).items()
         for said in getattr(hint, "__metadata__", ())
         if isinstance(said, Shown) and said.table == table
