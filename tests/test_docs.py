@@ -9,7 +9,7 @@ import pytest
 
 import gearopt
 from gearopt import api, cli
-from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive import continuous_sizing, teeth
 from gearopt.optimise.own_methods import back_ends
 from gearopt.report.measures import METRIC
 from gearopt.scenes.reading.json_schema import reference
@@ -43,7 +43,7 @@ def test_the_reference_page_holds_every_unit():
 def test_every_limit_name_is_documented():
     """All limits that a drive with everything switched on can have."""
     _, scene = read(EVERYTHING.encode())
-    problems = (teeth.problem(scene.train()), sizing.problem(scene.train()))
+    problems = (teeth.problem(scene.train()), continuous_sizing.problem(scene.train()))
     rows = [row.name for problem in problems for row in problem.rows.inequalities]
     names = {re.sub(r"\[\d+\]", "", name) for name in rows}
     page = text("docs/drive.md")

@@ -26,7 +26,7 @@ from gearopt.optimise.workers import working
 from gearopt.scenes.explaining.possible import without_design
 from gearopt.scenes.kind import Kind
 from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.reading.inputs import inputs_of
+from gearopt.scenes.reading.linked_files import inputs_of
 from gearopt.scenes.reading.load import FORMAT, bare, kind_named, kind_of
 from gearopt.scenes.reading.load import load as load_file
 

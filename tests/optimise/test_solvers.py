@@ -9,7 +9,7 @@ import pytest
 from campaigns import few
 
 from gearopt.errors import SolveError
-from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive import continuous_sizing, teeth
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.laws.k_factor import K_FACTOR
@@ -113,13 +113,13 @@ def test_gp_and_ipopt_share_nothing_and_agree_to_1e_9():
     """Three stages of an exact ratio, and two within 1 %."""
     three = replace(drive(110, ("0.6", "0.6", "0.75"), F(0), modules=()), torque=21702.9)
     for train in (drive(), three):
-        a, b = (solve(sizing.problem(train), m) for m in ("ipopt", "gp"))
+        a, b = (solve(continuous_sizing.problem(train), m) for m in ("ipopt", "gp"))
         assert a.status == b.status == "optimal"
         assert a.value == pytest.approx(b.value, rel=1e-9)
 
 
 def test_gp_is_canonicalised_once():
-    problem = sizing.problem(drive(tolerance=F(0), modules=()))
+    problem = continuous_sizing.problem(drive(tolerance=F(0), modules=()))
     one = solve(problem, "gp")
     (key,) = (k for k in problem.memo if k[0] == "gp")
     model = problem.memo[key]
@@ -169,7 +169,7 @@ def test_scip_under_its_tolerance_is_refused():
 
 def test_posynomials_of_the_tape_are_the_text():
     rng = np.random.default_rng(2)
-    problem = sizing.problem(drive(ratio=(F(2), F(9)), wheel_diameter=F(400)))
+    problem = continuous_sizing.problem(drive(ratio=(F(2), F(9)), wheel_diameter=F(400)))
     model = scip.read(problem)
     points = np.exp(rng.uniform(0.0, 2.0, (20, len(problem.columns))))
     batch = problem.batch(points)

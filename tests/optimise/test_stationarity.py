@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from campaigns import few
 
-from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive import continuous_sizing
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.laws.k_factor import K_FACTOR
@@ -91,7 +91,9 @@ def elevator():
     own = {"modules": (), "pinion_teeth": (20, 40), "toothings": (Toothing(math.radians(25.0)),)}
     stages = tuple(Stage((2.07, 48.0), w, **own) for w in widths)
     total = Fraction(1450) / Fraction("66.5")
-    return sizing.problem(Train(49392.913, total, Fraction(1, 100), stages, law=K_FACTOR))
+    return continuous_sizing.problem(
+        Train(49392.913, total, Fraction(1, 100), stages, law=K_FACTOR)
+    )
 
 
 CASES = {

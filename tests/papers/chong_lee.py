@@ -9,8 +9,8 @@ from functools import cache
 from pathlib import Path
 
 import gearopt
+from gearopt.formulations.drive import continuous_sizing, sizing_text, teeth
 from gearopt.formulations.drive import processes as process
-from gearopt.formulations.drive import sizing, sizing_text, teeth
 from gearopt.formulations.drive.design import describe
 from gearopt.optimise.solve import run, solve
 from gearopt.optimise.typed import untyped
@@ -133,7 +133,7 @@ def volume(stages, ratios):
 def best_split(stages):
     """Ratios and volume of minimum gear volume at the exact total ratio, by the sizing problem."""
     own = replace(train(stages), tolerance=0)
-    result, outcome = run(sizing.problem(own), "ipopt")
+    result, outcome = run(continuous_sizing.problem(own), "ipopt")
     assert result.status == "optimal"
     return tuple(p.ratio for p in sizing_text.pairs(own, outcome.x)), result.value
 

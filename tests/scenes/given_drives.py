@@ -13,7 +13,7 @@ from pathlib import Path
 from scene_files import dump, parse
 
 from gearopt import solve
-from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive import continuous_sizing
 from gearopt.physics.gears import MODULES
 from gearopt.scenes.reading.load import read
 from gearopt.scenes.reading.toml_writing import toml_text
@@ -98,7 +98,7 @@ def feasible(text):
     _, scene = read(text.encode())
     train = scene.train()
     if scene.teeth is None:
-        status = solve(sizing.problem(train)).status
+        status = solve(continuous_sizing.problem(train)).status
         assert status in ("optimal", "infeasible"), status
         return status == "optimal"
     return len(every_train(train).values) > 0

@@ -134,7 +134,7 @@ def test_what_was_given_is_not_touched():
 
 
 def test_other_files_stand_in_the_working_directory(tmp_path, monkeypatch):
-    """Of a file beside the file: as `scenes.reading.inputs` is told."""
+    """Of a file beside the file: as `scenes.reading.linked_files` is told."""
     from gearopt.scenes.reading.load import load
 
     seen = []

@@ -20,7 +20,7 @@ from scrambles import SCRAMBLES
 from gearopt.cli import reporting
 from gearopt.errors import SceneError
 from gearopt.scenes.drive import KIND
-from gearopt.scenes.reading import files
+from gearopt.scenes.reading import file_bytes
 from gearopt.scenes.reading.json_schema import json_schema
 from gearopt.scenes.reading.load import load, read
 
@@ -255,7 +255,7 @@ def test_a_pipe_is_a_file(tmp_path, monkeypatch):
     writer.start()
     assert load(pipe).kind == "drive"
     writer.join()
-    monkeypatch.setattr(files, "PIPE_SECONDS", 0.02)
+    monkeypatch.setattr(file_bytes, "PIPE_SECONDS", 0.02)
     with pytest.raises(SceneError, match="nothing comes from this pipe in 0.02 s"):
         load(pipe)
     end, begin = os.pipe()

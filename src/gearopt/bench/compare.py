@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 from gearopt.bench.drive import CASES, train_of
-from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive import continuous_sizing, teeth
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.laws.k_factor import K_FACTOR
@@ -46,7 +46,7 @@ def comparisons(seeds: int) -> Iterator[tuple[str, Comparison]]:
 
 def _posed(train: Train) -> Callable[[str], Model]:
     models = {
-        True: Model(sizing.problem(train), "Real-valued teeth", train.unit),
+        True: Model(continuous_sizing.problem(train), "Real-valued teeth", train.unit),
         False: Model(teeth.problem(train), "Whole teeth", train.unit),
     }
     return lambda method: models[method in CONTINUOUS]

@@ -7,7 +7,7 @@ and more stages have no published optimum, so their error is the proven gap.
 from typing import Any
 
 from gearopt.bench import timed
-from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive import continuous_sizing, teeth
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.solve import solve
 from gearopt.scenes.reading.load import read
@@ -41,8 +41,10 @@ def run(repeat: int) -> list[dict[str, Any]]:
         train = train_of(duty, widths)
         rows.append(_row(name, "exact", lambda t=train: solve(teeth.problem(t)), known, repeat))
         # The continuous form has another optimum; its error is the certified gap alone.
-        rows.append(_row(name, "ipopt", lambda t=train: solve(sizing.problem(t)), None, repeat))
-        built = sizing.problem(train)
+        rows.append(
+            _row(name, "ipopt", lambda t=train: solve(continuous_sizing.problem(t)), None, repeat)
+        )
+        built = continuous_sizing.problem(train)
         solve(built)
         rows.append(_row(name, "ipopt, again", lambda b=built: solve(b), None, repeat))
     return rows

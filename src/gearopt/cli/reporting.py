@@ -27,7 +27,7 @@ from gearopt.errors import GearoptError
 from gearopt.optimise.result import Result, loads
 from gearopt.report.measures import METRIC, SYSTEMS, Measures
 from gearopt.report.words import again
-from gearopt.scenes.reading.files import LARGEST_KEPT, first_bytes
+from gearopt.scenes.reading.file_bytes import LARGEST_KEPT, first_bytes
 
 if TYPE_CHECKING:
     from gearopt.optimise.comparing.comparison import Comparison

@@ -10,8 +10,8 @@ from random_cells import designs_within, needed_by, random_cells
 from rated_drives import FREE, RACK, by, rated_drive
 from test_rated_cells import SAFETY, STANDARDS, TOOTHINGS
 
-from gearopt.formulations.drive import sizing
-from gearopt.formulations.drive.rated.boxes import T, bounded, first_boxes, shafts_about
+from gearopt.formulations.drive import continuous_sizing
+from gearopt.formulations.drive.rated_continuous.boxes import T, bounded, first_boxes, shafts_about
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
@@ -87,14 +87,14 @@ def smallest(train, exact, rng, count):
 def test_no_random_design_is_below_the_bound(name):
     """Of which some are near the best one; and no designs of one angle are."""
     train = inclining(rated_drive(4, [FREE], options=by(name)), 8.0, 30.0)
-    exact = sizing.problem(train)
+    exact = continuous_sizing.problem(train)
     result = solve(exact, budget=Budget(120.0, gap=0.03))
     values = smallest(train, exact, np.random.default_rng(7), 400)
     assert len(values) > 360 and result.bound > 0.0
     assert values.min() >= result.bound and values.min() < 1.1 * result.value
     assert result.value >= result.bound
     alone = rated_drive(4, [FREE], options=by(name), helix=math.radians(20.0))
-    assert solve(sizing.problem(alone), budget=Budget(2.0)).value >= result.bound
+    assert solve(continuous_sizing.problem(alone), budget=Budget(2.0)).value >= result.bound
 
 
 @pytest.mark.slow
@@ -104,7 +104,7 @@ def test_the_bound_of_two_stages_is_below_whole_teeth_of_any_angles(name):
 
     usual = rated_drive(12, [FREE, FREE], options=by(name), pinion_teeth=(20, 22))
     train = inclining(usual, 10.0, 25.0)
-    result = solve(sizing.problem(train), budget=Budget(40.0, gap=0.1))
+    result = solve(continuous_sizing.problem(train), budget=Budget(40.0, gap=0.1))
     angles = [Toothing(math.radians(b), (RACK, RACK)) for b in (10.0, 16.0, 25.0)]
     several = replace(
         usual, stages=tuple(replace(s, toothings=tuple(angles)) for s in usual.stages)

@@ -12,7 +12,7 @@ from rated_brute_force import cheapest
 from rated_drives import RACK, F, agma, rated_drive, some_iso, some_rated_drive
 from test_teeth_brute_force import agrees
 
-from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive import continuous_sizing
 from gearopt.formulations.drive.teeth import pairs, problem
 from gearopt.formulations.drive.teeth.search import search
 from gearopt.formulations.drive.toothing import Toothing
@@ -140,9 +140,9 @@ def test_smooth_forms_know_rims_that_fit(standard):
 @pytest.mark.slow
 def test_real_valued_masses_have_a_bound(monkeypatch):
     """It holds for whole teeth of standard modules, too."""
-    monkeypatch.setattr(sizing, "SEARCH", 0.3)
+    monkeypatch.setattr(continuous_sizing, "SEARCH", 0.3)
     for train in (pair_of_least_mass(), random_blanks(some_drive(11, 2), 11)):
-        found = solve(sizing.problem(train))
+        found = solve(continuous_sizing.problem(train))
         assert found.status in ("feasible", "stationary", "optimal") and found.bound > 0.0
         assert found.bound <= found.value
         whole, outcome = run(problem(train))

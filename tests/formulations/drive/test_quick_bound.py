@@ -8,7 +8,7 @@ import pytest
 from campaigns import few
 from rated_drives import MODULES, TREATMENTS, F, agma, rated_drive, some_face, some_iso
 
-from gearopt.formulations.drive.rated import quick_bound as quick
+from gearopt.formulations.drive.rated_continuous import quick_bound as quick
 from gearopt.formulations.drive.teeth.search import search
 from gearopt.formulations.drive.teeth.tables import stage_tables
 from gearopt.formulations.strength.rated import Load, Option

@@ -20,11 +20,16 @@ from rated_drives import (
     some_rated_drive,
 )
 
-from gearopt.formulations.drive import sizing, sizing_text, teeth
-from gearopt.formulations.drive.rated import boxes as rated_boxes
-from gearopt.formulations.drive.rated import cells as rated_cells
-from gearopt.formulations.drive.rated.boxes import ROWS, bounded, first_boxes, shafts_about
-from gearopt.formulations.drive.rated.cells import _halves
+from gearopt.formulations.drive import continuous_sizing, sizing_text, teeth
+from gearopt.formulations.drive.rated_continuous import boxes as rated_boxes
+from gearopt.formulations.drive.rated_continuous import cells as rated_cells
+from gearopt.formulations.drive.rated_continuous.boxes import (
+    ROWS,
+    bounded,
+    first_boxes,
+    shafts_about,
+)
+from gearopt.formulations.drive.rated_continuous.cells import _halves
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth
 from gearopt.formulations.strength.rated import Load
@@ -264,7 +269,7 @@ def test_the_published_pair_is_proven_optimal():
     from test_rated_sizing import published_pair
 
     train = published_pair()
-    found = solve(sizing.problem(train))
+    found = solve(continuous_sizing.problem(train))
     assert found.status == "optimal" and found.gap <= 1e-6
     assert found.bound == pytest.approx(found.value, rel=1e-6)
 
@@ -273,7 +278,7 @@ def test_the_published_pair_is_proven_optimal():
 def test_what_no_cell_allows_is_impossible(name):
     """A wheel that is smaller than the ratings need: by AGMA a program proves it, by ISO cells."""
     train = rated_drive(4, [FREE], options=by(name), wheel_diameter=F(60))
-    found = solve(sizing.problem(train))
+    found = solve(continuous_sizing.problem(train))
     assert found.status == "infeasible" and found.value is None
 
 
@@ -303,7 +308,7 @@ def test_random_small_drives_are_not_better_than_their_bound(standard, block):
             seen += 1
         if found.pairs is not None:
             assert found.bound <= found.value
-            made = sizing._of_pairs(train, sizing.problem(train), found)
+            made = continuous_sizing._of_pairs(train, continuous_sizing.problem(train), found)
             assert made is not None
     assert seen > 1
 
@@ -318,7 +323,7 @@ def test_three_stages_close_at_a_measured_pace():
 
 def test_a_gap_that_is_asked_for_is_reached():
     train = rated_drive(4, [FREE], options=by("agma"))
-    method = sizing.searched(train)
+    method = continuous_sizing.searched(train)
     posed = replace(sizing_text.exact_text(train), methods={"smooth": method})
     found = solve(posed, budget=Budget(20.0, gap=0.05), gap=0.05)
     assert found.status == "optimal" and 0.0 < found.gap <= 0.05

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from rated_drives import FREE, agma, by, rated_drive
 
-from gearopt.formulations.drive import sizing, sizing_text, teeth
-from gearopt.formulations.drive.rated import bound as rated_bound
+from gearopt.formulations.drive import continuous_sizing, sizing_text, teeth
+from gearopt.formulations.drive.rated_continuous import bound as rated_bound
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength import RATED, agma_floor, agma_smooth
@@ -40,7 +40,7 @@ def published_pair(given=()):
 
 @pytest.fixture(autouse=True)
 def short_search(monkeypatch):
-    monkeypatch.setattr(sizing, "SEARCH", 0.3)
+    monkeypatch.setattr(continuous_sizing, "SEARCH", 0.3)
 
 
 def test_a_published_pair_of_least_volume(monkeypatch):
@@ -51,8 +51,8 @@ def test_a_published_pair_of_least_volume(monkeypatch):
     monkeypatch.setattr(factors, "FEET_PER_MINUTE", 5.0)
     monkeypatch.setitem(factors.ALIGNMENT, "commercial", (0.127, 0.0158, -0.930e-4))
     train = published_pair({"s_ac": (2.22 * 300 + 200, 2.22 * 260 + 200)})
-    monkeypatch.setattr(sizing, "SEARCH", 30.0)  # it takes 0.5 s where nothing else runs
-    found = solve(sizing.problem(train))
+    monkeypatch.setattr(continuous_sizing, "SEARCH", 30.0)  # it takes 0.5 s where nothing else runs
+    found = solve(continuous_sizing.problem(train))
     assert found.status == "optimal" and found.value == pytest.approx(1703170, abs=0.5)
     assert found.design["pinion_teeth"] == pytest.approx(140 / 3, rel=1e-9)
     assert found.design["module_mm"] == pytest.approx(1.9231, abs=5e-5)
@@ -75,7 +75,7 @@ def test_with_the_constants_of_the_inch_form_that_pair_is_smaller():
 
     No published number: the shares are those of the two constants, to first order.
     """
-    found, whole = (solve(made.problem(published_pair())) for made in (sizing, teeth))
+    found, whole = (solve(made.problem(published_pair())) for made in (continuous_sizing, teeth))
     assert found.value == pytest.approx(1703170 * (1 - 0.0022 - 0.0018), rel=3e-4)
     assert [whole.design[n] for n in ("pinion_teeth", "wheel_teeth")] == [44, 132]
 
@@ -159,7 +159,7 @@ def test_no_bounding_law_exceeds_the_rating(helix, choice, kind):
 
 def test_the_bounding_law_is_a_geometric_program():
     train = rated_drive(20, [FREE, FREE])
-    for choice in sizing.choices(train):
+    for choice in continuous_sizing.choices(train):
         assert form(rated_bound.bounding(train, choice, 1e7)).convex
 
 
@@ -225,10 +225,10 @@ def test_lines_below_load_distribution_touch_it(practice, widest):
 @pytest.mark.slow
 @pytest.mark.parametrize("helix", [0.0, 0.4363])
 def test_two_stages_are_below_whole_teeth_and_above_the_bound(helix, monkeypatch):
-    monkeypatch.setattr(sizing, "SEARCH", 5.0)
-    monkeypatch.setattr(sizing, "REFINED", 1)
+    monkeypatch.setattr(continuous_sizing, "SEARCH", 5.0)
+    monkeypatch.setattr(continuous_sizing, "REFINED", 1)
     train = rated_drive(20, [FREE, FREE], helix=helix)
-    found, whole = solve(sizing.problem(train)), solve(teeth.problem(train))
+    found, whole = solve(continuous_sizing.problem(train)), solve(teeth.problem(train))
     assert found.status in ("stationary", "feasible") and max(found.limits.values()) <= 1.0 + 1e-8
     assert found.bound <= whole.value and found.value <= whole.value
     assert found.gap < 0.1
@@ -237,7 +237,7 @@ def test_two_stages_are_below_whole_teeth_and_above_the_bound(helix, monkeypatch
 def test_what_the_bounding_law_excludes_is_impossible():
     train = published_pair()
     stage = replace(train.stages[0], wheel_diameter=F(150))
-    found = solve(sizing.problem(replace(train, stages=(stage,))))
+    found = solve(continuous_sizing.problem(replace(train, stages=(stage,))))
     assert found.status == "infeasible" and found.value is None
 
 
@@ -245,9 +245,9 @@ def test_what_the_bounding_law_excludes_is_impossible():
 @pytest.mark.parametrize("names", [("iso",), ("agma", "iso")])
 def test_what_iso_6336_limits_is_rated_by_it(names, monkeypatch):
     """Its own rating, with steps, accepts what is found."""
-    monkeypatch.setattr(sizing, "SEARCH", 5.0)
+    monkeypatch.setattr(continuous_sizing, "SEARCH", 5.0)
     train = rated_drive(4, [FREE], helix=0.0, options=by(*names))
-    found = solve(sizing.problem(train))
+    found = solve(continuous_sizing.problem(train))
     (pair,) = sizing_text.pairs(train, np.array(list(found.design.values()), float))
     standard = train.stages[0].options[0].standards[-1]
     assert min(standard.safeties(pair, train.torque, train.speed)) >= 1.0 - 1e-8
@@ -273,7 +273,7 @@ def two_helical_stages(power):
 def test_the_bounding_program_by_two_solvers():
     """Clarabel through cvxpy and Ipopt: one optimum to 1e-9, the dual bound at it."""
     train = two_helical_stages(15e6)
-    for choice in sizing.choices(train):
+    for choice in continuous_sizing.choices(train):
         made = rated_bound.bounding(train, choice)
         first, second = solve(made, "ipopt"), solve(made, "gp")
         assert first.value == pytest.approx(second.value, rel=1e-9)
@@ -286,14 +286,17 @@ def test_random_starts_of_a_watt_to_20_megawatts_end_at_one_design(power):
     """N mm/s; lengths a factor of e around the optimum of the bounding program."""
     train, rng = two_helical_stages(power), np.random.default_rng(5)
     choice = (("conventional",),) * 2
-    made, smooth = rated_bound.bounding(train, choice), sizing.smooth_problem(train, choice)
+    made, smooth = (
+        rated_bound.bounding(train, choice),
+        continuous_sizing.smooth_problem(train, choice),
+    )
     known = solve(made, "ipopt")
     middle = np.concatenate([np.ravel(v) for v in known.design.values()])
     values = []
     for _ in range(20):
         x = middle * np.exp(rng.uniform(-1.0, 1.0, len(middle)))
         assert solve(made.starting(x), "ipopt").value == pytest.approx(known.value, rel=1e-9)
-        guess = np.concatenate([x, sizing.guess(train, x, choice)])
+        guess = np.concatenate([x, continuous_sizing.guess(train, x, choice)])
         values.append(solve(smooth.starting(guess), "ipopt").value)
     assert values == pytest.approx([values[0]] * 20, rel=1e-7)
 
@@ -301,6 +304,6 @@ def test_random_starts_of_a_watt_to_20_megawatts_end_at_one_design(power):
 @pytest.mark.slow
 def test_a_budget_is_kept_and_its_bound_holds():
     train = rated_drive(20, [FREE, FREE])
-    early = solve(sizing.problem(train), budget=Budget(seconds=1.5))
+    early = solve(continuous_sizing.problem(train), budget=Budget(seconds=1.5))
     assert early.status == "limit"
     assert early.bound is None or early.bound <= solve(teeth.problem(train)).value

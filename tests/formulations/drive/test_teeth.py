@@ -9,7 +9,7 @@ import pytest
 from brute_force import some_drive
 from campaigns import few
 
-from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive import continuous_sizing, teeth
 from gearopt.formulations.drive.teeth.reach import narrowed
 from gearopt.formulations.drive.teeth.search import possible
 from gearopt.formulations.drive.toothing import Toothing
@@ -43,7 +43,7 @@ def test_table_2_designs_are_beaten_under_their_own_limits():
 @pytest.mark.parametrize("objective", [o for o in OBJECTIVES if o != "cost"])
 def test_exact_is_never_below_the_continuous_bound(objective):
     train = replace(drive(), objective=objective, density=7.85e-9)
-    exact, ideal = solve(teeth.problem(train)), solve(sizing.problem(train))
+    exact, ideal = solve(teeth.problem(train)), solve(continuous_sizing.problem(train))
     assert exact.status == ideal.status == "optimal"
     assert ideal.bound <= exact.value <= 1.08 * ideal.value
 
@@ -173,7 +173,7 @@ def test_a_gap_that_is_enough_ends_the_search():
     free = FaceWidth(F("0.3"), F("0.6"))
     train = drive(total=F(3000), widths=("0.6",) * 6)
     train = replace(train, stages=tuple(replace(s, face_width=free) for s in train.stages))
-    bound = solve(sizing.problem(train)).bound
+    bound = solve(continuous_sizing.problem(train)).bound
     budget = Budget(evaluations=3_000_000, gap=1e-3)
     result = solve(teeth.problem(train, floor=bound), budget=budget, gap=1e-3)
     assert result.status == "optimal" and result.gap <= 1e-3

@@ -9,8 +9,8 @@ import pytest
 from small_drives import drive
 
 from gearopt.errors import SolveError
+from gearopt.formulations.drive import continuous_sizing, sizing_text, teeth
 from gearopt.formulations.drive import processes as process
-from gearopt.formulations.drive import sizing, sizing_text, teeth
 from gearopt.formulations.drive.design import describe
 from gearopt.formulations.drive.gearbox import Gearbox, Shaft
 from gearopt.formulations.drive.processes import ProcessTwo
@@ -51,7 +51,7 @@ def test_every_stage_has_its_own_helix_in_every_formulation():
         d = pair.normal_module * pair.pinion_teeth / math.cos(angle)
         assert pair.pinion.reference_diameter == pytest.approx(d, rel=1e-15)
         assert pair.face_width == pytest.approx(0.6 * d, rel=1e-15)
-    lower, relaxed = run(sizing.problem(train))
+    lower, relaxed = run(continuous_sizing.problem(train))
     assert lower.status == "optimal" and lower.bound <= result.value
     text = sizing_text.terms(
         train, SimpleNamespace(**train.numbers()), sizing_text.pairs(train, relaxed.x)

@@ -14,8 +14,8 @@ from gearboxes import smallest_box
 from small_drives import FACES, OBJECTIVES, drive
 
 from gearopt.errors import SolveError
+from gearopt.formulations.drive import continuous_sizing, teeth, together
 from gearopt.formulations.drive import processes as process
-from gearopt.formulations.drive import sizing, teeth, together
 from gearopt.formulations.drive.gearbox import Gearbox, Shaft
 from gearopt.formulations.drive.processes import ProcessOne
 from gearopt.formulations.drive.toothing import Toothing
@@ -191,7 +191,7 @@ def test_a_law_that_depends_on_speed_and_width_in_whole_teeth(face, allowable):
 def test_a_law_of_three_lines_with_real_valued_sizes():
     """Volume is pi/4 3 T/s (1 + u^2) a stage, whatever the teeth: one number to choose."""
     train = pressed(total=12, modules=(), tolerance=F(0))
-    problem = sizing.problem(train)
+    problem = continuous_sizing.problem(train)
     assert tape.kinds(problem).log_convex
     result = solve(problem)
     u = np.linspace(2.0, 6.0, 400_001)
@@ -207,7 +207,7 @@ def test_a_law_that_is_no_posynomial_goes_to_ipopt_as_it_is():
     face = FaceWidth(F(3, 5), F(3, 5))
     train = drive(1, total=4, tolerance=F(0), modules=(), pinion_teeth=(15, 20))
     stage = replace(train.stages[0], allowable=(90.0,), face_width=face)
-    problem = sizing.problem(replace(train, stages=(stage,), law=LEWIS))
+    problem = continuous_sizing.problem(replace(train, stages=(stage,), law=LEWIS))
     assert not tape.kinds(problem).log_convex
     result = solve(problem)
     form = math.pi * (0.154 - 0.912 / 15)
@@ -307,7 +307,7 @@ def test_a_conflict_and_remedies_of_a_law():
     least = float(change.write.strip('"').split()[0])
     for pressure, status in ((least, "optimal"), (0.999 * least, "infeasible")):
         other = scene(wheel_diameter="200 mm", pressure=f"{pressure} MPa")
-        assert solve(sizing.problem(other.train())).status == status
+        assert solve(continuous_sizing.problem(other.train())).status == status
 
 
 def test_a_limit_is_called_by_its_words_else_by_its_name():

@@ -12,7 +12,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.report.explained import remedy_words
 from gearopt.scenes import drive
 from gearopt.scenes.drive.explain.choices import nearest_ratio
-from gearopt.scenes.drive.explain.remedies import remedies
+from gearopt.scenes.drive.explain.load_limit_remedies import remedies
 from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.explaining.explanations import explanation
 from gearopt.scenes.reading.ask import Ask

@@ -11,7 +11,7 @@ import pytest
 from edits import edited, scene_of
 
 from gearopt import Budget, explain, solve
-from gearopt.formulations.drive import sizing, teeth
+from gearopt.formulations.drive import continuous_sizing, teeth
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
 ELEVATOR = (PROBLEMS / "elevator.toml").read_text(encoding="utf-8")
@@ -167,7 +167,7 @@ def verify(content, remedy):
 
 def status(scene):
     """Whether a scene has a design: real-valued, and with whole teeth where it asks for them."""
-    ideal = solve(sizing.problem(scene.train())).status
+    ideal = solve(continuous_sizing.problem(scene.train())).status
     if scene.teeth is None or ideal == "infeasible":
         return ideal
     return solve(teeth.problem(scene.train()), gap=0.9).status

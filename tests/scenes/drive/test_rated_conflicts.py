@@ -10,7 +10,7 @@ from gearopt.formulations.drive.teeth.search import reaches
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.headline import lead
-from gearopt.scenes.drive.explain import rated
+from gearopt.scenes.drive.explain import rated_remedies
 from gearopt.scenes.drive.explain.rated_conflict import conflict
 from gearopt.scenes.drive.explain.requirements import requirements, without
 from gearopt.scenes.drive.explain.tried import Case
@@ -75,7 +75,7 @@ def test_remedies_are_of_use_and_verified():
 
 
 def test_a_conflict_is_said_first_and_what_may_not_matter_last(monkeypatch):
-    monkeypatch.setattr(rated, "CONFLICT_SECONDS", 60.0)  # on a busy machine, too
+    monkeypatch.setattr(rated_remedies, "CONFLICT_SECONDS", 60.0)  # on a busy machine, too
     tables = NARROW | {"stage": [{"face_width_over_diameter": 0.3}]}
     result = gearopt.solve(tables)
     ways = result.report["ways_out"]

@@ -11,7 +11,7 @@ from gearopt.optimise.terms import Terms, Var
 from gearopt.scenes.kind import Example, Kind
 from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.fields import Table, number, words
-from gearopt.scenes.reading.inputs import Input, result_of
+from gearopt.scenes.reading.linked_files import Input, result_of
 
 TEXT = """\
 gearopt = 1

@@ -4,8 +4,9 @@ Where ratings limit the stages, Ipopt minimises the ratings' smooth form in ever
 what it needs fixed beforehand (regimes of AGMA 908, ranges of K_v of ISO 6336), from the optimum of
 a geometric program whose limits are below the true ones (AGMA), or from what a search finds (ISO
 6336 without steps in its tolerances). That search bounds the drive from below, in real-valued and
-in whole teeth, and looks for designs of its own (`rated.cells`). What is returned was rated by the
-exact form; a design that it does not accept is made as much larger as it takes (`repaired`).
+in whole teeth, and looks for designs of its own (`rated_continuous.cells`). What is returned was
+rated by the exact form; a design that it does not accept is made as much larger as it takes
+(`repaired`).
 """
 
 import math
@@ -18,9 +19,9 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing_text, teeth
-from gearopt.formulations.drive.rated.bound import Choice, bounding, solved, stage_box
-from gearopt.formulations.drive.rated.cells import Searched, search
-from gearopt.formulations.drive.rated.designs import polished
+from gearopt.formulations.drive.rated_continuous.bound import Choice, bounding, solved, stage_box
+from gearopt.formulations.drive.rated_continuous.cells import Searched, search
+from gearopt.formulations.drive.rated_continuous.designs import polished
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength.rated import MODES, Standard
 from gearopt.optimise.clock import Clock

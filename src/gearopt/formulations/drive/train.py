@@ -1,4 +1,4 @@
-"""The input of `sizing` and `teeth`: a multi-stage drive with its duty and limits.
+"""The input of `continuous_sizing` and `teeth`: a multi-stage drive with its duty and limits.
 
 Numbers at which a tie may occur (ratios, modules, face-width proportions, diameters) are exact
 fractions; the rest are floats in mm, N, rad, MPa.

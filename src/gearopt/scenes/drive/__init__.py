@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from gearopt.errors import SolveError
-from gearopt.formulations.drive.sizing import problem as real_valued
+from gearopt.formulations.drive.continuous_sizing import problem as real_valued
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.result import Result

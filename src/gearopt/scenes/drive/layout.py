@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations.drive import layout, sizing, sizing_text, teeth, together
+from gearopt.formulations.drive import continuous_sizing, layout, sizing_text, teeth, together
 from gearopt.formulations.drive.design import (
     DriveDesign,
     describe,
@@ -281,7 +281,7 @@ def with_gears(drive: Drive, ask: Ask, box: Result | None) -> Result:
     assert box is not None
     train = drive.train
     whole = ask.method not in REAL
-    problem = teeth.problem(train) if whole else sizing.problem(train)
+    problem = teeth.problem(train) if whole else continuous_sizing.problem(train)
     point = point_of(box.design)[: sum(v.size for v in problem.variables)]
     pairs, options = teeth.gears(train, point) if whole else (sizing_text.pairs(train, point), ())
     design = describe(train, pairs, options)

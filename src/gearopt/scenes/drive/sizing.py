@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations.drive import sizing, sizing_text, teeth
+from gearopt.formulations.drive import continuous_sizing, sizing_text, teeth
 from gearopt.formulations.drive.processes import ProcessOne, ProcessTwo, methods
 from gearopt.formulations.drive.train import MASSES, Train
 from gearopt.optimise.certificate import reconcile
@@ -104,7 +104,7 @@ def of_count(scene: Scene, ask: Ask, real: Result | None = None) -> Result:
 
 def of_real_values(drive: Drive, ask: Ask, known: Result | None) -> Result:
     """Gears with real-valued teeth and modules, by the method that is asked for."""
-    result = _solved(drive.train, ask, sizing.problem(drive.train))
+    result = _solved(drive.train, ask, continuous_sizing.problem(drive.train))
     return _checked(result) if drive.train.inclining else result
 
 
@@ -153,7 +153,9 @@ def _rated(drive: Drive, ask: Ask) -> Result:
     result = _solved(train, replace(ask, budget=ask.budget.less(kept)), whole)
     if result.status != "limit" or clock.over:  # a first train takes what it takes
         return result
-    alone = replace(sizing_text.exact_text(train), methods={SMOOTH: sizing.searched(train)})
+    alone = replace(
+        sizing_text.exact_text(train), methods={SMOOTH: continuous_sizing.searched(train)}
+    )
     real = _solved(train, Ask(None, Budget(kept), watch=ask.watch), alone)
     if result.value is None and real.status != "infeasible":
         result = replace(result, bound=real.bound)
@@ -171,7 +173,7 @@ def ideal(train: Train, ask: Ask) -> Result:
         objective = {"name": train.objective, "value": None, "unit": train.unit}
         return Result("sizing", "limit", "", objective)
     asked = Ask(None, ask.budget, watch=ask.watch)
-    return _solved(train, asked, sizing.problem(by_loads))
+    return _solved(train, asked, continuous_sizing.problem(by_loads))
 
 
 def _by_load_limits(train: Train) -> Train | None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations.drive import sizing, sizing_text, teeth
+from gearopt.formulations.drive import continuous_sizing, sizing_text, teeth
 from gearopt.formulations.drive.teeth import load_front
 from gearopt.formulations.drive.train import OBJECTIVES, Train
 from gearopt.optimise.pareto.objectives import EPSILON, EXACT, Limiting, Objective, Tradeoff
@@ -99,7 +99,7 @@ def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
             f"[teeth], and a method other than {EPSILON}"
         )
     if not whole:
-        return Tradeoff(sizing.problem(train), listed, lambda x: _real(train, x))
+        return Tradeoff(continuous_sizing.problem(train), listed, lambda x: _real(train, x))
     return Tradeoff(teeth.problem(train), listed, lambda x: _whole(train, x))
 
 

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from gearopt.physics.motion.kinematics import KINEMATICS
 from gearopt.scenes.reading.fields import Table, choice, number, quantity, truth, whole
-from gearopt.scenes.reading.inputs import Input, result_of
+from gearopt.scenes.reading.linked_files import Input, result_of
 from gearopt.scenes.reading.lists import several, span
 from gearopt.units import Quantity
 

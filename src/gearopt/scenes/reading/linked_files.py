@@ -12,7 +12,7 @@ from gearopt.errors import SceneError
 from gearopt.optimise.result import Result
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Opened, Reads, refuse
-from gearopt.scenes.reading.files import LARGEST_FILE, LARGEST_KEPT, first_bytes
+from gearopt.scenes.reading.file_bytes import LARGEST_FILE, LARGEST_KEPT, first_bytes
 from gearopt.scenes.reading.load import kind_named
 from gearopt.scenes.reading.load import read as read_scene
 

@@ -21,7 +21,7 @@ from gearopt.scenes.reading.absent import absent_kind
 from gearopt.scenes.reading.called import kind_called
 from gearopt.scenes.reading.changes import as_written, changed
 from gearopt.scenes.reading.fields import Opened
-from gearopt.scenes.reading.files import LARGEST_FILE, first_bytes
+from gearopt.scenes.reading.file_bytes import LARGEST_FILE, first_bytes
 from gearopt.scenes.reading.kinds import kinds
 from gearopt.scenes.reading.mistakes import translate, wrong_name, wrong_value
 from gearopt.scenes.reading.near import near

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.drive.rated.boxes import (
+from gearopt.formulations.drive.rated_continuous.boxes import (
     END,
     FREE,
     ROUND,
@@ -24,7 +24,7 @@ from gearopt.formulations.drive.rated.boxes import (
     joined,
     shafts_about,
 )
-from gearopt.formulations.drive.rated.designs import Design, in_boxes, polished, smallest
+from gearopt.formulations.drive.rated_continuous.designs import Design, in_boxes, polished, smallest
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array

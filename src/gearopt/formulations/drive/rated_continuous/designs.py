@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.drive.rated.boxes import (
+from gearopt.formulations.drive.rated_continuous.boxes import (
     B_OVER_D,
     D2,
     ROUND,

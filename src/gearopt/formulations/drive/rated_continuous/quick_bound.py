@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from gearopt.formulations.drive.rated import boxes
-from gearopt.formulations.drive.rated.boxes import B_OVER_D, D2, MARGIN, B, D, M, U, Z
+from gearopt.formulations.drive.rated_continuous import boxes
+from gearopt.formulations.drive.rated_continuous.boxes import B_OVER_D, D2, MARGIN, B, D, M, U, Z
 from gearopt.formulations.drive.train import LENGTHS, Train
 from gearopt.formulations.strength.cells import Cells
 from gearopt.formulations.strength.rated import Option, under_each_load

@@ -1,7 +1,7 @@
 """Exact sizing: whole tooth numbers and standard modules, by branch and bound.
 
-The same objective and limits as `sizing`, with z1, z2 whole, modules from a series and face widths
-tied, free or on a step. `exact` proves its answer by exhausting all other trains.
+The same objective and limits as `continuous_sizing`, with z1, z2 whole, modules from a series and
+face widths tied, free or on a step. `exact` proves its answer by exhausting all other trains.
 """
 
 import math
@@ -54,8 +54,8 @@ SETTINGS = {"partial designs extended at once": BEAM, "relative margin of exclus
 def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
     """Return the discrete problem of a drive; `exact` proves its `count` best trains in order.
 
-    floor: a lower bound on the objective known from elsewhere (`sizing`), with which `exact` may
-    stop early where its budget allows a gap.
+    floor: a lower bound on the objective known from elsewhere (`continuous_sizing`), with which
+    `exact` may stop early where its budget allows a gap.
 
     Trains are distinct when a tooth number differs; each has its best modules and face widths.
     Variables, one component per stage: module [mm], pinion_teeth, wheel_teeth, and face_width [mm]

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
-from gearopt.formulations.drive.rated.quick_bound import quick_bound
+from gearopt.formulations.drive.rated_continuous.quick_bound import quick_bound
 from gearopt.formulations.drive.teeth.choices import valued
 from gearopt.formulations.drive.teeth.columns import spans
 from gearopt.formulations.drive.teeth.later_stages import (

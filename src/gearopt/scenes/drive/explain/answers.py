@@ -9,8 +9,8 @@ from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.result import Result
 from gearopt.scenes.drive.explain.counts import remedies_of_counts
 from gearopt.scenes.drive.explain.influences import explained
-from gearopt.scenes.drive.explain.rated import conflict_soon
-from gearopt.scenes.drive.explain.rated import remedies as of_rated
+from gearopt.scenes.drive.explain.rated_remedies import conflict_soon
+from gearopt.scenes.drive.explain.rated_remedies import remedies as of_rated
 from gearopt.scenes.drive.explain.tried import Case, any_possible
 from gearopt.scenes.drive.layout import APART, at_once_of_count, gears_of
 from gearopt.scenes.drive.scene import Scene

@@ -6,7 +6,7 @@ from dataclasses import replace
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Change, Remedies, Remedy
 from gearopt.optimise.result import Budget
-from gearopt.scenes.drive.explain.remedies import remedies
+from gearopt.scenes.drive.explain.load_limit_remedies import remedies
 from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.drive.scene import MOST_STAGES, Scene
 from gearopt.scenes.explaining.numbers import allowed

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive import continuous_sizing
 from gearopt.formulations.drive.train import MASSES
 from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock
@@ -93,7 +93,7 @@ def _basis(scene: Scene, clock: Clock) -> Basis | None:
     """Return the optimum of real-valued sizes; None where it is not known."""
 
     def posed(other: Scene) -> Problem:
-        return sizing.problem(other.train())
+        return continuous_sizing.problem(other.train())
 
     base = posed(scene)
     ideal, outcome = run(base, "ipopt", clock.left, watch=clock.watch)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from gearopt.formulations.drive import sizing, sizing_text
+from gearopt.formulations.drive import continuous_sizing, sizing_text
 from gearopt.formulations.drive.teeth.choices import best_pairs
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.best_first import best_first
@@ -188,7 +188,7 @@ def _moves(choices: list[Choice], box: Box) -> Moves:
 
 def is_real(scene: Scene, clock: Clock) -> bool:
     """Return whether real-valued sizes are impossible too."""
-    return solve_within(clock, sizing.problem(scene.train())).status == "infeasible"
+    return solve_within(clock, continuous_sizing.problem(scene.train())).status == "infeasible"
 
 
 def posed(scene: Scene) -> tuple[Problem, list[Handle], list[Move]]:

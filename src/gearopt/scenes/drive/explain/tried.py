@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from gearopt.formulations.drive import sizing
+from gearopt.formulations.drive import continuous_sizing
 from gearopt.formulations.drive.teeth.progress import Teeth
 from gearopt.formulations.drive.teeth.rated import RatedTable
 from gearopt.formulations.drive.teeth.reach import narrowed
@@ -44,7 +44,7 @@ class Case:
         if self.clock.over:
             return None
         if self.scene.teeth is None:
-            word = solve_within(self.clock, sizing.problem(train)).status
+            word = solve_within(self.clock, continuous_sizing.problem(train)).status
             return True if word in THERE else (False if word == "infeasible" else None)
         if train.rated:
             return self._rated(train)
@@ -85,7 +85,10 @@ class Case:
         if self.clock.over:
             return "undecided"
         if scene.teeth is not None:
-            if solve_within(self.clock, sizing.problem(scene.train())).status == "infeasible":
+            if (
+                solve_within(self.clock, continuous_sizing.problem(scene.train())).status
+                == "infeasible"
+            ):
                 return "infeasible"
         verdict = self.possible(scene.train())
         return "undecided" if verdict is None else ("feasible" if verdict else "infeasible")
