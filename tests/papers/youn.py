@@ -15,11 +15,11 @@ from gearopt.physics.backlash import (
 )
 from gearopt.physics.gears import disc_mass
 from gearopt.physics.stiffness import (
-    line_stiffness,
     locked_frequency,
     mesh_compliance,
     output_compliance,
     shaft_compliance,
+    specific_pair_stiffness,
     tooth_factor,
 )
 
@@ -123,7 +123,7 @@ def lines(pinion="y", wheel="y"):
     """Line stiffness [MPa] of stages 12 and 34 with either form of the Lewis factor."""
     kinds = (pinion, wheel, pinion, wheel)
     z = [tooth_factor(y * PITCHES[k]) for y, k in zip(LEWIS, kinds, strict=True)]
-    return line_stiffness(E, z[0], E, z[1]), line_stiffness(E, z[2], E, z[3])
+    return specific_pair_stiffness(E, z[0], E, z[1]), specific_pair_stiffness(E, z[2], E, z[3])
 
 
 def rule(factor, gears, pinion="y", wheel="y"):

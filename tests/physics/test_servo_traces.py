@@ -24,7 +24,7 @@ LAWS = [
     lambda a, b, c, d: stiffness.shaft_compliance(a, b, c),
     lambda a, b, c, d: stiffness.tooth_factor(0.1 * a),
     lambda a, b, c, d: stiffness.lewis_form_factor(20.0 * a),
-    lambda a, b, c, d: stiffness.line_stiffness(a, b, c, d),
+    lambda a, b, c, d: stiffness.specific_pair_stiffness(a, b, c, d),
     lambda a, b, c, d: stiffness.mesh_compliance(a, b, c),
     lambda a, b, c, d: stiffness.output_compliance((a, b), (c, d)),
     lambda a, b, c, d: stiffness.locked_frequency(a, b),

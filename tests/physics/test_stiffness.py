@@ -7,11 +7,11 @@ import pytest
 
 from gearopt.physics.stiffness import (
     lewis_form_factor,
-    line_stiffness,
     locked_frequency,
     mesh_compliance,
     output_compliance,
     shaft_compliance,
+    specific_pair_stiffness,
     stiffness_of_frequency,
     tooth_factor,
 )
@@ -37,7 +37,10 @@ LEWIS_Y = (  # of 16, 96, 26, 208 teeth: 0.2960, 0.4455, 0.3460, 0.4667
 def chain():
     """Mesh 34, shaft 2 and mesh 12, seen at their shafts, and their downstream ratios."""
     z = [tooth_factor(y / math.pi) for y in LEWIS_Y]
-    k_12, k_34 = line_stiffness(E, z[0], E, z[1]), line_stiffness(E, z[2], E, z[3])
+    k_12, k_34 = (
+        specific_pair_stiffness(E, z[0], E, z[1]),
+        specific_pair_stiffness(E, z[2], E, z[3]),
+    )
     parts = (
         mesh_compliance(k_34, 6.0, 104.0),
         shaft_compliance(G, 8.0, 50.0),
@@ -46,7 +49,7 @@ def chain():
     return parts, (1.0, 8.0, 8.0), (k_12, k_34)
 
 
-def test_tooth_factors_and_line_stiffness():
+def test_tooth_factors_and_specific_pair_stiffness():
     z = [tooth_factor(y / math.pi) for y in LEWIS_Y]
     assert z == pytest.approx([0.1018, 0.1117, 0.1059, 0.1126], abs=6e-5)
     _, _, stiffness = chain()

@@ -79,7 +79,7 @@ class Box:
     sets: dict[int, Array]
 
     def points(self, unit: Array) -> Array:
-        """Return natural points (N, n) of coordinates (N, n) in [0, 1]."""
+        """Return the points (N, n) that `unit` scales to these, rounded to allowed values."""
         y = self.low + np.clip(unit, 0.0, 1.0) * (self.high - self.low)
         x = np.where(self.logarithmic, np.exp(np.where(self.logarithmic, y, 0.0)), y)
         x = np.where(self.whole, np.clip(np.rint(x), self.minimum, self.maximum), x)
@@ -88,7 +88,10 @@ class Box:
         return x
 
     def unit(self, points: Array) -> Array:
-        """Return coordinates (N, n) of natural points (N, n)."""
+        """Return points (N, n) scaled to [0, 1]^n.
+
+        By logarithm where that is marked; listed values by their place in the list.
+        """
         x = np.asarray(points, float)
         y = np.where(self.logarithmic, np.log(np.where(self.logarithmic, x, 1.0)), x)
         for k, values in self.sets.items():

@@ -258,7 +258,7 @@ class GearPair:
         helix_angle: Any = 0.0,
         rack: Rack = ISO_53_A,
     ) -> "GearPair":
-        """Return the pair of a pinion and a ratio, for texts in which these are variables.
+        """Return the pair of a pinion and a ratio, for symbolic problems.
 
         normal_module, pinion_diameter (reference, d1 = m_n z1/cos(beta)), face_width [mm].
         """

@@ -36,13 +36,13 @@ def lewis_form_factor(teeth: Any) -> Any:
     return math.pi * (0.154 - 0.912 / teeth)
 
 
-def line_stiffness(
+def specific_pair_stiffness(
     pinion_modulus: Any, pinion_factor: Any, wheel_modulus: Any, wheel_factor: Any
 ) -> Any:
     """Return the stiffness k' [N/mm per mm of face width] of a pair of teeth, E Z in series.
 
-    moduli E [MPa] > 0; factors Z of `tooth_factor`. About 10e3 MPa for steel spur gears. Source:
-    Youn, eq. (12), corrected: without the factor 4, with y, not Y (see `mesh_compliance`).
+    moduli E [MPa] > 0; factors Z of `tooth_factor`. About 1e4 N/mm per mm for steel spur gears.
+    Source: Youn, eq. (12), corrected: without the factor 4, with y, not Y (see `mesh_compliance`).
     """
     return 1.0 / (1.0 / (pinion_modulus * pinion_factor) + 1.0 / (wheel_modulus * wheel_factor))
 
@@ -50,9 +50,9 @@ def line_stiffness(
 def mesh_compliance(line_stiffness: Any, face_width: Any, diameter: Any) -> Any:
     """Return the compliance 4/(k' b d^2) [rad/(N mm)] of a mesh, at its gear of diameter d.
 
-    line_stiffness k' [MPa], face_width b, diameter d [mm] > 0. Source: Youn, eq. (12), corrected:
-    the torque on a tangential spring has the lever r = d/2, so k' b r^2; the print's 4 D^2 with
-    D a radius would make steel teeth 4 times as stiff as they are.
+    line_stiffness k' [N/mm per mm], face_width b, diameter d [mm] > 0. Source: Youn, eq. (12),
+    corrected: the torque on a tangential spring has the lever r = d/2, so k' b r^2; the print's
+    4 D^2 with D a radius would make steel teeth 4 times as stiff as they are.
     """
     return 4.0 / (line_stiffness * face_width * diameter**2)
 

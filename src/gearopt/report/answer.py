@@ -22,13 +22,13 @@ from gearopt.report.words import (
     effort,
     goal,
     grouped,
-    has_stages,
     leading,
     limit_rows,
     limit_words,
     number,
     objective,
     of_gears_first,
+    of_problem_file,
     sentence,
     series_of,
 )
@@ -129,7 +129,7 @@ def limits(result: Result, measures: Measures) -> Section | None:
     """The utilisation of every limit; None without limits."""
     if not result.limits or (result.value is None and not result.given):
         return None
-    stages, rows = limit_rows(result.limits, has_stages(result))
+    stages, rows = limit_rows(result.limits, of_problem_file(result))
     heads = [
         "utilisation, %",
         *(f"stage {k}" for k in range(1, stages + 1)),
@@ -189,7 +189,7 @@ def _method(result: Result) -> list[str]:
         violation = f"{minimum:.2g}" if minimum < 100 else f"{minimum:,.0f}"
         lines.append(
             "Proof: whatever the design, one of these limits is violated by at least "
-            f"{violation} %: {series_of(grouped(proof['conflict'], has_stages(result)))}."
+            f"{violation} %: {series_of(grouped(proof['conflict'], of_problem_file(result)))}."
         )
         ways = result.report.get("ways_out") or {}
         fewer = {*(ways.get("conflict") or proof["conflict"])} < {*proof["conflict"]}

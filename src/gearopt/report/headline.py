@@ -8,9 +8,9 @@ from gearopt.report.words import (
     INVERSE,
     REACHED,
     grouped,
-    has_stages,
     limit_words,
     objective,
+    of_problem_file,
     sentence,
     series_of,
     share,
@@ -41,7 +41,7 @@ def lead(result: Result, text: str = "") -> str:
         return f"{_stopped(result)}: no design was found, which does not prove that there is none"
     if text or not result.given:
         return text or of_limits(result)
-    over = _over(result.limits, has_stages(result))
+    over = _over(result.limits, of_problem_file(result))
     return f"the given design exceeds {_on(over)}" if over else of_limits(result)
 
 
@@ -59,11 +59,11 @@ def _impossible(result: Result) -> str:
         name for name in ways.get("unsure") or result.proof.get("unsure") or () if name in names
     ]
     names = [name for name in names if name not in unsure]
-    together = _on(grouped(names, has_stages(result)), len(names))
+    together = _on(grouped(names, of_problem_file(result)), len(names))
     ratio = {*RATIO_ENDS} & ({*(result.proof.get("conflict") or ())} - {*names})
     held = " at the ratio asked" if ratio else ""
     if unsure:
-        with_ = f"cannot be met together with {_some(unsure, has_stages(result))}"
+        with_ = f"cannot be met together with {_some(unsure, of_problem_file(result))}"
         return f"{together} {with_} (not all of these need be part of the conflict)"
     if [_stem(name) for name in names] == [DISTANCE] and result.message:
         return result.message.rstrip(".")  # what keeps teeth from it is never dropped whole
@@ -113,11 +113,11 @@ def of_limits(result: Result, shown: Collection[str] = ()) -> str:
     rest = {n: u for n, u in limits.items() if n not in (*decisive, *ends) and not _is_end(n)}
     parts = [_decided(result, decisive)] if decisive else []
     parts += (
-        [f"{_on(grouped(ends, has_stages(result)), len(ends))} {_verb(len(ends))} active"]
+        [f"{_on(grouped(ends, of_problem_file(result)), len(ends))} {_verb(len(ends))} active"]
         if ends
         else []
     )
-    parts += _nearest(rest, not decisive and not ends, has_stages(result)) + _tolerance(result)
+    parts += _nearest(rest, not decisive and not ends, of_problem_file(result)) + _tolerance(result)
     best = "in the best design found " if result.status == "limit" and parts else ""
     return best + "; ".join(parts) or _free(result)
 
@@ -140,7 +140,7 @@ def _stem(name: str) -> str:
 
 def _decided(result: Result, names: list[str]) -> str:
     """Sentence that limits determine the optimum, where that is certain; else that they bind."""
-    limits = grouped(names, has_stages(result))
+    limits = grouped(names, of_problem_file(result))
     if len(limits) > NAMED:
         limits = [*limits[: NAMED - 1], f"{len(limits) - NAMED + 1} other limits"]
     if result.status not in PROVEN:

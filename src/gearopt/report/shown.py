@@ -36,10 +36,10 @@ from gearopt.report.words import (
     amount,
     edit,
     goal,
-    has_stages,
     leading,
     limit_words,
     number,
+    of_problem_file,
     parted,
     title,
     verdict,
@@ -163,7 +163,7 @@ def _instead(change: Change) -> str:
 
 
 def _names(explanation: Explanation, limits: Sequence[str]) -> str:
-    return ", ".join(limit_words(name, has_stages(explanation.result)) for name in limits)
+    return ", ".join(limit_words(name, of_problem_file(explanation.result)) for name in limits)
 
 
 def _reached(explanation: Explanation) -> list[str]:

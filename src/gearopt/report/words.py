@@ -62,8 +62,8 @@ def limit_words(name: str, staged: bool = True) -> str:
     return f"{said} of stage {index}" if staged else f"{said}[{index}]"
 
 
-def has_stages(result: Result) -> bool:
-    """Whether the blocks of limits are of stages: not in a user's own problem."""
+def of_problem_file(result: Result) -> bool:
+    """Whether a result answers a problem file, whose blocks of limits are of stages."""
     return result.scene is not None
 
 

@@ -18,7 +18,7 @@ BIT = whole(0, 1)
 
 
 def logs_and_product(*x: Any) -> tuple[Any, list[Any]]:
-    """Instance nvs09."""
+    """Objective and constraints of MINLPLib instance nvs09."""
     total, product = 0.0, 1.0
     for v in x:
         total = total + np.log(v - 2) ** 2 + np.log(10 - v) ** 2
@@ -27,7 +27,7 @@ def logs_and_product(*x: Any) -> tuple[Any, list[Any]]:
 
 
 def synthesis(*x: Any) -> tuple[Any, list[Any]]:
-    """Instance ex1223b."""
+    """Objective and constraints of MINLPLib instance ex1223b."""
     a, b, c, d, e, f, g = x
     cost = (d - 1) ** 2 + (e - 2) ** 2 + (f - 1) ** 2 - np.log(1 + g)
     return cost + (a - 1) ** 2 + (b - 2) ** 2 + (c - 3) ** 2, [
@@ -44,7 +44,7 @@ def synthesis(*x: Any) -> tuple[Any, list[Any]]:
 
 
 def linear_synthesis(*x: Any) -> tuple[Any, list[Any]]:
-    """Instance ex1223a."""
+    """Objective and constraints of MINLPLib instance ex1223a."""
     a, b, c, d, e, f, g = x
     cost = (a - 1) ** 2 + (b - 2) ** 2 + (c - 3) ** 2
     return cost - d - 3 * e - f - 0.693147180559945 * g + 6, [
@@ -61,7 +61,7 @@ def linear_synthesis(*x: Any) -> tuple[Any, list[Any]]:
 
 
 def reliability(*x: Any) -> tuple[Any, list[Any]]:
-    """Instance ex1224."""
+    """Objective and constraints of MINLPLib instance ex1224."""
     a, b, c, d, e, f, g, h, i, j, k = x
     return -a * b * c, [
         -np.log(1 - a) - 2.30258509299405 * d - 1.6094379124341 * e - 1.89711998488588 * f == 0,
@@ -75,7 +75,7 @@ def reliability(*x: Any) -> tuple[Any, list[Any]]:
 
 
 def by_bits(x: Any, y: Any, *b: Any) -> tuple[Any, list[Any]]:
-    """Instance ex1225."""
+    """Objective and constraints of MINLPLib instance ex1225."""
     c, d, e, f, g, h = b
     return 7 * x + 10 * y, [
         x**1.2 * y**1.7 - 7 * x - 9 * y <= -24,
@@ -92,7 +92,7 @@ def by_bits(x: Any, y: Any, *b: Any) -> tuple[Any, list[Any]]:
 
 
 def half_by_bits(x: Any, y: Any, c: Any, d: Any, e: Any) -> tuple[Any, list[Any]]:
-    """Instance ex1226."""
+    """Objective and constraints of MINLPLib instance ex1226."""
     return 3 * y - 5 * x, [
         8 * x - 2 * x**0.5 * y**2 + 11 * y + 2 * y**2 - 2 * y**0.5 <= 39,
         x - y <= 3,
@@ -103,7 +103,7 @@ def half_by_bits(x: Any, y: Any, c: Any, d: Any, e: Any) -> tuple[Any, list[Any]
 
 
 def alloys(a: Any, b: Any, c: Any, d: Any, e: Any) -> tuple[Any, list[Any]]:
-    """Instance ex1221."""
+    """Objective and constraints of MINLPLib instance ex1221."""
     return 2 * a + 3 * b + 1.5 * c + 2 * d - 0.5 * e, [
         a**2 + c == 1.25,
         b**1.5 + 1.5 * d == 3,
@@ -114,13 +114,13 @@ def alloys(a: Any, b: Any, c: Any, d: Any, e: Any) -> tuple[Any, list[Any]]:
 
 
 def whole_himmelblau(*x: Any) -> tuple[Any, list[Any]]:
-    """Instance nvs02."""
+    """Objective and constraints of MINLPLib instance nvs02."""
     cost, rows = himmelblau(*x)
     return 1e-4 * (cost + 40792.141) + 5.9207859, rows
 
 
 def parabolas(x: Any, y: Any) -> tuple[Any, list[Any]]:
-    """Instance nvs10."""
+    """Objective and constraints of MINLPLib instance nvs10."""
     return 7 * x**2 + 6 * y**2 - 35 * x - 80.4 * y, [
         9 * x**2 + 10 * x * y + 8 * y**2 <= 583,
         6 * x**2 + 8 * x * y + 6 * y**2 <= 441,
@@ -128,13 +128,13 @@ def parabolas(x: Any, y: Any) -> tuple[Any, list[Any]]:
 
 
 def booths(x: Any, y: Any) -> tuple[Any, list[Any]]:
-    """Instance nvs16, Beale's function of whole numbers."""
+    """Objective and constraints of MINLPLib instance nvs16, Beale's function of whole numbers."""
     terms = ((1.5, 1), (2.25, 2), (2.625, 3))
     return sum((c - x * (1 - y**k)) ** 2 for c, k in terms), []
 
 
 def concave(x: Any, y: Any) -> tuple[Any, list[Any]]:
-    """Instance st_e22."""
+    """Objective and constraints of MINLPLib instance st_e22."""
     return -(x**2) - 4 * y**2, [
         x + y <= 10,
         x + 5 * y <= 22,
@@ -145,12 +145,12 @@ def concave(x: Any, y: Any) -> tuple[Any, list[Any]]:
 
 
 def ring(x: Any, y: Any) -> tuple[Any, list[Any]]:
-    """Instance st_e18."""
+    """Objective and constraints of MINLPLib instance st_e18."""
     return x + y, [x**2 + y**2 >= 1, x**2 + y**2 <= 4, y - x <= 1, x - y <= 1]
 
 
 def alkylation(*x: Any) -> tuple[Any, list[Any]]:
-    """Instance alkyl."""
+    """Objective and constraints of MINLPLib instance alkyl."""
     a, b, c, d, e, f, g, h, i, j, k, l, m, n = x  # noqa: E741
     return 5.04 * a + 0.35 * b + c + 3.36 * e - 6.3 * d * g, [
         d == 0.819672131147541 * (a + e),
@@ -164,7 +164,7 @@ def alkylation(*x: Any) -> tuple[Any, list[Any]]:
 
 
 def feed(a: Any, b: Any, c: Any, d: Any) -> tuple[Any, list[Any]]:
-    """Instance chance."""
+    """Objective and constraints of MINLPLib instance chance."""
     spread = np.sqrt(0.28 * a**2 + 0.19 * b**2 + 20.5 * c**2 + 0.62 * d**2)
     return 24.55 * a + 26.75 * b + 39 * c + 40.5 * d, [
         a + b + c + d == 1,
@@ -174,7 +174,7 @@ def feed(a: Any, b: Any, c: Any, d: Any) -> tuple[Any, list[Any]]:
 
 
 def pool(a: Any, b: Any, c: Any, d: Any, e: Any, f: Any, g: Any) -> tuple[Any, list[Any]]:
-    """Instance ex5_2_4."""
+    """Objective and constraints of MINLPLib instance ex5_2_4."""
     rest = 6 * a + 16 * b + 15 * c
     return f - 5 * g - (9 - rest) * d - (15 - rest) * e, [
         c * d + c * e <= 50,
@@ -187,7 +187,7 @@ def pool(a: Any, b: Any, c: Any, d: Any, e: Any, f: Any, g: Any) -> tuple[Any, l
 
 
 def phases(a: Any, b: Any, c: Any, d: Any) -> tuple[Any, list[Any]]:
-    """Instance ex6_1_2."""
+    """Objective and constraints of MINLPLib instance ex6_1_2."""
     energy = (0.06391 + np.log(a)) * a + (np.log(b) - 0.02875) * b
     return energy + 0.925356626778358 * a * d + 0.746014540096753 * b * c, [
         c * (a + 0.159040857374844 * b) == a,
@@ -207,7 +207,10 @@ def chained(a: Any, b: Any, c: Any, d: Any, e: Any) -> tuple[Any, list[Any]]:
 
 
 def hexagon(*x: Any) -> tuple[Any, list[Any]]:
-    """Instance himmel16: a hexagon of diameter 1, its first corner at 0, its second on the axis."""
+    """Objective and constraints of MINLPLib instance himmel16.
+
+    A hexagon of diameter 1, its first corner at 0, its second on the axis.
+    """
     across, up = (0.0, *x[:5]), (0.0, 0.0, *x[5:])
     area, rows = 0.0, []
     for i in range(6):
@@ -219,7 +222,7 @@ def hexagon(*x: Any) -> tuple[Any, list[Any]]:
 
 
 def block(x: Any, y: Any, z: Any) -> tuple[Any, list[Any]]:
-    """Instance nvs01."""
+    """Objective and constraints of MINLPLib instance nvs01."""
     root = np.sqrt(900 + x**2)
     return 0.04712385 * y * root, [
         420.169404664517 * root == z * x * y,
@@ -246,7 +249,7 @@ def weld(t: Any, b: Any, h: Any, l: Any, stiff: float, bent: float) -> tuple[Any
 
 
 def four_squares(a: Any, b: Any, c: Any, d: Any) -> tuple[Any, list[Any]]:
-    """Instance nvs12."""
+    """Objective and constraints of MINLPLib instance nvs12."""
     cost = 7 * a**2 + 6 * b**2 - 20 * a - 93.2 * b + 8 * c**2 - 6 * c * a + 4 * c * b - 67.2 * c
     first = 9 * a**2 + 10 * a * b + 8 * b**2 + 5 * c**2 + 6 * c * a + 10 * c * b + 7 * d**2
     second = 6 * a**2 + 8 * a * b + 6 * b**2 + 4 * c**2 + 2 * c * a + 2 * c * b + 8 * d**2
@@ -261,7 +264,7 @@ def four_squares(a: Any, b: Any, c: Any, d: Any) -> tuple[Any, list[Any]]:
 
 
 def truss(a: Any, b: Any, c: Any) -> tuple[Any, list[Any]]:
-    """Instance st_e40."""
+    """Objective and constraints of MINLPLib instance st_e40."""
     stiff = 0.15 * a * b + 0.14142135 * b * c + 0.1319 * a * c
     sizes = (1, 2, 3, 5, 8, 10, 12)
     rows = [math.prod(v - s for s in sizes) == 0 for v in (a, b, c)]

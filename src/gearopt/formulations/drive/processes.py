@@ -76,14 +76,14 @@ def methods(
         if one is None:
             raise _missing("one", "stage_ratios")
         _check("one", train, one)
-        return _outcome(train, *_first(train, one))
+        return _as_outcome(train, *_first(train, one))
 
     def process_two(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:
         """Ratios after Niemann; sizes from the first centre distance."""
         if two is None:
             raise _missing("two", "first_centre_distance, and modules or pinion_teeth")
         _check("two", train, two)
-        return _outcome(train, *_second(train, two))
+        return _as_outcome(train, *_second(train, two))
 
     return {"process-one": process_one, "process-two": process_two}
 
@@ -201,7 +201,7 @@ def _no_module(position: int, minimum: float, stage: Stage) -> str:
     )
 
 
-def _outcome(train: Train, pairs: Pairs, message: str) -> Outcome:
+def _as_outcome(train: Train, pairs: Pairs, message: str) -> Outcome:
     """Return the point of the problem `teeth` that has these gears."""
     x = point(train, pairs) if pairs else None
     return Outcome(x, evaluations=1, message=message)

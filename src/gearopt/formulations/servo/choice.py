@@ -29,11 +29,11 @@ from gearopt.optimise.terms import Array, Terms
 from gearopt.physics.gears import GearPair
 from gearopt.physics.stiffness import (
     lewis_form_factor,
-    line_stiffness,
     locked_frequency,
     mesh_compliance,
     output_compliance,
     shaft_compliance,
+    specific_pair_stiffness,
     tooth_factor,
 )
 
@@ -161,7 +161,9 @@ class Springs:
         stiffness: Any = self.line_stiffness
         if self.line_stiffness is None:
             pinion, wheel = (tooth_factor(lewis_form_factor(g.teeth) / math.pi) for g in pair.gears)
-            stiffness = line_stiffness(self.youngs_modulus, pinion, self.youngs_modulus, wheel)
+            stiffness = specific_pair_stiffness(
+                self.youngs_modulus, pinion, self.youngs_modulus, wheel
+            )
         return mesh_compliance(stiffness, pair.face_width, pair.wheel.reference_diameter)
 
     def numbers(self, face_width: float) -> Array:

@@ -126,12 +126,12 @@ class IsoCells:
     @cached_property
     def deviations(self) -> tuple[tuple[Any, Any, Any], tuple[Any, Any, Any]]:
         """Pitch, form and the deviation of K_Halpha after running-in [mm], least and greatest."""
-        made = [case.deviations for case in self.cases]
-        pitches = [self.given.get("f_pb", one.base_pitch) for one in made]
-        forms = [self.given.get("f_falpha", one.profile_form) for one in made]
+        toothing = [case.deviations for case in self.cases]
+        pitches = [self.given.get("f_pb", gear.base_pitch) for gear in toothing]
+        forms = [self.given.get("f_falpha", gear.profile_form) for gear in toothing]
         each, wears = [], (True, not self.standard.rivals)  # virtual ways are the softest
         for end, case in enumerate(self.cases):
-            own, other, form = (
+            pitch, form_worn_as_pitch, form = (
                 size - (wears[end] and self.standard.running_in_allowance(case, worn))
                 for size, worn in (
                     (pitches[end], pitches[end]),
@@ -139,7 +139,7 @@ class IsoCells:
                     (forms[end], forms[end]),
                 )
             )
-            each.append((own, form, np.maximum(own, other)))
+            each.append((pitch, form, np.maximum(pitch, form_worn_as_pitch)))
         return each[0], each[1]
 
     @cached_property
@@ -147,7 +147,7 @@ class IsoCells:
         """N, at least and at most."""
         if "N" in self.given:
             return self.given["N"], self.given["N"]
-        standard, cells, found = self.standard, self.cells, []
+        standard, cells, ratios = self.standard, self.cells, []
         densities = standard.materials[0].density, standard.materials[1].density
         inner = self._inner_parts()
         for end in (LOWER, UPPER):
@@ -163,8 +163,8 @@ class IsoCells:
             stiff = self.mesh(1 - end) * self.single(1 - end, 1 - end)
             speed = standard.loads[0].speed * cells.speed[end]
             pace = speed * z * np.sqrt(mass / stiff)
-            found.append(np.where(np.isfinite(pace), pace, 0.0 if end == LOWER else np.inf))
-        return found[0], found[1]
+            ratios.append(np.where(np.isfinite(pace), pace, 0.0 if end == LOWER else np.inf))
+        return ratios[0], ratios[1]
 
     def _inner_parts(self) -> list[tuple[Any, Any]]:
         """Return d_i/d_m of pinion and wheel, at least and at most."""

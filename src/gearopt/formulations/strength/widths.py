@@ -145,7 +145,7 @@ def _of_arrays(rows: Rows, low: Array, high: Array, close: float, steps: int) ->
     for _ in range(steps):
         if not len(active):
             break
-        now = _used(rows, here, here)
+        now = _utilisation(rows, here, here)
         carries = now <= 1.0 + close
         first[active[carries]] = here[carries]
         goes = ~carries & (here < top)
@@ -155,13 +155,14 @@ def _of_arrays(rows: Rows, low: Array, high: Array, close: float, steps: int) ->
         border = rows.border(here)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             there = tried(here, np.minimum(top, border), now, power)
-            bound = _used(rows, here, there)
+            bound = _utilisation(rows, here, there)
             here, power = stepped(here, there, now, bound, border)
     first[active] = np.nan if steps == MAX_STEPS else here  # what is left is bounded from below
     return first
 
 
-def _used(rows: Rows, low: Array, high: Array) -> Array:
+def _utilisation(rows: Rows, low: Array, high: Array) -> Array:
+    """Return `used` of rows between widths [mm]; inf where it is no number (NaN)."""
     part = rows.used(low, high)
     return np.asarray(np.where(np.isnan(part), np.inf, part))
 

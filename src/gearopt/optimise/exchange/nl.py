@@ -39,7 +39,7 @@ def write(problem: Problem, file: str | Path) -> None:
         )
     order = sorted(range(len(columns)), key=lambda k: columns[k][0].integer)  # whole ones last
     path, rows = Path(file), problem.rows
-    lines = _text(problem, order)
+    lines = _lines(problem, order)
     path.write_text("\n".join(lines) + "\n", encoding="ascii")
     names = [columns[k][1] for k in order]
     path.with_suffix(".col").write_text("\n".join(names) + "\n", encoding="utf-8")
@@ -47,8 +47,8 @@ def write(problem: Problem, file: str | Path) -> None:
     path.with_suffix(".row").write_text("\n".join(names) + "\n", encoding="utf-8")
 
 
-def _text(problem: Problem, order: list[int]) -> list[str]:
-    """The lines of a file whose variables are those of the columns `order`."""
+def _lines(problem: Problem, order: list[int]) -> list[str]:
+    """Return the lines of a file whose variables are those of the columns `order`."""
     nodes, (f, g, h) = _nodes(problem, order)
     lower, upper, guess = (ends[order] for ends in problem.bounds())
     limits, shared = [*g, *h], _shared(nodes, [*f, *g, *h])

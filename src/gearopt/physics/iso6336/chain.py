@@ -105,7 +105,7 @@ def _face(case: Case, found: Found) -> Any:
     return loads.face_load_factor(after, found["c_gamma_beta"], line)
 
 
-def _root_face(case: Case, found: Found) -> Any:
+def _root_face_load_factor(case: Case, found: Found) -> Any:
     """Return K_Fbeta of the deeper tooth: h = (h_aP + h_fP) m_n, without tip alteration.
 
     K_Hbeta where crowning or end relief takes load off the ends. Source: IACS UR M56, 1.6.4.
@@ -350,7 +350,7 @@ LAWS: dict[str, Callable[[Case, Found], Any]] = {
     "Z_BD": _single,
     "K_v": _dynamic,
     "K_Hbeta": _face,
-    "K_Fbeta": _root_face,
+    "K_Fbeta": _root_face_load_factor,
     "K_Halpha": _transverse_contact,
     "K_Falpha": _transverse_bending,
     "sigma_H0": _nominal_contact,

@@ -23,7 +23,10 @@ def usual_plane(pair: GearPair) -> str:
 
 
 def usual_level(elastic: ElasticPair) -> str:
-    """Return the model of a pair for which none is asked: one with a ring of any bore beyond 7."""
+    """Return the model used where the file names none, of `LEVELS`.
+
+    USUAL up to a root-over-bore ratio of 7, above it RINGED (a ring of any bore).
+    """
     widest = max(member.bore_ratio for member in elastic.members)
     return USUAL if widest <= SAINSOT_BORE_RATIOS[1] else RINGED
 

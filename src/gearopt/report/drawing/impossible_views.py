@@ -9,7 +9,7 @@ from gearopt.report.drawing.number_line import WIDE, Guide, Span, number_line
 from gearopt.report.drawing.sheet import Drawing, Place, Sheet, Window
 from gearopt.report.measures import DIGITS, Measures, rounded
 from gearopt.report.section import Section
-from gearopt.report.words import has_stages, limit_words, share
+from gearopt.report.words import limit_words, of_problem_file, share
 
 BAR, ROW = 13.0, 24.0  # px: of a bar, and from one to the next
 ABOVE, BELOW, RIGHT = 30.0, 12.0, 66.0  # px around the bars; their values stand on the right
@@ -36,7 +36,7 @@ def conflict(result: Result, known: Sequence[str]) -> Drawing | None:
     rows = sorted((name for name in names if nearest[name] > 0.0), key=_order)[:MAX_BARS]
     if not rows or max(nearest[name] for name in rows) <= 1.0:
         return None
-    words = [limit_words(name, has_stages(result)) for name in rows]
+    words = [limit_words(name, of_problem_file(result)) for name in rows]
     left = 12.0 + max(2.0 * Place(0.0, 0.0).half_width(text) for text in words)
     tall = ABOVE + ROW * len(rows) + BELOW
     sheet = Sheet(Window(0.0, WIDE, 0.0, tall, (0.0, 0.0, 0.0, 0.0)), 1.0)

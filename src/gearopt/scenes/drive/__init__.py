@@ -128,7 +128,10 @@ def possible(scene: Scene, clock: Clock) -> Verdict:
 
 
 def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> "Remedies | None":
-    """Remedies of an impossible drive: `answers.remedies`."""
+    """Remedies of an impossible drive (`answers.remedies`).
+
+    soon: of one that ratings limit, its conflict at most; None where that is not known soon.
+    """
     from gearopt.scenes.drive.explain import answers
 
     return answers.remedies(scene, clock, result, soon)

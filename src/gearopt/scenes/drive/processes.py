@@ -17,12 +17,13 @@ from gearopt.scenes.reading.ask import Ask
 
 def steps(scene: Scene, ask: Ask, own: bool = True) -> tuple[Step[Scene], ...]:
     """Steps to the designs by the processes beside an exact answer; own: as of `Step`."""
-    if not _asked(scene) or (own and ask.method not in (None, "exact")):
+    if not _processes_asked(scene) or (own and ask.method not in (None, "exact")):
         return ()
     return Step(by_processes, bare_drive, own, always=True), Step(rated, own=own, always=True)
 
 
-def _asked(scene: Scene) -> list[str]:
+def _processes_asked(scene: Scene) -> list[str]:
+    """Return the names of the processes whose tables a file has."""
     return [name for name in PROCESSES if getattr(scene, name) is not None]
 
 
@@ -35,7 +36,7 @@ def by_processes(drive: Drive, ask: Ask, best: Result | None) -> Result:
         return best
     train, problem = drive.train, whole_teeth(drive)
     parts, remarks = [], list(best.report.get("notes", []))
-    for name in _asked(drive.scene):
+    for name in _processes_asked(drive.scene):
         words, method = name.replace("_", " "), name.replace("_", "-")
         try:
             watch = in_part(ask.watch, train.unit, words)

@@ -156,7 +156,7 @@ class Scene(Table):
         if value is None and info.data.get("rating", "wrong") is None and not cls.UNRATED:
             rule = "is missing (or, to rate given gears, write a table [rating])"
             raise refuse(rule, instead="rating")
-        return Limits.open() if value is None else handler(value)
+        return Limits.unlimited() if value is None else handler(value)
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":

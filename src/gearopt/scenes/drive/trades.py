@@ -89,7 +89,7 @@ def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
             )
         return replace(each[0], others=tuple(each[1:]))
     if load_front.UTILISATION in names:
-        return _loaded(scene, names, method)
+        return _against_utilisation(scene, names, method)
     train = replace(_train(scene), objective=names[0], others=tuple(names[1:]))
     listed = tuple(Objective(name, OBJECTIVES[name]) for name in names)
     whole = scene.teeth is not None and method != EPSILON
@@ -103,7 +103,7 @@ def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
     return Tradeoff(teeth.problem(train), listed, lambda x: _whole(train, x))
 
 
-def _loaded(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
+def _against_utilisation(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
     """Return the problem of a front against the utilisation of the load limits."""
     if len(names) != 2 or names[1] != load_front.UTILISATION:
         raise SolveError(

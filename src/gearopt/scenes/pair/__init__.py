@@ -137,7 +137,10 @@ def given(scene: Scene, ask: Ask, known: Result | None) -> Result:
 
 
 def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies | None:
-    """Remedies where no gears meet the limits of the rating."""
+    """Remedies where no gears meet the limits of loads or ratings.
+
+    soon: of ratings the conflict at most; None where that is not known soon.
+    """
     return of_drive.remedies(scene.drive, clock, result, soon)
 
 

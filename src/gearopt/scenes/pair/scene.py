@@ -65,7 +65,7 @@ class Scene(Table):
     def drive(self) -> Drive:
         """Return the pair as a drive of one stage, with the ranges that the file leaves out."""
         tables = self._tables()
-        limits = tables.pop("limits", None) or Limits.open()
+        limits = tables.pop("limits", None) or Limits.unlimited()
         names = tables.keys() | ({"limits"} if limits.model_fields_set else set())
         drive: Drive = OneStage.model_construct(names, limits=limits, **tables)
         return drive

@@ -49,7 +49,7 @@ def columns(train: Train, position: int, cut: Fraction, tick: Callable[[], float
     stage = train.stages[position]
     ranges = tuple(spans(train, position, cut))
     blocks = []
-    for toothings in _helices(stage):
+    for toothings in _toothings_by_helix(stage):
         tick()
         blocks.append(_block(stage, _checked(stage, ranges), train.coprime, toothings))
     rows = blocks[0] if len(blocks) == 1 else _joined(blocks)
@@ -99,7 +99,7 @@ def closed(
     return load, (load / widest) ** (1.0 / 3.0), 1.0 / 3.0, slope
 
 
-def _helices(stage: Stage) -> list[list[int]]:
+def _toothings_by_helix(stage: Stage) -> list[list[int]]:
     """Return the toothings of a stage by helix angle."""
     by_angle: dict[float, list[int]] = {}
     for k, toothing in enumerate(stage.toothings):
@@ -161,7 +161,9 @@ def _joined(blocks: list[_Rows]) -> _Rows:
 
 def _checked(stage: Stage, ranges: Ranges) -> Ranges:
     """The ranges of the wheels of a stage; SolveError where they are too many for the memory."""
-    helices = len(_helices(stage) if stage.toothing.shift_sum is None else stage.toothings)
+    helices = len(
+        _toothings_by_helix(stage) if stage.toothing.shift_sum is None else stage.toothings
+    )
     count = sum(stop - start + 1 for _, start, stop in ranges) * helices
     if count > PAIRS:
         raise SolveError(

@@ -24,7 +24,7 @@ class Prepared:
     every: Any = None
 
     def take(self, shapes: Index) -> Any:
-        """Data of some shapes."""
+        """Data of the shapes numbered `shapes`, in their order, made when first asked for."""
         if self.every is None:
             wanted, row = np.unique(shapes // BLOCK, return_inverse=True)
             last = -(-self.count // BLOCK)
@@ -35,7 +35,7 @@ class Prepared:
         return self.every.take(shapes)
 
     def part(self, place: Index) -> "Part":
-        """Data of shapes at places."""
+        """Data of the shapes at places: shape k of it is shape `place[k]` of this."""
         return Part(self, place)
 
     def _joined(self, numbers: Index) -> Any:
@@ -56,11 +56,11 @@ class Part:
     place: Index
 
     def take(self, shapes: Index) -> Any:
-        """Data of some shapes."""
+        """Data of the shapes numbered `shapes`, in their order, made when first asked for."""
         return self.whole.take(self.place[shapes])
 
     def part(self, place: Index) -> "Part":
-        """Data of shapes at places."""
+        """Data of the shapes at places: shape k of it is shape `place[k]` of this."""
         return Part(self.whole, self.place[place])
 
 

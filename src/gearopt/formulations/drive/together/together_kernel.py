@@ -91,10 +91,11 @@ def shorten(d, j, cut):
 
 @entry
 def fill(d, k, start, stop, rest):
-    """Tables of stages 0..k-1 with a total ratio of cells start to stop.
+    """Lower entries of the tables `rest` in place, of stages 0..k-1 in cells start to stop.
 
-    rest.least[k, i, cell]: least width of stage i. rest.front[k, m, cell, bin]: least length that
-    the stages add in slabs of their own, for wheels k - 1 of tip radius in a bin.
+    Cells are of their total ratio; the tables hold inf before, and those of k - 1 are complete.
+    rest.least[k, i, cell]: least width of stage i [mm]. rest.front[k, m, cell, bin]: least length
+    [mm] that the stages add in slabs of their own, for wheels k - 1 of tip radius in a bin.
     """
     j, many, begin = k - 1, d.slabs.size, d.start[k - 1]
     end = d.start[k]

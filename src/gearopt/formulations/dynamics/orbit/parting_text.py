@@ -40,21 +40,21 @@ WIDTHS = (0.1, 0.03, 0.01)  # over which contact begins, of F/k, one problem aft
 LARGEST_RATE = 1e5  # um, of velocities and accelerations in the problem's time: the end of a search
 
 
-def middle(task: Task) -> Array:
-    """Return the middle of the ranges, (5,)."""
+def guesses(task: Task) -> Array:
+    """Return the guesses of the five variables, in the middle of their ranges, (5,)."""
     return np.array([float(np.ravel(v.guess)[0]) for v in shared(task)])
 
 
 def rate(task: Task) -> float:
     """Return (k/m_e)^(1/2) [rad/s] in the middle of the ranges: the unit of the problem's time."""
-    kb, ratio, _, width, rim = middle(task)
+    kb, ratio, _, width, rim = guesses(task)
     built = parts(task, kb, ratio, width, rim)
     return math.sqrt(built.mean / built.mesh_mass)
 
 
 def static_deflection(task: Task) -> float:
     """Return the static deflection F/k [um] of the mesh in the middle of the ranges."""
-    kb, ratio, _, width, rim = middle(task)
+    kb, ratio, _, width, rim = guesses(task)
     return float(MICRO * task.load / parts(task, kb, ratio, width, rim).mean)
 
 
@@ -65,7 +65,7 @@ def lengths(ratio: Any, ramp: Any) -> list[Any]:
 
 def elements(task: Task) -> list[int]:
     """Return the elements of each piece, by its length in the middle of the ranges."""
-    _, ratio, ramp, _, _ = middle(task)
+    _, ratio, ramp, _, _ = guesses(task)
     shares = np.clip(lengths(ratio, ramp), 0.0, None)
     return [max(MIN_ELEMENTS, round(task.elements * s / shares.sum())) for s in shares]
 

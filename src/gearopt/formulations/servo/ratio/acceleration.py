@@ -134,7 +134,9 @@ def _exact(drive: Drive, load_speed: float) -> Outcome:
         return impossible(f"the motor's speed limit allows a ratio of at most {high:.6g}")
     ratio, best = best_ratio(drive, load_speed)
     if math.isinf(ratio):
-        return unbounded("acceleration", "a motor inertia, a maximum ratio or a speed limit")
+        return unbounded_outcome(
+            "acceleration", "a motor inertia, a maximum ratio or a speed limit"
+        )
     if reason := standstill(drive, load_speed, ratio, best):
         return impossible(reason)
 
@@ -185,7 +187,7 @@ def impossible(reason: str) -> Outcome:
     return Outcome(None, infeasible=True, proof=reasons, message=reason, evaluations=1)
 
 
-def unbounded(what: str, remedy: str) -> Outcome:
+def unbounded_outcome(what: str, remedy: str) -> Outcome:
     """Return an outcome for a duty without a best ratio."""
     text = f"unbounded: the larger the ratio, the better the {what}; give {remedy}"
     return Outcome(None, message=text, evaluations=1)

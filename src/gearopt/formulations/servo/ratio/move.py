@@ -19,7 +19,7 @@ from gearopt.formulations.servo.ratio.acceleration import (
     proof,
     ratio_scales,
     standstill,
-    unbounded,
+    unbounded_outcome,
     unopposed,
 )
 from gearopt.formulations.servo.ratio.drive import (
@@ -81,7 +81,9 @@ def least_move_time(drive: Drive, angle: float) -> Problem:
         """Return the root; budget and seed change nothing."""
         values = present(problem)
         efficiency = 1.0 / (1.0 + values.get("loss", 0.0))
-        return _exact(replace(drive.of(values), efficiency=efficiency), values["angle"], rubs)
+        return _least_time_ratio(
+            replace(drive.of(values), efficiency=efficiency), values["angle"], rubs
+        )
 
     loss = Param("loss", "", 1.0 / drive.efficiency - 1.0)  # of torque, in a part of what is left
     turn = Param("angle", "rad", angle, key="duty.angle", role="given")
@@ -160,11 +162,11 @@ def _best(drive: Drive, angle: float) -> float:
     return above
 
 
-def _exact(drive: Drive, angle: float, rubs: bool) -> Outcome:
+def _least_time_ratio(drive: Drive, angle: float, rubs: bool) -> Outcome:
     """Return the ratio of minimum time as a root, bounded by convexity. rubs: with friction."""
     ratio, best = best_ratio(drive)
     if math.isinf(ratio) and math.isinf(drive.speed_limit):
-        return unbounded("time", "a motor inertia, a maximum ratio or a speed limit")
+        return unbounded_outcome("time", "a motor inertia, a maximum ratio or a speed limit")
     if math.isfinite(ratio) and (reason := standstill(drive, 0.0, ratio, best)):
         return impossible(reason)
     ratio = _best(drive, angle)

@@ -5,7 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.servo.ratio.acceleration import convex_bound, impossible, proof, unbounded
+from gearopt.formulations.servo.ratio.acceleration import (
+    convex_bound,
+    impossible,
+    proof,
+    unbounded_outcome,
+)
 from gearopt.formulations.servo.ratio.drive import Drive, friction_torque, inertia_at_motor, present
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
@@ -85,7 +90,7 @@ def _exact(drive: Drive, amplitude: float, angular_frequency: float) -> Outcome:
         return impossible(f"the motor's speed limit allows a ratio of at most {high:.6g}")
     ratio = min(max(_stationary(drive, peak), low), high)
     if math.isinf(ratio):
-        return unbounded("rms torque", "a motor inertia, a maximum ratio or a speed limit")
+        return unbounded_outcome("rms torque", "a motor inertia, a maximum ratio or a speed limit")
 
     def law(n: float) -> float:
         numbers = drive.load_inertia, drive.inertia, peak

@@ -19,7 +19,11 @@ CARRIED = 1.0 + 1e-11  # of the stress by a motion: what rounding hides along a 
 
 @inner
 def worth(s, goal, m1, z1, z2, m2, z3, z4):
-    """The objective of one train."""
+    """Objective of one train by `goal`: 1 mass of gears [kg], 2 error [rad], else at the motor.
+
+    Else: 0 inertia of gears [t mm2], above 2 what a motion makes least with it (`moved`). Modules m
+    [mm]; s: `Numbers`.
+    """
     d1, d2, d3, d4 = m1 * z1, m1 * z2, m2 * z3, m2 * z4
     if goal == 2:
         return s.lost[0] * z3 / (d2 * z4) + s.lost[1] / d4
@@ -34,7 +38,10 @@ def worth(s, goal, m1, z1, z2, m2, z3, z4):
 
 @inner
 def moved(duty, ratio, gears):
-    """What a duty (`duty_numbers`) makes least, with gears [t mm2]; inf where nothing moves."""
+    """What a duty (`duty_numbers`) makes least, with gears [t mm2]; inf where nothing moves.
+
+    Inverse acceleration [s2/rad], time of a move [s] or rms torque of a swing [N mm].
+    """
     load, motor, torque, friction, efficiency, slope = duty[1:7]
     angle, limit, own, peak, _ = duty[7:12]
     inertia = motor + gears

@@ -191,7 +191,7 @@ def _whole(shape: Drawn, design: WaveDesign, turns: Any, measures: Measures) -> 
     gearing = shape.gearing
     reach = 0.5 * design.outer_diameter_mm
     sheet = Sheet(Window(-reach, reach, -reach, reach, MARGINS), WIDE / (2.0 * reach))
-    _spline(
+    _circular_spline(
         sheet, shape, range(int(gearing.circular_teeth)), 2 if design.law == INVOLUTE else 5, reach
     )
     loaded = _shown(design, measures)
@@ -209,7 +209,7 @@ def _close(shape: Drawn, design: WaveDesign, turns: Any, measures: Measures) -> 
     window = Window(-half, half, top - HIGH * m, top, MARGINS)
     sheet = Sheet(window, CLOSE / (2.0 * half))
     points = 11 if design.law == INVOLUTE else 21
-    _spline(sheet, shape, range(-CLOSE_UP_TEETH - 2, CLOSE_UP_TEETH + 3), points, 0.0)
+    _circular_spline(sheet, shape, range(-CLOSE_UP_TEETH - 2, CLOSE_UP_TEETH + 3), points, 0.0)
     teeth = _bodies(
         shape,
         _shown(design, measures),
@@ -230,7 +230,7 @@ def _shown(gearing: WaveDesign, measures: Measures) -> WaveDesign:
     return replace(gearing, load_N=tuple(factor * v for v in gearing.load_N))
 
 
-def _spline(sheet: Sheet, shape: Drawn, numbers: Any, points: int, reach: float) -> None:
+def _circular_spline(sheet: Sheet, shape: Drawn, numbers: Any, points: int, reach: float) -> None:
     """Draw the circular spline at rest; reach [mm]: its outer radius, 0: beyond the view."""
     inner = _spaces(shape, numbers, points)
     path = " L ".join(f"{x:.2f} {y:.2f}" for x, y in (sheet.at(*p) for p in inner))

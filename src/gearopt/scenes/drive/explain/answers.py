@@ -25,7 +25,7 @@ ANY_DESIGN_GAP = 1e9  # gap of a design that need not be the best
 def remedies(scene: Scene, clock: Clock, result: Result, soon: bool) -> Remedies | None:
     """Remedies: of the box where the gears are possible, else of the gears.
 
-    soon: of a drive that ratings limit the conflict alone, where it is found soon.
+    soon: of a drive that ratings limit, its conflict at most; None where that is not known soon.
     """
     if scene.layout is not None and scene.layout.together and scene.several:
         return _of_boxes(without(scene, "processes"), clock)

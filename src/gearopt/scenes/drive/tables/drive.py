@@ -261,8 +261,8 @@ class Limits(Loaded):
     )
 
     @classmethod
-    def open(cls) -> "Limits":
-        """Return the limits of a drive whose gears are all given, to be rated: none."""
+    def unlimited(cls) -> "Limits":
+        """Return the limits of gears that are all given: pinion_teeth from 5 to 1000, no other."""
         return cls.model_construct(pinion_teeth=(5, 1000))
 
     @model_validator(mode="after")
