@@ -168,77 +168,81 @@ def _limitable(limiting: Limiting, names: Sequence[str]) -> None:
             )
 
 
-def _ends(run: Run, names: tuple[str, ...], caps: Caps) -> list[Point] | None:
+def _ends(state: Run, names: tuple[str, ...], caps: Caps) -> list[Point] | None:
     """Return the points of the least value of objectives under caps; None where there is none."""
     ends: list[Point] = []
     least: list[float] = []
     for k, name in enumerate(names):
-        first = _solved(run, name, dict(caps), ends[-1].x if ends else None)
+        first = _solved(state, name, dict(caps), ends[-1].x if ends else None)
         if first is None:
-            run.points += ends if run.clock.stopped else []
+            state.points += ends if state.clock.stopped else []
             return None
         least.append(float(first.values[k]))
-        ends.append(_end(run, names, k, caps, first, least[k] + SLACK * abs(least[k])))
+        ends.append(_end(state, names, k, caps, first, least[k] + SLACK * abs(least[k])))
     near = POINT_TIE * np.ptp([p.values for p in ends], axis=0)
     for k, at in enumerate(least):  # small differences of large values are told apart
         if SLACK * abs(at) > near[k]:
             most = at + max(float(near[k]), FEASIBLE * abs(at))
-            ends[k] = _end(run, names, k, caps, ends[k], most)
-    if len(names) == len(run.names):
+            ends[k] = _end(state, names, k, caps, ends[k], most)
+    if len(names) == len(state.names):
         values = np.array([p.values for p in ends])
-        run.widths = dict(zip(run.names, np.ptp(values, axis=0).tolist(), strict=True))
+        state.widths = dict(zip(state.names, np.ptp(values, axis=0).tolist(), strict=True))
     sides = np.zeros(1), np.full(1, -math.inf)  # of the box of two ends: tangents of its front
     framed = [replace(p, slopes=s) for p, s in zip(ends, sides, strict=False)]
-    framed = framed if run.limiting is None else ends
-    for p in framed if len(run.names) == 2 else ends:
-        _keep(run, p)
+    framed = framed if state.limiting is None else ends
+    for p in framed if len(state.names) == 2 else ends:
+        _keep(state, p)
     return framed if len(names) == 2 else ends
 
 
-def _end(run: Run, names: tuple[str, ...], k: int, caps: Caps, first: Point, most: float) -> Point:
+def _end(
+    state: Run, names: tuple[str, ...], k: int, caps: Caps, first: Point, most: float
+) -> Point:
     """Return a point of the least others where objective k is at most a value; from a point."""
-    if run.limiting is not None and names[k] not in run.limiting.names:
+    if state.limiting is not None and names[k] not in state.limiting.names:
         return first
     for other in (*names[:k], *names[k + 1 :]):
-        again = _solved(run, other, _least(caps, {names[k]: most}), first.x)
+        again = _solved(state, other, _least(caps, {names[k]: most}), first.x)
         first = again if again is not None else first
     return first
 
 
-def _stairs(run: Run, points: int) -> bool:
+def _stairs(state: Run, points: int) -> bool:
     """Add designs by steps just below the last one; return whether the last step has none."""
-    (first, second), held = run.names, dict(run.caps)
-    while not run.clock.over and (not points or len(run.points) < points):
-        point = _solved(run, first, held)
+    (first, second), held = state.names, dict(state.caps)
+    while not state.clock.over and (not points or len(state.points) < points):
+        point = _solved(state, first, held)
         if point is None or not point.proven:
-            return point is None and run.skipped[-1].proven
-        _keep(run, point)
+            return point is None and state.skipped[-1].proven
+        _keep(state, point)
         held[second] = float(point.values[1]) * (1.0 - STEP)
     return False
 
 
-def _keep(run: Run, point: Point) -> None:
+def _keep(state: Run, point: Point) -> None:
     """Add a point, and note how the front has grown."""
-    run.points.append(point)
-    values = np.array([p.values for p in sifted(run.points)[0]])
-    run.steps.append(Step(run.clock.seconds, run.clock.evaluations, values))
+    state.points.append(point)
+    values = np.array([p.values for p in sifted(state.points)[0]])
+    state.steps.append(Step(state.clock.seconds, state.clock.evaluations, values))
 
 
 def _least(caps: Caps, held: Caps) -> Caps:
     return {n: min(caps.get(n, math.inf), held.get(n, math.inf)) for n in {**caps, **held}}
 
 
-def _between(run: Run, ends: list[Point], points: int, caps: Caps) -> None:
+def _between(state: Run, ends: list[Point], points: int, caps: Caps) -> None:
     """Add points of a front of the first two objectives between its ends.
 
     A few are in the largest gaps, where tangents meet; of a convex front the others are spread.
     Gaps that steps find empty are narrowed until as many points are found, or all are shut or
     without results.
     """
-    line = Line(run, caps, list(ends), np.array([run.widths[name] or 1.0 for name in run.names]))
+    line = Line(
+        state, caps, list(ends), np.array([state.widths[name] or 1.0 for name in state.names])
+    )
     few = (
         points
-        if run.limiting is not None or run.discrete
+        if state.limiting is not None or state.discrete
         else min(points, max(FIRST_POINTS, points // 4))
     )
     line.fill(few)
@@ -246,8 +250,8 @@ def _between(run: Run, ends: list[Point], points: int, caps: Caps) -> None:
         for most in spread(line.open, points - len(line.points)):
             line.step(most)
         line.fill(points)
-    run.lines.append(line)
-    if len(run.names) == 2 and run.limiting is None and run.clock.budget.seconds is not None:
+    state.lines.append(line)
+    if len(state.names) == 2 and state.limiting is None and state.clock.budget.seconds is not None:
         line.repeat()
 
 
@@ -255,7 +259,7 @@ def _between(run: Run, ends: list[Point], points: int, caps: Caps) -> None:
 class Line:
     """A front of two objectives under caps as its points are found; it has state to fill."""
 
-    run: Run
+    state: Run
     caps: Caps
     points: list[Point]
     ranges: Array
@@ -263,7 +267,7 @@ class Line:
     @property
     def open(self) -> list[Gap]:
         """Return the gaps between the points that are not shut."""
-        tried = self.run.steps_of(self.run.names[0], _but(self.caps, self.run.names[1]))
+        tried = self.state.steps_of(self.state.names[0], _but(self.caps, self.state.names[1]))
         return [gap for gap in gaps(self.points, tried, self.ranges) if not gap.shut]
 
     def fill(self, count: int) -> None:
@@ -271,17 +275,17 @@ class Line:
         least = SLACK * math.prod(self.ranges[:2])
         for _ in range(TWICE * count):
             free = [g for g in self.open if g.area > least and len(g.refused) < TRIALS]
-            if not free or len(self.points) >= count or self.run.clock.over:
+            if not free or len(self.points) >= count or self.state.clock.over:
                 return
             gap = max(free, key=lambda g: g.area)
             at = met(gap.left, gap.right)[1] if gap.whole else 0.5
-            shutting = self.run.discrete and not gap.whole and not gap.refused
+            shutting = self.state.discrete and not gap.whole and not gap.refused
             shut = gap.top - 0.5 * POINT_TIE * self.ranges[1]
             self.step(shut if shutting else gap.limit(min(max(float(at), CORNER), 1.0 - CORNER)))
 
     def step(self, most: float) -> None:
         """Add the point of least first objective below a limit of the second one, if it is new."""
-        state, near = self.run, POINT_TIE * self.ranges
+        state, near = self.state, POINT_TIE * self.ranges
         gap = next((g for g in self.open if g.floor < most < g.top), None)
         if gap is None or state.clock.over:
             return
@@ -295,7 +299,7 @@ class Line:
 
     def repeat(self) -> None:
         """Take steps again whose bounds miss much, the worst first, in what is left of the time."""
-        state = self.run
+        state = self.state
         left = [s for s in _strips(state, sifted(state.points)[0]) if s.missing > OPEN]
         for strip in sorted(left, key=lambda s: -s.missing):
             under = [p for p in ranked(self.points) if p.values[1] <= strip.high]
@@ -311,54 +315,54 @@ class Line:
 
     def _add(self, point: Point) -> None:
         self.points.append(point)
-        _keep(self.run, point)
+        _keep(self.state, point)
 
 
-def _slices(run: Run, ends: list[Point], points: int) -> None:
+def _slices(state: Run, ends: list[Point], points: int) -> None:
     """Add fronts of the first two objectives at even limits of the third."""
-    third, values = run.names[2], np.array([p.values[2] for p in ends])
+    third, values = state.names[2], np.array([p.values[2] for p in ends])
     count = max(2, round(math.sqrt(points)))
     least = float(values.min())
     for level in np.linspace(values.max(), least + SLACK * abs(least), count):
-        caps = _least(run.caps, {third: float(level)})
-        plane_ends = None if run.clock.over else _ends(run, run.names[:2], caps)
+        caps = _least(state.caps, {third: float(level)})
+        plane_ends = None if state.clock.over else _ends(state, state.names[:2], caps)
         if plane_ends is not None:
-            _between(run, plane_ends, points // count, caps)
+            _between(state, plane_ends, points // count, caps)
 
 
-def _solved(run: Run, name: str, most: Caps, near: Array | None = None) -> Point | None:
+def _solved(state: Run, name: str, most: Caps, near: Array | None = None) -> Point | None:
     """Return the point of least value of one objective under limits on others; None: none found.
 
     Where a step is not proven, the best point that evolution found within the limits is another
     start of a local method, and the better of both answers counts, with the bound of the first.
     """
-    if run.clock.stopped:
+    if state.clock.stopped:
         return None
-    result, point = _attempt(run, name, most, near, run.method)
-    place, problem = run.names.index(name), run.problem
-    if result.status not in PROVEN and run.limiting is None and isinstance(problem, Problem):
-        if run.sample is None:
-            run.sample = _sampled(run, problem)
-        start = run.started(name, most)
-        if start is not None and not run.clock.over and not run.discrete:
-            again, other = _attempt(run, name, most, start, run.method or "ipopt")
+    result, point = _attempt(state, name, most, near, state.method)
+    place, problem = state.names.index(name), state.problem
+    if result.status not in PROVEN and state.limiting is None and isinstance(problem, Problem):
+        if state.sample is None:
+            state.sample = _sampled(state, problem)
+        start = state.started(name, most)
+        if start is not None and not state.clock.over and not state.discrete:
+            again, other = _attempt(state, name, most, start, state.method or "ipopt")
             if other is not None and (point is None or other.values[place] < point.values[place]):
                 bound = again.bound if again.status == "optimal" else result.bound
                 result, point = replace(again, bound=bound), other
-    _noted(run, name, most, result, None if point is None else float(point.values[place]))
+    _noted(state, name, most, result, None if point is None else float(point.values[place]))
     if point is None:
-        run.skipped.append(Skipped(most, result.status == "infeasible"))
-        run.none = run.none or result
+        state.skipped.append(Skipped(most, result.status == "infeasible"))
+        state.none = state.none or result
     return point
 
 
-def _noted(run: Run, name: str, most: Caps, result: Result, least: float | None) -> None:
+def _noted(state: Run, name: str, most: Caps, result: Result, least: float | None) -> None:
     """Keep what a step proves, of the first two objectives."""
-    if name in run.names[:2]:
-        other = run.names[1 - run.names.index(name)]
+    if name in state.names[:2]:
+        other = state.names[1 - state.names.index(name)]
         bound = -math.inf if result.bound is None else result.bound
         bound = math.inf if result.status == "infeasible" else bound
-        steps = run.steps_of(name, _but(most, other))
+        steps = state.steps_of(name, _but(most, other))
         steps.append(Tried(most.get(other, math.inf), least, bound))
 
 
@@ -366,11 +370,11 @@ def _but(caps: Caps, name: str) -> Caps:
     return {n: value for n, value in caps.items() if n != name}
 
 
-def _sampled(run: Run, problem: Problem) -> tuple[Point, ...]:
+def _sampled(state: Run, problem: Problem) -> tuple[Point, ...]:
     """Points of a front that evolution finds within a part of the budget, as starts of steps."""
-    clock = run.clock
-    limits = {name: Limit.of(value, 0.0) for name, value in run.caps.items()}
-    limited, left = posed(problem, run.names, limits), clock.left
+    clock = state.clock
+    limits = {name: Limit.of(value, 0.0) for name, value in state.caps.items()}
+    limited, left = posed(problem, state.names, limits), clock.left
     if problem.repeats or not isinstance(limited, Problem):
         return ()
     seconds = None if left.seconds is None else SHARE * left.seconds
@@ -382,44 +386,44 @@ def _sampled(run: Run, problem: Problem) -> tuple[Point, ...]:
 
 
 def _attempt(
-    run: Run, name: str, most: Caps, near: Array | None, method: str | None
+    state: Run, name: str, most: Caps, near: Array | None, method: str | None
 ) -> tuple[Result, Point | None]:
     """Return the result of one step from a start, and its point; method: None for the proof."""
-    at = _posed(run, name, most, near)
-    direct = method is not None or run.limiting is not None
+    at = _posed(state, name, most, near)
+    direct = method is not None or state.limiting is not None
     if direct or isinstance(at, Conic):
-        result, outcome = _answered(run, at, method)
+        result, outcome = _answered(state, at, method)
     else:
-        result, outcome = _proven(run, at)
-    run.clock.tell()
+        result, outcome = _proven(state, at)
+    state.clock.tell()
     if result.value is None or outcome.x is None:
         return result, None
-    values = _values(run, result, outcome.x)
+    values = _values(state, result, outcome.x)
     slopes = None
-    rows = [limit_of(n) for n in run.names[1:]]
-    priced = name == run.names[0] and not run.discrete
+    rows = [limit_of(n) for n in state.names[1:]]
+    priced = name == state.names[0] and not state.discrete
     if priced and all(row in result.multipliers for row in rows):
-        scales = [violation_scale(at, n) for n in run.names[1:]]
+        scales = [violation_scale(at, n) for n in state.names[1:]]
         slopes = np.array([result.multipliers[r] / s for r, s in zip(rows, scales, strict=True)])
     proven = result.status == "optimal"
     by_duals = isinstance(at, Conic) or result.proof.get("method") == "dual"
-    run.convex = run.convex and proven and by_duals and run.limiting is None
-    if isinstance(at, Problem) and run.convex:
+    state.convex = state.convex and proven and by_duals and state.limiting is None
+    if isinstance(at, Problem) and state.convex:
         shape = form(at)
-        run.logarithmic = run.logarithmic and shape.convex and shape.log_objective
+        state.logarithmic = state.logarithmic and shape.convex and shape.log_objective
     else:
-        run.logarithmic = False
-    bound = result.bound if name == run.names[0] else None
+        state.logarithmic = False
+    bound = result.bound if name == state.names[0] else None
     return result, Point(outcome.x, values, proven, bound, slopes)
 
 
 def _answered(
-    run: Run, at: Problem | Conic, method: str | None, most: int | None = None
+    state: Run, at: Problem | Conic, method: str | None, most: int | None = None
 ) -> tuple[Result, Outcome]:
     """Answer of a method to a step within its share of the seconds that are left."""
-    clock, budget = run.clock, run.clock.left
-    if budget.seconds is not None and run.limiting is None:
-        ahead = max(AHEAD, run.wanted - len(run.points) if run.widths and run.wanted else 0)
+    clock, budget = state.clock, state.clock.left
+    if budget.seconds is not None and state.limiting is None:
+        ahead = max(AHEAD, state.wanted - len(state.points) if state.widths and state.wanted else 0)
         budget = replace(budget, seconds=min(1.0, SHARES / ahead) * budget.seconds)
     if most is not None and (budget.seconds is None or method != PROVER):
         budget = replace(budget, evaluations=min(most, budget.evaluations or most))
@@ -430,29 +434,29 @@ def _answered(
     return result, outcome
 
 
-def _proven(run: Run, at: Problem) -> tuple[Result, Outcome]:
+def _proven(state: Run, at: Problem) -> tuple[Result, Outcome]:
     """Answer of ipopt where its duals prove it, else that of spatial branch and bound beside it.
 
     Where the text has no relaxation it is ipopt's; SolveError where there is no other one.
     """
     first = None
-    if not run.discrete and (run.convex or run.refused):
-        first = _answered(run, at, "ipopt", None if run.refused else ITERATIONS)
-        if first[0].status in PROVEN or run.refused or run.clock.over:
+    if not state.discrete and (state.convex or state.refused):
+        first = _answered(state, at, "ipopt", None if state.refused else ITERATIONS)
+        if first[0].status in PROVEN or state.refused or state.clock.over:
             return first
         if first[0].value is not None and first[1].x is not None and not at.repeats:
             at = at.starting(first[1].x)
-    boxes = min(BOXES, ALL_BOXES - run.boxes)
+    boxes = min(BOXES, ALL_BOXES - state.boxes)
     if first is not None and boxes <= 0:
         return first
     try:
-        second = _answered(run, at, PROVER, max(1, boxes))
+        second = _answered(state, at, PROVER, max(1, boxes))
     except SolveError as refusal:
-        if run.discrete:
+        if state.discrete:
             raise
-        run.refused = str(refusal)
-        return first or _answered(run, at, "ipopt")
-    run.boxes += second[0].evaluations
+        state.refused = str(refusal)
+        return first or _answered(state, at, "ipopt")
+    state.boxes += second[0].evaluations
     return _better(first, second) if first is not None else second
 
 
@@ -468,22 +472,22 @@ def _better(
     return replace(local, bound=proof.bound), first[1]
 
 
-def _posed(run: Run, name: str, most: Caps, near: Array | None) -> Problem | Conic:
-    if run.limiting is not None:
-        return run.limiting.problem(name, most)
-    limits = {n: Limit.of(value, run.widths.get(n, 0.0)) for n, value in most.items()}
-    at = kept(run.built, run.problem, (name,), limits)
+def _posed(state: Run, name: str, most: Caps, near: Array | None) -> Problem | Conic:
+    if state.limiting is not None:
+        return state.limiting.problem(name, most)
+    limits = {n: Limit.of(value, state.widths.get(n, 0.0)) for n, value in most.items()}
+    at = kept(state.built, state.problem, (name,), limits)
     if near is not None and isinstance(at, Problem) and not at.repeats:
         at = at.starting(near)
     return at
 
 
-def _values(run: Run, result: Result, x: Array) -> Array:
+def _values(state: Run, result: Result, x: Array) -> Array:
     """Return the values of all objectives at the point of a result."""
-    if run.limiting is None:
-        return valued(result, run.names)
-    rows, values = run.problem.rows.objectives, run.problem.batch(x[None]).F[0]
-    return np.array([values[rows.index(name)] for name in run.names])
+    if state.limiting is None:
+        return valued(result, state.names)
+    rows, values = state.problem.rows.objectives, state.problem.batch(x[None]).F[0]
+    return np.array([values[rows.index(name)] for name in state.names])
 
 
 STAIRS = (
@@ -496,58 +500,61 @@ SHUT = (
 )
 
 
-def concluded(run: Run, complete: bool = False) -> Found:
+def concluded(state: Run, complete: bool = False) -> Found:
     """Return the front of all points, with what its steps prove of the designs between them."""
-    points, beaten = sifted(run.points)
-    left = [] if complete or len(run.names) > 2 or not points else _strips(run, points)
+    points, beaten = sifted(state.points)
+    left = [] if complete or len(state.names) > 2 or not points else _strips(state, points)
     epsilon = max((strip.worse for strip in left), default=math.inf)
     complete = complete or epsilon <= CLOSE
-    bent = run.convex and not run.discrete and all(p.proven for p in points)
-    curved = len(points) > 1 and bent and len(run.names) == 2 and not complete
+    bent = state.convex and not state.discrete and all(p.proven for p in points)
+    curved = len(points) > 1 and bent and len(state.names) == 2 and not complete
     curved = curved and all(p.slopes is not None for p in points)
-    none = None if points else run.none
+    none = None if points else state.none
     return Found(
         points,
         complete=complete and bool(points),
-        error=curve_error(points, run.logarithmic) if curved else None,
+        error=curve_error(points, state.logarithmic) if curved else None,
         epsilon=epsilon if epsilon < 1.0 and not complete else None,
         beaten=beaten,
-        skipped=tuple(run.skipped[:-1] if complete and not left else run.skipped),
-        infeasible=not points and bool(run.skipped) and run.skipped[0].proven,
-        finished=not run.clock.stopped,
-        steps=tuple(run.steps),
-        proof={"method": "epsilon constraints", "sentence": _sentence(run, points, complete, left)}
+        skipped=tuple(state.skipped[:-1] if complete and not left else state.skipped),
+        infeasible=not points and bool(state.skipped) and state.skipped[0].proven,
+        finished=not state.clock.stopped,
+        steps=tuple(state.steps),
+        proof={
+            "method": "epsilon constraints",
+            "sentence": _sentence(state, points, complete, left),
+        }
         if none is None
         else none.proof,
-        evaluations=run.clock.evaluations,
-        unknown=_left_open(run, left) if none is None else (),
-        message=run.refused if none is None else none.message or NO_DESIGN,
+        evaluations=state.clock.evaluations,
+        unknown=_left_open(state, left) if none is None else (),
+        message=state.refused if none is None else none.message or NO_DESIGN,
     )
 
 
 NO_DESIGN = "no design meets all limits"
 
 
-def _strips(run: Run, points: tuple[Point, ...]) -> list[Strip]:
+def _strips(state: Run, points: tuple[Point, ...]) -> list[Strip]:
     """Gaps that the steps of a front of two objectives leave open."""
-    (first, second), caps = run.names, run.caps
+    (first, second), caps = state.names, state.caps
     values = np.array([p.values for p in points])
     width, size = np.ptp(values, axis=0), np.abs(values).max(axis=0)
     ranges = np.where(width > 0.0, width, np.where(size > 0.0, size, 1.0))
-    ends = run.steps_of(second, _but(caps, first))
+    ends = state.steps_of(second, _but(caps, first))
     held = caps.get(first, math.inf)
     least = max((t.bound for t in ends if t.most >= held), default=-math.inf)
-    tried = run.steps_of(first, _but(caps, second))
+    tried = state.steps_of(first, _but(caps, second))
     return strips(tried, least, caps.get(second, math.inf), values, ranges)
 
 
-def _sentence(run: Run, points: tuple[Point, ...], complete: bool, left: list[Strip]) -> str:
+def _sentence(state: Run, points: tuple[Point, ...], complete: bool, left: list[Strip]) -> str:
     """Sentence on the proof of the points."""
     if complete and points:
         return SHUT if left else STAIRS
     count = sum(p.proven for p in points)
     if not count:
-        starts = len(run.sample or ())
+        starts = len(state.sample or ())
         many = f", also from {starts:,} points of evolution" if starts else ""
         return f"Not proven: every point is the best one found under its limits{many}."
     which = "Every point" if count == len(points) else f"{count} of {len(points)} points"
@@ -556,7 +563,7 @@ def _sentence(run: Run, points: tuple[Point, ...], complete: bool, left: list[St
     return f"{which} {verb} proven: no design dominates it {by}."
 
 
-def _left_open(run: Run, left: list[Strip]) -> tuple[tuple[float, float], ...]:
+def _left_open(state: Run, left: list[Strip]) -> tuple[tuple[float, float], ...]:
     """Pieces of the front that are not known: limits of the second objective between them."""
     known = any(math.isfinite(strip.worse) for strip in left)
     pieces = list[tuple[float, float]]()
@@ -565,6 +572,6 @@ def _left_open(run: Run, left: list[Strip]) -> tuple[tuple[float, float], ...]:
             joined = pieces and pieces[-1][1] == strip.low
             pieces.append((pieces.pop()[0] if joined else strip.low, strip.high))
     if not known:
-        every = [gap for line in run.lines for gap in line.open if gap.refused]
+        every = [gap for line in state.lines for gap in line.open if gap.refused]
         pieces = [(gap.floor, gap.top) for gap in every]
     return tuple(pieces)

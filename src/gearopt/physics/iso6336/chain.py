@@ -18,24 +18,24 @@ from gearopt.physics.iso6336.curves import reference_share
 from gearopt.physics.iso6336.materials import SURFACE_HARDENED, strength
 from gearopt.physics.iso6336.tooth_form import load_sharing
 
-Found = dict[str, Any]
+Values = dict[str, Any]
 GEARS = (0, 1)
 
 
 @np.errstate(invalid="ignore", divide="ignore", over="ignore")
-def quantities(case: Case) -> Found:
+def quantities(case: Case) -> Values:
     """Return every quantity of LAWS by its symbol, given ones as they are given."""
-    found: Found = {}
+    values: Values = {}
     for symbol, law in LAWS.items():
-        found[symbol] = case.given[symbol] if symbol in case.given else law(case, found)
-    return found
+        values[symbol] = case.given[symbol] if symbol in case.given else law(case, values)
+    return values
 
 
-def _line_load(case: Case, found: Found, *factors: str) -> Any:
+def _line_load(case: Case, values: Values, *factors: str) -> Any:
     """Return F_t times factors per face width [N/mm]."""
     load = case.load / case.pair.face_width
     for factor in ("K_A", "K_gamma", *factors):
-        load = load * found[factor]
+        load = load * values[factor]
     return load
 
 
@@ -44,20 +44,20 @@ def _strengths(case: Case, stress: str) -> tuple[float, float]:
     return first, second
 
 
-def _single_stiffness(case: Case, found: Found) -> Any:
+def _single_stiffness(case: Case, values: Values) -> Any:
     first, second = (material.modulus for material in case.materials)
-    line = _line_load(case, found)
+    line = _line_load(case, values)
     blank = stiffness.mean_blank_factor(case.practice.webs)
     return stiffness.single_stiffness(case.pair, line, (first, second), blank)
 
 
-def _mesh_stiffness(case: Case, found: Found) -> Any:
-    return stiffness.mesh_stiffness(found["c_prime"], case.transverse_ratio)[0]
+def _mesh_stiffness(case: Case, values: Values) -> Any:
+    return stiffness.mesh_stiffness(values["c_prime"], case.transverse_ratio)[0]
 
 
-def _worn(case: Case, found: Found, deviation: Any) -> Any:
+def _worn(case: Case, values: Values, deviation: Any) -> Any:
     """Return y_alpha of a deviation, the mean of both gears."""
-    limits = found["sigma_Hlim"]
+    limits = values["sigma_Hlim"]
     first, second = (
         running_in.pitch_allowance(case.materials[k].family, deviation, limits[k], case.speed)
         for k in GEARS
@@ -65,85 +65,85 @@ def _worn(case: Case, found: Found, deviation: Any) -> Any:
     return 0.5 * (first + second)
 
 
-def _relief(case: Case, found: Found) -> Any:
+def _relief(case: Case, values: Values) -> Any:
     if case.practice.relief is not None:
         return case.practice.relief
-    first, second = (running_in.tip_relief(limit) for limit in found["sigma_Hlim"])
+    first, second = (running_in.tip_relief(limit) for limit in values["sigma_Hlim"])
     return 0.5 * (first + second)
 
 
-def _resonance(case: Case, found: Found) -> Any:
+def _resonance(case: Case, values: Values) -> Any:
     first, second = (material.density for material in case.materials)
     mass = stiffness.reduced_mass(case.pair, (first, second), case.practice.bores)
-    own = loads.resonance_speed(case.pair.pinion_teeth, found["c_gamma_alpha"], mass)
-    return case.operation.pinion_speed / own
+    resonance = loads.resonance_speed(case.pair.pinion_teeth, values["c_gamma_alpha"], mass)
+    return case.operation.pinion_speed / resonance
 
 
-def _dynamic(case: Case, found: Found) -> Any:
-    line, single = _line_load(case, found), found["c_prime"]
-    pitch = found["f_pb"] - _worn(case, found, found["f_pb"])
-    form = found["f_falpha"] - _worn(case, found, found["f_falpha"])
-    relief = np.abs(1.0 - single * found["C_a"] / line)
+def _dynamic(case: Case, values: Values) -> Any:
+    line, single = _line_load(case, values), values["c_prime"]
+    pitch = values["f_pb"] - _worn(case, values, values["f_pb"])
+    form = values["f_falpha"] - _worn(case, values, values["f_falpha"])
+    relief = np.abs(1.0 - single * values["C_a"] / line)
     dynamics = loads.Dynamics(single * pitch / line, single * form / line, relief, case.total_ratio)
-    return loads.dynamic_factor(dynamics, found["N"], line, case.within)
+    return loads.dynamic_factor(dynamics, values["N"], line, case.within)
 
 
-def _face(case: Case, found: Found) -> Any:
+def _face(case: Case, values: Values) -> Any:
     pair, practice = case.pair, case.practice
-    line = _line_load(case, found, "K_v")
+    line = _line_load(case, values, "K_v")
     width = pair.face_width / pair.pinion.reference_diameter
     shaft = loads.shaft_misalignment(line, width, practice.offset)
     before = loads.initial_misalignment(
-        shaft, found["f_ma"], line, case.deviations.helix_slope, practice.helix_modification
+        shaft, values["f_ma"], line, case.deviations.helix_slope, practice.helix_modification
     )
-    limits = found["sigma_Hlim"]
+    limits = values["sigma_Hlim"]
     worn = [
         running_in.helix_allowance(case.materials[k].family, before, limits[k], case.speed)
         for k in GEARS
     ]
     after = before - 0.5 * (worn[0] + worn[1])
-    return loads.face_load_factor(after, found["c_gamma_beta"], line)
+    return loads.face_load_factor(after, values["c_gamma_beta"], line)
 
 
-def _root_face_load_factor(case: Case, found: Found) -> Any:
+def _root_face_load_factor(case: Case, values: Values) -> Any:
     """Return K_Fbeta of the deeper tooth: h = (h_aP + h_fP) m_n, without tip alteration.
 
     K_Hbeta where crowning or end relief takes load off the ends. Source: IACS UR M56, 1.6.4.
     """
     if case.practice.helix_modification in loads.LIGHT_ENDS:
-        return found["K_Hbeta"]
+        return values["K_Hbeta"]
     deep = [g.rack.addendum + g.rack.dedendum for g in case.pair.gears]
     depth = np.maximum(*deep) * case.pair.normal_module
-    return loads.root_face_load_factor(found["K_Hbeta"], case.pair.face_width, depth)
+    return loads.root_face_load_factor(values["K_Hbeta"], case.pair.face_width, depth)
 
 
-def _transverse(case: Case, found: Found) -> Any:
-    line = _line_load(case, found, "K_v", "K_Hbeta")
-    pitch = found["f_pb"]
-    deviation = np.maximum(pitch, found["f_falpha"]) - _worn(case, found, pitch)
-    return loads.transverse_load_factor(found["c_gamma_alpha"], deviation, line, case.total_ratio)
+def _transverse(case: Case, values: Values) -> Any:
+    line = _line_load(case, values, "K_v", "K_Hbeta")
+    pitch = values["f_pb"]
+    deviation = np.maximum(pitch, values["f_falpha"]) - _worn(case, values, pitch)
+    return loads.transverse_load_factor(values["c_gamma_alpha"], deviation, line, case.total_ratio)
 
 
-def _transverse_contact(case: Case, found: Found) -> Any:
-    most = case.total_ratio / (case.transverse_ratio * found["Z_eps"] ** 2)
-    return loads.limited(_transverse(case, found), most)
+def _transverse_contact(case: Case, values: Values) -> Any:
+    most = case.total_ratio / (case.transverse_ratio * values["Z_eps"] ** 2)
+    return loads.limited(_transverse(case, values), most)
 
 
-def _transverse_bending(case: Case, found: Found) -> Any:
+def _transverse_bending(case: Case, values: Values) -> Any:
     ratio = case.transverse_ratio
     if case.practice.edition == "2019":
         ratio = case.forms[0].virtual_ratio
     most = case.total_ratio / (case.transverse_ratio * (0.25 + 0.75 / ratio))
-    return loads.limited(_transverse(case, found), most)
+    return loads.limited(_transverse(case, values), most)
 
 
-def _elastic(case: Case, found: Found) -> Any:
+def _elastic(case: Case, values: Values) -> Any:
     rows = [(m.modulus, m.poisson) for m in case.materials]
     (e1, nu1), (e2, nu2) = rows
     return contact.elasticity_factor((e1, e2), (nu1, nu2))
 
 
-def _single(case: Case, found: Found) -> Any:
+def _single(case: Case, values: Values) -> Any:
     helical = 1.0
     if case.practice.edition == "2019":
         helical = contact.PROFILE_MODIFICATIONS[case.practice.profile_modification] ** 0.5
@@ -153,22 +153,22 @@ def _single(case: Case, found: Found) -> Any:
     return first, second
 
 
-def _nominal_contact(case: Case, found: Found) -> Any:
-    product = found["Z_H"] * found["Z_E"] * found["Z_eps"] * found["Z_beta"]
+def _nominal_contact(case: Case, values: Values) -> Any:
+    product = values["Z_H"] * values["Z_E"] * values["Z_eps"] * values["Z_beta"]
     pair = case.pair
     diameter = pair.pinion.reference_diameter
     return contact.contact_stress(case.load, diameter, pair.face_width, pair.ratio, product)
 
 
-def _pressed(case: Case, found: Found) -> Any:
-    product = found["K_A"] * found["K_gamma"] * found["K_v"]
-    product = product * found["K_Hbeta"] * found["K_Halpha"]
-    first, second = (z * found["sigma_H0"] * np.sqrt(product) for z in found["Z_BD"])
+def _pressed(case: Case, values: Values) -> Any:
+    product = values["K_A"] * values["K_gamma"] * values["K_v"]
+    product = product * values["K_Hbeta"] * values["K_Halpha"]
+    first, second = (z * values["sigma_H0"] * np.sqrt(product) for z in values["Z_BD"])
     return first, second
 
 
-def _life(contact_: bool) -> Callable[[Case, Found], Any]:
-    def law(case: Case, found: Found) -> Any:
+def _life(contact_: bool) -> Callable[[Case, Values], Any]:
+    def law(case: Case, values: Values) -> Any:
         first, second = (case.curve(k, contact_).factor(case.cycles[k]) for k in GEARS)
         return first, second
 
@@ -182,17 +182,17 @@ def shared(case: Case, member: int, contact_: bool, cycles: Any = None) -> Any:
 
 
 def _at_cycles(
-    reference: Callable[[Case, Found], Any],
+    reference: Callable[[Case, Values], Any],
     contact_: bool,
-    static: Callable[[Case, Found, int], Any] = lambda case, found, k: 1.0,
-) -> Callable[[Case, Found], Any]:
+    static: Callable[[Case, Values, int], Any] = lambda case, values, k: 1.0,
+) -> Callable[[Case, Values], Any]:
     """Return the law of a factor of strength at N_L from those of reference and static strength."""
 
-    def law(case: Case, found: Found) -> Any:
-        made = reference(case, found)
-        both = made if isinstance(made, tuple) else (made, made)
+    def law(case: Case, values: Values) -> Any:
+        factor = reference(case, values)
+        both = factor if isinstance(factor, tuple) else (factor, factor)
         first, second = (
-            both[k] ** (t := shared(case, k, contact_)) * static(case, found, k) ** (1.0 - t)
+            both[k] ** (t := shared(case, k, contact_)) * static(case, values, k) ** (1.0 - t)
             for k in GEARS
         )
         return first, second
@@ -200,93 +200,93 @@ def _at_cycles(
     return law
 
 
-def _softer(found: Found) -> Any:
-    return np.minimum(*found["sigma_Hlim"])
+def _softer(values: Values) -> Any:
+    return np.minimum(*values["sigma_Hlim"])
 
 
-def lubricant(case: Case, found: Found) -> Any:
+def lubricant(case: Case, values: Values) -> Any:
     """Return Z_L of reference strength."""
-    return contact.lubricant_factor(_softer(found), case.practice.viscosity)
+    return contact.lubricant_factor(_softer(values), case.practice.viscosity)
 
 
-def velocity(case: Case, found: Found) -> Any:
+def velocity(case: Case, values: Values) -> Any:
     """Return Z_v of reference strength."""
-    return contact.velocity_factor(_softer(found), case.speed)
+    return contact.velocity_factor(_softer(values), case.speed)
 
 
-def roughness(case: Case, found: Found) -> Any:
+def roughness(case: Case, values: Values) -> Any:
     """Return Z_R of reference strength."""
     mean = 0.5 * (case.materials[0].flank + case.materials[1].flank)
     curvature = contact.reduced_curvature(case.pair)
-    return contact.roughness_factor(_softer(found), mean, curvature)
+    return contact.roughness_factor(_softer(values), mean, curvature)
 
 
-def hardening(case: Case, found: Found) -> Any:
+def hardening(case: Case, values: Values) -> Any:
     """Return Z_W of reference strength, of pinion and wheel: 1 but of a softer wheel."""
     return tuple(hardened(case, k, False) for k in GEARS)
 
 
 def hardened(case: Case, member: int, static: bool) -> Any:
     """Return Z_W of a gear, static or of reference strength; 1 of a pinion (UR M56, 2.11)."""
-    own, other = case.materials[member], case.materials[1 - member]
-    if member == 0 or own.family not in ("St", "V", "GGG") or own.hardness <= 0.0:
+    gear, other = case.materials[member], case.materials[1 - member]
+    if member == 0 or gear.family not in ("St", "V", "GGG") or gear.hardness <= 0.0:
         return 1.0
     if other.family in SURFACE_HARDENED:
         if static:
-            return contact.static_hardening_factor(own.brinell)
+            return contact.static_hardening_factor(gear.brinell)
         film = contact.equivalent_roughness(
             other.flank,
-            own.flank,
+            gear.flank,
             contact.reduced_curvature(case.pair),
             case.speed,
             case.practice.viscosity,
         )
-        return contact.work_hardening_factor(own.brinell, film)
+        return contact.work_hardening_factor(gear.brinell, film)
     if static or other.family not in ("St", "V", "GGG") or other.hardness <= 0.0:
         return 1.0
-    return contact.tempered_hardening_factor(other.brinell, own.brinell, case.pair.ratio)
+    return contact.tempered_hardening_factor(other.brinell, gear.brinell, case.pair.ratio)
 
 
-def _form(case: Case, found: Found) -> Any:
-    made = [form.form for form in case.forms]
+def _form(case: Case, values: Values) -> Any:
+    factors = [form.form for form in case.forms]
     if case.practice.edition == "2019":
         overlap = case.pair.overlap_ratio
-        made = [f.form * load_sharing(f.virtual_ratio, overlap) for f in case.forms]
-    return made[0], made[1]
+        factors = [f.form * load_sharing(f.virtual_ratio, overlap) for f in case.forms]
+    return factors[0], factors[1]
 
 
-def _rim(case: Case, found: Found) -> Any:
+def _rim(case: Case, values: Values) -> Any:
     first, second = (1.0 if r is None else bending.rim_factor(r) for r in case.practice.backup)
     return first, second
 
 
-def _deep(case: Case, found: Found) -> Any:
+def _deep(case: Case, values: Values) -> Any:
     worst = max(case.practice.grades)
     return bending.deep_tooth_factor(case.forms[0].virtual_ratio, worst)
 
 
-def _nominal_root(case: Case, found: Found) -> Any:
-    pair, both = case.pair, found["Y_beta"] * found["Y_DT"]
+def _nominal_root(case: Case, values: Values) -> Any:
+    pair, both = case.pair, values["Y_beta"] * values["Y_DT"]
     first, second = (
         bending.root_stress(
             case.load,
             pair.face_width,
             pair.normal_module,
-            both * found["Y_F"][k] * found["Y_S"][k] * found["Y_B"][k],
+            both * values["Y_F"][k] * values["Y_S"][k] * values["Y_B"][k],
         )
         for k in GEARS
     )
     return first, second
 
 
-def _bent(case: Case, found: Found) -> Any:
-    product = found["K_A"] * found["K_gamma"] * found["K_v"]
-    product = product * found["K_Fbeta"] * found["K_Falpha"]
-    first, second = (stress * product for stress in found["sigma_F0"])
+def _bent(case: Case, values: Values) -> Any:
+    product = values["K_A"] * values["K_gamma"] * values["K_v"]
+    product = product * values["K_Fbeta"] * values["K_Falpha"]
+    first, second = (stress * product for stress in values["sigma_F0"])
     return first, second
 
 
-def notches(case: Case, found: Found) -> Any:
+def notches(case: Case, values: Values) -> Any:
     """Return Y_deltarelT of reference strength."""
     first, second = (
         bending.notch_factor(bending.slip_layer(m.family, m.strength_for_notches), form.notch)
@@ -295,58 +295,58 @@ def notches(case: Case, found: Found) -> Any:
     return first, second
 
 
-def _static_notch(case: Case, found: Found, member: int) -> Any:
+def _static_notch(case: Case, values: Values, member: int) -> Any:
     material = case.materials[member]
     strength_ = material.strength_for_notches
-    return bending.static_notch_factor(material.family, found["Y_S"][member], strength_)
+    return bending.static_notch_factor(material.family, values["Y_S"][member], strength_)
 
 
-def surfaces(case: Case, found: Found) -> Any:
+def surfaces(case: Case, values: Values) -> Any:
     """Return Y_RrelT of reference strength."""
     first, second = (bending.surface_factor(m.family, m.root) for m in case.materials)
     return first, second
 
 
-def sizes(case: Case, found: Found) -> Any:
+def sizes(case: Case, values: Values) -> Any:
     """Return Y_X of reference strength."""
     module = case.pair.normal_module
     first, second = (bending.size_factor(m.family, module) for m in case.materials)
     return first, second
 
 
-def _permissible(names: tuple[str, ...]) -> Callable[[Case, Found], Any]:
-    def law(case: Case, found: Found) -> Any:
-        made = [1.0, 1.0]
+def _permissible(names: tuple[str, ...]) -> Callable[[Case, Values], Any]:
+    def law(case: Case, values: Values) -> Any:
+        products = [1.0, 1.0]
         for name in names:
-            value = found[name]
+            value = values[name]
             both = value if isinstance(value, tuple) else (value, value)
-            made = [made[k] * both[k] for k in GEARS]
-        return made[0], made[1]
+            products = [products[k] * both[k] for k in GEARS]
+        return products[0], products[1]
 
     return law
 
 
 CONTACT_STRENGTH = ("sigma_Hlim", "Z_NT", "Z_L", "Z_v", "Z_R", "Z_W", "Z_X")
 BENDING_STRENGTH = ("sigma_Flim", "Y_ST", "Y_NT", "Y_deltarelT", "Y_RrelT", "Y_X", "Y_M")
-LAWS: dict[str, Callable[[Case, Found], Any]] = {
-    "K_A": lambda case, found: case.operation.overload,
-    "K_gamma": lambda case, found: 1.0,
-    "sigma_Hlim": lambda case, found: _strengths(case, "H"),
-    "sigma_Flim": lambda case, found: _strengths(case, "F"),
-    "f_pb": lambda case, found: case.deviations.base_pitch,
-    "f_falpha": lambda case, found: case.deviations.profile_form,
-    "f_ma": lambda case, found: case.deviations.alignment,
+LAWS: dict[str, Callable[[Case, Values], Any]] = {
+    "K_A": lambda case, values: case.operation.overload,
+    "K_gamma": lambda case, values: 1.0,
+    "sigma_Hlim": lambda case, values: _strengths(case, "H"),
+    "sigma_Flim": lambda case, values: _strengths(case, "F"),
+    "f_pb": lambda case, values: case.deviations.base_pitch,
+    "f_falpha": lambda case, values: case.deviations.profile_form,
+    "f_ma": lambda case, values: case.deviations.alignment,
     "C_a": _relief,
     "c_prime": _single_stiffness,
     "c_gamma_alpha": _mesh_stiffness,
-    "c_gamma_beta": lambda case, found: 0.85 * found["c_gamma_alpha"],
+    "c_gamma_beta": lambda case, values: 0.85 * values["c_gamma_alpha"],
     "N": _resonance,
-    "Z_H": lambda case, found: contact.zone_factor(case.pair),
+    "Z_H": lambda case, values: contact.zone_factor(case.pair),
     "Z_E": _elastic,
-    "Z_eps": lambda case, found: contact.contact_ratio_factor(
+    "Z_eps": lambda case, values: contact.contact_ratio_factor(
         case.transverse_ratio, case.pair.overlap_ratio
     ),
-    "Z_beta": lambda case, found: contact.helix_factor(case.pair.pinion.helix_angle),
+    "Z_beta": lambda case, values: contact.helix_factor(case.pair.pinion.helix_angle),
     "Z_BD": _single,
     "K_v": _dynamic,
     "K_Hbeta": _face,
@@ -359,24 +359,24 @@ LAWS: dict[str, Callable[[Case, Found], Any]] = {
     "Z_L": _at_cycles(lubricant, True),
     "Z_v": _at_cycles(velocity, True),
     "Z_R": _at_cycles(roughness, True),
-    "Z_W": _at_cycles(hardening, True, lambda case, found, k: hardened(case, k, True)),
-    "Z_X": lambda case, found: 1.0,
+    "Z_W": _at_cycles(hardening, True, lambda case, values, k: hardened(case, k, True)),
+    "Z_X": lambda case, values: 1.0,
     "sigma_HG": _permissible(CONTACT_STRENGTH),
     "Y_F": _form,
-    "Y_S": lambda case, found: (case.forms[0].concentration, case.forms[1].concentration),
-    "Y_beta": lambda case, found: bending.helix_factor(
+    "Y_S": lambda case, values: (case.forms[0].concentration, case.forms[1].concentration),
+    "Y_beta": lambda case, values: bending.helix_factor(
         case.pair.pinion.helix_angle, case.pair.overlap_ratio, case.practice.edition
     ),
     "Y_B": _rim,
     "Y_DT": _deep,
     "sigma_F0": _nominal_root,
     "sigma_F": _bent,
-    "Y_ST": lambda case, found: bending.TEST_GEAR,
+    "Y_ST": lambda case, values: bending.TEST_GEAR,
     "Y_NT": _life(False),
     "Y_deltarelT": _at_cycles(notches, False, _static_notch),
     "Y_RrelT": _at_cycles(surfaces, False),
     "Y_X": _at_cycles(sizes, False),
-    "Y_M": lambda case, found: tuple(
+    "Y_M": lambda case, values: tuple(
         bending.REVERSED if m.reversed_load else 1.0 for m in case.materials
     ),
     "sigma_FG": _permissible(BENDING_STRENGTH),
@@ -384,14 +384,14 @@ LAWS: dict[str, Callable[[Case, Found], Any]] = {
 
 
 @np.errstate(invalid="ignore", divide="ignore", over="ignore")
-def strength_of(case: Case, found: Found, contact_: bool) -> Any:
+def strength_of(case: Case, values: Values, contact_: bool) -> Any:
     """Return sigma_HG or sigma_FG [MPa] at the cycles of a case whose other quantities are found.
 
     Z_NT and Y_NT are computed even where they are given.
     """
     names = CONTACT_STRENGTH if contact_ else BENDING_STRENGTH
     given = {k: v for k, v in case.given.items() if k not in ("Z_NT", "Y_NT")}
-    by_name = dict(found)
+    by_name = dict(values)
     for name in names:
-        by_name[name] = given[name] if name in given else LAWS[name](case, found)
+        by_name[name] = given[name] if name in given else LAWS[name](case, values)
     return _permissible(names)(case, by_name)

@@ -15,7 +15,7 @@ from gearopt.physics.iso6336.running_in import CAST, SLOW, TEMPERED
 from gearopt.physics.iso6336.stiffness import LEAST_LINE_LOAD
 from gearopt.physics.rating import Factor
 
-Found = dict[str, Any]
+Values = dict[str, Any]
 SHIFTS = -0.5, 2.0  # x_1 + x_2 for which c' holds. Source: part 1, 9.3 [memory]
 # angles above which results want experience. Source: IACS UR M56, 3.1, of parts 2 and 3
 PRESSURE_ANGLE, HELIX_ANGLE = math.radians(25.0) + 1e-9, math.radians(30.0) + 1e-9
@@ -70,21 +70,21 @@ PAIRED = tuple(CLAUSES)[list(CLAUSES).index("Z_BD") :]  # one value for each gea
 SHARED = tuple(CLAUSES)[: list(CLAUSES).index("Z_BD")]
 
 
-def factors(case: Case, found: Found) -> dict[str, Factor]:
-    """Return the factors of quantities that were found, by symbol."""
-    made = {}
+def factors(case: Case, values: Values) -> dict[str, Factor]:
+    """Return the factors of the quantities of a chain, by symbol."""
+    table = {}
     for symbol, (clause, unit) in CLAUSES.items():
-        value = _plain(found[symbol], symbol in PAIRED)
+        value = _plain(values[symbol], symbol in PAIRED)
         if symbol in case.given:
-            made[symbol] = Factor(symbol, value, "given", unit)
+            table[symbol] = Factor(symbol, value, "given", unit)
             continue
-        verified, remark = DOUBTS.get(symbol, _none)(case, found)
+        verified, remark = DOUBTS.get(symbol, _none)(case, values)
         if clause.startswith("ISO 1328-1"):
             clause = f"{clause}:{case.practice.tolerances}"
         elif not clause.startswith("6336-5"):
             clause = clause.replace(",", f":{case.practice.edition},", 1)
-        made[symbol] = Factor(symbol, value, clause, unit, verified, remark)
-    return made
+        table[symbol] = Factor(symbol, value, clause, unit, verified, remark)
+    return table
 
 
 def _plain(value: Any, paired: bool) -> float | tuple[float, float]:
@@ -97,7 +97,7 @@ def _plain(value: Any, paired: bool) -> float | tuple[float, float]:
 Doubt = tuple[bool, str]
 
 
-def _none(case: Case, found: Found) -> Doubt:
+def _none(case: Case, values: Values) -> Doubt:
     return True, ""
 
 
@@ -108,8 +108,8 @@ def _of_2019(case: Case, what: str) -> Doubt:
     )
 
 
-def _stiffness(case: Case, found: Found) -> Doubt:
-    line = case.load * found["K_A"] * found["K_gamma"] / case.pair.face_width
+def _stiffness(case: Case, values: Values) -> Doubt:
+    line = case.load * values["K_A"] * values["K_gamma"] / case.pair.face_width
     if line < LEAST_LINE_LOAD:
         return False, f"below 100 N/mm: formula {UNCHECKED}"
     shifts = sum(gear.profile_shift for gear in case.pair.gears)
@@ -118,7 +118,7 @@ def _stiffness(case: Case, found: Found) -> Doubt:
     return True, ""
 
 
-def _tolerance(case: Case, found: Found) -> Doubt:
+def _tolerance(case: Case, values: Values) -> Doubt:
     outside = beyond(case.pair, case.practice.grades, case.practice.tolerances)
     return not outside, f"{', '.join(outside)} outside ISO 1328-1" if outside else ""
 
@@ -129,10 +129,10 @@ def _tempered(case: Case) -> bool:
     return any(m.family in CAST or fast and m.family in TEMPERED for m in case.materials)
 
 
-def _dynamic(case: Case, found: Found) -> Doubt:
-    sound, remark = _stiffness(case, found)
-    line = case.load * found["K_A"] * found["K_gamma"] / case.pair.face_width
-    resonance = found["N"]
+def _dynamic(case: Case, values: Values) -> Doubt:
+    sound, remark = _stiffness(case, values)
+    line = case.load * values["K_A"] * values["K_gamma"] / case.pair.face_width
+    resonance = values["N"]
     if resonance > lower_limit(line):
         name = "main resonance" if resonance <= MAIN else "above the main resonance"
         return False, f"{name}, N = {resonance:.2f}: no published value"
@@ -144,48 +144,50 @@ def _dynamic(case: Case, found: Found) -> Doubt:
     return sound, remark or slow
 
 
-def _face(case: Case, found: Found) -> Doubt:
+def _face(case: Case, values: Values) -> Doubt:
     if case.practice.helix_modification != "none":
         return False, f"helix modification: {UNCHECKED}"
     if case.practice.offset:
         return False, f"pinion off the middle: {UNCHECKED}"
-    sound, remark = _stiffness(case, found)
-    return sound, remark or ("above 2: one end is out of contact" if found["K_Hbeta"] > 2.0 else "")
+    sound, remark = _stiffness(case, values)
+    return sound, remark or (
+        "above 2: one end is out of contact" if values["K_Hbeta"] > 2.0 else ""
+    )
 
 
-def _root_face(case: Case, found: Found) -> Doubt:
-    return (True, "") if "K_Hbeta" in case.given else _face(case, found)
+def _root_face(case: Case, values: Values) -> Doubt:
+    return (True, "") if "K_Hbeta" in case.given else _face(case, values)
 
 
-def _transverse(case: Case, found: Found) -> Doubt:
+def _transverse(case: Case, values: Values) -> Doubt:
     if _tempered(case):
         return False, f"running-in of these materials: {UNCHECKED}"
-    return _stiffness(case, found)
+    return _stiffness(case, values)
 
 
-def _transverse_root(case: Case, found: Found) -> Doubt:
+def _transverse_root(case: Case, values: Values) -> Doubt:
     changed = _of_2019(case, "its limit")
-    return _transverse(case, found) if changed[0] else changed
+    return _transverse(case, values) if changed[0] else changed
 
 
-def _form(case: Case, found: Found) -> Doubt:
+def _form(case: Case, values: Values) -> Doubt:
     light = case.pair.overlap_ratio < 1.0 or case.forms[0].virtual_ratio >= 2.0
     sound, remark = _of_2019(case, "load sharing f_eps") if light else (True, "")
     steep = max(gear.rack.pressure_angle for gear in case.pair.gears) > PRESSURE_ANGLE
     return sound, remark or (f"alpha_n above 25 degrees: {EXPERIENCE}" if steep else "")
 
 
-def _notch(case: Case, found: Found) -> Doubt:
+def _notch(case: Case, values: Values) -> Doubt:
     off = [f for f in case.forms if not 1.0 <= f.notch < 8.0]
     return True, "q_s outside 1 to 8" if off else ""
 
 
-def _helix(case: Case, found: Found) -> Doubt:
+def _helix(case: Case, values: Values) -> Doubt:
     steep = abs(case.pair.pinion.helix_angle) > HELIX_ANGLE
     return True, f"beta above 30 degrees: {EXPERIENCE}" if steep else ""
 
 
-def _single(case: Case, found: Found) -> Doubt:
+def _single(case: Case, values: Values) -> Doubt:
     overlap, chosen = case.pair.overlap_ratio, case.practice.profile_modification
     if not overlap or overlap >= 1.0 and chosen == "none":
         return True, ""
@@ -197,11 +199,11 @@ def _both(value: Any) -> tuple[Any, Any]:
     return first, second
 
 
-def _hardening(case: Case, found: Found) -> Doubt:
-    values = _both(found["Z_W"])
-    if any(value != 1.0 and shared(case, k, True) < 1.0 for k, value in enumerate(values)):
+def _hardening(case: Case, values: Values) -> Doubt:
+    hardening = _both(values["Z_W"])
+    if any(value != 1.0 and shared(case, k, True) < 1.0 for k, value in enumerate(hardening)):
         return False, f"short lives: static strength {UNCHECKED}"
-    return True, "below 1, where rules of ship classes take 1" if min(values) < 1.0 else ""
+    return True, "below 1, where rules of ship classes take 1" if min(hardening) < 1.0 else ""
 
 
 def _confirmed(material: Material, stress: str) -> bool:
@@ -211,8 +213,8 @@ def _confirmed(material: Material, stress: str) -> bool:
     return (material.name, material.quality, stress) == ("Eh", "MQ", "H")
 
 
-def _strength(stress: str) -> Callable[[Case, Found], Doubt]:
-    def doubt(case: Case, found: Found) -> Doubt:
+def _strength(stress: str) -> Callable[[Case, Values], Doubt]:
+    def doubt(case: Case, values: Values) -> Doubt:
         within = all(strength(m, stress).within for m in case.materials)
         known = all(_confirmed(m, stress) for m in case.materials)
         remark = "" if within else "hardness outside the range of its line: its end is taken"
@@ -221,11 +223,11 @@ def _strength(stress: str) -> Callable[[Case, Found], Doubt]:
     return doubt
 
 
-def _life(case: Case, found: Found) -> Doubt:
+def _life(case: Case, values: Values) -> Doubt:
     return True, f"beyond {LONGEST_LIFE:g} cycles" if max(case.cycles) > LONGEST_LIFE else ""
 
 
-def _slip(case: Case, found: Found) -> Doubt:
+def _slip(case: Case, values: Values) -> Doubt:
     if any(m.family in ("St", "GTS", "GGG", *CAST, NITROCARBURISED) for m in case.materials):
         return False, f"slip layer {UNCHECKED}"
     tempered = [m for m in case.materials if m.family == "V"]
@@ -235,18 +237,18 @@ def _slip(case: Case, found: Found) -> Doubt:
     return True, "yield point outside 500 to 1000 MPa: its end is taken" if off else ""
 
 
-def _surface(case: Case, found: Found) -> Doubt:
+def _surface(case: Case, values: Values) -> Doubt:
     if any(m.family in (*CAST, NITROCARBURISED) for m in case.materials):
         return False, f"line of these materials {UNCHECKED}"
     return True, "roughness above 40 µm" if max(m.root for m in case.materials) > 40e-3 else ""
 
 
-def _lubrication(case: Case, found: Found) -> Doubt:
-    between = 850.0 < min(_both(found["sigma_Hlim"])) < HARD_LIMIT
+def _lubrication(case: Case, values: Values) -> Doubt:
+    between = 850.0 < min(_both(values["sigma_Hlim"])) < HARD_LIMIT
     return True, "sigma_Hlim between 850 MPa and 1200 MPa: no published value" if between else ""
 
 
-DOUBTS: dict[str, Callable[[Case, Found], Doubt]] = {
+DOUBTS: dict[str, Callable[[Case, Values], Doubt]] = {
     **dict.fromkeys(("f_pb", "f_falpha", "f_ma"), _tolerance),
     "c_prime": _stiffness,
     "c_gamma_alpha": _stiffness,

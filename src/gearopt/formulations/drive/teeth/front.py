@@ -157,11 +157,13 @@ def fronts(train: Train, most: Array, clock: Clock) -> Designs:
 
     most (objectives,): largest values of interest; inf: any.
     """
-    runs = [_searched(row, most, clock) for row in train.of_one_row]
-    compared, opened = (sum(getattr(run, name) for run in runs) for name in ("compared", "opened"))
-    values = np.concatenate([run.values for run in runs])
-    trains = [design for run in runs for design in run.trains()]
-    if len(runs) > 1:
+    states = [_searched(row, most, clock) for row in train.of_one_row]
+    compared, opened = (
+        sum(getattr(state, name) for state in states) for name in ("compared", "opened")
+    )
+    values = np.concatenate([state.values for state in states])
+    trains = [design for state in states for design in state.trains()]
+    if len(states) > 1:
         left = unbeaten(values)
         values, trains = values[left], [trains[k] for k in left.tolist()]
     return Designs(values, trains, clock, compared, opened)
@@ -170,133 +172,133 @@ def fronts(train: Train, most: Array, clock: Clock) -> Designs:
 def _searched(train: Train, most: Array, clock: Clock) -> Search:
     """Search the drives of one row of distances."""
     count = len(train.objectives)
-    run = Search(train, clock, most, np.empty((0, count)), values=np.empty((0, count)))
+    state = Search(train, clock, most, np.empty((0, count)), values=np.empty((0, count)))
     shelf: list[RatedTable] = []
     try:
-        for run.number, run.train in enumerate(train.of_one_option):
-            run.rest, run.weights = [], np.empty((0, count))
-            run.open = np.full((1, count), np.inf)
-            run.tables = stage_tables(run.train, train.highest_ratio, run.tick, shelf)
-            if all(len(t.ratio) for t in run.tables) and _ends(run):
-                _bounds(run)
-                _all(run)
+        for state.number, state.train in enumerate(train.of_one_option):
+            state.rest, state.weights = [], np.empty((0, count))
+            state.open = np.full((1, count), np.inf)
+            state.tables = stage_tables(state.train, train.highest_ratio, state.tick, shelf)
+            if all(len(t.ratio) for t in state.tables) and _ends(state):
+                _bounds(state)
+                _all(state)
     except SearchEnded:
-        _inside(run)  # the ends of the front are found without its limits
-    return run
+        _inside(state)  # the ends of the front are found without its limits
+    return state
 
 
-def _ends(run: Search) -> bool:
+def _ends(state: Search) -> bool:
     """Begin with the trains that are best in one objective; return whether there are any.
 
     Of many that tie, as at given centre distances all do in their sum, the first will do.
     """
-    for objective in run.train.objectives:
-        watch, budget = run.clock.inner(values=False), replace(run.clock.left, gap=TIE)
-        best = search(run.train.minimising(objective), 1, budget, watch)
+    for objective in state.train.objectives:
+        watch, budget = state.clock.inner(values=False), replace(state.clock.left, gap=TIE)
+        best = search(state.train.minimising(objective), 1, budget, watch)
         for _, teeth in best.found:
-            _add_teeth(run, teeth)
-        run.tick()
+            _add_teeth(state, teeth)
+        state.tick()
         if not best.found:
             return False
     return True
 
 
-def _bounds(run: Search) -> None:
+def _bounds(state: Search) -> None:
     """Compute the bounds of every objective, and of weighted sums in the ranges of the ends."""
-    width = np.ptp(run.values, axis=0)
-    width = np.where(width > 0.0, width, np.abs(run.values[0]))
-    run.weights = np.array([np.array(w) / width for w in WEIGHTS[len(width)]])
-    delta = RATED_CELL_WIDTH if run.train.rated else CELL_WIDTH
-    alone = [run.train.minimising(name) for name in run.train.objectives]
-    for train in (*alone, *(run.train.weighing(w) for w in run.weights)):
-        own = [table.of(train) for table in run.tables]
-        run.rest.append(bound(train, own, delta, run.tick))
-    run.low = run.values.min(axis=0)
-    _inside(run)
-    run.open = weighed(corners(run.values, run.most[None, :]), run.weights)
+    width = np.ptp(state.values, axis=0)
+    width = np.where(width > 0.0, width, np.abs(state.values[0]))
+    state.weights = np.array([np.array(w) / width for w in WEIGHTS[len(width)]])
+    delta = RATED_CELL_WIDTH if state.train.rated else CELL_WIDTH
+    alone = [state.train.minimising(name) for name in state.train.objectives]
+    for train in (*alone, *(state.train.weighing(w) for w in state.weights)):
+        own = [table.of(train) for table in state.tables]
+        state.rest.append(bound(train, own, delta, state.tick))
+    state.low = state.values.min(axis=0)
+    _inside(state)
+    state.open = weighed(corners(state.values, state.most[None, :]), state.weights)
 
 
-def _inside(run: Search) -> None:
+def _inside(state: Search) -> None:
     """Keep the trains up to the largest values of interest."""
-    inside = np.flatnonzero((run.values <= run.most * (1.0 + TIE)).all(axis=1))
-    if run.made is not None:
-        run.values, run.made = run.values[inside], run.made.take(inside)
+    inside = np.flatnonzero((state.values <= state.most * (1.0 + TIE)).all(axis=1))
+    if state.made is not None:
+        state.values, state.made = state.values[inside], state.made.take(inside)
 
 
-def _add_teeth(run: Search, teeth: Teeth) -> None:
+def _add_teeth(state: Search, teeth: Teeth) -> None:
     """Add the designs that trains of given teeth allow."""
-    nodes = _root(run)
-    for (z1, z2), table in zip(teeth, run.tables, strict=True):
+    nodes = _root(state)
+    for (z1, z2), table in zip(teeth, state.tables, strict=True):
         pair = np.flatnonzero((table.z1 == z1) & (table.z2 == z2))
         if not len(pair):
             return
         node, row = np.indices((len(nodes), len(pair))).reshape(2, -1)
-        nodes = _children(run, nodes, (node, pair[row]))
+        nodes = _children(state, nodes, (node, pair[row]))
         nodes = nodes.take(unbeaten(nodes.cost, equal=True))
-    _keep(run, nodes)
+    _keep(state, nodes)
 
 
-def _root(run: Search) -> Nodes:
+def _root(state: Search) -> Nodes:
     """The root of the search: no teeth of any stage are chosen."""
-    none, zero = np.empty((1, 0)), np.zeros((1, len(run.train.objectives) + len(run.weights)))
+    none, zero = np.empty((1, 0)), np.zeros((1, len(state.train.objectives) + len(state.weights)))
     places = np.empty((1, 0), dtype=np.int64)
     return Nodes(0, zero, zero, np.zeros(1), Choice(places, none, none, places))
 
 
-def _all(run: Search) -> None:
+def _all(state: Search) -> None:
     """Search to the end, the most promising nodes first."""
-    last, order = len(run.tables) - 1, itertools.count()
-    heap: list[tuple[float, int, Nodes]] = [(0.0, next(order), _root(run))]
-    count = len(run.train.objectives)
-    low, scale = run.low, run.weights.mean(axis=0)
+    last, order = len(state.tables) - 1, itertools.count()
+    heap: list[tuple[float, int, Nodes]] = [(0.0, next(order), _root(state))]
+    count = len(state.train.objectives)
+    low, scale = state.low, state.weights.mean(axis=0)
     while heap:
         nodes: Nodes | None = heapq.heappop(heap)[2]
         while nodes is not None and len(nodes):
-            run.tick()
+            state.tick()
             width = LEAVES if nodes.level == last else BEAM
             rest, nodes = nodes.take(slice(width, None)), nodes.take(slice(0, width))
             if len(rest):
                 score = float((rest.bound[0, :count] - low) @ scale)
                 heapq.heappush(heap, (score, next(order), rest))
-            nodes = nodes.take(useful(nodes.bound, run.open))
-            run.opened += len(nodes)
+            nodes = nodes.take(useful(nodes.bound, state.open))
+            state.opened += len(nodes)
             if nodes.level == last:
-                _complete(run, nodes)
+                _complete(state, nodes)
                 break
-            nodes = _children(run, nodes, _pairs(run, nodes))
+            nodes = _children(state, nodes, _pairs(state, nodes))
             nodes = nodes.take(np.argsort((nodes.bound[:, :count] - low) @ scale, kind="stable"))
 
 
-def _pairs(run: Search, nodes: Nodes) -> tuple[Index, Index]:
+def _pairs(state: Search, nodes: Nodes) -> tuple[Index, Index]:
     """Return nodes and pairs of use of a stage that is not the last one."""
-    level, rest = nodes.level, run.rest[0]
+    level, rest = nodes.level, state.rest[0]
     if level == 0:
-        pair = np.arange(len(run.tables[0].ratio))
+        pair = np.arange(len(state.tables[0].ratio))
         return np.zeros(len(pair), dtype=np.int64), pair
     cell = rest.cell(nodes.log_ratio)
-    lower = np.stack([own.onward(level, cell) for own in run.rest], axis=2)
+    lower = np.stack([own.onward(level, cell) for own in state.rest], axis=2)
     lower += nodes.cost[:, None, :]
-    use = useful(lower.reshape(-1, lower.shape[2]), run.open).reshape(lower.shape[:2])
+    use = useful(lower.reshape(-1, lower.shape[2]), state.open).reshape(lower.shape[:2])
     owner, column = np.nonzero(use)
     start = rest.starts[level][column]
     group, pair = ragged(start, rest.starts[level][column + 1] - start)
     return owner[group], pair
 
 
-def _children(run: Search, nodes: Nodes, places: tuple[Index, Index]) -> Nodes:
+def _children(state: Search, nodes: Nodes, places: tuple[Index, Index]) -> Nodes:
     """Return the children of use of nodes by pairs."""
     (node, pair), level = places, nodes.level
-    table = run.tables[level]
-    run.clock.evaluations += len(pair)
+    table = state.tables[level]
+    state.clock.evaluations += len(pair)
     log_ratio = nodes.log_ratio[node] + table.log_ratio[pair]
     ahead = np.zeros((len(pair), nodes.cost.shape[1]))
-    if level < len(run.tables) - 1 and run.rest:
-        ahead = np.stack([r.to_go[level + 1][r.cell(log_ratio)] for r in run.rest], axis=1)
+    if level < len(state.tables) - 1 and state.rest:
+        ahead = np.stack([r.to_go[level + 1][r.cell(log_ratio)] for r in state.rest], axis=1)
     lower = nodes.cost[node] + ahead
-    torque = run.train.torque * np.exp(nodes.log_ratio[node])
-    parts = list(_rows(run, level, torque, pair, lower))
+    torque = state.train.torque * np.exp(nodes.log_ratio[node])
+    parts = list(_rows(state, level, torque, pair, lower))
     owner, module, width, option, cost = (np.concatenate(c) for c in zip(*parts, strict=True))
-    use = useful(lower[owner] + cost, run.open)
+    use = useful(lower[owner] + cost, state.open)
     owner, cost = owner[use], cost[use]
     own = Choice(pair[owner, None], module[use, None], width[use, None], option[use, None])
     made = nodes.made.take(node[owner]).after(own)
@@ -307,87 +309,87 @@ def _children(run: Search, nodes: Nodes, places: tuple[Index, Index]) -> Nodes:
 Rows = tuple[Index, Array, Array, Index, Array]
 
 
-def _rows(run: Search, level: int, torque: Array, pair: Index, lower: Array) -> Iterator[Rows]:
+def _rows(state: Search, level: int, torque: Array, pair: Index, lower: Array) -> Iterator[Rows]:
     """Yield owners, modules, widths [mm], options and costs of pairs (n,) at torques.
 
     lower (n, objectives + w): what a train with them costs beside them; pairs without use at the
     narrowest face that the file allows are left out.
     """
-    table = run.tables[level]
+    table = state.tables[level]
     if table.one_module:
         value, module, width = table.smallest(torque, pair)
         some = np.flatnonzero(np.isfinite(value))
-        yield _row(run, level, pair, some, module[some], width[some], 0)
+        yield _row(state, level, pair, some, module[some], width[some], 0)
         return
     for option in range(max(1, len(table.stage.options))):
         for k, module in enumerate(table.modules):
             some = np.flatnonzero((table.first[pair] <= k) & (k <= table.last[pair]))
             narrow = table.made(module, pair[some])
             narrow = narrow.of_width(table.width_ends(narrow, k, pair[some])[0])
-            some = some[useful(lower[some] + _costs(run, level, narrow, option), run.open)]
+            some = some[useful(lower[some] + _costs(state, level, narrow, option), state.open)]
             width = table.carrying(torque[some], pair[some], k, option)
             some, width = some[np.isfinite(width)], width[np.isfinite(width)]
-            yield _row(run, level, pair, some, np.full(len(some), module), width, option)
+            yield _row(state, level, pair, some, np.full(len(some), module), width, option)
 
 
 def _row(
-    run: Search, level: int, pair: Index, some: Index, module: Array, width: Array, option: int
+    state: Search, level: int, pair: Index, some: Index, module: Array, width: Array, option: int
 ) -> Rows:
-    one = run.tables[level].made(module, pair[some]).of_width(width)
-    options = np.full(len(some), option + run.number)
-    return some, module, width, options, _costs(run, level, one, option)
+    one = state.tables[level].made(module, pair[some]).of_width(width)
+    options = np.full(len(some), option + state.number)
+    return some, module, width, options, _costs(state, level, one, option)
 
 
-def _costs(run: Search, level: int, pair: GearPair, option: int) -> Array:
+def _costs(state: Search, level: int, pair: GearPair, option: int) -> Array:
     """Shares of pairs in every objective and weighted sum, (n, objectives + w)."""
-    names = run.train.objectives
+    names = state.train.objectives
     made = [
-        objective_share(run.train, level, pair, option=option, objective=name) for name in names
+        objective_share(state.train, level, pair, option=option, objective=name) for name in names
     ]
-    return weighed(np.stack([np.asarray(m, float) for m in made], axis=1), run.weights)
+    return weighed(np.stack([np.asarray(m, float) for m in made], axis=1), state.weights)
 
 
-def _complete(run: Search, nodes: Nodes) -> None:
+def _complete(state: Search, nodes: Nodes) -> None:
     """Add the last stage to nodes, and keep the trains that none beats."""
-    train, table = run.train, run.tables[-1]
+    train, table = state.train, state.tables[-1]
     low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
     start = np.searchsorted(table.log_ratio, low - nodes.log_ratio - EDGE)
     stop = np.searchsorted(table.log_ratio, high - nodes.log_ratio + EDGE)
-    made = _children(run, nodes, ragged(start, stop - start))
-    run.compared += len(made)
-    _keep(run, made)
+    made = _children(state, nodes, ragged(start, stop - start))
+    state.compared += len(made)
+    _keep(state, made)
 
 
-def _keep(run: Search, nodes: Nodes) -> None:
+def _keep(state: Search, nodes: Nodes) -> None:
     """Keep the trains that meet the ratio limits exactly and that none beats."""
-    count = len(run.train.objectives)
-    nodes = nodes.take(_within(run, nodes))
+    count = len(state.train.objectives)
+    nodes = nodes.take(_within(state, nodes))
     nodes = nodes.take(unbeaten(nodes.cost[:, :count], equal=True))
     if not len(nodes):
         return
-    values = np.vstack([run.values, nodes.cost[:, :count]])
-    made = nodes.made if run.made is None else run.made + nodes.made
-    columns = zip(run.tables, made.pair.T, strict=True)
+    values = np.vstack([state.values, nodes.cost[:, :count]])
+    made = nodes.made if state.made is None else state.made + nodes.made
+    columns = zip(state.tables, made.pair.T, strict=True)
     teeth = [z for table, pair in columns for z in (table.z1[pair], table.z2[pair])]
     order = np.lexsort((*teeth[::-1], np.sum(teeth, axis=0)))  # fewest teeth first, of ties kept
     kept = order[unbeaten(values[order])]
-    fresh = values[kept[kept >= len(run.values)]]
-    run.values, run.made = values[kept], made.take(kept)
-    if run.rest:
-        run.open = weighed(corners(fresh, run.open[:, :count]), run.weights)
+    fresh = values[kept[kept >= len(state.values)]]
+    state.values, state.made = values[kept], made.take(kept)
+    if state.rest:
+        state.open = weighed(corners(fresh, state.open[:, :count]), state.weights)
 
 
-def _within(run: Search, nodes: Nodes) -> Mask:
+def _within(state: Search, nodes: Nodes) -> Mask:
     """Return which trains meet the ratio limits: by integers where logarithms leave it open."""
-    low, high = math.log(run.train.lowest_ratio), math.log(run.train.highest_ratio)
+    low, high = math.log(state.train.lowest_ratio), math.log(state.train.highest_ratio)
     good = (nodes.log_ratio > low + EDGE) & (nodes.log_ratio < high - EDGE)
     near = ~good & (nodes.log_ratio > low - EDGE) & (nodes.log_ratio < high + EDGE)
     for k in np.flatnonzero(near):
-        good[k] = within(run.train, _teeth_of(run, nodes.made, int(k)))
+        good[k] = within(state.train, _teeth_of(state, nodes.made, int(k)))
     return np.asarray(good)
 
 
-def _teeth_of(run: Search, made: Choice, k: int) -> Teeth:
+def _teeth_of(state: Search, made: Choice, k: int) -> Teeth:
     """Return the teeth of a train."""
-    rows = zip(run.tables, made.pair[k], strict=False)
+    rows = zip(state.tables, made.pair[k], strict=False)
     return tuple((int(t.z1[j]), int(t.z2[j])) for t, j in rows)
