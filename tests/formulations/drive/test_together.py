@@ -533,12 +533,12 @@ def test_real_valued_layouts_keep_clearances_and_bounds():
     make = frame(train, (10.0, 17.5, 30.0), motor=60.0, width=200.0)
     pairs = train.pair(0, 2.0, 21, 128, 25.0), train.pair(1, 3.0, 24, 85, 50.0)
     box = make(pairs)
-    rows = continuous._apart(box, [], ([0.0, 100.0, 80.0], [10.0, 30.0, 70.0]))
+    rows = continuous._clearance_rows(box, [], ([0.0, 100.0, 80.0], [10.0, 30.0, 70.0]))
     need = 60.0 + 30.0 + box.clearances.shafts
     assert rows == {"motor_to_output": pytest.approx(2.0 - (80.0**2 + 60.0**2) / need**2)}
     tank = replace(box, keep_outs=(KeepOut("tank", (50.0, 80.0), (0.0, 12.0)),))
     bodies = search.orders_of(box)[0].bodies
-    clear = continuous._clear(tank, bodies, ([0.0, 100.0, 80.0], [10.0, 30.0, 70.0]))
+    clear = continuous._keep_out_rows(tank, bodies, ([0.0, 100.0, 80.0], [10.0, 30.0, 70.0]))
     for k, there in enumerate((50.0**2, 20.0**2 + 18.0**2, 58.0**2)):
         for b, body in enumerate(bodies[k]):
             wanted = 2.0 - there / (body.radius + box.clearances.shafts) ** 2

@@ -175,7 +175,7 @@ def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
         of_cells = _searched(train, best, clock, seconds)
         of_search = _of_pairs(train, exact, of_cells)
         bound, designs = max(bound, of_cells.bound), [*designs, *([of_search] if of_search else [])]
-    more = train.hollow or not bounded and not (designs and _stepped(train))
+    more = train.hollow or not bounded and not (designs and _rating_jumps(train))
     more = more and not train.inclining  # of one helix angle alone are there smooth forms
     if more and bound < math.inf:
         designs += _by_ipopt(train, exact, [*(d.x for d in designs), *starts(exact)], clock)
@@ -192,7 +192,7 @@ def _by_programs(train: Train, exact: Problem, clock: Clock) -> tuple[list[_Desi
         if designs:
             clock.best = min(d.value for d in designs)
     designs.sort(key=lambda design: design.value)
-    designs += [_refined(train, exact, design, clock) for design in designs[:REFINED]]
+    designs += [_refined_design(train, exact, design, clock) for design in designs[:REFINED]]
     return designs, min(least for _, least in begun.values())
 
 
@@ -204,7 +204,7 @@ def _by_ipopt(train: Train, exact: Problem, begin: list[Array], clock: Clock) ->
         ended = [_design(train, exact, choice, one, clock, smooth_text) for one in begin]
         designs += [design for design in ended if design is not None]
     designs.sort(key=lambda design: design.value)
-    return designs + [_refined(train, exact, design, clock) for design in designs[:1]]
+    return designs + [_refined_design(train, exact, design, clock) for design in designs[:1]]
 
 
 def _searched(train: Train, best: _Design | None, clock: Clock, seconds: float | None) -> Searched:
@@ -213,7 +213,7 @@ def _searched(train: Train, best: _Design | None, clock: Clock, seconds: float |
     most = math.inf if best is None else best.value
     close = max(GAP_SHARE * clock.budget.gap, GAP_TOLERANCE)
     inner = Clock(replace(clock.left, seconds=seconds), clock.inner())
-    if known and (_stepped(train) or train.inclining):
+    if known and (_rating_jumps(train) or train.inclining):
         spent = None if seconds is None else POLISHING * seconds
         known, most = polished(train, (tuple(known), most), Clock(Budget(spent), clock.inner()))
     result = search(train, known, most, inner, close)
@@ -235,7 +235,7 @@ def _of_pairs(train: Train, exact: Problem, found: Searched) -> _Design | None:
     return _Design(_value(exact, x), x, (), False, "feasible") if safe(exact, x) else None
 
 
-def _stepped(train: Train) -> bool:
+def _rating_jumps(train: Train) -> bool:
     """Return whether a rating jumps with sizes, which no smooth form follows."""
     return any(one.steps for stage in train.stages for one in _standards(stage))
 
@@ -244,7 +244,7 @@ def _value(exact: Problem, x: Array) -> float:
     return float(exact.batch(x[None]).F[0, 0])
 
 
-def _refined(train: Train, exact: Problem, best: _Design, clock: Clock) -> _Design:
+def _refined_design(train: Train, exact: Problem, best: _Design, clock: Clock) -> _Design:
     """Return the best design in choices that are closer to the exact rating, stage by stage."""
     for k, pair in enumerate(sizing_text.pairs(train, best.x)):
         for j, standard in enumerate(_standards(train.stages[k])):

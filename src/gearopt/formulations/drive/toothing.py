@@ -93,7 +93,7 @@ class Toothing:
         """
         d1 = reference_diameter(module, pinion_teeth, self.helix_angle)
         diameters = d1, d1 * (wheel_teeth / pinion_teeth)
-        return self._made(module, (pinion_teeth, wheel_teeth), diameters, face_width, shifts)
+        return self._pair(module, (pinion_teeth, wheel_teeth), diameters, face_width, shifts)
 
     def shifts(self, module: Any, pinion_teeth: Any, wheel_teeth: Any) -> tuple[Any, Any, Any]:
         """Profile shifts x1, x2 and shortening k of tips that follow from the distance or sum."""
@@ -111,9 +111,9 @@ class Toothing:
         """Return the gear pair of a pinion and a ratio; arguments as in `GearPair.of_diameter`."""
         teeth = pinion_teeth, pinion_teeth * ratio
         diameters = pinion_diameter, pinion_diameter * ratio
-        return self._made(module, teeth, diameters, face_width)
+        return self._pair(module, teeth, diameters, face_width)
 
-    def _made(
+    def _pair(
         self,
         module: Any,
         teeth: tuple[Any, Any],
@@ -126,7 +126,7 @@ class Toothing:
         Where shifts are chosen a gear counts as a cylinder of d + 2 x m_n, for by reference circles
         shifts would seem to spare more than they do.
         """
-        shifts, alterations, bodies = self._shifted(module, teeth, diameters, known)
+        shifts, alterations, bodies = self._shifts_and_diameters(module, teeth, diameters, known)
         first, second = (
             Gear(
                 module,
@@ -144,7 +144,7 @@ class Toothing:
         )
         return GearPair(first, second, self.working_distance)
 
-    def _shifted(
+    def _shifts_and_diameters(
         self,
         module: Any,
         teeth: tuple[Any, Any],

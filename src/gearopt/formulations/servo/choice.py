@@ -266,12 +266,12 @@ def train_problem(choice: Choice) -> Problem:
             # a train may be better than the answer where limits are checked apart
             shown = of_others(watch, "") if choice.apart else in_part(watch, factor=factor)
             outcome: Outcome = base.methods[name](base, budget, seed, shown)
-            outcome = _counted(outcome, outcome.proof, choice.apart)
+            outcome = _with_counts(outcome, outcome.proof, choice.apart)
             if choice.apart and outcome.x is not None and not choice.keeps(outcome.x):
                 clock.evaluations = outcome.evaluations
                 best = float(base.batch(outcome.x[None]).F[0, 0])
-                counts, outcome = outcome.proof, _kept(choice, base, best, clock)
-                outcome = _counted(outcome, counts, choice.apart)
+                counts, outcome = outcome.proof, _best_stiff_train(choice, base, best, clock)
+                outcome = _with_counts(outcome, counts, choice.apart)
             return (
                 outcome if outcome.bound is None else replace(outcome, bound=factor * outcome.bound)
             )
@@ -323,7 +323,9 @@ def binding(backlash: tuple[tuple[int, float, float], ...]) -> Outcome | None:
     return Outcome(None, infeasible=True, proof=proof, message=text)
 
 
-def _counted(found: Outcome, proof: Mapping[str, Any] | None, apart: tuple[str, ...]) -> Outcome:
+def _with_counts(
+    found: Outcome, proof: Mapping[str, Any] | None, apart: tuple[str, ...]
+) -> Outcome:
     """Return an outcome with the counts of an enumeration; apart: limits they leave aside."""
     if proof is None or "feasible_trains" not in proof:
         return found
@@ -334,7 +336,7 @@ def _counted(found: Outcome, proof: Mapping[str, Any] | None, apart: tuple[str, 
     return replace(found, proof=with_counts)
 
 
-def _kept(choice: Choice, base: Problem, best: float, clock: Clock) -> Outcome:
+def _best_stiff_train(choice: Choice, base: Problem, best: float, clock: Clock) -> Outcome:
     """Return the best train that is stiff and fits, proven.
 
     best: the objective of the best train, whether it is stiff and fits or not.

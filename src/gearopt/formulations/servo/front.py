@@ -116,13 +116,13 @@ def front(
         if at[0] < end and count < min(FIRST_FRONT + len(best), len(rows) - longest):
             continue
         points, count = split.points(given, rows[:count]), 0
-        best, worth = _sifted(choice, posed, best, worth, points, clock)
+        best, worth = _unbeaten_points(choice, posed, best, worth, points, clock)
     columns = [ranked.index(name) for name in goals]
     order = np.argsort(worth[:, columns[0]], kind="stable")
     return best[order], worth[order][:, columns]
 
 
-def _sifted(
+def _unbeaten_points(
     choice: Choice, posed: Problem, best: Array, worth: Array, found: Array, clock: Clock
 ) -> tuple[Array, Array]:
     """Unbeaten points of a front and of other trains that fit the box."""
@@ -130,14 +130,16 @@ def _sifted(
         return best, worth
     values = posed.batch(found).F
     if choice.room is not None:
-        fits = _fitting(choice, worth, found, values, clock)
+        fits = _fitting_trains(choice, worth, found, values, clock)
         found, values = found[fits], values[fits]
     best, worth = np.vstack([best, found]), np.vstack([worth, values])
     kept = unbeaten(worth)
     return best[kept], worth[kept]
 
 
-def _fitting(choice: Choice, worth: Array, found: Array, values: Array, clock: Clock) -> list[int]:
+def _fitting_trains(
+    choice: Choice, worth: Array, found: Array, values: Array, clock: Clock
+) -> list[int]:
     """Return which trains fit the box; those beaten by one that fits, or by a front, may miss.
 
     Whatever beats a train comes before it, so each is judged once.

@@ -251,7 +251,7 @@ def _alone(problem: Problem, handle: Handle, method: str, clock: Clock) -> Remed
     handle = replace(handle, whole=whole)
 
     def asked(factor: float) -> float:
-        return handle.eased(_asked(handle, factor))
+        return handle.eased(_rounded_factor(handle, factor))
 
     @cache
     def status(factor: float) -> str:
@@ -320,7 +320,7 @@ def _with(problem: Problem, values: Array) -> Problem:
 def _remedy(problem: Problem, repair: Repair, clock: Clock) -> Remedy:
     """Return a repair as edits of parameters and bounds, solved with them and with less."""
     handles_, factors = zip(*repair.moves, strict=True)
-    asked = np.array([_asked(h, f) for h, f in repair.moves])
+    asked = np.array([_rounded_factor(h, f) for h, f in repair.moves])
     form = elastic(problem, [[h] for h in handles_])
 
     def status(now: Array) -> str:
@@ -343,7 +343,7 @@ def _remedy(problem: Problem, repair: Repair, clock: Clock) -> Remedy:
     )
 
 
-def _asked(handle: Handle, factor: float) -> float:
+def _rounded_factor(handle: Handle, factor: float) -> float:
     """Return the factor of a number of DIGITS digits, rounded to relax the limit."""
     needed = handle.relaxed(factor * (1.0 + FEASIBILITY_MARGIN))
     rounding = ROUND_CEILING if handle.direction > 0 else ROUND_FLOOR

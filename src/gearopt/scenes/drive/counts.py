@@ -58,24 +58,24 @@ def best_count(scene: Scene, ask: Ask, real: Real, answer: Answer) -> Result:
     and may be better.
     """
     clock = Clock(ask.budget)
-    counts = [_begun(scene.held(n), ask, clock, real) for n in scene.counts]
+    counts = [_unsolved_count(scene.held(n), ask, clock, real) for n in scene.counts]
     counts.sort(key=lambda c: (c.floor == math.inf, c.real.value or 0.0))
     for k, count in enumerate(counts):
-        beside = count.floor > _known(counts)
+        beside = count.floor > _least_value(counts)
         share = BESIDE if beside else _share(clock, len(counts) - k)
-        counts[k] = _solved(count, ask, clock, answer, share)
+        counts[k] = _solved_count(count, ask, clock, answer, share)
     for k, count in enumerate(counts):
         left = clock.left.seconds
-        may_be_better = count.found.status == "limit" and count.bound < _known(counts)
+        may_be_better = count.found.status == "limit" and count.bound < _least_value(counts)
         if may_be_better and not clock.over and left is not None and left > count.seconds:
-            counts[k] = _solved(count, ask, clock, answer)
+            counts[k] = _solved_count(count, ask, clock, answer)
     return _best(sorted(counts, key=lambda c: c.number), ask, clock)
 
 
-def _begun(scene: Scene, ask: Ask, clock: Clock, real: Real) -> Count:
+def _unsolved_count(scene: Scene, ask: Ask, clock: Clock, real: Real) -> Count:
     """Return a count with its real-valued sizes, and their bound of what is not solved yet."""
     before = clock.seconds
-    ideal = real(scene, _asked(ask, clock, scene.counts[0]))
+    ideal = real(scene, _ask_of_count(ask, clock, scene.counts[0]))
     bound = None if scene.layout is not None else ideal.bound
     missing = {**ideal.objective, "value": None}
     unsolved = replace(ideal, status="limit", objective=missing, bound=bound, gap=None)
@@ -84,14 +84,14 @@ def _begun(scene: Scene, ask: Ask, clock: Clock, real: Real) -> Count:
     return Count(scene, ideal, replace(result, name="drive"), clock.seconds - before)
 
 
-def _solved(
+def _solved_count(
     count: Count, ask: Ask, clock: Clock, answer: Answer, seconds: float | None = None
 ) -> Count:
     """Return a count as it is solved in at most so many seconds, unless it was better before."""
     if clock.over or count.found.status == "infeasible":
         return count
     before = clock.seconds
-    result = answer(count.scene, _asked(ask, clock, count.number, seconds), count.real)
+    result = answer(count.scene, _ask_of_count(ask, clock, count.number, seconds), count.real)
     clock.evaluations += result.evaluations
     spent = count.seconds + clock.seconds - before
     better = _value(result) > _value(count.found) and result.status == "limit"
@@ -103,15 +103,15 @@ def _share(clock: Clock, counts: int) -> float | None:
     return None if left is None else left / counts
 
 
-def _asked(ask: Ask, clock: Clock, count: int, seconds: float | None = None) -> Ask:
+def _ask_of_count(ask: Ask, clock: Clock, count: int, seconds: float | None = None) -> Ask:
     """Return the request for one number of stages: at most so many seconds of what is left."""
     budget = clock.left
     if seconds is not None:
         budget = replace(budget, seconds=clock.within(seconds))
-    return replace(ask, budget=budget, watch=_followed(ask.watch, clock, count))
+    return replace(ask, budget=budget, watch=_watch_of_count(ask.watch, clock, count))
 
 
-def _followed(watch: Watch | None, clock: Clock, count: int) -> Watch | None:
+def _watch_of_count(watch: Watch | None, clock: Clock, count: int) -> Watch | None:
     """Return a watcher whose events name the number of stages; refused once, all end."""
     if watch is None:
         return None
@@ -128,7 +128,7 @@ def _value(found: Result) -> float:
     return math.inf if found.value is None else found.value
 
 
-def _known(counts: Sequence[Count]) -> float:
+def _least_value(counts: Sequence[Count]) -> float:
     return min(_value(c.found) for c in counts)
 
 

@@ -20,7 +20,7 @@ from gearopt.scenes.reading.ask import Ask
 def objectives(scene: Scene) -> dict[str, str]:
     """Objectives of a front of the drive: name and unit."""
     to_choose(scene)
-    names = {name: unit for name, unit in OBJECTIVES.items() if not _lacking(scene, name)}
+    names = {name: unit for name, unit in OBJECTIVES.items() if not _why_lacking(scene, name)}
     used = {load_front.UTILISATION: ""} if scene.teeth is not None else {}
     return names | used | _of_box(scene)
 
@@ -43,7 +43,7 @@ def to_choose(scene: Scene) -> None:
         )
 
 
-def _lacking(scene: Scene, name: str) -> str:
+def _why_lacking(scene: Scene, name: str) -> str:
     """The reason why the drive lacks an objective; "" where it has it."""
     try:
         replace(_train(scene), objective=name)
@@ -54,7 +54,7 @@ def _lacking(scene: Scene, name: str) -> str:
 
 def advice(scene: Scene, names: Sequence[str]) -> str:
     """Return why the drive has not one of these objectives; "" where nothing is known of it."""
-    why = (_lacking(scene, name) for name in names if name in OBJECTIVES)
+    why = (_why_lacking(scene, name) for name in names if name in OBJECTIVES)
     what = next(filter(None, why), "")
     hint = ', as in [objective] density = "7.85 kg/dm^3"' if "density" in what else ""
     return what + hint
@@ -99,8 +99,8 @@ def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
             f"[teeth], and a method other than {EPSILON}"
         )
     if not whole:
-        return Tradeoff(continuous_sizing.problem(train), listed, lambda x: _real(train, x))
-    return Tradeoff(teeth.problem(train), listed, lambda x: _whole(train, x))
+        return Tradeoff(continuous_sizing.problem(train), listed, lambda x: _real_design(train, x))
+    return Tradeoff(teeth.problem(train), listed, lambda x: _whole_design(train, x))
 
 
 def _against_utilisation(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
@@ -118,22 +118,22 @@ def _against_utilisation(scene: Scene, names: Sequence[str], method: str | None)
         load_front.discrete(train),
     )
     problem = load_front.problem(train, tuple(names))
-    return Tradeoff(problem, listed, lambda x: _whole(train, x), limiting)
+    return Tradeoff(problem, listed, lambda x: _whole_design(train, x), limiting)
 
 
 def _train(scene: Scene) -> Train:
     return scene.held(scene.counts[0]).train()
 
 
-def _real(train: Train, x: Array) -> Mapping[str, Any]:
-    return _described(train, sizing_text.pairs(train, x))
+def _real_design(train: Train, x: Array) -> Mapping[str, Any]:
+    return _design(train, sizing_text.pairs(train, x))
 
 
-def _whole(train: Train, x: Array) -> Mapping[str, Any]:
-    return _described(train, *teeth.gears(train, x))
+def _whole_design(train: Train, x: Array) -> Mapping[str, Any]:
+    return _design(train, *teeth.gears(train, x))
 
 
-def _described(train: Train, *gears: Any) -> Mapping[str, Any]:
+def _design(train: Train, *gears: Any) -> Mapping[str, Any]:
     from gearopt.formulations.drive.design import describe
 
     design: Mapping[str, Any] = untyped(describe(train, *gears))

@@ -171,7 +171,7 @@ def smallest(
             return FactorBracket(moves, 1.0, 1.0, bound=bound)
     if asked.excess is not None:
         return _by_secants(asked, moves, asked.excess)
-    known = _bracketed(asked, moves)
+    known = _sufficient_factor(asked, moves)
     if known is not None:
         known.bound = bound
         narrow(asked, known, ROUGH)
@@ -256,13 +256,13 @@ def _by_secants(asked: FeasibilityQuestions, moves: Moves, excess: float) -> Fac
     return FactorBracket(moves, math.exp(high), math.exp(high), excess=True)
 
 
-def _bracketed(asked: FeasibilityQuestions, moves: Moves) -> FactorBracket | None:
+def _sufficient_factor(asked: FeasibilityQuestions, moves: Moves) -> FactorBracket | None:
     """Return a factor that suffices; None where the farthest that is decided does not.
 
     Other numbers are tried from near on.
     """
     far = min(asked.far, max(move.far / factor for move, factor in moves))
-    far = _allowed(asked, moves, far)
+    far = _largest_allowed_factor(asked, moves, far)
     tried = [far, *(f for f in asked.ladder if f < far)]
     if not all(move.far_first for move, _ in moves):
         low = 1.0
@@ -283,7 +283,7 @@ def _bracketed(asked: FeasibilityQuestions, moves: Moves) -> FactorBracket | Non
     return None
 
 
-def _allowed(asked: FeasibilityQuestions, moves: Moves, far: float) -> float:
+def _largest_allowed_factor(asked: FeasibilityQuestions, moves: Moves, far: float) -> float:
     """Return the largest factor up to one with which the rules of the file hold, nearly."""
     low, high = 1.0, far
     if asked.edited(grown(moves, far)) is not None:
@@ -324,11 +324,11 @@ def _same(one: Edited, other: Edited | None) -> bool:
 
 def as_remedy(asked: FeasibilityQuestions, known: FactorBracket, kind: str) -> Remedy | None:
     """Return moves as edits that were tried as they are written; None where no design is known."""
-    tried = _tried(asked, known, kind)
-    return None if tried is None else _shortened(asked, *tried)
+    tried = _checked_remedy(asked, known, kind)
+    return None if tried is None else _with_short_form(asked, *tried)
 
 
-def _tried(
+def _checked_remedy(
     asked: FeasibilityQuestions,
     known: FactorBracket,
     kind: str,
@@ -336,13 +336,13 @@ def _tried(
     sharp: Clock | None = None,
 ) -> tuple[Remedy, Edited] | None:
     """Return a remedy and its edits, exactly; sharp: a clock of whether less suffices, too."""
-    there = _written(asked, known)
+    there = _edits_as_written(asked, known)
     if there is None:
         return None
     word, closer = _less(asked, known, there, kind, sharp), list(CLOSER)
     while word == "feasible" and kind not in EACH and closer:
         narrow(asked, known, closer[0], sharp)
-        there, closer = _written(asked, known) or there, closer[1:]
+        there, closer = _edits_as_written(asked, known) or there, closer[1:]
         word = _less(asked, known, there, kind, sharp)
     factors = [change.factor for change in there.changes]
     factor = math.prod(factors) if kind in EACH else max(factors)
@@ -352,7 +352,7 @@ def _tried(
     return Remedy(kind, what, there.changes, factor, known.bound, verified), there
 
 
-def _written(asked: FeasibilityQuestions, known: FactorBracket) -> Edited | None:
+def _edits_as_written(asked: FeasibilityQuestions, known: FactorBracket) -> Edited | None:
     """Return the edits of moves that were tried as they are written; None: no design is known."""
     for room in ROOM if known.excess else (1.0,):
         moves = known.at(known.high * room)
@@ -416,7 +416,7 @@ def _possible(asked: FeasibilityQuestions, scene: Any) -> bool | None:
     return None if scene is None else asked.ask(scene, asked.sure or asked.possible).answer
 
 
-def _shortened(asked: FeasibilityQuestions, remedy: Remedy, there: Edited) -> Remedy:
+def _with_short_form(asked: FeasibilityQuestions, remedy: Remedy, there: Edited) -> Remedy:
     """Return a remedy with `short`: as one would write it, where a design exists so, too."""
     judge = asked.possible if asked.excess is None else asked.sure or asked.possible
     for digits in DIGITS:
@@ -444,9 +444,9 @@ def singles(
             known.bound = known.low
         kind = "even" if len(group.numbers) > 1 else "alone"
         kind = "less" if all(move.role == DUTY for move in group.numbers) else kind
-        tried = _tried(asked, known, kind, group.what, sharp)
+        tried = _checked_remedy(asked, known, kind, group.what, sharp)
         sufficient += [] if tried is None else [tried]
-    return [_shortened(asked, *tried) for tried in sufficient]
+    return [_with_short_form(asked, *tried) for tried in sufficient]
 
 
 def with_least(found: Sequence[Remedy], complete: bool) -> tuple[Remedy, ...]:

@@ -45,13 +45,13 @@ def changed(content: Mapping[str, Any], changes: Mapping[str, Any], file: str) -
     is. A key that the file lacks is added; None removes it. SceneError for what is no key, what
     leads nowhere and what is not there to be removed; values are for the readers of the kind.
     """
-    copy: dict[str, Any] = _copied(dict(content))
+    copy: dict[str, Any] = _copy(dict(content))
     places = [(key, _place(key, file), value) for key, value in changes.items()]
     for key, place, value in places:
         if value is not None:
             _set(copy, place, as_written(value), key, file)
     gone = [(key, place) for key, place, value in places if value is None]
-    holders = [(_found(copy, place, key, file), place[-1]) for key, place in gone]
+    holders = [(_holder(copy, place, key, file), place[-1]) for key, place in gone]
     for here, step in sorted(holders, key=lambda one: str(one[1]).zfill(6), reverse=True):
         del here[step]
     return copy
@@ -76,7 +76,7 @@ def _set(content: dict[str, Any], place: Place, value: Any, key: str, file: str)
         if isinstance(here, list) and step == len(here):
             here.append({})
         elif not last and isinstance(here, dict) and step not in here:
-            here[step] = _begun(here, str(step)) if isinstance(place[k + 1], int) else {}
+            here[step] = _new_tables(here, str(step)) if isinstance(place[k + 1], int) else {}
         if last:
             here[step] = value
         elif isinstance(place[k + 1], int) and isinstance(here[step], str):
@@ -90,7 +90,7 @@ def _two(text: str) -> list[Any] | str:
     return text if ends is None else sorted(ends, key=lambda end: parse(end, "length").value)
 
 
-def _begun(table: Mapping[str, Any], name: str) -> list[Any]:
+def _new_tables(table: Mapping[str, Any], name: str) -> list[Any]:
     """Return the tables [[name]] that a file leaves out, as many as its key `names` counts."""
     count = table.get(f"{name}s")
     return [{} for _ in range(count)] if isinstance(count, int) and 0 < count < 1000 else []
@@ -113,7 +113,7 @@ def _check(here: Any, place: Place, key: str, file: str) -> None:
     raise SceneError(file, cut(key, 80), "", rule, remedy)
 
 
-def _found(content: dict[str, Any], place: Place, key: str, file: str) -> Any:
+def _holder(content: dict[str, Any], place: Place, key: str, file: str) -> Any:
     """Return the table or list that holds what is to be removed; SceneError where nothing is."""
     here: Any = content
     for k, step in enumerate(place):
@@ -130,8 +130,8 @@ def _found(content: dict[str, Any], place: Place, key: str, file: str) -> Any:
     return here
 
 
-def _copied(value: Any) -> Any:
+def _copy(value: Any) -> Any:
     """Return a value whose tables and lists are its own."""
     if isinstance(value, dict):
-        return {key: _copied(v) for key, v in value.items()}
-    return [_copied(v) for v in value] if isinstance(value, list) else value
+        return {key: _copy(v) for key, v in value.items()}
+    return [_copy(v) for v in value] if isinstance(value, list) else value

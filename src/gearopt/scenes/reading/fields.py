@@ -109,7 +109,7 @@ def _is_far(value: int | Decimal) -> bool:
     return value.bit_length() > 200 if isinstance(value, int) else abs(value.adjusted()) > 60
 
 
-def _begun(value: Any) -> str:
+def _beginning(value: Any) -> str:
     """Return the beginning of a text, or of a number that is not far off; else ""."""
     plain = isinstance(value, str) or (_is_number(value) and not _is_far(value))
     return str(value)[:80] if plain else ""
@@ -275,7 +275,7 @@ def speed_ratio(example: Any, minimum: int, total: bool = False) -> Reads:
         try:
             ratio: Fraction = item.reader(value, example)
         except PydanticCustomError:
-            parts = _QUOTIENT.fullmatch(_begun(value))
+            parts = _QUOTIENT.fullmatch(_beginning(value))
             above, below = (Fraction(p or 1) for p in (parts.group(1, 3) if parts else "00"))
             if parts is None or not above or not below:
                 raise
@@ -349,7 +349,7 @@ def advised(item: Reads, ways: dict[str, str]) -> Reads:
         try:
             return item.reader(value, example)
         except PydanticCustomError as wrong:
-            text = _begun(value).strip()
+            text = _beginning(value).strip()
             tried = ((re.fullmatch(known, text, re.IGNORECASE), way) for known, way in ways.items())
             if (way := next((fits.expand(way) for fits, way in tried if fits), None)) is None:
                 raise

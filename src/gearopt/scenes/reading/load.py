@@ -117,7 +117,7 @@ def load(
     if changes:
         name += " (changed)"
         content = changed(content, changes, name)
-    asked = _asked(content)
+    asked = _tables_read(content)
     kind, scene = _scene(content, name, (*before, folder.resolve()))
     return Loaded(scene, kind, asked, file, digest, bare(as_written(changes)))
 
@@ -145,7 +145,7 @@ def _from_python(tables: Mapping[str, Any], name: str) -> dict[str, Any]:
         raise _too_deep(name) from None
 
 
-def _asked(content: dict[str, Any]) -> dict[str, Any]:
+def _tables_read(content: dict[str, Any]) -> dict[str, Any]:
     """Tables of a file, as JSON holds them, without the user's own."""
     return {k: bare(v) for k, v in content.items() if not k.startswith("x-")}
 

@@ -31,15 +31,21 @@ ANNEALING_STEPS, STARTS = 5_000, 4
 
 def faults(box: Gearbox) -> list[str]:
     """Return a sentence for each clash, excess length or unreachable place; none without one."""
-    return [*_axial(box), *_blocked(box), *_reach(box), *of_any_gears(box), *_sides(box)]
+    return [
+        *_slab_order_faults(box),
+        *_keep_out_faults(box),
+        *_reach(box),
+        *of_any_gears(box),
+        *_sides(box),
+    ]
 
 
 def of_any_gears(box: Gearbox) -> list[str]:
     """Return those of the faults that other gears have too."""
-    return [*_motor(box), *_apart(box), *_level(box), *_through(box)]
+    return [*_motor(box), *_place_faults(box), *_level(box), *_through(box)]
 
 
-def _axial(box: Gearbox) -> Iterator[str]:
+def _slab_order_faults(box: Gearbox) -> Iterator[str]:
     """Faults of every order of slabs: those of the order with the smallest clash."""
     least_clash = arrangements(box)[0]
     longest = box.largest[2] * (1.0 + 1e-9)
@@ -63,7 +69,7 @@ def _every(box: Gearbox) -> list[Arrangement]:
     return [arrange(box, s) for s in ([box.slabs] if box.slabs is not None else orders(box))]
 
 
-def _blocked(box: Gearbox) -> Iterator[str]:
+def _keep_out_faults(box: Gearbox) -> Iterator[str]:
     """Yield the bodies too close to keep-outs, on the input shaft or a shaft at a given place."""
     tried = arrangements(box)
     if clashes(box, tried[0]):  # it stands for all orders
@@ -138,7 +144,7 @@ def _reach(box: Gearbox) -> Iterator[str]:
                 )
 
 
-def _apart(box: Gearbox) -> Iterator[str]:
+def _place_faults(box: Gearbox) -> Iterator[str]:
     """Yield two places of one shaft that exclude each other."""
     given = [INPUT, *box.places]
     for n, b in enumerate(given):

@@ -254,7 +254,7 @@ def _needed_by_weak(stage: Any, cells: Cells, safety: Any, usual: Array) -> Arra
     return np.asarray(np.maximum.reduce([usual, *needs]))
 
 
-def _moved(shafts: Shafts, k: int, before: Any, after: Any) -> Any:
+def _potential_change(shafts: Shafts, k: int, before: Any, after: Any) -> Any:
     """Addition of the potentials of `Shafts` to the share of a stage, by torques at its shafts."""
     (first, second), (at, then) = shafts.potential[k : k + 2], shafts.middle[k : k + 2]
     return first * (before - at) - second * (after - then)
@@ -274,7 +274,7 @@ def _least_sizes(
     toothing = shafts.train.stages[k].toothing
     pair = toothing.of_diameter(size[M], size[Z], size[D], size[U], size[B])
     first, second = shafts.potential[k : k + 2]
-    moved = _moved(shafts, k, before[int(first < 0.0)], after[int(second > 0.0)])
+    moved = _potential_change(shafts, k, before[int(first < 0.0)], after[int(second > 0.0)])
     fewest = size[Z], size[Z] * size[U]
     own_share = least_share(shafts.train, k, pair, fewest=fewest)
     return np.asarray(own_share), moved
@@ -301,7 +301,7 @@ def _of_ratings(
     value = least**power * grown * (1.0 - MARGIN)
     by_t, by_e = value * (power * (loaded + slope) - rise), value * (rise - power * slope)
     lost = np.abs(by_t + first) * half[0] + np.abs(by_e - second) * half[1]
-    return np.asarray(value + _moved(shafts, k, t, e) - lost)
+    return np.asarray(value + _potential_change(shafts, k, t, e) - lost)
 
 
 def cut(shafts: Shafts, k: int, boxes: Boxes, limit: Array) -> Boxes:

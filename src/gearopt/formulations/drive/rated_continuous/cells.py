@@ -59,14 +59,14 @@ def search(
     known: the best design so far, of value `most`; none: empty and infinite. close: relative gap
     that ends the search, as MAX_BOXES boxes do.
     """
-    shafts = shafts_about(_governed(train, known), START, known)
+    shafts = shafts_about(_without_idle_standards(train, known), START, known)
     best, before, tried = Searched(-math.inf, None, most), most, PATHS
     stages = range(shafts.last + 1)
     rows = [bounded(shafts, k, first_boxes(shafts, k)) for k in stages]
     while True:
         totals = _totals(shafts, rows)
         here = min(total.min(initial=math.inf) for total in totals)
-        improved = _improved(train, shafts, rows, totals, best, tried)
+        improved = _improved_design(train, shafts, rows, totals, best, tried)
         best, tried = improved, PATHS if improved.value < best.value else IDLE_POLISHES
         far = best.value * (1.0 - close)
         best = replace(best, bound=max(best.bound, min(here, far)))
@@ -84,14 +84,14 @@ def search(
                 best = Searched(best.bound, *polished(train, (best.pairs, best.value), clock))
                 before = best.value
             about = best.pairs or known
-            shafts = shafts_about(_governed(train, about), 2 * shafts.count, about)
+            shafts = shafts_about(_without_idle_standards(train, about), 2 * shafts.count, about)
             rows = [bounded(shafts, k, _halved_shafts(shafts, k, rows[k][0])) for k in stages]
         else:
             spare = [far - (t - v) for t, (_, v) in zip(totals, rows, strict=True)]
-            rows = [_divided(shafts, k, rows[k], chosen[k], spare[k]) for k in stages]
+            rows = [_divided_boxes(shafts, k, rows[k], chosen[k], spare[k]) for k in stages]
 
 
-def _governed(train: Train, pairs: Sequence[GearPair]) -> Train:
+def _without_idle_standards(train: Train, pairs: Sequence[GearPair]) -> Train:
     """Return a drive without the standards that are far from governing a design: a relaxation."""
     stages, torque = list(train.stages), train.torque
     for k, pair in enumerate(pairs):
@@ -162,7 +162,7 @@ def _halves(shafts: Shafts, k: int, boxes: Boxes) -> Boxes:
     return joined([Boxes(s, boxes.before, boxes.after) for s in (first, second)])
 
 
-def _divided(
+def _divided_boxes(
     shafts: Shafts, k: int, rows: tuple[Boxes, Array], chosen: Any, spare: Array
 ) -> tuple[Boxes, Array]:
     """Return boxes of a stage with the chosen ones divided; spare: values that may be better."""
@@ -195,7 +195,7 @@ def _halved_shafts(shafts: Shafts, k: int, boxes: Boxes) -> Boxes:
     return whole.take(whole.after >= whole.before) if inside else whole
 
 
-def _improved(
+def _improved_design(
     train: Train, shafts: Shafts, rows: Rows, totals: list[Array], best: Searched, count: int
 ) -> Searched:
     """Return the best design of the boxes of the least sums, if it is better."""

@@ -125,7 +125,7 @@ def smallest(
         module = d * np.cos(cut.helix_angle) / z
         return cut.of_diameter(module, z, d, ratio, b_over_d * d)
 
-    sizes = sizes[:, _allowed(train, k, pairs(*sizes))]
+    sizes = sizes[:, _keeps_size_limits(train, k, pairs(*sizes))]
     if not sizes.shape[1]:
         return None
     torque = train.torque * math.exp(before)
@@ -158,7 +158,7 @@ def _judges(
             yield accepts
 
 
-def _allowed(train: Train, k: int, pair: GearPair) -> Array:
+def _keeps_size_limits(train: Train, k: int, pair: GearPair) -> Array:
     """Return which pairs keep to the limits of a stage on sizes."""
     sizes = first_boxes(shafts_about(train, 1), k).sizes[:, :, 0]
     d, width = pair.pinion.reference_diameter, pair.face_width

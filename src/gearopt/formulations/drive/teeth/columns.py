@@ -51,8 +51,8 @@ def columns(train: Train, position: int, cut: Fraction, tick: Callable[[], float
     blocks = []
     for toothings in _toothings_by_helix(stage):
         tick()
-        blocks.append(_block(stage, _checked(stage, ranges), train.coprime, toothings))
-    rows = blocks[0] if len(blocks) == 1 else _joined(blocks)
+        blocks.append(_block(stage, _few_enough_ranges(stage, ranges), train.coprime, toothings))
+    rows = blocks[0] if len(blocks) == 1 else _rows_by_ratio(blocks)
     ratio = rows.z2 / rows.z1
     load, need, exponent, slope = closed(train, position, rows.z1, ratio)
     tick()
@@ -110,7 +110,7 @@ def _toothings_by_helix(stage: Stage) -> list[list[int]]:
 def _block(stage: Stage, ranges: Ranges, coprime: bool, toothings: list[int]) -> _Rows:
     """Return tooth pairs of some ranges as they are cut by some toothings of one helix angle."""
     cut = stage.toothings[toothings[0]]
-    cosine, stage = cut.cosine, _overlapping(stage, cut)
+    cosine, stage = cut.cosine, _stage_of_overlap(stage, cut)
     if cut.shift_sum is not None:
         z1, z2, toothing = _of_sums(stage, *_pairs(ranges, coprime), np.array(toothings))
         ends = None
@@ -120,16 +120,16 @@ def _block(stage: Stage, ranges: Ranges, coprime: bool, toothings: list[int]) ->
     else:
         cuts = tuple(stage.toothings[k] for k in toothings)
         few = sum(stop - start + 1 for _, start, stop in ranges) * len(cuts) <= KEPT_PAIRS
-        meshing = _meshing if few else _meshing.__wrapped__
+        meshing = _meshing_pairs if few else _meshing_pairs.__wrapped__
         z1, z2, row, ends = meshing(stage.modules, cuts, ranges, coprime)
         toothing = np.array(toothings)[row]
-    first, last = _allowed(stage, z1, z2, cosine)
+    first, last = _module_ends(stage, z1, z2, cosine)
     if ends is not None:
         first, last = np.maximum(first, ends[0]), np.minimum(last, ends[1])
     return _Rows(z1, z2, toothing, first, last, _steps(stage, z1, cosine))
 
 
-def _overlapping(stage: Stage, cut: Toothing) -> Stage:
+def _stage_of_overlap(stage: Stage, cut: Toothing) -> Stage:
     """A stage whose widths over module are those of its overlap ratio at least, with a toothing.
 
     What is irrational has no tie; of spur gears no width has any overlap.
@@ -142,7 +142,7 @@ def _overlapping(stage: Stage, cut: Toothing) -> Stage:
     return replace(stage, face_width=replace(face, over_module=over))
 
 
-def _joined(blocks: list[_Rows]) -> _Rows:
+def _rows_by_ratio(blocks: list[_Rows]) -> _Rows:
     """Return the rows of all blocks by ratio, then by teeth, then by toothing."""
 
     def column(name: str) -> Any:
@@ -159,7 +159,7 @@ def _joined(blocks: list[_Rows]) -> _Rows:
     return _Rows(z1[order], z2[order], toothing[order], first, last, steps)
 
 
-def _checked(stage: Stage, ranges: Ranges) -> Ranges:
+def _few_enough_ranges(stage: Stage, ranges: Ranges) -> Ranges:
     """The ranges of the wheels of a stage; SolveError where they are too many for the memory."""
     helices = len(
         _toothings_by_helix(stage) if stage.toothing.shift_sum is None else stage.toothings
@@ -210,7 +210,7 @@ def spans(train: Train, position: int, cut: Fraction) -> list[tuple[int, int, in
     return found
 
 
-def _allowed(stage: Stage, z1: Index, z2: Index, cosine: float) -> tuple[Index, Index]:
+def _module_ends(stage: Stage, z1: Index, z2: Index, cosine: float) -> tuple[Index, Index]:
     """Return the first and last module index by wheel diameter and limits of the face width."""
     last = np.full(len(z1), len(stage.modules) - 1, dtype=np.int64)
     exact_cosine = Fraction(cosine)
@@ -227,7 +227,7 @@ def _allowed(stage: Stage, z1: Index, z2: Index, cosine: float) -> tuple[Index, 
 
 
 @np.errstate(invalid="ignore")
-def _near(stage: Stage, teeth: Index, toothings: Index) -> NDArray[np.bool_]:
+def _fits_distances(stage: Stage, teeth: Index, toothings: Index) -> NDArray[np.bool_]:
     """Whether sums z1 + z2 fit distances, by the sum of shifts: (modules, sums, toothings)."""
     modules = np.array([float(module) for module in stage.modules])[:, None, None]
     cuts = stage.toothing_of(toothings)
@@ -262,7 +262,7 @@ def _shiftable(
 
 
 @lru_cache(KEPT)
-def _meshing(
+def _meshing_pairs(
     modules: tuple[Fraction, ...], cuts: tuple[Toothing, ...], ranges: Ranges, coprime: bool
 ) -> tuple[Index, Index, Index, tuple[Index, Index]]:
     """Return the pairs that centre distances allow, their toothing, first and last module index.
@@ -276,7 +276,7 @@ def _meshing(
     sums, place = np.unique(z1 + z2, return_inverse=True)
     distances = np.array([cut.working_distance for cut in cuts])
     _, first_of, distance = np.unique(distances, return_index=True, return_inverse=True)
-    near = _near(stage, sums, toothings[first_of])
+    near = _fits_distances(stage, sums, toothings[first_of])
     pair, way = np.nonzero(np.asarray(near.any(axis=0))[:, distance][place])
     z1, z2, toothing = z1[pair], z2[pair], toothings[way]
     allowed = _shiftable(stage, z1, z2, toothing, near[:, place[pair], distance[way]])

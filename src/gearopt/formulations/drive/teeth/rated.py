@@ -38,7 +38,7 @@ WHEEL = 9.0  # volume of a wheel over that of its pinion, more or less
 FINEST = 0.005  # width of a cell where none is given
 
 
-def _numbered(rows: Index, first: Index, last: Index, count: int) -> tuple[Index, Index]:
+def _numbered_rows(rows: Index, first: Index, last: Index, count: int) -> tuple[Index, Index]:
     """Each of some rows with so many numbers from its first one on, at most to its last one."""
     numbers = first[:, None] + np.arange(count)
     there = numbers <= last[:, None]
@@ -376,7 +376,7 @@ class RatedTable(Table):
             if not len(left):
                 return best
             several = max(1, AT_ONCE // len(left))
-            rows, module = _numbered(left, at[left], self.last[pair[left]], several)
+            rows, module = _numbered_rows(left, at[left], self.last[pair[left]], several)
             one = self.made(self.modules[module], pair[rows])
             ends = self._ends(one, module, pair[rows])
             limit = np.minimum(most[rows], best.cost[rows])
@@ -410,7 +410,7 @@ class RatedTable(Table):
         if self._by_module:  # few modules a pair, so that these are met at many torques
             least = self._nominal(module, pair, ends) * torque[0][rows] * (1.0 - EDGE)
             narrow = np.where(least <= ends[1], np.maximum(narrow, least), np.inf)
-        bounded = until[1] == MAX_STEPS and self._virtual is not None
+        bounded = until[1] == MAX_STEPS and self._virtual_option is not None
         for option in (VIRTUAL, *self._by_price) if bounded else self._by_price:
             limit = np.minimum(most[rows], best.cost[rows])
             with np.errstate(invalid="ignore"):  # of no width
@@ -437,7 +437,7 @@ class RatedTable(Table):
         _, new = np.unique(np.where(np.isnan(known[shape]), shape, -1), return_index=True)
         new = new[np.isnan(known[shape[new]])]
         if len(new):
-            options = [VIRTUAL] if self._virtual else range(len(self.stage.options))
+            options = [VIRTUAL] if self._virtual_option else range(len(self.stage.options))
             sizes, widths = (module[new], pair[new]), (ends[0][new], ends[1][new])
             least = [self._nominal_of(option, *sizes, widths) for option in options]
             known[shape[new]] = np.minimum.reduce(least)
@@ -457,25 +457,27 @@ class RatedTable(Table):
         speed, safety = tuple(self.train.speed_at(end) for end in ends), self.train.safety
         gears = self.made(self.modules[module], pair)
         least = [
-            standard.nominal(self._taken(ready, module, pair), gears, ends, speed, safety, widths)
+            standard.nominal(
+                self._prepared_data(ready, module, pair), gears, ends, speed, safety, widths
+            )
             for standard, ready in self._standards(option)
         ]
         return np.asarray(np.maximum.reduce(least))
 
     def _standards(self, option: int) -> Iterator[tuple[Standard, Any]]:
         """Standards of an option, and what each has prepared of all pairs."""
-        chosen = self._virtual if option == VIRTUAL else self.stage.options[option]
+        chosen = self._virtual_option if option == VIRTUAL else self.stage.options[option]
         assert chosen is not None
         return zip(chosen.standards, self._prepared[max(option, 0)], strict=True)
 
-    def _taken(self, prepared: Any, module: Index, pair: Index) -> Any:
+    def _prepared_data(self, prepared: Any, module: Index, pair: Index) -> Any:
         """What a standard has prepared of pairs with modules (indices)."""
         if self._by_module:
             return prepared.take(self._shape(module, pair))
         return prepared.take(pair).scaled(self.modules[module])
 
     @cached_property
-    def _virtual(self) -> Option | None:
+    def _virtual_option(self) -> Option | None:
         """A virtual option that uses no more than any option; None: there is none, or no choice."""
         first, *rest = self.stage.options
         return first.strongest_with(rest) if rest else None
@@ -563,7 +565,7 @@ class RatedTable(Table):
                 gears = one if every else self.made(self.modules[module[place]], pair[place])
                 ends = torque[0][place], torque[1][place]
                 speed = self.train.speed_at(ends[0]), self.train.speed_at(ends[1])
-                teeth = self._taken(prepared, module[place], pair[place])
+                teeth = self._prepared_data(prepared, module[place], pair[place])
                 return standard.rows(teeth, gears, ends, speed, self.train.safety)
 
             return rows

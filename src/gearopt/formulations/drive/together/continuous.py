@@ -49,7 +49,7 @@ def problem(
         raise SolveError("a keep-out with a range x along the shafts is for exact alone")
     order = arrange(box, slabs)
     shape = chain(box, (order,))
-    facing = _facing(order)
+    facing = _facing_bodies(order)
     sized = sizing_text.exact_text(train)
     round_it = sides(shape, *placed_by([p.centre_distance for p in box.pairs], start[1]))
     variables = _variables(sized, box, slabs, start[1], round_it)
@@ -68,7 +68,9 @@ def problem(
         length = ends + sum(each(x.slab))
         edges = {"width": x.width, "height": x.height, "length": length}
         limits, equal = given_places(shape, y, z)
-        limits |= _apart(there, facing, (y, z)) | _clear(there, order.bodies, (y, z))
+        limits |= _clearance_rows(there, facing, (y, z)) | _keep_out_rows(
+            there, order.bodies, (y, z)
+        )
         for (name, side), maximum in zip(edges.items(), there.largest, strict=True):
             if math.isfinite(maximum):
                 limits[f"largest_{name}"] = side / maximum
@@ -86,7 +88,7 @@ def problem(
     return Problem("together", variables, sized.parameters, evaluate)
 
 
-def _facing(order: Arrangement) -> Facing:
+def _facing_bodies(order: Arrangement) -> Facing:
     """Return the bodies of different shafts that face each other, with their shafts."""
     return [
         (i, j, p, q)
@@ -145,7 +147,7 @@ def _walls(box: Gearbox, bodies: Any, point: Any, x: Any) -> dict[str, Any]:
     return rows
 
 
-def _apart(box: Gearbox, facing: Facing, point: Any) -> dict[str, Any]:
+def _clearance_rows(box: Gearbox, facing: Facing, point: Any) -> dict[str, Any]:
     """Return rows that keep the clearances of bodies that face each other and of the motor."""
     y, z = point
     rows: dict[str, Any] = {}
@@ -164,7 +166,7 @@ def _apart(box: Gearbox, facing: Facing, point: Any) -> dict[str, Any]:
     return rows
 
 
-def _clear(box: Gearbox, bodies: Any, point: Any) -> dict[str, Any]:
+def _keep_out_rows(box: Gearbox, bodies: Any, point: Any) -> dict[str, Any]:
     """Return rows that keep every body clear of every keep-out."""
     y, z = point
     rows: dict[str, Any] = {}

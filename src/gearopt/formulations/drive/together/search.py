@@ -334,7 +334,7 @@ def narrower(
         return drive
     pair = np.repeat(np.arange(len(cells)), cells)
     reached = (cell[pair] + np.arange(row[-1]) - row[pair]) * step  # log torque over the input's
-    rows, module = np.nonzero(np.isfinite(_known(drive, pair, reached)))
+    rows, module = np.nonzero(np.isfinite(_known_widths(drive, pair, reached)))
     some = low[pair[rows]] <= high[pair[rows]] + EDGE
     rows, module = rows[some], module[some]
     if len(rows) > ROWS:
@@ -384,7 +384,7 @@ def shortened(drive: Drive, cut: float) -> Drive:
     )
 
 
-def _known(drive: Drive, pair: Index, reached: Array) -> Array:
+def _known_widths(drive: Drive, pair: Index, reached: Array) -> Array:
     """Return the widths (n, modules) that are known of pairs at log torques over the input's."""
     cell = (reached / drive.step).astype(np.int64) - drive.cell[pair]
     place = np.minimum(drive.row[pair] + np.maximum(cell, 0), drive.row[pair + 1] - 1)

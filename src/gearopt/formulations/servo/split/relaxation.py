@@ -31,7 +31,7 @@ def relaxation(train: ServoTrain, goal: str = "inertia") -> Problem:
     number of teeth, which no pinion exceeds; `clear_rows` relax what gears keep clear of.
     """
     low, high = (float(r) for r in train.ratios)
-    moved = _moved(train, goal)
+    moved = _duty_problem(train, goal)
 
     def evaluate(x: Any, p: Any) -> Terms:
         return _terms(train, goal, moved, x, p)
@@ -54,7 +54,7 @@ def relaxation(train: ServoTrain, goal: str = "inertia") -> Problem:
     return Problem("split relaxation", variables, parameters, evaluate)
 
 
-def _moved(train: ServoTrain, goal: str) -> Problem | None:
+def _duty_problem(train: ServoTrain, goal: str) -> Problem | None:
     """Return the duty's own problem for trains of these ratios; None where it is not the goal.
 
     The gears' inertia is a number there, which any train exceeds and the text below replaces.

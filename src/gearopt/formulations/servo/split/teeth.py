@@ -186,17 +186,17 @@ def feasible(
 
     A duty as goal adds its limits.
     """
-    return _listed(*posed(train, goal), -math.inf, math.inf, maximum, check)
+    return _trains_between(*posed(train, goal), -math.inf, math.inf, maximum, check)
 
 
 def trains(train: ServoTrain, error: float) -> Array:
     """Return all feasible trains with an error [rad] up to `error`, the minimum first."""
-    listed = _listed(*posed(train, "error"), -math.inf, error, 0, unchecked)
+    listed = _trains_between(*posed(train, "error"), -math.inf, error, 0, unchecked)
     assert listed is not None
     return listed[problem(train, "error").batch(listed).F[:, 0].argsort(kind="stable")]
 
 
-def _listed(
+def _trains_between(
     given: Numbers, aim: int, above: float, maximum: float, limit: int, check: Callable[[], None]
 ) -> Array | None:
     """Return trains between two values; None where they are more than a limit above 0."""

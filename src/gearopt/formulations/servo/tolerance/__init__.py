@@ -50,7 +50,7 @@ def problem(stack: Stack) -> Problem:
             for c, width in zip(components, t, strict=True)
         )
         limits = {
-            b.label: _used([b.weights(c) for c in components], t) * (b.error / error)
+            b.label: _budget_utilisation([b.weights(c) for c in components], t) * (b.error / error)
             for b, error in zip(stack.budgets, each(p.error), strict=True)
         }
         return Terms({"cost": cost}, {**limits, **_ends(stack, t, p)})
@@ -65,14 +65,14 @@ def _parameters(stack: Stack) -> tuple[Param, ...]:
     """Return the errors allowed, and minimum and maximum tolerances that were given."""
     errors, keys = (tuple(getattr(b, n) for b in stack.budgets) for n in ("error", "key"))
     parameters = [Param("error", "", errors, len(errors), keys, "limit")]
-    for name, given in zip(ENDS, _given(stack), strict=True):
+    for name, given in zip(ENDS, _bounded_components(stack), strict=True):
         if given:
             values = tuple(getattr(stack.components[k], name) for k in given)
             parameters.append(Param(name, "mm", values, len(given), ENDS[name], "limit"))
     return tuple(parameters)
 
 
-def _given(stack: Stack) -> tuple[list[int], list[int]]:
+def _bounded_components(stack: Stack) -> tuple[list[int], list[int]]:
     """Return the components with a minimum, and those with a maximum tolerance."""
     parts = list(enumerate(stack.components))
     return [k for k, c in parts if c.least > 0.0], [k for k, c in parts if c.most < np.inf]
@@ -82,14 +82,14 @@ def _at(stack: Stack, problem: Problem) -> Stack:
     """Return the stack with the parameters of its problem."""
     values = {q.name: spread(q.value, q.size).tolist() for q in problem.parameters}
     parts = list(stack.components)
-    for name, given in zip(ENDS, _given(stack), strict=True):
+    for name, given in zip(ENDS, _bounded_components(stack), strict=True):
         for k, value in zip(given, values.get(name, ()), strict=True):
             parts[k] = replace(parts[k], **{name: value})
     errors = zip(stack.budgets, values["error"], strict=True)
     return Stack(tuple(parts), tuple(replace(b, error=error) for b, error in errors))
 
 
-def _used(weights: list[tuple[float, float]], t: tuple[Any, ...]) -> Any:
+def _budget_utilisation(weights: list[tuple[float, float]], t: tuple[Any, ...]) -> Any:
     """Return the utilisation of a budget: sum l t + (sum (q t)^2)^(1/2)."""
     linear = [weight * width for (weight, _), width in zip(weights, t, strict=True) if weight > 0]
     square = [weight * width for (_, weight), width in zip(weights, t, strict=True) if weight > 0]
@@ -98,7 +98,7 @@ def _used(weights: list[tuple[float, float]], t: tuple[Any, ...]) -> Any:
 
 def _ends(stack: Stack, t: tuple[Any, ...], p: Any) -> Mapping[str, Any]:
     """Return the limits of minimum and maximum tolerances that were given."""
-    least, most = _given(stack)
+    least, most = _bounded_components(stack)
     low = {k: q / t[k] for k, q in zip(least, each(p.least) if least else (), strict=True)}
     high = {k: t[k] / q for k, q in zip(most, each(p.most) if most else (), strict=True)}
     limits: dict[str, Any] = {}
@@ -138,7 +138,7 @@ def _exact(stack: Stack) -> Any:
             return conflict
         try:
             with np.errstate(over="raise"):
-                return _proven(posed, clock)
+                return _cheapest(posed, clock)
         except TimeoutError as early:
             return Outcome(search(posed)[2], finished=False, message=str(early))
         except ArithmeticError as extreme:
@@ -147,7 +147,7 @@ def _exact(stack: Stack) -> Any:
     return exact
 
 
-def _proven(stack: Stack, clock: Clock) -> Outcome:
+def _cheapest(stack: Stack, clock: Clock) -> Outcome:
     """Return the cheapest tolerances with the bound of their multipliers."""
     optimum = closed_form(stack)
     t, lam = optimum or roots(stack, clock)

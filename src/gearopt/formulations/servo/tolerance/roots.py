@@ -78,10 +78,10 @@ def scaled(stack: Stack) -> tuple[Stack, Array, float]:
 
 def levels(stack: Stack) -> int:
     """Return how many roots lie inside each other: the time grows tenfold with each."""
-    return len(stack.budgets) + len(_mixed(stack))
+    return len(stack.budgets) + len(_mixed_budgets(stack))
 
 
-def _mixed(stack: Stack) -> list[int]:
+def _mixed_budgets(stack: Stack) -> list[int]:
     """Return budgets whose radius is unknown: |q t| alone is 1 where it is used up."""
     return [int(b) for b in np.flatnonzero(stack.linear.any(1) & stack.square.any(1))]
 
@@ -97,7 +97,7 @@ def _settled(
 
     last: the root last found at each depth, near which the next one is. clock: see `roots`.
     """
-    budget, mixed, depth = len(lam), _mixed(stack), len(lam) + len(radii)
+    budget, mixed, depth = len(lam), _mixed_budgets(stack), len(lam) + len(radii)
     if budget < len(stack.budgets):
         unused = _settled(stack, (*lam, 0.0), radii, last)
         target = max(1.0, float(stack.used(stack.least)[budget]))

@@ -102,8 +102,8 @@ def remedies(scene: Scene, gears: Result, clock: Clock) -> Remedies:
     if box_first(scene):
         return _of_any_gears(scene, single, choices, clock)
     asked = questions(scene, pairs, clock)
-    chosen = [r for m in choices if (r := _chosen(asked, m)) is not None]
-    moved = [r for m in single if (r := _moved(asked, m)) is not None]
+    chosen = [r for m in choices if (r := _sufficient_switch(asked, m)) is not None]
+    moved = [r for m in single if (r := _least_change(asked, m)) is not None]
     sufficient = sorted(moved, key=_size) + chosen
     message = ""
     if sufficient and asked.open:
@@ -141,10 +141,10 @@ def _of_any_gears(
     sides = [m for m in single if m.path[-1] in LIMITS]
     sufficient = [r for m in sides if (r := _side(asked, search, m)) is not None]
     for move in (m for m in single if m not in sides):
-        if (remedy := _moved(asked, move)) is not None:
+        if (remedy := _least_change(asked, move)) is not None:
             sufficient.append(remedy)
     sufficient.sort(key=_size)
-    sufficient += [r for m in choices if (r := _chosen(asked, m)) is not None]
+    sufficient += [r for m in choices if (r := _sufficient_switch(asked, m)) is not None]
     if not sufficient:
         sufficient = sorted(_pairs(asked, tuple(sides)), key=_size)
     message = "time ran out before all remedies were tried" if clock.over else ""
@@ -160,7 +160,7 @@ def _of_any_gears(
 def _side(asked: FeasibilityQuestions, search: Search, own: BoxMove) -> Found | None:
     """Return the least size of a side of the box, if some gears fit with it."""
     if own.key.removeprefix("layout.largest_") not in SIDES:
-        return _moved(asked, own)
+        return _least_change(asked, own)
     known = least_side(search, asked.scene, own.move, asked.clock)
     remedy = None if known is None else as_remedy(asked, known, "least")
     there = None if known is None else asked.edited(((own.move, known.high),))
@@ -227,7 +227,7 @@ def gearbox_of(scene: Scene, pairs: tuple[GearPair, ...]) -> Gearbox | None:
         return None
 
 
-def _moved(asked: FeasibilityQuestions, own: BoxMove) -> Found | None:
+def _least_change(asked: FeasibilityQuestions, own: BoxMove) -> Found | None:
     """Return the smallest known change of one number; None where none is known."""
     known = least(asked, ((own.move, 1.0),))
     if known is None:
@@ -241,7 +241,7 @@ def _moved(asked: FeasibilityQuestions, own: BoxMove) -> Found | None:
     return None
 
 
-def _chosen(asked: FeasibilityQuestions, own: BoxMove) -> Found | None:
+def _sufficient_switch(asked: FeasibilityQuestions, own: BoxMove) -> Found | None:
     """Return a switch that suffices alone."""
     there = asked.edited(((own.move, SET),))
     answer = False if there is None else asked.verdict_of(there).answer
@@ -257,12 +257,12 @@ def _pairs(asked: FeasibilityQuestions, single: tuple[BoxMove, ...]) -> list[Fou
     """Return two changes that do together, each as small as the other allows."""
     rough: list[tuple[float, list[tuple[Move, float]], Pair]] = []
     for pair in combinations(single, 2):
-        if _same(*pair):
+        if _same_place(*pair):
             continue
         known = smallest(asked, tuple((own.scaled, 1.0) for own in pair))
         if known is not None:
             moves = [(own.move, own.unscaled(known.high)) for own in pair]
-            rough.append((_changed(pair, moves), moves, pair))
+            rough.append((_joint_change(pair, moves), moves, pair))
     remedies_of_two = []
     for _, moves, pair in sorted(rough, key=lambda r: r[0])[:PAIRS]:
         if (remedy := _together(asked, pair, moves)) is not None:
@@ -272,12 +272,12 @@ def _pairs(asked: FeasibilityQuestions, single: tuple[BoxMove, ...]) -> list[Fou
     return remedies_of_two
 
 
-def _changed(pair: Pair, moves: Sequence[tuple[Move, float]]) -> float:
+def _joint_change(pair: Pair, moves: Sequence[tuple[Move, float]]) -> float:
     """Return how much two moves change together, relative."""
     return sum(own.change(factor) for own, (_, factor) in zip(pair, moves, strict=True))
 
 
-def _same(one: BoxMove, other: BoxMove) -> bool:
+def _same_place(one: BoxMove, other: BoxMove) -> bool:
     """Return whether two moves change the same table or number, so that one undoes the other."""
     shared = min(len(one.path), len(other.path))
     return one.path[:shared] == other.path[:shared]
@@ -298,7 +298,7 @@ def _together(
         return None
     what = " and ".join(own.move.words for own in pair)
     remedy = replace(remedy, what=what, factor=math.inf)
-    return _changed(pair, moves), remedy, there.scene
+    return _joint_change(pair, moves), remedy, there.scene
 
 
 def explained(scene: Scene, result: Result, clock: Clock) -> Explanation:

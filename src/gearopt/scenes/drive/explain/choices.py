@@ -53,11 +53,11 @@ def nearest_ratio(case: Case, away: Fraction | None) -> Remedy | None:
     away: the smallest tolerance known to suffice, None where the file can hold none.
     """
     far = max(WIDEST[0], min(WIDEST[1], 1 - 1 / case.scene.duty.total_ratio))
-    reached = _met(case, away or far)
+    reached = _ratio_within(case, away or far)
     if isinstance(reached, str) or reached.away == 0:
         return None
     reached, word = _nearest(case, reached)
-    for other in (one for ratio in reached.ratios for one in _written(case.scene, ratio)):
+    for other in (one for ratio in reached.ratios for one in _scenes_of_ratio(case.scene, ratio)):
         if case.status(other) == "feasible":
             place = ("duty", "ratio" if other.duty.output_speed is None else "output_speed")
             (change,) = changed(case.scene, other, [Move(place, 1, inherits=inherited)]).changes
@@ -82,7 +82,7 @@ def _nearest(case: Case, best: Reached) -> tuple[Reached, str]:
         away = Fraction(math.sqrt(max(low, best.away * SLACK_FRACTION) * best.away))
         if excluded and best.away - low <= NEARER_ASKED * best.away:
             away = best.away * (1 - NEARER)
-        met = _met(case, away)
+        met = _ratio_within(case, away)
         excluded = whole and isinstance(met, str)
         if isinstance(met, Reached):
             best = met
@@ -94,7 +94,7 @@ def _nearest(case: Case, best: Reached) -> tuple[Reached, str]:
     return best, "infeasible" if known else "undecided"
 
 
-def _met(case: Case, away: Fraction) -> Reached | str:
+def _ratio_within(case: Case, away: Fraction) -> Reached | str:
     """Return a ratio within a distance, or else what is known: infeasible or undecided."""
     asked, within = case.scene.duty.total_ratio, _within(case.scene, away)
     if case.scene.teeth is None:
@@ -114,7 +114,7 @@ def _within(scene: Scene, tolerance: Fraction) -> Scene:
     return changed_scene
 
 
-def _written(scene: Scene, ratio: Fraction) -> Iterator[Scene]:
+def _scenes_of_ratio(scene: Scene, ratio: Fraction) -> Iterator[Scene]:
     """Yield the scene that asks for a ratio, as a file can write it, or its output speed.
 
     Whole teeth: exactly, or so that the ratio is within the tolerance. Real-valued ones: a short

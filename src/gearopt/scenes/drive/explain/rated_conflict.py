@@ -126,7 +126,7 @@ def conflict(case: Case) -> Conflict:
     """
     if case.scene.teeth is None:
         return Conflict()
-    filtering, groups = _begun(case)
+    filtering, groups = _filter_of_requirements(case)
     strength = filtering.dropped
     families = [family for group in groups for family in group]
     fixed = [family for family in families if _base(family[0]) in GIVEN]
@@ -157,7 +157,7 @@ def conflict(case: Case) -> Conflict:
     return Conflict((*every, *_standard(case, filtering.dropped, every)), unsure, alone)
 
 
-def _begun(case: Case) -> tuple[_Filter, tuple[tuple[tuple[str, ...], ...], ...]]:
+def _filter_of_requirements(case: Case) -> tuple[_Filter, tuple[tuple[tuple[str, ...], ...], ...]]:
     """Return a filter and the requirements that it is of: those of teeth where none are left."""
     groups = requirements(case.scene)
     for exact, kept in ((True, OF_NUMBERS), (False, OF_TEETH)):

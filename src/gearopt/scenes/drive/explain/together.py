@@ -72,7 +72,7 @@ def smallest_together(case: Case, movable: list[Move], most: float) -> tuple[Mov
     def branch(_: float, box: Box) -> Iterator[tuple[float, Box]]:
         nonlocal sure, asked, best, most
         single = all(i == j for i, j in box)
-        met = _met(case, _within(train, choices, box), choices, box)
+        met = _possible_choice(case, _within(train, choices, box), choices, box)
         asked, sure = asked + 1, sure and met is not None
         if isinstance(met, tuple) and _product(choices, met) < most:
             best, most = met, _product(choices, met)
@@ -90,7 +90,9 @@ def smallest_together(case: Case, movable: list[Move], most: float) -> tuple[Mov
     return _moves(choices, best), sure and left.least >= most
 
 
-def _met(case: Case, train: Train, choices: list[Choice], box: Box) -> Box | bool | None:
+def _possible_choice(
+    case: Case, train: Train, choices: list[Choice], box: Box
+) -> Box | bool | None:
     """Return a single choice of a box that is possible; False: none is; None: not known.
 
     Where it is known to be possible, but not with which numbers, True for a box of several.
