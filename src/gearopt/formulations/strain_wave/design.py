@@ -210,35 +210,35 @@ class Extras:
         return without
 
 
-def loads_and_pressures(demand: Demand, made: Flank) -> dict[str, Any]:
+def loads_and_pressures(demand: Demand, flank: Flank) -> dict[str, Any]:
     """Fields of a `WaveDesign`: loads of its teeth, and pressures by each way of sharing them."""
-    turned = _carried(demand.duty, made)
+    turned = _carried(demand.duty, flank)
     return {
         **load_columns(turned, LOADS_LISTED),
         **shares(turned[0]),
-        "equal_pressure_MPa": equal_pressure(demand.duty, made),
-        "whole_pairs_pressure_MPa": equal_pressure(demand.duty, made, whole=True),
-        "shared_pressure_MPa": shared_pressure(demand.duty, made),
+        "equal_pressure_MPa": equal_pressure(demand.duty, flank),
+        "whole_pairs_pressure_MPa": equal_pressure(demand.duty, flank, whole=True),
+        "shared_pressure_MPa": shared_pressure(demand.duty, flank),
     }
 
 
-def sizes_and_clearances(demand: Demand, made: Flank) -> dict[str, Any]:
+def sizes_and_clearances(demand: Demand, flank: Flank) -> dict[str, Any]:
     """Fields of a `WaveDesign`: sizes, contacts along the flank, clearances of its teeth."""
-    least = interference(made, STEP_DEG)
+    least = interference(flank, STEP_DEG)
     return {
-        **_sizes(demand, made),
-        **_columns(made),
+        **_sizes(demand, flank),
+        **_columns(flank),
         "least_clearance_mm": gap_of(least.gap),
         "least_clearance_at_deg": math.degrees(least.angle),
         "within_um": WITHIN,
-        "teeth_within": floats(teeth_within(made, 1e-3 * np.array(WITHIN))),
+        "teeth_within": floats(teeth_within(flank, 1e-3 * np.array(WITHIN))),
     }
 
 
-def deflections_and_ends(made: Flank, extras: Extras) -> dict[str, Any]:
+def deflections_and_ends(flank: Flank, extras: Extras) -> dict[str, Any]:
     """Fields of a `WaveDesign`: ends of deflection, shift and addendum, and other deflections."""
-    gearing = made.gearing
-    deflections = other_deflections(extras, lambda by: _deflected(made, by))
+    gearing = flank.gearing
+    deflections = other_deflections(extras, lambda by: _deflected(flank, by))
     name = "the largest addendum"
     addendum = extras.of(name, lambda: largest_addendum(gearing), None, SOUGHT)
     name = "the largest profile shift at which one pair always touches"
@@ -251,11 +251,11 @@ def deflections_and_ends(made: Flank, extras: Extras) -> dict[str, Any]:
     }
 
 
-def profile_shifts(duty: Duty, made: Flank, extras: Extras) -> dict[str, Any]:
+def profile_shifts(duty: Duty, flank: Flank, extras: Extras) -> dict[str, Any]:
     """Fields of a `WaveDesign`: the curve over profile shifts, if there is time."""
     none: tuple[ShiftRow, ...] = ()
     name = "the curve over profile shifts"
-    return {"shifts": extras.of(name, lambda: _shifts(made.gearing, duty), none, SOUGHT)}
+    return {"shifts": extras.of(name, lambda: _shifts(flank.gearing, duty), none, SOUGHT)}
 
 
 def other_deflections(extras: Extras, at: Callable[[float], Deflected]) -> tuple[Deflected, ...]:
@@ -269,47 +269,47 @@ def other_deflections(extras: Extras, at: Callable[[float], Deflected]) -> tuple
     return extras.of("other deflections", meeting, none, SOUGHT)
 
 
-def cutter_design(made: Flank, asked: Cutter, extras: Extras) -> CutterDesign:
+def cutter_design(flank: Flank, asked: Cutter, extras: Extras) -> CutterDesign:
     """The cutter, while there is time with a line and an arc that replace its edge."""
     name = "straight and circular edges of the cutter"
     asked = extras.of(name, lambda: asked, replace(asked, replaced=False), REPLACED)
-    return cutter_of(made.gearing, blank_profile(made), asked)
+    return cutter_of(flank.gearing, blank_profile(flank), asked)
 
 
-def sketched(demand: Demand, made: Flank) -> dict[str, Any]:
+def sketched(demand: Demand, flank: Flank) -> dict[str, Any]:
     """Return sizes, pairs, pressures and the least clearance of a gearing, under the same keys."""
     return {
-        **_sizes(demand, made),
-        "pairs_in_contact": float(made.pairs_in_contact),
-        "equal_pressure_MPa": equal_pressure(demand.duty, made),
-        "shared_pressure_MPa": shared_pressure(demand.duty, made),
-        "least_clearance_mm": gap_of(interference(made, STEP_DEG).gap),
+        **_sizes(demand, flank),
+        "pairs_in_contact": float(flank.pairs_in_contact),
+        "equal_pressure_MPa": equal_pressure(demand.duty, flank),
+        "shared_pressure_MPa": shared_pressure(demand.duty, flank),
+        "least_clearance_mm": gap_of(interference(flank, STEP_DEG).gap),
     }
 
 
-def used(demand: Demand, made: Flank) -> dict[str, float]:
+def used(demand: Demand, flank: Flank) -> dict[str, float]:
     """Return the utilisation of every limit by a gearing: the largest of a limit on several points.
 
     interference: above 1, in modules, where teeth cut each other at some pose. Limits that only
     keep the flank regular are named where they are exceeded.
     """
-    angle = np.linspace(made.contacts.motion.angle[0], made.contacts.motion.angle[-1], COUNT)
-    at = [contact(made.gearing, motion(made.gearing, made.curve, p)) for p in angle]
-    rows = limits(demand, made.gearing, made.curve, at)
-    least = interference(made, STEP_DEG)
+    angle = np.linspace(flank.contacts.motion.angle[0], flank.contacts.motion.angle[-1], COUNT)
+    at = [contact(flank.gearing, motion(flank.gearing, flank.curve, p)) for p in angle]
+    rows = limits(demand, flank.gearing, flank.curve, at)
+    least = interference(flank, STEP_DEG)
     flat = {k: float(max(v) if isinstance(v, tuple) else v) for k, v in rows.items()}
     if least.gap < CUTTING:
-        flat["interference"] = 1.0 - least.gap / float(made.gearing.module)
+        flat["interference"] = 1.0 - least.gap / float(flank.gearing.module)
     return {k: v for k, v in flat.items() if k not in GUARDS or v > 1.0}
 
 
-def _sizes(demand: Demand, made: Flank) -> dict[str, Any]:
-    gearing = made.gearing
-    tip = contact(gearing, motion(gearing, made.curve, made.contacts.motion.angle[-1]))
+def _sizes(demand: Demand, flank: Flank) -> dict[str, Any]:
+    gearing = flank.gearing
+    tip = contact(gearing, motion(gearing, flank.curve, flank.contacts.motion.angle[-1]))
     return {
-        **sizes_of(demand, gearing, made.curve),
+        **sizes_of(demand, gearing, flank.curve),
         "base_diameter_mm": 2.0 * float(gearing.base_radius),
-        "pairs_in_contact": float(made.pairs_in_contact),
+        "pairs_in_contact": float(flank.pairs_in_contact),
         "ratcheting_torque_Nm": 1e-3 * float(flank_ratcheting_torque(demand, gearing, tip)),
     }
 
@@ -347,12 +347,12 @@ def sizes_of(demand: Demand, gearing: StrainWave, curve: NeutralCurve) -> dict[s
     }
 
 
-def _columns(made: Flank) -> dict[str, Any]:
-    at = made.contacts
+def _columns(flank: Flank) -> dict[str, Any]:
+    at = flank.contacts
     k = np.rint(np.linspace(0, len(at.tangent) - 1, ROWS)).astype(int)
-    middle = float(tooth_arcs(made, 0))
+    middle = float(tooth_arcs(flank, 0))
     arcs = middle + np.linspace(-REACH, REACH, 2 * CLEARANCES_LISTED + 1)
-    involute = made.gearing.half_angle - (at.tangent - np.arctan(at.tangent))
+    involute = flank.gearing.half_angle - (at.tangent - np.arctan(at.tangent))
     return {
         "arc_deg": floats(np.degrees(at.motion.arc[k])),
         "radius_mm": floats(at.radius[k]),
@@ -366,7 +366,7 @@ def _columns(made: Flank) -> dict[str, Any]:
         "tooth_half_mm": floats(at.point.y[k]),
         "space_across_mm": floats((at.radius * np.sin(involute))[k]),
         "space_out_mm": floats((at.radius * np.cos(involute))[k]),
-        **clearance_columns(arcs, clearances_of(made, arcs)),
+        **clearance_columns(arcs, clearances_of(flank, arcs)),
     }
 
 
@@ -390,11 +390,11 @@ class Carried:
     stresses: Any
 
 
-def _carried(duty: Duty, made: Flank) -> list[Carried]:
+def _carried(duty: Duty, flank: Flank) -> list[Carried]:
     """Loads of the teeth at TURNS positions of the wave generator over a pitch."""
     return [
-        Carried(t.numbers, t.arcs, t.gaps, loads, pressures(duty, made, t, loads))
-        for t, loads in loads_turned(duty, made, [k / TURNS for k in range(TURNS)])
+        Carried(t.numbers, t.arcs, t.gaps, loads, pressures(duty, flank, t, loads))
+        for t, loads in loads_turned(duty, flank, [k / TURNS for k in range(TURNS)])
     ]
 
 
@@ -452,9 +452,9 @@ def _shifts(gearing: StrainWave, duty: Duty) -> tuple[ShiftRow, ...]:
     )
 
 
-def _deflected(made: Flank, by: float) -> Deflected:
-    deflection = float(made.gearing.deflection) + by
-    least = interference(stretched(made, deflection), STEP_DEG)
+def _deflected(flank: Flank, by: float) -> Deflected:
+    deflection = float(flank.gearing.deflection) + by
+    least = interference(stretched(flank, deflection), STEP_DEG)
     return Deflected(deflection=deflection, least_clearance_mm=gap_of(least.gap))
 
 

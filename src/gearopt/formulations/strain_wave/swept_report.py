@@ -117,13 +117,13 @@ def _slope(gearing: StrainWave, tooth: Profile, share: float) -> float:
     return math.atan(-float(tooth.directions.y[k] / tooth.directions.x[k]))
 
 
-def carried(duty: Duty, made: SweptGearing, shift: float = 0.0) -> Carried:
+def carried(duty: Duty, swept: SweptGearing, shift: float = 0.0) -> Carried:
     """Loads of the teeth of one lobe, numbered from the major axis.
 
     shift: turn of the wave generator in pitches. Arms and curvatures are those of the nearest pose
     of conjugate contact; of two contacts of a tooth the one that presses harder.
     """
-    mesh, teeth = made.mesh, int(made.mesh.gearing.teeth)
+    mesh, teeth = swept.mesh, int(swept.mesh.gearing.teeth)
     number = np.arange(-(teeth // 4), teeth // 4 + 1)
     arcs = (number + shift) * 2.0 * math.pi / teeth
     inside = np.abs(arcs) < 0.499 * math.pi
@@ -134,7 +134,7 @@ def carried(duty: Duty, made: SweptGearing, shift: float = 0.0) -> Carried:
     gap = np.where(gap[near] < TOUCH, 0.0, gap[near])
     rim = (duty.cup, duty.face_width) if duty.elastic else None
     compliance = compliance_of(mesh.gearing, number, duty.pair_stiffness, rim)
-    arms, bends = _nearest(made.touching, arcs)
+    arms, bends = _nearest(swept.touching, arcs)
     loads = shared(compliance, gap, arms, duty.moment)
     return Carried(number, arcs, gap, loads, duty.pressure(loads.forces, bends))
 
@@ -147,24 +147,24 @@ def _nearest(found: Touching, arcs: Any) -> tuple[Any, Any]:
     return found.arms[hardest], found.gap_curvature[hardest]
 
 
-def loads_by_law(demand: Demand, made: SweptGearing) -> dict[str, Any]:
+def loads_by_law(demand: Demand, swept: SweptGearing) -> dict[str, Any]:
     """Fields of a `WaveDesign`: loads of its teeth, and pressures by each way of sharing them."""
     duty = demand.duty
-    turned = [carried(duty, made, k / TURNS) for k in range(TURNS)]
-    shared_by_shift = (float(carried(duty, made, shift).stresses.max()) for shift in SHIFTS)
+    turned = [carried(duty, swept, k / TURNS) for k in range(TURNS)]
+    shared_by_shift = (float(carried(duty, swept, shift).stresses.max()) for shift in SHIFTS)
     return {
         **load_columns(turned),
         **shares(turned[0]),
-        "pairs_in_contact": made.pairs,
-        "equal_pressure_MPa": _equal(duty, made, made.pairs),
-        "whole_pairs_pressure_MPa": _equal(duty, made, max(1.0, math.floor(made.pairs))),
+        "pairs_in_contact": swept.pairs,
+        "equal_pressure_MPa": _equal(duty, swept, swept.pairs),
+        "whole_pairs_pressure_MPa": _equal(duty, swept, max(1.0, math.floor(swept.pairs))),
         "shared_pressure_MPa": max(shared_by_shift),
     }
 
 
-def sizes_by_law(demand: Demand, made: SweptGearing, law: Law) -> dict[str, Any]:
+def sizes_by_law(demand: Demand, swept: SweptGearing, law: Law) -> dict[str, Any]:
     """Fields of a `WaveDesign`: law, sizes, contacts along the flank, clearances of its teeth."""
-    mesh = made.mesh
+    mesh = swept.mesh
     gearing = mesh.gearing
     least, at = _least(mesh)
     arcs = np.linspace(-0.499 * math.pi, 0.499 * math.pi, ARCS)
@@ -177,7 +177,7 @@ def sizes_by_law(demand: Demand, made: SweptGearing, law: Law) -> dict[str, Any]
         "arc_radii_mm": law.radii if law.name == DOUBLE_ARC else (),
         "tangent_mm": law.tangent if law.name == DOUBLE_ARC else None,
         **sizes_of(demand, gearing, mesh.curve),
-        **_columns(made),
+        **_columns(swept),
         **clearance_columns(arcs[::SHOWN], clear[::SHOWN]),
         "ratcheting_torque_Nm": 1e-3 * float(_ratcheting_torque(demand, gearing)),
         "least_clearance_mm": 0.0 if abs(least) < TOUCH else gap_of(least),
@@ -187,23 +187,23 @@ def sizes_by_law(demand: Demand, made: SweptGearing, law: Law) -> dict[str, Any]
     }
 
 
-def deflections_by_law(made: SweptGearing, extras: Extras) -> dict[str, Any]:
+def deflections_by_law(swept: SweptGearing, extras: Extras) -> dict[str, Any]:
     """Fields of a `WaveDesign`: other deflections of a gearing, while there is time."""
-    return {"deflections": other_deflections(extras, lambda by: _deflected(made.mesh, by))}
+    return {"deflections": other_deflections(extras, lambda by: _deflected(swept.mesh, by))}
 
 
-def cutter_by_law(made: SweptGearing, asked: Cutter) -> CutterDesign:
+def cutter_by_law(swept: SweptGearing, asked: Cutter) -> CutterDesign:
     """The cutter of a gearing's flexspline."""
-    return cutter_of(made.mesh.gearing, _blank(made.mesh), asked)
+    return cutter_of(swept.mesh.gearing, _blank(swept.mesh), asked)
 
 
-def used_by_law(demand: Demand, made: SweptGearing) -> dict[str, float]:
+def used_by_law(demand: Demand, swept: SweptGearing) -> dict[str, float]:
     """Return the utilisation of every limit by a gearing of a law, as `wave_report.used`."""
-    mesh = made.mesh
+    mesh = swept.mesh
     gearing, tooth = mesh.gearing, mesh.tooth.points
     widths = *flexspline_widths(gearing, tooth[0], tooth[-1]), mesh.spline_land
     ratchets_at = _ratcheting_torque(demand, gearing)
-    utilisations = common_limits(demand, gearing, mesh.curve, made.pairs, ratchets_at, widths)
+    utilisations = common_limits(demand, gearing, mesh.curve, swept.pairs, ratchets_at, widths)
     least, _ = _least(mesh)
     if least < -TOUCH:
         utilisations["interference"] = 1.0 - least / float(gearing.module)
@@ -216,9 +216,9 @@ def _ratcheting_torque(demand: Demand, gearing: StrainWave) -> Any:
     return ratcheting_torque(gearing, demand.radial_stiffness, slope)
 
 
-def _equal(duty: Duty, made: SweptGearing, pairs: float) -> float:
+def _equal(duty: Duty, swept: SweptGearing, pairs: float) -> float:
     """Return the largest pressure [MPa] if conjugate pairs shared the load equally."""
-    contacts = made.touching
+    contacts = swept.touching
     load = duty.moment / (float(contacts.arms.mean()) * pairs)
     return float(duty.pressure(load, contacts.gap_curvature.max()))
 
@@ -246,8 +246,8 @@ def _blank(mesh: SweptMesh) -> Profile:
     return Profile(points, tooth.directions, tooth.curvatures)
 
 
-def _columns(made: SweptGearing) -> dict[str, Any]:
-    mesh, at = made.mesh, made.touching
+def _columns(swept: SweptGearing) -> dict[str, Any]:
+    mesh, at = swept.mesh, swept.touching
     k = np.rint(np.linspace(0, len(at.arcs) - 1, ROWS)).astype(int)
     k = k[np.argsort(at.arcs[k], kind="stable")]
     tooth = mesh.tooth.points
@@ -262,7 +262,7 @@ def _columns(made: SweptGearing) -> dict[str, Any]:
         "flexspline_curvature_mm": floats(signed[0][k]),
         "circular_curvature_mm": floats(signed[1][k]),
         "relative_curvature_mm": floats(1.0 / at.gap_curvature[k]),
-        "touching_deg": tuple(floats(np.degrees(ends)) for ends in made.stretches),
+        "touching_deg": tuple(floats(np.degrees(ends)) for ends in swept.stretches),
         "tooth_height_mm": floats(tooth.x[n]),
         "tooth_half_mm": floats(tooth.y[n]),
         "space_across_mm": floats((mesh.radii * np.sin(mesh.halves))[j]),

@@ -150,10 +150,10 @@ class Scene(Table):
             if table.layer is not None and table.layer > self._max_layers:
                 rule = f"is above the {self._max_layers} of [layers]"
                 raise refuse(rule, self._layer_for(k), ("cylinder", k, "layer"))
-        if all(own.at is not None for own in self.cylinder):
+        if all(cylinder.at is not None for cylinder in self.cylinder):
             rule = "fixes the last free cylinder: nothing is left to place"
             raise refuse(rule, at=("cylinder", len(self.cylinder) - 1, "at"), action="remove")
-        total = sum(own.count for own in self.cylinder)
+        total = sum(cylinder.count for cylinder in self.cylinder)
         if total > MAX_CYLINDERS:
             most = max(range(len(self.cylinder)), key=lambda k: self.cylinder[k].count)
             rule = f"makes {total} cylinders; at most {MAX_CYLINDERS} can be packed"
@@ -170,8 +170,10 @@ class Scene(Table):
 
     def _layer_for(self, k: int) -> int:
         """Return the highest layer for a cylinder that leaves none empty; else the top."""
-        movable = sum(own.count for own in self.cylinder if own.layer is None)
-        others = {own.layer for j, own in enumerate(self.cylinder) if own.layer and j != k}
+        movable = sum(cylinder.count for cylinder in self.cylinder if cylinder.layer is None)
+        others = {
+            cylinder.layer for j, cylinder in enumerate(self.cylinder) if cylinder.layer and j != k
+        }
         for layer in range(self._max_layers, 0, -1):
             given = others | {layer}
             if max(self.layers.exactly or 0, *given) <= len(given) + movable:
@@ -181,8 +183,8 @@ class Scene(Table):
     def _check_layers(self) -> None:
         """Check that no layer that must hold a cylinder stays empty."""
         exactly = self.layers.exactly or 0
-        given = {own.layer for own in self.cylinder if own.layer is not None}
-        movable = sum(own.count for own in self.cylinder if own.layer is None)
+        given = {cylinder.layer for cylinder in self.cylinder if cylinder.layer is not None}
+        movable = sum(cylinder.count for cylinder in self.cylinder if cylinder.layer is None)
         filled, top = len(given) + movable, max(given, default=0)
         if max(exactly, top) <= filled:
             return
@@ -208,8 +210,12 @@ class Scene(Table):
         if self.container.shape != "rectangle":
             rule = f"is for a rectangle, not for a {self.container.shape}"
             raise refuse(rule, at=("container", "width"), action="remove")
-        widest = max(own.diameter.value for own in self.cylinder)
-        fixed = [(own.at[0].value, own.diameter.value / 2) for own in self.cylinder if own.at]
+        widest = max(cylinder.diameter.value for cylinder in self.cylinder)
+        fixed = [
+            (cylinder.at[0].value, cylinder.diameter.value / 2)
+            for cylinder in self.cylinder
+            if cylinder.at
+        ]
         span = max((x + r for x, r in fixed), default=0) - min((x - r for x, r in fixed), default=0)
         for size, what in ((widest, "the widest cylinder"), (span, "the fixed cylinders")):
             if width.value < (size + 2.0 * wall) * (1.0 - 1e-12):
@@ -220,7 +226,7 @@ class Scene(Table):
     def _check_places(self) -> None:
         """Check that fixed cylinders that must share a layer do not overlap."""
         plan = self.plan()
-        where = [k for k, own in enumerate(self.cylinder) for _ in range(own.count)]
+        where = [k for k, cylinder in enumerate(self.cylinder) for _ in range(cylinder.count)]
         for i, j in combinations(plan.fixed, 2):
             same = (
                 plan.max_layers == 1
@@ -266,14 +272,14 @@ def _lowered(cylinders: tuple[CylinderTable, ...], most: int) -> dict[tuple[str 
 
     Cylinders that share a layer still do, and no others.
     """
-    given = {own.layer for own in cylinders if own.layer is not None}
+    given = {cylinder.layer for cylinder in cylinders if cylinder.layer is not None}
     free = [layer for layer in range(1, most + 1) if layer not in given]
     above = sorted(layer for layer in given if layer > most)
     new = dict(zip(above, free[len(free) - len(above) :], strict=True))
     return {
-        ("cylinder", k, "layer"): new[own.layer]
-        for k, own in enumerate(cylinders)
-        if own.layer in new
+        ("cylinder", k, "layer"): new[cylinder.layer]
+        for k, cylinder in enumerate(cylinders)
+        if cylinder.layer in new
     }
 
 
