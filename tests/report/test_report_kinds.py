@@ -107,6 +107,23 @@ def test_one_limit_is_not_reported_as_several(conflict, said):
     assert lead(own) == said and remedy_words(ways)[0] == []
 
 
+@pytest.mark.parametrize(
+    ("verified", "label"),
+    [
+        ({"with_less": "infeasible", "others": "need more"}, "smallest change"),
+        ({"with_less": "infeasible", "others": "not all known"}, "smallest found"),
+        ({"with_less": "undecided", "others": "need more"}, "smallest found"),
+    ],
+)
+def test_a_change_is_the_smallest_only_where_every_other_is_known_to_need_more(verified, label):
+    change = {"key": "limits.span", "write": '"3 m"', "was": '"2 m"', "factor": 1.5}
+    way = {"kind": "least", "what": "span", "changes": [change], "bound": None}
+    ways = {"conflict": ["span"], "remedies": [way | {"verified": verified}], "message": ""}
+    rows, said = remedy_words(ways)
+    assert rows[0][0] == label
+    assert ("any other limit" in said) is (verified["others"] == "need more")
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("path", PROBLEMS, ids=lambda p: p.stem)
 def test_a_problem_file_makes_a_page(path):

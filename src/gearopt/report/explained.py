@@ -13,6 +13,7 @@ ALIKE = 0.02  # of sensitivities from both sides shown as one; relative to those
 FLAT = 0.5e-4  # sensitivity that would be shown as 0.0000
 STEEP = 1000.0  # sensitivity from which on 0.1 % changes the objective by more than its value
 NO_CHANGE = 1e-9  # relative: no change
+UNKNOWN = "not all known"  # of the other numbers: whether each needs a larger change
 BOTH = ("number in the file", "value")
 TERMINAL_ONLY = ("sensitivity, %", "re-solved", "effect")
 PAGE_ONLY = ("effect, %", "sensitivity, % per %")
@@ -251,7 +252,7 @@ def _rows(way: Mapping[str, Any]) -> list[list[Any]]:
     label = KINDS.get(way["kind"])
     if label is None:
         label = f"{series_of(grouped(way['what'].split(', ')))}{alike}"
-    if way["kind"] == "least" and _doubtful(way):
+    if way["kind"] == "least" and (_doubtful(way) or way["verified"].get("others") == UNKNOWN):
         label = "smallest found"
     product = "product " if len(way["changes"]) > 1 and way["kind"] == "least" else ""
     rows: list[list[Any]] = []

@@ -63,8 +63,8 @@ def _impossible(result: Result) -> str:
     ratio = {*RATIO_ENDS} & ({*(result.proof.get("conflict") or ())} - {*names})
     held = " at the ratio asked" if ratio else ""
     if unsure:
-        with_ = f"cannot be met together with {_some(unsure, of_problem_file(result))}"
-        return f"{together} {with_} (not all of these need be part of the conflict)"
+        with_ = f"cannot be met together with {_some(result, unsure)}"
+        return f"{together} {with_} (which of these take part was not decided in the time)"
     if [_stem(name) for name in names] == [DISTANCE] and result.message:
         return result.message.rstrip(".")  # what keeps teeth from it is never dropped whole
     if len(names) == 1 or result.proof.get("each_alone"):
@@ -76,13 +76,19 @@ def _impossible(result: Result) -> str:
     return f"{together} cannot be met together{held}"
 
 
-def _some(names: Sequence[str], staged: bool) -> str:
-    """Limits in words, the first families of them where there are many."""
+def _some(result: Result, names: Sequence[str]) -> str:
+    """Limits in words, those of [limits] first; of many families the first ones and a count."""
+    limits = result.asked.get("limits") or ()
     families = list(dict.fromkeys(map(_stem, names)))
+    families.sort(key=lambda stem: stem.removesuffix("_low").removesuffix("_high") not in limits)
     shown = families if len(families) <= NAMED + 1 else families[:NAMED]
-    words = grouped([name for name in names if _stem(name) in shown], staged)
+    words = [
+        word
+        for stem in shown
+        for word in grouped([n for n in names if _stem(n) == stem], of_problem_file(result))
+    ]
     more = len(families) - len(shown)
-    return series_of([*words, f"{more} other requirements"] if more else words)
+    return series_of([*words, f"{more} others"] if more else words)
 
 
 def _over(limits: Mapping[str, float], staged: bool) -> list[str]:

@@ -165,7 +165,9 @@ def test_where_the_worst_case_is_within_the_limit_the_yield_is_100_percent(resul
     drawn = drawn | {"limit_deg": 1.01 * drawn["worst_case_deg"]}
     made = sections(replace(result, design=result.design | {"drawn": drawn}))
     told = words({s.heading: s for s in made})
-    assert "the yield is 100 %" in told and "confidence" not in told
+    assert "and so does every train: the yield is 100 %" in told and "confidence" not in told
+    largest = {s.heading: s for s in made}["Monte Carlo errors"].words[1]
+    assert "% of the Monte Carlo trains have" in largest and "the largest error drawn" in largest
     tile = next(t for t in made[0].tiles if t.name == "worst-case error, new tolerances")
     assert float(tile.value.rstrip("°")) == pytest.approx(drawn["worst_case_deg"], rel=1e-4)
 

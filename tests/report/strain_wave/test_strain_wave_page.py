@@ -169,9 +169,14 @@ def test_sections_say_what_was_found(result, found):
     assert [f.follows for f in mesh.figures] == [mesh.animations[0].name] * 2
     curve = shift(result, METRIC).figures[0].data
     assert "always touch carries" in shift(result, METRIC).figures[0].caption
-    own = replace(result, design=result.design | {"largest_addendum": 0.9})
-    assert shift(own, METRIC).words[-1].endswith("interfere, with all other sizes unchanged.")
-    assert "generates the flank exactly, but for rounding" in cutter(result, METRIC).words[0]
+    own = replace(result, design=result.design | {"largest_addendum": 0.89998})
+    assert "With an addendum above about 0.90 modules" in shift(own, METRIC).words[-1]
+    assert (
+        shift(own, METRIC).words[-1].endswith("(sought at steps of 0.25° of the wave generator).")
+    )
+    assert (
+        "generates the flank to rounding; its edge has no cusp" in cutter(result, METRIC).words[0]
+    )
     assert [line["name"] for line in curve] == ["conjugate pairs", "whole pairs", "load shared"]
     assert all(np.all(np.diff(line["y"]) < 0.0) for line in curve)
     sizes = dict((row[0], row[1]) for row in numbers(result, METRIC).tables[0].rows)
@@ -185,6 +190,21 @@ def test_sections_say_what_was_found(result, found):
     assert {name: sizes[name].value for name in built} == pytest.approx(built, abs=2e-5)
     minor = sizes["minor diameter [mm]"].value
     assert 77.4 < minor < 77.45  # 2 (39.625 - 0.5 - 0.4) less the 13 um by which its length is kept
+
+
+@pytest.mark.parametrize(
+    ("pressures", "told"),
+    [((3.0, 2.0, 1.0), "falls"), ((1.0, 2.0, 3.0), ""), ((3.0, 1.0, 2.0), "")],
+)
+def test_pressures_fall_with_the_shift_only_where_all_of_them_do(result, pressures, told):
+    """Equal and whole fall in all cases; a shared pressure that rises, or has a minimum, does not."""
+    three = result.design["shifts"][:3]
+    rows = [row | {"shared_MPa": p} for row, p in zip(three, pressures, strict=True)]
+    words = shift(replace(result, design=result.design | {"shifts": rows}), METRIC).words
+    assert not any("has a minimum" in word for word in words)
+    assert [w for w in words if "every contact pressure" in w] == (
+        [f"Over the shifts shown every contact pressure {told} as the shift grows."] if told else []
+    )
 
 
 def test_the_stress_of_the_teeth_has_one_name(result):

@@ -158,7 +158,20 @@ def test_a_face_that_is_loaded_in_part_is_warned_of(standard):
         assert (row["pinion"] > 2.0) is partly
         loaded = f"Only {200.0 / row['pinion']:.3g} % of the face width of stage 1"
         assert any(loaded in said for said in found.get("flaws", ())) is partly
-        assert ("K_Hβ is" in str(result)) is partly
+        assert (f"(K_Hβ {row['pinion']:.4g}) is in contact; above" in str(result)) is partly
+
+
+def test_faces_that_are_loaded_in_part_are_one_sentence_for_all_stages():
+    tables = without(two_stages(duty={"power": "1 kW"}), "rating", "quality")
+    tables["rating"] |= {"standard": "iso6336", "iso6336": {"accuracy_grade": 6}}
+    found = rated(tables)
+    (said,) = (words for words in found["flaws"] if "in contact" in words)
+    first, second = (row["pinion"] for row in found["factors"] if row["symbol"] == "K_Hbeta")
+    assert min(first, second) > 2.0
+    assert said.startswith(
+        f"Only {200.0 / first:.3g} % of the face width of stage 1 (K_Hbeta {first:.4g}) and "
+        f"{200.0 / second:.3g} % of the face width of stage 2 (K_Hbeta {second:.4g}) are in contact"
+    )
 
 
 def test_helix_and_pressure_angle_are_those_of_the_stage():

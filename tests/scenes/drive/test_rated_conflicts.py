@@ -84,7 +84,7 @@ def test_a_conflict_is_said_first_and_what_may_not_matter_last(monkeypatch):
     doubtful = ways | {"unsure": ["face_width_over_diameter[1]"]}
     words = lead(replace(result, report={"ways_out": doubtful}))
     assert words.endswith(
-        "face width over diameter of stage 1 (not all of these need be part of the conflict)"
+        "face width over diameter of stage 1 (which of these take part was not decided in the time)"
     )
 
 
@@ -94,8 +94,10 @@ def test_of_many_requirements_that_may_not_matter_some_are_named(solved):
     result = replace(solved("elevator"), status="infeasible", report={"ways_out": ways})
     assert lead(result).startswith(
         "the limit on a of stage 1 cannot be met together with b of stage 1, c of stage 1, "
-        "d of stage 1 and 2 other requirements"
+        "d of stage 1 and 2 others (which of these take part was not decided in the time)"
     )
+    first = replace(result, asked={"limits": {"f": 1, "e": 2}})
+    assert "together with e of stage 1, f of stage 1, b of stage 1 and 2 others" in lead(first)
 
 
 OUT_OF_REACH = {

@@ -360,7 +360,11 @@ def posed(scene: Scene, method: str) -> Model:
     problem = sampled.problem(demand, start)
     if method not in SAMPLERS:
         problem = sampled.limited(demand, start, PRESSURE, {})
-    return Model(problem, "No interference at any position of the wave", "MPa")
+    return Model(
+        problem,
+        "Without interference, sought over the whole revolution of the wave generator",
+        "MPa",
+    )
 
 
 def objectives(scene: Scene) -> dict[str, str]:

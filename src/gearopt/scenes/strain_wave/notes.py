@@ -147,9 +147,15 @@ def range_notes(scene: Scene, ends: Sequence[RangeEnd]) -> list[str]:
         )
     sentences = [f"At ends of their ranges: {_series(each)}."]
     if gains := [_name(end.name) for end in ends if end.gain is not None and end.gain > 0.0]:
+        limit = (
+            f"The ends of the ranges of {_series(gains)} limit the contact pressure: a slightly "
+            "wider range of any one"
+            if len(gains) > 1
+            else f"The end of the range of {gains[0]} limits the contact pressure: a slightly "
+            "wider range"
+        )
         sentences.append(
-            f"The contact pressure is limited by the ends of the ranges of {_series(gains)}: with "
-            "wider ranges it would fall until other limits come first."
+            f"{limit}, with all other sizes chosen anew, would lower it (first order)."
         )
     return sentences
 
@@ -173,7 +179,10 @@ def notes(made: WaveDesign) -> list[str]:
             "flexspline's teeth."
         )
     else:
-        sentences.append("No interference at any position of the wave generator.")
+        sentences.append(
+            "No interference was found: the least clearance was sought over the whole revolution "
+            "of the wave generator."
+        )
         sentences += _without_play(made)
     if made.left_out:
         sentences.append(f"Left out for lack of time: {_series(made.left_out)}.")

@@ -298,13 +298,16 @@ def _drawn_words(draws: DrawnErrors, said: bool) -> list[str]:
     kept = f"{100.0 * draws.yield_share:.4f} % of the Monte Carlo trains keep the limit{limit}"
     words = [f"{kept}; with {sure} confidence the yield lies between {low} and {high} %."]
     if draws.worst_case_deg <= draws.limit_deg * (1.0 + 1e-9):
-        words = [f"All trains keep the limit{limit}, as the worst case does: the yield is 100 %."]
+        words = [
+            f"The worst case keeps the limit{limit}, and so does every train: the yield is 100 %."
+        ]
     between = " (too few draws for an interval with this confidence)"
     if ends:
         interval = f"between {' and '.join(map(degrees, ends))}"
         between = f" (this quantile lies {interval} with {sure} confidence)"
-    quantile = f"{share} of them have an error of at most {degrees(draws.quantile_deg)}"
-    words.append(f"{quantile}{between}; the maximum is {degrees(draws.largest_deg)}.")
+    most = f"have an error of at most {degrees(draws.quantile_deg)}"
+    quantile = f"{share} of the Monte Carlo trains {most}{between}"
+    words.append(f"{quantile}; the largest error drawn is {degrees(draws.largest_deg)}.")
     return words
 
 

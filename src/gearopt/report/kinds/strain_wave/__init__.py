@@ -3,11 +3,13 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 from gearopt.formulations.strain_wave.cutter_report import CutterDesign
 from gearopt.formulations.strain_wave.design import WaveDesign
 from gearopt.formulations.strain_wave.exchange import CUTTING
+from gearopt.formulations.strain_wave.shift import STEP_DEG
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.answer import asked, assumptions, limits, summary
@@ -194,19 +196,32 @@ def shift(result: Result, measures: Measures) -> Section | None:
 
 def _ends_of_shift(gearing: WaveDesign) -> list[str]:
     """Limits that end a search over the profile shift."""
-    words = [
-        "No contact pressure has a minimum over the profile shift: other limits end the search."
-    ]
+    words = _trend(gearing)
     if gearing.shift_of_one_pair is not None:
         words.append(
             f"One conjugate pair always touches up to a shift of {gearing.shift_of_one_pair:.3f}."
         )
     if gearing.largest_addendum is not None:
         words.append(
-            f"With an addendum above {gearing.largest_addendum:.3f} modules teeth would interfere, "
-            "with all other sizes unchanged."
+            f"With an addendum above about {gearing.largest_addendum:.2f} modules teeth would "
+            f"interfere, with all other sizes unchanged (sought at steps of {STEP_DEG:g}° of the "
+            "wave generator)."
         )
     return words
+
+
+def _trend(gearing: WaveDesign) -> list[str]:
+    """That every contact pressure falls, or rises, with the shift; nothing where it is not so."""
+    rows = sorted(gearing.shifts, key=lambda row: row.profile_shift)
+    steps = [
+        getattr(after, name) - getattr(before, name)
+        for before, after in pairwise(rows)
+        for name in ("equal_MPa", "whole_MPa", "shared_MPa")
+    ]
+    for way, verb in ((-1.0, "falls"), (1.0, "rises")):
+        if all(way * step > 0.0 for step in steps):
+            return [f"Over the shifts shown every contact pressure {verb} as the shift grows."]
+    return []
 
 
 def cutter(result: Result, measures: Measures) -> Section | None:
@@ -218,9 +233,9 @@ def cutter(result: Result, measures: Measures) -> Section | None:
     if not tool.regular:
         return Section("Cutter of the flexspline", words=words, terminal=words)
     words = (
-        f"{_tool(tool)}, rolling on a pitch radius of "
-        f"{amount(tool.pitch_radius_mm, 'mm', measures)}: it is regular and generates the flank "
-        f"{_generates(tool)}. {_least(tool)}",
+        f"{_tool(tool)} that rolls on a pitch radius of "
+        f"{amount(tool.pitch_radius_mm, 'mm', measures)} generates the flank {_generates(tool)}; "
+        f"its edge has no cusp. {_least(tool)}",
     )
     shown, pitch = result.report["cutter_drawing"], math.pi * design.module_mm
     grid = shown["grid_mm"]
@@ -245,17 +260,18 @@ def _tool(tool: CutterDesign) -> str:
 def _generates(tool: CutterDesign) -> str:
     """How near the flank that the cutter generates comes to that of the design, in words."""
     off = 1e3 * tool.round_trip_mm
-    return "exactly, but for rounding" if off < ROUNDING else f"to within {off:.0e} µm"
+    return "to rounding" if off < ROUNDING else f"to within {off:.0e} µm"
 
 
 def _least(tool: CutterDesign) -> str:
     """Smallest pinion-type cutter on the same pitch circle of the blank, in words."""
     if tool.least_teeth is None:
         return (
-            "No pinion-type cutter of up to 60 teeth is regular on this pitch circle of the blank: "
-            "another [cutter] pitch_diameter may do."
+            "On this pitch circle of the blank the edge of every pinion-type cutter of up to 60 "
+            "teeth has a cusp: another [cutter] pitch_diameter may do."
         )
-    return f"On this pitch circle pinion-type cutters are regular from {tool.least_teeth} teeth on."
+    edge = "On this pitch circle the edge of a pinion-type cutter has no cusp"
+    return f"{edge} from {tool.least_teeth} teeth on."
 
 
 def numbers(result: Result, measures: Measures) -> Section | None:

@@ -212,22 +212,24 @@ def rating(
 
 
 def _partial_contact(rated: DriveRating) -> Iterator[str]:
-    """Yield stages whose load lies on a part of the face width.
+    """Yield a sentence on the stages whose load lies on a part of the face width.
 
     Of a straight distribution K_Hbeta reaches 2 where the line load is 0 at one end;
     beyond, b_cal/b = 2/K_Hbeta is loaded. Source: ISO 6336-1:2006, 7.5, method C.
     """
-    rows = [
-        row for by_standard in rated.each for row in by_standard.factors if row.symbol == "K_Hbeta"
+    parts = [
+        f"{100.0 * FULL_CONTACT / row.pinion:.3g} % of the face width of stage {row.stage} "
+        f"(K_Hbeta {row.pinion:.4g})"
+        for by_standard in rated.each
+        for row in by_standard.factors
+        if row.symbol == "K_Hbeta" and row.pinion > FULL_CONTACT
     ]
-    for row in rows:
-        if row.pinion > FULL_CONTACT:
-            yield (
-                f"Only {100.0 * FULL_CONTACT / row.pinion:.3g} % of the face width of stage "
-                f"{row.stage} carries load: K_Hbeta is {row.pinion:.4g}, and above "
-                f"{FULL_CONTACT:g} one end is out of contact. A helix modification or a smaller "
-                "face width would help."
-            )
+    if parts:
+        yield (
+            f"Only {' and '.join(parts)} {'is' if len(parts) == 1 else 'are'} in contact; above "
+            f"K_Hbeta = {FULL_CONTACT:g} the line load falls to zero at one end. A helix "
+            "modification, stiffer shafts or a narrower face would spread the load better."
+        )
 
 
 def _by(
