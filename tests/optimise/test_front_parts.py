@@ -70,7 +70,7 @@ def test_picks_are_scaled_by_ideal_and_nadir():
     assert knee(np.array([[0.0, 1.0], [0.5, 0.5], [1.0, 0.0]])) is None  # on the line
     found = picks(values, ["mass", "cost"], {"mass": 3.0})
     assert [(p.place, p.rule) for p in found] == [(0, "weights"), (1, "knee"), (1, "compromise")]
-    assert "mass 3, cost 0" in found[0].reason
+    assert [p.weights for p in found] == [(3.0, 0.0), (), ()] and not found[0].decades
     assert picks(np.empty((0, 2)), ["mass", "cost"], None) == []
     assert [p.rule for p in picks(values[:1], ["mass", "cost"], None)] == ["compromise"]
     flat = scaled(np.array([[1.0, 7.0], [3.0, 7.0]]))
@@ -87,7 +87,7 @@ def test_an_objective_of_many_decades_is_measured_in_them():
     front = np.array([[12.0, 1.0], [20.0, 1e-3], [24.0, 1e-8], [49.0, 1e-9], [60.0, 0.0]])
     assert scaled(front)[:, 1] == pytest.approx([1.0, 2 / 3, 1 / 9, 0.0, 0.0])
     found = picks(front, ["gear", "error"], None)
-    assert [p.place for p in found] == [2, 2] and found[0].reason.endswith("error in decades")
+    assert [(p.place, p.decades) for p in found] == [(2, ("error",))] * 2
     noise = np.array([[0.0, 1e-17], [1.0, 0.5], [2.0, 1.0]])  # a zero but for rounding
     assert scaled(noise)[:, 1] == pytest.approx([0.0, 0.5, 1.0])
     assert least_sizes(noise).tolist() == [1.0, 0.5]

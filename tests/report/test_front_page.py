@@ -13,13 +13,15 @@ from html import unescape
 from pathlib import Path
 
 import front_cases as cases
+import numpy as np
 import pytest
 from page_reader import ATTACK, Reader, marks, ours
 from page_reader import drawings as drawn
 from plotly.offline import get_plotlyjs
 
 from gearopt import Front
-from gearopt.report.front import decided, table, value_cells
+from gearopt.optimise.pareto.measures import picks
+from gearopt.report.front import decided, picked, table, value_cells
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages import frame
 from gearopt.report.pages.front import page, tables
@@ -118,6 +120,18 @@ def test_pieces_that_are_not_known_are_named_by_label_and_unit(unknown, said):
     known = Front.from_json(replace(front, unknown=unknown, message="no bounds").to_json())
     said = said.format("not known, as steps there are not proven: total length in one line ")
     assert decided(known)[-2:] == [said or decided(front)[-1], "No bounds."]
+
+
+def test_the_reason_of_a_pick_names_objectives_as_the_rest_does():
+    front = cases.drive(objectives=3)
+    names = ["gear_volume", "mesh_loss", "total_length"]
+    values = np.array([p.values for p in front.points])
+    values[:, 2] = 10.0, 200.0, 3000.0
+    chosen = tuple(picks(values, names, {"total_length": 2.0}))
+    known = Front.from_json(replace(front, picks=chosen).to_json())
+    (first,) = (line for line in picked(known) if "weights" in line)
+    assert "total length in one line in decades: gear volume 0, mesh loss 0" in first
+    assert "total length in one line 2)" in first and "total length 2" not in first
 
 
 def test_names_are_escaped():

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 FORMAT = 1
 MAXIMISE = "maximise"
-CLOSED_FORM = "Proof: a closed form, and a bound that follows from convexity alone."
+CLOSED_FORM = "Proof: the optimum in closed form, and a lower bound that follows from convexity."
 THERE = ("optimal", "stationary", "feasible")  # a design exists
 STATUSES = ("optimal", "stationary", "feasible", "evaluated", "infeasible", "limit", "failed")
 FEASIBLE = 1e-8  # of its own scale a variable, of 1 a row is off; that is below any data error

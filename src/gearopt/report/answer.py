@@ -142,7 +142,8 @@ def limits(result: Result, measures: Measures) -> Section | None:
     words: tuple[str, ...] = ("At 100 % a limit is active.",)
     if {*RATIO_ENDS} <= {*result.limits}:
         words += (
-            "Those of minimum and maximum ratio are parts of the ratio, not of its tolerance.",
+            "The utilisations of minimum and maximum ratio are relative to the ratio itself, not "
+            "to its tolerance.",
         )
     if any(result.limits.get(n, 1.0) < 1.0 - REACHED <= used for n, used in sized.items()):
         words += (

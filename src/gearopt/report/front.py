@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.optimise.pareto.front import Front
-from gearopt.optimise.pareto.measures import neighbours
+from gearopt.optimise.pareto.measures import Pick, neighbours
 from gearopt.optimise.pareto.objectives import Objective
 from gearopt.report.design_tables import OF_TEETH
 from gearopt.report.measures import METRIC, Measures, read_in, rounded
@@ -130,12 +130,21 @@ def picked(front: Front, measures: Measures = METRIC) -> list[str]:
     """Reason of every design that a rule takes, and cost of its neighbours."""
     by_place: dict[int, list[str]] = {}
     for pick in front.picks:
-        by_place.setdefault(pick.place, []).append(f"{pick.rule} ({pick.reason})")
+        by_place.setdefault(pick.place, []).append(f"{pick.rule} ({_reason(front, pick)})")
     return [
         f"Design {place + 1}: {'; '.join(reasons)}. {_values(front, place, measures)}."
         f"{_beside(front, place)}"
         for place, reasons in by_place.items()
     ]
+
+
+def _reason(front: Front, pick: Pick) -> str:
+    """Why a rule takes a design, with the objectives in decades and the weights, if any."""
+    wide = " and ".join(words(front, name) for name in pick.decades)
+    reason = f"{pick.reason}, {wide} in decades" if wide else pick.reason
+    weights = zip(front.names, pick.weights, strict=True) if pick.weights else ()
+    weighed = ", ".join(f"{words(front, name)} {weight:g}" for name, weight in weights)
+    return f"{reason}: {weighed}" if weighed else reason
 
 
 def _values(front: Front, place: int, measures: Measures) -> str:

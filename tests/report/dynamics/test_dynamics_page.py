@@ -148,7 +148,7 @@ def test_the_least_vibration_names_its_measure_its_sign_and_the_curves_that_are_
     rows = dict(section.tables[0].rows)
     assert rows["highest deformation δ, negative in compression [µm]"].text == "-3.429"
     assert rows["largest RMS of the deformation about its mean, over all speeds [µm]"].text == "5.1"
-    assert binding_limit(found).startswith("the objective is the largest of 1 speeds; ")
+    assert binding_limit(found).startswith("the objective is the largest value at 1 speed; ")
     told = replace(found, objective=found.objective | {"value": 0.005}, report=PRICES)
     assert (
         prices(told, METRIC)

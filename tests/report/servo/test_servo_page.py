@@ -212,7 +212,7 @@ def test_tolerance_table_and_its_sums(result, found):
     given = result.design["tolerances"]
     assert [r[3].value for r in rows] == [pytest.approx(1e3 * g["old_mm"]) for g in given]
     assert [r[4].value for r in rows] == [pytest.approx(1e3 * g["new_mm"]) for g in given]
-    assert sums[3].value == pytest.approx(178.1) and sums[7].value == pytest.approx(14.0)
+    assert sums[3:6] == ["", "", ""] and sums[7].value == pytest.approx(14.0)
     assert sums[8].value == pytest.approx(result.design["allocation"]["cost"])
     assert sum(r[6].value for r in rows) == pytest.approx(100.0)
     bars = np.array([(r[8].share, r[8].value) for r in rows])
@@ -314,7 +314,7 @@ def test_generic_sections_look_right(result):
     shown = text(page(result, "x"))
     for phrase in (
         "31,877 choices of teeth and modules examined",
-        "17/91, 23/207, +0.368 %",
+        "91/17 · 207/23, +0.368 %",
         "inverse acceleration",
         "bending stress",
         "Density, motor radius",
@@ -369,7 +369,7 @@ def test_an_inch_page_names_no_millimetre_but_those_of_modules(result):
     assert "0.0085421 oz in²" in shown and "old [mil]" in shown
     metric = {s.heading: s for s in sections(result, METRIC)}["Tolerances"].tables[0].rows
     inch = {s.heading: s for s in sections(result, INCH)}["Tolerances"].tables[0].rows
-    for a, b in zip(metric, inch, strict=True):
+    for a, b in zip(metric[:-1], inch[:-1], strict=True):
         assert a[4].value == pytest.approx(25.4 * b[4].value)
 
 
@@ -423,7 +423,7 @@ def test_the_terminal_tells_all_below_100_columns(result):
         "inertia [g cm²]",
         "tolerance [µm]",
         "0.11975  7.185  100.0",
-        "178.10    272.33    1.529  14.000",
+        "100.0     14.000",
         "99.8850 % of the Monte Carlo trains",
         "alone [N m/rad]",
         "The train fits",

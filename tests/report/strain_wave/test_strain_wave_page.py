@@ -197,7 +197,7 @@ def test_sections_say_what_was_found(result, found):
     [((3.0, 2.0, 1.0), "falls"), ((1.0, 2.0, 3.0), ""), ((3.0, 1.0, 2.0), "")],
 )
 def test_pressures_fall_with_the_shift_only_where_all_of_them_do(result, pressures, told):
-    """Equal and whole fall in all cases; a shared pressure that rises, or has a minimum, does not."""
+    """Equal and whole pressures fall in all cases; a shared one may rise, or have a minimum."""
     three = result.design["shifts"][:3]
     rows = [row | {"shared_MPa": p} for row, p in zip(three, pressures, strict=True)]
     words = shift(replace(result, design=result.design | {"shifts": rows}), METRIC).words

@@ -114,8 +114,8 @@ def test_ends_of_ranges_and_numbers_without_use_are_told():
     scene = gearopt.load(PROBLEMS / "least_vibration.toml")
     (told,) = at_ends(scene.task, (501187.2336, 1.6, 0.25, 12.0, 0.6 + 1e-9))
     assert told == (
-        "At ends of their ranges: bearing stiffness 501,190 N/mm (largest of 31,623 to 501,190), "
-        "ramp 0.25 (largest of 0.02 to 0.25), rim 0.6 (least of 0.6 to 1.4)."
+        "At ends of their ranges: bearing stiffness (upper end of 31,623 to 501,187 N/mm), "
+        "ramp (upper end of 0.02 to 0.25), rim (lower end of 0.6 to 1.4)."
     )
     assert not at_ends(scene.task, (2e5, 1.6, 0.1, 12.0, 1.0))
     assert KIND.assumptions(scene)[-1].startswith("Not used: masses, inertias and bearing")

@@ -140,7 +140,7 @@ def test_ends_of_ranges_are_told_with_what_decides():
     )
     own = scene(FROM_DUTY + '[design]\nrim = ["0.4 mm", "1.4 mm"]\n')
     first, second = range_notes(own, ends)
-    assert "deflection 0.97 (least, assumed) and rim 1.4 mm (largest, of [design])" in first
+    assert "deflection 0.97 (lower end, assumed) and rim 1.4 mm (upper end, of [design])" in first
     assert second == (
         "The ends of the ranges of deflection and rim limit the contact pressure: a slightly wider "
         "range of any one, with all other sizes chosen anew, would lower it (first order)."

@@ -92,11 +92,17 @@ KNEE, COMPROMISE, WEIGHTS = "knee", "compromise", "weights"
 
 @dataclass(frozen=True)
 class Pick:
-    """Place of a point in a front (from 0), which rule took it, and the reason in words."""
+    """Place of a point in a front (from 0), which rule took it, and the reason in words.
+
+    decades: names of the objectives that are measured by their logarithms. weights: of all
+    objectives, in their order, where they decide.
+    """
 
     place: int
     rule: str
     reason: str
+    decades: tuple[str, ...] = ()
+    weights: tuple[float, ...] = ()
 
 
 def picks(values: Array, names: Sequence[str], weights: Mapping[str, float] | None) -> list[Pick]:
@@ -104,20 +110,18 @@ def picks(values: Array, names: Sequence[str], weights: Mapping[str, float] | No
     if not len(values):
         return []
     unit = scaled(values)
-    wide = [n.replace("_", " ") for n, log in zip(names, by_decades(values), strict=True) if log]
-    by = f", {' and '.join(wide)} in decades" if wide else ""
+    wide = tuple(n for n, log in zip(names, by_decades(values), strict=True) if log)
     picked = []
     if weights is not None:
-        w = np.array([float(weights.get(name, 0.0)) for name in names])
-        words = ", ".join(f"{n.replace('_', ' ')} {v:g}" for n, v in zip(names, w, strict=True))
-        reason = f"the minimum weighted sum of the normalised objectives{by}: {words}"
-        picked.append(Pick(int((unit @ w).argmin()), WEIGHTS, reason))
+        w = tuple(float(weights.get(name, 0.0)) for name in names)
+        reason = "the minimum weighted sum of the normalised objectives"
+        picked.append(Pick(int((unit @ np.array(w)).argmin()), WEIGHTS, reason, wide, w))
     if (k := knee(unit)) is not None:
-        reason = f"the point furthest below the straight line between the ends of the front{by}"
-        picked.append(Pick(k, KNEE, reason))
+        reason = "the point furthest below the straight line between the ends of the front"
+        picked.append(Pick(k, KNEE, reason, wide))
     near = int(np.linalg.norm(unit, axis=1).argmin())
-    reason = f"the point nearest to the ideal point, in normalised objectives{by}"
-    picked.append(Pick(near, COMPROMISE, reason))
+    reason = "the point nearest to the ideal point, in normalised objectives"
+    picked.append(Pick(near, COMPROMISE, reason, wide))
     return picked
 
 

@@ -192,9 +192,9 @@ def _loads(scene: Scene, angle: str, assumed: str) -> list[str]:
     """The limits of the loads, and the laws that the pressure angle enters."""
     if scene.by_ratings:
         title = scene.limits.LAW.title
-        beside = f"and by {title}" if scene.limits.loaded else "alone"
+        also = f", beside {title}," if scene.limits.loaded else ""
         return [
-            f"Loads are limited by the safety factors of the rating {beside}, at nominal sizes.",
+            f"The required safety factors{also} are the only limits on loads, at nominal sizes.",
             f"The normal pressure angle is {angle}{assumed}.",
             *rating_assumptions(scene),
         ]

@@ -25,6 +25,7 @@ from gearopt.scenes.explaining.explanations import remedies as each_alone
 from gearopt.scenes.explaining.possible import Verdict, of_status
 from gearopt.scenes.reading.ask import Ask
 
+WHOLE_FROM = 1e4  # numbers that are told without decimals
 AT_END = 1e-5  # of a range, within which its end counts as reached
 PRICED = 1.0  # s: a budget that leaves time for multipliers, some half a second, once it is spent
 BEST = ("bearing_stiffness_N_per_mm", "contact_ratio", "ramp", "face_width_mm", "rim")
@@ -134,13 +135,11 @@ def at_ends(task: Task, values: Sequence[float]) -> list[str]:
     each = []
     for name, unit, value in zip(VARIABLES, UNITS, values, strict=True):
         low, high = task.ranges[name]
-        near = [
-            s for s, end in (("least", low), ("largest", high)) if _is_at(value, end, high - low)
-        ]
+        near = [s for s, end in (("lower", low), ("upper", high)) if _is_at(value, end, high - low)]
         if low < high and near:
-            shown, *ends = (f"{float(f'{v:.5g}'):,.12g}" for v in (value, low, high))
-            words = f"{name.replace('_', ' ')} {shown} {unit}".rstrip()
-            each.append(f"{words} ({near[0]} of {' to '.join(ends)})")
+            ends = (f"{v:,.0f}" if abs(v) >= WHOLE_FROM else f"{v:.5g}" for v in (low, high))
+            span = f"{' to '.join(ends)} {unit}".rstrip()
+            each.append(f"{name.replace('_', ' ')} ({near[0]} end of {span})")
     return [f"At ends of their ranges: {', '.join(each)}."] if each else []
 
 

@@ -140,7 +140,7 @@ def range_notes(scene: Scene, ends: Sequence[RangeEnd]) -> list[str]:
     each = []
     for end in ends:
         given = getattr(scene.design, end.name) is not None
-        side = "least" if end.least else "largest"
+        side = "lower end" if end.least else "upper end"
         each.append(
             f"{_name(end.name)} {_amount(end.name, end.value)} ({side}, "
             f"{'of [design]' if given else 'assumed'})"

@@ -18,7 +18,7 @@ from gearopt.physics.servo_drive import load_acceleration, torque_slope
 
 RANDOM = False
 COUNTS = "ratio evaluated"
-ROOT = "Proof: a root of the slope, and a bound that follows from convexity alone."
+ROOT = "Proof: the optimum as a root of the slope, and a lower bound that follows from convexity."
 STANDING = 1e-12  # of the torque that friction leaves, where rounding decides whether it moves
 
 

@@ -80,8 +80,9 @@ def binding_limit(result: Result) -> str:
     if (design := design_of(result)) is None:
         return ""
     if design.chosen is not None:
-        judged = len(design.chosen.speed_rpm)
-        return f"the objective is the largest of {judged} speeds; {of_limits(result)}"
+        count = len(design.chosen.speed_rpm)
+        judged = "1 speed" if count == 1 else f"{count} speeds"
+        return f"the objective is the largest value at {judged}; {of_limits(result)}"
     rest = abs(design.equilibrium.deformation_mm)
     moved = design.response
     at_rest = f"the mean load deforms the mesh by {1e3 * rest:.4g} µm"

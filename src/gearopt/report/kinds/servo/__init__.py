@@ -86,7 +86,7 @@ def _train(train: TrainDesign, name: str, of: str, measures: Measures) -> list[T
     """Figures of a train; of: its tolerances, in words."""
     error, angle = train.ratio_error_percent, train.error_deg
     off = "" if error is None else f", {error_of(error)}"
-    teeth = ", ".join(f"{s.pinion_teeth}/{s.wheel_teeth}" for s in train.stages)
+    teeth = " · ".join(f"{s.wheel_teeth}/{s.pinion_teeth}" for s in train.stages)
     figures = [Tile("ratio of the train", number(train.ratio), f"{teeth}{off}")]
     if name != "error" and angle is not None:
         figures.append(Tile("error at the output", degrees(angle), f"{arc_minutes(angle)}{of}"))

@@ -179,7 +179,7 @@ def tolerances(result: Result, measures: Measures) -> Section | None:
     table = Table(
         "tolerances",
         heads,
-        [*(_row(r, total, highest, measures) for r in rows), _sums(rows, measures)],
+        [*(_row(r, total, highest, measures) for r in rows), _sums(rows)],
         page_only=("stage", "kind", "of the new error, %"),
         short={"cost, old": "cost", "cost, new": "new cost"},
     )
@@ -194,14 +194,16 @@ def tolerances(result: Result, measures: Measures) -> Section | None:
 
 def _cost_words(allocation: Allocation, error: float | None) -> list[str]:
     """Say how the cost changes, and what the budgets are; error: of the train [deg]."""
-    change = 100.0 * (allocation.cost / allocation.old_cost - 1.0)
+    change = round(100.0 * (allocation.cost / allocation.old_cost - 1.0), 1)
+    changed = f"{'rises' if change > 0.0 else 'falls'} by {abs(change):.1f} %"
     limits = (
         f"{_rule(b)}, limit equal to the error {OLD}"
         if error is not None and degrees(b.limit_deg) == degrees(error)
         else f"{_rule(b)} {degrees(b.limit_deg)}"
         for b in allocation.budgets
     )
-    return [f"The cost changes by {change:+.1f} %. Budgets: {', '.join(limits)}."]
+    cost = f"The cost {changed if change else 'is unchanged'}."
+    return [f"{cost} Budgets: {', '.join(limits)}."]
 
 
 def _rule(budget: BudgetUse) -> str:
@@ -238,16 +240,11 @@ def _cost(cost: float, highest: float) -> Cell:
     return Cell(cost, f"{cost:.3f}", share)
 
 
-def _sums(rows: Sequence[ToleranceRow], measures: Measures) -> list[Any]:
-    """The last row: sums of tolerances and costs."""
-    old, new = (
-        sum(measures.of(t, "um") for t in column)
-        for column in ([r.old_mm for r in rows], [r.new_mm for r in rows])
-    )
+def _sums(rows: Sequence[ToleranceRow]) -> list[Any]:
+    """The last row: sums of shares and costs; tolerances of unlike parts have none."""
     costs = sum(r.old_cost for r in rows), sum(r.new_cost for r in rows)
-    cells = [Cell(v, f"{v:.2f}") for v in (old, new)]
-    ratio, whole = Cell(new / old, f"{new / old:.3f}"), Cell(100.0, "100.0")
-    return ["sum", None, "", *cells, ratio, whole, *(Cell(cost, f"{cost:.3f}") for cost in costs)]
+    summed = (Cell(cost, f"{cost:.3f}") for cost in costs)
+    return ["sum", None, "", "", "", "", Cell(100.0, "100.0"), *summed]
 
 
 def drawn(result: Result, measures: Measures) -> Section | None:
