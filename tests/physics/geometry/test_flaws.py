@@ -68,8 +68,8 @@ def test_teeth_without_undercut():
 def test_the_shift_that_is_named_avoids_undercut(teeth, shift):
     """Without it: x = 1 - z/17.097, as textbooks have it."""
     (said,) = (f.sentence for f in flaws(pair(teeth, 60, shift)) if f.name == "undercut")
-    assert f"with {teeth} teeth" in said and "without undercut from 17 teeth on" in said
-    assert (f"profile shift {shift:g}" in said) is (shift > 0.0)
+    assert f"(z = {teeth}" in said and "17 teeth or more without undercut at x = 0" in said
+    assert (f", x = {shift:g})" in said) is (shift > 0.0)
     named = float(said.split()[-1].rstrip("."))
     assert named == pytest.approx(1.0 - teeth / 17.097 + 0.005, abs=0.0051)
     assert "undercut" not in {f.name for f in flaws(pair(teeth, 60, named))}

@@ -136,7 +136,9 @@ def test_key_figures_are_the_least_by_each_standard():
         r"pinion; [\d,.]+ h by ISO 6336; 50,000 h required", tiles["life at S = 1 by AGMA"][1]
     )
     assert "power capacity by AGMA" in tiles
+    assert not rating_words.figures(cases.both()).endswith("governs")
     weak = replace(cases.both(), design={"rating": own | {"power_capacity_kW": 1e3}})
+    assert rating_words.figures(weak).endswith("kW required; ISO 6336 governs")
     tiles = {t.name: t.remark for t in rating_words.tiles(weak, METRIC)}
     assert tiles["power capacity by ISO 6336"].startswith("1,000 kW by AGMA; ")
 
@@ -193,6 +195,18 @@ def test_a_spectrum_by_both_has_the_damages_of_each():
         gear, by = row["name"].split(", ")
         own = [r for r in levels if (r["gear"], r["by"]) == (gear, by)]
         assert sum(r["damage, contact"] for r in own) == pytest.approx(row["Miner's sum, contact"])
+
+
+def test_unverified_values_are_listed_by_the_stages_they_are_of():
+    """Of values that single sources have in some stages, and of the spectrum, which has none."""
+    rating = rating_words.rating_of(cases.train_by_both())
+    names = "K_v of stage 1", "N of stage 1", "K_v of stage 2", "N of stage 2"
+    names += "sigma_Flim of stage 2", "load spectrum by part 6"
+    (said,) = rating_words.unverified(replace(rating, unverified=names, beside=None))
+    assert said == (
+        "Unverified (one source, or no published value): in stages 1 and 2 K_v and N (resonance "
+        "ratio); in stage 2 σ_Flim; load spectrum by part 6."
+    )
 
 
 def test_a_spectrum_by_iso_is_unverified():

@@ -305,7 +305,7 @@ def test_unverified_stands_beside_every_value_that_is():
     cells = re.findall(r"<td[^>]*>([\d.]+)\nunverified</td>", html)
     unsure = [f for f in cases.train().design["rating"]["factors"] if not f["verified"]]
     assert len(cells) == sum(1 if f.get("wheel") is None else 2 for f in unsure) == 6
-    assert html.count("Unverified, with a single source") == 1
+    assert html.count("Unverified (one source, or no published value): in stages 1 and 2 ") == 1
     assert "nverified" not in text(page(cases.shigley(), "")).partition("Assumptions")[0]
 
 

@@ -40,6 +40,8 @@ def test_the_terminal_says_the_load_the_motion_and_the_stiffness(solved):
     assert f"at the mesh frequency of {hertz:.0f} Hz, has an amplitude of 2.57 µm at" in flat
     assert "22 % below c_γα of ISO 6336-1" in flat and "Method evaluation: 1 evaluation," in flat
     assert "c_γα of ISO 6336-1 [N/(mm µm)] 20.128 20.128" in flat
+    ratio = solved("reference_pair").design["stages"][0]["transverse_contact_ratio"]
+    assert f"transverse contact ratio ε_α {ratio:.5g}" in flat
 
 
 @pytest.mark.parametrize("measures", [METRIC, INCH])
@@ -92,7 +94,7 @@ def test_the_largest_load_is_that_at_the_torque_of_the_duty(solved):
 
 def test_what_models_do_not_cover_is_warned_of_once(solved):
     html = solved("undercut_pair").to_html()
-    assert html.count("without profile shift a rack cuts without undercut") == 1
+    assert html.count("teeth or more without undercut at x = 0") == 1
 
 
 def test_an_uneven_motion_is_compared_with_accuracy():

@@ -423,7 +423,6 @@ def test_the_terminal_tells_all_below_100_columns(result):
         "inertia [g cm²]",
         "tolerance [µm]",
         "0.11975  7.185  100.0",
-        "100.0     14.000",
         "99.8850 % of the Monte Carlo trains",
         "alone [N m/rad]",
         "The train fits",

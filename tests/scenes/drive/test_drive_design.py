@@ -140,8 +140,8 @@ def test_an_undercut_pinion_is_named(tmp_path, result, teeth):
     notes = [n for n in found.report["notes"] if "undercut" in n]
     assert len(notes) == (teeth < 17)
     if notes:
-        assert "stage 1" in notes[0] and f"with {teeth} teeth" in notes[0]
-        assert "a rack cuts without undercut from 17 teeth on (in theory 17.1)" in notes[0]
+        assert "stage 1" in notes[0] and f"(z = {teeth})" in notes[0]
+        assert "A rack cuts 17 teeth or more without undercut at x = 0 (theory 17.1)" in notes[0]
 
 
 @pytest.mark.parametrize(
@@ -160,7 +160,7 @@ def test_the_least_teeth_that_are_not_named_are_those_of_tables(pressure, helix,
         "The pinion of stage 1",
         "The pinion of stage 4",
     ]
-    assert all(f"a rack cuts without undercut from {least} teeth on" in n for n in notes)
+    assert all(f"A rack cuts {least} teeth or more without undercut at x = 0" in n for n in notes)
     assert all(n.endswith(" So.") for n in notes)
     flank = 1.25 - 0.38 * (1.0 - math.sin(angles[0]))  # where that of the rack ends
     transverse = math.atan(math.tan(angles[0]) / math.cos(angles[1]))
@@ -174,7 +174,7 @@ def test_a_servo_train_names_the_same_pinions():
     stages = tuple(Stage(0.5, z, 100, 100 / z, *[1.0] * 5) for z in (16, 17))
     design = ServoDesign(train=TrainDesign(stages, 37.0))
     said = [n for n in servo_notes(scene, (), design, ServoReport()) if "undercut" in n]
-    assert len(said) == 1 and "stage 1 is undercut, with 16 teeth" in said[0]
+    assert len(said) == 1 and "stage 1 is undercut (z = 16)" in said[0]
 
 
 def test_a_stop_while_real_valued_sizes_are_sought_is_heard(tmp_path):

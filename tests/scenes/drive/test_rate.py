@@ -332,7 +332,9 @@ def test_a_refusal_tells_what_else_is_wrong_with_the_teeth():
 
 def test_undercut_is_a_warning():
     found = rated(pair(pinion_teeth=12))
-    assert "pinion of stage 1 is undercut, with 12 teeth" in found["flaws"][0]
+    assert (
+        "pinion of stage 1 is undercut (z = 12). A rack cuts 17 teeth or more" in found["flaws"][0]
+    )
 
 
 def test_the_optimum_of_a_sized_drive_is_rated_as_its_gears_are(solved):

@@ -104,12 +104,12 @@ def _undercut(member: str, gear: Gear, depth: float) -> str:
     limit = float(teeth_without_undercut(gear.rack, gear.helix_angle))
     least = 2.0 * NEGLIGIBLE * np.cos(gear.helix_angle)
     least = math.ceil(limit - least / np.sin(gear.transverse_pressure_angle) ** 2)
-    shift = f" and profile shift {gear.profile_shift:.4g}" if gear.profile_shift else ""
+    shift = f", x = {gear.profile_shift:.4g}" if gear.profile_shift else ""
     needed = math.ceil(100.0 * (gear.profile_shift + depth)) / 100.0
     return (
-        f"The {member} is undercut, with {gear.teeth:.4g} teeth{shift}: without profile shift a "
-        f"rack cuts without undercut from {least} teeth on (in theory {limit:.1f}), these with a "
-        f"profile shift of {needed:.2f}."
+        f"The {member} is undercut (z = {gear.teeth:.4g}{shift}). A rack cuts {least} teeth or "
+        f"more without undercut at x = 0 (theory {limit:.1f}); {gear.teeth:.4g} teeth need "
+        f"x = {needed:.2f}."
     )
 
 

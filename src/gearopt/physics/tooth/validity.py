@@ -8,7 +8,7 @@ from gearopt.physics.tooth.foundation import SAINSOT_BORE_RATIOS, SAINSOT_HALF_A
 from gearopt.physics.tooth.ladder import LEVELS, RINGED, USUAL
 from gearopt.physics.tooth.trapezoid import is_waisted
 
-# modules of face width from which plane strain is nearer to the truth (an assumption)
+# modules of face width from which plane strain describes teeth better (an assumption)
 PLANE_STRAIN_FROM = 6.0
 EXACT = "finite elements"
 MEASURED = 1.4, 5.0  # bore ratios of the pairs on which `LEVELS` records errors
@@ -146,8 +146,9 @@ def _of_pair(elastic: ElasticPair) -> tuple[str, ...]:
     usual = usual_plane(elastic.pair)
     if elastic.plane != usual:
         wide = float(elastic.pair.face_width / elastic.pair.normal_module)
+        off = "high" if elastic.plane == "strain" else "low"
         sentences.append(
-            f"The face is {wide:.3g} modules wide: plane {usual} is nearer to the truth; "
-            "stiffness differs by 7 %."
+            f"The face is {wide:.3g} modules wide: plane {usual} describes it better than plane "
+            f"{elastic.plane}, with which the stiffness is about 7 % too {off}."
         )
     return tuple(sentences)

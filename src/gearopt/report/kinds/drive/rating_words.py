@@ -20,6 +20,7 @@ FRICTION = (  # `mesh_loss.FRICTION_ERROR`
 )
 LONGEST_LIFE = f"{life_curves.LONGEST_LIFE:g}".replace("e+", "e")  # cycles
 AT_ONCE = "fails at once"
+FAR_APART = 2.0  # times the power capacity by one standard: by the other one it governs by far
 MODES = {"bending": "S_F", "contact": "S_H"}
 STANDARD_HEADS = {"AGMA": "AGMA", "ISO 6336": "ISO"}  # a standard in a column's head
 SYMBOLS = {  # of stresses, by standard
@@ -40,6 +41,7 @@ WRITTEN = {  # symbols that differ from their letters
     "c_gamma_beta": "c_γβ",
     "Z_BD": "Z_B, Z_D",
 }
+EXPLAINED = {"N": "N (resonance ratio)"}  # symbols that are not known without a word
 GREEK = {"alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "eps": "ε", "sigma": "σ"}
 _SYMBOL = re.compile(r"\b[A-Za-z]{1,5}_\w+")  # a letter or its name, and an index
 _NAME = re.compile("|".join(GREEK))
@@ -142,9 +144,12 @@ def _figures(rating: DriveRating) -> str:
     asked = dict.fromkeys(f"{symbol} {asked:g}" for symbol, _, asked in least)
     wanted = f"{least[0][2]:g}" if len(asked) == 1 else " and ".join(asked)
     power, capacities = _powers(rating)
+    weak, *stronger = sorted(rating.each, key=lambda rated: rated.power_capacity_kW)
+    apart = all(r.power_capacity_kW > FAR_APART * weak.power_capacity_kW for r in stronger)
+    governing = f"; {weak.by} governs" if stronger and apart else ""
     return (
         f": {of_standards(rating, values)}, {wanted} required; power capacity "
-        f"{of_standards(rating, capacities)}, {power} required"
+        f"{of_standards(rating, capacities)}, {power} required{governing}"
     )
 
 
@@ -349,27 +354,24 @@ def unverified(rating: DriveRating) -> list[str]:
 
 
 def _unverified(rating: DriveRating, named: bool) -> list[str]:
-    """The sentence of one standard, which is named."""
+    """The sentence of one standard, which is named: symbols by the stages where they are so."""
     stages: dict[str, list[str]] = {}
     for name in rating.unverified:
         symbol, _, stage = name.partition(" of stage ")
         stages.setdefault(symbol, []).append(stage)
-    if not stages:
+    alike: dict[tuple[str, ...], list[str]] = {}
+    for symbol, of_symbol in stages.items():
+        known = tuple(filter(None, of_symbol)) if len(rating.meshes) > 1 else ()
+        alike.setdefault(known, []).append(EXPLAINED.get(symbol, greek(symbol)))
+    if not alike:
         return []
-    several = len(rating.meshes) > 1
-    names = [
-        _of_stages(symbol, of_symbol if several else []) for symbol, of_symbol in stages.items()
-    ]
+    parts = [f"{_in_stages(known)}{series_of(symbols)}" for known, symbols in alike.items()]
     of = f" by {rating.by}" if named else ""
-    return [
-        f"Unverified{of}, with a single source or no published value that confirms them: "
-        f"{series_of(list(map(greek, names)))}."
-    ]
+    return [f"Unverified{of} (one source, or no published value): {'; '.join(parts)}."]
 
 
-def _of_stages(symbol: str, stages: Sequence[str]) -> str:
-    named = [stage for stage in stages if stage]
-    return f"{symbol} of stage{'s' * (len(named) > 1)} {counted(named)}" if named else symbol
+def _in_stages(stages: Sequence[str]) -> str:
+    return f"in stage{'s' * (len(stages) > 1)} {counted(stages)} " if stages else ""
 
 
 def greek(text: str) -> str:

@@ -8,6 +8,7 @@ from gearopt.formulations.pair.design import ContactLoad, PairContact
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.answer import asked, assumptions, limits, summary
+from gearopt.report.design_tables import stage_label
 from gearopt.report.drawing import mesh_view, train_views
 from gearopt.report.kinds import Pages, drive
 from gearopt.report.kinds.drive import rating_words
@@ -164,9 +165,19 @@ def harmonics(result: Result, measures: Measures) -> Section | None:
 
 
 def numbers(result: Result, measures: Measures) -> Section | None:
-    """The tables of the gears, as a drive of one stage has them."""
+    """The tables of the gears, as a drive of one stage has them, with the contact ratio."""
     gears = {k: v for k, v in result.design.items() if k not in ("contact", "relief")}
-    return drive.numbers(replace(result, design=gears), measures)
+    section = drive.numbers(replace(result, design=gears), measures)
+    if section is None:
+        return None
+    ratio = stage_label("transverse_contact_ratio", measures)
+    shown = [
+        replace(part, page_only=[head for head in part.page_only if head != ratio])
+        if isinstance(part, Table)
+        else part
+        for part in section.terminal
+    ]
+    return replace(section, terminal=shown)
 
 
 CONTACT = (relief, mesh, harmonics, contact)
