@@ -219,7 +219,7 @@ def _trend(gearing: WaveDesign) -> list[str]:
         for name in ("equal_MPa", "whole_MPa", "shared_MPa")
     ]
     for way, verb in ((-1.0, "falls"), (1.0, "rises")):
-        if all(way * step > 0.0 for step in steps):
+        if steps and all(way * step > 0.0 for step in steps):
             return [f"Over the shifts shown every contact pressure {verb} as the shift grows."]
     return []
 
