@@ -107,6 +107,18 @@ def test_two_faults_at_once_are_both_told_and_get_pairs_of_edits():
 
 
 @pytest.mark.slow
+def test_a_number_beside_a_switch_moves_no_farther_than_it_must():
+    """A shaft of 160 mm needs 107.16 mm and partial span; a switch alone could go far beyond."""
+    found, content = told(BARE.replace('"45 mm"', '"160 mm"'))
+    (remedy,) = found.remedies
+    written = float(remedy.changes[0].write.strip('"').split()[0])
+    assert keys(found) == [("layout.shaft_diameters[3]", "layout.span")]
+    assert remedy.verified["with_less"] == "infeasible"
+    assert status(edited(content, remedy)) != "infeasible"
+    assert written == pytest.approx(107.14, abs=0.05)
+
+
+@pytest.mark.slow
 def test_too_long_and_too_close_are_both_told():
     """Stages 1 and 3 side by side: 95.3 + 47.8 + 3 x 10 mm; that clashes too."""
     text = THICK.replace("[layout]\n", '[layout]\nlargest_length = "150 mm"\n')

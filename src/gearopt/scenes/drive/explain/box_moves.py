@@ -84,7 +84,8 @@ class BoxMove:
         """Return the factor of the move that is scaled to a size."""
         if self.move.switch is not None:
             return SET
-        return float(self.move.far ** (math.log(size) / math.log(SCALE)))
+        part = min(math.log(size) / math.log(SCALE), 1.0)  # a switch beside it may go farther
+        return float(self.move.far**part)
 
 
 def box_moves(scene: Scene, pairs: tuple[GearPair, ...]) -> tuple[BoxMove, ...]:
