@@ -25,7 +25,7 @@ OUTSIDE = {  # at module level; what is imported inside functions is free
     "report": {"numpy", "rich"},  # cli imports it inside functions
     "bench": {"numpy"},
 }
-TOP = {"units": set(), "errors": set()}
+TOP = {"units": set(), "errors": set(), "frozen": set()}
 
 
 @cache
@@ -87,7 +87,7 @@ def _wrong(path):
     for module, top_level in _imports(path):
         first, *rest = module.split(".")
         if first == "gearopt":
-            right = bool(rest) and rest[0] in inside
+            right = bool(rest) and rest[0] in inside | {"frozen"}
         elif not top_level or first in sys.stdlib_module_names:
             right = True
         else:

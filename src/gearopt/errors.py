@@ -9,7 +9,8 @@ An infeasible request is not an exception: it is a status of the result.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+from gearopt.frozen import dataclass
 
 
 class GearoptError(Exception):

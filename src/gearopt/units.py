@@ -10,10 +10,12 @@ the tests.
 
 import math
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from functools import cached_property, lru_cache
+
+from gearopt.frozen import dataclass
 
 _INCH = Fraction("25.4")  # mm
 _POUND = Fraction("0.45359237")  # kg

@@ -10,12 +10,12 @@ import math
 import statistics
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any
 
 from gearopt.formulations.dynamics.motion.integrate import STEPPERS, conservative, march
 from gearopt.formulations.dynamics.motion.reference import SCIPY, cvodes, scipy_motion
 from gearopt.formulations.dynamics.motion.timeline import timeline
+from gearopt.frozen import dataclass
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor
 from gearopt.physics.motion.stiffness_wave import Wave, constant, trapezoid
 

@@ -5,10 +5,11 @@ Two pairs of steel gears under plane stress and plane strain, then random pairs,
 counted from finite elements, of the two pairs with their size halved once more.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from gearopt.bench import timed
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import GearPair, Rack
 from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.tooth import finite_elements

@@ -3,7 +3,6 @@
 import json
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -24,6 +23,7 @@ from gearopt.cli.app import (
 from gearopt.cli.names import result_files
 from gearopt.cli.writing import Written, check_csv, check_html, write
 from gearopt.errors import GearoptError
+from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result, loads
 from gearopt.report.measures import METRIC, SYSTEMS, Measures
 from gearopt.report.words import again

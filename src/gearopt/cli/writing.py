@@ -4,12 +4,11 @@ import io
 import os
 import shutil
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
-from secrets import token_hex
 from typing import TextIO
 
 from gearopt.errors import GearoptError
+from gearopt.frozen import dataclass
 
 
 class _TolerantOfClosedPipe(io.FileIO):
@@ -137,7 +136,7 @@ def _beside(file: Written) -> Path:
     for stale in place.parent.glob(f"{BESIDE}*"):
         if not _runs(stale.name.removeprefix(BESIDE).partition("-")[0]):
             stale.unlink(missing_ok=True)
-    draft = place.with_name(f"{BESIDE}{os.getpid()}-{token_hex(4)}")
+    draft = place.with_name(f"{BESIDE}{os.getpid()}-{os.urandom(4).hex()}")
     try:
         with draft.open("x", encoding=file.encoding, newline="") as stream:
             stream.write(file.text)

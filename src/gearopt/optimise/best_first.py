@@ -3,8 +3,10 @@
 import heapq
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Generic, TypeVar
+
+from gearopt.frozen import dataclass
 
 Node = TypeVar("Node")
 

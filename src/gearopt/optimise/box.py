@@ -6,12 +6,12 @@ In it are logarithms of positive variables and indices of finite sets. Coordinat
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NoReturn
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array

@@ -11,12 +11,13 @@ objective's own scale (see `scale`).
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import CertificateError, SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.dual import ROUNDING, farkas, multipliers, risen
 from gearopt.optimise.dual import bound as dual_bound

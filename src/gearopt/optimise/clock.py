@@ -2,9 +2,10 @@
 
 import math
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.result import Budget, Event, Result, Watch
 
 if TYPE_CHECKING:

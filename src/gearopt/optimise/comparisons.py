@@ -7,12 +7,13 @@ are. Else it is 1 + (lesser - greater)/scale, the scale being the larger of both
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Block, Named, Terms, flat
 
 POSITIVE = {np.add, np.multiply, np.divide, np.sqrt, np.power, np.maximum, np.minimum, np.hypot}

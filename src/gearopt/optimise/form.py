@@ -7,11 +7,11 @@ f, g - 1 and h - 1 for the others. When all are proven and all variables are log
 and H is affine: the dual bound of `certificate` then holds.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise import tape
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.terms import Array

@@ -6,12 +6,12 @@ went on: of x^2 - |x| it gives the slope 0 at 0, which is a local maximum.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.scale import sizes
 from gearopt.optimise.tape import fold, walk

@@ -11,12 +11,12 @@ that of the row. Only Ipopt sees this: certificates judge the form itself.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.form import Form
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.scale import objective_scale, sizes

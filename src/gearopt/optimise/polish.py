@@ -10,11 +10,12 @@ sampler's point and these is the answer.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.box import allowed_values, box
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.deadline import until

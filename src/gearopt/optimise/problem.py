@@ -6,13 +6,14 @@ The same text is run by numpy on whole populations (`Problem.batch`), traced onc
 
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import field, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.evaluation import at, evaluated, first_terms, terms_of
 from gearopt.optimise.own_methods import check_methods
 from gearopt.optimise.terms import (

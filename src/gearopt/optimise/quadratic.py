@@ -9,11 +9,12 @@ whose derivatives would pass for constants, are `OTHER`. Parameters and data are
 present values. That Q is positive semidefinite is our own eigenvalue, with a rounding allowance.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.form import Form, assembled
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.tape import Kinds, Term, fold, read

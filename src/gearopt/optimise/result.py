@@ -5,7 +5,7 @@ import math
 import platform
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import MISSING, dataclass, field, fields, is_dataclass, replace
+from dataclasses import MISSING, field, fields, is_dataclass, replace
 from functools import cache
 from importlib import import_module
 from numbers import Real
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import SINGLE
 

@@ -12,11 +12,11 @@ are followed for some steps, on the curve along which the limits go on to hold a
 least across the direction.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.form import Form
 from gearopt.optimise.kinks import kink, probed
 from gearopt.optimise.problem import Problem

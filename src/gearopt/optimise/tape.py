@@ -10,13 +10,13 @@ values.
 import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.deadline import allowed, within
 from gearopt.optimise.evaluation import blaming, called, quiet, remedy, sample, seconds, text_of
 from gearopt.optimise.problem import Problem

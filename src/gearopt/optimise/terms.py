@@ -1,7 +1,7 @@
 """The words a problem is written in: parameters, variables, terms and repeats."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 
 Array = NDArray[np.float64]
 Number = float | tuple[float, ...]

@@ -1,10 +1,12 @@
 """Dataclasses from plain JSON data and back, each value held to the type its field declares."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import MISSING, dataclass, fields, is_dataclass
+from dataclasses import MISSING, fields, is_dataclass
 from functools import cache, partial
 from types import NoneType, UnionType
 from typing import Any, get_args, get_origin, get_type_hints
+
+from gearopt.frozen import dataclass
 
 SINGLE = frozenset((float, int, str, bool, NoneType))  # classes of plain values
 INLINE = {"inline": True}  # metadata of a mapping whose keys stand among those of its dataclass

@@ -4,11 +4,11 @@ A rim or a bore that does not fit a gear is left out: that gear is solid. Every 
 an array or a casadi scalar, as in `gears`.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.choosing import choose
 from gearopt.physics.gears import Gear
 

@@ -5,12 +5,13 @@ real. An inertia is in t mm^2 (1 kg m^2 = 1e3 t mm^2).
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.geometry.involute import angle_at_distance, working_pressure_angle
 
 

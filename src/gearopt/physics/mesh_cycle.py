@@ -7,11 +7,11 @@ and with it load and transmission error: both sides are sampled, as no uniform g
 one pair that is a thousandth of a base pitch.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.geometry.contact import ContactPath
 
 Array = np.ndarray[Any, np.dtype[np.float64]]

@@ -5,11 +5,11 @@ A rating is of floats; tuples are of pinion and wheel.
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import MEMBERS
 
 ROOT_STEPS = 200  # of a root, at most

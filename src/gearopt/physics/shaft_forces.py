@@ -7,11 +7,11 @@ shape or casadi scalars; those of trains floats.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.tooth import helix_angle_at
 

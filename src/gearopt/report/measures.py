@@ -7,11 +7,12 @@ is shown. Factors are those of `gearopt.units`, exact by definition of the inch 
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
 from functools import lru_cache
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.units import UNITS
 
 _INCH = float(UNITS["length"]["in"][0])  # mm

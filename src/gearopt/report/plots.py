@@ -4,9 +4,9 @@ Traces and shapes are dicts as plotly has them; more: other keys of these.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.report.drawing.sheet import Drawing
 
 Dict = dict[str, Any]

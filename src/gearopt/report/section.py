@@ -8,12 +8,13 @@ import io
 import re
 from base64 import b64encode
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache
 from typing import Any, get_type_hints
 
 from rich.text import Text
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.typed import Shown
 from gearopt.report.drawing.player import Animation
 from gearopt.report.drawing.sheet import Drawing, Row

@@ -4,11 +4,12 @@ No step asks why: remedies and sensitivities begin with an answer, and ask for c
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Generic, TypeVar
 
 from pydantic import BaseModel
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Result
 from gearopt.scenes.reading.ask import Ask

@@ -2,9 +2,9 @@
 
 import inspect
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Terms, Var
 

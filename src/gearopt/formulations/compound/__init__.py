@@ -7,12 +7,13 @@ optimisation. The two may differ in what is nearest where the error is not small
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.pareto.posed import caps
 from gearopt.optimise.problem import Problem

@@ -11,7 +11,7 @@ rated by the exact form; a design that it does not accept is made as much larger
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 from typing import Any
 
@@ -24,6 +24,7 @@ from gearopt.formulations.drive.rated_continuous.cells import Searched, search
 from gearopt.formulations.drive.rated_continuous.designs import polished
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength.rated import MODES, Standard
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, field, replace
 from fractions import Fraction
 from typing import Annotated, Any
 
@@ -12,6 +12,7 @@ from gearopt.formulations.drive.train import STEEL_DENSITY, Train
 from gearopt.formulations.pair.design import PairContact, PairRelief
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
+from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import INLINE, Shown, typed
 from gearopt.physics.blanks import SOLID, Blank

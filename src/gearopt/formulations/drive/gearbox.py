@@ -6,8 +6,8 @@ the input shaft at 0, 0; x runs along them from the inner face of the box. All l
 """
 
 import math
-from dataclasses import dataclass
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import GearPair
 
 Range = tuple[float, float]

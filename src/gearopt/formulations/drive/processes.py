@@ -11,13 +11,13 @@ s_ij^2 = K_i/K_j, as sigma_H ~ sqrt(K), eq. (1).
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive.teeth import point
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength import Law
+from gearopt.frozen import dataclass
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.physics.gears import GearPair

@@ -3,9 +3,9 @@
 Fields are keys of a result, with their units; a list is a table. Stages and shafts count from 1.
 """
 
-from dataclasses import dataclass
 from typing import Annotated
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.result import FEASIBLE
 from gearopt.optimise.typed import Shown
 from gearopt.physics.agma.life import LONGEST_LIFE

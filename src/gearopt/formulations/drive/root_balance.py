@@ -1,12 +1,12 @@
 """How the safeties of both roots compare, by the standard that rates a stage."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.strength.rated import Standard
+from gearopt.frozen import dataclass
 from gearopt.physics.geometry.profile_shift import Meshing
 
 

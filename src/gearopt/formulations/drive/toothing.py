@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import ISO_53_A, Gear, GearPair, Rack, reference_diameter
 from gearopt.physics.geometry.profile_shift import Meshing, Shifting
 

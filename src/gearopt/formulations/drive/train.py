@@ -6,7 +6,7 @@ fractions; the rest are floats in mm, N, rad, MPa.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -16,6 +16,7 @@ import numpy as np
 from gearopt.formulations.drive.toothing import Toothing, in_columns, taken
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.rated import Option
+from gearopt.frozen import dataclass
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import GearPair
 

@@ -1,8 +1,8 @@
 """The design that a result of a moving pair holds; fields are its keys, with their units."""
 
-from dataclasses import dataclass
 from typing import Annotated
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.typed import Shown
 
 Columns = tuple[float, ...]

@@ -7,7 +7,7 @@ none near by, a simulation goes on from the motion before until it repeats itsel
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +18,7 @@ from gearopt.formulations.dynamics.motion.simulate import fastest
 from gearopt.formulations.dynamics.motion.stability import UNSTABLE, largest, ready
 from gearopt.formulations.dynamics.motion.timeline import timeline
 from gearopt.formulations.dynamics.parts import around, jammed, resting
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.linear import linear

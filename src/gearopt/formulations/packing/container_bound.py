@@ -21,12 +21,12 @@ The bound is valid after every step: a stopped computation returns what it has p
 import heapq
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import combinations, product
 
 import numpy as np
 
 from gearopt.formulations.packing.plan import Plan, minimum_layers
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 
 CHOICES = 3000  # ways to assign the cylinders; beyond them the bound is the volume of the cylinders

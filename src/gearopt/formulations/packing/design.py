@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.packing.plan import Places, Plan
+from gearopt.frozen import dataclass
 from gearopt.optimise.typed import typed
 
 

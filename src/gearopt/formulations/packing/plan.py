@@ -1,7 +1,6 @@
 """The input of a packing and places in it: cylinders, container, layers as plain numbers."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from typing import NamedTuple
@@ -9,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 
 SHAPES = ("rectangle", "square", "circle")

@@ -5,7 +5,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache
 from typing import Any
 
@@ -14,6 +14,7 @@ import numpy as np
 from gearopt.formulations.packing.container_bound import Bound, Late
 from gearopt.formulations.packing.packing_text import point
 from gearopt.formulations.packing.plan import Places, Plan, row
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import UNREADY, compiled, kernel
 from gearopt.optimise.problem import Problem

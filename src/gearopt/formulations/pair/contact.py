@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 from gearopt.formulations.pair.design import Columns, ContactLoad, ContactPoint, PairContact
 from gearopt.formulations.pair.relief.meshing import NO_RELIEF, Mesh
 from gearopt.formulations.pair.relief.rules import tip_amounts
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma.factors import elastic_coefficient
 from gearopt.physics.geometry.contact import diameters_at

@@ -3,9 +3,9 @@
 Fields are keys of a result, with their units; lists of one table are columns of equal length.
 """
 
-from dataclasses import dataclass
 from typing import Annotated
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.typed import Shown
 
 Columns = tuple[float, ...]

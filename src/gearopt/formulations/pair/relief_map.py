@@ -1,7 +1,7 @@
 """The relief of a spur pair for its report: both flanks, the contact at every load, and rules."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from gearopt.formulations.pair.relief.meshing import NO_RELIEF, Mesh, Relief
 from gearopt.formulations.pair.relief.parametric import objective
 from gearopt.formulations.pair.relief.relief_tolerance import Tolerance, drawn, worst
 from gearopt.formulations.pair.relief.rules import short_relief, tip_amounts
+from gearopt.frozen import dataclass
 from gearopt.optimise.result import Budget, Watch
 from gearopt.optimise.terms import Array
 from gearopt.physics.geometry.contact import diameters_at

@@ -7,7 +7,7 @@ trains of an objective between two values, and so keeps boxes of poor ones from 
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,6 +21,7 @@ from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.formulations.servo.split.numbers import posed
 from gearopt.formulations.servo.split.servo_train import ServoTrain, pairs
 from gearopt.formulations.servo.split.teeth import point
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock, in_part, of_others
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.problem import Problem

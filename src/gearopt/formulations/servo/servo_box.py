@@ -9,7 +9,6 @@ the extents of the interval at their least.
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,6 +16,7 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.formulations.servo.servo_design import BoxDesign
 from gearopt.formulations.servo.split.bodies import Pairs
+from gearopt.frozen import dataclass
 from gearopt.optimise.best_first import ending
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel

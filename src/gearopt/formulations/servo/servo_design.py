@@ -5,9 +5,10 @@ A field that has a default is left out of the JSON where it holds that.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import field, fields, replace
 from typing import Annotated, Any
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.typed import Shown, typed, untyped
 
 KG_M2 = 1e-3  # of a t mm2

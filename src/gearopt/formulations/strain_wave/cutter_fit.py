@@ -5,12 +5,12 @@ with new weights, and by second-order cones; both give the deviation that a tool
 """
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve

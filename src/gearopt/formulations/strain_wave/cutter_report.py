@@ -1,12 +1,12 @@
 """The cutter of a flexspline for its report: points, edges that replace it, least teeth."""
 
 import math
-from dataclasses import dataclass
 from typing import Annotated, Any
 
 import numpy as np
 
 from gearopt.formulations.strain_wave.cutter_fit import arc_edge, arc_of_cones, straight_edge
+from gearopt.frozen import dataclass
 from gearopt.optimise.typed import Shown
 from gearopt.physics.strain_wave.cutter import Profile, envelope, generated, least_teeth
 from gearopt.physics.strain_wave.gearing import StrainWave

@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.strain_wave.sharing import Loads, Teeth, shared, teeth_turned
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Var
 from gearopt.physics.strain_wave.conjugate import Contact, Flank
 from gearopt.physics.strain_wave.gearing import StrainWave

@@ -5,7 +5,7 @@ Fields are keys of a result, with their units; lists of one table are columns of
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Annotated, Any, TypeVar
 
 import numpy as np
@@ -30,6 +30,7 @@ from gearopt.formulations.strain_wave.shift import (
     shift_curve,
 )
 from gearopt.formulations.strain_wave.sizing import COUNT
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.typed import Shown
 from gearopt.physics.strain_wave.clearance import interference, teeth_within, tooth_arcs

@@ -6,7 +6,7 @@ of their ranges are named, with the value that a wider range would give.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy as np
 from gearopt.formulations.strain_wave.demand import FREE, OUTSIDE_BASE, PRESSURE, TIP_GAP, Demand
 from gearopt.formulations.strain_wave.impossible import Nearest, nearest
 from gearopt.formulations.strain_wave.sizing import COUNT, NO_LIMITS, Passage, problem, tip_leaves
+from gearopt.frozen import dataclass
 from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.dual import multipliers

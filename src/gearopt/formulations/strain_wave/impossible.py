@@ -1,11 +1,11 @@
 """The conflict of an impossible request: limits that no gearing in the ranges meets."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from gearopt.formulations.strain_wave.demand import FREE, LAND, TIP_GAP, Demand
 from gearopt.formulations.strain_wave.sizing import problem, tip_leaves
+from gearopt.frozen import dataclass
 from gearopt.optimise.certified import limits, run
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem

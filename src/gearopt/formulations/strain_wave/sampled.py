@@ -6,7 +6,7 @@ What lies between these poses stays hidden to the search. An answer is judged at
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from gearopt.formulations.strain_wave.demand import (
 )
 from gearopt.formulations.strain_wave.exchange import CUTTING, STEP_DEG, design_of, exchange
 from gearopt.formulations.strain_wave.sizing import COUNT
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch

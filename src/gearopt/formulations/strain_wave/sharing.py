@@ -7,11 +7,11 @@ paper's equal sharing P = M/(L N).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem

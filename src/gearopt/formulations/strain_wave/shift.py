@@ -1,11 +1,12 @@
 """The paper's search: profile shift against Hertz's pressure, and the limits that end it."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from gearopt.formulations.strain_wave.demand import Duty, equal_pressure, shared_pressure
+from gearopt.frozen import dataclass
 from gearopt.physics.strain_wave.clearance import interference, interferes
 from gearopt.physics.strain_wave.conjugate import Flank, flank
 from gearopt.physics.strain_wave.gearing import StrainWave

@@ -9,7 +9,7 @@ changes; `exchange` adds the passages that matter.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from types import MappingProxyType
 from typing import Any
 
@@ -26,6 +26,7 @@ from gearopt.formulations.strain_wave.demand import (
     limits,
     squares,
 )
+from gearopt.frozen import dataclass
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Terms, Var
 from gearopt.physics.strain_wave.clearance import corner, least_gaps

@@ -1,7 +1,7 @@
 """A strain wave gearing whose flexspline's teeth are given by a law of later practice."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -26,6 +26,7 @@ from gearopt.formulations.strain_wave.design import (
 )
 from gearopt.formulations.strain_wave.exchange import STEP_DEG
 from gearopt.formulations.strain_wave.sharing import compliance_of, shared
+from gearopt.frozen import dataclass
 from gearopt.physics.strain_wave.circular_arc import DoubleArc, half_locus_tooth, tooth_heights
 from gearopt.physics.strain_wave.cutter import Profile
 from gearopt.physics.strain_wave.gearing import StrainWave

@@ -5,11 +5,11 @@ Searches ask it for utilisations or narrowest face widths and know no formula.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 

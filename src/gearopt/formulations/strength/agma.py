@@ -6,7 +6,7 @@ faster than T^0.148. All else is constant for a given pair and width.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Any, Self
 
@@ -25,6 +25,7 @@ from gearopt.formulations.strength.use.agma import (
     agma_use,
 )
 from gearopt.formulations.strength.virtual import Strength, may_be_best
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma import factors
 from gearopt.physics.agma.batch import (

@@ -6,12 +6,13 @@ the inverse numbers of teeth, life factors and C_H by their chords in logarithms
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.strength.rated import MODES, Box
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma import factors
 from gearopt.physics.agma.batch import safeties

@@ -1,13 +1,14 @@
 """Cells of designs of a stage, over which ratings are bounded from below."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.drive.toothing import Toothing
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import Gear, GearPair

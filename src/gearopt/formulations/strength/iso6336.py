@@ -4,7 +4,7 @@ At one power a slower, stronger torque may take less: it can leave the main reso
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from types import SimpleNamespace
 from typing import Any, Self
@@ -19,6 +19,7 @@ from gearopt.formulations.strength.teeth_alone import iso_teeth
 from gearopt.formulations.strength.use.iso6336 import IsoWay
 from gearopt.formulations.strength.virtual import Strength as Rival
 from gearopt.formulations.strength.virtual import may_be_best
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.choosing import choose

@@ -5,7 +5,6 @@ W2 = W1 K_Hbeta [N/mm] all is a matter of lengths [mm]: deviations and deflectio
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property, partial, reduce
 from itertools import product
 from typing import TYPE_CHECKING, Any
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearopt.formulations.strength.cells import LOWER, UPPER, Cells
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import Gear

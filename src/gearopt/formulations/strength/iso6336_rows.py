@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING, Any
@@ -18,6 +17,7 @@ from gearopt.formulations.strength.use.iso6336 import (
     nominal_part,
     refused,
 )
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.iso6336 import contact_factors, load_factors, running_in
 from gearopt.physics.iso6336.accuracy import DIAMETERS, WIDTHS, slopes_1995

@@ -6,12 +6,13 @@ face widths are sought (`widths`).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Protocol
 
 import numpy as np
 
 from gearopt.formulations.strength.cells import Cells
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 from gearopt.physics.rating import Operation

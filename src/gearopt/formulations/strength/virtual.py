@@ -1,7 +1,8 @@
 """The virtual best of several ways of making a pair: strengths that may be the greatest."""
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
+
+from gearopt.frozen import dataclass
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ and kernels take the same steps.
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache
 from types import ModuleType
 from typing import Any
@@ -18,6 +18,7 @@ import numpy as np
 
 from gearopt.formulations.strength import ALLOWANCE
 from gearopt.formulations.strength.rated import REFUSED, Rows
+from gearopt.frozen import dataclass
 from gearopt.optimise import kernels
 from gearopt.optimise.result import Event
 from gearopt.optimise.terms import Array

@@ -10,11 +10,12 @@ import math
 import os
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from datetime import date
 from typing import Any
 
 from gearopt.errors import CertificateError
+from gearopt.frozen import dataclass
 from gearopt.optimise.result import as_dict, as_json, loads, shown, versions
 from gearopt.optimise.scale import unit
 from gearopt.optimise.typed import typed

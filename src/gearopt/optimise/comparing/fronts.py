@@ -7,12 +7,13 @@ comparison is the part of its hypervolume that the points of a run lack, so that
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import GearoptError, SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.comparing.compare import BOUND_SECONDS, clipped, compared
 from gearopt.optimise.comparing.comparison import POINTS, Comparison, Group, Row, Run, sample

@@ -1,8 +1,8 @@
 """Plan of a comparison: problems, the budget of every run, and who follows it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Event

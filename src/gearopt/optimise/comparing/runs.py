@@ -7,10 +7,11 @@ steps of its own.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, Protocol, TypeVar
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.plan import Follow, Model, Plan, Progress
 from gearopt.optimise.conic.problem import Conic

@@ -6,13 +6,14 @@ kept as p q >= |w|^2 with p = s_0 + s_1, q = s_0 - s_1: then p and q can be scal
 t of 1e-6 beside a 1/t of 1e6 loses no digits.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.terms import Array
 

@@ -9,11 +9,11 @@ from the rows, the cones, and from the wish to be no worse than a design that is
 """
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.conic.canonical import Canonical
 from gearopt.optimise.terms import Array
 

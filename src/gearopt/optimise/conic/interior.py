@@ -10,11 +10,12 @@ known by then, and the equations they state are solved by a few steps of Newton 
 linear rows at their limit, cones on their surface (one smooth equation each) or at their tip.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.conic.canonical import Canonical
 from gearopt.optimise.terms import Array
 

@@ -6,13 +6,14 @@ re-solved without building anything again, and points are judged on the user's o
 
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.evaluation import blaming
 from gearopt.optimise.problem import Batch, Problem, Row, Rows, declared, one_objective
 from gearopt.optimise.terms import (

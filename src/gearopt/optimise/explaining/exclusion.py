@@ -6,10 +6,11 @@ variables stay as they are.
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.evaluation import evaluated
 from gearopt.optimise.explaining.handles import LOWER, REACH, UPPER, scale

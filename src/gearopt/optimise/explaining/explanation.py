@@ -2,9 +2,10 @@
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, field, fields
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result, as_dict, as_json, shown
 
 FORMAT = 1

@@ -2,8 +2,9 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Protocol
+
+from gearopt.frozen import dataclass
 
 DOUBTS = 3  # factors that may stay undecided before a search ends at the smallest that is known
 ROUGH = 1.02  # ratio of a refused to an allowed factor up to which logarithms are halved as such

@@ -7,13 +7,14 @@ of limit, the even repair (one factor for that kind alone).
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.evaluation import evaluated
 from gearopt.optimise.explaining.handles import LOWER, PARAM, REACH, ROW, UPPER, Handle, scale

@@ -5,12 +5,12 @@ partial derivative of the Lagrangian, and with respect to a bound that holds a v
 Lagrangian's slope along that variable. No re-solve is needed; `explain` makes one to check.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.dual import multipliers
 from gearopt.optimise.form import Form, form
 from gearopt.optimise.problem import Problem

@@ -10,11 +10,12 @@ start from points of evolution, too, so that no piece depends on the guess alone
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.certified import GAP
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.conic.problem import Conic

@@ -1,11 +1,12 @@
 """A front as a method finds it: points with their values, and the proof of each."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.pareto.measures import unbeaten
 from gearopt.optimise.terms import Array
 

@@ -1,9 +1,10 @@
 """A Pareto front as a fact: its designs, their proof, how it grew; to JSON and back."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.pareto.measures import Pick
 from gearopt.optimise.pareto.objectives import Objective
 from gearopt.optimise.result import as_dict, as_json, loads, shown, versions

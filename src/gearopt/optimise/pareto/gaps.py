@@ -7,10 +7,10 @@ the gap is open. A step without a proof leaves its gap open at both sides of its
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.certified import GAP
 from gearopt.optimise.pareto.found import Point
 from gearopt.optimise.pareto.measures import unbeaten

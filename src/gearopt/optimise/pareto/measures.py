@@ -4,11 +4,11 @@ One design is picked with its reason: the knee, the compromise, the best of give
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 
 TIE = 1e-9  # relative; objectives that differ by less are equal

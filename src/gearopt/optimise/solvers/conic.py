@@ -12,10 +12,11 @@ is judged again by the certificate.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.best_first import best_first
 from gearopt.optimise.certificate import FARKAS
 from gearopt.optimise.clock import Clock

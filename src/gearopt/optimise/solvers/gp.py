@@ -5,12 +5,12 @@ re-solved without building anything again. cvxpy's own rules (DGP) check the for
 takes logarithms, its own solver finds the point: nothing is shared with `form` and `ipopt`.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.evaluation import blaming, called, quiet
 from gearopt.optimise.problem import Problem, one_objective

@@ -11,13 +11,14 @@ turns into a proof where the form is convex.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise import scale, tape
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.epigraphs import epigraph, raised

@@ -6,12 +6,12 @@ repeat others (both fail on those). Where no point meets every row, the least-sq
 found, whose residuals are the multipliers of a conflict.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.form import Form
 from gearopt.optimise.problem import Problem, one_objective

@@ -10,12 +10,12 @@ tolerance is refused, because SCIP then calls anything optimal.
 """
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.box import allowed_values, whole_ends
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem

@@ -8,13 +8,14 @@ Factors that are multiplied or added up here carry by how much they may be off.
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from typing import Any, NoReturn
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.terms import Array
 

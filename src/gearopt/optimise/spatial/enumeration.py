@@ -7,10 +7,11 @@ points of the whole box does not matter, only that of the boxes that intervals c
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE

@@ -1,11 +1,12 @@
 """The best point of a search: judged by the text itself, sought by Ipopt with whole values held."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.box import allowed_values
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem

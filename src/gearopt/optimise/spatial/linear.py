@@ -5,11 +5,11 @@ box is given in units of its widths, rows to a largest entry of 1. What comes ba
 """
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.spatial.step import Stepper, scaling
 from gearopt.optimise.terms import Array
 

@@ -6,11 +6,12 @@ function of its box, cutoff, touching points and duals, so that a record of thes
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.spatial.columns import LINEAR, ROOM, Columns
 from gearopt.optimise.terms import Array

@@ -6,12 +6,13 @@ and listed variables are branched on first, then the variable below which the re
 
 import math
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.best_first import Open, best_first
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem

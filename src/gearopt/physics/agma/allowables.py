@@ -5,7 +5,7 @@ constant in psi, converted exactly. 2101 calls them sigma_FP and sigma_HP. What 
 or memory alone, is not verified, and says so to whoever uses it.
 """
 
-from dataclasses import dataclass
+from gearopt.frozen import dataclass
 
 PSI = 4.4482216152605 / 25.4**2  # MPa
 HARDNESS = (180.0, 400.0)  # HB: range of the lines of through-hardened steel

@@ -6,11 +6,12 @@ where that is asked. The critical section is where the parabola of equal stress,
 the load's line meets the centre line of the tooth, touches the fillet.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.agma.mesh import Mesh, mesh_of, virtual_gear
 from gearopt.physics.choosing import choose
 from gearopt.physics.gears import Gear, GearPair

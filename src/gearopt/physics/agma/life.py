@@ -5,10 +5,11 @@ they cross, so that it is continuous and has an inverse: the standard's join is 
 there. Numbers of cycles are floats or arrays; hardness is a float.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+
+from gearopt.frozen import dataclass
 
 # Y = A N^-B below 3e6 cycles, by Brinell hardness of through-hardened steel, and by treatment.
 # Source: AGMA 2001-D04, figure 18 (Shigley, figure 14-14); two public programs have the same

@@ -7,11 +7,11 @@ from one to the next, J jumps at m_F = 1: there the load moves from the highest 
 tooth contact to the tip.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.choosing import choose
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.geometry.contact import ContactPath, contact_path

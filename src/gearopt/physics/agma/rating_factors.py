@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.physics.agma import allowables, factors, life
 from gearopt.physics.agma.refusals import GeometryFactors, single_factors
 from gearopt.physics.gears import GearPair

@@ -1,10 +1,10 @@
 """Pairs of gears for which AGMA 908 has no answer, by name, for one pair or arrays of them."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.agma.bending import bending_factors
 from gearopt.physics.agma.mesh import lowest_curvatures, mesh_of, pitting_factor
 from gearopt.physics.gears import Gear, GearPair

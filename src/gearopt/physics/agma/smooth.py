@@ -5,9 +5,9 @@ problem, and the tangency of the parabolas are its equalities: no table and no i
 1 the load sharing ratio is that of the mean length of contact, as the least one has kinks.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.physics.agma.bending import (
     bending_factor,
     bending_factors,

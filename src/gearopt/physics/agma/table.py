@@ -4,11 +4,12 @@ For searches over numbers of teeth, modules and face widths: I and J depend on t
 helical gears, on the overlap ratio by closed forms, which a table holds.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.agma.mesh import mesh_of
 from gearopt.physics.agma.refusals import geometry_factors
 from gearopt.physics.choosing import choose

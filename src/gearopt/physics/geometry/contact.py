@@ -4,11 +4,11 @@ Positions s [mm] lie on the transverse line of action, 0 at the pitch point C, p
 pinion's tip; the pinion drives, so contact runs from A to E.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.fillet import form_diameter
 

@@ -8,11 +8,12 @@ line from the gear's axis, x > 0 across it. For the virtual spur gear of AGMA 90
 a gear of its teeth without helix angle.
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import Gear, Rack, transverse_pressure_angle
 from gearopt.physics.geometry.involute import involute
 

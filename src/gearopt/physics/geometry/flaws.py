@@ -5,10 +5,10 @@ strength. Of one pair of floats. `agma.refusals` has the fatal ones for arrays, 
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import MEMBERS, Gear, GearPair
 from gearopt.physics.geometry.contact import active_root_diameters, contact_path, usable_path
 from gearopt.physics.geometry.fillet import (

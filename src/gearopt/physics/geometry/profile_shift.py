@@ -5,11 +5,12 @@ x2), which leaves the clearance of the tools.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import (
     Gear,
     GearPair,

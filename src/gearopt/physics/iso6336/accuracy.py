@@ -5,12 +5,12 @@ rounds: the exact form has these steps, the smooth one takes the sizes as they a
 Grades may be fractions. Deviations [mm], sizes [mm]; floats or arrays.
 """
 
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics import tolerances
 from gearopt.physics.gears import GearPair
 from gearopt.physics.tolerances import helix_slope_tolerance, rounded_tolerance

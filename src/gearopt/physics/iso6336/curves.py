@@ -4,11 +4,12 @@ Numbers of cycles and strengths are floats or arrays.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+
+from gearopt.frozen import dataclass
 
 LONGEST_LIFE = 1e10  # cycles; the curves are flat beyond
 # Source: ISO 6336-2:2006, table 2, and 6336-3:2006, table 1; gfsReboucas/Drivetrain has those of

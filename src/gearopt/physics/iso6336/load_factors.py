@@ -3,11 +3,11 @@
 Line loads [N/mm], stiffness [MPa], deviations [mm]; floats or arrays.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.choosing import choose
 
 MAIN, SUPER = 1.15, 1.5  # resonance ratios at which the main resonance and the range above end

@@ -1,6 +1,6 @@
 """Strengths of materials by ISO 6336-5, table 1, and their families in parts 1 to 3."""
 
-from dataclasses import dataclass
+from gearopt.frozen import dataclass
 
 LINES: tuple[tuple[str, str, str, str, float, float, float, float], ...] = (
     ("St", "H", "ML/MQ", "", 1.0, 190.0, 110.0, 210.0),

@@ -4,11 +4,12 @@ For searches over numbers of teeth, modules and face widths: tooth forms, contac
 stiffness depend on the pair but for its size, and change with it as lengths do.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.contact import contact_path, usable_path
 from gearopt.physics.iso6336 import contact_factors as contact

@@ -5,11 +5,11 @@ rack; loaded at the outer point of single tooth contact. The fillet is that of `
 whose tool angle is pi/2 less the standard's theta. Floats, arrays or casadi scalars.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.choosing import choose
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.geometry.fillet import base_half_angle, fillet_point, tool_tip

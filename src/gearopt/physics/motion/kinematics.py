@@ -8,12 +8,13 @@ of one shape or casadi scalars.
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
+
+from gearopt.frozen import dataclass
 
 
 @dataclass(frozen=True)

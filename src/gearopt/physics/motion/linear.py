@@ -7,11 +7,12 @@ two (combination), and widen with a_l.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gearopt.frozen import dataclass
 from gearopt.physics.motion.accelerations import stiffness_along
 from gearopt.physics.motion.moving_pair import MovingPair
 from gearopt.physics.motion.stiffness_wave import Wave

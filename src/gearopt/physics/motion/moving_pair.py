@@ -1,9 +1,9 @@
 """A spur pair on moving axes: its data, and the forces between teeth and on bearings."""
 
 import math
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from gearopt.frozen import dataclass
 from gearopt.physics.motion.kinematics import KINEMATICS, Contact, Rest
 from gearopt.physics.motion.stiffness_wave import Wave
 

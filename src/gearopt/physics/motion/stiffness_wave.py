@@ -5,12 +5,14 @@ The phase counts periods of the mesh: 0 to 1. Stiffness in N/mm.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from gearopt.frozen import dataclass
 
 Array = NDArray[np.float64]
 PAIR_SHARE = 0.75  # of c' that a second pair of teeth adds in c_gamma = c' (0.75 eps + 0.25)

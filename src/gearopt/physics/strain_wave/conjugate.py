@@ -5,11 +5,12 @@ involute through the instant centre is known.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, neutral_curve
 from gearopt.physics.strain_wave.tooth_motion import Motion, motion

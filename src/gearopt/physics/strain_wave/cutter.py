@@ -4,11 +4,11 @@ The tooth's axis is the x axis, the flexspline's centre the origin; the undeform
 """
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.strain_wave.conjugate import Flank
 from gearopt.physics.strain_wave.vectors import Vector
 

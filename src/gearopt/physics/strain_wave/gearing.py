@@ -1,11 +1,11 @@
 """A strain wave gearing: teeth of flexspline and circular spline, rim and wave generator."""
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.geometry.involute import involute
 
 WAVES = ("cosine", "ellipse", "discs")  # shapes that a wave generator gives the flexspline

@@ -4,12 +4,12 @@ In polar form rho(p), rho(0) = R_m + w_0 on the major axis, perimeter 2 pi R_m.
 """
 
 import math
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.choosing import choose
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.vectors import Vector, polar

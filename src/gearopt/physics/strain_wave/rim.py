@@ -1,10 +1,10 @@
 """The rim as a chain of teeth: how much it lets neighbouring teeth take over a load."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.strain_wave.gearing import StrainWave
 
 

@@ -5,11 +5,11 @@ nothing interferes; where the boundary is the envelope of the tooth, the flanks 
 """
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.strain_wave.cutter import Profile
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, angle_of_arc

@@ -3,11 +3,11 @@
 The frame is that of the space: its axis of symmetry is the x axis.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, arc_angle, curvature, radii
 from gearopt.physics.strain_wave.vectors import Vector, polar

@@ -1,9 +1,10 @@
 """Vectors of the plane whose components are floats, arrays or casadi scalars."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+
+from gearopt.frozen import dataclass
 
 
 @dataclass(frozen=True)

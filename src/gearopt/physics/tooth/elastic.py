@@ -1,11 +1,11 @@
 """The elastic pair: two spur gears with bores and materials, and where a force acts on a tooth."""
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import MEMBERS, Gear, GearPair
 from gearopt.physics.geometry.contact import ContactPath, usable_path
 from gearopt.physics.geometry.fillet import fillet_point, half_angle

@@ -7,12 +7,12 @@ strains, no friction, a rigid shaft. scikit-fem and scipy are imported where the
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.tooth.elastic import ElasticGear, ElasticPair
 from gearopt.physics.tooth.hertz import half_width
 from gearopt.physics.tooth.mesh import Fineness, GearMesh, gear_mesh

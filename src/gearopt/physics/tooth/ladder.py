@@ -1,13 +1,13 @@
 """The compliance of a pair of teeth by models of one signature, from simple to exact."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.geometry.fillet import profile
 from gearopt.physics.iso6336.stiffness import single_stiffness
 from gearopt.physics.tooth import finite_elements

@@ -6,11 +6,11 @@ outer line to the bore; on it the tooth, from where its fillet is inclined by 45
 flank of the loaded tooth, and the material below it, is fine.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import Gear
 from gearopt.physics.geometry.fillet import profile
 

@@ -4,12 +4,12 @@ The cantilever has the width S_F up to the height C over its foundation, then fa
 at the height h of the tip. The load acts at the height S_C on its centre line.
 """
 
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import Gear
 from gearopt.physics.geometry.fillet import (
     NEGLIGIBLE,

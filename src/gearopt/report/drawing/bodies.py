@@ -2,7 +2,7 @@
 
 import math
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from gearopt.formulations.drive.design import drive_design
 from gearopt.formulations.drive.layout.layout_design import (
@@ -12,6 +12,7 @@ from gearopt.formulations.drive.layout.layout_design import (
     LayoutDesign,
     ShaftDesign,
 )
+from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.report.drawing.sheet import Point
 from gearopt.report.measures import Measures

@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from gearopt.frozen import dataclass
 from gearopt.report.drawing.sheet import Drawing, Place, Sheet, Window
 
 WIDE = 640.0  # px of the drawing

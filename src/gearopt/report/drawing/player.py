@@ -7,12 +7,12 @@ linearly, so that few moments suffice; a jump is one time twice.
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from html import escape
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.report.drawing.sheet import Drawing, Row, Sheet, packed
 
 ABOVE = 12.0  # px from the origin of a body up to its label

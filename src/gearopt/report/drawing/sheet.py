@@ -10,9 +10,11 @@ from array import array
 from base64 import b64encode
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from html import escape
 from itertools import pairwise
+
+from gearopt.frozen import dataclass
 
 SIZE = 12.0  # of a text, px; drawing.css has the same
 LETTER = 0.56  # mean width of a letter over the size, sans serif

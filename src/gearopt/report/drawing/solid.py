@@ -6,9 +6,10 @@ triangles of their numbers.
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.physics.blanks import Body
 from gearopt.physics.gears import Gear, Rack
 from gearopt.physics.geometry.fillet import profile

@@ -6,8 +6,8 @@ projection. A place is (a, b, c): a along the rods, b and c across them.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from gearopt.frozen import dataclass
 from gearopt.report.drawing.sheet import SIZE, Drawing, Place, Point, Sheet, Window, around
 from gearopt.report.drawing.solid import EYE
 from gearopt.report.measures import Measures

@@ -5,11 +5,11 @@ is registered: a kind without a module, and a problem of a user's own, have thos
 """
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass
 from importlib import import_module
 from pkgutil import iter_modules
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.report.measures import Measures
 from gearopt.report.section import Section, Tile

@@ -1,10 +1,10 @@
 """The plots of a Pareto front and their stills: pairs, three in space, parallel lines, growth."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.pareto.front import Front
 from gearopt.report.drawing.number_line import even_ticks
 from gearopt.report.drawing.sheet import Drawing, Place, Sheet, Window, around

@@ -1,7 +1,7 @@
 """kind = "compound": two gear pairs in series whose ratio comes nearest to a given one."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Annotated, Any
 
@@ -10,6 +10,7 @@ from pydantic import Field
 from gearopt.errors import SolveError
 from gearopt.formulations import compound
 from gearopt.formulations.compound import wider
+from gearopt.frozen import dataclass
 from gearopt.optimise.certified import run
 from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.pareto.objectives import EPSILON, Objective, Tradeoff

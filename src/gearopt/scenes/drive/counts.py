@@ -6,9 +6,10 @@ the least of their bounds is one of it. Counts that real-valued sizes promise mo
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.certificate import least
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Event, Result, Watch

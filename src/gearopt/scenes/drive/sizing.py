@@ -1,13 +1,14 @@
 """The gears of a drive: real-valued sizes with a dual bound, whole teeth proven by exhaustion."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import continuous_sizing, sizing_text, teeth
 from gearopt.formulations.drive.processes import ProcessOne, ProcessTwo, methods
 from gearopt.formulations.drive.train import MASSES, Train
+from gearopt.frozen import dataclass
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock, in_part

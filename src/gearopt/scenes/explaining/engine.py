@@ -9,10 +9,11 @@ logarithm of the change. A remedy is reported only if the file with it, as writt
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Remedy
 from gearopt.optimise.explaining.halving import DOUBTS, ROUGH, between, middles, take

@@ -1,9 +1,10 @@
 """The numbers of a file that a remedy may move, and the file with some of them moved."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.explaining.explanation import Change
 from gearopt.optimise.explaining.handles import REACH, Handle
 from gearopt.scenes.explaining.numbers import (

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
 from typing import Any
@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import PydanticCustomError
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.explaining.proposed import DIGITS, FEASIBILITY_MARGIN
 from gearopt.scenes.reading.choices import Between, Preferred, Steps
 from gearopt.scenes.reading.fields import Reads

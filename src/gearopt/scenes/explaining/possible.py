@@ -1,9 +1,9 @@
 """Whether a changed file has a design: the question of the search for remedies to a kind."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import THERE, Result
 

@@ -1,8 +1,9 @@
 """The request of a caller beside the file: method, budget, how many answers."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.certified import GAP
 from gearopt.optimise.clock import of_others
 from gearopt.optimise.result import Budget, Watch

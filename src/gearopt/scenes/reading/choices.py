@@ -1,10 +1,11 @@
 """Field types of problem files for values to choose from: lists, ranges with a step, series."""
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any, cast
 
+from gearopt.frozen import dataclass
 from gearopt.physics.preferred_numbers import PREFERRED, preferred_numbers
 from gearopt.scenes.reading.fields import Reads, refuse
 from gearopt.scenes.reading.lists import mended, several

@@ -8,7 +8,6 @@ exactly as written (int or Decimal).
 import math
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -18,6 +17,7 @@ from pydantic import BaseModel, ConfigDict
 from pydantic_core import PydanticCustomError, core_schema
 
 from gearopt import units
+from gearopt.frozen import dataclass
 from gearopt.scenes.reading.near import near
 from gearopt.units import Quantity
 
@@ -43,7 +43,7 @@ _SLIP = re.compile(rf"\s*{_NUMBER}\s*((?![eE][+-]?[0-9])[^\s\d.,].*?|1/\S+)?\s*"
 class Table(BaseModel):
     """A table of a problem file: frozen, unknown keys refused."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
 
 @dataclass(frozen=True)

@@ -2,13 +2,14 @@
 
 import hashlib
 import json
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
 
 from gearopt.errors import SceneError
+from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Opened, Reads, refuse

@@ -4,7 +4,7 @@ import hashlib
 import re
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from decimal import Decimal, InvalidOperation
 from difflib import get_close_matches
 from importlib import import_module
@@ -16,6 +16,7 @@ from pydantic import BaseModel, ValidationError
 
 import gearopt.scenes
 from gearopt.errors import Fix, SceneError, SolveError, together
+from gearopt.frozen import dataclass
 from gearopt.scenes.kind import Kind
 from gearopt.scenes.reading.absent import absent_kind
 from gearopt.scenes.reading.called import kind_called

@@ -1,7 +1,7 @@
 """Remedies where no train is possible: the conflict, and the smallest changes that help."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -11,6 +11,7 @@ from gearopt.formulations.servo import impossible, split
 from gearopt.formulations.servo.choice import train_problem
 from gearopt.formulations.servo.servo_design import GOALS
 from gearopt.formulations.servo.split.teeth import NO_TEETH
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Change, Remedies, Remedy
 from gearopt.optimise.result import Result

@@ -7,7 +7,6 @@ steps, so that a search which is stopped has the bound of its last full step.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 from gearopt.formulations.drive.layout import annealing
 from gearopt.formulations.drive.layout.annealing import ANNEAL, anneal, point
 from gearopt.formulations.drive.layout.chain import Chain
+from gearopt.frozen import dataclass
 from gearopt.optimise.best_first import ending
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import UNREADY, compiled, kernel, warm

@@ -5,9 +5,9 @@ the box, y and z across them from the axis of shaft 1, the input. Counting start
 """
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import ISO_53_A, Gear, Rack
 
 

@@ -6,7 +6,6 @@ them by the four sides of the box, for gradients.
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ import numpy as np
 from gearopt.formulations.drive.gearbox import Gearbox
 from gearopt.formulations.drive.layout.chain import Chain, chain
 from gearopt.formulations.drive.layout.slabs import Arrangement
+from gearopt.frozen import dataclass
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var, each
 

@@ -1,12 +1,12 @@
 """Along the shafts: which stages share a slab, in which order, and which bodies must keep apart."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cache, lru_cache
 
 import numpy as np
 
 from gearopt.formulations.drive.gearbox import ANYWHERE, Gearbox, Range
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 
 Slabs = tuple[tuple[int, ...], ...]

@@ -6,7 +6,7 @@ program of monomials, which has a closed form.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy as np
 from gearopt.formulations.drive.shares import least_share
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength.cells import LOWER, NUDGE, Cells
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 

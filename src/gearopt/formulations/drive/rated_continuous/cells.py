@@ -6,7 +6,7 @@ bound of the drive. Designs are looked for in the boxes of the least sum.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -26,6 +26,7 @@ from gearopt.formulations.drive.rated_continuous.boxes import (
 )
 from gearopt.formulations.drive.rated_continuous.designs import Design, in_boxes, polished, smallest
 from gearopt.formulations.drive.train import Train
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair

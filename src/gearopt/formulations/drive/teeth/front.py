@@ -11,7 +11,7 @@ import heapq
 import itertools
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ from gearopt.formulations.drive.teeth.search import search, within
 from gearopt.formulations.drive.teeth.stage import EDGE, Table
 from gearopt.formulations.drive.teeth.tables import stage_tables
 from gearopt.formulations.drive.train import Train
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.pareto.corners import corners, useful, weighed
 from gearopt.optimise.pareto.measures import TIE, unbeaten

@@ -9,7 +9,6 @@ Backward recursion over the stages; the finer the grid, the closer the bound.
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -18,6 +17,7 @@ from numpy.typing import NDArray
 from gearopt.errors import SolveError
 from gearopt.formulations.drive.teeth.stage import EDGE, Cells, Table
 from gearopt.formulations.drive.train import Train
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 
 ENTRIES = 10_000_000  # of the last stage's table

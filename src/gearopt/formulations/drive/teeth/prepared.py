@@ -1,12 +1,13 @@
 """What standards take of the teeth of a table, made in blocks when rows first ask for them."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.drive.teeth.columns import Index
+from gearopt.frozen import dataclass
 
 BLOCK = 1000  # shapes of teeth that are made at once
 

@@ -6,7 +6,7 @@ tried, as a larger one may be the better one where the load-distribution factor 
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property, partial
 from itertools import chain
 from typing import Any
@@ -21,6 +21,7 @@ from gearopt.formulations.drive.train import Train
 from gearopt.formulations.strength import ALLOWANCE
 from gearopt.formulations.strength.rated import IndexRows, Option, Rows, Standard
 from gearopt.formulations.strength.widths import MAX_STEPS, Standing
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 

@@ -11,7 +11,7 @@ import heapq
 import math
 import operator
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -36,6 +36,7 @@ from gearopt.formulations.drive.teeth.reach import PAIRS_AT_ONCE, first_cut, lar
 from gearopt.formulations.drive.teeth.stage import EDGE, Table
 from gearopt.formulations.drive.teeth.tables import stage_tables, thinned
 from gearopt.formulations.drive.train import Train
+from gearopt.frozen import dataclass
 from gearopt.optimise.best_first import best_first
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Event, Watch

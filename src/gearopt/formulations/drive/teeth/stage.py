@@ -7,7 +7,7 @@ irrational except at 0, 60 and 90 (Niven's theorem), so no tie with a rational l
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -19,6 +19,7 @@ from gearopt.formulations.drive.shares import objective_share
 from gearopt.formulations.drive.teeth.columns import Index, closed
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength import ALLOWANCE, HALVINGS
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 

@@ -11,7 +11,7 @@ above it, too. Cells are narrowed for the pairs that are still of use.
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 import numpy as np
@@ -40,6 +40,7 @@ from gearopt.formulations.drive.together.tables import (
     useful,
 )
 from gearopt.formulations.drive.train import Train
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
 from gearopt.optimise.result import Budget

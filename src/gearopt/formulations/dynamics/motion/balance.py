@@ -5,13 +5,14 @@ N the mesh force; 2 H + 1 unknowns are left at every level.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.linear import Linear, linear
 from gearopt.physics.motion.moving_pair import MovingPair

@@ -1,13 +1,14 @@
 """A motion to an error that is asked: the cheapest method that meets it is found and used."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations.dynamics.motion.integrate import STEPPERS, Marched, conservative, march
 from gearopt.formulations.dynamics.motion.timeline import Timeline, timeline
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.accelerations import LEVELS

@@ -1,11 +1,11 @@
 """Times of a motion: intervals between outputs and kinks of the stiffness."""
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.moving_pair import MovingPair
 

@@ -7,7 +7,6 @@ Norsett and Wanner, Solving Ordinary Differential Equations I, II.7).
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -15,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gearopt.formulations.dynamics.orbit.task import MICRO
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 
 

@@ -6,7 +6,7 @@ adds the worst, and solves again. `response_over_speed` is the design as a resul
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -37,6 +37,7 @@ from gearopt.formulations.dynamics.orbit.task import (
 )
 from gearopt.formulations.dynamics.orbit.task import parts as orbit_parts
 from gearopt.formulations.dynamics.steady_motion import in_contact
+from gearopt.frozen import dataclass
 from gearopt.optimise.box import box
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem

@@ -2,11 +2,11 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.motion.moving_pair import MovingPair, Rotor, damping_of
 from gearopt.physics.motion.stiffness_wave import PAIR_SHARE, of_contact_ratio

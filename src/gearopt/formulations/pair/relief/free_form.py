@@ -13,13 +13,13 @@ inside. Bounds are computed from the program's multipliers.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.pair.relief.meshing import Mesh
+from gearopt.frozen import dataclass
 from gearopt.optimise.best_first import best_first
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem

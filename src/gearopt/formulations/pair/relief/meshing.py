@@ -1,12 +1,13 @@
 """A spur pair in mesh under several loads, and the effect of relief on it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.load_sharing import Sharing, share
 from gearopt.physics.mesh_cycle import Cycle

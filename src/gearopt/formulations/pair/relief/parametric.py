@@ -5,7 +5,6 @@ contact is lost, so no derivative is asked of it.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy as np
 from gearopt.formulations.pair.relief.meshing import Criteria, Mesh, Relief
 from gearopt.formulations.pair.relief.relief_mpec import local
 from gearopt.formulations.pair.relief.relief_search import MICRO, Goal, search
+from gearopt.frozen import dataclass
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Terms, Var
 

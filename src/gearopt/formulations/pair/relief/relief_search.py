@@ -7,12 +7,12 @@ point in it is no better or exceeds one of them.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.pair.relief.meshing import Mesh
+from gearopt.frozen import dataclass
 from gearopt.optimise.best_first import best_first
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import UNREADY, compiled, kernel

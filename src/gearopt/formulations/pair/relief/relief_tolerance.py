@@ -1,7 +1,6 @@
 """Relief as it is made: the worst case over tolerances, drawn samples, and the best nominal one."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from gearopt.formulations.pair.relief.relief_search import (
     halves,
     numbers,
 )
+from gearopt.frozen import dataclass
 from gearopt.optimise.best_first import best_first
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import compiled, kernel

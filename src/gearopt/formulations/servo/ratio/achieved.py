@@ -1,13 +1,13 @@
 """The achievement of an axis at a ratio, with a train or without, beside the best: by its duty."""
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.servo.ratio.duty import ServoDuty
 from gearopt.formulations.servo.servo_design import KG_M2, Achieved, RatioCurve
+from gearopt.frozen import dataclass
 from gearopt.optimise.certified import run
 from gearopt.physics.servo_drive import best_acceleration, mean_ramp
 

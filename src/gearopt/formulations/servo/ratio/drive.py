@@ -1,9 +1,10 @@
 """The given motor, its gears and its load, and the rows that all duties share."""
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Var
 

@@ -1,7 +1,7 @@
 """The motion of a load with the motor that drives it: values of every ratio and gear inertia."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -12,6 +12,7 @@ from gearopt.formulations.servo.ratio.drive import FAINT, Drive
 from gearopt.formulations.servo.ratio.move import least_move_time
 from gearopt.formulations.servo.ratio.swing import swing
 from gearopt.formulations.servo.servo_design import MOTIONS
+from gearopt.frozen import dataclass
 from gearopt.optimise.problem import Problem
 from gearopt.physics.servo_drive import (
     load_acceleration,

@@ -10,12 +10,12 @@ motor plane: motor and middle shaft (`motor`), motor and output shaft (by the li
 (`shaft[2]`), gear 4 around the output shaft (`hub`), which leaves gear 3 room too.
 """
 
-from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, lcm
 from typing import Any
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import ISO_53_A, GearPair
 
 Pairs = tuple[GearPair, GearPair]  # stage 1 at the motor, stage 2 at the load

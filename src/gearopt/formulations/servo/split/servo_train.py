@@ -6,7 +6,6 @@ discs, the last one may be a sector. Numbers at which a tie may occur are exact 
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
@@ -16,6 +15,7 @@ from gearopt.formulations.servo.ratio.duty import ServoDuty
 from gearopt.formulations.servo.split.bodies import TIP, Bodies, Pairs
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.laws.lewis import LEWIS
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Param
 from gearopt.physics.backlash import output_error
 from gearopt.physics.gears import GearPair, disc_inertia

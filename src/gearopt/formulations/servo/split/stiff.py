@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Any
 
 from gearopt.formulations.servo.split.bodies import clear_rows
@@ -15,6 +14,7 @@ from gearopt.formulations.servo.split.servo_train import (
     train_inertia,
 )
 from gearopt.formulations.strength.laws.lewis import lewis
+from gearopt.frozen import dataclass
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.gears import Gear, GearPair, disc_mass

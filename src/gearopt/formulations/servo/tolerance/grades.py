@@ -11,7 +11,7 @@ one 0-1 variable a grade.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from numbers import Rational
 from typing import Any, Literal, get_args
@@ -19,6 +19,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.dual import ROUNDING
 from gearopt.optimise.pareto.posed import caps

@@ -9,12 +9,12 @@ Every rule is one form, utilisation = sum l_i t_i + (sum (q_i t_i)^2)^(1/2), wit
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, get_args
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 
 Rule = Literal["worst_case", "rss", "mean_plus_sd"]

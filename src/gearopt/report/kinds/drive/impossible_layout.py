@@ -1,11 +1,12 @@
 """A layout that is impossible, drawn with its first remedy and what was asked over it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from gearopt.formulations.drive.layout.layout_design import KeepOutDesign, LayoutDesign
+from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.drawing.bodies import keep_outs, sides

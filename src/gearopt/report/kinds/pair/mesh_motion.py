@@ -2,11 +2,11 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.contact import usable_path
 from gearopt.report.drawing.mesh_view import (

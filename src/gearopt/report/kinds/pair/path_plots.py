@@ -1,11 +1,11 @@
 """Plots over the path of contact with its zones, which follow the animation of the pair in mesh."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gearopt.frozen import dataclass
 from gearopt.physics.geometry.contact import ContactPath
 from gearopt.physics.mesh_cycle import NARROW, break_points
 from gearopt.report.drawing.sheet import series

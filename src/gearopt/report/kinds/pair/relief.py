@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from gearopt.formulations.pair.design import (
     PairContact,
     PairRelief,
 )
+from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.physics.gears import MEMBERS, GearPair

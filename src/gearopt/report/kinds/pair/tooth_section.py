@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import MEMBERS, Gear, GearPair
 from gearopt.physics.geometry.contact import ContactPath, usable_path
 from gearopt.physics.geometry.fillet import (

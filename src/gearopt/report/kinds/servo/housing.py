@@ -6,7 +6,6 @@ the train needs.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from html import escape
 
 from rich.text import Text
@@ -17,6 +16,7 @@ from gearopt.formulations.servo.servo_design import (
     StiffnessDesign,
     TrainDesign,
 )
+from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.report.drawing.layout_views import centre_distance
 from gearopt.report.drawing.sheet import Drawing, Place, Point, Sheet, Window, around

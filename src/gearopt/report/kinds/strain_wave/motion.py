@@ -5,12 +5,13 @@ and all repeats.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.strain_wave.design import INVOLUTE, WaveDesign
+from gearopt.frozen import dataclass
 from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.neutral_curve import NeutralCurve, neutral_curve, whole_curve
 from gearopt.report.drawing.player import Animation, Body, Reading, Scale, View

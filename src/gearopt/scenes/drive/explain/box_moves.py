@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.moves import SET, Move

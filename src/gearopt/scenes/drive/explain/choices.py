@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from decimal import Context, Decimal
 from fractions import Fraction
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.optimise.explaining.proposed import DIGITS
 from gearopt.optimise.explaining.repair import SLACK_TRIED

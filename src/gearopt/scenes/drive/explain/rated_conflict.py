@@ -9,11 +9,12 @@ is of what decides on teeth.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from gearopt.formulations.drive.teeth.search import reaches
 from gearopt.formulations.drive.train import Train
 from gearopt.formulations.strength.rated import Option
+from gearopt.frozen import dataclass
 from gearopt.scenes.drive.explain.requirements import (
     BENDING,
     CONTACT,

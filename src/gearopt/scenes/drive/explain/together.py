@@ -9,13 +9,14 @@ single choice that is possible is the minimum.
 import itertools
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 from gearopt.formulations.drive import continuous_sizing, sizing_text
 from gearopt.formulations.drive.teeth.choices import best_pairs
 from gearopt.formulations.drive.train import Train
+from gearopt.frozen import dataclass
 from gearopt.optimise.best_first import best_first
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.handles import Handle, handles

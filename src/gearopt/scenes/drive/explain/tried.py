@@ -1,7 +1,7 @@
 """Whether an impossible drive is possible with some numbers moved."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from gearopt.formulations.drive import continuous_sizing
 from gearopt.formulations.drive.teeth.progress import Teeth
@@ -9,6 +9,7 @@ from gearopt.formulations.drive.teeth.rated import RatedTable
 from gearopt.formulations.drive.teeth.reach import narrowed
 from gearopt.formulations.drive.teeth.search import any_train, possible
 from gearopt.formulations.drive.train import Train
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.repair import FARTHEST
 from gearopt.optimise.result import THERE

@@ -1,10 +1,11 @@
 """One stage of a drive with its rating by a standard, at every level of load."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import SolveError
+from gearopt.frozen import dataclass
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.rating import Operation, Rating

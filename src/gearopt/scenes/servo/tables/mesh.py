@@ -3,7 +3,6 @@
 Where it comes from, how large it may be, and the same deviations reallocated at minimum cost.
 """
 
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from typing import Annotated, get_args
@@ -12,6 +11,7 @@ from pydantic import Field, model_validator
 
 from gearopt import units
 from gearopt.formulations.servo.tolerance.stack import RUN_OUT, UNIFORM, Distribution, Rule
+from gearopt.frozen import dataclass
 from gearopt.physics.backlash import (
     backlash_angle,
     pitch_error_angle,
