@@ -19,6 +19,7 @@ import numpy as np
 from gearopt.errors import CertificateError, SolveError
 from gearopt.frozen import dataclass
 from gearopt.optimise.conic.problem import Conic
+from gearopt.optimise.deadline import passed
 from gearopt.optimise.dual import ROUNDING, farkas, multipliers, risen
 from gearopt.optimise.dual import bound as dual_bound
 from gearopt.optimise.epigraphs import epigraph, raised
@@ -207,7 +208,8 @@ def _local(
 ) -> Verdict:
     """Judge a point with multipliers: KKT residuals, and a dual bound where the form is convex.
 
-    before: the verdict without them.
+    before: the verdict without them, which stays where a search of a form that has no bound ended
+    with its seconds: its end is no optimum, and residuals of large texts take as long as a search.
     """
     assert outcome.x is not None
     try:
@@ -220,16 +222,18 @@ def _local(
         why = "No bound, no optimality conditions" + ("" if said else f": {untraced}")
         message = ". ".join(filter(None, [before.message.rstrip("."), why]))
         return replace(before, message=message)
-    points = _points(problem, shape, outcome)
-    if not points:
-        return before
+    late = not outcome.finished and not shape.convex and passed()
+    points = [] if late else _points(problem, shape, outcome)
     each = [(residuals(point), point) for point in points]
-    of_kkt, best = min(each, key=lambda j: np.nan_to_num(np.max([*j[0].values()]), nan=np.inf))
-    residual = dict(before.certificate) | of_kkt
-    before = replace(before, certificate=residual, multipliers=_shadow_prices(best))
+    if each:
+        of_kkt, best = min(each, key=lambda j: np.nan_to_num(np.max([*j[0].values()]), nan=np.inf))
+        residual = dict(before.certificate) | of_kkt
+        before = replace(before, certificate=residual, multipliers=_shadow_prices(best))
     lower, upper, guess = problem.bounds()
     if loose := runaway(problem, outcome.x, lower, upper, guess):
         return replace(before, status="failed", message=loose)
+    if not each:
+        return before
     if outcome.finished and all(v <= STATIONARY for v in of_kkt.values()):
         doubt = no_minimum(best)
         message = f"{doubt.words}. {before.message}".strip() if doubt.words else before.message

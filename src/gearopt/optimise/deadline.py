@@ -44,6 +44,12 @@ def until(seconds: float | None) -> Iterator[None]:
         _END.reset(token)
 
 
+def passed() -> bool:
+    """Whether the seconds of the run around this are over."""
+    end = _END.get()
+    return end is not None and time.perf_counter() >= end
+
+
 def allowed(on_floats: float) -> float:
     """Return the seconds that a text may take on symbols; on_floats: those that it takes there."""
     most, end = max(LONGEST, SLOWEST * on_floats), _END.get()

@@ -369,9 +369,10 @@ def test_what_time_is_short_for_is_named(monkeypatch):
     found = gearopt.solve("problems/strain_wave_base.toml", budget=gearopt.Budget(seconds=0.0))
     assert found.status == "evaluated" and found.feasible
     assert found.report["notes"][-1] == (
-        "Left out for lack of time: other deflections, the largest addendum, the largest profile "
-        "shift at which one pair always touches, the curve over profile shifts and straight and "
-        "circular edges of the cutter."
+        "Left out for lack of time: teeth within a clearance, other deflections, the largest "
+        "addendum, the largest profile shift at which one pair always touches, the least "
+        "deflection with contact, the curve over profile shifts and straight and circular edges of "
+        "the cutter."
     )
     page = found.to_html()
     for heading in ("Contact pressure against profile shift", "other deflections</"):

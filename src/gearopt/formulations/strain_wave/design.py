@@ -44,7 +44,7 @@ from gearopt.physics.strain_wave.tooth_motion import motion
 T = TypeVar("T")
 Columns = tuple[float, ...]
 REPLACED = 0.3  # s that line and arc in place of a cutter's edge take
-SOUGHT = 0.2  # s that other deflections, the largest addendum and a curve over shifts take
+SOUGHT = 0.2  # s that a part takes which is sought: the largest addendum, a curve over shifts
 INVOLUTE = "involute"  # law of the circular spline's teeth, to which the flexspline's are conjugate
 WITHIN = (1.0, 2.0, 5.0, 10.0, 20.0)  # um
 ROWS = 21  # of the flank's table
@@ -223,16 +223,19 @@ def loads_and_pressures(demand: Demand, flank: Flank) -> dict[str, Any]:
     }
 
 
-def sizes_and_clearances(demand: Demand, flank: Flank) -> dict[str, Any]:
+def sizes_and_clearances(demand: Demand, flank: Flank, extras: Extras) -> dict[str, Any]:
     """Fields of a `WaveDesign`: sizes, contacts along the flank, clearances of its teeth."""
-    least = interference(flank, STEP_DEG)
+    least, name = interference(flank, STEP_DEG), "teeth within a clearance"
+    gaps = 1e-3 * np.array(WITHIN)
+    none: Columns = ()
+    within = extras.of(name, lambda: floats(teeth_within(flank, gaps)), none, SOUGHT)
     return {
         **_sizes(demand, flank),
         **_columns(flank),
         "least_clearance_mm": gap_of(least.gap),
         "least_clearance_at_deg": math.degrees(least.angle),
-        "within_um": WITHIN,
-        "teeth_within": floats(teeth_within(flank, 1e-3 * np.array(WITHIN))),
+        "within_um": WITHIN[: len(within)],
+        "teeth_within": within,
     }
 
 
@@ -244,10 +247,11 @@ def deflections_and_ends(flank: Flank, extras: Extras) -> dict[str, Any]:
     addendum = extras.of(name, lambda: largest_addendum(gearing), None, SOUGHT)
     name = "the largest profile shift at which one pair always touches"
     shift = extras.of(name, lambda: last_shift_of_one_pair(gearing), None, SOUGHT)
+    name = "the least deflection with contact"
     return {
         "deflections": deflections,
         "largest_addendum": addendum,
-        "least_deflection": least_deflection(gearing),
+        "least_deflection": extras.of(name, lambda: least_deflection(gearing), None, SOUGHT),
         "shift_of_one_pair": shift,
     }
 

@@ -7,6 +7,7 @@ of their ranges are named, with the value that a wider range would give.
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ from gearopt.optimise.stationarity import evaluated
 from gearopt.optimise.terms import Array
 from gearopt.physics.strain_wave.clearance import Least, least_gaps
 from gearopt.physics.strain_wave.conjugate import Flank, flank
+from gearopt.physics.strain_wave.gearing import StrainWave
 from gearopt.physics.strain_wave.neutral_curve import neutral_curve
 
 STEP_DEG = 0.05  # of the wave, at which every design is looked at, and between: see `least_gaps`
@@ -140,7 +142,11 @@ def _searched(
 
 def design_of(demand: Demand, numbers: Sequence[float] | Array) -> Flank:
     """Gearing and flank of the free numbers (6,)."""
-    gearing = demand.gearing(dict(zip(FREE, map(float, numbers), strict=True)))
+    return _flank(demand.gearing(dict(zip(FREE, map(float, numbers), strict=True))))
+
+
+@lru_cache(maxsize=4)  # the parts of a description ask for the same
+def _flank(gearing: StrainWave) -> Flank:
     return flank(gearing, POINTS)
 
 

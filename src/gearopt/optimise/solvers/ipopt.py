@@ -137,9 +137,9 @@ def run(
             )
         point = _ipopt(problem, shape, point.y, low, high, following)
     for _ in range(AGAIN):
-        assert following.scale is not None
-        there = unit_at(problem, shape, point.y).objective
-        if clock.stopped or there >= SMALLER * following.scale.objective:
+        if clock.stopped or following.scale is None:
+            break
+        if unit_at(problem, shape, point.y).objective >= SMALLER * following.scale.objective:
             break
         point = _ipopt(problem, shape, point.y, low, high, following)
     if following.raised is not None:
@@ -194,10 +194,13 @@ def _built(problem: Problem, shape: Form) -> tuple[Any, Any]:
 def _ipopt(
     problem: Problem, shape: Form, y0: Array, low: Array, high: Array, following: _Run
 ) -> _Point:
-    """Run Ipopt from a point, in the units that fit there."""
+    """Run Ipopt from a point, in the units that fit there; nothing is built when time is over."""
+    m_g, m_h = following.rows
+    if following.clock.over:
+        following.continues()
+        return _Point(y0, np.zeros(m_g), np.zeros(m_h), "User_Requested_Stop")
     solver, monitor = _built(problem, shape)
     monitor.follow = following.note
-    m_g, m_h = following.rows
     unit = following.scale = unit_at(problem, shape, y0)
     levels = np.array(_split(problem, shape).start(y0, problem.parameter_values())).ravel()
     free = np.full(len(levels), np.inf)

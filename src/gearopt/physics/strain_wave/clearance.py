@@ -136,8 +136,7 @@ def interference(flank: Flank, step_deg: float = 0.05, points: int = 51) -> Leas
     return next(iter(least_gaps(flank, step_deg, points)), Least(math.inf, 0.0, None, False))
 
 
-@np.errstate(invalid="ignore", divide="ignore")
-def least_gaps(flank: Flank, step_deg: float = 0.05, points: int = 51) -> list[Least]:
+def least_gaps(flank: Flank, step_deg: float = 0.05, points: int = 51) -> tuple[Least, ...]:
     """Return all least clearances over the wave from -90 to 90 degrees, the smallest first.
 
     They are bracketed by poses of a step [degrees] and then found exactly: where a point passes the
@@ -145,6 +144,15 @@ def least_gaps(flank: Flank, step_deg: float = 0.05, points: int = 51) -> list[L
     flank's, evenly; between them a clearance is less by at most the square of their distance over
     8 R.
     """
+    key = "least gaps", step_deg, points
+    if key not in flank.memo:
+        flank.memo[key] = _least_gaps(flank, step_deg, points)
+    known: tuple[Least, ...] = flank.memo[key]
+    return known
+
+
+@np.errstate(invalid="ignore", divide="ignore")
+def _least_gaps(flank: Flank, step_deg: float, points: int) -> tuple[Least, ...]:
     gearing, flex = flank.gearing, flank.contacts.point
     last = len(flex.x) - 1
     taken = np.unique(np.rint(np.linspace(0, last, points)).astype(int))
@@ -165,7 +173,7 @@ def least_gaps(flank: Flank, step_deg: float = 0.05, points: int = 51) -> list[L
     corners = _minima(of_corner, pose, np.array([-1]), angles, at)
     minima = [Least(gap, angle, float(k / last), passing) for k, gap, angle, passing in of_points]
     minima += [Least(gap, angle, None, passing) for _, gap, angle, passing in corners]
-    return sorted(minima, key=lambda least: least.gap)
+    return tuple(sorted(minima, key=lambda least: least.gap))
 
 
 def interferes(flank: Flank, step_deg: float, points: int) -> bool:

@@ -246,6 +246,7 @@ def _matrix(elastic: ElasticPair, places: Any, force: float, halvings: int = 0) 
     return compliances + soft * np.diag(lost)
 
 
+@lru_cache(maxsize=4)
 def coupling(elastic: ElasticPair) -> float:
     """Return c_12 [mm/N], how far a pair of teeth gives way under a unit force on its neighbour.
 

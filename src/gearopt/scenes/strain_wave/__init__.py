@@ -215,9 +215,9 @@ def with_loads(scene: Scene, ask: Ask, known: Result | None) -> Result:
 
 def with_sizes(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """The gearing with its sizes and clearances."""
-    demand = scene.demand()
+    demand, extras = scene.demand(), _extras(ask)
     flank = _flank(demand, known)
-    return _with(known, sizes_and_clearances(demand, flank))
+    return _with(known, sizes_and_clearances(demand, flank, extras), extras.left_out)
 
 
 def with_deflections(scene: Scene, ask: Ask, known: Result | None) -> Result:
