@@ -178,7 +178,7 @@ def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
         bound, designs = max(bound, of_cells.bound), [*designs, *([of_search] if of_search else [])]
     more = train.hollow or not bounded and not (designs and _rating_jumps(train))
     more = more and not train.inclining  # of one helix angle alone are there smooth forms
-    if more and bound < math.inf:
+    if more and bound < math.inf and clock.tell():
         designs += _by_ipopt(train, exact, [*(d.x for d in designs), *starts(exact)], clock)
     return _claim(min(designs, key=lambda d: d.value, default=None), bound, clock)
 
