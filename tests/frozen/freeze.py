@@ -23,14 +23,17 @@ import tomllib
 from decimal import Decimal
 from pathlib import Path
 
-import gearopt
-from gearopt.errors import GearoptError
-from gearopt.report import shown
-from gearopt.scenes.explaining.explanations import explanation
-from gearopt.scenes.explaining.numbers import content
-from gearopt.scenes.reading.ask import Ask
-from gearopt.scenes.reading.load import examples
-from gearopt.scenes.reading.toml_writing import toml_text
+# Budgets count CPU seconds, from the first import on: a busy machine changes no answer.
+time.perf_counter = time.process_time
+
+import gearopt  # noqa: E402
+from gearopt.errors import GearoptError  # noqa: E402
+from gearopt.report import shown  # noqa: E402
+from gearopt.scenes.explaining.explanations import explanation  # noqa: E402
+from gearopt.scenes.explaining.numbers import content  # noqa: E402
+from gearopt.scenes.reading.ask import Ask  # noqa: E402
+from gearopt.scenes.reading.load import examples  # noqa: E402
+from gearopt.scenes.reading.toml_writing import toml_text  # noqa: E402
 
 HERE = Path(__file__).parent
 sys.path += [str(HERE.parent / "scenes"), str(HERE.parent / "scenes" / "drive")]
@@ -38,7 +41,6 @@ from bars import KIND, Bars  # noqa: E402
 from edits import edited  # noqa: E402
 from given_drives import given_drive  # noqa: E402
 
-time.perf_counter = time.process_time  # budgets count CPU seconds: a busy machine changes no answer
 PROBLEMS = HERE.parents[1] / "problems"
 CHECKED = 10.0  # s, at most, in which a remedy is solved again
 DECIMAL = re.compile(r"\d+\.\d+$")
