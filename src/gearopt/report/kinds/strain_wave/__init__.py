@@ -129,8 +129,14 @@ def moving(result: Result, measures: Measures) -> Section | None:
             *(tables.within(design, measures), tables.teeth(design, measures)),
             *tables.over_wave(design, measures),
         ],
-        terminal=(tables.teeth(design, measures),),
     )
+
+
+def loaded_teeth(result: Result, measures: Measures) -> Section | None:
+    """What the terminal shows of the teeth in mesh: a table, for which nothing is drawn."""
+    if (design := design_of(result)) is None:
+        return None
+    return Section("Teeth in mesh", terminal=(tables.teeth(design, measures),))
 
 
 def _line(x: Sequence[float], y: Any, name: str, colour: int) -> dict[str, Any]:
@@ -305,7 +311,7 @@ def search(result: Result, measures: Measures) -> Section | None:
 OWN_SECTIONS = (moving, cutter, shift, numbers)
 PAGES_OF_GIVEN = Pages(
     sections=(summary, *OWN_SECTIONS, limits, asked, assumptions),
-    terminal=(numbers, moving, cutter, limits, summary),
+    terminal=(numbers, loaded_teeth, cutter, limits, summary),
     tiles=tiles,
     binding_limit=binding_limit,
     warns=warns,
@@ -314,6 +320,6 @@ PAGES_OF_GIVEN = Pages(
 PAGES = replace(
     PAGES_OF_GIVEN,
     sections=(*OPENING, *OWN_SECTIONS, *REQUEST, search, *CLOSING),
-    terminal=(numbers, moving, cutter, limits, *AFTER_DESIGN),
+    terminal=(numbers, loaded_teeth, cutter, limits, *AFTER_DESIGN),
     pages_of_given=PAGES_OF_GIVEN,
 )
