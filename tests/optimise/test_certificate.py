@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 
 from gearopt.errors import CertificateError
+from gearopt.optimise import certificate
 from gearopt.optimise.certificate import certify
+from gearopt.optimise.deadline import until
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome
 from gearopt.optimise.solve import run
 from gearopt.optimise.solvers import ipopt
+from gearopt.optimise.stationarity import residuals
 from gearopt.optimise.terms import Terms, Var
 
 
@@ -128,6 +131,37 @@ def test_budget_keeps_the_best_feasible_iterate():
     seen = []
     watched = ipopt.run(problem, Budget(), 0, lambda event: seen.append(event) or len(seen) < 3)
     assert len(seen) == 3 and not watched.finished
+
+
+def valley():
+    """min (x^2 - 1)^2 for x in [-2, 2], which is convex in no form."""
+
+    def evaluate(x, p):
+        return Terms({"f": (x.x * x.x - 1.0) ** 2})
+
+    return Problem("valley", (Var("x", "", -2.0, 2.0, 0.5),), (), evaluate)
+
+
+def test_residuals_are_not_sought_of_a_search_that_ended_with_its_seconds(monkeypatch):
+    """But of an end, of a form that has a bound, and while there are seconds."""
+    sought = []
+
+    def noted(point):
+        sought.append(point)
+        return residuals(point)
+
+    monkeypatch.setattr(certificate, "residuals", noted)
+    ended, stopped = Outcome(np.array([1.0])), Outcome(np.array([0.9]), finished=False)
+    with until(0.0):
+        verdict = certify(valley(), stopped, 1e-6)
+        assert verdict.status == "limit" and verdict.objective == pytest.approx(0.0361)
+        assert not sought and verdict.certificate == {"feasibility": 0.0}
+        assert verdict.bound is None and not verdict.multipliers
+        assert certify(valley(), ended, 1e-6).status == "stationary" and sought
+        of_convex = certify(hill(), Outcome(np.array([0.5, 9.0]), finished=False), 1e-6)
+        assert of_convex.status == "limit" and of_convex.bound <= 0.5
+    with until(100.0):
+        assert {"stationarity"} <= certify(valley(), stopped, 1e-6).certificate.keys()
 
 
 def test_an_objective_that_is_no_number_is_refused_by_name():

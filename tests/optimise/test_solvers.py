@@ -17,7 +17,7 @@ from gearopt.optimise.own_methods import back_ends
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
-from gearopt.optimise.solvers import scip
+from gearopt.optimise.solvers import ipopt, scip
 from gearopt.optimise.terms import Param, Terms, Var
 from gearopt.physics.gears import SERIES_I
 
@@ -107,6 +107,23 @@ def test_a_watcher_stops_the_run_and_keeps_the_best(method):
     assert len(seen) >= 20
     assert result.status in ("limit", "optimal")  # multistart may have proven its first start
     assert result.value is None or result.value >= 1.0 - 1e-9
+
+
+@pytest.mark.parametrize(("start", "known"), [((0.9, 0.8, 0.7), True), ((2.0, 2.0, 2.0), False)])
+def test_ipopt_builds_no_program_when_time_is_over(monkeypatch, start, known):
+    """A start that is feasible is kept, another is none."""
+
+    def built(*given):
+        raise AssertionError("a program is built")
+
+    monkeypatch.setattr(ipopt, "program", built)
+    stopped = ipopt.run(box(), Budget(seconds=0.0), 0, None, start=np.array(start))
+    assert not stopped.finished and not stopped.infeasible
+    assert (stopped.x is not None) == known
+    if known:
+        assert stopped.x == pytest.approx(start, rel=1e-12)
+    with pytest.raises(AssertionError, match="a program is built"):
+        ipopt.run(box(), Budget(seconds=100.0), 0, None, start=np.array(start))
 
 
 def test_gp_and_ipopt_share_nothing_and_agree_to_1e_9():

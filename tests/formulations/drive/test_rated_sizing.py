@@ -20,10 +20,12 @@ from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 from gearopt.physics.agma import factors
 from gearopt.physics.agma.rating_factors import Practice, Steel, distribution
+from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import Rack
 
 F = Fraction
 SHARP = Rack(tip_radius=0.38)
+HOLLOW = (SOLID, Blank(rim_over_module=2.5, web_over_width=0.4))
 
 
 def published_pair(given=()):
@@ -67,6 +69,20 @@ def test_a_published_pair_of_least_volume(monkeypatch):
     assert whole.value == pytest.approx(1717666, abs=0.5)
     assert found.bound < found.value < whole.value
     assert found.gap < 0.05
+
+
+def test_nothing_is_traced_for_ipopt_when_time_is_over(monkeypatch):
+    """What it would be given are starts; with seconds they are tried."""
+    train, tried = replace(published_pair(), objective="mass", density=7.85e-9), []
+    train = replace(train, stages=tuple(replace(s, blanks=HOLLOW) for s in train.stages))
+    monkeypatch.setattr(continuous_sizing, "_by_ipopt", lambda *a: tried.append(a) or [])
+    over = solve(continuous_sizing.problem(train), budget=Budget(seconds=0.0))
+    assert over.status == "limit" and over.value > 0.0 and not tried
+    monkeypatch.setattr(continuous_sizing, "whole", lambda *a: [])
+    none = solve(continuous_sizing.problem(train), budget=Budget(seconds=0.0))
+    assert none.message == "stopped before a design was found" and not tried
+    solve(continuous_sizing.problem(train), budget=Budget(seconds=100.0))
+    assert len(tried) == 1
 
 
 @pytest.mark.slow

@@ -225,9 +225,10 @@ def loads_and_pressures(demand: Demand, flank: Flank) -> dict[str, Any]:
 
 def sizes_and_clearances(demand: Demand, flank: Flank, extras: Extras) -> dict[str, Any]:
     """Fields of a `WaveDesign`: sizes, contacts along the flank, clearances of its teeth."""
-    least, name = interference(flank, STEP_DEG), "teeth within a clearance"
-    gaps = 1e-3 * np.array(WITHIN)
+    least = interference(flank, STEP_DEG)
+    name = "teeth within a clearance"
     none: Columns = ()
+    gaps = 1e-3 * np.array(WITHIN)
     within = extras.of(name, lambda: floats(teeth_within(flank, gaps)), none, SOUGHT)
     return {
         **_sizes(demand, flank),

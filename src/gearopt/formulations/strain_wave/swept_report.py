@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -84,11 +84,6 @@ class SweptGearing:
     def pairs(self) -> float:
         """Mean conjugate pairs per lobe and flank."""
         return mean_pairs(self.mesh, list(self.stretches))
-
-    @cached_property
-    def least(self) -> tuple[float, float]:
-        """The least clearance [mm] over poses that were not swept, and its pose [degrees]."""
-        return _least(self.mesh)
 
 
 def swept_tooth(gearing: StrainWave, law: Law) -> Profile:
@@ -172,7 +167,7 @@ def sizes_by_law(demand: Demand, swept: SweptGearing, law: Law) -> dict[str, Any
     """Fields of a `WaveDesign`: law, sizes, contacts along the flank, clearances of its teeth."""
     mesh = swept.mesh
     gearing = mesh.gearing
-    least, at = swept.least
+    least, at = _least(mesh)
     arcs = np.linspace(-0.499 * math.pi, 0.499 * math.pi, ARCS)
     clear = tooth_gaps(mesh, arcs)
     each = (arcs[1] - arcs[0]) * float(gearing.teeth) / (2.0 * math.pi)
@@ -210,7 +205,7 @@ def used_by_law(demand: Demand, swept: SweptGearing) -> dict[str, float]:
     widths = *flexspline_widths(gearing, tooth[0], tooth[-1]), mesh.spline_land
     ratchets_at = _ratcheting_torque(demand, gearing)
     utilisations = common_limits(demand, gearing, mesh.curve, swept.pairs, ratchets_at, widths)
-    least, _ = swept.least
+    least, _ = _least(mesh)
     if least < -TOUCH:
         utilisations["interference"] = 1.0 - least / float(gearing.module)
     return {name: float(value) for name, value in utilisations.items()}
@@ -229,6 +224,7 @@ def _equal(duty: Duty, swept: SweptGearing, pairs: float) -> float:
     return float(duty.pressure(load, contacts.gap_curvature.max()))
 
 
+@lru_cache(maxsize=4)  # the parts of a description ask for the same
 def _least(mesh: SweptMesh) -> tuple[float, float]:
     """Return the least clearance [mm] over poses that were not swept, and its pose [degrees]."""
     angles = np.arange(-90.0 + 0.5 * STEP_DEG, 90.0, STEP_DEG)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -136,6 +137,8 @@ def interference(flank: Flank, step_deg: float = 0.05, points: int = 51) -> Leas
     return next(iter(least_gaps(flank, step_deg, points)), Least(math.inf, 0.0, None, False))
 
 
+@lru_cache(maxsize=4)  # the parts of a description ask for the same
+@np.errstate(invalid="ignore", divide="ignore")
 def least_gaps(flank: Flank, step_deg: float = 0.05, points: int = 51) -> tuple[Least, ...]:
     """Return all least clearances over the wave from -90 to 90 degrees, the smallest first.
 
@@ -144,15 +147,6 @@ def least_gaps(flank: Flank, step_deg: float = 0.05, points: int = 51) -> tuple[
     flank's, evenly; between them a clearance is less by at most the square of their distance over
     8 R.
     """
-    key = "least gaps", step_deg, points
-    if key not in flank.memo:
-        flank.memo[key] = _least_gaps(flank, step_deg, points)
-    known: tuple[Least, ...] = flank.memo[key]
-    return known
-
-
-@np.errstate(invalid="ignore", divide="ignore")
-def _least_gaps(flank: Flank, step_deg: float, points: int) -> tuple[Least, ...]:
     gearing, flex = flank.gearing, flank.contacts.point
     last = len(flex.x) - 1
     taken = np.unique(np.rint(np.linspace(0, last, points)).astype(int))

@@ -5,7 +5,7 @@ involute through the instant centre is known.
 """
 
 import math
-from dataclasses import field, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -81,19 +81,17 @@ def contact(gearing: StrainWave, at: Motion) -> Contact:
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # a flank is itself alone, and a key of caches
 class Flank:
     """The conjugate flank from root to tip: gearing, neutral curve, contacts (..., n).
 
-    complete: whether every radius between r_a and r_w has a contact with t > 0. memo: what was
-    computed of it (`clearance.least_gaps`).
+    complete: whether every radius between r_a and r_w has a contact with t > 0.
     """
 
     gearing: StrainWave
     curve: NeutralCurve
     contacts: Contact
     complete: Any
-    memo: dict[Any, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
     def pairs_in_contact(self) -> Any:

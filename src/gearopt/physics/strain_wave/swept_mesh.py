@@ -38,7 +38,7 @@ class Touching:
     gap_curvature: Any
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # a mesh is itself alone, and a key of caches
 class SweptMesh:
     """A tooth and the space that it leaves of the circular spline.
 
