@@ -349,14 +349,31 @@ def test_passes_raise_the_bound_and_never_lower_it(monkeypatch):
         return True
 
     work = SimpleNamespace(drive=None)
-    stubs = {"prove": prove, "prepare": lambda *_: work, "_first": lambda _: True}
-    stubs |= {"numbers": lambda *_: (None, None), "slabs_of": lambda _: ()}
-    for name, stub in (stubs | {"_outcome": lambda own, *_: own.clock.bound}).items():
+    stubs = {"prove": prove, "prepare": lambda *_: work, "numbers": lambda *_: (None, None)}
+    for name, stub in stubs.items():
         monkeypatch.setattr(together, name, stub)
     own = search.Search(elevator(), None, Clock(Budget(gap=0.03)), 0)
     own.clock.bound = 0.0
-    assert together._searched(own, None) == pytest.approx(0.7 * 10.0)
+    assert together._proven(own)
+    assert own.clock.bound == pytest.approx(0.7 * 10.0)
     assert next(values, None) is None
+
+
+def test_no_tables_of_box_and_gears_are_made_when_time_is_over(monkeypatch):
+    """A layout that is known is the answer, without a bound."""
+    train, make = elevator(), frame(elevator(), (12.0, 19.0, 32.0))
+
+    def tables(*given):
+        raise AssertionError("tables are made")
+
+    monkeypatch.setattr(together, "numbers", tables)
+    own = search.Search(train, make, Clock(Budget(seconds=0.0)), 0)
+    assert together._searched(own, None).message == "stopped before a layout was found"
+    point = np.array([2, 3, 21, 24, 128, 85, -0.7, 1.5])
+    box, angles, order = together.laid_out(train, make, point)
+    own = search.Search(train, make, Clock(Budget(seconds=0.0)), 0)
+    outcome = together._searched(own, ((box.pairs, (0, 0)), order, np.array(angles)))
+    assert outcome.x == pytest.approx(point) and not outcome.finished and outcome.bound is None
 
 
 @pytest.mark.parametrize(

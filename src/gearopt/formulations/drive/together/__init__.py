@@ -105,23 +105,29 @@ def _tiny() -> None:
 
 
 def _searched(search: Search, start: Start | None) -> Outcome:
-    drive, box = numbers(search.train, search.make, search.tables)
     if start is not None:
         keep(search, *start)
     possible = _first(search)
+    if possible and search.clock.tell():
+        possible = _proven(search)
+    return _outcome(search, slabs_of(frame(search.train, search.make)), possible)
+
+
+def _proven(search: Search) -> bool:
+    """Search with narrower and narrower margins; False if there is no train at all."""
+    drive, box = numbers(search.train, search.make, search.tables)
     clock = search.clock
     wanted = (clock.budget.gap or GAP) * (1.0 - SLACK)
     margins = [m for m in MARGINS if m > 1.1 * wanted] + [wanted]
-    while possible and margins and not clock.stopped:
+    while margins and not clock.stopped:
         work = prepare(search, drive, box, wanted)
         if work is not None and search.train.rated:
             drive = work.drive  # whose widths took long
         while work is not None and margins and prove(search, work, margins[0]):
             clock.bound = max(clock.bound, search.value * (1.0 - margins.pop(0)))
-            possible = search.best is not None
-            if not possible:
-                break
-    return _outcome(search, slabs_of(box), possible)
+            if search.best is None:
+                return False
+    return True
 
 
 def _first(search: Search) -> bool:
