@@ -168,7 +168,16 @@ def checked(html: Path | None, csv: Path | None, units: str, *given: Path) -> Fi
 
 def written(result: Result, files: Files) -> list[str]:
     """Write the page and the tables, once all are made; return a line for each."""
-    return _kept(files, _page(result, files), _tables(result, files))
+    if files.html is None and files.csv is None:
+        return []
+    from gearopt.report.pages.result import page_of, sections, tables_of
+
+    shown, html = sections(result, files.measures), ""
+    if files.html is not None:
+        html = page_of(
+            shown, result, again(result, str(files.html), files.measures), files.measures
+        )
+    return _kept(files, html, {} if files.csv is None else tables_of(shown))
 
 
 def _kept(files: Files, page: str, found: Mapping[str, str]) -> list[str]:
@@ -185,22 +194,6 @@ def _kept(files: Files, page: str, found: Mapping[str, str]) -> list[str]:
         lines.append(f"\nTables: {', '.join(map(str, paths))}")
     write(*written)
     return lines
-
-
-def _page(result: Result, files: Files) -> str:
-    if files.html is None:
-        return ""
-    from gearopt.report.pages.result import page
-
-    return page(result, again(result, str(files.html), files.measures), files.measures)
-
-
-def _tables(result: Result, files: Files) -> dict[str, str]:
-    if files.csv is None:
-        return {}
-    from gearopt.report.pages.result import tables
-
-    return tables(result, files.measures)
 
 
 def _make_folder(folder: Path) -> None:

@@ -4,7 +4,7 @@
 made: they take a tenth of a second that a line of text does not need.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from difflib import get_close_matches
 from itertools import accumulate
@@ -272,15 +272,19 @@ def compared_page(comparison: Comparison) -> str:
     return comparison_pages.page(comparison)
 
 
+def _tables(result: Result, units: str) -> Iterator[tuple[str, Table]]:
+    return result_pages.tables_by_name(result_pages.each_section(result, measures_of(units)))
+
+
 def table_names(result: Result, units: str) -> tuple[str, ...]:
     """Names of the tables of a result, in the order of its page."""
-    return tuple(name for name, _ in result_pages.tables_by_name(result, measures_of(units)))
+    return tuple(name for name, _ in _tables(result, units))
 
 
 def table_rows(result: Result, name: str, units: str) -> list[dict[str, Any]]:
     """A table of a result as rows {column: value}; ValueError names the tables there are."""
     known = []
-    for stem, table in result_pages.tables_by_name(result, measures_of(units)):
+    for stem, table in _tables(result, units):
         if stem == name:
             return table.records
         known.append(stem)

@@ -1,6 +1,6 @@
 """The page of a result: drawings, a solid to turn, progress, numbers, and how sure they are."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 from gearopt.optimise.result import Result
 from gearopt.report.answer import opening
@@ -14,10 +14,11 @@ from gearopt.scenes.reading.toml_writing import short
 
 def sections(result: Result, measures: Measures = METRIC) -> list[Section]:
     """Sections of a result, in the order of its page."""
-    return list(_each(result, measures))
+    return list(each_section(result, measures))
 
 
-def _each(result: Result, measures: Measures) -> Iterator[Section]:
+def each_section(result: Result, measures: Measures) -> Iterator[Section]:
+    """Sections of a result, each as soon as it is made."""
     result = Result.from_dict(result.to_dict())  # plain numbers, as a file of it has them
     shown = (section(result, measures) for section in pages_of_result(result).sections)
     return (section for section in shown if section is not None and section.heading)
@@ -25,7 +26,11 @@ def _each(result: Result, measures: Measures) -> Iterator[Section]:
 
 def page(result: Result, command: str, measures: Measures = METRIC) -> str:
     """One self-contained HTML page; command: what makes it again."""
-    shown = sections(result, measures)
+    return page_of(sections(result, measures), result, command, measures)
+
+
+def page_of(shown: Sequence[Section], result: Result, command: str, measures: Measures) -> str:
+    """The page of a result whose sections are made; command: what makes it again."""
     return render(
         "result.html",
         title(result),
@@ -41,13 +46,18 @@ def page(result: Result, command: str, measures: Measures = METRIC) -> str:
 
 def tables(result: Result, measures: Measures = METRIC) -> dict[str, str]:
     """The CSV of every table by the name of its file, such as `stages.csv`."""
-    return {f"{name}.csv": table.csv() for name, table in tables_by_name(result, measures)}
+    return tables_of(each_section(result, measures))
 
 
-def tables_by_name(result: Result, measures: Measures) -> Iterator[tuple[str, Table]]:
-    """Yield the tables with a name of their own each, as soon as their section is made."""
+def tables_of(shown: Iterable[Section]) -> dict[str, str]:
+    """The CSV of every table of sections by the name of its file."""
+    return {f"{name}.csv": table.csv() for name, table in tables_by_name(shown)}
+
+
+def tables_by_name(shown: Iterable[Section]) -> Iterator[tuple[str, Table]]:
+    """Yield the tables of sections with a name of their own each."""
     taken: set[str] = set()
-    for section in _each(result, measures):
+    for section in shown:
         for table in section.tables:
             names = (f"{table.stem}{k}" for k in ("", *range(2, 1000)))
             name = next(name for name in names if name not in taken)
