@@ -13,7 +13,6 @@ from gearopt.report.measures import METRIC, Measures, read_in, rounded
 from gearopt.report.section import Cell, Table, cell
 from gearopt.report.words import MODULE, SECONDS, goal_words, number, sentence
 
-ROWS_ON_TERMINAL = 24  # rows on the terminal; the page and the CSV hold all
 VERDICTS = {
     "complete": ("complete Pareto front, proven", "green"),
     "proven": ("every point proven", "green"),

@@ -26,6 +26,7 @@ from gearopt.report.words import is_module, number, parted, share
 FORMULA = re.compile(r"\s*[=+\-@\uff1d\uff0b\uff0d\uff20]|[\t\r\n]")
 NUMBER = re.compile(r"[+-]?[0-9]*\.?[0-9]+([eE][+-]?[0-9]+)?")
 ABSENT = "–"  # in place of a value that there is none of; a sentence gives the reason
+ROWS_ON_TERMINAL = 24  # at most, of a list; the page and the CSV hold all
 LONG_TABLE = 24  # rows; a longer table may break between rows when it is printed
 
 

@@ -27,7 +27,7 @@ from gearopt.report.pages import front as front_pages
 from gearopt.report.pages import result as result_pages
 from gearopt.report.pages.frame import templates
 from gearopt.report.screen import harmless
-from gearopt.report.section import Table
+from gearopt.report.section import ROWS_ON_TERMINAL, Table
 from gearopt.report.words import (
     EXACT,
     MODULE,
@@ -227,7 +227,7 @@ def front_fragment(pareto: Front) -> str:
     """Pareto front as the terminal has it, as HTML for a notebook."""
     pareto = Front.from_dict(pareto.to_dict())
     blocks: list[Block] = [*front.decided(pareto)]
-    blocks += [front.table(pareto, METRIC, front.ROWS_ON_TERMINAL)] if pareto.points else []
+    blocks += [front.table(pareto, METRIC, ROWS_ON_TERMINAL)] if pareto.points else []
     head = f"{front.title(pareto)}: {front.verdict(pareto)[0]}"
     return _html(head, [*blocks, *front.picked(pareto)])
 

@@ -17,7 +17,7 @@ from gearopt.report.answer import assumed, decided
 from gearopt.report.explained import of_influences
 from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, Measures
-from gearopt.report.section import Cell, Table
+from gearopt.report.section import ROWS_ON_TERMINAL, Cell, Table
 from gearopt.report.words import (
     REACHED,
     amount,
@@ -201,8 +201,8 @@ def show_front(pareto: Front, console: Console, measures: Measures = METRIC) -> 
         console.print(Text(line))
     if pareto.points:
         console.print()
-        console.print(grid(front.table(pareto, measures, front.ROWS_ON_TERMINAL), console.width))
-        hidden = len(pareto.points) - front.ROWS_ON_TERMINAL
+        console.print(grid(front.table(pareto, measures, ROWS_ON_TERMINAL), console.width))
+        hidden = len(pareto.points) - ROWS_ON_TERMINAL
         if hidden > 0:
             console.print(Text("Some of the designs; --csv, --html and --json hold all.", "dim"))
     for line in front.picked(pareto, measures):

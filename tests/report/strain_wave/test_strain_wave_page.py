@@ -14,7 +14,16 @@ from gearopt.optimise.pareto.objectives import Objective
 from gearopt.optimise.typed import typed
 from gearopt.report.drawing.sheet import Row
 from gearopt.report.front import heads
-from gearopt.report.kinds.strain_wave import cutter, moving, numbers, search, shift, tiles, warns
+from gearopt.report.kinds.strain_wave import (
+    cutter,
+    loaded_teeth,
+    moving,
+    numbers,
+    search,
+    shift,
+    tiles,
+    warns,
+)
 from gearopt.report.kinds.strain_wave.cutter import drawing
 from gearopt.report.kinds.strain_wave.motion import drawn, running
 from gearopt.report.measures import METRIC
@@ -243,3 +252,16 @@ def test_teeth_without_a_load_have_clearances_and_no_colours(result):
     none = [0.0 for _ in result.design["load_N"]]
     section = moving(replace(result, design=result.design | {"load_N": none}), METRIC)
     assert len(section.figures) == 1 and not section.animations and section.tables
+
+
+def test_the_terminal_shows_some_of_many_teeth_evenly(result):
+    """Tooth 0 and every third of 61; all 12 of a short table, which the page has whole."""
+    whole = result.design["teeth"]
+    (table,) = loaded_teeth(result, METRIC).terminal
+    assert [row[0].value for row in table.rows] == [tooth["tooth"] for tooth in whole]
+    many = [whole[0] | {"tooth": number} for number in range(-30, 31)]
+    long = replace(result, design=result.design | {"teeth": many})
+    table, words = loaded_teeth(long, METRIC).terminal
+    assert [row[0].value for row in table.rows] == [*range(-30, 31, 3)]
+    assert words.startswith("Some of the teeth")
+    assert len(moving(long, METRIC).tables[1].rows) == 61

@@ -18,7 +18,7 @@ from gearopt.report.pages import front_designs, front_plots
 from gearopt.report.pages.frame import render
 from gearopt.report.pages.front_designs import Numbers
 from gearopt.report.pages.front_plots import Drawn, drawn
-from gearopt.report.section import Section, Tile
+from gearopt.report.section import ROWS_ON_TERMINAL, Section, Tile
 from gearopt.report.words import effort, sentence
 
 MIN_LINES = 2  # designs at least, that are drawn as lines
@@ -73,7 +73,7 @@ def _picking(front: Front, each: Sequence[Numbers], measures: Measures) -> dict[
         ),
         "parallel": front_plots.parallel(front, drawn_front, each, names) if lines else None,
         "table": front_designs.designs(front, each, names, measures),
-        "kept": set(front_words.chosen(front, front_words.ROWS_ON_TERMINAL)),
+        "kept": set(front_words.chosen(front, ROWS_ON_TERMINAL)),
         "told": front_designs.data(front, each, names, measures) | {"pair": _pair(front)},
     }
 

@@ -22,7 +22,7 @@ from gearopt.report.kinds.strain_wave.cutter import breadth, drawing, usual_scal
 from gearopt.report.kinds.strain_wave.motion import running
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.plots import Figure, axis, band, layout, lines, upright
-from gearopt.report.section import Section, Tile
+from gearopt.report.section import ROWS_ON_TERMINAL, Section, Tile
 from gearopt.report.words import amount, number, series_of
 
 RUNS = "strain wave gearing"  # the animation that plots follow
@@ -133,10 +133,16 @@ def moving(result: Result, measures: Measures) -> Section | None:
 
 
 def loaded_teeth(result: Result, measures: Measures) -> Section | None:
-    """What the terminal shows of the teeth in mesh: a table, for which nothing is drawn."""
+    """Teeth in mesh on the terminal: a table, evenly thinned where it is long."""
     if (design := design_of(result)) is None:
         return None
-    return Section("Teeth in mesh", terminal=(tables.teeth(design, measures),))
+    whole = tables.teeth(design, measures)
+    step = -(-len(whole.rows) // ROWS_ON_TERMINAL)
+    rows = [
+        row for row, tooth in zip(whole.rows, design.teeth, strict=True) if not tooth.tooth % step
+    ]
+    words = ("Some of the teeth; --csv, --html and --json hold all.",) if step > 1 else ()
+    return Section("Teeth in mesh", terminal=(replace(whole, rows=rows), *words))
 
 
 def _line(x: Sequence[float], y: Any, name: str, colour: int) -> dict[str, Any]:
