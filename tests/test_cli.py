@@ -16,7 +16,7 @@ from campaigns import few
 
 import gearopt
 from gearopt.cli.app import print_whole
-from gearopt.optimise.own_methods import back_ends
+from gearopt.optimise.methods import back_ends
 from gearopt.scenes.reading.ask import RANDOM
 
 ROOT = Path(__file__).parents[1]

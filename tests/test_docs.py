@@ -10,7 +10,7 @@ import pytest
 import gearopt
 from gearopt import api, cli
 from gearopt.formulations.drive import continuous_sizing, teeth
-from gearopt.optimise.own_methods import back_ends
+from gearopt.optimise.methods import back_ends
 from gearopt.report.measures import METRIC
 from gearopt.scenes.reading.json_schema import reference
 from gearopt.scenes.reading.kinds import kinds

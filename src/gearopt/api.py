@@ -274,7 +274,7 @@ def compare(
         comparison = compare_methods(chosen, lambda method: model, plan, watch, bound_from)
         return replace(comparison, title=what.name)
     scene, kind, about = _opened(what, changes)
-    chosen = kind.compared(scene) if methods is None else methods
+    chosen = kind.methods_to_compare(scene) if methods is None else methods
     comparison = compare_methods(chosen, lambda m: kind.posed(scene, m), plan, watch, bound_from)
     title = getattr(scene, "title", "") or about["scene"]
     return replace(comparison, title=title, **_of_comparison(about))

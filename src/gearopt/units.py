@@ -170,7 +170,7 @@ class Quantity:
         factor, power = UNITS[self.dimension][self.unit] if self.unit else (Fraction(1), 0)
         number = self.number + OFFSETS.get(self.unit, 0)
         value = factor / number if self.reciprocal else number * factor
-        return (_converted(value, self.number) if self.unit == "in" else value), power
+        return (_before_conversion(value, self.number) if self.unit == "in" else value), power
 
     @property
     def reciprocal(self) -> bool:
@@ -193,9 +193,10 @@ class Quantity:
         return f"{float(self.number):.12g} {self.unit}".rstrip()
 
 
-def _converted(value: Fraction, number: Fraction) -> Fraction:
-    """Return the length of few digits [mm] that a number of many was converted from, else `value`.
+def _before_conversion(value: Fraction, number: Fraction) -> Fraction:
+    """Return the length [mm] that a number of CUT digits or more in inches was converted from.
 
+    It has WHOLE digits at most; `value` where there is none within SLIP.
     0.7874015748031497 in is 20 mm, though it is above it by 1e-16 of it.
     """
     with localcontext(prec=40):

@@ -20,10 +20,10 @@ def test_rows_are_errors_of_pairs_one_at_a_time(monkeypatch):
     assert "smooth" in names() and len(rows) == 20
     assert all(row["worst"] < 1e-9 and row["pairs"] == 12 for row in rows[:8])
     assert all(row["median"] <= row["of_1000"] <= row["worst"] for row in rows)
-    pair, _ = smooth.pairs(smooth.OVERLAPS["conventional"], 2)
+    pair, _ = smooth.random_pairs(smooth.OVERLAPS["conventional"], 2)
     found = [smooth_error(one(pair, k), "conventional")[1] for k in range(12)]
     assert rows[8]["worst"] == pytest.approx(100.0 * np.abs(found).max(), rel=1e-9)
-    pair, speed = smooth.pairs((0.0, 0.0), 10)
+    pair, speed = smooth.random_pairs((0.0, 0.0), 10)
     torque = smooth._torque(smooth.ISO, pair, speed)
     found = []
     for k in range(12):

@@ -11,7 +11,7 @@ from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength import RATED
 from gearopt.formulations.strength.agma import Agma
 from gearopt.formulations.strength.iso6336 import Iso6336
-from gearopt.formulations.strength.rated import Load, Option
+from gearopt.formulations.strength.standard import Load, Option
 from gearopt.physics.agma.rating_factors import Practice, Steel
 from gearopt.physics.gears import Rack
 from gearopt.physics.iso6336.case import Practice as IsoPractice

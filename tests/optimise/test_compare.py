@@ -17,7 +17,7 @@ from gearopt import Comparison, Problem, SolveError, Terms, Var
 from gearopt.errors import CertificateError
 from gearopt.optimise.comparing.comparison import excess, quantile
 from gearopt.optimise.comparing.runs import KINDS, PATIENCE, WARM
-from gearopt.optimise.own_methods import back_ends
+from gearopt.optimise.methods import back_ends
 from gearopt.optimise.result import Event, Outcome
 
 PROBLEMS = Path(__file__).parents[2] / "problems"

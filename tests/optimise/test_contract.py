@@ -10,7 +10,7 @@ from gearopt.errors import SolveError
 from gearopt.optimise import tape
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.form import form
-from gearopt.optimise.own_methods import back_ends
+from gearopt.optimise.methods import back_ends
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import method_of, run, solve

@@ -9,7 +9,7 @@ import pytest
 from gearopt import Param, Problem, Repeat, Terms, Var, explain, solve
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.exclusion import exclusion
-from gearopt.optimise.explaining.handles import numbered
+from gearopt.optimise.explaining.handles import with_limits_named
 from gearopt.optimise.result import Budget
 
 WINDOW = 14  # whole numbers beside its bounds to which a variable goes where these are dropped
@@ -112,7 +112,7 @@ def test_a_number_of_several_limits_or_of_the_objective_is_data_unless_it_divide
 
     names = "both", "cost", "up", "one", "two"
     numbers = tuple(Param(name, "", 2.0) for name in names)
-    problem = numbered(Problem("roles", (Var("x", "", 0.1, 9.0, 1.0),), numbers, evaluate))
+    problem = with_limits_named(Problem("roles", (Var("x", "", 0.1, 9.0, 1.0),), numbers, evaluate))
     roles = {q.name: q.role for q in problem.parameters}
     assert {name for name, role in roles.items() if role == ("limit",)} == {"both"}
 

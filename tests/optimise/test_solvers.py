@@ -13,7 +13,7 @@ from gearopt.formulations.drive import continuous_sizing, teeth
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength.laws.k_factor import K_FACTOR
-from gearopt.optimise.own_methods import back_ends
+from gearopt.optimise.methods import back_ends
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve

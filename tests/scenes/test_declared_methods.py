@@ -48,7 +48,7 @@ def posed(name, method):
 def own_methods(name):
     """The exact and other methods that the models of a file bring, by name."""
     scene, found = scene_of(name), {}
-    for method in ROOMS[type(scene)].compared(scene):
+    for method in ROOMS[type(scene)].methods_to_compare(scene):
         try:
             problem = posed(name, method).problem
         except SolveError:

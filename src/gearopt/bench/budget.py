@@ -49,7 +49,7 @@ def _compared(file: Path, seconds: float) -> float:
     scene = api.load(file)
     kind = kind_named(kind_of(scene))
     used = [0.0]
-    for method in kind.compared(scene):
+    for method in kind.methods_to_compare(scene):
         entry = enter(method, lambda one: kind.posed(scene, one))
         if not entry.refused:
             processor = time.process_time()

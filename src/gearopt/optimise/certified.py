@@ -18,7 +18,7 @@ from gearopt.optimise.clock import Clock, of_problem
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.deadline import until
 from gearopt.optimise.failures import counting
-from gearopt.optimise.own_methods import back_ends, run_method
+from gearopt.optimise.methods import back_ends, run_method
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Result, Watch, versions
 from gearopt.optimise.terms import Array, Var

@@ -61,7 +61,7 @@ class Quantity(NDArrayOperatorsMixin):
 
 
 @dataclass(frozen=True)
-class Number:
+class ComparedNumber:
     """The number that a limit is compared with, a literal of the text or a parameter by its name.
 
     sign: +1 where a larger one is easier, -1 where a smaller one is. scale: of the row where it is
@@ -107,14 +107,14 @@ class Comparison:
         larger = max(abs(float(plain(side))) for side in (self.lesser, self.greater))
         return larger if 0.0 < larger < np.inf else 1.0
 
-    def number(self, scale: float, parameters: Mapping[str, Any]) -> Number | None:
+    def number(self, scale: float, parameters: Mapping[str, Any]) -> ComparedNumber | None:
         """The number on one of its sides, None where there is none, or it is a balance."""
         if self.equal:
             return None
         for side, sign in ((self.greater, 1), (self.lesser, -1)):
             names = [name for name, value in parameters.items() if value is side]
             if names or not isinstance(side, Quantity):
-                return Number(float(plain(side)), sign, scale, "".join(names))
+                return ComparedNumber(float(plain(side)), sign, scale, "".join(names))
         return None
 
 
@@ -154,7 +154,7 @@ def compares(terms: Any) -> bool:
 
 
 def rows(
-    terms: Terms, scales: dict[str, float], numbers: dict[str, Number], parameters: Named
+    terms: Terms, scales: dict[str, float], numbers: dict[str, ComparedNumber], parameters: Named
 ) -> Terms:
     """Terms with comparisons made rows; those with == stand among the equal rows.
 
@@ -178,7 +178,7 @@ def _row(
     value: Any,
     name: str,
     scales: dict[str, float],
-    numbers: dict[str, Number],
+    numbers: dict[str, ComparedNumber],
     parameters: Mapping[str, Any],
 ) -> Any:
     if not isinstance(value, Comparison):

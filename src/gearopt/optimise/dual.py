@@ -186,10 +186,11 @@ def _reachable(system: Array, endless: Any) -> Array:
 def farkas(
     problem: Problem, shape: Form, outcome: Outcome, low: Array, high: Array
 ) -> tuple[float, Array, Array]:
-    """Return the violation that every point of the box has at least, and its multipliers.
+    """Return a lower bound of the largest violation on the box, and its multipliers (ng,), (nh,).
 
-    With l >= 0, sum l + sum |v| = 1 and a convex form, max(G, |H|) >= l.G + v.H >= its linear
-    lower bound on the box.
+    In rows of the form. Above 0 it proves that no point of the box is feasible (Lemma 4): with
+    l >= 0, sum l + sum |v| = 1 and a convex form, max(G, |H|) >= l.G + v.H, which is bounded by its
+    linear part, less rounding. -inf where all multipliers are 0.
     """
     assert outcome.x is not None and outcome.lam_g is not None and outcome.lam_h is not None
     lam_g = np.maximum(outcome.lam_g, 0.0)

@@ -15,7 +15,7 @@ from gearopt.optimise.deadline import until
 from gearopt.optimise.explaining.exclusion import exclusion, named
 from gearopt.optimise.failures import counting
 from gearopt.optimise.maximised import as_asked
-from gearopt.optimise.own_methods import back_ends
+from gearopt.optimise.methods import back_ends
 from gearopt.optimise.polish import TRACED
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import FEASIBLE, Budget, Event, Result, Watch
@@ -137,7 +137,7 @@ def _local(
     return (
         result
         if logged is None
-        else _held(result, solve(logged, method, left, seed, watch, gap), gap)
+        else _with_bound_in_logarithms(result, solve(logged, method, left, seed, watch, gap), gap)
     )
 
 
@@ -167,7 +167,7 @@ def _logged(problem: Problem) -> Problem | None:
     return logged if log_convex_in_logarithms(logged) else None
 
 
-def _held(result: Result, logged: Result, gap: float) -> Result:
+def _with_bound_in_logarithms(result: Result, logged: Result, gap: float) -> Result:
     """An answer with the bound of the same problem in logarithms, with the effort of both.
 
     The rows of the two may differ, so that the answer is kept where it does not gain from an

@@ -15,7 +15,7 @@ import numpy as np
 from gearopt.errors import SolveError
 from gearopt.frozen import dataclass
 from gearopt.optimise.evaluation import at, evaluated, first_terms, terms_of
-from gearopt.optimise.own_methods import check_methods
+from gearopt.optimise.methods import check_methods
 from gearopt.optimise.terms import (
     FALLING,
     SECTIONS,

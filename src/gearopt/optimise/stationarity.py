@@ -170,9 +170,10 @@ class _Cone:
 
 @dataclass(frozen=True)
 class Doubt:
-    """Why a stationary point may be no local minimum, in words; "" where it is one.
+    """Why a stationary point is no local minimum, or is not known to be one; "" where it is one.
 
-    lower: a natural point (n,) beside it from which the objective falls further, if one is known.
+    lower: a point (n,) in the problem's own variables, a small step along a direction of descent,
+    from which a method may go on; None where none is known.
     """
 
     words: str = ""

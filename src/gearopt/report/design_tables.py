@@ -10,11 +10,11 @@ from gearopt.formulations.drive.design import StageDesign
 from gearopt.formulations.strength.laws import laws
 from gearopt.optimise.result import Result
 from gearopt.report.measures import DIGITS, Measures, error_of, rounded
-from gearopt.report.section import ABSENT, Cell, Section, Table, Tile, cell, listed, percent
+from gearopt.report.section import ABSENT, Cell, Section, Table, Tile, cell, listed_fields, percent
 from gearopt.report.words import EXACT, MODULE, heading, is_module, objective, parted
 
 VOLUME = "gear_volume_mm3"
-SIZES = {it.key: (it.label, it.unit) for it in listed(StageDesign)}
+SIZES = {it.key: (it.label, it.unit) for it in listed_fields(StageDesign)}
 AFTER_LIMITS = [*SIZES][[*SIZES].index(VOLUME) :]
 STAGE_ROWS = {  # what a key is called, and its unit
     MODULE: ("", ""),  # see `Measures.module`

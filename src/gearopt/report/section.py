@@ -201,7 +201,7 @@ def cell(value: Any, suffix: str, measures: Measures) -> Cell:
 
 
 @dataclass(frozen=True)
-class Listed:
+class ListedField:
     """A field of a design as a table lists it: its key, label, unit and format (see `Shown`)."""
 
     key: str
@@ -231,10 +231,10 @@ def _unit(key: str) -> str:
 
 
 @cache
-def listed(kind: type, table: str = "") -> tuple[Listed, ...]:
+def listed_fields(kind: type, table: str = "") -> tuple[ListedField, ...]:
     """The fields of a dataclass that a table lists, in their order."""
     return tuple(
-        Listed(key, said.label, _unit(key) if said.unit is None else said.unit, said.form)
+        ListedField(key, said.label, _unit(key) if said.unit is None else said.unit, said.form)
         for key, hint in get_type_hints(kind, include_extras=True).items()
         for said in getattr(hint, "__metadata__", ())
         if isinstance(said, Shown) and said.table == table
@@ -253,7 +253,7 @@ def names_and_values(
     values, labels: what is shown instead of some fields' own, by key.
     """
     rows: list[list[Any]] = []
-    for it in listed(design.__class__, table):
+    for it in listed_fields(design.__class__, table):
         value = (values or {}).get(it.key, getattr(design, it.key))
         if value is not None:
             label = (labels or {}).get(it.key) or it.head(measures)
@@ -263,7 +263,7 @@ def names_and_values(
 
 def columns(design: Any, measures: Measures, name: str, **look: Any) -> Table:
     """A table of fields that hold columns, whose table has this name."""
-    held = listed(design.__class__, name)
+    held = listed_fields(design.__class__, name)
     cells = [[it.cell(v, measures) for v in getattr(design, it.key)] for it in held]
     heads = [it.head(measures) for it in held]
     return Table(name, heads, list(zip(*cells, strict=True)), **look)
@@ -273,7 +273,7 @@ def records(
     rows: Sequence[Any], measures: Measures, table: str = ""
 ) -> tuple[list[str], list[Any]]:
     """Heads, and a row for every record, of the fields that a table lists."""
-    held = listed(rows[0].__class__, table) if rows else ()
+    held = listed_fields(rows[0].__class__, table) if rows else ()
     heads = [it.head(measures) for it in held]
     return heads, [[it.cell(getattr(row, it.key), measures) for it in held] for row in rows]
 
@@ -281,7 +281,8 @@ def records(
 def side_by_side(items: Sequence[Any], measures: Measures, table: str = "") -> list[list[Any]]:
     """A row for every field that a table lists and some item has, a column for each item."""
     held = [
-        (it, [getattr(item, it.key) for item in items]) for it in listed(items[0].__class__, table)
+        (it, [getattr(item, it.key) for item in items])
+        for it in listed_fields(items[0].__class__, table)
     ]
     return [
         [it.head(measures), *(it.cell(value, measures) for value in values)]

@@ -46,7 +46,7 @@ def _nothing_posed(scene: BaseModel, method: str) -> Model:
     raise SolveError("this kind of file poses no problem that methods could be compared on")
 
 
-def _nothing_compared(scene: BaseModel) -> tuple[str, ...]:
+def _no_methods_to_compare(scene: BaseModel) -> tuple[str, ...]:
     return ()
 
 
@@ -99,8 +99,9 @@ class Kind(Generic[S]):
     """A kind of problem file.
 
     scene: the tables of a file. examples: by name, the first that of the kind itself. steps: how a
-    file is answered. posed: the problem that a method solves, for comparisons. compared: the
-    methods of a comparison that names none. methods: those that the kind has beside the back ends.
+    file is answered. posed: the problem that a method solves, for comparisons.
+    methods_to_compare: those of a comparison that names none. methods: those that the kind has
+    beside the back ends.
     possible: whether a changed file has a design, for remedies; None: by solving it. moves: the
     numbers that a remedy may move; None: those of its relaxed form.
     remedies: what to write instead of an impossible file, from its result, which says why; soon:
@@ -116,7 +117,7 @@ class Kind(Generic[S]):
     examples: Mapping[str, Example]
     steps: Callable[[S, Ask], Sequence[Step[S]]]
     posed: Callable[[S, str], Model] = _nothing_posed
-    compared: Callable[[S], tuple[str, ...]] = _nothing_compared
+    methods_to_compare: Callable[[S], tuple[str, ...]] = _no_methods_to_compare
     methods: tuple[str, ...] = ()
     possible: Possible[S] | None = None
     moves: "Callable[[S], Iterable[Move]] | None" = None

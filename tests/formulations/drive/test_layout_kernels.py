@@ -52,7 +52,7 @@ def test_measure_and_value_are_the_plain_law():
         objective, short = law(shape, 0, y, z)
         at = np.zeros((2, shape.reach.size))
         for p in range(50):
-            width, height, lack = K.measure(shape, 0, theta[p], at[0], at[1])
+            width, height, lack = K.measured_at_angles(shape, 0, theta[p], at[0], at[1])
             assert at == pytest.approx(np.stack([y[p], z[p]]), abs=1e-9), name
             assert lack == pytest.approx(short[p], rel=1e-9, abs=1e-9), name
             assert K.value(shape, 0, width, height) == pytest.approx(objective[p], rel=1e-12), name

@@ -11,7 +11,7 @@ from rated_drives import MODULES, TREATMENTS, F, agma, rated_drive, some_face, s
 from gearopt.formulations.drive.rated_continuous import quick_bound as quick
 from gearopt.formulations.drive.teeth.search import search
 from gearopt.formulations.drive.teeth.tables import stage_tables
-from gearopt.formulations.strength.rated import Load, Option
+from gearopt.formulations.strength.standard import Load, Option
 from gearopt.optimise.result import Budget
 from gearopt.physics.blanks import Blank
 

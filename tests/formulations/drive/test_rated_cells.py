@@ -32,7 +32,7 @@ from gearopt.formulations.drive.rated_continuous.boxes import (
 from gearopt.formulations.drive.rated_continuous.cells import _halves
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth
-from gearopt.formulations.strength.rated import Load
+from gearopt.formulations.strength.standard import Load
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve

@@ -10,11 +10,11 @@ import pytest
 from rated_drives import FREE, agma, by, rated_drive
 
 from gearopt.formulations.drive import continuous_sizing, sizing_text, teeth
-from gearopt.formulations.drive.rated_continuous import bound as rated_bound
+from gearopt.formulations.drive.rated_continuous import bounding_program as rated_bound
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.formulations.strength import RATED, agma_floor, agma_smooth
-from gearopt.formulations.strength.rated import Box, Load, Option
+from gearopt.formulations.strength.standard import Box, Load, Option
 from gearopt.optimise.form import form
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve

@@ -10,7 +10,7 @@ from rated_drives import MODULES, RACK, TIED, F, agma, iso, rated_drive
 from gearopt.formulations.drive.teeth.columns import spans
 from gearopt.formulations.drive.teeth.search import search, within
 from gearopt.formulations.drive.toothing import Toothing
-from gearopt.formulations.strength.rated import Load, Option
+from gearopt.formulations.strength.standard import Load, Option
 from gearopt.optimise.result import Budget
 from gearopt.physics.agma.rating import rate_spectrum as agma_spectrum
 from gearopt.physics.iso6336.rating import rate_spectrum as iso_spectrum

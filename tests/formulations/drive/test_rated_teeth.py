@@ -22,7 +22,7 @@ from gearopt.formulations.drive.teeth.tables import stage_tables
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth
 from gearopt.formulations.strength.laws.k_factor import K_FACTOR
-from gearopt.formulations.strength.rated import Option
+from gearopt.formulations.strength.standard import Option
 from gearopt.optimise.result import Budget
 from gearopt.physics.agma.rating_factors import Steel
 from gearopt.physics.iso6336.materials import Material

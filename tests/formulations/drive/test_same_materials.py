@@ -15,7 +15,7 @@ from gearopt.formulations.drive.teeth import choices
 from gearopt.formulations.drive.teeth.choices import valued
 from gearopt.formulations.drive.teeth.search import search
 from gearopt.formulations.drive.train import FaceWidth
-from gearopt.formulations.strength.rated import Option
+from gearopt.formulations.strength.standard import Option
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run
 from gearopt.physics.agma.rating_factors import Steel

@@ -17,7 +17,7 @@ from gearopt.formulations.drive.teeth.rated import RatedTable
 from gearopt.formulations.drive.together import search as together_search
 from gearopt.formulations.drive.together.search import CELL_WIDTHS, Search, narrower
 from gearopt.formulations.drive.together.tables import numbers
-from gearopt.formulations.strength.rated import Option
+from gearopt.formulations.strength.standard import Option
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import run

@@ -7,7 +7,7 @@ import pytest
 from campaigns import few
 from rated_drives import RACK, TREATMENTS, agma
 
-from gearopt.formulations.strength.rated import Load, Option
+from gearopt.formulations.strength.standard import Load, Option
 from gearopt.physics.agma.rating_factors import Practice
 from gearopt.physics.gears import GearPair
 

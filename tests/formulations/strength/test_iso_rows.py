@@ -10,7 +10,7 @@ from rated_drives import RACK, agma, iso
 
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.strength import ALLOWANCE
-from gearopt.formulations.strength.rated import IndexRows, Load
+from gearopt.formulations.strength.standard import IndexRows, Load
 from gearopt.formulations.strength.use import iso6336 as use
 from gearopt.formulations.strength.widths import first_width
 from gearopt.physics.blanks import SOLID, Blank

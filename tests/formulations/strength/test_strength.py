@@ -20,7 +20,7 @@ from gearopt.formulations.drive.gearbox import Gearbox, Shaft
 from gearopt.formulations.drive.processes import ProcessOne
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
-from gearopt.formulations.strength import Law, Limit, agma_floor
+from gearopt.formulations.strength import Law, LimitedIndex, agma_floor
 from gearopt.formulations.strength.laws import laws
 from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.formulations.strength.laws.lewis import LEWIS
@@ -43,7 +43,7 @@ def contact(pair, torque, speed):
     return (3.0 * torque / (pair.pinion.reference_diameter**2 * pair.face_width),)
 
 
-CONTACT = Law("contact pressure", (Limit("pressure"),), contact, proportional=True)
+CONTACT = Law("contact pressure", (LimitedIndex("pressure"),), contact, proportional=True)
 
 
 def faster(pair, torque, speed):
@@ -53,7 +53,7 @@ def faster(pair, torque, speed):
     return (3.0 * torque * (1.0 + 0.5 * speed * d / 2000.0) * uneven / d**2,)
 
 
-FASTER = Law("dynamic contact pressure", (Limit("pressure"),), faster)
+FASTER = Law("dynamic contact pressure", (LimitedIndex("pressure"),), faster)
 
 
 def test_every_file_of_a_law_is_known():
@@ -69,7 +69,7 @@ def test_a_law_may_ask_for_the_helix_angle():
         d = pair.pinion.reference_diameter
         return (lewis_stress(torque, d, pair.face_width, pair.normal_module, form),)
 
-    law = Law("virtual teeth", (Limit("bending_stress"),), stress, proportional=True)
+    law = Law("virtual teeth", (LimitedIndex("bending_stress"),), stress, proportional=True)
     modules = tuple(map(F, (1, 2, 3, 4, 5)))
     stage = Stage(
         (40.0,), FaceWidth(F(1, 2), F(1)), modules, (17, 20), (17, 80), toothings=(Toothing(beta),)
@@ -311,7 +311,10 @@ def test_a_conflict_and_remedies_of_a_law():
 
 
 def test_a_limit_is_called_by_its_words_else_by_its_name():
-    assert Limit("unit_load").label == "unit load" and Limit("a_b", words="c").label == "c"
+    assert (
+        LimitedIndex("unit_load").label == "unit load"
+        and LimitedIndex("a_b", words="c").label == "c"
+    )
 
 
 @pytest.mark.parametrize("count", (1, 4))

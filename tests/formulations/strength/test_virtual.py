@@ -8,7 +8,7 @@ from campaigns import few
 from rated_drives import agma, iso
 from test_iso_rows import EH, GREY, LEVELS, NEW, NITRIDED, SOFT, pairs, rows
 
-from gearopt.formulations.strength.rated import Option
+from gearopt.formulations.strength.standard import Option
 from gearopt.formulations.strength.virtual import Strength, may_be_best
 from gearopt.physics.agma.rating_factors import Steel
 from gearopt.physics.iso6336.materials import Material

@@ -10,7 +10,7 @@ from read_numbers import repeated
 from test_rating_page import page, rows, sections, text, told
 
 import gearopt
-from gearopt.formulations.strength.rated import MIDWAY
+from gearopt.formulations.strength.standard import MIDWAY
 from gearopt.report.answer import decided, opening
 from gearopt.report.kinds.drive import rating_words
 from gearopt.report.kinds.drive.rating_words import greek

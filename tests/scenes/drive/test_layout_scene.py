@@ -371,11 +371,11 @@ def small():
 def test_the_drive_is_read_once_for_all_its_boxes(small, monkeypatch):
     """A search over gears and box makes hundreds of boxes of one drive."""
     from gearopt.optimise.clock import Clock
-    from gearopt.scenes.drive.explain.other_gears import _fits
+    from gearopt.scenes.drive.explain.other_gears import _some_gears_fit
 
     read, train = [], type(small).train
     monkeypatch.setattr(type(small), "train", lambda one: read.append(1) or train(one))
-    assert _fits(small, Clock(gearopt.Budget(seconds=0.0))) is None
+    assert _some_gears_fit(small, Clock(gearopt.Budget(seconds=0.0))) is None
     assert len(read) <= 2
 
 

@@ -69,7 +69,7 @@ def test_compare_names_their_gaps_to_the_optimum(elevator):
     for part in elevator.parts[1:]:
         (run,) = rows[part.method].equal_time.runs
         assert run.objective == part.value and run.status == "feasible"
-    names = gearopt.scenes.drive.compared(scene(ELEVATOR))
+    names = gearopt.scenes.drive.methods_to_compare(scene(ELEVATOR))
     assert names[:3] == ("exact", "process-one", "process-two")
 
 

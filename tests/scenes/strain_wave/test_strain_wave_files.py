@@ -20,7 +20,7 @@ from gearopt.scenes import strain_wave
 from gearopt.scenes.explaining.explanations import explanation
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
-from gearopt.scenes.strain_wave import KIND, compared, objectives, posed, traded
+from gearopt.scenes.strain_wave import KIND, methods_to_compare, objectives, posed, traded
 from gearopt.scenes.strain_wave import KIND as WAVES
 from gearopt.scenes.strain_wave.explain import costs, of_pressure
 from gearopt.scenes.strain_wave.notes import assumptions, notes, range_notes
@@ -262,7 +262,7 @@ def test_ranges_of_a_duty_alone_are_those_of_its_size():
 
 def test_problems_of_a_duty_alone():
     own = scene(FROM_DUTY)
-    assert compared(own) == ("exchange", "annealing", "nsga2")
+    assert methods_to_compare(own) == ("exchange", "annealing", "nsga2")
     assert set(posed(own, "").problem.methods) == {"exchange"}
     assert len(posed(own, "nsga2").problem.columns) == 6
     assert list(objectives(own)) == ["pressure", "volume_per_torque", "load_share"]
@@ -274,7 +274,7 @@ def test_problems_of_a_duty_alone():
     assert tradeoff.limiting.names == ("volume_per_torque",)
     with pytest.raises(SolveError, match="load_share counts teeth"):
         traded(own, ("pressure", "load_share"), Ask())
-    for call in (compared, objectives, lambda s: posed(s, "")):
+    for call in (methods_to_compare, objectives, lambda s: posed(s, "")):
         with pytest.raises(SolveError, match="the gearing is given"):
             call(scene(EXAMPLE))
 

@@ -197,7 +197,10 @@ def phases(a: Any, b: Any, c: Any, d: Any) -> tuple[Any, list[Any]]:
 
 
 def chained(a: Any, b: Any, c: Any, d: Any, e: Any) -> tuple[Any, list[Any]]:
-    """Instances mhw4d and ex8_1_7."""
+    """Objective and constraints of ex8_1_7 and mhw4d, which differ in bounds and start.
+
+    A chain of powers of differences of five variables, three equalities.
+    """
     cost = (a - 1) ** 2 + (a - b) ** 2 + (b - c) ** 3 + (c - d) ** 4 + (d - e) ** 4
     return cost, [
         a + b**2 + c**3 == 6.24264068711929,

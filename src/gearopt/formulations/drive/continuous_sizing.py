@@ -19,11 +19,16 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing_text, teeth
-from gearopt.formulations.drive.rated_continuous.bound import Choice, bounding, solved, stage_box
+from gearopt.formulations.drive.rated_continuous.bounding_program import (
+    Choice,
+    bounding,
+    solved,
+    stage_box,
+)
 from gearopt.formulations.drive.rated_continuous.cells import Searched, search
 from gearopt.formulations.drive.rated_continuous.designs import polished
 from gearopt.formulations.drive.train import Stage, Train
-from gearopt.formulations.strength.rated import MODES, Standard
+from gearopt.formulations.strength.standard import MODES, Standard
 from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
@@ -231,7 +236,7 @@ def _of_pairs(train: Train, exact: Problem, found: Searched) -> _Design | None:
     """Return the design of a search; None where it has none that the exact text accepts."""
     if found.pairs is None:
         return None
-    x = point_of(train, found.pairs)
+    x = point_of_pairs(train, found.pairs)
     x = np.clip(x, *exact.bounds()[:2])
     return _Design(_value(exact, x), x, (), False, "feasible") if safe(exact, x) else None
 
@@ -392,8 +397,11 @@ SECONDS = 5.0  # at most, for that search
 HELICES = 5  # of a range, of which that search chooses
 
 
-def point_of(train: Train, pairs: tuple[GearPair, ...]) -> Array:
-    """Return the point of `problem` of a design."""
+def point_of_pairs(train: Train, pairs: tuple[GearPair, ...]) -> Array:
+    """Return the values of the variables of `problem` that gear pairs have, stage by stage.
+
+    Module and face width [mm], pinion teeth, ratio, helix angle [rad]: those that are variables.
+    """
     rows = [
         {
             "module": pair.normal_module,
@@ -441,7 +449,7 @@ def whole(train: Train, clock: Clock) -> list[Array]:
     point = point_of_result(teeth.problem(near), answer)
     if point is None:
         return []
-    return [point_of(train, teeth.pairs(near, point))]
+    return [point_of_pairs(train, teeth.pairs(near, point))]
 
 
 def point_of_result(made: Problem, found: Result) -> Array | None:

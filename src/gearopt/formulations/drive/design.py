@@ -11,7 +11,7 @@ from gearopt.formulations.drive.rating import DriveRating
 from gearopt.formulations.drive.train import STEEL_DENSITY, Train
 from gearopt.formulations.pair.design import PairContact, PairRelief
 from gearopt.formulations.strength import Law
-from gearopt.formulations.strength.rated import Option
+from gearopt.formulations.strength.standard import Option
 from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import INLINE, Shown, typed

@@ -5,16 +5,17 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.drive.toothing import Toothing
-from gearopt.formulations.strength.rated import Standard
+from gearopt.formulations.strength.standard import Standard
 from gearopt.frozen import dataclass
 from gearopt.physics.geometry.profile_shift import Meshing
 
 
 @dataclass(frozen=True)
 class RootBalance:
-    """S_F1/S_F2 of pairs whose shifts follow from a centre distance.
+    """S_F1/S_F2 of pairs at a given centre distance, as a function of the pinion's profile shift.
 
-    speed [rad/s] of the pinion, by which cycles count; thickness_allowances A_sn [mm].
+    The wheel has the rest of their sum. standard: that rates them. speed [rad/s] of the pinion, by
+    which cycles count; thickness_allowances: A_sn of pinion and wheel [mm].
     """
 
     standard: Standard

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from gearopt.formulations.drive.train import MASSES, WEIGHTED, Train
-from gearopt.formulations.strength.rated import Option
+from gearopt.formulations.strength.standard import Option
 from gearopt.physics.gears import GearPair
 
 FRICTION = 0.06  # coefficient of friction of `mesh_loss`

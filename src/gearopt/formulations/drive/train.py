@@ -15,7 +15,7 @@ import numpy as np
 
 from gearopt.formulations.drive.toothing import Toothing, in_columns, taken
 from gearopt.formulations.strength import Law
-from gearopt.formulations.strength.rated import Option
+from gearopt.formulations.strength.standard import Option
 from gearopt.frozen import dataclass
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import GearPair

@@ -233,8 +233,8 @@ def stability(
 
 
 def nearest_load(loads: Sequence[ContactLoad], force: float) -> ContactLoad:
-    """Return the load whose normal force is nearest to one [N]."""
-    return min(loads, key=lambda one: abs(one.normal_force_N - force))
+    """Return the load whose normal force is nearest to `force` [N], the first of equally near."""
+    return min(loads, key=lambda load: abs(load.normal_force_N - force))
 
 
 def of_contact(contact: PairContact, load: ContactLoad) -> Wave:

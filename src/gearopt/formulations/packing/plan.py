@@ -35,9 +35,11 @@ class Cylinder:
 class Plan:
     """Cylinders to be packed, and the container.
 
-    width: of the rectangle [mm], None where free. gap: between cylinders, wall: to the container,
-    both sideways [mm]. min_layers, max_layers: ends of the number of layers, of which the first
-    min_layers hold a cylinder. objective: volume or area (of the plan).
+    shape: of the container's plan, one of SHAPES. width: of a rectangle [mm], None where free. gap:
+    between cylinders, wall: to the container, both sideways [mm]. min_layers, max_layers: least and
+    largest number of layers; each of the lowest min_layers holds a cylinder. objective: "volume"
+    [mm3], or "area" [mm2] of the plan. ValueError where every cylinder is fixed, or where fewer
+    cylinders are left than layers that each must hold one.
     """
 
     cylinders: tuple[Cylinder, ...]

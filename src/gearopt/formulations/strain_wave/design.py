@@ -216,7 +216,7 @@ def loads_and_pressures(demand: Demand, flank: Flank) -> dict[str, Any]:
     turned = _carried(demand.duty, flank)
     return {
         **load_columns(turned, LOADS_LISTED),
-        **shares(turned[0]),
+        **carrying_teeth(turned[0]),
         "equal_pressure_MPa": equal_pressure(demand.duty, flank),
         "whole_pairs_pressure_MPa": equal_pressure(demand.duty, flank, whole=True),
         "shared_pressure_MPa": shared_pressure(demand.duty, flank),
@@ -421,8 +421,12 @@ def load_columns(turned: Sequence[Carried], share: float = 1.0) -> dict[str, Any
     }
 
 
-def shares(at: Carried) -> dict[str, Any]:
-    """Return the teeth that carry with three neighbours on either side, and their windup."""
+def carrying_teeth(at: Carried) -> dict[str, Any]:
+    """Return fields of a design: `teeth`, from three before the first that carries to three behind.
+
+    And how many carry, how many would carry the largest load if all carried the same, and the
+    windup [mrad].
+    """
     carries = np.flatnonzero(at.loads.forces > 0.0)
     shown = range(max(0, carries[0] - 3), min(len(at.stresses), carries[-1] + 4))
     rows = tuple(

@@ -16,12 +16,12 @@ from gearopt.formulations.strain_wave.design import (
     Carried,
     Deflected,
     Extras,
+    carrying_teeth,
     clearance_columns,
     floats,
     gap_of,
     load_columns,
     other_deflections,
-    shares,
     sizes_of,
 )
 from gearopt.formulations.strain_wave.exchange import STEP_DEG
@@ -155,7 +155,7 @@ def loads_by_law(demand: Demand, swept: SweptGearing) -> dict[str, Any]:
     shared_by_shift = (float(carried(duty, swept, shift).stresses.max()) for shift in SHIFTS)
     return {
         **load_columns(turned),
-        **shares(turned[0]),
+        **carrying_teeth(turned[0]),
         "pairs_in_contact": swept.pairs,
         "equal_pressure_MPa": _equal(duty, swept, swept.pairs),
         "whole_pairs_pressure_MPa": _equal(duty, swept, max(1.0, math.floor(swept.pairs))),

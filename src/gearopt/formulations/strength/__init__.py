@@ -19,7 +19,7 @@ NARROW = 1e-6  # of the widest face width: nothing narrower is considered
 
 
 @dataclass(frozen=True)
-class Limit:
+class LimitedIndex:
     """The limit of one index: its name, which is also its key in a file, and its unit.
 
     words: what reports call it, by default its name. meaning: of the key, for the reference.
@@ -64,7 +64,7 @@ class Law:
     """
 
     title: str
-    limits: tuple[Limit, ...]
+    limits: tuple[LimitedIndex, ...]
     indices: Callable[[GearPair, Any, Any], tuple[Any, ...]]
     proportional: bool = False
     kind: str = "index values, not a rating"

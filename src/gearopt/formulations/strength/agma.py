@@ -16,7 +16,7 @@ from gearopt.formulations.strength import agma_smooth
 from gearopt.formulations.strength.agma_cells import needed
 from gearopt.formulations.strength.agma_floor import AgmaFloor, agma_floor
 from gearopt.formulations.strength.cells import Cells
-from gearopt.formulations.strength.rated import Box, Load, Posed, Smooth, table_of
+from gearopt.formulations.strength.standard import Box, Load, Posed, Smooth, table_of
 from gearopt.formulations.strength.use.agma import (
     AgmaRow,
     AgmaWay,

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.strength.rated import MODES, Box
+from gearopt.formulations.strength.standard import MODES, Box
 from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.agma import factors

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gearopt.formulations.strength.rated import Smooth
+from gearopt.formulations.strength.standard import Smooth
 from gearopt.physics.agma import factors
 from gearopt.physics.agma.batch import safeties
 from gearopt.physics.agma.bending import critical_theta, loaded_tooth, seen_from_wheel

@@ -14,7 +14,7 @@ import numpy as np
 from gearopt.formulations.strength.cells import Cells
 from gearopt.formulations.strength.iso6336_cells import IsoCells
 from gearopt.formulations.strength.iso6336_rows import AT_ENDS, Columns, IsoRows, way_of
-from gearopt.formulations.strength.rated import Box, Load, Smooth, together
+from gearopt.formulations.strength.standard import Box, Load, Smooth, together
 from gearopt.formulations.strength.teeth_alone import iso_teeth
 from gearopt.formulations.strength.use.iso6336 import IsoWay
 from gearopt.formulations.strength.virtual import Strength as Rival

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gearopt.formulations.strength.rated import Posed, table_of
+from gearopt.formulations.strength.standard import Posed, table_of
 from gearopt.formulations.strength.use.iso6336 import (
     IsoRow,
     IsoWay,

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.strength import ALLOWANCE
-from gearopt.formulations.strength.rated import REFUSED, Rows
+from gearopt.formulations.strength.standard import REFUSED, Rows
 from gearopt.frozen import dataclass
 from gearopt.optimise import kernels
 from gearopt.optimise.result import Event

@@ -26,7 +26,7 @@ from gearopt.optimise.comparing.runs import (
     work,
 )
 from gearopt.optimise.conic.problem import Conic
-from gearopt.optimise.own_methods import run_method
+from gearopt.optimise.methods import run_method
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Event, Outcome
 from gearopt.optimise.scale import zero_scale

@@ -8,7 +8,7 @@ from gearopt.optimise.clock import Clock, of_problem
 from gearopt.optimise.conic.certificate import certify
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.deadline import until
-from gearopt.optimise.own_methods import back_ends
+from gearopt.optimise.methods import back_ends
 from gearopt.optimise.result import Budget, Outcome, Result, Watch
 
 METHOD = "conic"

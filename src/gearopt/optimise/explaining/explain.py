@@ -36,7 +36,7 @@ from gearopt.optimise.explaining.handles import (
     each_word,
     effective,
     handles,
-    numbered,
+    with_limits_named,
 )
 from gearopt.optimise.explaining.proposed import DIGITS, FEASIBILITY_MARGIN
 from gearopt.optimise.explaining.repair import (
@@ -73,7 +73,7 @@ def explain(
     an exact method is neither smooth nor has a relaxation.
     """
     clock = Clock(budget or Budget(), of_others(watch))
-    problem = numbered(problem)
+    problem = with_limits_named(problem)
     method, result, outcome = _answered(problem, clock, watch)
     if result.status in ("infeasible", "failed"):
         explanation = _impossible(problem, method, result, clock)

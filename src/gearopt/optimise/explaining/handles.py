@@ -146,11 +146,12 @@ def _parameters(problem: Problem) -> tuple[list[Handle], set[int]]:
     return of_parameters, governed
 
 
-def numbered(problem: Problem) -> Problem:
-    """The problem whose parameters of no role are limits where they are numbers of limits alone.
+def with_limits_named(problem: Problem) -> Problem:
+    """Give the role "limit" to parameters without a role that act on limits alone.
 
-    That is what limits are compared with, and else what they are divided by, if no other parameter
-    of theirs is.
+    Such is one that a limit is compared with, and one that divides all limits it acts on, where no
+    other such parameter and none that may move stands in these. One that acts on the objective or
+    an equality gets no role. The problem itself where every parameter has a role.
     """
     roles = [each_word(q.role, q.size) for q in problem.parameters]
     words = np.array([role for own in roles for role in own])

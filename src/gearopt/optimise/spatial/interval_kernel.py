@@ -346,8 +346,8 @@ def unscaled(least, most, factor, error, low, high):
 
 
 @inlined
-def opens(kind, p, u, v, lo, hi):
-    """Whether a quotient or a negative power is any infinity there, as a point of the text counts.
+def may_be_infinite(kind, p, u, v, lo, hi):
+    """Whether a quotient or a negative power may be infinite on the box, as the text computes it.
 
     p of a quotient, -1 - v of a power: CLOSED, OPEN, or UNSIGNED where its 0 is never -0.
     """
@@ -361,7 +361,7 @@ def opens(kind, p, u, v, lo, hi):
 @inlined
 def forward(kind, p, u, v, lo, hi):
     """Range of an operation on columns u and v."""
-    if opens(kind, p, u, v, lo, hi):
+    if may_be_infinite(kind, p, u, v, lo, hi):
         return -math.inf, math.inf
     if kind == PRODUCT:
         return product(lo[u], hi[u], lo[v], hi[v])
@@ -401,7 +401,7 @@ def solved_factor(a, b, c, d, low, high):
 def backward(kind, p, w, u, v, sets, lo, hi):
     """Narrow the arguments of an operation by its value; False where nothing is left."""
     if (kind == QUOTIENT and p > CLOSED or kind == POWER and v < -1) and (
-        lo[w] <= 0.0 <= hi[w] or opens(kind, p, u, v, lo, hi)
+        lo[w] <= 0.0 <= hi[w] or may_be_infinite(kind, p, u, v, lo, hi)
     ):
         return True  # a value of 0 may be that of either infinity
     if kind == PRODUCT:

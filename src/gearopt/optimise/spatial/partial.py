@@ -31,7 +31,7 @@ from gearopt.optimise.spatial.columns import (
     refuse,
 )
 
-OPEN, UNSIGNED = 1, 2  # quotients at 0: see `interval_kernel.opens`
+OPEN, UNSIGNED = 1, 2  # quotients at 0: see `interval_kernel.may_be_infinite`
 _ABSORBING = (QUOTIENT, POWER, ROOT, EXP, TANH, ATAN, MAXIMUM, MINIMUM)  # infinite to finite
 
 

@@ -29,8 +29,8 @@ from gearopt.optimise.spatial.interval_kernel import (
     TANH,
     UNIT,
     down,
+    may_be_infinite,
     narrow,
-    opens,
     times,
     up,
     value,
@@ -289,7 +289,7 @@ def fill(relations, exponent, sums, lo, hi, at, rows):
         if kind == PRODUCT:
             product_rows(rows, slot, w, u, v, lo, hi)
         elif kind == QUOTIENT:
-            if not opens(kind, exponent[r], u, v, lo, hi):
+            if not may_be_infinite(kind, exponent[r], u, v, lo, hi):
                 product_rows(rows, slot, u, w, v, lo, hi)
         elif kind == MAXIMUM or kind == MINIMUM:
             extreme_rows(rows, slot, kind, w, u, v, lo, hi)

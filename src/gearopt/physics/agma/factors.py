@@ -251,10 +251,11 @@ MICROINCH = 1e-6 * INCH  # mm
 
 
 def hardness_ratio_factor(pinion_hardness: Any, wheel_hardness: Any, ratio: Any) -> Any:
-    """Return C_H = 1 + A (u - 1) of through-hardened pinion and wheel.
+    """Return C_H = 1 + A (u - 1) of a through-hardened wheel by a through-hardened pinion.
 
-    A = 8.98e-3 HB_1/HB_2 - 8.29e-3 for HB_1/HB_2 of 1.2 to 1.7, 0 below, 0.00698 above (a jump of
-    2.5e-3 at 1.2, of 5e-6 at 1.7). hardness [HB]; ratio u, as of a u of 20 above that.
+    That of the pinion is 1. A = 8.98e-3 HB_1/HB_2 - 8.29e-3 for HB_1/HB_2 of 1.2 to 1.7, 0 below,
+    0.00698 above: A jumps by 2.5e-3 at 1.2 and by 4e-6 at 1.7. Hardnesses [HB]; a ratio u above 20,
+    where the chart ends, counts as 20.
     Source: AGMA 2001-D04, clause 14, figure; Shigley, eq. (14-36); the limit of 20 is of its chart.
     """
     harder = pinion_hardness / wheel_hardness

@@ -73,19 +73,28 @@ def slopes_1995(grade: float) -> Any:
 
 
 def single_pitch_1995(diameter: Any, module: Any, grade: Any) -> Any:
-    """Return f_pt = 0.3 (m + 0.4 sqrt(d)) + 4 um at grade 5 [mm]. ISO 1328-1:1995, 6.1."""
+    """Return the single pitch deviation f_pt of a grade [mm], unrounded.
+
+    (0.3 (m + 0.4 sqrt(d)) + 4) um times `grade_factor`. Source: ISO 1328-1:1995, 6.1.
+    """
     unit = 0.3 * (module + 0.4 * diameter**0.5) + 4.0
     return tolerances.MICROMETRE * unit * tolerances.grade_factor(grade)
 
 
 def profile_form_1995(diameter: Any, module: Any, grade: Any) -> Any:
-    """Return f_falpha = 2.5 sqrt(m) + 0.17 sqrt(d) + 0.5 um at grade 5 [mm]. 1995, annex B."""
+    """Return the profile form deviation f_falpha of a grade [mm], unrounded.
+
+    (2.5 sqrt(m) + 0.17 sqrt(d) + 0.5) um times `grade_factor`. Source: ISO 1328-1:1995, annex B.
+    """
     unit = 2.5 * module**0.5 + 0.17 * diameter**0.5 + 0.5
     return tolerances.MICROMETRE * unit * tolerances.grade_factor(grade)
 
 
 def helix_slope_1995(diameter: Any, face_width: Any, grade: Any) -> Any:
-    """Return f_Hbeta = 0.07 sqrt(d) + 0.45 sqrt(b) + 3 um at grade 5 [mm]. 1995, annex B."""
+    """Return the helix slope deviation f_Hbeta of a grade [mm], unrounded.
+
+    (0.07 sqrt(d) + 0.45 sqrt(b) + 3) um times `grade_factor`. Source: ISO 1328-1:1995, annex B.
+    """
     unit = 0.07 * diameter**0.5 + 0.45 * face_width**0.5 + 3.0
     return tolerances.MICROMETRE * unit * tolerances.grade_factor(grade)
 

@@ -25,7 +25,7 @@ Vector = Any
 def of_fixed_axes(pair: MovingPair, k: float, position: Vector, velocity: Vector) -> list[Any]:
     """Return [delta''] = [-(F + N)/m_e] [mm/s2]; the coast flank's force counts against N."""
     (delta,), (rate,) = position, velocity
-    return [-_closing(pair, _straight(pair, k, delta, rate))]
+    return [-_closing(pair, _force_at_constant_backlash(pair, k, delta, rate))]
 
 
 def along_line(pair: MovingPair, k: float, position: Vector, velocity: Vector) -> list[Any]:
@@ -35,7 +35,7 @@ def along_line(pair: MovingPair, k: float, position: Vector, velocity: Vector) -
     rest. Bearings: k_x sin2(alpha) + k_y cos2(alpha). Both flanks press along one line.
     """
     (r1, delta, r2), (v1, rate, v2) = position, velocity
-    force = _straight(pair, k, delta, rate)
+    force = _force_at_constant_backlash(pair, k, delta, rate)
     a1 = (force - _held(pair, pair.pinion, r1, v1)) / pair.pinion.mass
     a2 = (-force - _held(pair, pair.wheel, r2, v2)) / pair.wheel.mass
     return [a1, a2 - a1 - _closing(pair, force), a2]
@@ -118,8 +118,11 @@ def stiffness_along(pair: MovingPair, rotor: Rotor) -> tuple[float, float]:
     return s * kx + c * ky, s * cx + c * cy
 
 
-def _straight(pair: MovingPair, k: Any, delta: Any, rate: Any) -> Any:
-    """Return the force along the line of action of both flanks on axes that stay on it."""
+def _force_at_constant_backlash(pair: MovingPair, k: Any, delta: Any, rate: Any) -> Any:
+    """Return the mesh force along the line of action, drive less coast flank [N].
+
+    Of axes that leave that line nowhere, so that the backlash is constant.
+    """
     room = math.inf if pair.backlash is None else pair.backlash
     force = mesh_force(pair, k, delta, rate, room)
     return force.drive - force.coast

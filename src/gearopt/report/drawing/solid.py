@@ -93,9 +93,11 @@ def gear_mesh(
 
 
 def rings_of(body: Body, gear: Gear, start: float, end: float) -> list[tuple[float, float]]:
-    """Rings (x, radius) [mm] of a body from its end over bore or axis to its start.
+    """Return the contour of a gear's body below its teeth as rings (x, radius) [mm].
 
-    A web lies in the middle of the face width; without a hub it reaches bore or axis.
+    From the face at `end` over rim, web, hub and bore (radius 0 without one) to the face at
+    `start`, symmetric about the middle of the face width. A body without rim or web is solid;
+    without a hub the web reaches bore or axis.
     """
     bore = 0.5 * (body.bore or 0.0)
     half = [(end, bore)]

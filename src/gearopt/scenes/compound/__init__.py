@@ -176,7 +176,7 @@ def idle(scene: Scene, method: str | None) -> dict[str, str]:
     return unused | unseeded(method)
 
 
-def compared(scene: Scene) -> tuple[str, ...]:
+def methods_to_compare(scene: Scene) -> tuple[str, ...]:
     """Return the methods of a comparison that names none."""
     return ("exact", "annealing", "nsga2")
 
@@ -198,7 +198,7 @@ KIND = Kind(
     examples=examples_in(__file__, ABOUT),
     steps=one_step(nearest),
     posed=posed,
-    compared=compared,
+    methods_to_compare=methods_to_compare,
     methods=METHODS,
     trades=Trades(objectives, traded),
     idle=idle,

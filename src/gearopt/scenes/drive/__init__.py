@@ -76,7 +76,7 @@ def idle(scene: Scene, method: str | None) -> dict[str, str]:
     return reasons if boxed else reasons | unseeded(method)
 
 
-def compared(scene: Scene) -> tuple[str, ...]:
+def methods_to_compare(scene: Scene) -> tuple[str, ...]:
     """Return the methods of a comparison that names none."""
     if scene.layout is None:
         asked = (name.replace("_", "-") for name in PROCESSES if getattr(scene, name) is not None)
@@ -154,7 +154,7 @@ KIND = Kind(
     examples=examples_in(__file__, ABOUT),
     steps=steps,
     posed=posed,
-    compared=compared,
+    methods_to_compare=methods_to_compare,
     methods=METHODS,
     possible=possible,
     remedies=remedies,

@@ -13,7 +13,7 @@ MAX_ROWS = 20_000  # rows of centre distances of all stages
 Row = tuple[Fraction, ...]
 
 
-def together(limits: Limits) -> list[str]:
+def joint_limits(limits: Limits) -> list[str]:
     """The limits that bind centre distances of all stages together."""
     return [n for n in ("sum_of_centre_distances", "coaxial") if getattr(limits, n)]
 
@@ -26,7 +26,7 @@ def rows_together(
     lists: the distances that each stage chooses from, none: it is given none. lacks: what the file
     lacks to choose at all. SceneError where no row goes together.
     """
-    place = ("limits", together(limits)[0])
+    place = ("limits", joint_limits(limits)[0])
     if lacks or not all(lists):
         rule = f"needs {lacks or 'a centre_distance to choose from in every [[stage]]'}"
         raise refuse(rule, at=place, action="remove")

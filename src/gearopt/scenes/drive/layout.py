@@ -28,7 +28,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
 from gearopt.scenes.drive.counts import best_count
-from gearopt.scenes.drive.layout_design import (
+from gearopt.scenes.drive.described_layout import (
     described,
     distances_used,
     handed,
@@ -230,7 +230,7 @@ def at_once(drive: Drive, ask: Ask, known: Result | None) -> Result:
     box = scene.gearbox(scene.pairs(drive_design(sized.design)))
     if apart.status == "infeasible" and not others_may_fit(scene, box):
         return replace(apart, name="drive")
-    return _beside(_at_once(drive, ask, apart), apart)
+    return _with_apart_as_part(_at_once(drive, ask, apart), apart)
 
 
 def _at_once(drive: Drive, ask: Ask, apart: Result | None) -> Result:
@@ -246,7 +246,7 @@ def _at_once(drive: Drive, ask: Ask, apart: Result | None) -> Result:
     return replace(result, name="drive", objective=objective, report=report)
 
 
-def _beside(box: Result, apart: Result) -> Result:
+def _with_apart_as_part(box: Result, apart: Result) -> Result:
     """The smallest box with the layout of gears sized first as a part."""
     box = replace(box, parts=(replace(apart, report={}),))
     if box.value is not None:
@@ -264,11 +264,11 @@ def with_sized_first(scene: Scene, ask: Ask, box: Result | None) -> Result:
     gears = sized_gears(without(scene, "layout"), ask)
     if not gears.design:
         impossible = gears.status == "infeasible"
-        return gears if impossible else _beside(box, replace(gears, name=APART))
+        return gears if impossible else _with_apart_as_part(box, replace(gears, name=APART))
     known = lay_out(scene, replace(ask, budget=clock.left), gears)
     if box.value is None and box.status != "infeasible":
         return at_once(drive_to_box(scene), replace(ask, budget=clock.left), known)
-    return _beside(box, replace(known, name=APART))
+    return _with_apart_as_part(box, replace(known, name=APART))
 
 
 def _sized_first(result: Result) -> Result | None:

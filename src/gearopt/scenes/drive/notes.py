@@ -19,7 +19,7 @@ from gearopt.scenes.drive.tables.blanks import blank, body_flaws
 from gearopt.scenes.drive.tables.drive import ORIGINS
 from gearopt.scenes.drive.tables.layout import Layout
 from gearopt.scenes.drive.tables.rating import with_shared
-from gearopt.scenes.drive.tables.teeth import inclination
+from gearopt.scenes.drive.toothings import inclination
 from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.choices import in_words
 from gearopt.scenes.reading.module_series import unverified

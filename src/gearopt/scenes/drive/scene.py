@@ -16,7 +16,7 @@ from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair, transverse_pressure_angle
 from gearopt.physics.geometry.profile_shift import SUMS
 from gearopt.physics.loads import torque
-from gearopt.scenes.drive.distances import rows_together, together
+from gearopt.scenes.drive.distances import joint_limits, rows_together
 from gearopt.scenes.drive.face_widths import check_width, face_width
 from gearopt.scenes.drive.rating.checks import (
     check_given,
@@ -49,10 +49,10 @@ from gearopt.scenes.drive.tables.layout import (
     gearbox,
 )
 from gearopt.scenes.drive.tables.rating import LoadTable, RatingTable, with_shared
-from gearopt.scenes.drive.tables.teeth import (
+from gearopt.scenes.drive.toothings import (
+    check_centre_distances,
     check_follows,
     check_mesh,
-    check_teeth,
     inclination,
     toothings,
 )
@@ -298,7 +298,7 @@ class Scene(Table):
             self._distances(self.stage_tables)
         lacks = "" if self.given else self._lacks("at a given centre distance")
         follows = asked == "together" and not self.given
-        check_teeth(self.stage, self.gears, lacks, aim, asked, follows)
+        check_centre_distances(self.stage, self.gears, lacks, aim, asked, follows)
         tables = self.stage_tables
         shifted = [k for k, own in enumerate(tables) if self.shifted(own)]
         for k in shifted:
@@ -477,7 +477,7 @@ class Scene(Table):
 
     def _distances(self, tables: tuple[StageTable, ...]) -> tuple[tuple[float, ...], ...]:
         """Rows of centre distances [mm] that go together, of those that stages choose from."""
-        if not together(self.limits):
+        if not joint_limits(self.limits):
             return ()
         lists = [
             sorted({one.exact[0] for one in values_of(own.centre_distance, self._reach(own))})

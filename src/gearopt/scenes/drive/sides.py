@@ -15,8 +15,8 @@ from gearopt.formulations.drive.layout.slabs import arrangements
 from gearopt.optimise.pareto.objectives import Limiting, Objective, Tradeoff, impossible
 from gearopt.optimise.result import Outcome, Result
 from gearopt.optimise.typed import untyped
+from gearopt.scenes.drive.described_layout import described, handed
 from gearopt.scenes.drive.layout import others_may_fit
-from gearopt.scenes.drive.layout_design import described, handed
 from gearopt.scenes.drive.scene import Scene
 
 

@@ -215,7 +215,7 @@ def idle(scene: Scene, method: str | None) -> dict[str, str]:
     return unused
 
 
-def compared(scene: Scene) -> tuple[str, ...]:
+def methods_to_compare(scene: Scene) -> tuple[str, ...]:
     """Return the methods of a comparison that names none."""
     _to_optimise(scene)
     return ("screened", "ipopt", "multistart")
@@ -241,7 +241,7 @@ KIND = Kind(
     examples=examples_in(__file__, ABOUT),
     steps=one_step(motion),
     posed=posed,
-    compared=compared,
+    methods_to_compare=methods_to_compare,
     methods=METHODS,
     possible=possible,
     remedies=remedies,

@@ -370,7 +370,7 @@ def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
     return of_design(scene, result, clock, basis, packed, note, eases(posed(scene)))
 
 
-def compared(scene: Scene) -> tuple[str, ...]:
+def methods_to_compare(scene: Scene) -> tuple[str, ...]:
     """Return the methods of a comparison that names none."""
     return ("hop", "sa", "multistart", "annealing", "nsga2")
 
@@ -396,7 +396,7 @@ KIND = Kind(
     examples=examples_in(__file__, ABOUT),
     steps=steps,
     posed=posed,
-    compared=compared,
+    methods_to_compare=methods_to_compare,
     methods=METHODS,
     influences=influences,
     assumptions=assumptions,

@@ -170,14 +170,14 @@ def _proven(asked: ReliefTable) -> bool:
     return asked.minimise in parametric.PROVEN and not asked.robust
 
 
-def compared(scene: Scene) -> tuple[str, ...]:
+def methods_to_compare(scene: Scene) -> tuple[str, ...]:
     """Return the methods of a comparison that names none."""
     if scene.relief is not None:
         if scene.relief.free:
             return ("exact",)
         exact = METHODS if _proven(scene.relief) else ()
         return (*exact, "annealing", "nsga2")
-    return drive.compared(_to_size(scene).drive)
+    return drive.methods_to_compare(_to_size(scene).drive)
 
 
 def posed(scene: Scene, method: str) -> Model:
@@ -232,7 +232,7 @@ KIND = Kind(
     examples=examples_in(__file__, ABOUT),
     steps=steps,
     posed=posed,
-    compared=compared,
+    methods_to_compare=methods_to_compare,
     methods=METHODS,
     remedies=remedies,
     remedied=lambda scene: scene.relief is None,

@@ -9,7 +9,7 @@ from gearopt.physics.tooth.trapezoid import is_waisted
 from gearopt.scenes.drive.tables.blanks import blank
 from gearopt.scenes.drive.tables.drive import Gears, StageTable
 from gearopt.scenes.drive.tables.rating import with_shared
-from gearopt.scenes.drive.tables.teeth import ROOT, TIP, cause
+from gearopt.scenes.drive.toothings import ROOT, TIP, cause
 from gearopt.scenes.reading.fields import refuse
 
 Place = tuple[Any, ...]

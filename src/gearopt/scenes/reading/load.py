@@ -1,4 +1,4 @@
-"""From a TOML file to a scene: read, check, and say in one message what is wrong."""
+"""From a TOML file to a scene: read, find its kind, check, and name all mistakes at once."""
 
 import hashlib
 import re
@@ -177,7 +177,8 @@ def _name_a_file(path: str | Path) -> str:
 def read(data: bytes, file: str = "<text>", before: tuple[Path, ...] = ()) -> tuple[str, BaseModel]:
     """Return the kind and scene of the bytes of a problem file; SceneError names all mistakes.
 
-    file: its name in messages. What depends on several tables is checked once each is right.
+    file: its name in messages. before: the files by way of which this one was named as an input.
+    What depends on several tables is checked once each is right.
     """
     return _scene(_parse(data, file), file, (*before, Path(file).resolve()))
 

@@ -10,9 +10,9 @@ from gearopt.formulations.servo.ratio.achieved import (
     Candidate,
     achieved,
     best_ratio_of,
-    curve,
     judged,
     landmarks,
+    values_about_best,
 )
 from gearopt.formulations.servo.servo_design import (
     GOALS,
@@ -356,7 +356,7 @@ def with_ratio(scene: Scene, ask: Ask, known: Result | None) -> Result:
         name=goal.title,
         unit=goal.value_unit,
         best=achieved(duty, Candidate("", best), reached),
-        curve=curve(duty, best, with_train),
+        curve=values_about_best(duty, best, with_train),
         **({"given": None} | others),
     )
     design = ServoDesign(ratio=ratio)

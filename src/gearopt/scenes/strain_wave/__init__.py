@@ -347,7 +347,7 @@ def influences(scene: Scene, ask: Ask, result: Result) -> Explanation:
     return Explanation(result, (), (), binding(result), (), message, result.seconds)
 
 
-def compared(scene: Scene) -> tuple[str, ...]:
+def methods_to_compare(scene: Scene) -> tuple[str, ...]:
     """Return the methods of a comparison that names none."""
     _to_choose(scene)
     return (*METHODS, *SAMPLERS)
@@ -410,7 +410,7 @@ KIND = Kind(
     examples=examples_in(__file__, ABOUT),
     steps=steps,
     posed=posed,
-    compared=compared,
+    methods_to_compare=methods_to_compare,
     methods=METHODS,
     possible=possible,
     moves=lambda scene: MOVES,

@@ -7,7 +7,12 @@ import math
 
 import numpy as np
 
-from gearopt.formulations.drive.layout.chain_kernel import ROUNDING, ZERO, measured, value
+from gearopt.formulations.drive.layout.chain_kernel import (
+    ROUNDING,
+    ZERO,
+    measured_at_positions,
+    value,
+)
 from gearopt.optimise.jit_kernel import entry, inner
 
 HOT, COLD = 0.03, 3e-5  # temperatures, relative to the objective at the start
@@ -75,7 +80,7 @@ def anneal(chain, seed, start, stop, total, theta, state, found):
             theta[k] = np.random.uniform(-math.pi, math.pi)
         state[0] = np.random.randint(many)
         placed(chain, theta, y, z)
-        width, height, short = measured(chain, int(state[0]), y, z)
+        width, height, short = measured_at_positions(chain, int(state[0]), y, z)
         state[2] = value(chain, int(state[0]), width, height)
         state[3] = math.sqrt(width * height)
         state[1] = 1.0 + PENALTY * short / state[3]
@@ -89,7 +94,7 @@ def anneal(chain, seed, start, stop, total, theta, state, found):
         else:
             theta[k] += size * np.random.normal()
         placed(chain, theta, y, z)
-        width, height, short = measured(chain, other, y, z)
+        width, height, short = measured_at_positions(chain, other, y, z)
         objective = value(chain, other, width, height)
         energy = objective / state[2] + PENALTY * short / state[3]
         rise = energy - state[1]
@@ -118,7 +123,7 @@ def anneal_positions(chain, seed, start, stop, total, y, z, state, found):
         span = 0.5 * chain.link.sum()
         for i in range(1, links + 1):
             y[i], z[i] = span * np.random.random(), span * np.random.random()
-        width, height, short = measured(chain, ZERO, y, z)
+        width, height, short = measured_at_positions(chain, ZERO, y, z)
         state[2], state[3] = value(chain, ZERO, width, height), math.sqrt(width * height)
         state[1] = math.inf
     for step in range(start, stop):
@@ -128,7 +133,7 @@ def anneal_positions(chain, seed, start, stop, total, y, z, state, found):
         oldy, oldz = y[i], z[i]
         y[i] += size * np.random.normal()
         z[i] += size * np.random.normal()
-        width, height, short = measured(chain, ZERO, y, z)
+        width, height, short = measured_at_positions(chain, ZERO, y, z)
         mesh = 0.0
         for k in range(links):
             dy, dz = y[k + 1] - y[k], z[k + 1] - z[k]
@@ -144,7 +149,7 @@ def anneal_positions(chain, seed, start, stop, total, y, z, state, found):
                 for k in range(links):
                     yy[k + 1] = yy[k] + chain.link[k] * math.cos(theta[k])
                     zz[k + 1] = zz[k] + chain.link[k] * math.sin(theta[k])
-                width, height, short = measured(chain, ZERO, yy, zz)
+                width, height, short = measured_at_positions(chain, ZERO, yy, zz)
                 objective = value(chain, ZERO, width, height)
                 if short <= ROUNDING and objective < found[0]:
                     found[0], found[1] = objective, 0.0

@@ -136,12 +136,16 @@ def tableau(chain, low, high, edge, slope, row, ends, n, table, names):
 
 
 @inner
-def exchanged(table, rows, columns, out, into):
-    """Exchange a basic row of a tableau for a column."""
-    pivot = 1.0 / table[out, into]
+def pivot_exchange(table, rows, columns, out, into):
+    """Exchange the basic variable of row `out` for the nonbasic one of column `into`, in place.
+
+    table (rows + 1, columns + 1): each row gives a basic variable, the last the cost, as a linear
+    form of the nonbasic ones, its constant last.
+    """
+    inverse = 1.0 / table[out, into]
     for c in range(columns + 1):
-        table[out, c] *= -pivot
-    table[out, into] = pivot
+        table[out, c] *= -inverse
+    table[out, into] = inverse
     for r in range(rows + 1):
         if r != out:
             factor = table[r, into]
@@ -149,7 +153,7 @@ def exchanged(table, rows, columns, out, into):
                 for c in range(columns + 1):
                     if c != into:
                         table[r, c] += factor * table[out, c]
-                table[r, into] = factor * pivot
+                table[r, into] = factor * inverse
 
 
 @inner
@@ -197,7 +201,7 @@ def program(chain, low, high, edge, slope, row, ends, n, table, names, weight, t
                 if names[c] < n:
                     weight[names[c]] = max(0.0, -table[out, c])
             return False
-        exchanged(table, rows, columns, out, into)
+        pivot_exchange(table, rows, columns, out, into)
         names[into], names[columns + out] = names[columns + out], names[into]
     for c in range(columns):
         if names[c] < n:

@@ -9,7 +9,7 @@ from gearopt.formulations.drive.layout.chain_kernel import (
     MARGIN,
     ROUNDING,
     excluded,
-    measure,
+    measured_at_angles,
     sides,
     value,
     widest,
@@ -74,7 +74,7 @@ def branch(chain, m, cells, bounds, count, best, near, floor, rel, limit, theta)
             if turn == 1:
                 for i in range(links):
                     point[i] = 0.5 * (low[i] + high[i])
-            width, height, short = measure(chain, m, point, y, z)
+            width, height, short = measured_at_angles(chain, m, point, y, z)
             found = value(chain, m, width, height)
             if short <= ROUNDING and found < best:
                 best = found
@@ -102,7 +102,7 @@ def halved(chain, m, low, high, box, pull, point, y, z):
     links, scale = low.size, 0.5 * min(box[1], box[3])
     unit = scale if chain.longest else 1.0  # else weights are those of logarithms
     wrong = np.zeros(links)
-    width, height, _ = measure(chain, m, point, y, z)
+    width, height, _ = measured_at_angles(chain, m, point, y, z)
     for i in range(links + 1):
         lack = max(chain.place[i, 0] - y[i], y[i] - chain.place[i, 1], 0.0)
         lack = max(lack, chain.place[i, 2] - z[i], z[i] - chain.place[i, 3])

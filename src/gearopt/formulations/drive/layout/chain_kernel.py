@@ -19,17 +19,17 @@ NONE, ZERO, ONE = np.int64(-1), np.int64(0), np.int64(1)
 
 
 @inner
-def measure(chain, m, theta, y, z):
+def measured_at_angles(chain, m, theta, y, z):
     """Width, height, and violation [mm] (the sum of what is missing); y, z are filled in."""
     y[0] = z[0] = 0.0
     for i in range(theta.size):
         y[i + 1] = y[i] + chain.link[i] * math.cos(theta[i])
         z[i + 1] = z[i] + chain.link[i] * math.sin(theta[i])
-    return measured(chain, m, y, z)
+    return measured_at_positions(chain, m, y, z)
 
 
 @inner
-def measured(chain, m, y, z):
+def measured_at_positions(chain, m, y, z):
     """Width, height and violation of shafts at y, z."""
     count = y.size
     left = bottom = math.inf

@@ -24,7 +24,12 @@ from gearopt.formulations.drive.rated_continuous.boxes import (
     joined,
     shafts_about,
 )
-from gearopt.formulations.drive.rated_continuous.designs import Design, in_boxes, polished, smallest
+from gearopt.formulations.drive.rated_continuous.designs import (
+    Design,
+    design_in_boxes,
+    polished,
+    smallest,
+)
 from gearopt.formulations.drive.train import Train
 from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
@@ -244,7 +249,7 @@ def _design(train: Train, shafts: Shafts, rows: Rows, path: tuple[int, ...]) -> 
     boxes = [rows[k][0].sizes[:, :, place] for k, place in enumerate(path)]
     cells = [int(rows[k][0].after[place]) for k, place in enumerate(path[:-1])]
     after = [*((cell + 0.5) * shafts.step for cell in cells), float(boxes[-1][END, 0])]
-    return in_boxes(
+    return design_in_boxes(
         train,
         after,
         lambda k, at, then: smallest(train, k, boxes[k], at, then, 2),

@@ -24,7 +24,7 @@ from gearopt.formulations.drive.rated_continuous.boxes import (
 )
 from gearopt.formulations.drive.shares import objective_share
 from gearopt.formulations.drive.train import Train
-from gearopt.formulations.strength.rated import Option
+from gearopt.formulations.strength.standard import Option
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
@@ -39,13 +39,14 @@ LITTLE = 1e-4  # of the value
 Design = tuple[tuple[GearPair, ...], float]  # pairs and value
 
 
-def in_boxes(
+def design_in_boxes(
     train: Train, after: Sequence[float], smallest: Callable[..., GearPair | None]
 ) -> Design | None:
-    """Return the best pairs that are found in boxes of all stages, and their value.
+    """Return the design of one pair a stage, each the smallest of its box, and its value.
 
-    after: ln of the torque behind each stage over the input's; smallest(stage, before, after): the
-    pair that is found there, whose ratio may be another one.
+    None where a box holds no pair or the total ratio leaves its limits. after: ln of the torque
+    behind each stage over the input's; smallest(stage, before, after): the pair of a box, whose
+    ratio may be another one.
     """
     pairs, value, at = [], 0.0, 0.0
     for k, then in enumerate(after):
@@ -78,7 +79,7 @@ def polished(train: Train, best: Design, clock: Clock) -> Design:
         for moves in product((-size, 0.0, size), repeat=len(pairs) - 1):
             if clock.over:
                 return best
-            neighbour = in_boxes(train, [*(at[:-1] + np.array(moves)), at[-1]], tried)
+            neighbour = design_in_boxes(train, [*(at[:-1] + np.array(moves)), at[-1]], tried)
             if neighbour is not None and neighbour[1] < best[1]:
                 best = neighbour
         if not best[1] < before * (1.0 - LITTLE):

@@ -15,7 +15,7 @@ from gearopt.formulations.drive.rated_continuous import boxes
 from gearopt.formulations.drive.rated_continuous.boxes import B_OVER_D, D2, MARGIN, B, D, M, U, Z
 from gearopt.formulations.drive.train import LENGTHS, Train
 from gearopt.formulations.strength.cells import Cells
-from gearopt.formulations.strength.rated import Option, under_each_load
+from gearopt.formulations.strength.standard import Option, under_each_load
 from gearopt.optimise.terms import Array
 
 WIDE, PARTS = 16, 12  # cells of the logarithm of the total ratio, and narrow ones of each

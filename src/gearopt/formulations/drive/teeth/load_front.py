@@ -15,7 +15,7 @@ import numpy as np
 from gearopt.formulations.drive import teeth
 from gearopt.formulations.drive.teeth.progress import TIE
 from gearopt.formulations.drive.train import Train
-from gearopt.formulations.strength.rated import MODES
+from gearopt.formulations.strength.standard import MODES
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Outcome, Watch

@@ -19,7 +19,7 @@ from gearopt.formulations.drive.teeth.prepared import Part, Prepared
 from gearopt.formulations.drive.teeth.stage import EDGE, Cells, Grid, Table
 from gearopt.formulations.drive.train import Train
 from gearopt.formulations.strength import ALLOWANCE
-from gearopt.formulations.strength.rated import IndexRows, Option, Rows, Standard
+from gearopt.formulations.strength.standard import IndexRows, Option, Rows, Standard
 from gearopt.formulations.strength.widths import MAX_STEPS, Standing
 from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array

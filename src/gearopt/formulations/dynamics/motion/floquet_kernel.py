@@ -8,8 +8,12 @@ from gearopt.optimise.jit_kernel import entry, inlined
 
 
 @inlined
-def turned(inverse, held, damped, direction, k, y, out):
-    """Derivative of displacements and velocities (2 n, columns); inverse: of the masses."""
+def state_derivative(inverse, held, damped, direction, k, y, out):
+    """Write the time derivative of states y (2 n, columns), displacements over velocities, to out.
+
+    inverse (n,): 1/masses; held, damped (n, n): stiffness and damping of the supports; k: mesh
+    stiffness along direction (n,).
+    """
     n, columns = direction.size, y.shape[1]
     for c in range(columns):
         delta = 0.0
@@ -75,7 +79,7 @@ def monodromy(tableau, system, wave, period, longest, begin, found):
                 within = (step + nodes[s]) / count
                 phase = start + lengths[piece] * within
                 k = stiffness(k0[piece], k1[piece], within, phase, cosines, sines)
-                turned(inverse, held, damped, direction, k, inside, slopes[s])
+                state_derivative(inverse, held, damped, direction, k, inside, slopes[s])
             summed(found, h, weights, slopes, stages, found)
         start += lengths[piece]
     return 0

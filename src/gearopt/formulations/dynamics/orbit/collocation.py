@@ -122,7 +122,7 @@ def collocated(
             share = piece.length * (high - low)
             q, v = ([block[e * n + i] for i in range(n)] for block in (x.places, x.speeds))
             bends = [x.bends[e * size + i] for i in range(size)]
-            element = _element(method, share * timing.period, q, v, bends)
+            element = _motion_in_element(method, share * timing.period, q, v, bends)
             for j, c in enumerate(method.points):
                 at = low + float(c) * (high - low)
                 k, phase = piece.stiffness(at), begun + piece.length * at
@@ -148,7 +148,9 @@ class _Element(NamedTuple):
     speed: list[Any]
 
 
-def _element(method: Gauss, h: Any, q: list[Any], v: list[Any], bends: list[Any]) -> _Element:
+def _motion_in_element(
+    method: Gauss, h: Any, q: list[Any], v: list[Any], bends: list[Any]
+) -> _Element:
     n = len(q)
 
     def moved(weights: Array) -> tuple[list[Any], list[Any]]:

@@ -132,7 +132,7 @@ def free_problem(mesh: Mesh, shape: Shape | None = None) -> Problem:
 
     upper = tuple(map(float, profile.upper))
     columns = (Var("removed", "mm", 0.0, upper, 0.0, len(upper)),)
-    methods = {"exact": search(profile)}
+    methods = {"exact": method(profile)}
     return Problem("free relief", columns, (), evaluate, methods=methods, vectorised=True)
 
 
@@ -387,7 +387,7 @@ class _Search:
         return min(left.least, floor, self.best), not self.clock.stopped
 
 
-def search(profile: Profile) -> Callable[..., Outcome]:
+def method(profile: Profile) -> Callable[..., Outcome]:
     """Return the method of `free_form.free_problem` that proves the least peak-to-peak."""
 
     def run(problem: Problem, budget: Budget, seed: int, watch: Watch | None) -> Outcome:

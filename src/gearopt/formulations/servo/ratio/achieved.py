@@ -140,10 +140,12 @@ def landmarks(duty: ServoDuty) -> dict[str, float]:
     }
 
 
-def curve(duty: ServoDuty, best: float, gears: float | None) -> RatioCurve:
-    """Return the value about the best ratio, where the load moves and the motor can turn.
+def values_about_best(duty: ServoDuty, best: float, gears: float | None) -> RatioCurve:
+    """Return the value of a duty (as of `judged`) at ratios from best/REACH to best REACH.
 
-    gears: inertia of a train [t mm2]; what it leaves of the value stands there too.
+    Within the ratios of the drive and the motor's speed limit; ratios at which the load does not
+    move are left out. gears: inertia of a train at the motor [t mm2]; values with it stand beside,
+    None where the load does not move then.
     """
     low, high = duty.drive.ratios(duty.speed)
     ratios = np.geomspace(max(best / REACH, low), min(best * REACH, high), POINTS)

@@ -1,18 +1,18 @@
 """K-factor and unit load: indices of contact stress and of tooth-root stress (Chong and Lee)."""
 
-from gearopt.formulations.strength import Law, Limit
+from gearopt.formulations.strength import Law, LimitedIndex
 from gearopt.physics.loads import k_factor, unit_load
 
 K_FACTOR = Law(
     "K-factor and unit load",
     (
-        Limit(
+        LimitedIndex(
             "k_factor",
             words="K-factor",
             meaning="Largest K-factor W_t/(d1 b) (u + 1)/u, the index of contact stress",
             example="2.07 MPa",
         ),
-        Limit(
+        LimitedIndex(
             "unit_load",
             meaning="Largest unit load W_t/(b m_n), the index of tooth-root stress",
             example="48 MPa",

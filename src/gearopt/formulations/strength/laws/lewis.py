@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from gearopt.formulations.strength import Law, Limit
+from gearopt.formulations.strength import Law, LimitedIndex
 from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import lewis_stress
 from gearopt.physics.stiffness import lewis_form_factor
@@ -26,7 +26,7 @@ def lewis(teeth: float | None = None) -> Law:
     bound = lewis(math.inf) if teeth is None else None
     return Law(
         "Lewis stress",
-        (Limit("bending_stress"),),
+        (LimitedIndex("bending_stress"),),
         indices,
         proportional=True,
         relaxed=bound,

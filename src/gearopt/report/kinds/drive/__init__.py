@@ -99,7 +99,7 @@ def numbers(result: Result, measures: Measures) -> Section | None:
     return replace(whole, heading=named, tables=sorted(shown, key=lambda t: t.folded))
 
 
-def clearances(result: Result) -> set[str]:
+def limits_shown_as_gaps(result: Result) -> set[str]:
     """The limits of a layout that its table of gaps shows in mm."""
     gaps = result.design.get("layout", {}).get("gaps", ())
     return {" to ".join(gap["between"]).replace(" ", "_") for gap in gaps}
@@ -109,7 +109,7 @@ def binding_limit(result: Result) -> str:
     """Gears and gaps that decide the box of a layout; nothing without one, where limits say it."""
     if result.value is None or (layout := layout_of(result)) is None:
         return ""
-    gaps = clearances(result)
+    gaps = limits_shown_as_gaps(result)
     full = [n for n in gaps if result.limits.get(n, 0.0) >= 1.0 - REACHED]
     walls, apart = _at_walls(layout), any(part.name == "gears" for part in result.parts)
     first = "the gears were sized first" if apart else "gears and box were chosen at once"
@@ -428,7 +428,7 @@ PAGES = Pages(
     ),
     tiles=tiles,
     sentences_on_parts=sentences_on_parts,
-    elsewhere=clearances,
+    elsewhere=limits_shown_as_gaps,
     binding_limit=binding_limit,
     warns=rating_words.warns,
     whole="drive",

@@ -11,7 +11,7 @@ from gearopt.formulations.drive.rating import (
     LoadLevel,
     RatingFactor,
 )
-from gearopt.formulations.strength.rated import MIDWAY
+from gearopt.formulations.strength.standard import MIDWAY
 from gearopt.optimise.result import Result
 from gearopt.report.kinds.drive.rating_tables import figure, name, names, single
 from gearopt.report.kinds.drive.rating_words import (
@@ -33,7 +33,7 @@ from gearopt.report.kinds.drive.rating_words import (
     unverified,
 )
 from gearopt.report.measures import Measures, rounded
-from gearopt.report.section import Cell, Listed, Section, Table, cell, listed, percent
+from gearopt.report.section import Cell, ListedField, Section, Table, cell, listed_fields, percent
 from gearopt.report.words import RATING, parted, series_of
 
 ONCE = 4  # fields of a load level that hold for all gears
@@ -103,9 +103,12 @@ def _head(rating: DriveRating, rated: DriveRating, gear: GearRating) -> str:
     return gear_name if rating.beside is None else f"{gear_name}, {STANDARD_HEADS[rated.by]}"
 
 
-def _fields(rating: DriveRating) -> list[Listed]:
+def _fields(rating: DriveRating) -> list[ListedField]:
     """Fields of a gear's rating, stresses with their symbols."""
-    return [replace(it, label=stress_words(rating, it.key, it.label)) for it in listed(GearRating)]
+    return [
+        replace(it, label=stress_words(rating, it.key, it.label))
+        for it in listed_fields(GearRating)
+    ]
 
 
 def _gear_rows(rating: DriveRating, measures: Measures) -> Iterator[list[Any]]:
@@ -151,7 +154,7 @@ def _damage(value: float | None) -> Cell:
 
 def _on_terminal(result: Result, rating: DriveRating, measures: Measures) -> list[str | Table]:
     """All gears for the terminal; of an optimum first how it is rated."""
-    keys = [it.key for it in listed(GearRating) if it.key.endswith(("_MPa", "_safety"))]
+    keys = [it.key for it in listed_fields(GearRating) if it.key.endswith(("_MPa", "_safety"))]
     sign, named = measures.unit("MPa"), rating.beside is not None
     strong = f"limit\n{sign}"
     short = (f"bending\n{sign}", strong, "S_F", f"contact\n{sign}", strong, "S_H")
@@ -206,11 +209,11 @@ def levels(result: Result, measures: Measures) -> Section | None:
     return Section("Load spectrum", words=said, tables=(Table("levels", heads, rows),))
 
 
-def _level_fields(rating: DriveRating) -> list[Listed]:
+def _level_fields(rating: DriveRating) -> list[ListedField]:
     """Fields of a load level; stresses by their symbols of AGMA, where it rates alone."""
     alone = {rated.by for rated in rating.each} == {"AGMA"}
     symbols = {"bending_stress_MPa": "s_t", "contact_stress_MPa": "s_c"} if alone else {}
-    return [replace(it, label=symbols.get(it.key, it.label)) for it in listed(LoadLevel)]
+    return [replace(it, label=symbols.get(it.key, it.label)) for it in listed_fields(LoadLevel)]
 
 
 def _level_row(rating: DriveRating, level: LoadLevel, measures: Measures, first: bool) -> list[Any]:

@@ -10,7 +10,7 @@ from gearopt.optimise.result import Result
 from gearopt.report.design_tables import stage_label, tables
 from gearopt.report.kinds.drive.rating_words import FRICTION, ROUNDING, rating_of, safety
 from gearopt.report.measures import Measures
-from gearopt.report.section import ABSENT, Cell, Section, Table, cell, listed, side_by_side
+from gearopt.report.section import ABSENT, Cell, Section, Table, cell, listed_fields, side_by_side
 from gearopt.report.words import MODULE, heading, module_words, number, parted
 
 IN_DESIGN = {  # keys of stages and totals that tables of a rating show
@@ -80,7 +80,7 @@ def _lacking(items: Sequence[Any], measures: Measures) -> tuple[list[list[Any]],
         [label, *(replace(c, text=ABSENT) if c.value is None else c for c in cells)]
         for label, *cells in side_by_side(items, measures)
     ]
-    held = {it.key for it in listed(items[0].__class__)}
+    held = {it.key for it in listed_fields(items[0].__class__)}
     reasons = [
         reason
         for key, reason in REASONS.items()
@@ -126,7 +126,7 @@ def forces(result: Result, measures: Measures) -> Section | None:
 
 def _least_rows(rating: DriveRating, measures: Measures) -> Iterator[list[Any]]:
     """Yield what governs every mesh and what it may transmit, by every standard."""
-    for it in listed(MeshRating, "governing"):
+    for it in listed_fields(MeshRating, "governing"):
         for rated in rating.each:
             of = "" if rating.beside is None else f" by {rated.by}"
             values = (figure(getattr(mesh, it.key), it.key, measures) for mesh in rated.meshes)

@@ -35,8 +35,8 @@ COLOURS = (1, 4)  # of pinion and wheel, in the series
 
 
 @dataclass(frozen=True)
-class Side:
-    """One side of a tooth upright on the y axis, its origin on the gear's axis [mm]."""
+class Flank:
+    """The right flank of a tooth that stands on the y axis; origin on the gear's axis [mm]."""
 
     gear: Gear
 
@@ -137,7 +137,7 @@ def _apart(wanted: Sequence[float], lowest: float) -> list[float]:
 
 def _thickness(sheet: Sheet, gear: Gear, measures: Measures) -> None:
     """Draw the thicknesses on reference and tip circle."""
-    side = Side(gear)
+    side = Flank(gear)
     d = float(gear.reference_diameter)
     x, y = side.at(0.5 * d)
     text = f"s {measures.length(float(transverse_thickness(gear, d)), 3)}"
@@ -161,7 +161,7 @@ def _pressure_angle(sheet: Sheet, gear: Gear) -> None:
     r = 0.5 * float(gear.reference_diameter)
     if r < 0.5 * float(gear.base_diameter):
         return
-    x, y = Side(gear).at(r)
+    x, y = Flank(gear).at(r)
     x, reach = -x, 1.25 * float(gear.normal_module)
     angle = float(profile_angle(gear, r))
     radial = math.atan2(y, x)
@@ -186,7 +186,7 @@ def _load(sheet: Sheet, gear: Gear, curvature: float) -> None:
     base = 0.5 * float(gear.base_diameter)
     radius = math.hypot(base, curvature)
     angle = math.atan2(curvature, base) - float(half_angle(gear, radius))
-    x, y = Side(gear).at(radius)
+    x, y = Flank(gear).at(radius)
     crossing = base / math.cos(angle)
     along = math.cos(angle), math.sin(angle)  # out of the tooth
     start, end = sheet.at(x, y), sheet.at(0.0, crossing)

@@ -214,9 +214,9 @@ def _drawing(fit: BoxDesign, train: TrainDesign | None, measures: Measures) -> D
     centre_distance(sheet, at.middle, OUTPUT, f"a2 = {measures.length(b)}")
     for k, place in enumerate((at.motor, at.middle, OUTPUT), 1):
         sheet.balloon(str(k), around(sheet.at(*place), (26.0, 36.0, 50.0, 66.0), 0.0))
-    _name(sheet, "motor", at.motor, fit.motor_mm, "")
-    _name(sheet, "hub", OUTPUT, fit.hub_mm, "")
-    _name(sheet, "wheel 1", at.middle, wheel_1, COLOUR_1)
+    _write_name(sheet, "motor", at.motor, fit.motor_mm, "")
+    _write_name(sheet, "hub", OUTPUT, fit.hub_mm, "")
+    _write_name(sheet, "wheel 1", at.middle, wheel_1, COLOUR_1)
     discs = [(at.motor, fit.radii_mm[0]), (at.middle, fit.radii_mm[1])]
     _label_sector(sheet, fit, discs)
     caption = "Along the shafts" + ("; a mirror image fits as well." if fit.fits else ".")
@@ -268,7 +268,7 @@ def _sizes(
     sheet.dimension((x1, y0), (x1, y1), right, measures.length(y1 - y0))
 
 
-def _name(sheet: Sheet, name: str, at: Point, radius: float, colour: str) -> None:
+def _write_name(sheet: Sheet, name: str, at: Point, radius: float, colour: str) -> None:
     """Write a name inside its disc, or outside with a line to it."""
     centre, r = sheet.at(*at), radius * sheet.scale
     half = Place(0, 0).half_width(name)

@@ -21,6 +21,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.solve import solve
 from gearopt.optimise.typed import untyped
 from gearopt.physics.gears import GearPair
+from gearopt.scenes.drive.described_layout import described, keep_out_design
 from gearopt.scenes.drive.explain import box_at_once
 from gearopt.scenes.drive.explain.box_at_once import (
     LIMITS,
@@ -39,7 +40,6 @@ from gearopt.scenes.drive.explain.box_moves import (
 )
 from gearopt.scenes.drive.explain.other_gears import other_gears
 from gearopt.scenes.drive.layout import box_first, others_may_fit
-from gearopt.scenes.drive.layout_design import described, keep_out_design
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import (
     FactorBracket,

@@ -214,7 +214,10 @@ def _sums(scene: Scene, way: int) -> Iterator[Group]:
 
 
 def finer_series(now: Choice | None) -> Iterator[Preferred]:
-    """Yield the series that hold all values of a series and more, the coarsest first."""
+    """Yield the series that hold all values of a series and more, the coarsest first.
+
+    Nothing where the choice is no series.
+    """
     if isinstance(now, Preferred):
         names = list(PREFERRED)
         for name in names[names.index(now.series) + 1 :]:

@@ -11,8 +11,8 @@ from gearopt.frozen import dataclass
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.optimise.explaining.proposed import DIGITS
 from gearopt.optimise.explaining.repair import SLACK_TRIED
+from gearopt.scenes.drive.explain.least_product import is_real
 from gearopt.scenes.drive.explain.moves import inherited
-from gearopt.scenes.drive.explain.together import is_real
 from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import as_remedy, least

@@ -12,8 +12,7 @@ from gearopt.optimise.explaining.handles import Handle
 from gearopt.optimise.explaining.repair import FARTHEST, PRODUCT_TIE, any_resolves, conflict, even
 from gearopt.optimise.problem import Problem
 from gearopt.scenes.drive.explain.choices import eased_tolerance, nearest_ratio, switches
-from gearopt.scenes.drive.explain.moves import bound_of, comparable, shared, steps
-from gearopt.scenes.drive.explain.together import (
+from gearopt.scenes.drive.explain.least_product import (
     is_real,
     is_stepped,
     posed,
@@ -21,6 +20,7 @@ from gearopt.scenes.drive.explain.together import (
     together,
     widest,
 )
+from gearopt.scenes.drive.explain.moves import bound_of, comparable, shared, steps
 from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import (

@@ -31,7 +31,7 @@ def other_gears(
     remedies, unknown = [], []
     for changed, changes in _candidates(scene, pairs, known):
         words = " and ".join(f"{change.key} = {change.write}" for change in changes)
-        fits = _fits(changed, clock)
+        fits = _some_gears_fit(changed, clock)
         if fits:
             what = " and ".join(change.key.rsplit(".", 1)[-1] for change in changes)
             remedies.append(Remedy("choice", what, changes, 1.0, None, {"with": "feasible"}))
@@ -69,7 +69,7 @@ def _candidates(
             yield changed, (change, *both)
 
 
-def _fits(scene: Scene, clock: Clock) -> bool | None:
+def _some_gears_fit(scene: Scene, clock: Clock) -> bool | None:
     """Return whether some gears can be laid out; None where that is not known in time."""
     left = clock.left.seconds
     seconds = clock.within(SECONDS if left is None else SHARE * left)

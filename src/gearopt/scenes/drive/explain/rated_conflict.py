@@ -13,7 +13,7 @@ from dataclasses import field, replace
 
 from gearopt.formulations.drive.teeth.search import reaches
 from gearopt.formulations.drive.train import Train
-from gearopt.formulations.strength.rated import Option
+from gearopt.formulations.strength.standard import Option
 from gearopt.frozen import dataclass
 from gearopt.scenes.drive.explain.requirements import (
     BENDING,

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from gearopt.formulations.strength.rated import MIDWAY
+from gearopt.formulations.strength.standard import MIDWAY
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.case import Practice
 from gearopt.scenes.drive.rating.iso_material import steel

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from gearopt.errors import SolveError
-from gearopt.formulations.strength.rated import Load
+from gearopt.formulations.strength.standard import Load
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.rating import Operation
@@ -14,7 +14,7 @@ from gearopt.scenes.drive.rating.materials import Named, choices
 from gearopt.scenes.drive.tables.blanks import blank
 from gearopt.scenes.drive.tables.drive import Gears, StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, LoadTable, RatingTable
-from gearopt.scenes.drive.tables.teeth import toothing
+from gearopt.scenes.drive.toothings import toothing
 from gearopt.scenes.parts import Duty
 
 HOUR = 3600.0  # s

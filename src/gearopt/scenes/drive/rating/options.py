@@ -5,7 +5,7 @@ from dataclasses import replace
 from importlib import import_module
 from typing import Any
 
-from gearopt.formulations.strength.rated import Load, Option
+from gearopt.formulations.strength.standard import Load, Option
 from gearopt.physics.gears import MEMBERS
 from gearopt.scenes.drive.rating.gears import blanks, loads, required_hours, unit_operation
 from gearopt.scenes.drive.rating.materials import Named, choices

@@ -91,7 +91,7 @@ def _allowance(gear: GearTable) -> float:
     return gear.thickness_allowance.value if gear.thickness_allowance else 0.0
 
 
-def check_teeth(
+def check_centre_distances(
     stages: tuple[StageTable, ...],
     gears: Gears,
     lacks: str,
@@ -99,18 +99,19 @@ def check_teeth(
     asked: str,
     follows: bool = False,
 ) -> None:
-    """Refuse centre distances off the reference circles where the objective cannot take them.
+    """Refuse stages off their reference centre distance where the file asks for what assumes it.
 
-    lacks: what a file lacks for gears to be chosen at a given centre distance, or nothing;
-    objective: what is minimised; asked: what else takes reference circles, such as gears and box
-    at once, or nothing. follows: whether it takes distances from which profile shifts follow.
+    An objective in LENGTHS assumes it where no distance is given, and so does `asked` ("together",
+    "process_two" or ""), except at given distances where `follows`: profile shifts follow from
+    these. lacks: what the file lacks to choose gears at a given distance, "" for nothing; such a
+    distance is refused first. SceneError by `refuse`.
     """
     for k, table in enumerate(stages):
         if table.centre_distance is not None and lacks:
             rule = f"needs gears that are all given, or {lacks}"
             raise refuse(rule, at=("stage", k, "centre_distance"), action="remove")
         given = table.centre_distance is not None
-        of_length = objective in LENGTHS and (not given or lacks)
+        of_length = objective in LENGTHS and not given
         if not (of_length or asked and not (given and follows)):
             continue
         if not given and toothing(table, gears).on_reference:

@@ -1,4 +1,4 @@
-"""Methods that a problem brings itself: their declarations, how one is run, its result.
+"""Methods: those that a problem brings itself, how any is run, and its result held to its sort.
 
 The claims of such a method count, so that what it returns is held to its sort before it is judged.
 """
@@ -55,7 +55,7 @@ def run_method(
     """Return the outcome of a method; of a problem's own one, held to its sort: SolveError."""
     if method not in problem.methods:
         return run(problem, budget, seed, watch)
-    outcome = run(problem, budget, seed, watch or _unwatched)
+    outcome = run(problem, budget, seed, watch or _go_on)
     where = f"the method {method!r} of {problem.name}"
     if not isinstance(outcome, Outcome):
         raise SolveError(
@@ -68,8 +68,8 @@ def run_method(
     return replace(outcome, x=x, others=tuple(_point(where, o, count) for o in outcome.others))
 
 
-def _unwatched(event: Event) -> bool:
-    """Follow a run that nobody follows: go on."""
+def _go_on(event: Event) -> bool:
+    """Watcher of a run that nobody follows: go on."""
     return True
 
 

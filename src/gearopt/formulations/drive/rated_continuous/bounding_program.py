@@ -1,7 +1,7 @@
 """A geometric program below a drive that ratings limit, from whose optimum its sizing starts.
 
-Its limits are below those of the ratings (`strength.rated.Floor`), so its dual bound is one of the
-drive, in real-valued and in whole teeth.
+Its limits are below those of the ratings (`strength.standard.Floor`), so its dual bound is one of
+the drive, in real-valued and in whole teeth.
 """
 
 import math
@@ -11,7 +11,7 @@ from typing import Any
 from gearopt.formulations.drive import sizing_text
 from gearopt.formulations.drive.shares import least_share
 from gearopt.formulations.drive.train import BY_WIDTH, LENGTHS, Train
-from gearopt.formulations.strength.rated import Box
+from gearopt.formulations.strength.standard import Box
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import FEASIBLE, Budget, Result
