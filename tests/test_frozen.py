@@ -1,9 +1,11 @@
-"""Frozen classes load faster than the library's and are otherwise what the library makes."""
+"""Frozen classes load faster than the library's, and objects of them behave alike."""
 
+import abc
 import dataclasses
 import inspect
 import pickle
 from dataclasses import FrozenInstanceError, asdict, field, fields, replace
+from enum import Enum
 from typing import ClassVar
 
 import pytest
@@ -130,3 +132,61 @@ def test_mutable_ordered_and_own_comparisons_are_the_librarys():
     assert count == Count(1)
     assert Rank(1) < Rank(2)
     assert Own(1.0) == 2
+
+
+def same(text):
+    """The errors, or the repr of `shown`, of a text by one decorator and the other."""
+    said = []
+    for decorator in (dataclass, dataclasses.dataclass):
+        known = {"dataclass": decorator, "field": field, "InitVar": dataclasses.InitVar, "abc": abc}
+        known |= {"__name__": __name__, "Enum": Enum}
+        try:
+            exec(text, known)
+            said.append(repr(known["shown"]))
+        except Exception as error:
+            said.append(f"{type(error).__name__}: {error}")
+    return said
+
+
+FORMS = {
+    "init only": """
+    teeth: int
+    worn: InitVar[int]
+    left: int = 0
+    def __post_init__(self, worn):
+        object.__setattr__(self, "left", self.teeth - worn)
+shown = Gear(20, 3), str(inspect_signature(Gear))""",
+    "another frozen class": "    teeth: int\n@dataclass(frozen=True, order=True)\nclass B(Gear):\n"
+    "    module: float\nshown = B(20, 1.0) < B(20, 2.0)",
+    "a mutable class of a frozen one": "    teeth: int\n@dataclass\nclass B(Gear):\n    x: int\n"
+    "shown = B",
+    "default first": "    module: float = 1.0\n    teeth: int\nshown = Gear",
+    "names in use": "    self: int\n    put: int\n    _FACTORY: int\n"
+    "    _fresh_notes: int\n    notes: list = field(default_factory=list)\n"
+    "shown = Gear(1, 2, 3, 4)",
+    "a plain derived class": "    teeth: int\nclass B(Gear):\n    pass\nb = B(20)\nb.extra = 1\n"
+    "shown = b.extra, b, b == Gear(20), B(20) == b\nb.teeth = 2",
+    "words of a member": "    teeth: int\nclass B(Gear, Enum):\n    SMALL = 17\n"
+    "shown = B.SMALL.teeth",
+    "base's own words": "    teeth: int\n@dataclass(frozen=True)\nclass B(Gear):\n    '''B.'''\n"
+    "    module: float = 1.0\nshown = Gear.__repr__(B(20)), Gear.__eq__(B(20), B(20, 2.0))",
+    "hints": "    teeth: 'int'\n    wheel: 'Gear | None' = None\n"
+    "globals_of = globals()\nshown = Gear.__init__.__annotations__, Gear.__dataclass_params__",
+    "wrong calls": "    teeth: int\nshown = Gear(1).__eq__.__name__, Gear(1).__hash__.__name__",
+}
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_forms_that_are_not_plain_are_the_librarys(form):
+    text = f"@dataclass(frozen=True)\nclass Gear:\n    '''A gear.'''\n{FORMS[form]}"
+    ours, theirs = same(text.replace("inspect_signature", "__import__('inspect').signature"))
+    assert ours == theirs
+
+
+def test_an_abstract_comparison_stays_what_the_library_makes_of_it():
+    ours, theirs = same(
+        "class Base(abc.ABC):\n    @abc.abstractmethod\n    def __eq__(self, other): ...\n"
+        "@dataclass(frozen=True)\nclass Gear(Base):\n    '''A gear.'''\n    teeth: int\n"
+        "shown = Gear(20) == Gear(20)"
+    )
+    assert ours == theirs == "True"

@@ -56,7 +56,9 @@ def test_measure_and_value_are_the_plain_law():
             assert at == pytest.approx(np.stack([y[p], z[p]]), abs=1e-9), name
             assert lack == pytest.approx(short[p], rel=1e-9, abs=1e-9), name
             assert K.value(shape, 0, width, height) == pytest.approx(objective[p], rel=1e-12), name
-            assert K.measured_at_positions(shape, 0, y[p], z[p])[2] == pytest.approx(short[p], abs=1e-9)
+            assert K.measured_at_positions(shape, 0, y[p], z[p])[2] == pytest.approx(
+                short[p], abs=1e-9
+            )
 
 
 def test_cosines_hold_every_sample():
