@@ -183,11 +183,13 @@ def _with_remedies(
     begun: float,
 ) -> Result:
     """An impossible result with what to write instead, which the watcher is told of first."""
-    if kind.remedies is None or not kind.remedied(scene):
+    if not kind.has_remedies(scene):
         return result
+    from gearopt.scenes.explaining.explanations import ways_out
+
     tell_known(ask.watch, result)
     clock = Clock(ask.budget, of_others(ask.watch), begun)
-    ways = kind.remedies(scene, clock, result, True)
+    ways = ways_out(kind, scene, clock, result, True)
     if ways is None:
         return result
     report = {**result.report, **ways.drawn, "ways_out": ways.told}

@@ -2,7 +2,6 @@
 
 import math
 from fractions import Fraction
-from types import SimpleNamespace
 from typing import Annotated
 
 import numpy as np
@@ -12,6 +11,8 @@ from gearopt import Param, Problem, Terms, Var
 from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.result import Outcome
 from gearopt.optimise.solve import solve as solve_problem
+from gearopt.scenes.kind import Kind
+from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.fields import Table, number, quantity, whole
 from gearopt.units import Quantity
 
@@ -61,11 +62,9 @@ def bars(own, method=""):
     return Model(Problem("bars", (n, d), parameters, evaluate, methods={"exact": exact}))
 
 
-KIND = SimpleNamespace(
-    possible=None,
-    moves=None,
-    remedies=None,
-    influences=None,
-    posed=bars,
-    solve=lambda own, ask: solve_problem(bars(own).problem),
-)
+def sized(own, ask, known):
+    """The least section."""
+    return solve_problem(bars(own).problem)
+
+
+KIND = Kind(scene=Bars, examples={}, steps=one_step(sized), posed=bars)

@@ -201,6 +201,23 @@ def test_wrong_tables_are_told():
         gearopt.load(deep)
 
 
+def test_a_key_deeper_than_python_recurses_is_refused(tmp_path):
+    """As of the reader, and of the changes that Python gives."""
+    file = tmp_path / "deep.toml"
+    file.write_text(f'gearopt = 1\nkind = "drive"\n[duty]\npower{".a" * 1100} = 1\n')
+    with pytest.raises(gearopt.SceneError, match="deep.toml: is nested too deeply"):
+        gearopt.load(file)
+
+
+def test_changes_deeper_than_python_recurses_are_refused():
+    deep = inner = {}
+    for _ in range(5000):
+        inner["a"] = inner = {}
+    for changes in ({"duty.power": deep}, {"x-own": deep}, {"duty.power": [deep]}):
+        with pytest.raises(gearopt.SceneError, match="nested too deeply"):
+            gearopt.load(ELEVATOR, changes=changes)
+
+
 @pytest.mark.parametrize(
     ("call", "wrong", "words"),
     [

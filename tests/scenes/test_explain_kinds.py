@@ -15,10 +15,13 @@ from edits import edited, scene_of
 
 import gearopt
 from gearopt import Problem, SolveError, Terms, Var
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.handles import each_word, handles
 from gearopt.scenes.explaining import explanations, influences
 from gearopt.scenes.explaining.explanations import explanation
 from gearopt.scenes.explaining.influences import STEP, Basis
+from gearopt.scenes.explaining.moves import Move
+from gearopt.scenes.explaining.possible import Verdict
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import kind_named, kind_of, read
 from gearopt.scenes.reading.mistakes import table_of
@@ -216,6 +219,26 @@ def test_a_further_kind_is_explained_by_its_model_and_its_keys():
         assert remedy.verified["with_less"] == "infeasible"
         other = edited(FILE, remedy, model=Bars)
         assert KIND.solve(other, Ask()).status == "optimal"
+
+
+def test_a_kind_with_possible_and_moves_alone_has_remedies_beside_its_answers():
+    """6 bars of 5 mm are needed: `most` of steps 5 and 6, or bars of 6.13 mm."""
+
+    def possible(scene, clock):
+        bar = scene.bar
+        needed = float(bar.pull.value) * float(bar.safety) / float(bar.stress.value)
+        return Verdict(bar.most * float(bar.diameter.value) ** 2 >= needed * (1.0 - 1e-12))
+
+    def moves(scene):
+        yield Move(("bar", "diameter"), 1)
+        yield Move(("bar", "most"), 1).to_values(scene.bar.most, range(5, 9))
+
+    kind, impossible = replace(KIND, possible=possible, moves=moves), Bars.model_validate(FILE)
+    assert kind.has_remedies(impossible) and not KIND.has_remedies(impossible)
+    result = kind.solve(impossible, Ask())
+    soon = explanations.ways_out(kind, impossible, Clock(), result, True)
+    assert {r.changes[0].key: r.changes[0].write for r in soon.remedies}["bar.most"] == "6"
+    assert soon.remedies == explanation(kind, impossible, Ask()).remedies
 
 
 def test_a_further_kind_tells_slopes_of_its_whole_numbers():

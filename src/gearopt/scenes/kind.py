@@ -105,8 +105,9 @@ class Kind(Generic[S]):
     possible: whether a changed file has a design, for remedies; None: by solving it. moves: the
     numbers that a remedy may move; None: those of its relaxed form.
     remedies: what to write instead of an impossible file, from its result, which says why; soon:
-    beside an answer, where what takes long is left out; None: none are known soon. remedied:
-    whether a file has them; others, and those of a kind without: by solving changed files.
+    beside an answer, where what takes long is left out; None: none are known soon; by default by
+    `possible` and `moves`. remedied: whether a file has them; others, and those of a kind without:
+    by solving changed files.
     influences: what every number does to an answer, in what time is left; None: by solving changed
     files. assumptions: sentences on what every answer to the file takes for granted. trades: its
     fronts. rate: the rating of given gears. idle: the options of `solve` that change nothing, each
@@ -132,6 +133,11 @@ class Kind(Generic[S]):
     def solve(self, scene: S, ask: Ask) -> Result:
         """Answer to a file, without remedies where it is impossible."""
         return carried_out(self.steps(scene, ask), scene, ask)
+
+    def has_remedies(self, scene: S) -> bool:
+        """Whether the kind knows what to write instead of a file that is impossible."""
+        known = self.remedies is not None or None not in (self.possible, self.moves)
+        return known and self.remedied(scene)
 
     @property
     def example(self) -> Example:

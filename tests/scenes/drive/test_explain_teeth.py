@@ -18,6 +18,8 @@ from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.solve import run, solve
 from gearopt.physics.gears import MODULES, GearPair
 from gearopt.scenes.explaining.explanations import explanation
+from gearopt.scenes.kind import Kind
+from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, number, quantity, whole
 from gearopt.scenes.reading.lists import span
@@ -78,14 +80,10 @@ def kind(**given):
     def posed(own, method=""):
         return model(own, method, **given)
 
-    return SimpleNamespace(
-        possible=None,
-        moves=None,
-        remedies=None,
-        influences=None,
-        posed=posed,
-        solve=lambda own, ask: solve(posed(own).problem),
-    )
+    def sized(own, ask, known):
+        return solve(posed(own).problem)
+
+    return Kind(scene=Pairs, examples={}, steps=one_step(sized), posed=posed)
 
 
 FILE = {

@@ -52,12 +52,25 @@ def explanation(kind: Kind[S], scene: S, ask: Ask, result: Result | None = None)
     """
     clock = Clock(ask.budget, of_others(ask.watch))
     result = result or kind.solve(scene, ask.half)
-    if kind.remedies is not None and kind.remedied(scene) and without_design(result):
+    if kind.has_remedies(scene) and without_design(result):
         tell_known(ask.watch, result)
-        if (ways := kind.remedies(scene, clock, result, False)) is not None:
+        if (ways := ways_out(kind, scene, clock, result, False)) is not None:
             return _impossible_with(ways, result, clock)
     left = replace(ask, budget=clock.left)
     return (kind.influences or partial(by_solving, kind))(scene, left, result)
+
+
+def ways_out(kind: Kind[S], scene: S, clock: Clock, result: Result, soon: bool) -> Remedies | None:
+    """What to write instead of a file that is impossible; None where the kind cannot say it so.
+
+    soon: beside an answer, where what takes long is left out.
+    """
+    if kind.remedies is not None:
+        return kind.remedies(scene, clock, result, soon)
+    problem = kind.posed(scene, "").problem
+    if kind.possible is None or isinstance(problem, Conic):
+        return None
+    return remedies(scene, problem, clock, kind.possible, kind.moves)
 
 
 def _impossible_with(ways: Remedies, result: Result, clock: Clock) -> Explanation:

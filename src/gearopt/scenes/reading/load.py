@@ -115,12 +115,14 @@ def load(
         data = _bytes(what)
         digest, folder = hashlib.sha256(data).hexdigest(), Path(what)
         content = _parse(data, file)
-    if changes:
-        name += " (changed)"
-        content = changed(content, changes, name)
-    asked = _tables_read(content)
+    name += " (changed)" if changes else ""
+    try:
+        content = changed(content, changes, name) if changes else content
+        asked, edits = _tables_read(content), bare(as_written(changes))
+    except RecursionError:
+        raise _too_deep(name) from None
     kind, scene = _scene(content, name, (*before, folder.resolve()))
-    return Loaded(scene, kind, asked, file, digest, bare(as_written(changes)))
+    return Loaded(scene, kind, asked, file, digest, edits)
 
 
 def _bytes(path: str | Path) -> bytes:
