@@ -83,9 +83,9 @@ def _init(cls: type) -> Callable[..., None]:
     named = ["*", *parameters[True]] if parameters[True] else []
     head = f"def __init__({', '.join(parameters[False] + named)}):"
     text = "\n  ".join((f"def make({', '.join(known)}):\n {head}", *lines)) + "\n return __init__"
-    module, made = sys.modules.get(cls.__module__), dict[str, Any]()
-    exec(text, module.__dict__ if module else {}, made)
-    init: Callable[..., None] = made["make"](**known)
+    module, names = sys.modules.get(cls.__module__), dict[str, Any]()
+    exec(text, module.__dict__ if module else {}, names)
+    init: Callable[..., None] = names["make"](**known)
     init.__module__, init.__qualname__ = cls.__module__, f"{cls.__qualname__}.__init__"
     init.__annotations__ = hints[False] | hints[True] | {"return": None}
     return init
