@@ -17,7 +17,9 @@ from gearopt.formulations.dynamics.motion.integrate import (
 from gearopt.formulations.dynamics.motion.reference import cvodes, scipy_motion
 from gearopt.formulations.dynamics.motion.simulate import exact_motion, piecewise_linear, simulate
 from gearopt.formulations.dynamics.motion.timeline import timeline
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.kernels import kernel
+from gearopt.optimise.result import Budget
 from gearopt.physics.motion.accelerations import LEVELS
 from gearopt.physics.motion.moving_pair import turns
 from gearopt.physics.motion.stiffness_wave import fourier, trapezoid
@@ -210,6 +212,18 @@ def test_a_piecewise_linear_scene_is_solved_exactly():
     for other in (paper_pair(), paper_pair("tangent", backlash=1.0)):
         with pytest.raises(ValueError, match="not piecewise linear"):
             exact_motion(other, "plane", timeline(other, TIMES), np.zeros(10))
+
+
+def test_a_long_motion_begins_with_what_a_short_time_can_reach(monkeypatch):
+    pair = paper_pair(wave=trapezoid(2e5, 0.5, 0.68, 0.1), frequency=1000.0, backlash=1.0)
+    times = np.linspace(0.0, 100.0, 1_000_001)
+    asked = []
+    module = "gearopt.formulations.dynamics.motion.simulate.timeline"
+    monkeypatch.setattr(module, lambda pair, times: asked.append(times) or timeline(pair, times))
+    made = simulate(pair, "fixed", times, 1e-6, clock=Clock(Budget(seconds=0.05)))
+    assert len(asked[0]) <= 150_000  # of the million
+    assert made is None or (not made.met and made.times[-1] < 100.0)
+    assert np.array_equal(asked[0], times[: len(asked[0])])
 
 
 def test_symplectic_steps_are_refused_where_forces_depend_on_velocities():

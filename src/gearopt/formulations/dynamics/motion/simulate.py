@@ -25,6 +25,7 @@ NOISE = 3.0  # times what that changes: changes up to there are of roundings, no
 SAFETY = 4.0  # times the error that changes by halving tell of the finer run
 SHORTEST = 11  # outputs of a motion that was cut short, at least
 MAX_RATE_EVALUATIONS = 400_000_000  # rates evaluated, at most: some minute
+FASTEST_STEPS = 2e6  # steps in a second of the clock, at most
 CANDIDATES = ("rk8", "rk4", "symplectic", "newmark")
 LOCATING = ("rk8", "rk4")  # those that locate where teeth part and meet
 
@@ -85,11 +86,11 @@ def simulate(
     of the first two what both have reached; None where that is less than SHORTEST outputs.
     """
     state, clock = np.zeros(2 * LEVELS[level][0]) if state is None else state, clock or Clock()
-    intervals = timeline(pair, times)
+    intervals = timeline(pair, times[: _within_reach(pair, times, clock)])
     if pair.backlash is None and piecewise_linear(pair, level):
         exact = exact_motion(pair, level, intervals, state, clock)
         return _simulated(times, exact, "exponential", EXACT, error, exact.rates, 0.0)
-    _check_steps(pair, level, intervals.end)
+    _check_steps(pair, level, float(times[-1] - times[0]))
     tried = _begun(pair, level, intervals, state, clock)
     spent, ended = sum(t.spent for t in tried), list[_Try]()
     while tried:
@@ -123,6 +124,16 @@ def simulate(
     return (
         replace(simulated, steady=float(times[max(0, beyond[0] - 1)])) if beyond.size else simulated
     )
+
+
+def _within_reach(pair: MovingPair, times: Array, clock: Clock) -> int:
+    """Number of the first outputs that a motion can reach in what is left of the clock."""
+    seconds = clock.left.seconds
+    if seconds is None:
+        return len(times)
+    kinks = len(pair.wave.edges) * pair.mesh_frequency * float(times[-1] - times[0])
+    steps_per_output = max(1.0, kinks / len(times))  # no step goes over a kink
+    return min(len(times), SHORTEST + int(FASTEST_STEPS * seconds / steps_per_output))
 
 
 def _moved(tried: _Try, times: Timeline, state: Array, clock: Clock) -> Array:
