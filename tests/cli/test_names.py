@@ -104,7 +104,7 @@ COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); $way gearopt; printf '%s\\n' "${COMPR
     ("words", "shown"),
     [
         (("gearopt", "so"), "solve"),
-        (("gearopt", "new", "d"), "drive"),
+        (("gearopt", "new", "d"), "drive dynamics"),
         (("gearopt", "new", "ra"), "rating"),
         (("gearopt", "rate", f"{PROBLEMS}/elevator_b"), f"{PROBLEMS}/elevator_b*.toml"),
         (("gearopt", "solve", f"{PROBLEMS}/elevator_b"), f"{PROBLEMS}/elevator_b*.toml"),

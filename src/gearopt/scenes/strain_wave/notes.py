@@ -162,12 +162,7 @@ def range_notes(scene: Scene, ends: Sequence[RangeEnd]) -> list[str]:
 
 def notes(made: WaveDesign) -> list[str]:
     """Return notes on this gearing, in sentences."""
-    carry = "1 tooth carries" if made.carrying_teeth == 1 else f"{made.carrying_teeth} teeth carry"
-    sentences = [
-        f"On average {made.pairs_in_contact:.3f} pairs of teeth per lobe and flank are conjugate; "
-        f"under load {carry}, equivalent to {made.effective_teeth:.2f} with equal loads.",
-        _windup(made),
-    ]
+    sentences = [_windup(made)]
     if made.least_clearance_mm < CUTTING:
         sentences.append(
             f"Interference: teeth overlap by {-1e3 * made.least_clearance_mm:.3g} µm, at "

@@ -116,13 +116,12 @@ def moving(result: Result, measures: Measures) -> Section | None:
     if (design := design_of(result)) is None:
         return None
     loaded = max(design.load_N) > 0.0  # teeth absurdly stiff carry what is rounding of the torque
-    words = (
-        f"{number(design.pairs_in_contact)} pairs per lobe and flank are conjugate: their flanks "
-        "touch without load. Other pairs come close; elastic deformation brings them into contact.",
-    )
     return Section(
         "Teeth in mesh",
-        words=words,
+        words=(
+            "Conjugate flanks touch without load. Other pairs come close; elastic deformation "
+            "brings them into contact.",
+        ),
         animations=[running(design, RUNS, measures)] if loaded else [],
         figures=[_clearances(design, measures), *([_loads(design, measures)] if loaded else [])],
         tables=[
