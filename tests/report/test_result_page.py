@@ -18,7 +18,7 @@ import gearopt
 from gearopt.formulations.drive.layout.layout_design import LayoutDesign
 from gearopt.optimise.typed import typed
 from gearopt.physics.gears import Gear
-from gearopt.report.drawing.bodies import keep_outs, layout_of, nearest
+from gearopt.report.drawing.bodies import cropped_keep_outs, layout_of, nearest
 from gearopt.report.drawing.sheet import SHEET, SIZE
 from gearopt.report.drawing.solid import Toothed, block, gear_mesh, rod, upright
 from gearopt.report.kinds.drive.layout_solid import MAX_TRIANGLES
@@ -107,14 +107,15 @@ def test_gears_from_the_side_are_as_wide_as_they_are(layout):
         )
         assert np.allclose(drawn, meant, atol=0.02)
         assert len(marks(svg, "rect", "bearing")) == len(found["bearings"])
-        assert len(marks(svg, "rect", "obstacle")) == len(keep_outs(typed(LayoutDesign, found)))
+        near = cropped_keep_outs(typed(LayoutDesign, found))
+        assert len(marks(svg, "rect", "obstacle")) == len(near)
         assert len(marks(svg, "rect", "motor")) == (found["motor"] is not None)
 
 
 def test_keep_outs_are_cut_off_near_the_box():
     result = cases.boxed_in()
     found = result.design["layout"]
-    near = {it.name: it for it in keep_outs(layout_of(result))}
+    near = {it.name: it for it in cropped_keep_outs(layout_of(result))}
     assert set(near) == {"floor", "step"}
     bottom, height = found["box"]["bottom_mm"], found["box"]["height_mm"]
     lowest = min(bottom, -50.0)  # the motor's underside is lower than the box

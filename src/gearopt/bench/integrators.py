@@ -37,8 +37,8 @@ def pair(kinematics: str, wave: Wave, frequency: float = 0.0) -> MovingPair:
     return MovingPair(*rotors, math.radians(20.0), wave, frequency, kinematics=kinematics)
 
 
-def scenes() -> dict[str, MovingPair]:
-    """Return the scenes: the paper's kinematics, with a wave of stiffness, and the exact ones."""
+def moving_pairs() -> dict[str, MovingPair]:
+    """Return the pairs that are integrated, by name: kinematics and mesh stiffness."""
     return {
         "paper, constant stiffness": pair("paper", constant(STIFFNESS)),
         "paper, trapezoid 1 kHz": pair("paper", trapezoid(STIFFNESS, 0.5, 0.6, 0.1), 1000.0),
@@ -56,7 +56,7 @@ def run(repeat: int) -> list[dict[str, Any]]:
     of adaptive methods.
     """
     rows = []
-    for case, scene in scenes().items():
+    for case, scene in moving_pairs().items():
         known = reference(scene)
         settings_of = {name: list(_climbed(ladder, known)) for name, ladder in _ladders(scene)}
         rounds = [_round(settings_of) for _ in range(max(repeat, 1))]

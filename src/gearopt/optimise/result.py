@@ -279,11 +279,11 @@ def as_json(record: Any) -> str:
 def loads(text: str) -> Any:
     """Return plain data from JSON text; ValueError for NaN, infinities, and endless depth."""
 
-    def none(word: str) -> None:
+    def refuse_non_number(word: str) -> None:
         raise ValueError(f"holds {word}, which is not a JSON number")
 
     try:
-        return json.loads(text, parse_constant=none)
+        return json.loads(text, parse_constant=refuse_non_number)
     except RecursionError:
         raise ValueError("is nested too deeply") from None
 

@@ -115,7 +115,7 @@ def _given(problem: Problem | Conic, point: Mapping[str, Any] | Array) -> Array:
 
 
 def _values(problem: str, name: str, value: Any, count: int) -> Array:
-    """Return the values of one variable (count,); ValueError names it where they are none."""
+    """Return the values of one variable (count,); ValueError names it if they are not numbers."""
     try:
         numbers = np.ravel(np.asarray(value, float))
     except (TypeError, ValueError):

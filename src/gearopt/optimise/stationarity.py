@@ -27,7 +27,7 @@ from gearopt.optimise.terms import Array
 ACTIVE_WITHIN = 1e-6  # a row this close to its limit, a variable this close to its bound, is active
 STATIONARY = 1e-6  # of what acts on a variable; of the objective itself where the form is convex
 WEAK = 1e-8  # of the variable that is acted on most: less is rounding of the multipliers
-ALONE = 1e-14  # the same without multipliers
+WEAK_WITHOUT_MULTIPLIERS = 1e-14  # the same without multipliers
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ def acting(point: Point) -> Array:
     bend[rows[there]] = np.abs(np.array(curved.nonzeros())[there])
     size = point.pull * scales + 0.5 * bend * scales**2
     held = point.lam_g.any() or point.lam_h.any()
-    unit: Array = size + (WEAK if held else ALONE) * size.max()
+    unit: Array = size + (WEAK if held else WEAK_WITHOUT_MULTIPLIERS) * size.max()
     return unit
 
 

@@ -45,7 +45,7 @@ def teeth_heads(measures: Measures) -> tuple[str, str, str]:
     return measures.module[1], "z1", "z2"
 
 
-def tables(result: Result, measures: Measures) -> Section | None:
+def design_section(result: Result, measures: Measures) -> Section | None:
     """All tables of the design, on the terminal stages and totals; None without one."""
     design = dict(result.design)
     if not design:

@@ -15,12 +15,23 @@ STEEP = 1000.0  # sensitivity from which on 0.1 % changes the objective by more 
 NO_CHANGE = 1e-9  # relative: no change
 UNKNOWN = "not all known"  # of the other numbers: whether each needs a larger change
 BOTH = ("number in the file", "value")
-TERMINAL_ONLY = ("sensitivity, %", "re-solved", "effect")
-PAGE_ONLY = ("effect, %", "sensitivity, % per %")
-READ_ONLY = PAGE_ONLY[1:]
-CSV_ONLY = ("sensitivity", "sensitivity, re-solved below", "sensitivity, re-solved above")
-HEADS = (*BOTH, *TERMINAL_ONLY[:2], "relaxed by", TERMINAL_ONLY[2], *PAGE_ONLY, *CSV_ONLY)
-SLOPES = (*TERMINAL_ONLY[:2], PAGE_ONLY[1], *CSV_ONLY)  # left out where none is shown
+TERMINAL_ONLY_HEADS = ("sensitivity, %", "re-solved", "effect")
+PAGE_ONLY_HEADS = ("effect, %", "sensitivity, % per %")
+READ_ONLY_HEADS = PAGE_ONLY_HEADS[1:]
+CSV_ONLY_HEADS = ("sensitivity", "sensitivity, re-solved below", "sensitivity, re-solved above")
+HEADS = (
+    *BOTH,
+    *TERMINAL_ONLY_HEADS[:2],
+    "relaxed by",
+    TERMINAL_ONLY_HEADS[2],
+    *PAGE_ONLY_HEADS,
+    *CSV_ONLY_HEADS,
+)
+SLOPES = (
+    *TERMINAL_ONLY_HEADS[:2],
+    PAGE_ONLY_HEADS[1],
+    *CSV_ONLY_HEADS,
+)  # left out where none is shown
 KINDS = {
     "least": "smallest change",
     "alone": "or this alone",
@@ -59,10 +70,10 @@ def of_influences(
         "sensitivities",
         [HEADS[k] for k in steps],
         rows,
-        page_only=PAGE_ONLY,
-        terminal_only=TERMINAL_ONLY,
-        csv_only=(*CSV_ONLY, *idle, *bare),
-        read_only=READ_ONLY,
+        page_only=PAGE_ONLY_HEADS,
+        terminal_only=TERMINAL_ONLY_HEADS,
+        csv_only=(*CSV_ONLY_HEADS, *idle, *bare),
+        read_only=READ_ONLY_HEADS,
         wrap=0,
     )
     words = list(map(measures.words, influence_words(prices, result)))

@@ -66,7 +66,7 @@ def test_every_pattern_by_enumeration(convex):
     apart = np.clip(np.stack([ahead, -ahead], axis=1), 0.0, None)
     for q, load in enumerate(program.loads):  # lost contact on either side, too
         known = share(program.own[program.double], apart, load).approach - apart[:, 1]
-        assert program.law(q, ahead) == pytest.approx(known, rel=1e-12)
+        assert program.approach_above_second(q, ahead) == pytest.approx(known, rel=1e-12)
     kinks = np.sort(program.kinks.reshape(-1, len(program.double)), axis=0)
     ends = np.vstack([kinks[:1] * 0.0 - 30.0, kinks, kinks[:1] * 0.0 + 30.0])
     least = np.inf

@@ -27,7 +27,7 @@ def test_numbers_and_arrays_give_the_same_widths(kind, wide):
     name, numbers = made.posed
     kernel = getattr(kernels.kernel(widths.KERNEL), name)
     for close, steps in ((ALLOWANCE, widths.MAX_STEPS), (ALLOWANCE, 4), (0.01, 8)):
-        expected = widths._of_arrays(made, *ends, close, steps)
+        expected = widths._first_width_numpy(made, *ends, close, steps)
         found = kernel(*numbers, *ends, close, steps)
         alike = np.isclose(found, expected, rtol=1e-12, atol=0.0)
         some = np.isfinite(expected) & np.isfinite(found)
@@ -45,8 +45,8 @@ def test_a_process_of_many_rows_takes_the_kernel(monkeypatch):
     made = rows(standard, pair, (torque, torque), power)
     monkeypatch.setattr(kernels.warm(), "seconds", kernels.PATIENCE)
     of_arrays = []
-    real = widths._of_arrays
-    monkeypatch.setattr(widths, "_of_arrays", lambda *a: of_arrays.append(a) or real(*a))
+    real = widths._first_width_numpy
+    monkeypatch.setattr(widths, "_first_width_numpy", lambda *a: of_arrays.append(a) or real(*a))
     first, second = (widths.first_width(made, 0.4 * width, width) for _ in range(2))
     np.testing.assert_allclose(first, second, rtol=1e-12)
     assert len(of_arrays) == 1

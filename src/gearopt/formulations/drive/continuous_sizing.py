@@ -416,7 +416,7 @@ def point_of_pairs(train: Train, pairs: tuple[GearPair, ...]) -> Array:
 
 
 def starts(exact: Problem) -> list[Array]:
-    """Return starts of more and more, smaller teeth."""
+    """Return starting points: the guess with FINER times its teeth, of modules so much smaller."""
     lower, upper, guess = exact.bounds()
     names = [v.name for v, _ in exact.columns]
     points = []

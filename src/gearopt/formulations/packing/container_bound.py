@@ -200,14 +200,14 @@ def _area(
         deep = max(along, float(need(np.array([plan.width - spare]))[0]))
         return plan.width * (deep + spare)
     if plan.shape == "square":
-        return float(_square(need, max(widest, across, along), late) + spare) ** 2
+        return float(_square_side(need, max(widest, across, along), late) + spare) ** 2
     return min(
         _rectangle(need, max(widest, a), max(widest, b), spare, enough, late)
         for a, b in {(across, along), (along, across)}
     )
 
 
-def _square(need: Need, minimum: float, late: Late) -> float:
+def _square_side(need: Need, minimum: float, late: Late) -> float:
     """Return a lower bound on the side at which a square is deep enough."""
     low, high = minimum, max(minimum, float(need(np.array([minimum]))[0]))
     if high <= minimum:

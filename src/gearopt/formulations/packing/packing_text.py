@@ -75,7 +75,7 @@ def smooth(plan: Plan, layer: Any = None) -> Problem:
         width = getattr(p, "width", None)
         walls = _walls(plan, axes, x, width)
         if pairs:
-            squares = [_square(plan, axes, i, j, p.gap) for i, j in pairs]
+            squares = [_squared_distance_ratio(plan, axes, i, j, p.gap) for i, j in pairs]
             walls["apart"] = tuple(
                 1.0 + (need - there) for need, there in zip(each(p.needed), squares, strict=True)
             )
@@ -164,7 +164,9 @@ def _sides(plan: Plan, guess: Places) -> tuple[Var, ...]:
     )
 
 
-def _square(plan: Plan, axes: list[tuple[Any, Any]], i: int, j: int, gap: Any) -> Any:
+def _squared_distance_ratio(
+    plan: Plan, axes: list[tuple[Any, Any]], i: int, j: int, gap: Any
+) -> Any:
     """d^2/D^2 of a pair."""
     (a, b), (c, d) = axes[i], axes[j]
     apart = plan.cylinders[i].radius + plan.cylinders[j].radius + gap
@@ -186,7 +188,7 @@ def _near(plan: Plan) -> list[tuple[int, int]]:
 
 def _close(plan: Plan, axes: list[tuple[Any, Any]], layer: list[Any], i: int, j: int) -> Any:
     """Return the row of a pair: 2 - d^2/D^2 in one layer, 0 in different ones."""
-    row_of = 2.0 - _square(plan, axes, i, j, plan.gap)
+    row_of = 2.0 - _squared_distance_ratio(plan, axes, i, j, plan.gap)
     return np.where(layer[i] == layer[j], row_of, 0.0) if plan.free_layers else row_of
 
 
@@ -225,7 +227,10 @@ def _area(plan: Plan, x: Any, width: Any) -> Any:
 
 
 def _walls(plan: Plan, axes: list[tuple[Any, Any]], x: Any, width: Any) -> dict[str, Any]:
-    """Return rows that keep all inside the container, except where bounds of x and y do."""
+    """Return the rows, by wall, that keep cylinders inside the container, where no bound does.
+
+    width: of a container that has no variable for it.
+    """
     scale = 2.0 * float(plan.radius.mean())
     if plan.shape == "circle":
         a, b = getattr(x, "centre_x", 0.0), getattr(x, "centre_y", 0.0)

@@ -70,7 +70,7 @@ def _rims(standard: "Agma", cells: Cells) -> tuple[Any, Any]:
 
 def _regimes(cells: Cells) -> tuple[str, ...]:
     """Return the regimes of AGMA 908 that some cells may be in."""
-    if not np.any(cells.angles[1]):
+    if not np.any(cells.helix_bounds[1]):
         return ("spur",)
     low, high = cells.overlap
     found = ("low",) if np.any(low <= 1.0) else ()

@@ -41,7 +41,7 @@ class Cells:
     helix: Array | None = None
 
     @property
-    def angles(self) -> tuple[Any, Any]:
+    def helix_bounds(self) -> tuple[Any, Any]:
         """The least and the greatest helix angle [rad], without sign."""
         if self.helix is None:
             return (abs(self.toothing.helix_angle),) * 2
@@ -56,7 +56,7 @@ class Cells:
     @property
     def overlap(self) -> Array:
         """Overlap ratios b sin(beta)/(pi m_n)."""
-        per_tooth = np.stack(np.broadcast_arrays(*self.angles, self.teeth[0])[:2])
+        per_tooth = np.stack(np.broadcast_arrays(*self.helix_bounds, self.teeth[0])[:2])
         return np.asarray(self.slim * self.teeth * np.tan(per_tooth) / np.pi)
 
     def corner(self, end: int) -> GearPair:

@@ -154,7 +154,7 @@ class IsoCells:
             z, d = cells.teeth[end], cells.diameter[end]
             masses = []
             for i, j in product((LOWER, UPPER)[: 1 if cells.helix is None else 2], repeat=2):
-                module = d * np.cos(cells.angles[i]) / z
+                module = d * np.cos(cells.helix_bounds[i]) / z
                 pair = cells.cut(j).of_diameter(module, z, d, cells.ratio[end], 1.0)
                 rows = zip(inner, pair.gears, strict=True)
                 first, second = (p[1 - end] * stiffness.mean_diameter(gear) for p, gear in rows)
@@ -319,7 +319,7 @@ class IsoCells:
             low = contact.contact_ratio_factor(ratio, self.cells.overlap[LOWER])
             most = self.total[LOWER] / (ratio * low**2)
         factor = self.dynamic * self.spread * self.transverse("K_Halpha", most)
-        helix = self.cells.angles[LOWER]
+        helix = self.cells.helix_bounds[LOWER]
         z = given.get("Z_H", self.teeth["zone"][LOWER]) * self.found["Z_E"]
         z = z * given.get("Z_beta", contact.helix_factor(helix)) * self._ratio_factor
         used = [
@@ -351,7 +351,7 @@ class IsoCells:
         ratio = self.teeth["virtual" if edition == "2019" else "contact"][LOWER]
         most = self.total[LOWER] / (self.teeth["contact"][LOWER] * (0.25 + 0.75 / ratio))
         factor = self.dynamic * self._root_spread() * self.transverse("K_Falpha", most)
-        module = cells.teeth[LOWER] / np.cos(cells.angles[LOWER])
+        module = cells.teeth[LOWER] / np.cos(cells.helix_bounds[LOWER])
         used = []
         for k in GEARS:
             form = given["Y_F"][k] if "Y_F" in given else self.teeth[f"form{k}"][LOWER]
@@ -368,7 +368,11 @@ class IsoCells:
             return self.spread
         racks = self.cells.toothing.racks
         deep = max(rack.addendum + rack.dedendum for rack in racks)
-        over = self.cells.slim[LOWER] * self.cells.teeth[LOWER] / np.cos(self.cells.angles[LOWER])
+        over = (
+            self.cells.slim[LOWER]
+            * self.cells.teeth[LOWER]
+            / np.cos(self.cells.helix_bounds[LOWER])
+        )
         return self.spread ** loads.root_exponent(over, deep)
 
     def _root_factor(self) -> Any:
@@ -379,7 +383,7 @@ class IsoCells:
             virtual = self.teeth["virtual"]
             made = [load_sharing(v, o) for v in virtual for o in self.cells.overlap]
             factor = np.minimum.reduce(made)
-        least, most = self.cells.angles
+        least, most = self.cells.helix_bounds
         inclined = bending.helix_factor(most, self.cells.overlap[UPPER], practice.edition)
         if practice.edition != "2006":  # over the third power of a cosine, which falls
             inclined = inclined * (np.cos(most) / np.cos(least)) ** 3

@@ -116,7 +116,7 @@ def first_width(
     kernel = None if posed is None else compiled().of(posed[0], len(low), tick)
     if posed is None or kernel is None:
         begun = time.process_time()
-        first = _of_arrays(rows, low, high, close, steps)
+        first = _first_width_numpy(rows, low, high, close, steps)
         kernels.warm().seconds += (time.process_time() - begun) * (posed is not None)
     elif kernel.signatures:
         first = kernel(*posed[1], low, high, close, steps)
@@ -137,7 +137,7 @@ def first_width(
     return np.asarray(first)
 
 
-def _of_arrays(rows: Rows, low: Array, high: Array, close: float, steps: int) -> Array:
+def _first_width_numpy(rows: Rows, low: Array, high: Array, close: float, steps: int) -> Array:
     """First widths; NaN where so many steps are too few, of MAX_STEPS."""
     first, here, top = np.full(len(low), np.inf), np.array(low, float), np.asarray(high, float)
     active = np.flatnonzero(here <= top * (1.0 + ALLOWANCE))

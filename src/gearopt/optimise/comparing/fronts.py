@@ -204,19 +204,19 @@ def _group(
     """Return the methods of one model with their runs, judged by its reference front."""
     trials = [t for e in members for kind in KINDS for t in runs.get((e.method, kind), [])]
     method, reference_front = standard or ("", Found(()))
-    others = [] if reference_front.complete else [t.values for t in trials]
+    others = [] if reference_front.complete else [t.values for t in trials]  # may beat it
     every = [v for v in (reference_front.values, *others) if len(v)]
     values = np.vstack(every or [np.empty((0, count))])
     values = values[unbeaten(values)]
     corner = reference(values) if len(values) else np.empty(0)
-    whole = hypervolume(values, corner) if len(values) else 0.0
+    largest = hypervolume(values, corner) if len(values) else 0.0
 
     def judged(trial: Trial) -> Run:
         if not len(trial.values):
             return trial.run
-        missing = _missing(trial.values, corner, whole)
+        missing = _missing(trial.values, corner, largest)
         steps = tuple(
-            (s.seconds, s.evaluations, _missing(s.values, corner, whole))
+            (s.seconds, s.evaluations, _missing(s.values, corner, largest))
             for s in _thin(trial.steps)
         )
         distance = igd(trial.values, values)

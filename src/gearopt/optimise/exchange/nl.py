@@ -48,7 +48,7 @@ def write(problem: Problem, file: str | Path) -> None:
 
 
 def _lines(problem: Problem, order: list[int]) -> list[str]:
-    """Return the lines of a file whose variables are those of the columns `order`."""
+    """Return the lines of a problem's .nl file, whose variable k is its column order[k]."""
     nodes, (f, g, h) = _nodes(problem, order)
     lower, upper, guess = (ends[order] for ends in problem.bounds())
     limits, shared = [*g, *h], _shared(nodes, [*f, *g, *h])

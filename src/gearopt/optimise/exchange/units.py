@@ -70,7 +70,10 @@ def _terms(problem: Problem, repeat: Repeat | None, registry: Any) -> Any:
 
 
 def _unit_of(place: str, registry: Any, value: Any, number: Any, row: bool) -> str:
-    """Unit of a term; number: the same term without units. SolveError for one that is wrong."""
+    """Return the unit of a term, as pint writes it; SolveError where units clash.
+
+    value, number: the term with and without units. row: it must be dimensionless.
+    """
     if isinstance(value, Comparison):
         (lesser, greater), (less, great) = (
             (plain(one.lesser), plain(one.greater)) for one in (value, number)

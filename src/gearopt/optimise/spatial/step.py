@@ -91,7 +91,10 @@ class Stepper:
         return len(self.rows[1])
 
     def narrowed(self, lower: Array, upper: Array, cutoff: float, sweeps: int) -> bool:
-        """Propagate a box in place below a cutoff; False where nothing is left."""
+        """Narrow a box (C,) in place by interval propagation; False where it is empty.
+
+        cutoff: upper bound on the objective. sweeps: passes over the relations.
+        """
         aim = self.columns.objective
         upper[aim] = min(upper[aim], cutoff)
         if not lower[aim] <= upper[aim]:

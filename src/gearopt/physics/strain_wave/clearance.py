@@ -210,7 +210,7 @@ def _minima(
         of = both[out]
         between = angles[np.tile(k, 2)[out]], ends[out]
         depths = depth[of, np.tile(k, 2)[out]], depth[of, next_to[out]]
-        ends[out] = _end(look, pose, items[of], between, depths)
+        ends[out] = _angles_at_limit(look, pose, items[of], between, depths)
         at_ends[out] = look(items[of], pose(ends[out]))[0]
     sides = [np.split(v, 2) for v in (ends, at_ends)]
     three = [(angles[k], counted[row, k]), *zip(*sides, strict=True)]
@@ -223,10 +223,10 @@ def _minima(
     return [(int(k), float(g), float(a), bool(p)) for k, g, a, p in rows]
 
 
-def _end(
+def _angles_at_limit(
     look: Look, pose: Callable[[Any], Pose], items: Any, ends: tuple[Any, Any], depths: Any
 ) -> Any:
-    """Return the poses at which gaps cease to count, between two, by false position."""
+    """Return the angles at which gaps cease to count, between two, by false position."""
     (low, high), (first, last) = ends, depths
     middle = low
     for _ in range(SECANTS):

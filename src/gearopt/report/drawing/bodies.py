@@ -67,7 +67,7 @@ def sides(it: KeepOutDesign, axis: str) -> tuple[float, float]:
     return (it.left_mm, it.right_mm) if axis == "y" else (it.bottom_mm, it.top_mm)
 
 
-def keep_outs(layout: LayoutDesign) -> list[KeepOutDesign]:
+def cropped_keep_outs(layout: LayoutDesign) -> list[KeepOutDesign]:
     """The keep-outs near the box, cut off where they reach far beyond it."""
     low, high = _with_motor(layout)
     room = KEEP_OUT_REACH * max(b - a for a, b in zip(low[1:], high[1:], strict=True))
@@ -90,7 +90,7 @@ def keep_outs(layout: LayoutDesign) -> list[KeepOutDesign]:
 def drawn_corners(layout: LayoutDesign) -> tuple[Corner, Corner]:
     """Two corners of all that is drawn."""
     low, high = (list(corner) for corner in _with_motor(layout))
-    for it in keep_outs(layout):
+    for it in cropped_keep_outs(layout):
         for k, axis in enumerate("xyz"):
             start, end = sides(it, axis)
             low[k], high[k] = min(low[k], start), max(high[k], end)

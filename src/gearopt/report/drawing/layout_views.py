@@ -16,9 +16,9 @@ from gearopt.report.drawing.bodies import (
     Turning,
     along,
     box_corners,
+    cropped_keep_outs,
     drawn_corners,
     gear_disc,
-    keep_outs,
     layout_of,
     meaning,
     motor,
@@ -132,7 +132,7 @@ def front_view(
     box_lines(sheet, layout, "y", "z")
     if place := motor(layout):
         sheet.circle(0.0, 0.0, place[0], "motor", title="motor")
-    for it in keep_outs(layout):
+    for it in cropped_keep_outs(layout):
         keep_out(sheet, it, "y", "z")
     places = {s.shaft: (s.y_mm, s.z_mm) for s in layout.shafts}
     gear_circles(sheet, layout, places, lambda gear: meaning(gear, measures))
@@ -275,7 +275,7 @@ def side_view(
     """
     sheet = Sheet(window, scale)
     box_lines(sheet, layout, "x", axis)
-    for it in keep_outs(layout):
+    for it in cropped_keep_outs(layout):
         aside = any(
             start >= high or end <= low
             for (start, end), (low, high) in ((sides(it, a), walls(layout, a)) for a in ("x", axis))

@@ -23,6 +23,7 @@ ARROW = (9.0, 2.6)  # length and half width of an arrow head, px
 HATCH = 9.0  # between the lines of a hatch, px
 MAX_POINTS = 1_000_000  # points or lines of one mark: more than any drawing has room for
 COLOURS = 8  # --series-1 ... in frame.css, distinct for the colour-blind
+SERIES_OF_MEMBERS = (1, 4)  # the colours of pinion and wheel among them
 Point = tuple[float, float]
 SHEET = 660.0  # px across an A4 sheet inside its margins
 GUTTER = 18.0  # px between drawings, as in drawing.css

@@ -93,7 +93,9 @@ def beside(
         return meaning(gear, measures)
 
     return tuple(
-        replace(along_shafts(train, scale, measures.length, title), caption=f"{name.capitalize()}.")
+        replace(
+            view_along_shafts(train, scale, measures.length, title), caption=f"{name.capitalize()}."
+        )
         for name, train in rows.items()
     )
 
@@ -117,7 +119,7 @@ def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Draw
         return ()
     train, scale = _in_plane(_picked(stages))
     inner = {g.name: circles(stages[g.stage - 1], g.member) for g in train.gears}
-    front = along_shafts(train, scale, measures.length, lambda g: meaning(g, measures), inner)
+    front = view_along_shafts(train, scale, measures.length, lambda g: meaning(g, measures), inner)
     return front, _side(train, scale, measures)
 
 
@@ -212,7 +214,7 @@ def _ends(train: Bodies) -> tuple[float, float]:
     return min(y - r for y, r in rims), max(y + r for y, r in rims)
 
 
-def along_shafts(
+def view_along_shafts(
     train: Bodies,
     scale: float,
     length: Callable[[float], str],

@@ -8,7 +8,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.design_tables import ratio_tile
 from gearopt.report.drawing.number_line import Guide, Span, number_line
-from gearopt.report.drawing.train_views import DrawnStage, along_shafts, in_one_line
+from gearopt.report.drawing.train_views import DrawnStage, in_one_line, view_along_shafts
 from gearopt.report.kinds import generic
 from gearopt.report.measures import Measures
 from gearopt.report.section import Section, Tile
@@ -51,7 +51,7 @@ def gears(result: Result, measures: Measures) -> Section | None:
         [_stage(*z) for z in zip(design.driver_teeth, design.driven_teeth, strict=True)]
     )
     named = tuple(replace(gear, name=f"z {gear.teeth}") for gear in train.gears)
-    drawing = along_shafts(replace(train, gears=named), scale, _modules, _title)
+    drawing = view_along_shafts(replace(train, gears=named), scale, _modules, _title)
     words = (
         "Drawn to scale as if both pairs were spur gears of one module m with an addendum of m: "
         "diameters, centre distances and the length over tip circles are multiples of m. Solid "

@@ -4,7 +4,7 @@ A design with a list of `stages` that has the sizes of gears is drawn, too.
 """
 
 from gearopt.report.answer import asked, assumptions, limits, progress, proven, summary
-from gearopt.report.design_tables import tables
+from gearopt.report.design_tables import design_section
 from gearopt.report.drawing.impossible_views import section as impossible
 from gearopt.report.drawing.train_views import section as gears_in_one_line
 from gearopt.report.explained import remedies, sensitivities
@@ -16,6 +16,6 @@ CLOSING = (progress, proven, assumptions)
 AFTER_DESIGN = (sensitivities, remedies, summary)  # on the terminal, after the design
 
 PAGES = Pages(
-    sections=(*OPENING, gears_in_one_line, tables, *REQUEST, *CLOSING),
-    terminal=(tables, limits, *AFTER_DESIGN),
+    sections=(*OPENING, gears_in_one_line, design_section, *REQUEST, *CLOSING),
+    terminal=(design_section, limits, *AFTER_DESIGN),
 )

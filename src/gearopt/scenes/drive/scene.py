@@ -160,6 +160,7 @@ class Scene(Table):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
+        """Refuse what tables ask against each other, with its key and what to write instead."""
         number = len(self.stage)
         if self.stages is None and not self.stage:
             if self.gears.face_width_over_diameter is None:

@@ -34,7 +34,7 @@ BASIS = (
     " by Lagrange multipliers, checked by solving again. "
     "The effect of relaxing a limit, or of a step, is that of solving again"
 )
-HELD = f", with these whole numbers and choices,{BASIS}"
+BASIS_OF_FIXED_CHOICES = f", with these whole numbers and choices,{BASIS}"
 SLOPE_TOLERANCE = 0.02  # between sensitivities by multipliers and by solving again that differ
 STEP = 1e-3  # of the change up to which whole numbers and choices stay: the step of a re-solve
 UNDECIDED = "where a cell is empty, solving again gave no certain answer"
@@ -256,7 +256,7 @@ def of_design(
     late = late if clock.over else note
     if ranges:
         late = "; ".join(filter(None, (late, f"the same design is best with {', '.join(ranges)}")))
-    words = HELD if held else f",{BASIS}"
+    words = BASIS_OF_FIXED_CHOICES if held else f",{BASIS}"
     return Explanation(result, (), (), binding(result), of_numbers, late, clock.seconds, words)
 
 

@@ -112,9 +112,9 @@ class Edited:
 
 
 def edited(scene: Any, moves: Moves) -> Edited | None:
-    """Return the scene with numbers moved by factors; None where the rules of its file refuse it.
+    """Return a scene whose numbers were moved by factors; None where its file's rules refuse it.
 
-    A number that others inherit moves before them. Switches are set last.
+    moves: a number that others inherit before them. Switches are set last.
     """
     new, places = scene, dict[tuple[Any, ...], Move]()
     for move, factor in moves:

@@ -36,7 +36,9 @@ def contact_of(scene: Scene, made: PairMesh, materials: Materials) -> PairContac
     name = "given" if isinstance(coupling, Quantity) else coupling
     pair = made.elastic.pair
     beyond = (*_chosen(scene, made), *_webs(scene, pair, materials), *_validity(made, name))
-    computed = contact(made, name, _by_iso(scene, pair, made.elastic, materials), beyond)
+    computed = contact(
+        made, name, _stiffnesses_by_iso(scene, pair, made.elastic, materials), beyond
+    )
     most = max(one.largest_contact_stress_MPa for one in computed.loads)
     if most <= BORNE:
         return computed
@@ -146,7 +148,7 @@ def line_load(scene: Scene, pair: GearPair) -> float:
     return float(load / (pair.pinion.reference_diameter * pair.face_width))
 
 
-def _by_iso(
+def _stiffnesses_by_iso(
     scene: Scene, pair: GearPair, elastic: ElasticPair, materials: Materials
 ) -> tuple[float, float]:
     """Return c' and c_gamma_alpha [MPa] of ISO 6336-1 at the torque of the duty."""

@@ -171,9 +171,9 @@ def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
     sizes[B_OVER_D, 0] = np.maximum(sizes[B_OVER_D, 0], least - 3.0 * sizes[D, 1])
     follow(shafts.train, k, sizes)
     parts = [(needed[0], True, True), (needed[1], False, True), (weak, True, False)]
-    value = _of_sizes(shafts, k, sizes, before, after)
+    value = _bound_by_sizes(shafts, k, sizes, before, after)
     for part in parts:
-        value = np.maximum(value, _of_ratings(shafts, k, sizes, part, before, after))
+        value = np.maximum(value, _bound_by_ratings(shafts, k, sizes, part, before, after))
     some = np.flatnonzero(possible(sizes))
     return boxes.take(some), value[some]
 
@@ -261,7 +261,7 @@ def _potential_change(shafts: Shafts, k: int, before: Any, after: Any) -> Any:
     return first * (before - at) - second * (after - then)
 
 
-def _of_sizes(shafts: Shafts, k: int, sizes: Array, before: Array, after: Array) -> Array:
+def _bound_by_sizes(shafts: Shafts, k: int, sizes: Array, before: Array, after: Array) -> Array:
     """Lower bound of the share of designs in boxes, potentials added, by their least sizes."""
     share, moved = _least_sizes(shafts, k, sizes, before, after)
     return np.asarray(share * (1.0 - MARGIN) + moved)
@@ -270,7 +270,7 @@ def _of_sizes(shafts: Shafts, k: int, sizes: Array, before: Array, after: Array)
 def _least_sizes(
     shafts: Shafts, k: int, sizes: Array, before: Array, after: Array
 ) -> tuple[Array, Array]:
-    """The two terms of `_of_sizes`: share at the least sizes, least addition of the potentials."""
+    """Terms of `_bound_by_sizes`: share at the least sizes, least addition of the potentials."""
     size = np.exp(sizes[:, LOWER])
     toothing = shafts.train.stages[k].toothing
     pair = toothing.of_diameter(size[M], size[Z], size[D], size[U], size[B])
@@ -281,7 +281,7 @@ def _least_sizes(
     return np.asarray(own_share), moved
 
 
-def _of_ratings(
+def _bound_by_ratings(
     shafts: Shafts, k: int, sizes: Array, needed: Any, before: Array, after: Array
 ) -> Array:
     """Return the least share of designs that the ratings may accept.

@@ -42,11 +42,11 @@ Design = tuple[tuple[GearPair, ...], float]  # pairs and value
 def design_in_boxes(
     train: Train, after: Sequence[float], smallest: Callable[..., GearPair | None]
 ) -> Design | None:
-    """Return the design of one pair a stage, each the smallest of its box, and its value.
+    """Return the pairs of a drive, each the smallest in the box of its stage, and the objective.
 
-    None where a box holds no pair or the total ratio leaves its limits. after: ln of the torque
-    behind each stage over the input's; smallest(stage, before, after): the pair of a box, whose
-    ratio may be another one.
+    None where a box holds no pair or the total ratio misses its limits. after (stages,):
+    ln(T/T_in) behind each stage. smallest(k, before, after): a pair of ratio near exp(after -
+    before).
     """
     pairs, value, at = [], 0.0, 0.0
     for k, then in enumerate(after):
@@ -88,7 +88,10 @@ def polished(train: Train, best: Design, clock: Clock) -> Design:
 
 
 def _around(train: Train, k: int, pair: GearPair, size: float) -> Array:
-    """Return a box about a pair within the limits of its stage."""
+    """Return a box (rows, 2), in logarithms, about the pair of stage k, within its limits.
+
+    The rows of z1, b/d1 and d1 are cut to the pair's size +- `size` (twice that for d1).
+    """
     limits = first_boxes(shafts_about(train, 1), k).sizes[:, :, 0]
     box = limits.copy()
     d = pair.pinion.reference_diameter

@@ -262,7 +262,11 @@ class RatedTable(Table):
         close: float,
         most: float,
     ) -> Array:
-        """Return lower bounds of which the least one of every group is close."""
+        """Raise lower bounds of cost (n,) in place until the least of every group is close.
+
+        torque: both ends [N mm]. group (n,): the group of each pair. most: costs above which any is
+        as good as inf.
+        """
         rough = np.isfinite(cost)
         while rough.any():
             least = np.full(group.max(initial=-1) + 1, np.inf)

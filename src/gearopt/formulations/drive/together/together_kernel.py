@@ -210,7 +210,9 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
     """Children of nodes by a choice for stage j; one slice of about `limit` choices.
 
     parents (n, N, 2): pair and module of each chosen stage. start (2,): parent and pair to go on
-    with, moved on. stop: of the parents. Returns the number of children, and of choices looked at.
+    with, moved on; a pair of -1: the first that fits. stop: of the parents. cut: what is worth
+    as much or more is left out. children (m, N, 2), bounds (m,): written. Other arrays are those
+    of `node_kernel`. Returns the number of children, and of choices looked at.
     """
     stages, shafts = parents.shape[1], parents.shape[1] + 1
     node, body = np.zeros((stages, 3)), np.zeros((shafts, 4))
@@ -254,7 +256,7 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
                 area = ground(j, stages, r, wall, node, body)
                 if worth(aim, least, area, 2.0 * r) >= cut:
                     if larger and worth(aim, least, 4.0 * r * r, 2.0 * r) >= cut:
-                        break
+                        break  # larger modules need more, too
                     continue
                 if j == 0 and not loaded(d, ZERO, choice, node):
                     continue
@@ -273,8 +275,8 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
 def sift(d, rest, chain, turns, first, nodes, start, levels, limits, alive, found):
     """Look for a layout below a value of the discs of each node, for one slice.
 
-    levels: what is not below the first is dropped, what is below the second is looked for.
-    limits: most cells for an arrangement of a node, and for the slice.
+    levels = cut, better: what is not below cut is dropped, what is below better is looked for.
+    limits = most, limit: cells for an arrangement of a node, and for the slice.
     alive (n,): 0 if there is none, 1 if one was found, 2 if the cells of an arrangement did not
     tell. found (n, 2 + links): its value, arrangement and angles. Returns where it stopped, cells.
     """

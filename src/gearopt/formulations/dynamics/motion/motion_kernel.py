@@ -77,7 +77,7 @@ def derivative(m, k, shake, flank, y, out):
     """Write the derivative of y (2 n,) to out; shake: what is added to delta''."""
     n = m.level
     if n >= 5:
-        plane(m, k, shake, flank, y, out)
+        plane_derivative(m, k, shake, flank, y, out)
         return
     for i in range(n):
         out[i] = y[n + i]
@@ -128,7 +128,7 @@ def flank_of(m, y):
 
 
 @inlined
-def plane(m, k, shake, flank, y, out):
+def plane_derivative(m, k, shake, flank, y, out):
     """Write the derivative of y for axes that move in the plane, in any of the three forms."""
     n = m.level
     for i in range(n):

@@ -237,7 +237,7 @@ class Program:
             row[steps, first], row[steps, second], row[:, -1] = sign, -sign, -1.0
         rows, right = [*ranges], [-low, high]
         for q in range(len(self.loads)):
-            ends = self.law(q, low), self.law(q, high)
+            ends = self.approach_above_second(q, low), self.approach_above_second(q, high)
             slope = (ends[1] - ends[0]) / np.where(high > low, high - low, 1.0)
             slope = np.clip(np.where(high > low, slope, 0.0), 0.0, 1.0)
             secant = np.zeros((count, size))
@@ -254,7 +254,7 @@ class Program:
         criteria = mesh.criteria(self.profile.separations(removed / MICRO))
         return MICRO * float(criteria.peak_to_peak.max())
 
-    def law(self, load: int, ahead: Array) -> Array:
+    def approach_above_second(self, load: int, ahead: Array) -> Array:
         """Return approach less e_2 [um] of two pairs with e_1 - e_2 = ahead (k,)."""
         first, second = self.own[self.double].T
         w = self.loads[load]
@@ -330,7 +330,7 @@ class _Search:
             kinks = program.kinks[q]
             inside = (kinks > node.low + SLACK) & (kinks < node.high - SLACK)
             away = np.where(inside, np.abs(kinks - ahead), np.inf)
-            lacks = program.law(q, ahead) + node.point[second]
+            lacks = program.approach_above_second(q, ahead) + node.point[second]
             lacks = np.maximum(lacks - node.point[program.at(q, program.double)], 0.0)
             for side in range(2):
                 shortfall = np.where(inside[side] & (away[side] <= away[1 - side]), lacks, 0.0)

@@ -9,7 +9,7 @@ from gearopt.formulations.drive.layout.layout_design import KeepOutDesign, Layou
 from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
-from gearopt.report.drawing.bodies import keep_outs, sides
+from gearopt.report.drawing.bodies import cropped_keep_outs, sides
 from gearopt.report.drawing.layout_views import (
     HIGH,
     WIDE,
@@ -70,7 +70,7 @@ def _over(near: NearestLayout) -> tuple[float | None, ...]:
 def _front(near: NearestLayout, measures: Measures, sheet: Sheet) -> None:
     """Draw keep-outs, motor and sides of the box as they are asked, seen from front."""
     layout = near.layout
-    for it in keep_outs(replace(layout, obstacles=near.keep_outs)):
+    for it in cropped_keep_outs(replace(layout, obstacles=near.keep_outs)):
         (y0, y1), (z0, z1) = sides(it, "y"), sides(it, "z")
         sheet.rectangle((y0, z0), (y1, z1), "asked", title=f"asked: keep-out {it.name}")
         x, y = sheet.at(0.5 * (y0 + y1), 0.5 * (z0 + z1))

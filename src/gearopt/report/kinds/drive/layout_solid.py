@@ -11,8 +11,8 @@ from gearopt.optimise.result import Result
 from gearopt.physics.gears import ISO_53_A
 from gearopt.report.drawing.bodies import (
     box_corners,
+    cropped_keep_outs,
     drawn_corners,
-    keep_outs,
     layout_of,
     meaning,
     motor,
@@ -88,7 +88,7 @@ def picture(layout: LayoutDesign, measures: Measures) -> Drawing:
             bodies.append(Rod(places[shaft.shaft], r, start, end, "metal", title=title))
     if place := motor(layout):
         bodies.append(Rod((0.0, 0.0), *place, "metal", title="motor"))
-    for out in keep_outs(layout):
+    for out in cropped_keep_outs(layout):
         low, high = zip(*(sides(out, axis) for axis in "xyz"), strict=True)
         bodies.append(Block(low, high, "blocked", out.name))
     legend = [(f"stage {k}", series(k)) for k in sorted({g.stage for g in layout.gears})]
@@ -199,7 +199,7 @@ def _housing(layout: LayoutDesign, measures: Measures) -> list[dict[str, Any]]:
     if place := motor(layout):
         mesh = rod((0.0, 0.0), *place)
         traces.append(mesh_trace(mesh, "motor", "--axis", "motor", opacity=0.6, showlegend=True))
-    for k, it in enumerate(keep_outs(layout)):
+    for k, it in enumerate(cropped_keep_outs(layout)):
         ends = (it.from_mm, it.left_mm, it.bottom_mm), (it.to_mm, it.right_mm, it.top_mm)
         look = {"opacity": 0.35, "showlegend": k == 0}
         traces.append(mesh_trace(block(*ends), escape(it.name), "--warn", "keep-outs", **look))

@@ -7,7 +7,7 @@ from typing import Any
 
 from gearopt.formulations.drive.rating import DriveRating, MeshRating
 from gearopt.optimise.result import Result
-from gearopt.report.design_tables import stage_label, tables
+from gearopt.report.design_tables import design_section, stage_label
 from gearopt.report.kinds.drive.rating_words import FRICTION, ROUNDING, rating_of, safety
 from gearopt.report.measures import Measures
 from gearopt.report.section import ABSENT, Cell, Section, Table, cell, listed_fields, side_by_side
@@ -38,7 +38,7 @@ def single(rating: DriveRating) -> bool:
 def design(result: Result, measures: Measures) -> Section | None:
     """The tables of a design, without those of its rating; None without a design."""
     others = {key: value for key, value in result.design.items() if key != "rating"}
-    return tables(replace(result, design=others), measures)
+    return design_section(replace(result, design=others), measures)
 
 
 def beside(table: Table, result: Result, measures: Measures) -> Table:

@@ -79,7 +79,7 @@ def _contact_tiles(
 def binding_limit(result: Result) -> str:
     """Largest load of one tooth and evenness of the pair, in words."""
     if relief := relief_of(result):
-        return pair_relief.binding_limit(relief)
+        return pair_relief.relief_words(relief)
     if (pair_contact := contact_of(result)) is None or result.value is not None:
         return ""
     load = of_duty(pair_contact)

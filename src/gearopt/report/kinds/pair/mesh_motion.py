@@ -19,7 +19,7 @@ from gearopt.report.drawing.mesh_view import (
     tooth,
 )
 from gearopt.report.drawing.player import Animation, Body, Reading, Scale, View
-from gearopt.report.drawing.sheet import series
+from gearopt.report.drawing.sheet import SERIES_OF_MEMBERS, series
 from gearopt.report.measures import Measures
 
 STILL_AT = 0.15  # of the time in which most pairs touch: the moment of the still
@@ -28,7 +28,6 @@ MARGINS = (8.0, 8.0, 8.0, 8.0)  # px around a view
 DOT = 4.0  # px: radius of a point of contact
 CORNERS = 16  # of its outline
 ALONE, BESIDE = 1.25, 0.98  # times as large: one view alone; one of two that fit on a sheet
-COLOURS = (1, 4)  # of pinion and wheel, in the series
 CAPTION = (
     "The pinion, below, turns clockwise and drives; its pairs of teeth, numbered from the one that "
     "came into contact last, touch on the line of action. Colour: their share of the normal force. "
@@ -133,7 +132,7 @@ def _view(pair: GearPair, carried: Carried, words: str, larger: float) -> View:
     sheet = sheet_of(pair, MARGINS, larger)
     behind = [body for k in range(2) for body in _gear(pair, k, carried)]
     for k, at in enumerate(axes(pair)):
-        pitch_circle(sheet, at, pair.normal_module, series(COLOURS[k]))
+        pitch_circle(sheet, at, pair.normal_module, series(SERIES_OF_MEMBERS[k]))
     action(sheet, pair, usable_path(pair))
     dots = [
         Body(
@@ -158,7 +157,7 @@ def _gear(pair: GearPair, k: int, carried: Carried) -> list[Body]:
     travelled = carried.positions[0, 0] + float(pair.base_pitch) * carried.travels
     turn = math.copysign(2.0, at) * travelled / float(gear.base_diameter)
     places = np.stack((np.zeros_like(turn), np.full_like(turn, at), turn), axis=1)
-    bodies = [Body(sector(gear, at, 1), places, "tip", series(COLOURS[k]), member)]
+    bodies = [Body(sector(gear, at, 1), places, "tip", series(SERIES_OF_MEMBERS[k]), member)]
     for n, share in enumerate(carried.percent.T):
         title = f"{member}, pair {n + 1}"
         bodies.append(Body(tooth(gear, at, n), places, "heat", title=title, values=share))

@@ -17,7 +17,7 @@ from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.physics.gears import MEMBERS, GearPair
-from gearopt.report.drawing.sheet import series
+from gearopt.report.drawing.sheet import SERIES_OF_MEMBERS, series
 from gearopt.report.kinds.pair.contact import Columns, columns
 from gearopt.report.kinds.pair.words import of_duty
 from gearopt.report.measures import METRIC, Measures
@@ -65,8 +65,8 @@ def tiles(relief: PairRelief, measures: Measures) -> list[Tile]:
     ]
 
 
-def binding_limit(relief: PairRelief) -> str:
-    """Amounts of the relief and its gain."""
+def relief_words(relief: PairRelief) -> str:
+    """Return a clause: tip relief of both gears [um], and how far it changes the criterion."""
     first, second = (amount(f.amount_mm, "um", METRIC) for f in (relief.pinion, relief.wheel))
     none, best = relief.rows[0], relief.rows[-1]
     values = f"{_value(relief, none.value)} to {_value(relief, best.value)}{_strays(relief)}"
@@ -300,7 +300,7 @@ def profile_plot(flank: Flank, measures: Measures) -> Figure:
     rolls = np.concatenate(([low], flank.at(PLOT_STEPS)))
     off = measures.of(1.0, "um") * flank.removed(rolls)
     x, y = [round(float(v), 5) for v in rolls], [round(float(v), 4) for v in off]
-    colour = series((1, 4)[MEMBERS.index(member)])
+    colour = series(SERIES_OF_MEMBERS[MEMBERS.index(member)])
     trace = lines(x, y, colour, hover="%{x:.3f}°: %{y:.2f}<extra></extra>")
     trace |= {"name": member, "fill": "tozeroy", "showlegend": False}
     ticks = np.linspace(start, tip, TICKS)

@@ -5,7 +5,7 @@ from typing import Any
 
 from gearopt.physics.blanks import Body
 from gearopt.physics.gears import MEMBERS, GearPair
-from gearopt.report.drawing.sheet import series
+from gearopt.report.drawing.sheet import SERIES_OF_MEMBERS, series
 from gearopt.report.drawing.solid import (
     TURN,
     Toothed,
@@ -24,7 +24,6 @@ POINTS = 20_000  # of both gears together, about half a megabyte of a page
 FLANKS = (12, 10, 8, 6, 4, 3, 2)  # points on a flank
 SHAFT_BEYOND = 0.25  # face widths that a shaft is seen beyond its gear
 FLAT = 1e-3  # mm: thickness of a circle on a face in the still
-COLOURS = (1, 4)  # of pinion and wheel, in the series
 CAPTION = (
     f"{TURN} Involute and fillet as the tools cut them, thinned by 3 % of half a pitch so that the "
     "flanks are seen apart."
@@ -57,7 +56,7 @@ def figure(pair: GearPair, bodies: tuple[Body, Body], measures: Measures) -> Fig
 
 
 def _colour(member: str) -> str:
-    return series(COLOURS[MEMBERS.index(member)])
+    return series(SERIES_OF_MEMBERS[MEMBERS.index(member)])
 
 
 def _shaft(width: float) -> tuple[float, float]:

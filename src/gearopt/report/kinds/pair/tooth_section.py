@@ -17,7 +17,16 @@ from gearopt.physics.geometry.fillet import (
 )
 from gearopt.physics.geometry.tooth import tip_thickness, transverse_thickness
 from gearopt.report.drawing.mesh_view import carries_alone
-from gearopt.report.drawing.sheet import SIZE, Drawing, Place, Point, Sheet, Window, series
+from gearopt.report.drawing.sheet import (
+    SERIES_OF_MEMBERS,
+    SIZE,
+    Drawing,
+    Place,
+    Point,
+    Sheet,
+    Window,
+    series,
+)
 from gearopt.report.measures import Measures
 
 WIDE = 400.0  # px of the tooth with its neighbours' flanks
@@ -31,7 +40,6 @@ FILLET, FLANK = 24, 30  # points of a tooth's side
 ROW = 1.35 * SIZE  # px from a name to the next
 REACH = 70.0  # px of the load line outside the tooth
 TURN = 26.0  # px: radius of the arc of an angle
-COLOURS = (1, 4)  # of pinion and wheel, in the series
 
 
 @dataclass(frozen=True)
@@ -67,11 +75,12 @@ def outermost(pair: GearPair, path: ContactPath) -> tuple[float, float]:
 
 
 def _drawing(pair: GearPair, path: ContactPath, k: int, measures: Measures) -> Drawing:
+    """Draw one tooth of gear k (0: pinion, 1: wheel) in transverse section, with its load."""
     gear, m, member = pair.gears[k], float(pair.normal_module), MEMBERS[k]
     root, tip = 0.5 * float(gear.root_diameter), 0.5 * float(gear.tip_diameter)
     window = Window(-SIDE * m, SIDE * m, root - BELOW * m, tip + ABOVE * m, MARGINS)
     sheet = Sheet(window, WIDE / (2.0 * SIDE * m))
-    _outline(sheet, gear, window, series(COLOURS[k]), member)
+    _outline(sheet, gear, window, series(SERIES_OF_MEMBERS[k]), member)
     _circles(sheet, gear, window, measures)
     sheet.line((0.0, window.bottom), (0.0, window.top), "axis")
     _thickness(sheet, gear, measures)

@@ -24,7 +24,7 @@ WIDE, CLOSE = 420.0, 640.0  # px of the whole and of the close-up
 CLOSE_UP_TEETH = 3  # teeth on either side of the close-up's middle
 HIGH = 5.2  # modules that the close-up is high
 MARGINS = (8.0, 8.0, 8.0, 8.0)  # px around a view
-COLOURS = (1, 4, 6)  # of flexspline, circular spline and wave generator, in the series
+SERIES_OF_BODIES = (1, 4, 6)  # of flexspline, circular spline and wave generator, in the series
 UPRIGHT = 0.5 * math.pi  # the axis of the gearing's frame is drawn upwards
 TOOTH = "tooth of the flexspline"
 RING = 181, 721  # points of the ring, of the whole and of the close-up
@@ -182,8 +182,8 @@ def _rings(shape: Drawn, turns: Any, count: int) -> list[Body]:
     bar = np.array([(0.0, inner[:, 1].min()), (0.0, inner[:, 1].max())])
     places = _turning(turns)
     return [
-        Body(outer, places, "tip", series(COLOURS[0]), "rim of the flexspline"),
-        Body(inner, places, "tip", series(COLOURS[2]), "wave generator"),
+        Body(outer, places, "tip", series(SERIES_OF_BODIES[0]), "rim of the flexspline"),
+        Body(inner, places, "tip", series(SERIES_OF_BODIES[2]), "wave generator"),
         Body(bar, places, "near", title="major axis of the wave generator", line=True),
     ]
 
@@ -235,7 +235,7 @@ def _circular_spline(sheet: Sheet, shape: Drawn, numbers: Any, points: int, reac
     """Draw the circular spline at rest; reach [mm]: its outer radius, 0: beyond the view."""
     inner = _spaces(shape, numbers, points)
     path = " L ".join(f"{x:.2f} {y:.2f}" for x, y in (sheet.at(*p) for p in inner))
-    title, colour = "circular spline", series(COLOURS[1])
+    title, colour = "circular spline", series(SERIES_OF_BODIES[1])
     if reach:
         size, (cx, cy) = sheet.scale * reach, sheet.at(0.0, 0.0)
         ring = f"M {cx - size:.2f} {cy:.2f} a {size:.2f} {size:.2f} 0 1 1 {2 * size:.2f} 0"

@@ -207,7 +207,7 @@ def _changes(
             verified={**nearest[0].verified, "others": tried},
         )
         nearest = [least, *_worth_reporting(r for r in nearest[1:] if r.kind != "least")]
-    return _distinct([*nearest, *(r for r in rows if r.kind == "less")])
+    return _least_by_keys([*nearest, *(r for r in rows if r.kind == "less")])
 
 
 def _worth_reporting(found: Any) -> Iterator[Remedy]:
@@ -234,7 +234,7 @@ def _product(remedy: Remedy) -> float:
     return math.prod(c.factor for c in remedy.changes)
 
 
-def _distinct(found: Sequence[Remedy]) -> list[Remedy]:
+def _least_by_keys(found: Sequence[Remedy]) -> list[Remedy]:
     """Return of remedies that edit the same keys, the one of the smallest factor."""
     best: dict[tuple[str, ...], Remedy] = {}
     for remedy in found:

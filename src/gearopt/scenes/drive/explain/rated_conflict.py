@@ -53,7 +53,7 @@ class Conflict:
 
 @dataclass
 class _Filter:
-    """FeasibilityQuestions and their answers; it has state because the filter fills it.
+    """Whether a design exists without some limits, as asked; it has state: answers are kept.
 
     dropped: for good; needed: known to be in the conflict. exact: whether a design is numbers of
     teeth alone.
@@ -66,9 +66,10 @@ class _Filter:
     needed: set[str] = field(default_factory=set)
 
     def possible(self, dropped: Sequence[str] | Dropped, seconds: float = 0.0) -> bool | None:
-        """Whether a design exists without the requirements dropped; None: not known.
+        """Whether a design exists without the requirements dropped; None: not found out in time.
 
-        seconds: at most; 0: those of the case. Of fewer an answer that stays open is not kept.
+        seconds: allowed, 0 for those of the case. With fewer, an open answer is not kept, so that
+        it may be asked again.
         """
         key = frozenset(dropped)
         if key not in self.answers:

@@ -26,9 +26,9 @@ UNVERIFIED_SPECTRUM = ("load spectrum by part 6",)  # what no second source has
 
 
 def names(asked: RatingTable) -> dict[str, str]:
-    """Names of factors that are computed: without a relief of the file C_a is that of running-in.
+    """Return the words for each computed factor, by its symbol.
 
-    Source: ISO 6336-1:2006, 6.5.
+    Without a tip relief in the file C_a is that by running-in, C_ay (ISO 6336-1:2006, 6.5).
     """
     worn = {} if asked.iso6336.tip_relief else {"C_a": "tip relief by running-in, C_ay"}
     return NAMES | worn
