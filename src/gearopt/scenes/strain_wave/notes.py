@@ -188,14 +188,12 @@ def _windup(made: WaveDesign) -> str:
     """Return which parts wind up, and which are taken as rigid."""
     if made.elastic_rim:
         return (
-            f"The windup of {made.windup_mrad:.3g} mrad is that of teeth, rim and cup: wave "
-            "generator, bearings and shafts are taken as rigid, so that a real gearing winds up "
-            "further."
+            "The windup is that of teeth, rim and cup: wave generator, bearings and shafts are "
+            "taken as rigid, so that a real gearing winds up further."
         )
     return (
-        f"The windup of {made.windup_mrad:.3g} mrad is that of the teeth alone: everything else is "
-        "taken as rigid, so that a real gearing winds up many times as far. [sharing] rim = "
-        '"elastic" adds rim and cup.'
+        "The windup is that of the teeth alone: everything else is taken as rigid, so that a real "
+        'gearing winds up many times as far. [sharing] rim = "elastic" adds rim and cup.'
     )
 
 
