@@ -1,6 +1,7 @@
 """The parts of fronts by numbers worked out by hand: picks, gaps, limits, errors, what is said."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -488,6 +489,21 @@ def test_fronts_of_several_problems_are_one(statuses, status):
     assert [p.values for p in front.points] == [(1.0, 5.0), (2.0, 4.0), (3.0, 3.0)]
     assert front.beaten == ((3.0, 4.0),) and front.status == status and front.evaluations == 8
     assert {p.proven for p in front.points} == {status == "complete"}
+
+
+def test_the_proof_of_several_problems_names_each():
+    goals = Objective("a"), Objective("b")
+    first = Tradeoff(segment(), goals, part="1 stage")
+    both = replace(first, others=(replace(first, part="2 stages"),))
+    front = solved(both, {}, "nsga2", 4, None, Budget(evaluations=16), 0)
+    sentence = front.proof["sentence"]
+    assert sentence.startswith("1 stage: ") and " 2 stages: " in sentence
+
+
+def test_a_front_without_designs_claims_none():
+    assert epsilon._sentence(steps_of(segment()), (), False, []) == (
+        "Not proven: no design was found."
+    )
 
 
 def test_events_of_a_front_are_of_its_first_objective():

@@ -20,8 +20,9 @@ from page_reader import drawings as drawn
 from plotly.offline import get_plotlyjs
 
 from gearopt import Front
+from gearopt.optimise.pareto.front import Impossible
 from gearopt.optimise.pareto.measures import picks
-from gearopt.report.front import decided, picked, table, value_cells
+from gearopt.report.front import _apart, decided, picked, table, value_cells
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages import frame
 from gearopt.report.pages.front import page, tables
@@ -372,3 +373,26 @@ def test_a_browser_clicks_sorts_and_filters(two, tmp_path):
         ["3", "2"],
         [2, 2],
     ]
+
+
+def test_columns_tell_designs_apart_by_what_they_hold_not_by_the_number_of_stages():
+    stage = {
+        "normal_module_mm": 2.0,
+        "pinion_teeth": 20,
+        "wheel_teeth": 40,
+        "helix_angle_deg": 15.0,
+    }
+    front = cases.drive()
+    designs = [{"stages": [stage] * n} for n in (2, 3)]
+    points = [replace(p, design=d) for p, d in zip(front.points, designs, strict=False)]
+    alike = replace(front, points=tuple(points))
+    assert _apart(alike, METRIC) == {}
+    designs[1]["stages"][0] = stage | {"helix_angle_deg": 20.0}
+    assert list(_apart(alike, METRIC).values()) == [["15; 15", "20; 15; 15"]]
+
+
+def test_steps_without_a_design_are_said_to_be_impossible_where_that_is_proven():
+    steps = (Impossible({"mesh_loss": 1.0}, True), Impossible({"mesh_loss": 1.2}, False))
+    told = " ".join(decided(replace(cases.drive(), impossible=steps)))
+    assert "2 steps were skipped: no design was found within the limits" in told
+    assert "(1 proven impossible)" in told

@@ -77,6 +77,14 @@ def test_other_kinds_are_shown_by_what_their_design_holds(scene):
         assert words in out.getvalue()
 
 
+def test_a_limit_that_an_unproven_design_does_not_reach_is_not_active(solved):
+    proven = solved("elevator")
+    low = {n: min(u, 0.97) if n.startswith("k_factor") else u for n, u in proven.limits.items()}
+    stopped = replace(proven, status="limit", limits=low)
+    assert lead(proven).startswith("the limits on K-factor of stages 1 and 2 determine")
+    assert lead(stopped).startswith("in the best design found no limit is active; the closest is")
+
+
 def test_dropping_any_one_is_said_where_it_was_tried():
     ways = {"conflict": ["ratio_low", "span"], "remedies": [], "message": "", "any_resolves": True}
     own = Result("own", "infeasible", "x", {}, scene="drive", report={"ways_out": ways})
@@ -92,7 +100,8 @@ def test_dropping_any_one_is_said_where_it_was_tried():
     [
         (
             ["ratio_low"],
-            "the limit on minimum ratio cannot be met, even if all other given limits are dropped",
+            "the limit on minimum ratio cannot be met with what else the file gives, even if all "
+            "other limits are dropped",
         ),
         (
             ["ratio_low", "wheel_diameter[1]", "wheel_diameter[2]"],

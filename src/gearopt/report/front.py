@@ -87,8 +87,8 @@ def decided(front: Front, measures: Measures = METRIC) -> list[str]:
         count, proven = len(front.impossible), sum(step.proven for step in front.impossible)
         steps = "1 step was" if count == 1 else f"{count} steps were"
         sentences.append(
-            f"{steps} skipped: no design meets the limits on the objectives there "
-            f"({proven} proven)."
+            f"{steps} skipped: no design was found within the limits on the objectives there "
+            f"({proven} proven impossible)."
         )
     sentences += [_unknown(front, measures), *front.report.get("notes", [])]
     return [one for one in (*sentences, sentence(front.message)) if one]
@@ -283,8 +283,9 @@ def _apart(front: Front, measures: Measures) -> dict[str, list[str]]:
     """Columns that distinguish gears of equal teeth: texts of every design, by head."""
     columns = {}
     for name, keys in CHOICES.items():
-        texts = ["; ".join(_choice(s, keys) for s in stages_of(p.design)) for p in front.points]
-        if len(set(texts)) > 1:
+        rows = [[_choice(s, keys) for s in stages_of(p.design)] for p in front.points]
+        texts = ["; ".join(row) for row in rows]
+        if len(set(texts)) > 1 and len({word for row in rows for word in row}) > 1:
             columns[name] = texts
     if SHIFTED in columns:
         distances = [

@@ -59,6 +59,9 @@ def _impossible(result: Result) -> str:
         name for name in ways.get("unsure") or result.proof.get("unsure") or () if name in names
     ]
     names = [name for name in names if name not in unsure]
+    if not names:
+        perhaps = f"perhaps because of {_some(result, unsure)} (not decided in the time)"
+        return f"no design meets all limits, {perhaps}"
     together = _on(grouped(names, of_problem_file(result)), len(names))
     ratio = {*RATIO_ENDS} & ({*(result.proof.get("conflict") or ())} - {*names})
     held = " at the ratio asked" if ratio else ""
@@ -68,7 +71,8 @@ def _impossible(result: Result) -> str:
     if [_stem(name) for name in names] == [DISTANCE] and result.message:
         return result.message.rstrip(".")  # what keeps teeth from it is never dropped whole
     if len(names) == 1 or result.proof.get("each_alone"):
-        return f"{together} cannot be met, even if all other given limits are dropped"
+        kept = "with what else the file gives, even if all other limits are dropped"
+        return f"{together} cannot be met {kept}"
     if ways.get("any_resolves"):
         return (
             f"{together} cannot all be met{held}; dropping any one of them makes a design possible"
@@ -113,6 +117,8 @@ def of_limits(result: Result, shown: Collection[str] = ()) -> str:
     reached = [n for n, u in limits.items() if u >= 1.0 - REACHED]
     relaxed = next((part.limits for part in result.parts if part.name == "sizing"), {})
     decisive = [n for n in limits if relaxed.get(n, 0.0) >= 1.0 - REACHED] or reached
+    if result.status not in PROVEN:
+        decisive = reached
     if result.method == "exact" and result.design.get("rating") and not relaxed:
         decisive = []
     ends = [n for n in reached if n not in decisive]

@@ -15,6 +15,8 @@ from small_drives import drive
 
 from gearopt.formulations.drive import teeth
 from gearopt.formulations.drive.teeth import load_front
+from gearopt.optimise import methods
+from gearopt.optimise.clock import Clock
 from gearopt.optimise.pareto.objectives import Limiting
 from gearopt.optimise.pareto.tradeoff import found
 from gearopt.optimise.result import Budget
@@ -132,3 +134,17 @@ def test_every_step_of_a_rated_drive_is_what_a_look_at_all_trains_finds():
 def test_a_front_that_is_stopped_is_not_complete():
     made = front(drive(2, "tied", **SMALL), budget=Budget(evaluations=2000))
     assert not made.complete and not made.finished
+
+
+def test_a_search_for_the_least_utilisation_that_is_stopped_proves_its_bound():
+    train, names = drive(**SMALL), ("gear_volume", load_front.UTILISATION)
+    problem, bounds = load_front.problem(train, names), []
+    whole = load_front._least(train, problem, 1.0, math.inf, Clock())
+    for most in np.linspace(1, whole.evaluations - 1, 9):
+        clock = Clock(Budget(evaluations=int(most)))
+        outcome = load_front._least(train, problem, 1.0, math.inf, clock)
+        methods._check_claims("", outcome)
+        if outcome.bound:
+            bounds.append(outcome.bound)
+            assert f"up to {100.0 * outcome.bound:.4g} %" in outcome.proof["sentence"]
+    assert bounds and max(bounds) <= whole.bound

@@ -52,6 +52,12 @@ def shaken(plan, rng):
     return Places(x, y, layer, centre)
 
 
+def test_a_bound_that_proves_its_packing_is_not_called_weak():
+    floor = packing.Bound(1.0, 3, complete=False)
+    assert "weaker" in packing.proof(floor)["sentence"]
+    assert "weaker" not in packing.proof(floor, near=True)["sentence"]
+
+
 @pytest.mark.parametrize("plan", PLANS.values(), ids=PLANS)
 def test_kernel_computes_what_the_text_does(plan):
     """Objective, crowding of all pairs that may move, empty layers, excess of a given width."""

@@ -88,6 +88,15 @@ def test_a_conflict_is_said_first_and_what_may_not_matter_last(monkeypatch):
     )
 
 
+def test_a_conflict_of_which_nothing_is_sure_is_said_to_be_open(solved):
+    ways = {"conflict": ["ratio_high[1]"], "unsure": ["ratio_high[1]"], "remedies": []}
+    result = replace(solved("elevator"), status="infeasible", report={"ways_out": ways})
+    assert lead(result) == (
+        "no design meets all limits, perhaps because of maximum ratio of stage 1 "
+        "(not decided in the time)"
+    )
+
+
 def test_of_many_requirements_that_may_not_matter_some_are_named(solved):
     names = ["a[1]", *(f"{letter}[1]" for letter in "bcdef")]
     ways = {"conflict": names, "unsure": names[1:], "remedies": []}

@@ -149,8 +149,8 @@ def test_both_stages_are_moved_together():
         assert way.verified["with"] == "feasible" and way.verified["with_less"] == "infeasible"
     told = lead(replace(posed(changed(FILE, *both)), scene="servo"))
     assert told == (
-        "the limits on minimum backlash of stages 1 and 2 cannot be met, even if all other "
-        "given limits are dropped"
+        "the limits on minimum backlash of stages 1 and 2 cannot be met with what else the file "
+        "gives, even if all other limits are dropped"
     )
 
 

@@ -32,23 +32,24 @@ def problem(plan: Plan, loose: bool = True) -> Problem:
         return lower
 
     def finish(outcome: Outcome, spent: Spent, floor: Bound) -> Outcome:
-        if not loose and spent.clock.best - floor.value > CERTAIN * spent.clock.best:
+        near = spent.clock.best - floor.value <= CERTAIN * spent.clock.best
+        if not loose and not near:
             return outcome
-        return replace(outcome, bound=floor.value, proof=proof(floor))
+        return replace(outcome, bound=floor.value, proof=proof(floor, near))
 
     methods = {"hop": hop.method(plan, floor, finish), "sa": sa.method(plan, floor, finish)}
     return direct(plan, **methods)
 
 
-def proof(floor: Bound) -> dict[str, Any]:
-    """Return how a bound was proven, for a result."""
+def proof(floor: Bound, near: bool = False) -> dict[str, Any]:
+    """Return how a bound was proven, for a result; near: it proves the packing as it is."""
     method = "subdivision" if floor.choices else "volume"
     ways = f"each of the {floor.choices:,} ways" if floor.choices > 1 else "the one way"
     words = (
         f"Lower bound: for {ways} to assign the cylinders to layers, the plan area that discs, "
         "pairs and triples of them need in any order was bounded by subdivision of the width."
     )
-    if not floor.complete:
+    if not floor.complete and not near:
         words += " Stopped early: the bound is weaker than it could be."
     if floor.complete and not floor.choices:
         words = "Lower bound: the volume of the cylinders, and the widest with the highest of them."

@@ -557,7 +557,8 @@ def _sentence(state: Run, points: tuple[Point, ...], complete: bool, left: list[
     if not count:
         starts = len(state.sample or ())
         many = f", also from {starts:,} points of evolution" if starts else ""
-        return f"Not proven: every point is the best one found under its limits{many}."
+        found_points = "every point is the best one found under its limits"
+        return f"Not proven: {found_points if points else 'no design was found'}{many}."
     which = "Every point" if count == len(points) else f"{count} of {len(points)} points"
     verb = "is" if count in (1, len(points)) else "are"
     by = f"by more than {GAP:g} of its first objective"

@@ -123,6 +123,7 @@ def united(fronts: Sequence[Front], weights: Mapping[str, float] | None) -> Fron
     seconds, spent = (sum(getattr(f, n) for f in fronts) for n in ("seconds", "evaluations"))
     lost = tuple(every[k].values for k in range(len(every)) if k not in set(kept))
     said = " ".join(str(front.proof.get("sentence", "")) for front in fronts)
+    said = f"{'Proof. ' * done}{said}"
     return replace(
         fronts[0],
         status=_united_status(fronts, done, bool(kept)),
@@ -136,7 +137,7 @@ def united(fronts: Sequence[Front], weights: Mapping[str, float] | None) -> Fron
         corner=tuple(map(float, corner)),
         hypervolume=whole,
         growth=() if whole is None else (Growth(seconds, spent, whole),),
-        proof={**fronts[0].proof, "sentence": f"For each number of stages: {said}"},
+        proof={**fronts[0].proof, "sentence": said},
         message="" if kept else next((f.message for f in fronts if f.message), ""),
         evaluations=spent,
         seconds=seconds,

@@ -47,8 +47,8 @@ class Tradeoff:
     """A problem, its objectives in order, and the design of a point as its file shows it.
 
     limiting: how it is posed with one objective under limits on others, by a method of its own.
-    others: the same with other numbers of stages; the front is of all together. scope: the designs
-    that it is a front of, where these are not all.
+    others: the same with other numbers of stages; the front is of all together. part: which of
+    these this is, in words. scope: the designs that it is a front of, where these are not all.
     """
 
     problem: Problem | Conic
@@ -56,6 +56,7 @@ class Tradeoff:
     drawn: Callable[[Array], Mapping[str, Any]] | None = None
     limiting: Limiting | None = None
     others: tuple["Tradeoff", ...] = ()
+    part: str = ""
     scope: str = ""
 
 

@@ -178,6 +178,9 @@ def _each(trade: Tradeoff, given: Mapping[str, Any], clock: Clock) -> list[Front
         left = clock.left
         if left.seconds is not None:
             left = replace(left, seconds=left.seconds / (len(every) - k))
-        fronts.append(solved(posed_trade, budget=left, **given))
+        front = solved(posed_trade, budget=left, **given)
+        words = str(front.proof.get("sentence", "")).removeprefix("Proof: ")
+        words = f"{posed_trade.part}: {words}" if posed_trade.part else words
+        fronts.append(replace(front, proof={**front.proof, "sentence": words}))
         clock.evaluations += fronts[-1].evaluations
     return fronts

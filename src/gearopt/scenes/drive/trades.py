@@ -80,7 +80,10 @@ def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
         held = scene.held(len(gears.design["stages"])) if gears.value is not None else scene
         return sides.traded(held, names, gears)
     if scene.several:
-        each = [traded(scene.held(count), names, ask) for count in scene.counts]
+        each = [
+            replace(traded(scene.held(n), names, ask), part=f"{n} stage{'s' * (n > 1)}")
+            for n in scene.counts
+        ]
         curves = any(one.limiting is not None and not one.limiting.whole for one in each)
         if scene.teeth is None or method not in (None, EXACT) or curves:
             raise SolveError(

@@ -9,6 +9,7 @@ from decimal import Decimal, InvalidOperation
 from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
+from traceback import extract_tb
 from types import NoneType
 from typing import Any, get_origin
 
@@ -35,6 +36,7 @@ FORMATS = {  # beginnings of files of other formats
     r"\s*<": "XML or HTML",
     r"\s*\{": "JSON",
 }
+LIBRARIES = ("site-packages", "importlib", "<")  # in names of files
 NOT_TOML = "Write the gears into a file in TOML: `gearopt new drive` prints one to start from"
 TABLES = "<tables>"  # from Python, in messages
 DEEPEST_KEY = r"(?:[\w-]\s*\.\s*){6000}"  # tomllib's time grows with the square: 1 s at 5000
@@ -61,8 +63,16 @@ def kind_named(name: str) -> Kind[Any]:
     try:
         kind: Kind[Any] = import_module(f"{gearopt.scenes.__name__}.{name}").KIND
     except (ImportError, SyntaxError, NameError, AttributeError, TypeError) as reason:
-        raise SolveError(f"kind {name!r} cannot be imported: {reason}") from reason
+        there = _place_of(reason)
+        raise SolveError(f"kind {name!r} cannot be imported: {reason}{there}") from reason
     return kind
+
+
+def _place_of(reason: BaseException) -> str:
+    """Return the file and line of an error within gearopt or a kind, not in what these import."""
+    frames = extract_tb(reason.__traceback__)[1:]
+    inside = [f for f in frames if not any(word in f.filename for word in LIBRARIES)]
+    return f" ({Path(inside[-1].filename).name}, line {inside[-1].lineno})" if inside else ""
 
 
 def examples() -> dict[str, str]:

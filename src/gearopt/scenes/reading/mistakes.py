@@ -162,10 +162,11 @@ def _unknown(
     if lacking := absent(name):
         return SceneError(file, shown, short(value), lacking, "Remove it", Fix("remove", key))
     what = "unknown table" if isinstance(_first(value), dict) else "unknown key"
-    if homes := _homes(model, name):
+    meant = _near_name(model, content, place)
+    if homes := _homes(model, name, value if meant else None):
         rule = f"{what} here; it belongs {' or '.join(homes)}"
         return SceneError(file, shown, "", rule, "Move it or remove it", Fix("remove", key))
-    if meant := _near_name(model, content, place):
+    if meant:
         return SceneError(
             file, shown, "", what, f"Did you mean {meant}?", Fix("rename", key, meant)
         )
@@ -183,10 +184,16 @@ def _unknown(
     return SceneError(file, shown, "", rule, f"Remove it{hint}", Fix("remove", key))
 
 
-def _homes(model: type[BaseModel], name: str) -> list[str]:
-    """Return the places where a key of this name is known."""
-    homes = ["at the top of the file"] if name in model.model_fields else []
-    return homes + [f"in {title}" for title, table in tables(model) if name in table.model_fields]
+def _homes(model: type[BaseModel], name: str, value: Any = None) -> list[str]:
+    """Return the places where a key of this name is known; value: that it takes, None: any."""
+    places = [("at the top of the file", model)]
+    places += [(f"in {title}", table) for title, table in tables(model)]
+    return [
+        words
+        for words, table in places
+        if name in table.model_fields
+        and (value is None or _fits(value, table_of(table.model_fields[name].annotation)))
+    ]
 
 
 def _other_spelling(model: type[BaseModel], name: str) -> str | None:

@@ -231,7 +231,7 @@ def _outcome(
         "nodes": progress.nodes,
         "pruning_margin": MARGIN,
     }
-    compared = f"Proof: {progress.compared:,} trains compared,"
+    compared = f"Proof: {_counted(progress.compared, 'train')} compared,"
     opened = f"(partial designs examined: {progress.nodes:,})."
     if progress.clock.stopped or progress.enough:
         lower = progress.bound if math.isfinite(progress.bound) else None
@@ -269,13 +269,14 @@ def _front(train: Train, problem: Problem, budget: Budget, watch: Watch | None) 
     limits = np.array([most.get(name, math.inf) for name in names])
     run = fronts(asked, limits, Clock(budget, watch))
     chosen = run.trains
-    opened = f"{run.compared:,} trains compared, {run.opened:,} partial designs examined"
+    opened = f"{_counted(run.compared, 'train')} compared, "
+    opened += f"{_counted(run.opened, 'partial design')} examined"
     finished = not run.clock.stopped
     words = (
         f"Proof: these are all Pareto-optimal designs; {opened}, all others excluded by "
         "lower bounds of every objective and of weighted sums."
         if finished
-        else f"Stopped before the search was complete: {opened}."
+        else f"Stopped before the search was complete{f': {opened}' if run.opened else ''}."
     )
     method = "exhausted" if finished else "branch and bound, stopped early"
     points = [point(train, *made) for made in chosen]
@@ -286,8 +287,12 @@ def _front(train: Train, problem: Problem, budget: Budget, watch: Watch | None) 
         proof={"method": method, "sentence": words if points or not finished else NO_TRAIN},
         others=tuple(points[1:]),
         evaluations=run.clock.evaluations,
-        message="" if finished else "stopped before the search was complete: allow more time",
+        message="" if finished else "allow more time",
     )
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"
 
 
 def _searched(

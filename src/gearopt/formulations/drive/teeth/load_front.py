@@ -124,7 +124,14 @@ def _least(train: Train, own: Problem, high: float, largest: float, clock: Clock
         elif found.infeasible:
             low = tried
         if not clock.tell() or not found.finished:
-            return Outcome(best, False, bound=low or None, evaluations=clock.evaluations)
+            bound, proof = (low, _none_up_to(low)) if low else (None, None)
+            return Outcome(best, False, bound=bound, proof=proof, evaluations=clock.evaluations)
         tried = math.sqrt(low * high) if low else 0.5 * high
     proof = {"method": "exhausted", "sentence": LAST_IS_LEAST}
     return Outcome(best, bound=low, proof=proof, evaluations=clock.evaluations)
+
+
+def _none_up_to(used: float) -> dict[str, Any]:
+    """Proof that no design has a utilisation, of a search for the least that was stopped."""
+    words = f"Proof: a complete search found no design of a utilisation up to {100.0 * used:.4g} %."
+    return {"method": "exhausted, stopped early", "sentence": words}

@@ -140,8 +140,9 @@ def stability(result: Result, measures: Measures) -> Section | None:
     table = Table("tongues", heads, rows, "Widest instability tongues by the first-order formulas.")
     ends = f"{spans(held.bands_Hz)} Hz" if held.bands_Hz else "none"
     words = (
-        f"{held.unstable_percent:.3g} % of the map is unstable. Unstable mesh frequencies at the "
-        f"pair's own depth of {held.own_depth:.3g}: {ends}.",
+        f"{held.unstable_percent:.3g} % of the map, at depths from {held.depth[0]:.3g} to "
+        f"{held.depth[-1]:.3g}, is unstable. Unstable mesh frequencies at the pair's own depth of "
+        f"{held.own_depth:.3g}: {ends}.",
     )
     return Section(
         "Stability",

@@ -176,7 +176,8 @@ class Layout(Table):
             if values is not None and len(values) != shafts:
                 texts = [str(q) for q in values]
                 fit = (texts + texts[-1:] * shafts)[:shafts]
-                rule = f"names {len(values)} shafts; a drive of {stages} stages has {shafts}"
+                of = f"a drive of {stages} stage{'s' * (stages > 1)}"
+                rule = f"names {len(values)} shafts; {of} has {shafts}"
                 raise refuse(rule, fit, ("layout", name), "sample")
         if self.split_line is not None and several:
             check_shared(max(self.split_line), counts, ("layout", "split_line"))
