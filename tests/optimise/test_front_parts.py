@@ -495,7 +495,7 @@ def test_the_proof_of_several_problems_names_each():
     goals = Objective("a"), Objective("b")
     first = Tradeoff(segment(), goals, part="1 stage")
     both = replace(first, others=(replace(first, part="2 stages"),))
-    front = solved(both, {}, "nsga2", 4, None, Budget(evaluations=16), 0)
+    front = solved(both, {}, "nsga2", 4, None, Budget(evaluations=16), 0, None)
     sentence = front.proof["sentence"]
     assert sentence.startswith("1 stage: ") and " 2 stages: " in sentence
 
