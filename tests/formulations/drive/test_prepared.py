@@ -1,5 +1,7 @@
 """Data of teeth made in blocks against those made at once."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 from rated_drives import RACK, agma, iso
@@ -10,11 +12,43 @@ from gearopt.physics.gears import GearPair
 COUNT, BLOCK = 59, 7
 
 
+@dataclass(frozen=True)
+class Numbers:
+    """A table of one column."""
+
+    value: np.ndarray
+
+    def take(self, place):
+        """Some of its rows."""
+        return Numbers(self.value[place])
+
+
 def columns(value):
     """All arrays and numbers of a table."""
     if isinstance(value, tuple):
         return [column for part in value for column in columns(part)]
     return [value] if np.ndim(value) or np.isscalar(value) else columns(tuple(vars(value).values()))
+
+
+def test_few_teeth_of_many_blocks_are_made_alone(monkeypatch):
+    monkeypatch.setattr(prepared, "BLOCK", 10)
+    monkeypatch.setattr(prepared, "CALL", 1)
+    asked = []
+
+    def make(shapes):
+        asked.append(list(shapes))
+        return Numbers(shapes * 2.0)
+
+    data = prepared.Prepared(100, make)
+    some = np.array([90, 5, 41, 5])
+    for _ in range(2):
+        assert data.take(some).value.tolist() == [180.0, 10.0, 82.0, 10.0]
+    assert asked == [[5, 41, 90]]  # once, and without the rest of three blocks
+    others = np.array([1, 11, 21, 31, 41, 51, 61, 71, 81, 91])
+    for k in range(1, 10):  # blocks are made before so much is spent on shapes apart
+        shapes = others[: k + 1] + k % 9
+        assert data.take(shapes).value.tolist() == (2.0 * shapes).tolist()
+    assert sum(map(len, asked)) <= 200 and len(data.blocks) >= 5
 
 
 @pytest.mark.parametrize("standard", [agma(), iso()], ids=["agma", "iso"])

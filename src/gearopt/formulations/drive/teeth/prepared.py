@@ -10,23 +10,30 @@ from gearopt.formulations.drive.teeth.columns import Index
 from gearopt.frozen import dataclass
 
 BLOCK = 1000  # shapes of teeth that are made at once
+CALL = 700  # shapes that take as long as what is the same for any number of them
 
 
 @dataclass
 class Prepared:
     """Data of shapes of teeth (count,); it has state, as it keeps what was made.
 
-    make: data of some shapes, a dataclass of arrays, tuples of arrays and numbers.
+    make: data of some shapes, a dataclass of arrays, tuples of arrays and numbers. apart: shapes
+    that were last made without the others of their blocks, and their data; spent: on such shapes,
+    in shapes.
     """
 
     count: int
     make: Callable[[Index], Any]
     blocks: dict[int, Any] = field(default_factory=dict)
     every: Any = None
+    apart: tuple[Index, Any] | None = None
+    spent: int = 0
 
     def take(self, shapes: Index) -> Any:
         """Data of the shapes numbered `shapes`, in their order, made when first asked for."""
         if self.every is None:
+            if (few := self._few(shapes)) is not None:
+                return few
             wanted, row = np.unique(shapes // BLOCK, return_inverse=True)
             last = -(-self.count // BLOCK)
             if len(wanted) <= last // 2:
@@ -38,6 +45,23 @@ class Prepared:
     def part(self, place: Index) -> "Part":
         """Data of the shapes at places: shape k of it is shape `place[k]` of this."""
         return Part(self, place)
+
+    def _few(self, shapes: Index) -> Any:
+        """Data of shapes that are few of the blocks that are still to be made; None: of many.
+
+        Altogether no more is spent on them than on these blocks.
+        """
+        blocks = np.unique(shapes // BLOCK).tolist()
+        lacking = sum(number not in self.blocks for number in blocks)
+        if not lacking:
+            return None
+        different, row = np.unique(shapes, return_inverse=True)
+        if self.apart is None or not np.array_equal(self.apart[0], different):
+            spent = self.spent + len(different) + CALL
+            if spent >= lacking * BLOCK // 2:
+                return None
+            self.apart, self.spent = (different, self.make(different)), spent
+        return self.apart[1].take(row)
 
     def _joined(self, numbers: Index) -> Any:
         for number in numbers.tolist():

@@ -116,6 +116,7 @@ class RatedTable(Table):
 
     def _made_ready(self, standard: Standard, shapes: Index) -> Any:
         """Data that a standard takes of some shapes: pairs, by module those allowed."""
+        self.tick()
         module, pair = np.ones(len(shapes)), shapes
         if self._by_module:
             module, pair = self.modules[self._shapes[0][shapes]], self._shapes[1][shapes]
