@@ -30,6 +30,7 @@ from gearopt.formulations.servo.servo_design import (
 )
 from gearopt.formulations.servo.split.bodies import Pairs
 from gearopt.formulations.servo.split.servo_train import (
+    ServoTrain,
     bending_stress,
     motion_torques,
     objectives,
@@ -102,9 +103,10 @@ def sensitivity(pairs: Pairs, source: Source) -> float:
     return float(source.per_mm / second.wheel.reference_diameter)
 
 
-def of_point(scene: Scene, x: Array) -> Pairs:
-    """Return the gear pairs of a point of `split.problem`."""
-    width = math.nan if scene.train is None else scene.servo_train().face_width
+def of_point(scene: Scene, x: Array, train: ServoTrain | None = None) -> Pairs:
+    """Return the gear pairs of a point of `split.problem`; train: that of the scene, if known."""
+    train = scene.servo_train() if train is None and scene.train is not None else train
+    width = math.nan if train is None else train.face_width
     return pairs((*(round(float(z)) for z in x[:4]), float(x[4]), float(x[5])), width)
 
 
@@ -165,16 +167,22 @@ def _stage(pair: GearPair) -> Stage:
     )
 
 
-def described(scene: Scene, gears: Pairs) -> TrainDesign:
-    """Return the train of a result."""
+def described(
+    scene: Scene,
+    gears: Pairs,
+    train: ServoTrain | None = None,
+    sources: tuple[Source, ...] | None = None,
+) -> TrainDesign:
+    """Return the train of a result; train, sources: the scene's, where they are known."""
     first, second = gears
     n, table = first.ratio * second.ratio, scene.train
-    train = None if table is None else scene.servo_train()
-    error = sum(s.most * sensitivity(gears, s) for s in scene.sources)
+    train = scene.servo_train() if train is None and table is not None else train
+    sources = scene.sources if sources is None else sources
+    error = sum(s.most * sensitivity(gears, s) for s in sources)
     design = TrainDesign(
         stages=(_stage(first), _stage(second)),
         ratio=n,
-        error_deg=math.degrees(error) if scene.sources else None,
+        error_deg=math.degrees(error) if sources else None,
     )
     if table is None or train is None:
         return design

@@ -40,7 +40,7 @@ def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
     units, method = objectives(scene), ask.method
     listed = tuple(Objective(name, units[name]) for name in names)
     if scene.train is not None:
-        return Tradeoff(_trains(scene, names, method), listed, lambda x: _train(scene, x))
+        return Tradeoff(_trains(scene, names, method), listed, _shown_train(scene))
     gears = given_gears(scene)
     assert gears is not None
     return Tradeoff(_tolerances(scene, gears, names, method), listed, _allotted(scene, gears))
@@ -58,13 +58,18 @@ def _trains(scene: Scene, names: Sequence[str], method: str | None) -> Problem:
     return front_problem(choice, names)
 
 
-def _train(scene: Scene, x: Array) -> Mapping[str, Any]:
-    gears, springs = of_point(scene, x), scene.springs
-    stiffness = None if springs is None else springs.design(gears)
-    design: Mapping[str, Any] = untyped(
-        ServoDesign(train=described(scene, gears), stiffness=stiffness)
-    )
-    return design
+def _shown_train(scene: Scene) -> Callable[[Array], Mapping[str, Any]]:
+    """Return how the train of a point is shown, with its stiffness."""
+    train, sources, springs = scene.servo_train(), scene.sources, scene.springs
+
+    def shown(x: Array) -> Mapping[str, Any]:
+        gears = of_point(scene, x, train)
+        stiffness = None if springs is None else springs.design(gears)
+        shown_train = described(scene, gears, train, sources)
+        design: Mapping[str, Any] = untyped(ServoDesign(train=shown_train, stiffness=stiffness))
+        return design
+
+    return shown
 
 
 def _errors(scene: Scene) -> dict[str, str]:
