@@ -237,11 +237,10 @@ def _group(
             sample(by_time, known, 0.0, by_time=True),
         )
 
-    rows = tuple(row(e) for e in members)
+    rows = tuple(map(row, members))
     samples = [s for r in rows for s in (r.equal_evaluations, r.equal_time) if s]
-    best = min(
-        (r.objective for s in samples for r in s.runs if r.objective is not None), default=None
-    )
+    missing = [r.objective for s in samples for r in s.runs if r.objective is not None]
+    best = min(missing, default=None)
     proven = status(reference_front) in ("complete", "proven")
     return Group(
         model.problem.name,

@@ -210,9 +210,8 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
     """Children of nodes by a choice for stage j; one slice of about `limit` choices.
 
     parents (n, N, 2): pair and module of each chosen stage. start (2,): parent and pair to go on
-    with, moved on; a pair of -1: the first that fits. stop: of the parents. cut: what is worth
-    as much or more is left out. children (m, N, 2), bounds (m,): written. Other arrays are those
-    of `node_kernel`. Returns the number of children, and of choices looked at.
+    with (-1: the first that fits), moved on. stop: of the parents. What is worth `cut` is left out.
+    children (m, N, 2), bounds (m,): written. Returns the number of both, and of choices looked at.
     """
     stages, shafts = parents.shape[1], parents.shape[1] + 1
     node, body = np.zeros((stages, 3)), np.zeros((shafts, 4))
@@ -220,8 +219,7 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
     lengths, radius = np.empty(d.slabs.size), np.empty(d.slabs.size)
     choice, kept = np.zeros((stages, 2), np.int64), np.zeros(stages)
     base, shared = np.empty(d.slabs.size), np.empty(d.slabs.size)
-    aim, wall, larger = d.aim, d.gap[2], grows(d, j)
-    count = looked = 0
+    aim, wall, larger, count, looked = d.aim, d.gap[2], grows(d, j), 0, 0
     while start[0] < stop and looked < limit and count + d.modules.shape[1] <= bounds.size:
         left_low, left_high, ratio = taken(d, j, parents[start[0]], choice, node, body)
         end = place(d.log_ratio, d.start[j], d.start[j + 1], left_high + EDGE)
@@ -266,8 +264,7 @@ def expand(d, rest, j, parents, start, stop, cut, limit, children, bounds):
                     bounds[count] = value
                     count += 1
         if start[1] >= end:
-            start[0] += 1
-            start[1] = -1
+            start[0], start[1] = start[0] + 1, -1
     return count, looked
 
 
