@@ -326,6 +326,15 @@ def test_what_no_search_can_mend_is_told_in_numbers(name):
     assert any(c["write"] == "" or "tolerance" in c["key"] for c in removed)
 
 
+def test_keep_outs_of_one_name_are_numbered():
+    pit = '[[keep_out]]\nname = "pit"\ny = ["-900 mm", "-800 mm"]\nz = ["0 mm", "9 mm"]\n'
+    drive = scene(TABLE4 + 2 * pit + pit.replace('name = "pit"\n', ""))
+    sizes = (1.5, 27, 229, 26.8), (3.0, 26, 105, 47.8), (4.0, 27, 87, 95.3)
+    pairs = tuple(drive.train().pair(k, *size) for k, size in enumerate(sizes))
+    names = [keep.name for keep in drive.gearbox(pairs).keep_outs]
+    assert names == ["pit 1", "pit 2", "keep-out 3"]
+
+
 def test_a_motor_within_a_keep_out_is_told():
     result = gearopt.solve(scene(BOX.replace('"-140 mm"]', '"-100 mm"]', 1)), remedies=False)
     assert result.message == "The motor reaches 30.00 mm into floor."

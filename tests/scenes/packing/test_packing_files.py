@@ -133,6 +133,23 @@ def test_units_and_signs_of_places():
     assert scene.plan().cylinders[2].at == pytest.approx((-25.4, 0.0))
 
 
+@pytest.mark.parametrize(
+    ("tables", "names"),
+    [
+        ([("large", 3), ("large", 2)], ["large 1", "large 2", "large 3", "large 4", "large 5"]),
+        ([("large", 1), ("small", 1), ("large", 1)], ["large 1", "small", "large 2"]),
+        ([("", 1), ("", 2)], ["d 20 mm 1", "d 20 mm 2", "d 20 mm 3"]),
+        ([("large 1", 1), ("large", 2), ("small", 1)], ["large 1", "large 2", "large 3", "small"]),
+        ([("large", 1), ("small", 2)], ["large", "small 1", "small 2"]),
+    ],
+)
+def test_every_cylinder_has_a_name_of_its_own(tables, names):
+    size = 'diameter = "20 mm"\nheight = "10 mm"'
+    rows = [f'[[cylinder]]\n{size}\nname = "{name}"\ncount = {n}\n' for name, n in tables]
+    _, scene = read(('gearopt = 1\nkind = "packing"\n' + "\n".join(rows)).encode())
+    assert [cylinder.name for cylinder in scene.plan().cylinders] == names
+
+
 @pytest.mark.slow
 def test_the_terminal_shows_the_packing_and_json_its_design(here):
     path = PROBLEMS / "six_cylinders_two_layers.toml"

@@ -44,6 +44,7 @@ from gearopt.scenes.plan import Step, carried_out
 from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.fields import Table, choice, quantity, refuse, whole, words
 from gearopt.scenes.reading.lists import pair
+from gearopt.scenes.reading.numbered_names import numbered
 from gearopt.scenes.reading.toml_writing import dotted
 from gearopt.units import Quantity
 
@@ -247,13 +248,12 @@ class Scene(Table):
     def plan(self) -> Plan:
         """Return the packing as plain numbers."""
         cylinders: list[Cylinder] = []
+        stems = [t.name or f"d {t.diameter}" for t in self.cylinder for _ in range(t.count)]
+        names = numbered(stems)
         for table in self.cylinder:
             place = None if table.at is None else (table.at[0].value, table.at[1].value)
             size = (table.diameter.value / 2.0, table.height.value, place, table.layer)
-            stem = table.name or f"d {table.diameter}"
-            for k in range(1, table.count + 1):
-                number = f" {k}" if table.count > 1 else ""
-                cylinders.append(Cylinder(stem + number, *size))
+            cylinders += [Cylinder(next(names), *size) for _ in range(table.count)]
         width = self.container.width
         return Plan(
             cylinders=tuple(cylinders),

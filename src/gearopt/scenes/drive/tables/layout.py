@@ -30,6 +30,7 @@ from gearopt.scenes.reading.fields import (
     words,
 )
 from gearopt.scenes.reading.lists import several, span
+from gearopt.scenes.reading.numbered_names import numbered
 from gearopt.units import Quantity
 
 CLEARANCE = quantity("length", "5 mm", zero=True)
@@ -39,11 +40,12 @@ STAGES = several(several(whole(1, 1, 6), [1]), [[1], [2]])
 
 Length = Annotated[Quantity | None, quantity("length", "500 mm")]
 Lengths = Annotated[
-    tuple[Quantity, ...] | None, several(quantity("length", "30 mm"), ["20 mm", "35 mm", "60 mm"])
+    tuple[Quantity, ...] | None,
+    several(quantity("length", "30 mm"), ["20 mm", "35 mm", "60 mm"], in_order=True),
 ]
 Bearings = Annotated[
     tuple[Quantity, ...] | None,
-    several(quantity("length", "62 mm"), ["62 mm", "80 mm", "120 mm"]),
+    several(quantity("length", "62 mm"), ["62 mm", "80 mm", "120 mm"], in_order=True),
 ]
 Clearance = Annotated[Quantity, CLEARANCE]
 Side = Annotated[tuple[Quantity, Quantity], span(PLACE, ["-300 mm", "-150 mm"])]
@@ -249,11 +251,11 @@ class KeepOutTable(Table):
         description="Along the shafts from the first face of the box; by default the whole length",
     )
 
-    def keep_out(self, number: int) -> KeepOut:
-        """Return the keep-out in plain numbers."""
+    def keep_out(self, name: str) -> KeepOut:
+        """Return the keep-out in plain numbers, by a name of its own."""
         y, z = ((side[0].value, side[1].value) for side in (self.y, self.z))
         x = ANYWHERE if self.x is None else (self.x[0].value, self.x[1].value)
-        return KeepOut(self.name or f"keep-out {number}", y, z, x)
+        return KeepOut(name, y, z, x)
 
 
 def gearbox(
@@ -267,6 +269,7 @@ def gearbox(
     torques = [torque]
     for pair in pairs:
         torques.append(torques[-1] * pair.ratio)
+    names = numbered([k.name or f"keep-out {n}" for n, k in enumerate(keep_outs, 1)])
     wide, high, long = (
         q.value if q else math.inf
         for q in (table.largest_width, table.largest_height, table.largest_length)
@@ -282,7 +285,7 @@ def gearbox(
         ),
         table.span == "partial",
         table.slabs and tuple(tuple(s - 1 for s in slab) for slab in table.slabs),
-        tuple(k.keep_out(n) for n, k in enumerate(keep_outs, 1)),
+        tuple(k.keep_out(name) for k, name in zip(keep_outs, names, strict=True)),
         0.5 * table.motor_diameter.value if table.motor_diameter else 0.0,
         tuple(p.place() for p in places),
         tuple(sorted({s - 1 for s in table.split_line or ()})),
