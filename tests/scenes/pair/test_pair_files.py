@@ -10,7 +10,7 @@ import pytest
 
 import gearopt
 from gearopt.errors import SceneError, SolveError
-from gearopt.physics.tooth.ladder import LEVELS
+from gearopt.physics.tooth.ladder import LEVELS, USUAL
 from gearopt.report.kinds.pair.words import OVERSTATED
 from gearopt.scenes.pair import KIND
 
@@ -183,13 +183,29 @@ def test_a_number_for_the_coupling_is_taken_as_it_is():
 
 
 @pytest.mark.parametrize(
-    "edits",
-    [{"sharing.coupling": "5 um/kN"}, {"sharing.level": "Nakada A", "stage.wheel.bore": "12 mm"}],
+    ("edits", "other"),
+    [
+        ({"sharing.coupling": "5 um/kN"}, ""),
+        ({"sharing.coupling": "5 um/kN", "sharing.level": "profile + Sainsot"}, ""),
+        ({"sharing.coupling": "784 um/kN", "sharing.level": "Nakada A"}, ""),
+        (
+            {"sharing.level": "Nakada A", "stage.wheel.bore": "12 mm"},
+            ', or level = "profile + Sainsot"',
+        ),
+    ],
 )
-def test_a_coupling_beyond_the_compliance_of_a_pair_is_refused(edits):
-    """A neighbour's load cannot move teeth as far as their own; thin shafts twist a ring far."""
-    with pytest.raises(SolveError, match=r'coupling is [\d.]+ um/kN, but .* coupling = "none" or'):
+def test_a_coupling_beyond_the_compliance_of_a_pair_is_refused(edits, other):
+    """A neighbour's load cannot move teeth as far as their own; thin shafts twist a ring far.
+
+    Another model of the teeth is named only where it takes the coupling.
+    """
+    said = (
+        rf'coupling is [\d.]+ um/kN, but .* coupling = "none" or a smaller one{re.escape(other)}$'
+    )
+    with pytest.raises(SolveError, match=said):
         gearopt.solve(with_(GIVEN, edits))
+    if other:
+        gearopt.solve(with_(GIVEN, edits | {"sharing.level": USUAL}))
 
 
 def test_a_model_without_a_ring_beside_a_coupling_by_the_ring_is_said():
