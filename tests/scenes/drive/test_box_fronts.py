@@ -26,7 +26,7 @@ def test_the_end_of_a_front_is_the_box_that_the_file_asks_for(solved):
 @pytest.mark.parametrize(
     ("changes", "names", "words"),
     [
-        ({}, "gear_volume,height", "are no front together"),
+        ({}, "gear_volume,height", "cannot share a front"),
         pytest.param(
             *({}, "height,box_volume", "box_volume cannot be limited, only width, height, length"),
             marks=pytest.mark.slow,

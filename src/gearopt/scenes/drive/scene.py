@@ -58,7 +58,7 @@ from gearopt.scenes.drive.toothings import (
 )
 from gearopt.scenes.explaining.numbers import eased, in_reverse, written
 from gearopt.scenes.parts import Duty
-from gearopt.scenes.reading.choices import Between, Choice, values_of
+from gearopt.scenes.reading.choices import Between, Choice, Preferred, values_of
 from gearopt.scenes.reading.fields import Table, refuse, whole, words
 from gearopt.scenes.reading.lists import span
 from gearopt.units import Quantity
@@ -392,9 +392,11 @@ class Scene(Table):
             lacks = "gears that are to be chosen: these are all given" if self.given else ""
             lacks = lacks or self._lacks("with one of several values")
             if lacks:
-                first = values_of(value, (100.0, 100.0))[0]
                 rule = f"has several values to choose from, which need {lacks}"
-                raise refuse(rule, str(first), place, "sample")
+                one_fits = place[-1] != "centre_distance" or self.given
+                if not one_fits or (isinstance(value, Preferred) and value.low is None):
+                    raise refuse(rule, at=place, action="remove")
+                raise refuse(rule, str(values_of(value)[0]), place, "sample")
 
     def _check_layout(self) -> None:
         """Check the tables of a layout against the drive and each other."""

@@ -72,7 +72,7 @@ def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
 
         if len(boxed) < len(names):
             raise SolveError(
-                f"{', '.join(boxed)} of the box and objectives of the gears are no front together: "
+                f"{', '.join(boxed)} of the box and objectives of the gears cannot share a front: "
                 "the gears are sized first, and laid out then"
             )
         sides.check(scene)

@@ -75,10 +75,12 @@ class MeshTable(Table):
         None, description="Trapezoid: share of the period in which the stiffness rises"
     )
     cosines: Annotated[
-        tuple[Quantity, ...], several(quantity("stiffness", "20 kN/mm", signed=True), ["20 kN/mm"])
+        tuple[Quantity, ...],
+        several(quantity("stiffness", "20 kN/mm", signed=True), ["20 kN/mm"], in_order=True),
     ] = Field((), description="Fourier series: amplitudes of the cosines")
     sines: Annotated[
-        tuple[Quantity, ...], several(quantity("stiffness", "20 kN/mm", signed=True), ["20 kN/mm"])
+        tuple[Quantity, ...],
+        several(quantity("stiffness", "20 kN/mm", signed=True), ["20 kN/mm"], in_order=True),
     ] = Field((), description="Fourier series: amplitudes of the sines")
     pair: Annotated[Input | None, result_of("pair")] = Field(
         None, description="File of kind pair, or its kept result, whose teeth give the stiffness"

@@ -204,10 +204,11 @@ def number(
     percent: bool = False,
     zero: bool = False,
     fraction: bool = False,
+    scale: bool = False,
 ) -> Reads:
     """Read a pure number, kept exactly as a fraction.
 
-    percent: "1 %" is read too; fraction: "127/120" too.
+    percent: "1 %" is read too; fraction: "127/120" too. scale: as of `whole`.
     """
     above = f"between {float(minimum):.7g} and" if minimum or zero else "greater than 0 and at most"
     sort = 'a number or a percentage such as "1 %"' if percent else "a number"
@@ -245,6 +246,8 @@ def number(
     def slip(value: Any, found: Fraction) -> Any:
         if percent and _is_number(value) and inside(found / 100):
             return f"{value} %"
+        if scale and found >= 0:
+            return float(max(minimum, min(found, maximum)))
         return -value if _is_number(value) and inside(-found) else None
 
     schema: dict[str, Any] = {"type": "number", "maximum": float(maximum)}
@@ -292,8 +295,11 @@ def speed_ratio(example: Any, minimum: int, total: bool = False) -> Reads:
     return Reads(read, item.example, item.schema)
 
 
-def whole(example: int, minimum: int, maximum: int) -> Reads:
-    """Read a whole number."""
+def whole(example: int, minimum: int, maximum: int, scale: bool = False) -> Reads:
+    """Read a whole number.
+
+    scale: it is a grade, of which the nearest is written instead of one beyond the ends.
+    """
 
     def read(value: Any, example: Any) -> int:
         if isinstance(value, str) and re.fullmatch(r"\s*[0-9]{1,9}\s*", value):
@@ -306,6 +312,7 @@ def whole(example: int, minimum: int, maximum: int) -> Reads:
         if not minimum <= value <= maximum:
             meant = minimum if 0 <= value < minimum else None  # the largest is no sensible one
             meant = -value if minimum <= -value <= maximum else meant
+            meant = maximum if scale and value > maximum else meant
             raise refuse(f"is not a whole number from {minimum} to {maximum}", meant)
         return value
 

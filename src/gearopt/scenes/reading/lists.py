@@ -28,6 +28,22 @@ def mended(item: Reads, values: list[Any]) -> tuple[list[Any], str]:
     return right, first
 
 
+def _accepted(item: Reads, values: list[Any], in_order: bool) -> tuple[list[Any], str]:
+    """Return the entries of a list that are accepted, and the first rule broken.
+
+    A wrong entry is put right where that is certain. Else, in_order, it is replaced by the example,
+    for entry k belongs to item k; without an order it is left out, as is one that is there already.
+    """
+    right, rule = mended(item, values)
+    if in_order:
+        return [item.example if entry is None else entry for entry in right], rule
+    distinct: list[Any] = []
+    for before, entry in zip(values, right, strict=True):
+        if entry is not None and (entry is before or entry not in (*values, *distinct)):
+            distinct.append(entry)
+    return distinct or [item.example], rule
+
+
 def _reciprocal(value: Any) -> bool:
     return isinstance(value, Quantity) and value.reciprocal
 
@@ -52,6 +68,14 @@ def span(item: Reads, example: Any, single: bool = False) -> Reads:
         numbers = [_number(one, all(map(_reciprocal, quantities))) for one in quantities]
         return values if numbers[0] <= numbers[1] else values[::-1]
 
+    def between(values: list[Any]) -> list[Any] | None:
+        """Return the range from the least to the greatest of right values; None of others."""
+        if not values or mended(item, values)[1]:
+            return None
+        sizes = [_number(item.reader(value, item.example), False) for value in values]
+        least, greatest = (values[sizes.index(pick(sizes))] for pick in (min, max))
+        return ordered([least, greatest])
+
     def read(value: Any, example: Any) -> tuple[Any, Any]:
         if isinstance(value, tuple):
             return value[0], value[1]
@@ -66,8 +90,7 @@ def span(item: Reads, example: Any, single: bool = False) -> Reads:
         ends = value if isinstance(value, list) else [value]
         right, rule = mended(item, ends[:2])
         if len(ends) != 2:
-            pair = right * 2 if len(ends) == 1 and not rule else None
-            raise refuse("is not a range [minimum, maximum]", pair)
+            raise refuse("is not a range [minimum, maximum]", between(ends))
         if rule:
             known = None not in right
             raise refuse(f"has an end that {rule}", ordered(right) if known else None)
@@ -83,6 +106,17 @@ def span(item: Reads, example: Any, single: bool = False) -> Reads:
     return Reads(read, example, {"anyOf": [item.schema, schema]} if single else schema)
 
 
+def _for_example(item: Reads, value: Any) -> Any:
+    """Return one item; what is written for a wrong one is one item, too."""
+    try:
+        return item.reader(value, item.example)
+    except PydanticCustomError as wrong:
+        context = wrong.context or {}
+        if context["write"] is not None:
+            raise
+        raise refuse(context["rule"], item.example, action="sample") from None
+
+
 def each_gear(item: Reads) -> Reads:
     """Read [pinion, wheel], or one item that means both, as a tuple."""
 
@@ -90,11 +124,12 @@ def each_gear(item: Reads) -> Reads:
         if isinstance(value, tuple):
             return value[0], value[1]
         if not isinstance(value, list):
-            only = item.reader(value, item.example)
+            only = _for_example(item, value)
             return only, only
         right, rule = mended(item, value[:2])
         if len(value) != 2:
-            raise refuse("is not one value nor a list [pinion, wheel]", (right * 2)[:2] or None)
+            both = None if None in right else (right * 2)[:2] or None
+            raise refuse("is not one value nor a list [pinion, wheel]", both)
         if rule:
             raise refuse(f"has a value that {rule}", None if None in right else right)
         return item.reader(value[0], item.example), item.reader(value[1], item.example)
@@ -115,9 +150,8 @@ def either(names: dict[str, Any], item: Reads) -> Reads:
             known = ", ".join(f'"{n}"' for n in names)
             close = near(value, names) if isinstance(value, str) else None
             raise refuse(f"is neither one of {known} nor a list", close)
-        right, rule = mended(item, value)
+        write, rule = _accepted(item, value, in_order=False)
         if rule:
-            write = [item.example if entry is None else entry for entry in right]
             raise refuse(f"has an entry that {rule}", write)
         sizes: dict[Fraction, Quantity] = {}
         for size in (item.reader(entry, item.example) for entry in value):
@@ -128,17 +162,19 @@ def either(names: dict[str, Any], item: Reads) -> Reads:
     return Reads(read, next(iter(names)), {"anyOf": [{"enum": list(names)}, items]})
 
 
-def several(item: Reads, example: Any) -> Reads:
-    """Read a list of items, as a tuple in the file's order."""
+def several(item: Reads, example: Any, in_order: bool = False) -> Reads:
+    """Read a list of items, as a tuple in the file's order.
+
+    in_order: entry k belongs to item k, such as stage k.
+    """
 
     def read(value: Any, example: Any) -> tuple[Any, ...]:
         if isinstance(value, tuple):
             return value
         if not isinstance(value, list) or not value:
             raise refuse("is empty" if value == [] else "is not a list")
-        right, rule = mended(item, value)
+        write, rule = _accepted(item, value, in_order)
         if rule:
-            write = [item.example if entry is None else entry for entry in right]
             raise refuse(f"has an entry that {rule}", write)
         return tuple(item.reader(entry, item.example) for entry in value)
 
@@ -151,9 +187,11 @@ def pair(item: Reads) -> Reads:
     def read(value: Any, example: Any) -> tuple[Any, Any]:
         if isinstance(value, tuple):
             return value[0], value[1]
-        if not isinstance(value, list) or len(value) != 2:
+        if not isinstance(value, list) or len(value) < 2:
             raise refuse("is not a place [x, y]")
-        right, rule = mended(item, value)
+        right, rule = mended(item, value[:2])
+        if len(value) > 2:
+            raise refuse("is not a place [x, y]", None if None in right else right)
         if rule:
             raise refuse(f"has a part that {rule}", None if None in right else right)
         return item.reader(value[0], item.example), item.reader(value[1], item.example)

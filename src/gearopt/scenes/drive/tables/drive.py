@@ -267,10 +267,15 @@ class Limits(Loaded):
 
     @model_validator(mode="after")
     def _loads(self) -> "Limits":
-        given = [name for name in self.LAW.names if getattr(self, name) is not None]
-        for name in self.LAW.names:
-            if name in given and self.preset is not None:
-                raise refuse("conflicts with preset, which sets it", at=(name,), action="remove")
+        names = self.LAW.names
+        given = [name for name in names if getattr(self, name) is not None]
+        if given and self.preset is not None:
+            if len(given) == len(names):
+                rule = f"conflicts with {' and '.join(names)}, which are given"
+                raise refuse(rule, at=("preset",), action="remove")
+            rule = f"conflicts with preset, which sets {' and '.join(names)}"
+            raise refuse(rule, at=(given[0],), action="remove")
+        for name in names:
             if given and name not in given:
                 raise refuse("is missing (or give preset)", at=(name,))
         return self
@@ -377,9 +382,9 @@ class Objective(Table):
     )
 
 
-EACH_RATIO = several(speed_ratio(5, 1), [4.96, 4.36])
-EACH_PINION = several(TOOTH_COUNT, [23, 25])
-EACH_MODULE = several(MODULE, ["2 mm", "3 mm"])
+EACH_RATIO = several(speed_ratio(5, 1), [4.96, 4.36], in_order=True)
+EACH_PINION = several(TOOTH_COUNT, [23, 25], in_order=True)
+EACH_MODULE = several(MODULE, ["2 mm", "3 mm"], in_order=True)
 
 Pinions = Annotated[tuple[int, ...] | None, EACH_PINION]
 Modules = Annotated[tuple[Quantity, ...] | None, EACH_MODULE]

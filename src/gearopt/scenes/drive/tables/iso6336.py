@@ -68,7 +68,7 @@ LOADS = ("K_gamma", "K_v", "K_Hbeta", "K_Fbeta", "K_Halpha", "K_Falpha", "Z_BD",
 LOAD = number(1.1, 1, 10**6)  # of LOADS, largest over mean or nominal: 1 or more by definition
 VG = (32, 46, 68, 100, 150, 220, 320, 460, 680, 1000)  # viscosity grades of ISO 3448
 GRADES = advised(
-    each_gear(whole(6, 0, 12)),
+    each_gear(whole(6, 0, 12, scale=True)),
     {
         rf"(?:iso|din|grade|q|iso 1328)[ -]*{grade}": f"Write accuracy_grade = {grade}"
         for grade in range(13)
@@ -130,7 +130,7 @@ class IsoGearKeys(Table):
     flank_rz: Annotated[Quantity | None, quantity("length", "4.8 um", "1 mm")] = Field(
         None, description="Roughness R_z of the flanks; by default 6 R_a"
     )
-    accuracy_grade: Annotated[int | None, whole(6, 0, 12)] = Field(
+    accuracy_grade: Annotated[int | None, whole(6, 0, 12, scale=True)] = Field(
         None,
         description="Accuracy grade of ISO 1328-1 of this gear; by default that of "
         "[rating.iso6336]",

@@ -79,7 +79,7 @@ SHIFT = advised(
 )
 GRADES = "(?:a|iso|iso 1328|din|grade)[ -]*"
 QUALITY = advised(
-    number(8, int(QUALITIES[0]), int(QUALITIES[1])),
+    number(8, int(QUALITIES[0]), int(QUALITIES[1]), scale=True),
     {
         f"{GRADES}{grade}": "Q_v grows with accuracy. A grade of AGMA 2015 or ISO 1328, which "
         f"falls, is about A_v: write accuracy = {grade} instead of quality"
@@ -265,7 +265,7 @@ class RatingTable(Table):
         description="Transmission accuracy Q_v of AGMA 2001-C95, larger is better: sets K_v (or "
         "give accuracy)",
     )
-    accuracy: Annotated[Fraction | None, number(9, 6, 12)] = Field(
+    accuracy: Annotated[Fraction | None, number(9, 6, 12, scale=True)] = Field(
         None, description="Transmission accuracy A_v of AGMA 2001-D04, smaller is better: 17 - Q_v"
     )
     mounting: Annotated[str, choice(*ALIGNMENT)] = Field(

@@ -126,7 +126,7 @@ class Mesh(Table):
     pitch: Deviation = _deviation("Cumulative pitch deviation of the pair (or one per gear)")
     pinion_pitch: Deviation = _deviation("Cumulative pitch deviation of the pinion")
     wheel_pitch: Deviation = _deviation("Cumulative pitch deviation of the wheel")
-    grade: Annotated[Fraction | None, number(7, 1, 11)] = Field(
+    grade: Annotated[Fraction | None, number(7, 1, 11, scale=True)] = Field(
         None,
         description="Grade of ISO 1328-1 of both given gears, instead of pitch deviations; not "
         "beside [train]",

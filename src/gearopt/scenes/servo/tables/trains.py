@@ -74,7 +74,8 @@ class Train(Table):
         "default hub_diameter of [space], without it the diameter of [shaft]",
     )
     wheel_tip_diameters: Annotated[
-        tuple[Quantity, ...], several(quantity("length", "80 mm"), ["80 mm", "106 mm"])
+        tuple[Quantity, ...],
+        several(quantity("length", "80 mm"), ["80 mm", "106 mm"], in_order=True),
     ] = Field(description="Maximum tip diameters of the wheels of stage 1 and 2")
     output_torque: Annotated[Quantity | None, quantity("torque", "2.4 N m")] = Field(
         None,
