@@ -54,8 +54,9 @@ def test_a_point_is_evaluated_by_name_or_in_order():
     ("point", "words"),
     [
         ([5.0, 4.0, 20.0], "even is violated by 0.25"),
-        ([5.0, 5.0, 15.0], "set of values of height is violated by 5"),
-        ([60.0, 60.0, 20.0], "bound of width"),
+        ([5.0, 5.0, 15.0], "height = 15 is not one of its values"),
+        ([60.0, 60.0, 20.0], "width[1] = 60 is above its bound 50"),
+        ([50.0 + 1e-6, 50.0 + 1e-6, 20.0], "bound of width[1] is violated by 2.04e-08"),
     ],
 )
 def test_what_the_user_did_not_name_a_limit_counts_too(point, words):

@@ -9,11 +9,13 @@ from page_reader import Reader
 from rich.console import Console
 
 import gearopt
+from gearopt.report.answer import summary
 from gearopt.report.kinds.drive import processes
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page
 from gearopt.report.section import shown
 from gearopt.report.terminal import show
+from gearopt.report.words import sentence
 from gearopt.scenes.reading import load
 
 PROBLEMS = Path(__file__).parents[2] / "problems"
@@ -94,6 +96,34 @@ def test_a_process_without_a_design_is_a_sentence(three):
     assert heads[1:] == ["exact", "process one", "process two"]
     assert rows[0][3] == "1.25, 27/237" and rows[-1][3].value is None
     assert missing == ["The design by process two: K-factor of stage 2 exceeds its limit by 3 %."]
+
+
+@pytest.mark.parametrize(
+    ("message", "words"),
+    [
+        ("pinion_teeth[1] = 43 is above its bound 40.", "pinion teeth of stage 1: 43, at most 40"),
+        ("pinion_teeth[2] = 9 is below its bound 20.", "pinion teeth of stage 2: 9, at least 20"),
+        (
+            "module[2] = 3.3 is not one of its values.",
+            "module of stage 2: 3.3 mm, not one to choose from",
+        ),
+        ("ratio_low is violated by 0.000466.", "minimum ratio is missed by 0.0466 %"),
+        ("ratio_high is violated by 0.02.", "maximum ratio is exceeded by 2 %"),
+        (
+            "k_factor[3] is violated by 1e-05. pinion 3 has 52.96 mm, 105.13 mm are required",
+            "K-factor of stage 3 exceeds its limit by 0.001 %. pinion 3 has 52.96 mm, 105.13 mm "
+            "are required",
+        ),
+        ("stage 1 needs a module of 3.2 mm or more", "stage 1 needs a module of 3.2 mm or more"),
+    ],
+)
+def test_the_limit_that_a_process_violates_is_in_words(three, message, words):
+    one, two = three.parts[1:]
+    none = replace(two, status="failed", objective=two.objective | {"value": None}, message=message)
+    *_, missing = side_by_side(replace(three, parts=(three.parts[0], one, none)))
+    assert missing == [f"The design by process two: {words}."]
+    alone = replace(none, parts=(), scene="drive", design={})
+    assert sentence(words) in summary(alone, METRIC).words
 
 
 def test_another_objective_has_its_row():

@@ -27,8 +27,8 @@ from gearopt.optimise.form import Form, form
 from gearopt.optimise.problem import Problem, Rows
 from gearopt.optimise.quadratic import natural
 from gearopt.optimise.result import FEASIBLE, Outcome, Result
+from gearopt.optimise.scale import broken, is_known, measured, runaway, violation, way
 from gearopt.optimise.scale import gap as gap_of
-from gearopt.optimise.scale import is_known, measured, runaway, violation, way
 from gearopt.optimise.stationarity import (
     ACTIVE_WITHIN,
     STATIONARY,
@@ -96,7 +96,7 @@ def certify(problem: Problem, outcome: Outcome, gap: float, exact: bool = False)
     excess, worst = violation(problem, outcome.x, batch)
     certificate: dict[str, float | None] = {"feasibility": excess}
     if not excess <= FEASIBLE:
-        message = f"{worst} is violated by {excess:.3g}. {outcome.message}".strip()
+        message = f"{broken(problem, outcome.x, excess, worst)}. {outcome.message}".strip()
         return Verdict(unsolved, certificate=certificate, message=message)
     value = float(batch.F[0, 0])
     if not math.isfinite(value):

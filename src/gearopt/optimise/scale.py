@@ -168,6 +168,22 @@ def violation(problem: Problem | Conic, x: Array, batch: Batch) -> tuple[float, 
     return max(largest, *((used - 1.0, name) for name, used in problem.exact_limits(x).items()))
 
 
+def broken(problem: Problem | Conic, x: Array, excess: float, worst: str) -> str:
+    """Return the sentence, without a full stop, on the largest violation at a point.
+
+    excess, worst: as `violation` returns them. A variable has its value and what it may be.
+    """
+    lower, upper, _ = problem.bounds()
+    for (variable, name), value, low, high in zip(problem.columns, x, lower, upper, strict=True):
+        if worst == f"set of values of {name}":
+            kind = "a whole number" if variable.values is None else "one of its values"
+            return f"{name} = {value:.6g} is not {kind}"
+        for way, end, outside in (("above", high, value > high), ("below", low, value < low)):
+            if worst == f"bound of {name}" and outside and f"{value:.6g}" != f"{end:.6g}":
+                return f"{name} = {value:.6g} is {way} its bound {end:.6g}"
+    return f"{worst} is violated by {excess:.3g}"
+
+
 def _distance(variable: Any, value: float, unit: float) -> float:
     """Return the distance of a discrete variable from its nearest value, in a unit of it."""
     if variable.values is not None:

@@ -17,7 +17,7 @@ from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.maximised import as_asked
 from gearopt.optimise.problem import Problem, one_objective
 from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch
-from gearopt.optimise.scale import violation
+from gearopt.optimise.scale import broken, violation
 from gearopt.optimise.terms import Array
 
 PROVER = "spatial"
@@ -84,7 +84,7 @@ def evaluate(problem: Problem | Conic, point: Mapping[str, Any] | Array) -> Resu
         "evaluated",
         value if math.isfinite(value) else None,
         certificate={"feasibility": excess},
-        message="" if excess <= FEASIBLE else f"{worst} is violated by {excess:.3g}",
+        message="" if excess <= FEASIBLE else broken(problem, x, excess, worst),
     )
     libraries = _certifying(problem).LIBRARIES
     outcome = Outcome(x, evaluations=1)

@@ -31,6 +31,7 @@ from gearopt.report.words import (
     of_problem_file,
     sentence,
     series_of,
+    violation_words,
 )
 from gearopt.scenes.reading.toml_writing import toml_text
 
@@ -117,7 +118,8 @@ def _notes(result: Result) -> list[str]:
         return []
     lines = list(result.report.get("notes", []))
     if result.message and not leading(result):
-        lines.append(sentence(result.message))
+        said = violation_words(result.message) if of_problem_file(result) else result.message
+        lines.append(sentence(said))
     return lines
 
 

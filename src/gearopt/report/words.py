@@ -48,6 +48,11 @@ LIMITS = {  # the same of limits
     "worst_case": "worst-case error",
 }
 INVERSE = {"inverse acceleration": ("acceleration", "rad/s²")}  # name and unit of the inverse
+_NUMBER = r"-?[0-9.]+(?:e[+-]?[0-9]+)?"
+VIOLATION = re.compile(  # a sentence of `optimise.scale.broken`
+    rf"(?P<name>\S+) (?:is violated by (?P<excess>{_NUMBER})|= (?P<value>{_NUMBER}) is "
+    rf"(?:not one of its values|(?P<way>above|below) its bound (?P<end>{_NUMBER})))"
+)
 SECONDS = 60.0  # that a run may take
 TOP_ON_PAGE = 10  # trains that a page lists
 DEFAULTS = {"seconds": SECONDS, "seed": 0, "top": TOP_ON_PAGE}
@@ -60,6 +65,32 @@ def limit_words(name: str, staged: bool = True) -> str:
     if not index:
         return said
     return f"{said} of stage {index}" if staged else f"{said}[{index}]"
+
+
+def violation_words(message: str) -> str:
+    """Return a message on the largest violation of a problem file's limits in words.
+
+    "k_factor[2] is violated by 0.03" as "K-factor of stage 2 exceeds its limit by 3 %",
+    "pinion_teeth[1] = 43 is above its bound 40" as "pinion teeth of stage 1: 43, at most 40".
+    Another message as it is, and what follows the first sentence.
+    """
+    said, stop, rest = message.partition(". ")
+    end = "." if said.endswith(".") else ""
+    fits = VIOLATION.fullmatch(said.removesuffix("."))
+    if fits is None:
+        return message
+    name, value, excess = limit_words(fits["name"]), fits["value"], fits["excess"]
+    unit = " mm" if fits["name"].startswith("module") else ""
+    if excess is not None:
+        verbs = {"minimum": "is missed", "maximum": "is exceeded"}
+        verb = verbs.get(name.split(" ")[0], "exceeds its limit")
+        told = f"{name} {verb} by {100.0 * float(excess):.3g} %"
+    elif fits["way"] is None:
+        told = f"{name}: {value}{unit}, not one to choose from"
+    else:
+        most = "at most" if fits["way"] == "above" else "at least"
+        told = f"{name}: {value}{unit}, {most} {fits['end']}{unit}"
+    return f"{told}{end}{stop}{rest}"
 
 
 def of_problem_file(result: Result) -> bool:

@@ -91,6 +91,21 @@ def test_a_design_that_breaks_a_limit_stays_a_part_without_a_value():
     assert part.message == "k_factor[1] is violated by 0.253."
 
 
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"process_two.pinion_teeth": [43, 26]}, "pinion_teeth[1] = 43 is above its bound 40."),
+        (
+            {"process_two.modules": ["2.1 mm", "3.1 mm"]},
+            "module[1] = 2.1 is not one of its values.",
+        ),
+    ],
+)
+def test_a_process_beyond_the_choices_of_the_file_says_which(change, message):
+    result = gearopt.solve(PROBLEMS / "elevator_processes.toml", change)
+    assert result.parts[-1].message == message
+
+
 def test_a_free_width_leaves_the_processes_out_and_says_so():
     text = ELEVATOR.replace(
         "face_width_over_diameter = 0.6", "face_width_over_diameter = [0.3, 0.6]"

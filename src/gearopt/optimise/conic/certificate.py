@@ -23,7 +23,7 @@ from gearopt.optimise.conic.cone_bound import (
 )
 from gearopt.optimise.conic.problem import Conic
 from gearopt.optimise.result import FEASIBLE, Outcome
-from gearopt.optimise.scale import runaway, violation
+from gearopt.optimise.scale import broken, runaway, violation
 from gearopt.optimise.stationarity import ACTIVE_WITHIN
 from gearopt.optimise.terms import Array
 
@@ -50,7 +50,7 @@ def certify(problem: Conic, outcome: Outcome, gap: float) -> Verdict:
     certificate: dict[str, float | None] = {"feasibility": excess}
     value = float(batch.F[0, 0])
     if not (excess <= FEASIBLE and math.isfinite(value)):
-        message = f"{worst} is violated by {excess:.3g}. {outcome.message}".strip()
+        message = f"{broken(problem, outcome.x, excess, worst)}. {outcome.message}".strip()
         return Verdict(unsolved, certificate=certificate, message=message)
     if loose := runaway(problem, outcome.x, lower, upper, guess):
         return Verdict("failed", value, certificate=certificate, message=loose)

@@ -1,6 +1,5 @@
 """Drives of cylindrical gears, laid out or not: drawings, stages, processes, next best trains."""
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -43,6 +42,7 @@ from gearopt.report.words import (
     objective,
     parted,
     series_of,
+    violation_words,
 )
 
 DRAWN = ("layout", "bearings", "clearances", "motor")  # tables of a layout
@@ -59,7 +59,6 @@ STAGED = {  # tables of a layout: keys that the table of stages or the box shows
     "obstacles": ("from_mm", "to_mm"),
 }
 OF_STAGE = {"ratio": "ratio u", "centre_distance_mm": "a", "face_width_mm": "b"}
-EXCESS = re.compile(r"is violated by ([0-9.e+-]*[0-9])(.*)")  # a part of the limit
 OF_DRIVE = ("ratio", "ratio_error_percent", "gear_volume_mm3")
 
 
@@ -242,11 +241,8 @@ def _over(result: Result, bound: float) -> float | None:
 
 def _missing(part: Result) -> str:
     """Say why a process has no design that counts, and which limit is violated."""
-    first, _, rest = part.message.partition(" ")
-    if over := EXCESS.fullmatch(rest):
-        rest = f"exceeds its limit by {100.0 * float(over[1]):.3g} %{over[2]}"
     shown = "The design" if part.design else "No design"
-    return f"{shown} by {part.name}: {limit_words(first)} {rest}".rstrip(". ") + "."
+    return f"{shown} by {part.name}: {violation_words(part.message)}".rstrip(". ") + "."
 
 
 def counts(result: Result, measures: Measures) -> Section | None:
