@@ -72,15 +72,22 @@ ELSEWHERE = ("gearopt", "kind", "title", "source")  # keys of a file that stand 
 EARLIEST = 1e-4  # s; the logarithmic axis begins here at the earliest
 
 
-def decided(result: Result) -> str:
+def decided(result: Result, measures: Measures = METRIC) -> str:
     """The first sentence: what decides the answer, with its figures."""
     kind = pages_of_result(result)
-    return sentence(lead(result, kind.binding_limit(result)) + kind.figures(result))
+    words = lead(result, kind.binding_limit(result, measures)) + kind.figures(result)
+    return sentence(measures.words(words))
 
 
-def opening(result: Result) -> str:
+def opening(result: Result, measures: Measures = METRIC) -> str:
     """The status and what decides the answer, in one sentence."""
-    return headline(result, pages_of_result(result).binding_limit(result))
+    words = pages_of_result(result).binding_limit(result, measures)
+    return measures.words(headline(result, words))
+
+
+def warnings_of(result: Result, measures: Measures = METRIC) -> list[str]:
+    """The sentences to be read before the numbers."""
+    return list(map(measures.words, pages_of_result(result).warns(result, measures)))
 
 
 def summary(result: Result, measures: Measures) -> Section | None:
@@ -90,7 +97,7 @@ def summary(result: Result, measures: Measures) -> Section | None:
     """
     tiles = [*_tiles(result, measures), *pages_of_result(result).tiles(result, measures)]
     words = [*leading(result), *_notes(result)]
-    warned = list(map(measures.words, pages_of_result(result).warns(result)))
+    warned = warnings_of(result, measures)
     certain = [*bound_words(result, measures), *proof(result, measures), _effort(result)]
     ends = "\n".join([*certain[:-1], *_notes(result), certain[-1]])
     shown, said = tiles or words or warned, list(map(measures.words, words))

@@ -233,7 +233,7 @@ INCH = Measures(
 )
 SYSTEMS = {m.name: m for m in (METRIC, INCH)}
 _SUFFIXES = {  # a unit in a sentence: what a key calls it, and how many of that it is
-    **{"mm": ("mm", 1.0), "µm": ("mm", 1e-3), "m": ("mm", 1e3)},
+    **{"mm": ("mm", 1.0), "µm": ("um", 1e-3), "m": ("mm", 1e3)},
     **{"mm²": ("mm2", 1.0), "mm^2": ("mm2", 1.0), "cm²": ("mm2", 1e2), "m²": ("mm2", 1e6)},
     **{"mm³": ("mm3", 1.0), "mm^3": ("mm3", 1.0), "cm³": ("mm3", 1e3), "dm³": ("mm3", 1e6)},
     **{"m³": ("mm3", 1e9), "MPa": ("MPa", 1.0), "N m": ("Nm", 1.0), "kg": ("kg", 1.0)},

@@ -18,7 +18,7 @@ from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
 from gearopt.report import comparison as comparison_words
 from gearopt.report import front
-from gearopt.report.answer import WAYS, assumed, decided
+from gearopt.report.answer import WAYS, assumed, decided, warnings_of
 from gearopt.report.explained import STEEP, of_influences
 from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, SYSTEMS, Measures, gap_percent
@@ -56,7 +56,7 @@ Block = str | Text | Table
 def lines(result: Result) -> str:
     """Status, value, bound and gap, and what is essential of the design, in a few lines."""
     _, unit, value, bound, side = goal(result)
-    rows = [_head(result), decided(result), *pages_of_result(result).warns(result)]
+    rows = [_head(result), decided(result), *warnings_of(result)]
     if bound is not None and (value is None or (result.gap or 0.0) > EXACT):
         gap = "" if result.gap is None else f", gap {gap_percent(result.gap)}"
         rows.append(f"bound {METRIC.amount(bound, unit, WAYS[side], value)}{gap}")
@@ -185,7 +185,7 @@ def fragment(result: Result) -> str:
     result = Result.from_dict(result.to_dict())
     sections = (make(result, METRIC) for make in pages_of_result(result).terminal)
     blocks = [block for section in sections if section is not None for block in section.terminal]
-    first = [decided(result), *leading(result), *pages_of_result(result).warns(result)]
+    first = [decided(result), *leading(result), *warnings_of(result)]
     return _html(_head(result), [*first, *blocks, *assumed(result, 'report["assumptions"] lists')])
 
 

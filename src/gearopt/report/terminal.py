@@ -13,7 +13,7 @@ from gearopt.optimise.pareto.front import Front
 from gearopt.optimise.result import Result
 from gearopt.report import comparison as words
 from gearopt.report import front
-from gearopt.report.answer import assumed, decided
+from gearopt.report.answer import assumed, decided, warnings_of
 from gearopt.report.explained import of_influences
 from gearopt.report.kinds import pages_of_result
 from gearopt.report.measures import METRIC, Measures
@@ -105,9 +105,8 @@ def show(
     known = "" if value is None or "achieved" in result.report else amount(value, unit, measures)
     reached = f"{name} {known}, " if known else ""
     console.print(Text.assemble((title(result), "bold"), f": {reached}", (words, f"bold {colour}")))
-    console.print(Text(measures.words(decided(result))))
-    warned = map(measures.words, pages_of_result(result).warns(result))
-    yellow = [Text(line, style="yellow") for line in warned]
+    console.print(Text(decided(result, measures)))
+    yellow = [Text(line, style="yellow") for line in warnings_of(result, measures)]
     _print([*map(measures.words, leading(result)), *yellow], console)
     for make in pages_of_result(result).terminal:
         if (section := make(result, measures)) is not None:
@@ -127,7 +126,7 @@ def show_explanation(
     console.print(
         Text.assemble((title(result), "bold"), f": {name} {value}, ", (words, f"bold {colour}"))
     )
-    console.print(Text(decided(result)))
+    console.print(Text(decided(result, measures)))
     _print(of_influences(explanation.prices, result, measures).terminal, console)
 
 

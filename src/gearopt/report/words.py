@@ -178,6 +178,11 @@ def amount(value: Any, unit: str, measures: Measures = METRIC, beside: float | N
     return measures.amount(value, unit, beside=beside)
 
 
+def micrometres(value: float, measures: Measures, digits: int = 3) -> str:
+    """A length [mm] of micrometres for a sentence, with so many digits."""
+    return f"{rounded(measures.of(value, 'um'), digits)} {measures.unit('um')}"
+
+
 def module_words(module: float, measures: Measures) -> str:
     """A normal module [mm] as drawings name it: "m_n 2 mm", "P_nd 10 1/in"."""
     _, sign, unit = measures.module

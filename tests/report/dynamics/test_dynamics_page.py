@@ -13,9 +13,11 @@ from gearopt.formulations.dynamics.design import (
 )
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
+from gearopt.report.answer import decided
 from gearopt.report.kinds.dynamics import binding_limit, chosen, prices, speeds
 from gearopt.report.kinds.dynamics import plots as dynamics_plots
-from gearopt.report.measures import METRIC
+from gearopt.report.measures import INCH, METRIC
+from gearopt.report.pages.result import page
 
 REST = Equilibrium(
     normal_load_N=3000.0,
@@ -55,6 +57,21 @@ def told(found):
     section = speeds(Result("dynamics", "evaluated", "modes", {}, design=untyped(design)), METRIC)
     assert section is not None
     return section
+
+
+def test_a_sentence_has_the_digits_of_the_table_in_inches():
+    """19.1745 µm are 0.7549 mil; from 19.17 µm it would be 0.7547 mil."""
+    rest = replace(REST, deformation_mm=-0.0191745)
+    design = DynamicsDesign(
+        kinematics="exact", axes="line", mesh_frequency_Hz=0.0, equilibrium=rest
+    )
+    moved = Result("dynamics", "evaluated", "modes", {}, design=untyped(design), scene="dynamics")
+    assert decided(moved) == "The mean load deforms the mesh by 19.17 µm."
+    assert decided(moved, INCH) == "The mean load deforms the mesh by 0.7549 mil."
+    assert "-0.7549" in page(moved, "gearopt solve x.toml", INCH)
+    assert (
+        INCH.words("a note on 19.2 µm, and on 0.1 mm") == "a note on 0.756 mil, and on 0.00394 in"
+    )
 
 
 def test_speeds_are_told_where_largest_and_where_two():

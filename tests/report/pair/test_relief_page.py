@@ -13,11 +13,13 @@ from gearopt.physics.gears import GearPair
 from gearopt.physics.tooth.elastic import ElasticPair
 from gearopt.report.kinds.pair.contact import moving
 from gearopt.report.kinds.pair.relief import (
+    answers,
     diameter_at,
     flanks,
     grinding,
     harmonics,
     profile_plot,
+    relief_words,
     steps,
 )
 from gearopt.report.measures import INCH, METRIC
@@ -101,6 +103,15 @@ def test_in_inches_every_number_to_grind_is_in_inches(relieved):
     assert rows["starts at diameter [in]"] == pytest.approx(starts)
     last = steps(flanks(*relieved, PAIR)[0], INCH).on_page[1][-1]
     assert [cell.text for cell in last][::2] == ["3.1890", "0.4724"]  # in, mil
+
+
+def test_sentences_on_a_relief_have_the_inches_of_its_table(relieved):
+    _, relief = relieved
+    amounts = (flank.amount_mm / 25.4e-3 for flank in (relief.pinion, relief.wheel))
+    for said, amount in zip(answers(relief, INCH), amounts, strict=False):
+        assert f"Grind {amount:.4f} mil off the tips" in said
+    assert " µm" in relief_words(relief, METRIC)
+    assert " mil" in relief_words(relief, INCH) and " µm" not in relief_words(relief, INCH)
 
 
 def test_the_plot_of_a_flank_has_both_axes_alike(relieved):

@@ -12,6 +12,7 @@ from page_reader import Reader
 from gearopt.formulations.strain_wave.design import WaveDesign
 from gearopt.optimise.pareto.objectives import Objective
 from gearopt.optimise.typed import typed
+from gearopt.report.answer import decided
 from gearopt.report.drawing.sheet import Row
 from gearopt.report.front import heads
 from gearopt.report.kinds.strain_wave import (
@@ -26,7 +27,7 @@ from gearopt.report.kinds.strain_wave import (
 )
 from gearopt.report.kinds.strain_wave.cutter import drawing
 from gearopt.report.kinds.strain_wave.motion import drawn, running
-from gearopt.report.measures import METRIC
+from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.frame import templates
 from gearopt.report.pages.result import page, tables
 from gearopt.report.words import goal_words
@@ -40,6 +41,14 @@ def result(solved):
 @pytest.fixture(scope="module")
 def found(result):
     return typed(WaveDesign, result.design)
+
+
+def test_the_first_sentence_has_the_digits_of_the_tables_in_inches(result, found):
+    pressure = INCH.amount(found.shared_pressure_MPa, "MPa")
+    assert decided(result, INCH).endswith(f"a contact pressure of up to {pressure}.")
+    assert pressure.removesuffix(" psi") in page(result, "gearopt solve x.toml", INCH)
+    overlapping = replace(result, design=result.design | {"least_clearance_mm": -0.0123456})
+    assert "teeth overlap by 0.486 mil, at" in warns(overlapping, INCH)[0]
 
 
 @pytest.fixture(scope="module")

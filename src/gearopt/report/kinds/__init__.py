@@ -21,6 +21,10 @@ def _nothing(result: Result, measures: Measures) -> Sequence[Any]:
     return ()
 
 
+def _no_words(result: Result, measures: Measures) -> str:
+    return ""
+
+
 def _silent(result: Result) -> str:
     return ""
 
@@ -43,9 +47,9 @@ class Pages:
     tiles: Callable[[Result, Measures], Sequence[Tile]] = _nothing
     sentences_on_parts: Callable[[Result, Measures], Sequence[str]] = _nothing
     elsewhere: Callable[[Result], Collection[str]] = _silent
-    binding_limit: Callable[[Result], str] = _silent
+    binding_limit: Callable[[Result, Measures], str] = _no_words
     figures: Callable[[Result], str] = _silent
-    warns: Callable[[Result], Sequence[str]] = _silent
+    warns: Callable[[Result, Measures], Sequence[str]] = _nothing
     drawn: bool = True
     whole: str = "design"
     pages_of_given: "Pages | None" = None

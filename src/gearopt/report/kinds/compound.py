@@ -10,7 +10,7 @@ from gearopt.report.design_tables import ratio_tile
 from gearopt.report.drawing.number_line import Guide, Span, number_line
 from gearopt.report.drawing.train_views import DrawnStage, in_one_line, view_along_shafts
 from gearopt.report.kinds import generic
-from gearopt.report.measures import Measures
+from gearopt.report.measures import METRIC, Measures
 from gearopt.report.section import Section, Tile
 from gearopt.scenes.compound import CompoundDesign
 
@@ -29,7 +29,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     return [replace(tile, remark="") if "achieved" in result.report else tile]
 
 
-def binding_limit(result: Result) -> str:
+def binding_limit(result: Result, measures: Measures = METRIC) -> str:
     """Obstacle between the train and its ratio."""
     if not result.design:
         return ""

@@ -28,7 +28,7 @@ from gearopt.report.drawing.solid import (
 from gearopt.report.drawing.still import Rod, Texts, sizes_of, still, view
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
-from gearopt.report.measures import Measures
+from gearopt.report.measures import METRIC, Measures
 from gearopt.report.plots import Figure
 from gearopt.report.section import Cell, Section, Table, shown
 from gearopt.report.words import heading, number, parted
@@ -125,7 +125,7 @@ def _name(sheet: Sheet, it: CylinderDesign, colour: str) -> None:
     sheet.label(it.name, inside or outside, "name", colour)
 
 
-def binding_limit(result: Result) -> str:
+def binding_limit(result: Result, measures: Measures = METRIC) -> str:
     """Fill of the container, and number of cylinders at its walls, in words."""
     if not result.design:
         return ""

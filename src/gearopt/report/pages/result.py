@@ -34,7 +34,7 @@ def page_of(shown: Sequence[Section], result: Result, command: str, measures: Me
     return render(
         "result.html",
         title(result),
-        measures.words(opening(result)),
+        opening(result, measures),
         {"gearopt": result.gearopt, **result.versions},
         command,
         plots=any(section.figures for section in shown),

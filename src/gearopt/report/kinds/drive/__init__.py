@@ -27,7 +27,7 @@ from gearopt.report.kinds.drive import (
     rating_words,
 )
 from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
-from gearopt.report.measures import Measures, gap_percent, rounded
+from gearopt.report.measures import METRIC, Measures, gap_percent, rounded
 from gearopt.report.section import Cell, Section, Table, Tile, cell
 from gearopt.report.words import (
     MODULE,
@@ -104,7 +104,7 @@ def limits_shown_as_gaps(result: Result) -> set[str]:
     return {" to ".join(gap["between"]).replace(" ", "_") for gap in gaps}
 
 
-def binding_limit(result: Result) -> str:
+def binding_limit(result: Result, measures: Measures = METRIC) -> str:
     """Gears and gaps that decide the box of a layout; nothing without one, where limits say it."""
     if result.value is None or (layout := layout_of(result)) is None:
         return ""

@@ -9,7 +9,7 @@ from gearopt.optimise.result import FEASIBLE, Result
 from gearopt.optimise.typed import typed
 from gearopt.physics.agma import life as life_curves
 from gearopt.physics.mesh_loss import FRICTION_ERROR
-from gearopt.report.measures import Measures, rounded
+from gearopt.report.measures import METRIC, Measures, rounded
 from gearopt.report.section import Tile
 from gearopt.report.words import counted, series_of
 
@@ -58,7 +58,7 @@ def rating_of(result: Result) -> DriveRating | None:
     return rating
 
 
-def binding_limit(result: Result) -> str:
+def binding_limit(result: Result, measures: Measures = METRIC) -> str:
     """Whether given gears are safe, and what governs."""
     rating = rating_of(result)
     return _verdict(rating) if rating else ""
@@ -70,7 +70,7 @@ def figures(result: Result) -> str:
     return _figures(rating) if rating else ""
 
 
-def warns(result: Result) -> list[str]:
+def warns(result: Result, measures: Measures = METRIC) -> list[str]:
     """Warnings: an optimum that is not safe, gears that do not fit, flaws."""
     if (rating := rating_of(result)) is None:
         return list(result.report.get("misfits", ()))

@@ -17,7 +17,7 @@ from gearopt.report.headline import of_limits
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.dynamics import plots
 from gearopt.report.kinds.generic import OPENING
-from gearopt.report.measures import Measures, rounded
+from gearopt.report.measures import METRIC, Measures
 from gearopt.report.section import Section, Table, Tile, cell, names_and_values, percent
 from gearopt.report.words import amount, number
 
@@ -75,7 +75,7 @@ def _measure(result: Result) -> str:
     return MEASURES.get(result.objective.get("name", ""), "vibration")
 
 
-def binding_limit(result: Result) -> str:
+def binding_limit(result: Result, measures: Measures = METRIC) -> str:
     """Deformation of the mesh; of a pair that was chosen its speeds and limits, in words."""
     if (design := design_of(result)) is None:
         return ""
@@ -85,14 +85,14 @@ def binding_limit(result: Result) -> str:
         return f"the objective is the largest value at {judged}; {of_limits(result)}"
     rest = abs(design.equilibrium.deformation_mm)
     moved = design.response
-    at_rest = f"the mean load deforms the mesh by {1e3 * rest:.4g} µm"
+    at_rest = f"the mean load deforms the mesh by {amount(rest, 'um', measures)}"
     if moved is None:
         return at_rest
-    varies = f"{rounded(1e3 * moved.peak_to_peak_mm, 4)} µm"
+    varies = amount(moved.peak_to_peak_mm, "um", measures)
     return f"{at_rest}; in motion the deformation varies by {varies}"
 
 
-def warns(result: Result) -> Sequence[str]:
+def warns(result: Result, measures: Measures = METRIC) -> Sequence[str]:
     """Warnings: unstable motions, teeth that part, an accuracy not reached."""
     design = design_of(result)
     return design.warnings if design else ()

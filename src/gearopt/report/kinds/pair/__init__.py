@@ -76,17 +76,17 @@ def _contact_tiles(
     ]
 
 
-def binding_limit(result: Result) -> str:
+def binding_limit(result: Result, measures: Measures = METRIC) -> str:
     """Largest load of one tooth and evenness of the pair, in words."""
     if relief := relief_of(result):
-        return pair_relief.relief_words(relief)
+        return pair_relief.relief_words(relief, measures)
     if (pair_contact := contact_of(result)) is None or result.value is not None:
         return ""
     load = of_duty(pair_contact)
-    force = amount(load.largest_tooth_force_N, "N", METRIC)
-    error = amount(load.peak_to_peak_mm, "um", METRIC)
+    force = amount(load.largest_tooth_force_N, "N", measures)
+    error = amount(load.peak_to_peak_mm, "um", measures)
     words = f"one tooth carries up to {force}; the transmission error varies by {error}"
-    rated = rating_words.binding_limit(result)
+    rated = rating_words.binding_limit(result, measures)
     return f"{rated}; {words}" if rated else words
 
 
@@ -95,10 +95,10 @@ def sentences_on_parts(result: Result, measures: Measures) -> list[str]:
     return [] if relief_of(result) else drive.sentences_on_parts(result, measures)
 
 
-def warns(result: Result) -> Sequence[str]:
+def warns(result: Result, measures: Measures = METRIC) -> Sequence[str]:
     """Unsafe gears by the rating, and cases that the models of contact do not cover."""
     pair_contact = contact_of(result)
-    warnings = rating_words.warns(result)
+    warnings = rating_words.warns(result, measures)
     return [
         *warnings,
         *(s for s in (pair_contact.validity if pair_contact else ()) if s not in warnings),
@@ -112,7 +112,7 @@ def contact(result: Result, measures: Measures) -> Section | None:
     relieved = bool(result.design.get("relief"))
     tables = [points(pair_contact, measures, relieved)]
     tables += [table(pair_contact, measures) for table in TABLES]
-    sentences = answers(pair_contact, pair_of(result), _frequency(result), relieved)
+    sentences = answers(pair_contact, pair_of(result), _frequency(result), relieved, measures)
     words = list(map(measures.words, sentences))
     shown = [table for table in tables if not table.folded]
     return Section("Contact", words=words, tables=tables, terminal=("\n".join(words), *shown))
@@ -137,7 +137,7 @@ def relief(result: Result, measures: Measures) -> Section | None:
         pair_relief.profile(pair_contact, modified, measures),
         travel(pair_contact, measures, modified.at, "transmission error with relief"),
     ]
-    words = list(map(measures.words, pair_relief.answers(modified)))
+    words = list(map(measures.words, pair_relief.answers(modified, measures)))
     shown = [table for table in tables if not table.folded]
     blocks: tuple[str | Table, ...] = ("\n".join(words), *shown)
     if (pair := pair_of(result)) is None:

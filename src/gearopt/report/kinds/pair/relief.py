@@ -20,10 +20,10 @@ from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.report.drawing.sheet import SERIES_OF_MEMBERS, series
 from gearopt.report.kinds.pair.contact import Columns, columns
 from gearopt.report.kinds.pair.words import of_duty
-from gearopt.report.measures import METRIC, Measures
+from gearopt.report.measures import Measures
 from gearopt.report.plots import Figure, axis, layout, lines
 from gearopt.report.section import Cell, Section, Table, Tile, cell, percent, side_by_side
-from gearopt.report.words import amount, share
+from gearopt.report.words import amount, micrometres, share
 
 # peak-to-peak on more positions over that on the computed ones: no difference
 SAME_PEAK_TO_PEAK = 1.001
@@ -65,11 +65,14 @@ def tiles(relief: PairRelief, measures: Measures) -> list[Tile]:
     ]
 
 
-def relief_words(relief: PairRelief) -> str:
+def relief_words(relief: PairRelief, measures: Measures) -> str:
     """Return a clause: tip relief of both gears [um], and how far it changes the criterion."""
-    first, second = (amount(f.amount_mm, "um", METRIC) for f in (relief.pinion, relief.wheel))
+    first, second = (amount(f.amount_mm, "um", measures) for f in (relief.pinion, relief.wheel))
     none, best = relief.rows[0], relief.rows[-1]
-    values = f"{_value(relief, none.value)} to {_value(relief, best.value)}{_strays(relief)}"
+    values = (
+        f"{_value(relief, none.value, measures)} to {_value(relief, best.value, measures)}"
+        f"{_strays(relief, measures)}"
+    )
     at = f"{100.0 * relief.loads[0]:g} % of the torque"
     if len(relief.loads) > 1:
         at = f"the worst of {len(relief.loads)} loads"
@@ -79,24 +82,24 @@ def relief_words(relief: PairRelief) -> str:
     )
 
 
-def _strays(relief: PairRelief) -> str:
+def _strays(relief: PairRelief, measures: Measures) -> str:
     """The largest peak-to-peak on more positions of the gears, where it is larger."""
-    if relief.minimise != "peak_to_peak" or not _finer(relief):
+    if relief.minimise != "peak_to_peak" or not _finer(relief, measures):
         return ""
-    return f" ({amount(max(relief.finer_mm), 'um', METRIC)} at ten times as many positions)"
+    return f" ({amount(max(relief.finer_mm), 'um', measures)} at ten times as many positions)"
 
 
-def _value(relief: PairRelief, value: float) -> str:
+def _value(relief: PairRelief, value: float, measures: Measures) -> str:
     if relief.minimise in ("load_jump", "peak_load"):
         return f"{share(value)} %"
-    return amount(value, "um", METRIC)
+    return amount(value, "um", measures)
 
 
-def answers(relief: PairRelief) -> list[str]:
+def answers(relief: PairRelief, measures: Measures) -> list[str]:
     """Relief to grind, and its effect at other loads than those it is made for."""
     words = [
-        _flank("pinion", relief.pinion),
-        _flank("wheel", relief.wheel),
+        _flank("pinion", relief.pinion, measures),
+        _flank("wheel", relief.wheel, measures),
         "Only the sum of what is taken off both flanks where they touch counts: instead of the "
         "tips of one gear the roots of the other may be relieved, at the same points of contact. "
         "Crowning and end relief vary along the face width, which a plane model cannot show.",
@@ -106,11 +109,11 @@ def answers(relief: PairRelief) -> list[str]:
             f"Below {100.0 * relief.break_even:.3g} % of the torque the gears run more evenly "
             "without relief: a light load does not close the gaps that relief opens."
         )
-    words += _finer(relief)
-    return [*words, _as_made(relief.made)] if relief.made else words
+    words += _finer(relief, measures)
+    return [*words, _as_made(relief.made, measures)] if relief.made else words
 
 
-def _finer(relief: PairRelief) -> list[str]:
+def _finer(relief: PairRelief, measures: Measures) -> list[str]:
     """Say how far the transmission error strays between the positions that were computed."""
     known, finer = max(relief.rows[-1].peak_to_peak_mm), max(relief.finer_mm, default=0.0)
     if finer <= SAME_PEAK_TO_PEAK * known:
@@ -118,34 +121,37 @@ def _finer(relief: PairRelief) -> list[str]:
     return [
         "Peak-to-peak values, and what is proven of them, hold at the computed positions of the "
         "gears. At ten times as many the transmission error varies by up to "
-        f"{1e3 * finer:.4g} µm at the loads this relief is made for, not {1e3 * known:.4g} µm."
+        f"{micrometres(finer, measures, 4)} at the loads this relief is made for, not "
+        f"{micrometres(known, measures, 4)}."
     ]
 
 
-def _as_made(made: MadeRelief) -> str:
+def _as_made(made: MadeRelief, measures: Measures) -> str:
     """Say how the relief does as it is ground."""
-    off = f"amounts off by up to {1e3 * made.amount_tolerance_mm:.3g} µm"
+    off = f"amounts off by up to {micrometres(made.amount_tolerance_mm, measures)}"
     if made.length_tolerance_mm:
         off += f" and lengths by up to {made.length_tolerance_mm:.3g} mm"
-    pinion, wheel = (1e3 * amount for amount in made.worst_amounts_mm)
+    pinion, wheel = (amount(each, "um", measures) for each in made.worst_amounts_mm)
+    worst, bound, median, most = (
+        micrometres(each, measures, 4)
+        for each in (made.worst_mm, made.bound_mm, made.median_mm, made.most_mm)
+    )
     return (
-        f"As manufactured, with {off}, the transmission error varies by up to "
-        f"{1e3 * made.worst_mm:.4g} µm, peak to peak, and by no more than "
-        f"{1e3 * made.bound_mm:.4g} µm (proven of the computed positions); the worst has "
-        f"{pinion:.2f} µm off the pinion and {wheel:.2f} µm off the wheel. Of "
-        f"{made.drawn:,} gear pairs drawn at random half stay below "
-        f"{1e3 * made.median_mm:.4g} µm and 95 % below {1e3 * made.most_mm:.4g} µm."
+        f"As manufactured, with {off}, the transmission error varies by up to {worst}, peak to "
+        f"peak, and by no more than {bound} (proven of the computed positions); the worst has "
+        f"{pinion} off the pinion and {wheel} off the wheel. Of {made.drawn:,} gear pairs drawn "
+        f"at random half stay below {median} and 95 % below {most}."
     )
 
 
-def _flank(name: str, flank: FlankRelief) -> str:
+def _flank(name: str, flank: FlankRelief, measures: Measures) -> str:
     known = {None: "by the profile in the table", 1.0: "linearly", 2.0: "as a parabola"}
     shape = known.get(flank.exponent) or f"with the exponent {flank.exponent:g}"
     if not flank.amount_mm:
         return f"The {name} keeps its involute."
     return (
-        f"Grind {1e3 * flank.amount_mm:.2f} µm off the tips of the {name}, normal to the flank, "
-        f"growing {shape} from {flank.start_diameter_mm:.3f} mm diameter (roll angle "
+        f"Grind {amount(flank.amount_mm, 'um', measures)} off the tips of the {name}, normal to "
+        f"the flank, growing {shape} from {flank.start_diameter_mm:.3f} mm diameter (roll angle "
         f"{flank.start_roll_angle_deg:.2f}°) to {flank.tip_diameter_mm:.3f} mm "
         f"({flank.tip_roll_angle_deg:.2f}°)."
     )

@@ -6,8 +6,8 @@ from gearopt.formulations.pair.design import ContactLoad, PairContact
 from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336.accuracy import deviations
 from gearopt.physics.mesh_cycle import NARROW
-from gearopt.report.measures import rounded
-from gearopt.report.words import share
+from gearopt.report.measures import METRIC, Measures, rounded
+from gearopt.report.words import micrometres, share
 
 # per cent by which the peak-to-peak transmission error exceeds that with the coupling by finite
 # elements, on the pairs of problems/shifted_pair.toml and problems/reference_pair.toml
@@ -26,6 +26,7 @@ def answers(
     pair: GearPair | None = None,
     frequency: float | None = None,
     relieved: bool = False,
+    measures: Measures = METRIC,
 ) -> list[str]:
     """Passing of the load, evenness of the motion, a change to try, and how sure that all is.
 
@@ -33,11 +34,11 @@ def answers(
     which is told elsewhere; the contact told here is without it.
     """
     load = of_duty(contact)
-    even = _even(contact, load, frequency)
+    even = _even(contact, load, frequency, measures)
     if pair is not None and (alike := graded(pair, load.peak_to_peak_mm)):
         even = f"{even} {alike}"
     first = ["The results here are those of the gears without relief."] if relieved else []
-    change = [] if relieved or not load.normal_force_N else [_changed(contact)]
+    change = [] if relieved or not load.normal_force_N else [_changed(contact, measures)]
     return [*first, _shared(contact, load), even, *change, _stiff(contact, load), _sure(contact)]
 
 
@@ -61,11 +62,11 @@ def graded(pair: GearPair, error: float) -> str:
     )
 
 
-def _changed(contact: PairContact) -> str:
+def _changed(contact: PairContact, measures: Measures) -> str:
     """Relief by rule, and its effect."""
-    first, second = (rounded(1e3 * amount, 3) for amount in contact.rule_relief_mm)
+    first, second = (micrometres(each, measures) for each in contact.rule_relief_mm)
     return (
-        f"Tip relief of about {first} µm on the pinion and {second} µm on the wheel would "
+        f"Tip relief of about {first} on the pinion and {second} on the wheel would "
         "let every pair of teeth enter and leave contact without load at the torque of [duty]. A "
         "table [relief] finds the best amounts for several loads."
     )
@@ -91,10 +92,12 @@ def _shared(contact: PairContact, load: ContactLoad) -> str:
     )
 
 
-def _even(contact: PairContact, load: ContactLoad, frequency: float | None) -> str:
+def _even(
+    contact: PairContact, load: ContactLoad, frequency: float | None, measures: Measures
+) -> str:
     """Say how much the transmission error varies."""
     each = [
-        f"{rounded(1e3 * it.peak_to_peak_mm, 3)} µm at {100.0 * it.load:g} % of the torque"
+        f"{micrometres(it.peak_to_peak_mm, measures)} at {100.0 * it.load:g} % of the torque"
         for it in contact.loads
         if it.load
     ]
@@ -103,8 +106,8 @@ def _even(contact: PairContact, load: ContactLoad, frequency: float | None) -> s
     of = f" of {rounded(frequency, 3)} Hz" if frequency else ""
     return (
         f"The transmission error varies by {', '.join(each)}, peak to peak. Its first harmonic, at "
-        f"the mesh frequency{of}, has an amplitude of {rounded(1e3 * load.harmonics_mm[0], 3)} µm "
-        f"at {100.0 * load.load:g} %."
+        f"the mesh frequency{of}, has an amplitude of "
+        f"{micrometres(load.harmonics_mm[0], measures)} at {100.0 * load.load:g} %."
     )
 
 

@@ -12,7 +12,7 @@ from gearopt.report.kinds.servo import housing as axis_housing
 from gearopt.report.kinds.servo import motion as axis_motion
 from gearopt.report.kinds.servo import trains as axis_trains
 from gearopt.report.kinds.servo.words import aged, arc_minutes, degrees, design_of, report_of
-from gearopt.report.measures import Measures, error_of
+from gearopt.report.measures import METRIC, Measures, error_of
 from gearopt.report.section import Section, Tile
 from gearopt.report.words import REACHED, amount, goal, number
 
@@ -20,7 +20,7 @@ OBJECTIVE_TIE = 1e-6  # relative: objectives that are equal
 FULL_TORQUE = "motor_torque"  # used up wherever an acceleration is largest
 
 
-def binding_limit(result: Result) -> str:
+def binding_limit(result: Result, measures: Measures = METRIC) -> str:
     """Reason beside the limits: a box, or the inertias of motor and load."""
     design = design_of(result)
     if _costs(result):

@@ -23,7 +23,7 @@ from gearopt.report.kinds.strain_wave.motion import running
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.plots import Figure, axis, band, layout, lines, upright
 from gearopt.report.section import ROWS_ON_TERMINAL, Section, Tile
-from gearopt.report.words import amount, number, series_of
+from gearopt.report.words import amount, micrometres, number, series_of
 
 RUNS = "strain wave gearing"  # the animation that plots follow
 ANGLE = "angle of the tooth on the wave [°]"
@@ -73,36 +73,39 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
     ]
 
 
-def binding_limit(result: Result) -> str:
+def binding_limit(result: Result, measures: Measures = METRIC) -> str:
     """Loads of a given gearing; else the teeth and the limits that decide."""
     if (design := design_of(result)) is None:
         return ""
     if result.value is None and design.least_clearance_mm < CUTTING:
         return ""
     if result.value is None:
-        pressure = amount(design.shared_pressure_MPa, "MPa", METRIC)
+        pressure = amount(design.shared_pressure_MPa, "MPa", measures)
         carry = "1 tooth per lobe carries the load"
         if design.carrying_teeth > 1:
             carry = f"{design.carrying_teeth} teeth per lobe carry the load"
         return f"{carry}, with a contact pressure of up to {pressure}"
+    module, outer = (
+        amount(size, "mm", measures) for size in (design.module_mm, design.outer_diameter_mm)
+    )
     sizes = (
-        f"{design.flexspline_teeth} and {design.circular_spline_teeth} teeth of module "
-        f"{amount(design.module_mm, 'mm', METRIC)} carry {amount(design.torque_Nm, 'Nm', METRIC)} "
-        f"in {amount(design.outer_diameter_mm, 'mm', METRIC)}"
+        f"{design.flexspline_teeth} and {design.circular_spline_teeth} teeth of module {module} "
+        f"carry {amount(design.torque_Nm, 'Nm', measures)} in {outer}"
     )
     ends = [end.name.replace("_", " ") for end in design.range_ends]
     rest = f"; at ends of their ranges: {series_of(ends)}" if ends else ""
     return f"{sizes}; {of_limits(result)}{rest}"
 
 
-def warns(result: Result) -> Sequence[str]:
+def warns(result: Result, measures: Measures = METRIC) -> Sequence[str]:
     """Warnings: teeth that interfere, a cutter with a cusp."""
     if (design := design_of(result)) is None:
         return ()
     warnings = []
     if design.least_clearance_mm < CUTTING:
+        overlap = micrometres(-design.least_clearance_mm, measures)
         warnings.append(
-            f"Interference: teeth overlap by {-1e3 * design.least_clearance_mm:.3g} µm, at "
+            f"Interference: teeth overlap by {overlap}, at "
             f"{design.least_clearance_at_deg:.3g}° from the major axis: loads and contact "
             "pressures are not valid."
         )
