@@ -24,7 +24,8 @@ class Shown:
 
     label: what it is called. table: the one that lists it, where its class has several. unit: as
     `report.measures` names it; None: that at the end of the field's name. form: a format of the
-    number, as ".3f"; "": the digits that are read; "share": per cent of a whole, with a bar.
+    number, as ".3f"; "": the digits that are read; "share": per cent of a whole, with a bar; "4": a
+    length with so many decimals at most.
     """
 
     label: str

@@ -69,6 +69,7 @@ COUNTED = {  # further keys of a proof in words
     "pruning_margin": "relative margin of what is excluded",
 }
 ELSEWHERE = ("gearopt", "kind", "title", "source")  # keys of a file that stand at other places
+UNUSED = "unused"  # a limit that is farther away than the size to which it is relative
 EARLIEST = 1e-4  # s; the logarithmic axis begins here at the earliest
 
 
@@ -144,11 +145,16 @@ def limits(result: Result, measures: Measures) -> Section | None:
         *(f"stage {k}" for k in range(1, stages + 1)),
         pages_of_result(result).whole,
     ]
-    cells = [[words, *map(percent, values)] for words, values in rows]
+    cells = [[words, *map(_utilisation, values)] for words, values in rows]
     elsewhere = [limit_words(name) for name in pages_of_result(result).elsewhere(result)]
     table = Table("limits", heads, cells, csv_only=elsewhere)
     sized = next((part.limits for part in result.parts if part.name == "sizing"), {})
     words: tuple[str, ...] = ("At 100 % a limit is active.",)
+    if any(used < 0.0 for used in result.limits.values()):
+        words += (
+            f"{UNUSED.capitalize()}: the limit is farther away than the size to which its "
+            "utilisation is relative.",
+        )
     if {*RATIO_ENDS} <= {*result.limits}:
         words += (
             "The utilisations of minimum and maximum ratio are relative to the ratio itself, not "
@@ -160,6 +166,11 @@ def limits(result: Result, measures: Measures) -> Section | None:
             "steps.",
         )
     return Section("Limits", words=words, tables=(table,), half=True, terminal=(table,))
+
+
+def _utilisation(used: float | None) -> Cell:
+    """A utilisation in per cent; below zero it is unused."""
+    return Cell(100.0 * used, UNUSED, 0.0) if used is not None and used < 0.0 else percent(used)
 
 
 def proof(result: Result, measures: Measures = METRIC) -> list[str]:

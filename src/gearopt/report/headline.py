@@ -41,8 +41,13 @@ def lead(result: Result, text: str = "") -> str:
         return f"{_stopped(result)}: no design was found, which does not prove that there is none"
     if text or not result.given:
         return text or of_limits(result)
-    over = _over(result.limits, of_problem_file(result))
-    return f"the given design exceeds {_on(over)}" if over else of_limits(result)
+    return exceeded(result) or of_limits(result)
+
+
+def exceeded(result: Result) -> str:
+    """The limits that a given design exceeds, in words; "" where it meets all."""
+    over = _over(result.limits, of_problem_file(result)) if result.given else []
+    return f"the given design exceeds {_on(over)}" if over else ""
 
 
 def _stopped(result: Result) -> str:
@@ -182,6 +187,8 @@ def _nearest(limits: Mapping[str, float], alone: bool, staged: bool) -> list[str
         return []
     name, used = max(limits.items(), key=lambda item: item[1])
     limit = limit_words(name, staged)
+    if alone and used < 0.0:
+        return ["no limit is active"]
     if alone:
         return [f"no limit is active; the closest is {limit}, at {_whole(used)} %"]
     return [f"{limit} is at {_whole(used)} % of its limit"] if used >= NAMED_FROM else []

@@ -142,6 +142,13 @@ class Measures:
         """A length [mm] with so many decimals, for drawings."""
         return f"{self.of(value, 'mm'):.{digits + self.digits}f}".replace("-0.00", "0.00")
 
+    def short_length(self, value: float, digits: int) -> str:
+        """A length [mm] with so many decimals; one that has fewer is written with these."""
+        size, places = self.of(value, "mm"), digits + self.digits
+        text = f"{size:,.{places}f}"
+        exact = math.isclose(float(text.replace(",", "")), size, rel_tol=EXACT)
+        return text.rstrip("0").rstrip(".") if exact else text
+
     def number(self, value: float, suffix: str = "", way: int = 0) -> str:
         """A value of the result in the unit that is shown, for reading.
 

@@ -219,6 +219,8 @@ class ListedField:
             return percent(value)
         if not self.form or value is None:
             return cell(value, self.unit, measures)
+        if self.form.isdigit():
+            return Cell(measures.of(value, "mm"), measures.short_length(value, int(self.form)))
         if self.unit == "mm":
             return Cell(measures.of(value, "mm"), measures.length(value, int(self.form[1:-1])))
         size = measures.of(value, self.unit)

@@ -12,9 +12,10 @@ from page_reader import Reader
 from gearopt.formulations.strain_wave.design import WaveDesign
 from gearopt.optimise.pareto.objectives import Objective
 from gearopt.optimise.typed import typed
-from gearopt.report.answer import decided
+from gearopt.report.answer import decided, limits
 from gearopt.report.drawing.sheet import Row
 from gearopt.report.front import heads
+from gearopt.report.headline import of_limits
 from gearopt.report.kinds.strain_wave import (
     cutter,
     loaded_teeth,
@@ -27,6 +28,7 @@ from gearopt.report.kinds.strain_wave import (
 )
 from gearopt.report.kinds.strain_wave.cutter import drawing
 from gearopt.report.kinds.strain_wave.motion import drawn, running
+from gearopt.report.kinds.strain_wave.tables import sizes
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages.frame import templates
 from gearopt.report.pages.result import page, tables
@@ -49,6 +51,41 @@ def test_the_first_sentence_has_the_digits_of_the_tables_in_inches(result, found
     assert pressure.removesuffix(" psi") in page(result, "gearopt solve x.toml", INCH)
     overlapping = replace(result, design=result.design | {"least_clearance_mm": -0.0123456})
     assert "teeth overlap by 0.486 mil, at" in warns(overlapping, INCH)[0]
+
+
+@pytest.mark.parametrize(
+    ("over", "said"),
+    [
+        ({"ratcheting": 1.183}, "The given design exceeds the limit on ratcheting by 18 %; "),
+        (
+            {"pairs": 1.053, "ratcheting": 1.038, "rim_fatigue": 0.5},
+            "The given design exceeds the limits on pairs by 5.3 % and ratcheting by 3.8 %; ",
+        ),
+        ({"rim_fatigue": 1.024}, "The given design exceeds the limit on rim fatigue by 2.4 %; "),
+        ({}, ""),
+    ],
+)
+def test_the_first_sentence_names_the_limits_that_are_exceeded(result, over, said):
+    loads = decided(result)
+    words = decided(replace(result, limits=result.limits | over))
+    assert words.lower() == f"{said}{loads}".lower() and words.startswith(said)
+
+
+def test_a_limit_that_is_far_away_is_unused(result):
+    far = replace(result, limits=result.limits | {"flexspline_space": -0.456})
+    section = limits(far, METRIC)
+    (row,) = [r for r in section.tables[0].rows if r[0] == "flexspline space"]
+    assert (row[-1].text, row[-1].value) == ("unused", pytest.approx(-45.6))
+    assert section.words[-1].startswith("Unused: the limit is farther away than ")
+    assert not any("Unused" in words for words in limits(result, METRIC).words)
+    assert of_limits(replace(result, limits={"minor_axis": -0.2})) == "no limit is active"
+
+
+def test_sizes_have_no_zeros_that_say_nothing(found):
+    wide = replace(found, face_width_mm=10_000.0, rim_mm=0.8, module_mm=0.512345)
+    rows = {row[0].text: row[1].text for row in sizes(wide, METRIC).on_page[1]}
+    assert rows["face width [mm]"] == "10,000" and rows["rim [mm]"] == "0.8"
+    assert rows["module [mm]"] == "0.5123"
 
 
 @pytest.fixture(scope="module")

@@ -123,26 +123,26 @@ class WaveDesign:
     ratio: Annotated[float, Shown("ratio, circular spline at rest", "teeth")]
     flexspline_teeth: Annotated[int, Shown("teeth of the flexspline", "teeth")]
     circular_spline_teeth: Annotated[int, Shown("teeth of the circular spline", "teeth")]
-    module_mm: Annotated[float, Shown("module", "teeth", "mm", ".4f")]
+    module_mm: Annotated[float, Shown("module", "teeth", "mm", "4")]
     pressure_angle_deg: Annotated[float, Shown("pressure angle", "teeth")]
     profile_shift: Annotated[float, Shown("profile shift, modules", "teeth")]
     addendum: Annotated[float, Shown("addendum, modules", "teeth")]
     deflection: Annotated[float, Shown("deflection, modules", "teeth")]
-    rim_mm: Annotated[float, Shown("rim", "teeth", form=".4f")]
+    rim_mm: Annotated[float, Shown("rim", "teeth", form="4")]
     thickness_mm: Annotated[
-        float | None, Shown("thickness at half the height", "teeth", form=".4f")
+        float | None, Shown("thickness at half the height", "teeth", form="4")
     ] = None
     arc_radii_mm: Columns = ()
     tangent_mm: float | None = None
     clearance: float
     elastic_rim: bool = False
     wave_generator: Annotated[str, Shown("wave generator", "gearing")]
-    face_width_mm: Annotated[float, Shown("face width", "gearing", form=".4f")]
-    outer_diameter_mm: Annotated[float, Shown("outer diameter", "gearing", form=".4f")]
-    tip_diameter_mm: Annotated[float, Shown("circular spline: tip diameter", "gearing", form=".4f")]
-    active_diameter_mm: Annotated[float, Shown("last active diameter", "gearing", form=".4f")]
-    root_diameter_mm: Annotated[float, Shown("root diameter", "gearing", form=".4f")]
-    base_diameter_mm: Annotated[float | None, Shown("base diameter", "gearing", form=".4f")] = None
+    face_width_mm: Annotated[float, Shown("face width", "gearing", form="4")]
+    outer_diameter_mm: Annotated[float, Shown("outer diameter", "gearing", form="4")]
+    tip_diameter_mm: Annotated[float, Shown("circular spline: tip diameter", "gearing", form="4")]
+    active_diameter_mm: Annotated[float, Shown("last active diameter", "gearing", form="4")]
+    root_diameter_mm: Annotated[float, Shown("root diameter", "gearing", form="4")]
+    base_diameter_mm: Annotated[float | None, Shown("base diameter", "gearing", form="4")] = None
     wrap_angle_deg: float
     torque_Nm: float
     neutral_diameter_mm: float

@@ -14,7 +14,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.answer import asked, assumptions, limits, summary
 from gearopt.report.drawing.sheet import series
-from gearopt.report.headline import of_limits
+from gearopt.report.headline import exceeded, of_limits
 from gearopt.report.kinds import Pages
 from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, OPENING, REQUEST
 from gearopt.report.kinds.strain_wave import tables
@@ -74,7 +74,7 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
 
 
 def binding_limit(result: Result, measures: Measures = METRIC) -> str:
-    """Loads of a given gearing; else the teeth and the limits that decide."""
+    """Limits that a given gearing exceeds, and its loads; else the teeth and what decides."""
     if (design := design_of(result)) is None:
         return ""
     if result.value is None and design.least_clearance_mm < CUTTING:
@@ -84,7 +84,8 @@ def binding_limit(result: Result, measures: Measures = METRIC) -> str:
         carry = "1 tooth per lobe carries the load"
         if design.carrying_teeth > 1:
             carry = f"{design.carrying_teeth} teeth per lobe carry the load"
-        return f"{carry}, with a contact pressure of up to {pressure}"
+        loads = f"{carry}, with a contact pressure of up to {pressure}"
+        return "; ".join(filter(None, (exceeded(result), loads)))
     module, outer = (
         amount(size, "mm", measures) for size in (design.module_mm, design.outer_diameter_mm)
     )

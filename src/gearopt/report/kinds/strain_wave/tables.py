@@ -49,7 +49,7 @@ def sizes(design: WaveDesign, measures: Measures) -> Table:
 def _lengths(values: Mapping[str, float | None], measures: Measures) -> list[list[Any]]:
     """Rows of lengths [mm] with the digits that they are made by."""
     return [
-        [f"{name} [{measures.unit('mm')}]", Cell(measures.of(v, "mm"), measures.length(v, 4))]
+        [f"{name} [{measures.unit('mm')}]", Cell(measures.of(v, "mm"), measures.short_length(v, 4))]
         for name, v in values.items()
         if v is not None
     ]
