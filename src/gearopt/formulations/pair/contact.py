@@ -62,6 +62,12 @@ class PairMesh:
         mesh = Mesh.of(cycle(elastic.path, steps), compliance, coupling, forces)
         return cls(elastic, level, compliance, force, tuple(loads), mesh)
 
+    def least_compliance(self, level: str) -> float:
+        """Return the least compliance [mm/N] of a pair of teeth along its path by any model."""
+        path = self.elastic.path
+        positions = np.linspace(path.start, path.end, NODES)
+        return float(LEVELS[level].compliance(self.elastic, positions, self.force).min())
+
     def of_loads(self, loads: Sequence[float]) -> Mesh:
         """Return the mesh at other loads, relative to that of the duty."""
         return replace(self.mesh, loads=tuple(load * self.force for load in loads))

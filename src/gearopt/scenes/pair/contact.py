@@ -3,8 +3,6 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-import numpy as np
-
 from gearopt.errors import SolveError
 from gearopt.formulations.pair.contact import DEAR, PairMesh, contact
 from gearopt.formulations.pair.design import PairContact
@@ -29,7 +27,6 @@ Materials = tuple[str, str]
 UNBORED = 3.0  # root circle over the circle at which a gear without a bore is held
 LEAST_SECONDS = 0.5  # of a budget in which a dear level is begun: it takes up to twice as long
 BORNE = 4000.0  # MPa; from it on hardened rollers keep dents (static rating of ISO 76)
-USUAL_POSITIONS = 97  # along the path of contact, at which the usual model is tried
 NEAR_WHOLE = 0.02  # of a contact ratio to a whole number, where TE is discontinuous
 
 
@@ -113,10 +110,7 @@ def _usual_suits(made: PairMesh) -> bool:
     """Return whether teeth by the usual model, if it is another, give way beyond the coupling."""
     if made.level == USUAL or refused(made.elastic, USUAL):
         return False
-    path = made.elastic.path
-    positions = np.linspace(path.start, path.end, USUAL_POSITIONS)
-    compliances = LEVELS[USUAL].compliance(made.elastic, positions, made.force)
-    return float(compliances.min()) > made.mesh.coupling
+    return made.least_compliance(USUAL) > made.mesh.coupling
 
 
 def level_of(scene: Scene, elastic: ElasticPair) -> str:
