@@ -9,7 +9,7 @@ import numpy as np
 from gearopt.formulations.drive.teeth.columns import Index
 from gearopt.frozen import dataclass
 
-BLOCK = 1000  # shapes of teeth that are made at once
+BLOCK = 4000  # shapes of teeth that are made at once
 CALL = 700  # shapes that take as long as what is the same for any number of them
 
 
