@@ -16,6 +16,7 @@ from gearopt.formulations.drive.shares import objective_share
 from gearopt.formulations.drive.teeth import choices
 from gearopt.formulations.drive.teeth.columns import spans
 from gearopt.formulations.drive.teeth.later_stages import bound, first_costs, useful_cells
+from gearopt.formulations.drive.teeth.progress import SearchEnded
 from gearopt.formulations.drive.teeth.search import search, within
 from gearopt.formulations.drive.teeth.stage import Cells
 from gearopt.formulations.drive.teeth.tables import stage_tables
@@ -241,6 +242,15 @@ def test_what_like_drives_have_in_common_is_computed_once(standards, monkeypatch
     monkeypatch.setattr(standard, "prepared", lambda *a: pytest.fail("computed again"))
     assert np.array_equal(shared.cost(torque, pair), expected) and np.isfinite(expected).any()
     assert shelf == [first]
+
+
+def test_a_search_that_another_clock_ended_is_not_exhausted(monkeypatch):
+    def ended(*given):
+        raise SearchEnded
+
+    monkeypatch.setattr(searching, "reach", ended)
+    progress = search(rated_drive(F(9), [TIED] * 2), 1, Budget())
+    assert progress.clock.stopped and not progress.enough
 
 
 def test_a_first_train_is_not_looked_for_forever(monkeypatch):

@@ -184,6 +184,7 @@ def _searched(train: Train, most: Array, clock: Clock) -> Search:
                 _bounds(state)
                 _all(state)
     except SearchEnded:
+        state.clock.stopped = True
         _inside(state)  # the ends of the front are found without its limits
     return state
 

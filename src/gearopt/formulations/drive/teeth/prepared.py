@@ -1,5 +1,6 @@
 """What standards take of the teeth of a table, made in blocks when rows first ask for them."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import field, fields
 from typing import Any
@@ -10,7 +11,12 @@ from gearopt.formulations.drive.teeth.columns import Index
 from gearopt.frozen import dataclass
 
 BLOCK = 4000  # shapes of teeth that are made at once
+Tick = Callable[[], float]
 CALL = 700  # shapes that take as long as what is the same for any number of them
+
+
+def _go_on() -> float:
+    return math.inf
 
 
 @dataclass
@@ -29,17 +35,20 @@ class Prepared:
     apart: tuple[Index, Any] | None = None
     spent: int = 0
 
-    def take(self, shapes: Index) -> Any:
-        """Data of the shapes numbered `shapes`, in their order, made when first asked for."""
+    def take(self, shapes: Index, tick: Tick = _go_on) -> Any:
+        """Data of the shapes numbered `shapes`, in their order, made when first asked for.
+
+        tick: called before a block is made; what it raises ends the work.
+        """
         if self.every is None:
             if (few := self._few(shapes)) is not None:
                 return few
             wanted, row = np.unique(shapes // BLOCK, return_inverse=True)
             last = -(-self.count // BLOCK)
             if len(wanted) <= last // 2:
-                few = self._joined(wanted if len(wanted) else np.zeros(1, np.int64))
+                few = self._joined(wanted if len(wanted) else np.zeros(1, np.int64), tick)
                 return few.take(row * BLOCK + shapes % BLOCK)
-            self.every = self._joined(np.arange(last))
+            self.every = self._joined(np.arange(last), tick)
         return self.every.take(shapes)
 
     def part(self, place: Index) -> "Part":
@@ -52,25 +61,29 @@ class Prepared:
         Altogether no more is spent on them than on these blocks.
         """
         blocks = np.unique(shapes // BLOCK).tolist()
-        lacking = sum(number not in self.blocks for number in blocks)
+        lacking = sum(self._size(number) for number in blocks if number not in self.blocks)
         if not lacking:
             return None
         different, row = np.unique(shapes, return_inverse=True)
         if self.apart is None or not np.array_equal(self.apart[0], different):
             spent = self.spent + len(different) + CALL
-            if spent >= lacking * BLOCK // 2:
+            if 2 * spent >= lacking:
                 return None
             self.apart, self.spent = (different, self.make(different)), spent
         return self.apart[1].take(row)
 
-    def _joined(self, numbers: Index) -> Any:
+    def _joined(self, numbers: Index, tick: Tick) -> Any:
         for number in numbers.tolist():
             if number not in self.blocks:
+                tick()
                 first = number * BLOCK
-                shapes = np.arange(first, min(first + BLOCK, self.count))
-                self.blocks[number] = self.make(shapes)
-        sizes = [min(BLOCK, self.count - number * BLOCK) for number in numbers.tolist()]
+                self.blocks[number] = self.make(np.arange(first, first + self._size(number)))
+        sizes = [self._size(number) for number in numbers.tolist()]
         return joined([self.blocks[number] for number in numbers.tolist()], sizes)
+
+    def _size(self, number: int) -> int:
+        """Number of shapes of a block."""
+        return min(BLOCK, self.count - number * BLOCK)
 
 
 @dataclass(frozen=True)
@@ -80,9 +93,9 @@ class Part:
     whole: Prepared
     place: Index
 
-    def take(self, shapes: Index) -> Any:
-        """Data of the shapes numbered `shapes`, in their order, made when first asked for."""
-        return self.whole.take(self.place[shapes])
+    def take(self, shapes: Index, tick: Tick = _go_on) -> Any:
+        """Data of the shapes numbered `shapes`, as of `Prepared.take`."""
+        return self.whole.take(self.place[shapes], tick)
 
     def part(self, place: Index) -> "Part":
         """Data of the shapes at places: shape k of it is shape `place[k]` of this."""

@@ -116,7 +116,6 @@ class RatedTable(Table):
 
     def _made_ready(self, standard: Standard, shapes: Index) -> Any:
         """Data that a standard takes of some shapes: pairs, by module those allowed."""
-        self.tick()
         module, pair = np.ones(len(shapes)), shapes
         if self._by_module:
             module, pair = self.modules[self._shapes[0][shapes]], self._shapes[1][shapes]
@@ -479,8 +478,8 @@ class RatedTable(Table):
     def _prepared_data(self, prepared: Any, module: Index, pair: Index) -> Any:
         """What a standard has prepared of pairs with modules (indices)."""
         if self._by_module:
-            return prepared.take(self._shape(module, pair))
-        return prepared.take(pair).scaled(self.modules[module])
+            return prepared.take(self._shape(module, pair), self.tick)
+        return prepared.take(pair, self.tick).scaled(self.modules[module])
 
     @cached_property
     def _virtual_option(self) -> Option | None:

@@ -116,8 +116,8 @@ def search(
         progress.whole = whole
         if not (closed and far <= cut):
             _look(train, max(cut, far), progress, math.inf, shelf)
-    except SearchEnded:
-        pass  # `stopped` or `enough` holds the reason
+    except SearchEnded:  # whoever's clock ended it, it was not exhausted
+        progress.clock.stopped |= not progress.enough
     return progress
 
 
