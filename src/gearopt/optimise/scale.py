@@ -178,9 +178,9 @@ def broken(problem: Problem | Conic, x: Array, excess: float, worst: str) -> str
         if worst == f"set of values of {name}":
             kind = "a whole number" if variable.values is None else "one of its values"
             return f"{name} = {value:.6g} is not {kind}"
-        for way, end, outside in (("above", high, value > high), ("below", low, value < low)):
+        for side, end, outside in (("above", high, value > high), ("below", low, value < low)):
             if worst == f"bound of {name}" and outside and f"{value:.6g}" != f"{end:.6g}":
-                return f"{name} = {value:.6g} is {way} its bound {end:.6g}"
+                return f"{name} = {value:.6g} is {side} its bound {end:.6g}"
     return f"{worst} is violated by {excess:.3g}"
 
 
