@@ -44,6 +44,7 @@ NAMES = {  # of numbers of designs and of objectives, where their keys are not w
 }
 LIMITS = {  # the same of limits
     "multiplier": "Floquet multiplier",
+    "pairs": "conjugate pairs",
     "rss": "root-sum-square error",
     "worst_case": "worst-case error",
 }
