@@ -59,7 +59,8 @@ def test_the_first_sentence_has_the_digits_of_the_tables_in_inches(result, found
         ({"ratcheting": 1.183}, "The given design exceeds the limit on ratcheting by 18 %; "),
         (
             {"pairs": 1.053, "ratcheting": 1.038, "rim_fatigue": 0.5},
-            "The given design exceeds the limits on conjugate pairs by 5.3 % and ratcheting by 3.8 %; ",
+            "The given design exceeds the limits on conjugate pairs by 5.3 % and ratcheting by "
+            "3.8 %; ",
         ),
         ({"rim_fatigue": 1.024}, "The given design exceeds the limit on rim fatigue by 2.4 %; "),
         ({}, ""),
