@@ -25,6 +25,7 @@ from gearopt.optimise.pareto.measures import picks
 from gearopt.report.front import _apart, decided, picked, table, value_cells
 from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages import frame
+from gearopt.report.pages import front as front_page
 from gearopt.report.pages.front import page, tables
 from gearopt.report.words import goal_words
 
@@ -396,3 +397,22 @@ def test_steps_without_a_design_are_said_to_be_impossible_where_that_is_proven()
     told = " ".join(decided(replace(cases.drive(), impossible=steps)))
     assert "2 steps were skipped: no design was found within the limits" in told
     assert "(1 proven impossible)" in told
+
+
+def test_a_page_shows_some_of_very_many_designs_with_the_picks(monkeypatch):
+    front = cases.drive()
+    points = tuple(
+        replace(front.points[0], values=(1.0 + k, *(9.0 - 0.1 * k for _ in front.names[1:])))
+        for k in range(60)
+    )
+    picked = tuple(replace(pick, place=17) for pick in front.picks)
+    many = replace(front, points=points, picks=picked)
+    whole = page(many)
+    monkeypatch.setattr(front_page, "MOST_ON_PAGE", 20)
+    html = page(many)
+    _, told = plots(html)
+    assert len(told["points"]) == 21 and [18.0] == [v[0] for v in told["values"] if v[0] == 18.0]
+    assert "This page shows 21 of the designs" in html and "shows" not in whole
+    assert "front.json" in links(whole) and "front.json" not in links(html)
+    assert ">60<" in html  # the number of all designs
+    assert len(tables(many)["front.csv"].splitlines()) == 61

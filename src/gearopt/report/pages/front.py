@@ -3,6 +3,7 @@
 import json
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from gearopt.formulations.drive.design import drive_design
@@ -22,12 +23,14 @@ from gearopt.report.section import ROWS_ON_TERMINAL, Section, Tile
 from gearopt.report.words import effort, sentence
 
 MIN_LINES = 2  # designs at least, that are drawn as lines
+MOST_ON_PAGE = 1000  # designs: a browser takes seconds for 15,000
 
 
 def page(front: Front, html: str = "page.html", measures: Measures = METRIC) -> str:
     """One self-contained HTML page; html: where the command at its foot writes it."""
     data = front.to_dict()
-    front = Front.from_dict(data)  # plain numbers, as a file of it has them
+    every = Front.from_dict(data)  # plain numbers, as a file of it has them
+    front = _spread(every)
     each = [front_designs.numbers(p.design, measures) for p in front.points]
     sections = _lost(front, measures), _spent(front), assumptions(front, measures)
     return render(
@@ -38,12 +41,21 @@ def page(front: Front, html: str = "page.html", measures: Measures = METRIC) -> 
         front_words.command(front, measures, html),
         plots=bool(front.points),
         count=len(front.points),
-        first=[_summary(front, measures), *_drawn(front, measures)],
+        first=[_summary(front, every, measures), *_drawn(front, measures)],
         last=[section for section in sections if section],
-        json=_link(data),
+        json=_link(data) if front is every else "",
         source=_source(front),
         **_picking(front, each, measures),
     )
+
+
+def _spread(front: Front) -> Front:
+    """The front itself, or of one of very many designs MOST_ON_PAGE, evenly, and the picks."""
+    places = front_words.chosen(front, MOST_ON_PAGE)
+    if len(places) == len(front.points):
+        return front
+    picked = tuple(replace(pick, place=places.index(pick.place)) for pick in front.picks)
+    return replace(front, points=tuple(front.points[k] for k in places), picks=picked)
 
 
 def tables(front: Front, measures: Measures = METRIC) -> dict[str, str]:
@@ -90,14 +102,22 @@ def _pair(front: Front) -> list[int]:
     return list(dict.fromkeys([*picks, *ends]))[:2]
 
 
-def _summary(front: Front, measures: Measures) -> Section:
-    """Key figures, what was found and how sure it is, and the picks with their prices."""
-    count = len(front.points)
+def _summary(front: Front, every: Front, measures: Measures) -> Section:
+    """Key figures, what was found and how sure it is, and the picks with their prices.
+
+    every: the front with all its designs, of which the page shows those of the first.
+    """
+    count = len(every.points)
     tiles = [Tile("designs", f"{count:,}", front_words.verdict(front)[0])] if count else []
     for k, objective in enumerate(front.objectives if count else ()):
-        low, high = front_words.ends(front, k, measures)
+        low, high = front_words.ends(every, k, measures)
         tiles.append(Tile(words(front, objective.name), low, f"to {high}" if high != low else ""))
-    lines = front_words.decided(front, measures)[bool(count) :]  # the tiles say the first
+    lines = front_words.decided(every, measures)[bool(count) :]  # the tiles say the first
+    if front is not every:
+        lines.append(
+            f"This page shows {len(front.points):,} of the designs, evenly spread and numbered "
+            "anew; --csv and --json hold all."
+        )
     if front.status == "infeasible" and front.file:
         lines.append(f"Which limits are in conflict: gearopt explain {front.file}.")
     limited = [
