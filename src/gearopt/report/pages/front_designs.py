@@ -13,6 +13,7 @@ from gearopt.report.section import Cell, Table, cell
 from gearopt.report.words import MODULE, heading, is_module, limit_words, parted
 
 MAIN = (MODULE, "pinion_teeth", "face_width_mm", "wheel_teeth")  # of a stage, the first ones first
+LONGEST_LIST = 40  # of numbers of a design; longer ones are curves, which front.json has
 AXES, FEW = 9, 6  # of parallel coordinates beside the objectives, about; of names of any length
 ALIKE = 2**14  # numbers that are kept as they are written
 NUMBER_TIE = 1e-9  # relative; numbers that differ by less are alike
@@ -46,7 +47,7 @@ def _add(cells: Numbers, group: Mapping[str, Any], measures: Measures, first: st
             cells[name] = _cell(value, key, parted(key)[1], measures)
         elif isinstance(value, dict):
             _add(cells, value, measures, f"{first}{heading(key, measures)}: ")
-        elif isinstance(value, list | tuple) and key != "stages":
+        elif isinstance(value, list | tuple) and key != "stages" and len(value) <= LONGEST_LIST:
             name = f"{first}{heading(key, measures)}"
             for k, item in enumerate(value, 1):
                 if isinstance(item, dict):

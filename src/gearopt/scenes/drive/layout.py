@@ -266,7 +266,8 @@ def with_sized_first(scene: Scene, ask: Ask, box: Result | None) -> Result:
         impossible = gears.status == "infeasible"
         return gears if impossible else _with_apart_as_part(box, replace(gears, name=APART))
     known = lay_out(scene, replace(ask, budget=clock.left), gears)
-    if box.value is None and box.status != "infeasible":
+    late = clock.over and known.value is None  # then there is no time, and nothing to begin with
+    if box.value is None and box.status != "infeasible" and not late:
         return at_once(drive_to_box(scene), replace(ask, budget=clock.left), known)
     return _with_apart_as_part(box, replace(known, name=APART))
 

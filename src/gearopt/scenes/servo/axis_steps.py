@@ -39,7 +39,7 @@ from gearopt.formulations.servo.split.servo_train import (
 )
 from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock, in_part, of_others
-from gearopt.optimise.result import Result
+from gearopt.optimise.result import Budget, Result
 from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import typed, untyped
@@ -52,6 +52,7 @@ STAGES = 6  # that a ratio is split into, at most, for comparison
 COUNTS = {"combinations": "trains_looked_at", "feasible_trains": "feasible_trains"}
 LISTED = 400  # trains that are shown
 PATIENCE = 10.0  # seconds, for the Pareto front
+BOUNDS = 0.3  # s, at least, for real-valued bounds beside a train
 NO_DESIGN, NO_REPORT = ServoDesign(), ServoReport()
 
 
@@ -234,7 +235,7 @@ def with_other_trains(scene: Scene, ask: Ask, known: Result | None) -> Result:
     clock, train = Clock(ask.budget, of_others(ask.watch)), known.value is not None
     report = ServoReport()
     if clock.budget.seconds != 0.0:
-        report |= beside(scene, gears_of(scene, known))
+        report |= beside(scene, gears_of(scene, known), clock)
     if train:
         report |= ServoReport(trains=neighbours(scene, clock))
     return added(known, None, report=report)
@@ -281,15 +282,18 @@ def _neighbour(scene: Scene, gears: Pairs, first: float, best_of: str) -> Listed
     )
 
 
-def beside(scene: Scene, chosen: Pairs | None) -> ServoReport:
+def beside(scene: Scene, chosen: Pairs | None, clock: Clock) -> ServoReport:
     """Real-valued bounds, and the figures of other numbers of stages.
 
-    These are of the ratio that is asked for, or of the chosen train where a range is.
+    These are of the ratio that is asked for, or of the chosen train where a range is. Bounds are
+    sought for what is left of the clock, or BOUNDS seconds.
     """
     assert scene.train is not None
     choice, figures = scene.choice(), {}
+    left = clock.left.seconds
+    within = Clock(Budget(None if left is None else max(left, BOUNDS)))
     for goal in dict.fromkeys(("inertia", *choice.weighed)):
-        bound = solve(split.relaxation(choice.train, goal)).bound
+        bound = solve(split.relaxation(choice.train, goal), budget=within.left).bound
         if bound is None:
             continue
         figures[f"real_valued_bound_{GOALS[goal].key}"] = GOALS[goal].value(bound)
