@@ -27,6 +27,7 @@ from gearopt.report.measures import INCH, METRIC
 from gearopt.report.pages import frame
 from gearopt.report.pages import front as front_page
 from gearopt.report.pages.front import page, tables
+from gearopt.report.pages.front_designs import numbers
 from gearopt.report.words import goal_words
 
 ROOM = Path(frame.__file__).parent
@@ -416,3 +417,8 @@ def test_a_page_shows_some_of_very_many_designs_with_the_picks(monkeypatch):
     assert "front.json" in links(whole) and "front.json" not in links(html)
     assert ">60<" in html  # the number of all designs
     assert len(tables(many)["front.csv"].splitlines()) == 61
+
+
+def test_numbers_of_a_curve_are_none_of_a_design():
+    design = {"loads": [0.5, 1.0], "removed_mm": [0.001] * 241, "gears": [{"teeth": 20}] * 60}
+    assert list(numbers(design, METRIC)) == ["loads 1", "loads 2"]

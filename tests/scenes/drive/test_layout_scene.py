@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,8 @@ from edits import scene_of
 import gearopt
 from gearopt.errors import SceneError, SolveError
 from gearopt.optimise.explaining.explanation import Remedies
+from gearopt.scenes.drive import layout
+from gearopt.scenes.reading.ask import Ask
 from gearopt.scenes.reading.load import read
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
@@ -441,3 +444,16 @@ def test_impossible_at_once_is_explained(small):
     assert found.result.status == "infeasible"
     assert "No gears within the limits can be arranged" in found.result.message
     assert found.remedies[0].what == "largest_height"
+
+
+def test_a_box_is_not_sought_again_without_time_or_a_start(monkeypatch, solved):
+    gears = solved("elevator")
+    none = replace(gears, status="limit", design={}, objective={})
+    monkeypatch.setattr(layout, "sized_gears", lambda scene, ask: gears)
+    monkeypatch.setattr(layout, "lay_out", lambda scene, ask, sized: none)
+    sought = []
+    monkeypatch.setattr(layout, "at_once", lambda *given: sought.append(given) or gears)
+    own, late = scene(BOX), Ask(budget=gearopt.Budget(seconds=0.0))
+    assert layout.with_sized_first(own, late, none).value is None and not sought
+    layout.with_sized_first(own, Ask(), none)
+    assert len(sought) == 1

@@ -318,6 +318,21 @@ def test_without_time_other_trains_and_their_bounds_are_left_out_and_said_to_be(
     assert {UNLISTED, UNCOUNTED} <= set(notes(scene, (late,), design, report))
 
 
+def test_bounds_beside_a_train_keep_to_the_time_that_is_left(monkeypatch):
+    real, asked = axis_steps.solve, []
+
+    def solve(problem, budget):
+        asked.append(budget.seconds)
+        return real(problem, budget=budget)
+
+    monkeypatch.setattr(axis_steps, "solve", solve)
+    scene = gearopt.load(PROBLEMS / "servo_gimbal_light.toml")
+    axis_steps.beside(scene, None, Clock(Budget(seconds=0.0)))
+    assert asked and max(asked) <= axis_steps.BOUNDS
+    axis_steps.beside(scene, None, Clock())
+    assert asked[-1] is None
+
+
 def test_given_gears_stand_beside_the_best(solved):
     report = solved("servo_gimbal").report
     assert report["given_inertia_kg_m2"] == pytest.approx(7.578e-7, abs=6e-11)
