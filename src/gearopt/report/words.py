@@ -85,13 +85,13 @@ def violation_words(message: str) -> str:
     if excess is not None:
         verbs = {"minimum": "is missed", "maximum": "is exceeded"}
         verb = verbs.get(name.split(" ")[0], "exceeds its limit")
-        told = f"{name} {verb} by {100.0 * float(excess):.3g} %"
+        words = f"{name} {verb} by {100.0 * float(excess):.3g} %"
     elif fits["way"] is None:
-        told = f"{name}: {value}{unit}, not one to choose from"
+        words = f"{name}: {value}{unit}, not one to choose from"
     else:
         most = "at most" if fits["way"] == "above" else "at least"
-        told = f"{name}: {value}{unit}, {most} {fits['end']}{unit}"
-    return f"{told}{end}{stop}{rest}"
+        words = f"{name}: {value}{unit}, {most} {fits['end']}{unit}"
+    return f"{words}{end}{stop}{rest}"
 
 
 def of_problem_file(result: Result) -> bool:

@@ -250,6 +250,13 @@ def number(
             return float(max(minimum, min(found, maximum)))
         return -value if _is_number(value) and inside(-found) else None
 
+    return Reads(read, example, _number_schema(minimum, maximum, percent, fraction))
+
+
+def _number_schema(
+    minimum: int | Fraction, maximum: int | Fraction, percent: bool, fraction: bool
+) -> dict[str, Any]:
+    """Return the JSON schema of what `number` reads."""
     schema: dict[str, Any] = {"type": "number", "maximum": float(maximum)}
     schema["minimum"] = minimum if isinstance(minimum, int) else float(minimum)
     if percent:
@@ -258,7 +265,7 @@ def number(
     if fraction:
         text = {"type": "string", "pattern": r"^\s*[0-9]+\s*/\s*[0-9]+\s*$"}
         schema = {"anyOf": [schema, text]}
-    return Reads(read, example, schema)
+    return schema
 
 
 INCREASER = (
