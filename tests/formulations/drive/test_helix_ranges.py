@@ -48,7 +48,7 @@ def test_a_range_of_one_angle_is_that_angle():
     """What cells need and the sizes of boxes are those of a stage that has the angle."""
     rng, angle = np.random.default_rng(3), 0.3
     cells = random_cells(rng, 50, Toothing(angle, (RACK, RACK)), 0.02)
-    same = replace(cells, helix=np.full((2, 50), angle))
+    same = replace(cells, ranges={"helix_angle": np.full((2, 50), angle)})
     for standard in (STANDARDS["iso"], STANDARDS["agma"]):
         for one, other in zip(
             standard.needed(cells, SAFETY), standard.needed(same, SAFETY), strict=True

@@ -203,7 +203,7 @@ def test_made_smaller_boxes_hold_all_designs_that_are_accepted(helix):
         boxes, least = bounded(shafts, 0, _halves(shafts, 0, halves))
     low, high = np.log([[20, 0.3, 30, 3.96], [40, 0.75, 400, 4.04]])
     z, slim, d, u = np.exp(rng.uniform(low, high, (4000, 4))).T
-    cut = stage.toothing if helix is None else stage.inclined(rng.uniform(*helix, len(z)))
+    cut = stage.toothing if helix is None else stage.cut(helix_angle=rng.uniform(*helix, len(z)))
     pair = cut.of_diameter(d * np.cos(cut.helix_angle) / z, z, d, u, slim * d)
     load = np.full(len(z), train.torque), np.full(len(z), train.speed)
     used = stage.options[0].utilisations(pair, *load, train.safety)
@@ -219,6 +219,7 @@ def test_made_smaller_boxes_hold_all_designs_that_are_accepted(helix):
     }
     at |= {"wheel": u * d, "ratio": u}
     at["helix"] = np.ones_like(z) if helix is None else np.tan(cut.helix_angle)
+    at |= dict.fromkeys(("pinion_shift", "shift_sum"), np.ones_like(z))
     point = np.log([at[name][good] for name in ROWS])[:, None, :]
     low, high = (boxes.sizes[:, end, :, None] for end in (0, 1))
     inside = (low <= point[:, 0, None] + 1e-12) & (point[:, 0, None] <= high + 1e-12)

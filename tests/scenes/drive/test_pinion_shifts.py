@@ -51,7 +51,7 @@ def test_a_list_of_shifts_is_the_best_of_each_alone_at_several_distances(tmp_pat
         ("[shift]\npinion_shift = 5\n", "shift.pinion_shift.*between -1 and 2"),
         (
             "[shift]\npinion_shift = { from = 0, to = 0.6 }\n",
-            "is not a range with from, to and step",
+            "(or give a step)",
         ),
         ("[shift]\npinion_shift = { from = 0.6, to = 0, step = 0.1 }\n", "ends in the wrong order"),
         (SHIFTS.replace("0.2 }", "0.001 }"), "has 401 values, above 200"),

@@ -32,7 +32,7 @@ from gearopt.formulations.strength.standard import MODES, Standard
 from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.problem import Problem
-from gearopt.optimise.result import FEASIBLE, Budget, Outcome, Result, Watch
+from gearopt.optimise.result import FEASIBLE, Budget, Event, Outcome, Result, Watch
 from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
 from gearopt.physics.gears import SERIES_I, GearPair
@@ -182,7 +182,7 @@ def _outcome(train: Train, exact: Problem, clock: Clock) -> Outcome:
         of_search = _of_pairs(train, exact, of_cells)
         bound, designs = max(bound, of_cells.bound), [*designs, *([of_search] if of_search else [])]
     more = train.hollow or not bounded and not (designs and _rating_jumps(train))
-    more = more and not train.inclining  # of one helix angle alone are there smooth forms
+    more = more and not train.ranging  # there are smooth forms of one toothing alone
     if more and bound < math.inf and clock.tell():
         designs += _by_ipopt(train, exact, [*(d.x for d in designs), *starts(exact)], clock)
     return _claim(min(designs, key=lambda d: d.value, default=None), bound, clock)
@@ -218,8 +218,8 @@ def _searched(train: Train, best: _Design | None, clock: Clock, seconds: float |
     known = () if best is None else sizing_text.pairs(train, best.x)
     most = math.inf if best is None else best.value
     close = max(GAP_SHARE * clock.budget.gap, GAP_TOLERANCE)
-    inner = Clock(replace(clock.left, seconds=seconds), clock.inner())
-    if known and (_rating_jumps(train) or train.inclining):
+    inner = Clock(replace(clock.left, seconds=seconds), _with_bound(clock))
+    if known and (_rating_jumps(train) or train.ranging):
         spent = None if seconds is None else POLISHING * seconds
         known, most = polished(train, (tuple(known), most), Clock(Budget(spent), clock.inner()))
     result = search(train, known, most, inner, close)
@@ -230,6 +230,17 @@ def _searched(train: Train, best: _Design | None, clock: Clock, seconds: float |
     clock.best, clock.bound = min(clock.best, result.value), max(clock.bound, result.bound)
     clock.tell()
     return result
+
+
+def _with_bound(clock: Clock) -> Watch:
+    """Return a watcher of a search within a run, whose bound is one of the run, too."""
+    follow = clock.inner()
+
+    def watch(event: Event) -> bool:
+        clock.bound = max(clock.bound, -math.inf if event.bound is None else event.bound)
+        return follow(event) is not False
+
+    return watch
 
 
 def _of_pairs(train: Train, exact: Problem, found: Searched) -> _Design | None:
@@ -295,7 +306,7 @@ def _claim(best: _Design | None, bound: float, clock: Clock) -> Outcome:
 
 def _all_bounded(train: Train) -> bool:
     """Return whether every standard has a bounding law, from whose optimum a search may start."""
-    if train.inclining:
+    if train.ranging:
         return False
     boxes = [(stage, stage_box(train, k, math.inf)) for k, stage in enumerate(train.stages)]
     return all(
@@ -393,14 +404,15 @@ LESS, SMALLEST, HALVINGS = 1e-5, 0.7, 24  # of lengths that an exact rating find
 FINER = (1.0, 1.4, 2.0)  # times the least teeth, of starts without a bounding program
 # teeth above the least of a pinion without a limit, of a search among whole teeth
 TEETH_SEARCHED = 20
-SECONDS = 5.0  # at most, for that search
-HELICES = 5  # of a range, of which that search chooses
+SECONDS, RANGED_SECONDS = 5.0, 1.0  # at most, for that search; where it has ranges
+WAYS = {1: 5, 2: 4, 3: 3}  # values of each of so many ranges, of which that search chooses
 
 
 def point_of_pairs(train: Train, pairs: tuple[GearPair, ...]) -> Array:
     """Return the values of the variables of `problem` that gear pairs have, stage by stage.
 
-    Module and face width [mm], pinion teeth, ratio, helix angle [rad]: those that are variables.
+    Module and face width [mm], pinion teeth, ratio, helix angle [rad], shifts: those that are
+    variables.
     """
     rows = [
         {
@@ -408,7 +420,9 @@ def point_of_pairs(train: Train, pairs: tuple[GearPair, ...]) -> Array:
             "pinion_teeth": pair.pinion_teeth,
             "ratio": pair.ratio,
             "face_width": pair.face_width,
-            sizing_text.HELIX: pair.pinion.helix_angle,
+            "helix_angle": pair.pinion.helix_angle,
+            "pinion_shift": pair.pinion.profile_shift,
+            "shift_sum": pair.pinion.profile_shift + pair.wheel.profile_shift,
         }
         for pair in pairs
     ]
@@ -437,19 +451,31 @@ def whole(train: Train, clock: Clock) -> list[Array]:
         else:
             series = tuple(sorted({least, most, *(m for m in SERIES_I if least < m < most)}))
         low, high = stage.pinion_teeth
-        cut = stage.toothings
-        if stage.helix is not None:
-            cut = tuple(stage.inclined(float(b)) for b in np.linspace(*stage.helix, HELICES))
-        teeth_limits = low, high or low + TEETH_SEARCHED
-        stages.append(
-            replace(stage, modules=series, pinion_teeth=teeth_limits, toothings=cut, helix=None)
-        )
+        cuts = stage.toothings
+        if stage.ranges:
+            ways = [_values(ends, WAYS[len(stage.ranges)]) for ends in stage.ranges.values()]
+            rows = (dict(zip(stage.ranges, way, strict=True)) for way in product(*ways))
+            cuts = tuple(stage.cut(**row) for row in rows)
+        few = replace(stage, modules=series, pinion_teeth=(low, high or low + TEETH_SEARCHED))
+        stages.append(replace(few, toothings=cuts, helix=None, shifts=None))
     near = replace(train, stages=tuple(stages))
-    answer = solve(teeth.problem(near), budget=Budget(clock.within(SECONDS)))
+    allowed = Budget(clock.within(RANGED_SECONDS if train.ranging else SECONDS))
+    follow = clock.inner()
+
+    def watch(event: Event) -> bool:  # a first train is found without any seconds
+        follow(event)
+        return not clock.refused
+
+    answer = solve(teeth.problem(near), budget=allowed, watch=watch)
     point = point_of_result(teeth.problem(near), answer)
     if point is None:
         return []
     return [point_of_pairs(train, teeth.pairs(near, point))]
+
+
+def _values(ends: tuple[float, float], count: int) -> list[float]:
+    """Return so many values from end to end, or the one that there is."""
+    return [float(v) for v in np.linspace(*ends, count if ends[0] < ends[1] else 1)]
 
 
 def point_of_result(made: Problem, found: Result) -> Array | None:

@@ -30,7 +30,7 @@ TEETH = (1.0, 1e6)
 RATIO = (1.0, 1e7)
 TYPICAL = 1.0  # MPa, K-factor of rated gears from which a search starts
 VARIABLES = {"module": "mm", "pinion_teeth": "", "ratio": "", "face_width": "mm"}
-HELIX = "helix_angle"  # [rad], a variable where stages have a range of it
+RANGED = {"helix_angle": "rad", "pinion_shift": "", "shift_sum": ""}  # where stages have ranges
 
 _PARAMETER_UNITS = {
     "torque": "N mm",
@@ -151,8 +151,8 @@ def text_pairs(train: Train, x: Any, numbers: Any) -> tuple[GearPair, ...]:
     for k, stage in enumerate(train.stages):
         m, z, u = each(x.module)[k], each(x.pinion_teeth)[k], each(x.ratio)[k]
         cut, cosine = stage.toothing, each(numbers.helix_cosine)[k]
-        if stage.helix is not None:
-            cut = stage.inclined(each(getattr(x, HELIX))[k])
+        if stage.ranges:
+            cut = stage.cut(**{name: each(getattr(x, name))[k] for name in stage.ranges})
             cosine = np.cos(cut.helix_angle)
         d = reference_diameter(m / cosine, z)
         if stage.face_width.tied:
@@ -199,12 +199,20 @@ def variables(train: Train) -> tuple[Var, ...]:
     for name, rows in columns.items():
         low, high, guess = zip(*rows, strict=True)
         posed.append(Var(name, VARIABLES[name], low, high, guess, len(rows), log=True, search=True))
-    if train.inclining:
-        ends = [s.helix or (s.toothing.helix_angle,) * 2 for s in train.stages]
-        low, high = zip(*ends, strict=True)
-        guess = tuple(math.sqrt(a * b) for a, b in ends)
-        posed.append(Var(HELIX, "rad", low, high, guess, len(ends)))
-    return tuple(posed)
+    return (*posed, *_ranged(train))
+
+
+def _ranged(train: Train) -> list[Var]:
+    """Return what is chosen of the toothings, by one component a stage where one has a range."""
+    chosen = []
+    for name, unit in RANGED.items():
+        own = [getattr(stage.toothing, name) or 0.0 for stage in train.stages]
+        ends = [s.ranges.get(name, (n, n)) for s, n in zip(train.stages, own, strict=True)]
+        if any(name in stage.ranges for stage in train.stages):
+            low, high = zip(*ends, strict=True)
+            guess = tuple(0.5 * (a + b) for a, b in ends)
+            chosen.append(Var(name, unit, low, high, guess, len(ends)))
+    return chosen
 
 
 def _lengths(train: Train) -> tuple[float, float]:

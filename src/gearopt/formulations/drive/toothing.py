@@ -1,7 +1,7 @@
 """The teeth of a stage as they are cut: helix, tools, profile shifts, tips, thickness, distance."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from operator import attrgetter
 from typing import Any
@@ -68,6 +68,15 @@ class Toothing:
     def given(self) -> bool:
         """Whether the centre distance is given, and profile shifts follow from it."""
         return self.working_distance is not None and self.shifting is not None
+
+    def at(self, values: Mapping[str, Any]) -> "Toothing":
+        """The toothing with other values of COLUMNS."""
+        return replace(self, **dict[str, Any](values))
+
+    @property
+    def by_reference(self) -> "Toothing":
+        """The toothing of gears that count as their reference cylinders: without chosen shifts."""
+        return replace(self, shifting=None, pinion_shift=None, shift_sum=None)
 
     def made(self, pair: GearPair) -> bool:
         """Whether a pair of floats has this helix angle and given distance, x1 + x2 and x1."""

@@ -97,7 +97,8 @@ class Stage:
     limit). wheel_diameter: maximum [mm] of the wheel's reference diameter. toothings: ways of
     cutting its gears, of which one is chosen; they differ in helix angle, given distance
     and pinion_shift alone.
-    helix: least and greatest helix angle [rad], above 0, of real-valued sizes, else None.
+    helix: least and greatest helix angle [rad], above 0, of real-valued sizes, else None; shifts:
+    least and greatest x1, and so of x1 + x2, of real-valued sizes, else None.
     overlap: minimum overlap ratio, 0: no limit; axial_force: maximum [N] at the train's torque.
     options: ways of making them that are rated, of which one is chosen; none: the law limits alone.
     blanks: of pinion and wheel.
@@ -112,6 +113,7 @@ class Stage:
     wheel_diameter: Fraction | None = None
     toothings: tuple[Toothing, ...] = (Toothing(),)
     helix: tuple[float, float] | None = None
+    shifts: tuple[tuple[float, float], tuple[float, float]] | None = None
     options: tuple[Option, ...] = ()
     blanks: tuple[Blank, Blank] = (SOLID, SOLID)
     overlap: float = 0.0
@@ -126,9 +128,17 @@ class Stage:
         """The toothing of a stage that has one; of several the first, for what is alike."""
         return self.toothings[0]
 
-    def inclined(self, helix: Any) -> Toothing:
-        """The toothing of a stage that has one, with a helix angle [rad] of its range."""
-        return replace(self.toothing, helix_angle=helix)
+    @property
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """Ends of what real-valued sizes choose of the toothing, by its field."""
+        ends = {} if self.helix is None else {"helix_angle": self.helix}
+        if self.shifts is not None:
+            ends |= dict(zip(("pinion_shift", "shift_sum"), self.shifts, strict=True))
+        return ends
+
+    def cut(self, **values: Any) -> Toothing:
+        """The toothing of a stage that has one, with values of its ranges."""
+        return self.toothing.at(values)
 
     def toothing_of(self, row: Any) -> Toothing:
         """Toothing of pairs (n,) or of one; row: which of its toothings, from 0."""
@@ -260,12 +270,12 @@ class Train:
     @property
     def several_toothings(self) -> bool:
         """Whether a stage has a choice of toothings."""
-        return any(len(stage.toothings) > 1 or stage.helix for stage in self.stages)
+        return any(len(stage.toothings) > 1 or stage.ranges for stage in self.stages)
 
     @property
-    def inclining(self) -> bool:
-        """Whether a stage has a range of helix angles."""
-        return any(stage.helix for stage in self.stages)
+    def ranging(self) -> bool:
+        """Whether a stage has a range of helix angles or of profile shifts."""
+        return any(stage.ranges for stage in self.stages)
 
     @property
     def of_one_option(self) -> tuple["Train", ...]:

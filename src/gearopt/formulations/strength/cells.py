@@ -1,8 +1,8 @@
 """Cells of designs of a stage, over which ratings are bounded from below."""
 
-from collections.abc import Callable
-from dataclasses import replace
-from itertools import product
+from collections.abc import Callable, Mapping
+from dataclasses import field, replace
+from itertools import chain, product
 from typing import Any
 
 import numpy as np
@@ -17,13 +17,14 @@ Law = Callable[[Gear], tuple[Any, Any, Any]]
 LOWER, UPPER = 0, 1
 NUDGE = 1e-11  # relative
 ROUNDER = 2.0  # of a parabola the middle is off the mean by all that it rises above both ends
+MIDDLE = 2  # place of the middle of a range beside LOWER and UPPER
 
 
 @dataclass(frozen=True)
 class Cells:
     """Cells (n,) of designs, each between two ends; every field but the first is (2, n).
 
-    toothing: of the gears, but for a helix angle between the two of helix [rad], None: its own;
+    toothing: of the gears, but for its fields that ranges have, each between two ends;
     teeth z1; ratio u; diameter d1 and wheel d2, module m_n, width b [mm];
     slim b/d1; torque [N mm] and speed [rad/s] of the pinion.
     """
@@ -38,20 +39,22 @@ class Cells:
     slim: Array
     torque: Array
     speed: Array
-    helix: Array | None = None
+    ranges: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def helix_bounds(self) -> tuple[Any, Any]:
         """The least and the greatest helix angle [rad], without sign."""
-        if self.helix is None:
-            return (abs(self.toothing.helix_angle),) * 2
-        return self.helix[LOWER], self.helix[UPPER]
+        low, high = self.ranges.get("helix_angle", (abs(self.toothing.helix_angle),) * 2)
+        return low, high
 
-    def cut(self, end: int) -> Toothing:
-        """The toothing of the least or the greatest helix angle."""
-        if self.helix is None:
-            return self.toothing
-        return replace(self.toothing, helix_angle=self.helix[end])
+    def cut(self, end: int, **ends: int) -> Toothing:
+        """The toothing of the least or the greatest helix angle and, unless told, sum of shifts.
+
+        ends: of other fields than the helix angle.
+        """
+        places = {"helix_angle": end, "pinion_shift": LOWER, "shift_sum": UPPER} | ends
+        fields = {name: ends[places[name]] for name, ends in self.ranges.items()}
+        return self.toothing.at(fields)
 
     @property
     def overlap(self) -> Array:
@@ -102,32 +105,58 @@ class Cells:
     def teeth_alone(self, law: Callable[[GearPair], dict[str, Any]]) -> dict[str, Array]:
         """Ranges (2, n) by name of quantities that follow from the teeth alone.
 
-        Thickness allowances are lengths: of teeth that have some the module counts, too. Between
-        two helix angles ranges are widened by what the middle one is off the mean, ROUNDER times.
+        Thickness allowances are lengths: of teeth that have some the module counts, too. Along each
+        of `ranges` they are widened by what the middle is off the mean, ROUNDER times.
         """
         thinner = any(self.toothing.thickness_allowances)
         module = self.module if thinner else np.ones_like(self.module)
-        helix = np.zeros_like(module) if self.helix is None else self.helix
-        rows = np.stack([*self.teeth, *self.ratio, *module, *helix])
+        rows = np.stack([*self.teeth, *self.ratio, *module, *chain(*self.ranges.values())])
         order = np.lexsort(rows)
         fresh = np.append(True, np.any(np.diff(rows[:, order]) != 0.0, axis=0))
-        teeth, ratio, module, helix = rows[:, order[fresh]].reshape(4, 2, -1)
+        teeth, ratio, module, *between = rows[:, order[fresh]].reshape(len(rows) // 2, 2, -1)
         place = np.empty(len(order), int)
         place[order] = np.cumsum(fresh) - 1
-        corners = product(teeth, ratio, module if thinner else module[:1])
-        angles = (None,) if self.helix is None else (helix[LOWER], helix[UPPER], helix.mean(axis=0))
-        cuts = [
-            self.toothing if one is None else replace(self.toothing, helix_angle=one)
-            for one in angles
-        ]
-        numbers = [law(cut.pair(m, z, z * u, m)) for z, u, m in corners for cut in cuts]
-        found = {}
-        for name in numbers[0]:
-            values = np.array([np.broadcast_to(row[name], teeth[0].shape) for row in numbers])
-            values = values.reshape(-1, len(cuts), len(teeth[0]))
-            ends, off = values[:, :2], 0.0
-            if len(cuts) > 1:
-                off = ROUNDER * np.abs(values[:, 2] - ends.mean(axis=1)).max(axis=0)
-            least, most = ends.min(axis=(0, 1)) - off, ends.max(axis=(0, 1)) + off
-            found[name] = np.stack([least, most])[:, place]
-        return found
+        corners = list(product(teeth, ratio, module if thinner else module[:1]))
+        several = [not np.array_equal(*ends) for ends in between]
+        places, arms = _places(sum(several))
+        at_ends, fields = zip(*places, strict=True), {}
+        for name, ends, many in zip(self.ranges, between, several, strict=True):
+            at = next(at_ends) if many else (LOWER,) * len(places)
+            values = np.stack([*ends, ends.mean(axis=0)])
+            fields[name] = np.concatenate([np.tile(values[k], len(corners)) for k in at])
+        z, u, m = (np.tile(np.concatenate(c), len(places)) for c in zip(*corners, strict=True))
+        quantities = law(self.toothing.at(fields).pair(m, z, z * u, m))
+        shape, outer = (len(places), len(corners), -1), 2 ** sum(several)
+        return {
+            name: _widened(np.broadcast_to(value, z.shape).reshape(shape), outer, arms)[:, place]
+            for name, value in quantities.items()
+        }
+
+
+def _widened(values: Array, outer: int, arms: list[tuple[int, int, int]]) -> Array:
+    """Return the range (2, n) of values (places, corners, n), of which the first are `outer`.
+
+    It is widened by what the middles of lines are off the means of their ends, ROUNDER times.
+    """
+    least, most = values[:outer].min(axis=(0, 1)), values[:outer].max(axis=(0, 1))
+    off = np.zeros_like(least)
+    for middle, low, high in arms:
+        mean = 0.5 * (values[low] + values[high])
+        off = off + ROUNDER * np.abs(values[middle] - mean).max(axis=0)
+    least = np.where(least > 0.0, np.maximum(least - off, 0.0), least - off)
+    return np.stack([least, most + off])
+
+
+def _places(count: int) -> tuple[list[tuple[int, ...]], list[tuple[int, int, int]]]:
+    """Return places within so many ranges, the corners first, and the three of each middle line.
+
+    A middle line goes along one range, through the middle of the others: its middle, its ends.
+    """
+    places = list(product((LOWER, UPPER), repeat=count))
+    middle, arms = (MIDDLE,) * count, []
+    for k in range(count):
+        line = [(*middle[:k], end, *middle[k + 1 :]) for end in (MIDDLE, LOWER, UPPER)]
+        places += [at for at in line if at not in places]
+        first, second, third = map(places.index, line)
+        arms.append((first, second, third))
+    return places, arms

@@ -75,7 +75,10 @@ class Iso6336:
 
     def needed(self, cells: Cells, safety: tuple[float, float]) -> tuple[Any, Any]:
         """Return the least d1^2 b/(T (1 + 1/u)) of contact and d1^2 b/T of bending."""
-        made = IsoCells(self, cells, cells.teeth_alone(iso_teeth(self.practice.shift)))
+        teeth = cells.teeth_alone(iso_teeth(self.practice.shift))
+        for name in ("contact", "virtual"):  # with less than one pair in contact none is rated
+            teeth[name] = np.maximum(teeth[name], 1.0)
+        made = IsoCells(self, cells, teeth)
         with np.errstate(all="ignore"):
             return made.pressed(safety[1]), made.bent(safety[0])
 
@@ -87,9 +90,10 @@ class Iso6336:
             concentrations=[teeth[f"concentration{k}"][1] for k in GEARS],
         )
         (low, high), (u_low, u_high) = cells.teeth, cells.ratio
-        apart = sum(cells.toothing.profile_shifts) > 0.0
-        z = low * (1.0 + u_low) / (1.0 + u_high) if apart else high  # of the greatest alpha_wt
         cut = cells.cut(1)
+        total = sum(cut.profile_shifts) if cut.shift_sum is None else cut.shift_sum
+        fewest = low * (1.0 + u_low) / (1.0 + u_high)
+        z = np.where(np.greater(total, 0.0), fewest, high)  # of the greatest alpha_wt
         pair = cut.of_diameter(cells.module[0], z, cells.diameter[1], u_high, 1.0)
         far = cut.of_diameter(cells.module[0], z, cells.diameter[1], u_low, 1.0)
         slow, fast = (self.case(pair, 1.0, speed) for speed in cells.speed)

@@ -5,6 +5,7 @@ W2 = W1 K_Hbeta [N/mm] all is a matter of lengths [mm]: deviations and deflectio
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cached_property, partial, reduce
 from itertools import product
 from typing import TYPE_CHECKING, Any
@@ -15,7 +16,7 @@ from gearopt.formulations.strength.cells import LOWER, UPPER, Cells
 from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.blanks import Blank
-from gearopt.physics.gears import Gear
+from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.iso6336 import bending_factors as bending
 from gearopt.physics.iso6336 import contact_factors as contact
 from gearopt.physics.iso6336 import load_factors as loads
@@ -153,9 +154,13 @@ class IsoCells:
         for end in (LOWER, UPPER):
             z, d = cells.teeth[end], cells.diameter[end]
             masses = []
-            for i, j in product((LOWER, UPPER)[: 1 if cells.helix is None else 2], repeat=2):
+            for i, j in product(
+                (LOWER, UPPER)[: 2 if "helix_angle" in cells.ranges else 1], repeat=2
+            ):
                 module = d * np.cos(cells.helix_bounds[i]) / z
-                pair = cells.cut(j).of_diameter(module, z, d, cells.ratio[end], 1.0)
+                cut = cells.cut(j, pinion_shift=end)
+                pair = cut.of_diameter(module, z, d, cells.ratio[end], 1.0)
+                pair = self._shortened(pair, end)
                 rows = zip(inner, pair.gears, strict=True)
                 first, second = (p[1 - end] * stiffness.mean_diameter(gear) for p, gear in rows)
                 masses.append(stiffness.reduced_mass(pair, densities, (first, second)))
@@ -165,6 +170,14 @@ class IsoCells:
             pace = speed * z * np.sqrt(mass / stiff)
             ratios.append(np.where(np.isfinite(pace), pace, 0.0 if end == LOWER else np.inf))
         return ratios[0], ratios[1]
+
+    def _shortened(self, pair: GearPair, end: int) -> GearPair:
+        """Return a pair whose tips are shortened the most or the least, where shifts are chosen."""
+        if self.cells.toothing.shifting is None:
+            return pair
+        shorter = self.teeth["shorter"][end]
+        first, second = (replace(gear, tip_alteration=shorter) for gear in pair.gears)
+        return GearPair(first, second, pair.working_distance)
 
     def _inner_parts(self) -> list[tuple[Any, Any]]:
         """Return d_i/d_m of pinion and wheel, at least and at most."""

@@ -68,6 +68,7 @@ def iso_teeth(shift: str) -> Law:
             "virtual": forms[0].virtual_ratio,
             "stiffness": stiffness.single_stiffness(pair, np.inf),
             "zone": contact_factors.zone_factor(pair),
+            "shorter": pair.pinion.tip_alteration,
         }
         for k in GEARS:
             found |= {

@@ -297,6 +297,27 @@ class Shifting:
         return self.used_by_gears(pair) | self.used_in_mesh(pair)
 
     @np.errstate(invalid="ignore", divide="ignore")
+    def left(self, pair: GearPair) -> dict[str, Any]:
+        """What a pair leaves of the limits but interference, by name; negative: they are exceeded.
+
+        Smooth in all sizes, in modules: of specific sliding, 1 - rho_2/(u rho_1) >= -s at the root
+        of the pinion, as rho_1 + rho_2 is the line of action's a sin(alpha_wt).
+        """
+        module, path, u = pair.normal_module, contact_path(pair), pair.ratio
+        line = sum(path.curvatures)
+        lowest = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
+        roots = lowest[0] * (1.0 + u * (1.0 + self.sliding)) - line
+        roots = np.minimum(roots, lowest[1] * (u + 1.0 + self.sliding) - u * line)
+        thin = np.minimum(*(tip_thickness(gear) for gear in pair.gears))
+        cut = np.maximum(*(undercut_depth(gear) for gear in pair.gears))
+        return {
+            "tip_thickness": thin / module - self.tip_thickness,
+            "undercut": NEGLIGIBLE - cut / module,
+            "contact_ratio": path.transverse_ratio - self.contact_ratio,
+            "specific_sliding": roots / module,
+        }
+
+    @np.errstate(invalid="ignore", divide="ignore")
     def used_by_gears(self, pair: GearPair) -> dict[str, Any]:
         """Shares of the limits that each gear uses alone, in closed form.
 

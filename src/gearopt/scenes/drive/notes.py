@@ -59,11 +59,13 @@ def notes(scene: Scene, exact: bool) -> list[str]:
     if exact and scene.gears.same_materials and scene.by_ratings:
         sentences.append("All pinions have one material, and all wheels have one.")
     inclining = any(inclination(own, scene.gears) for own in scene.stage_tables)
-    if exact or inclining:
+    shifting = any(scene.shift_ranges(own) for own in scene.stage_tables)
+    if exact or inclining or shifting:
         sentences += _chosen(scene)
-    if inclining:
+    if inclining or shifting:
+        ranges = " and ".join(["helix angles"] * inclining + ["profile shifts"] * shifting)
         sentences.append(
-            "The bound takes what teeth alone decide at the ends of cells of helix angles, with a "
+            f"The bound takes what teeth alone decide at the ends of cells of {ranges}, with a "
             "margin that random designs confirm and no proof does."
         )
     if exact and scene.teeth is not None:

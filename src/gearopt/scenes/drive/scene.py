@@ -29,7 +29,7 @@ from gearopt.scenes.drive.rating.checks import (
 )
 from gearopt.scenes.drive.rating.materials import MaterialTable, check_materials, check_same
 from gearopt.scenes.drive.rating.options import of_stages, required
-from gearopt.scenes.drive.shifts import balanced, check_inclination, check_shift
+from gearopt.scenes.drive.shifts import balanced, check_range, check_shift
 from gearopt.scenes.drive.tables.blanks import blank, check_blanks
 from gearopt.scenes.drive.tables.drive import (
     Gears,
@@ -370,7 +370,15 @@ class Scene(Table):
     def choosing(self, own: StageTable) -> bool:
         """Whether the teeth of a stage may be cut in several ways, or shifts are chosen."""
         several = len(self.helix_angles(own)) > 1 and not inclination(own, self.gears)
-        return self.shifted(own) or several
+        return self.shifted(own) and not self.shift_ranges(own) or several
+
+    def shift_ranges(
+        self, own: StageTable
+    ) -> tuple[tuple[float, float], tuple[float, float]] | None:
+        """Ends of x1 and of x1 + x2 of a stage of real-valued sizes; None: it has no ranges."""
+        if self.teeth is not None or self.shift is None or not self.shifted(own):
+            return None
+        return self.shift.ranges
 
     def helix_angles(self, own: StageTable) -> tuple[Quantity, ...]:
         """Helix angles that a stage may have."""
@@ -387,7 +395,7 @@ class Scene(Table):
             if value is None or isinstance(value, Quantity):
                 continue
             if isinstance(value, Between):
-                check_inclination(self, value, place)
+                check_range(self, value, place)
                 continue
             lacks = "gears that are to be chosen: these are all given" if self.given else ""
             lacks = lacks or self._lacks("with one of several values")
@@ -533,10 +541,13 @@ class Scene(Table):
                 off += abs(teeth.shift_sum - total)
             return abs(math.degrees(teeth.helix_angle) - stage.helix_angle_deg) + off
 
-        cut = min(balanced(self, own, self.toothings(own)), key=away)
+        cut, fields = min(balanced(self, own, self.toothings(own)), key=away), {}
         if inclination(own, self.gears):
-            return replace(cut, helix_angle=math.radians(stage.helix_angle_deg))
-        return cut
+            fields["helix_angle"] = math.radians(stage.helix_angle_deg)
+        if self.shift_ranges(own):
+            first, second = stage.pinion_profile_shift, stage.wheel_profile_shift
+            fields |= {"pinion_shift": first, "shift_sum": first + second}
+        return cut.at(fields)
 
     @property
     def blanks(self) -> tuple[tuple[Blank, Blank], ...]:
@@ -565,6 +576,7 @@ class Scene(Table):
             wheel_diameter=diameter.exact[0] if diameter else None,
             toothings=balanced(self, own, self.toothings(own)),
             helix=inclination(own, self.gears),
+            shifts=self.shift_ranges(own),
             blanks=self._blanks(own),
             overlap=float(own.overlap_ratio or limits.overlap_ratio or 0),
             axial_force=force.value if force else math.inf,

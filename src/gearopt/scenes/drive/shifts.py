@@ -12,6 +12,7 @@ from gearopt.scenes.drive.rating.options import of_stages
 from gearopt.scenes.drive.tables.drive import ShiftTable, StageTable
 from gearopt.scenes.reading.choices import Between
 from gearopt.scenes.reading.fields import refuse
+from gearopt.scenes.reading.toml_writing import exact
 
 if TYPE_CHECKING:
     from gearopt.scenes.drive.scene import Scene
@@ -53,10 +54,17 @@ def check_shift(scene: "Scene", shifted: list[int], lacks: str, asked: str) -> N
     if shift is None:
         return
     if not shifted:
-        rule = "changes nothing: no gears are chosen at a given centre_distance of a [[stage]]"
+        rule = (
+            "changes nothing: no gears are chosen at a given centre_distance of a [[stage]], nor "
+            "by a sum of profile shifts"
+        )
         raise refuse(rule, at=("shift",), action="remove")
+    for name in ("pinion_shift", "sum"):
+        if isinstance(value := getattr(shift, name), Between):
+            check_range(scene, value, ("shift", name))
     if shift.sum is not None:
-        _check_sum(scene, lacks, asked)
+        real = scene.teeth is None and shift.ranges is not None
+        _check_sum(scene, _lacks_of_real(scene) if real else lacks, asked)
     if shift.pinion_shift is not None and "rule" in shift.model_fields_set:
         rule = "changes nothing beside pinion_shift"
         raise refuse(rule, at=("shift", "rule"), action="remove")
@@ -97,21 +105,34 @@ def _check_ways(scene: "Scene", stages: list[int]) -> None:
         raise refuse(rule, tell, ("shift", key), "tell")
 
 
-def check_inclination(scene: "Scene", value: Between, place: tuple[str | int, ...]) -> None:
-    """Refuse all helix angles of a range where no search of real-valued sizes chooses them."""
-    lacks = "gears that are to be chosen: these are all given" if scene.given else ""
+def _lacks_of_real(scene: "Scene") -> str:
+    """What a file lacks for ranges of teeth of real-valued sizes; "" for nothing."""
+    if scene.given:
+        return "gears that are to be chosen: these are all given"
     if scene.teeth is not None:
-        lacks = lacks or "real-valued sizes, without a table [teeth] (or give a step)"
+        return "real-valued sizes, without a table [teeth] (or give a step)"
     if not scene.rated_real or scene.limits.loaded:
-        lacks = lacks or "limits by [rating] alone, one load and one material of each gear"
+        return "limits by [rating] alone, one load and one material of each gear"
     if scene.several:
-        lacks = lacks or "one number of stages"
+        return "one number of stages"
     if any(blank.has_web or blank.bore for both in scene.blanks for blank in both):
-        lacks = lacks or "solid gears"
-    if lacks:
+        return "solid gears"
+    return ""
+
+
+def check_range(scene: "Scene", value: Between, place: tuple[str | int, ...]) -> None:
+    """Refuse all values of a range where no search of real-valued sizes chooses of them."""
+    of_shifts, shift = place[0] == "shift", scene.shift
+    if of_shifts and scene.teeth is None and shift is not None and shift.ranges is None:
+        other = "sum" if place[1] == "pinion_shift" else "pinion_shift"
+        rule = f"has all values of a range to choose from, which need such a range of {other}, too"
+        tell = f"Write {other} as a number, too, or a range such as {{ from = 0, to = 0.5 }}"
+        raise refuse(rule, tell, place, "tell")
+    if lacks := _lacks_of_real(scene):
         rule = f"has all values of a range to choose from, which need {lacks}"
-        raise refuse(rule, str(value.low), place, "sample")
-    if value.low.value < math.radians(LEAST_HELIX):
+        first = exact(value.low) if of_shifts else str(value.low)
+        raise refuse(rule, first, place, "sample")
+    if not of_shifts and value.low.value < math.radians(LEAST_HELIX):
         rule = f"begins below {LEAST_HELIX} deg: spur gears are rated by laws of their own"
         way = f'Write, for example, {{ from = "{LEAST_HELIX} deg", to = "30 deg" }}'
         raise refuse(rule, way, place, "tell")

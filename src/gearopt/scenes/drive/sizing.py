@@ -106,12 +106,12 @@ def of_count(scene: Scene, ask: Ask, real: Result | None = None) -> Result:
 def of_real_values(drive: Drive, ask: Ask, known: Result | None) -> Result:
     """Gears with real-valued teeth and modules, by the method that is asked for."""
     result = _solved(drive.train, ask, continuous_sizing.problem(drive.train))
-    return _checked(result) if drive.train.inclining else result
+    return _checked(result) if drive.train.ranging else result
 
 
 def _checked(result: Result) -> Result:
-    """Answer with a bound over helix angles, part of which is checked, not proven (Lemma 64)."""
-    proof = result.proof | {"checked": "between helix angles, on random designs"}
+    """Answer with a bound over ranges of teeth, part of which is checked, not proven (Lemma 64)."""
+    proof = result.proof | {"checked": "between helix angles and shifts, on random designs"}
     status = "feasible" if result.status == "optimal" else result.status
     return replace(result, status=status, proof=proof)
 

@@ -5,13 +5,14 @@ import math
 from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
+from typing import Any
 
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import LENGTHS, Stage
 from gearopt.physics.gears import ISO_53_A, MEMBERS, Rack
 from gearopt.scenes.drive.tables.drive import Gears, ShiftTable, StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, with_shared
-from gearopt.scenes.reading.choices import Between, values_of
+from gearopt.scenes.reading.choices import Between, Choice, values_of
 from gearopt.scenes.reading.fields import refuse
 
 USUAL = {"profile_shift": 0, "tip_alteration": 0, "addendum": 1, "tool_addendum": 1.25}
@@ -50,15 +51,20 @@ def toothings(
     if shift is not None:
         first = replace(first, shifting=shift.shifting)
         if shift.pinion_shift is not None:
-            shifts = [float(x1) for x1 in values_of(shift.pinion_shift)]
+            shifts = [float(x1) for x1 in _listed(shift.pinion_shift)]
         if own.centre_distance is None and shift.sum is not None:
-            sums = [float(total) for total in values_of(shift.sum)]
+            sums = [float(total) for total in _listed(shift.sum)]
     ways = helices[:1] if inclination(own, gears) else helices
     rows = itertools.product([helix.value for helix in ways], distances, shifts, sums)
     return tuple(
         replace(first, helix_angle=helix, working_distance=a, pinion_shift=x1, shift_sum=total)
         for helix, a, x1, total in rows
     )
+
+
+def _listed(value: Choice) -> tuple[Any, ...]:
+    """Values of a choice, of all values of a range the first."""
+    return values_of(value)[: 1 if isinstance(value, Between) else None]
 
 
 def inclination(own: StageTable, gears: Gears) -> tuple[float, float] | None:

@@ -22,6 +22,11 @@ def _number(value: Any) -> Fraction:
     return number
 
 
+def _text(value: Any) -> Any:
+    """Return a quantity or a number as a file has it."""
+    return str(value) if isinstance(value, Quantity) else exact(value)
+
+
 @dataclass(frozen=True)
 class Steps:
     """A range with a step, both ends included where a step meets them.
@@ -51,27 +56,25 @@ class Steps:
     @property
     def written(self) -> dict[str, Any]:
         """The range as a file has it."""
-        ends = self.low, self.high, self.step
-        texts = [str(end) if isinstance(end, Quantity) else exact(end) for end in ends]
-        return dict(zip(KEYS_OF_RANGE, texts, strict=True))
+        return dict(zip(KEYS_OF_RANGE, map(_text, (self.low, self.high, self.step)), strict=True))
 
 
 @dataclass(frozen=True)
 class Between:
-    """Every value between two ends, of quantities of one unit."""
+    """Every value between two ends, of quantities of one unit or of pure numbers."""
 
-    low: Quantity
-    high: Quantity
+    low: Any
+    high: Any
 
     @property
-    def values(self) -> tuple[Quantity, Quantity]:
+    def values(self) -> tuple[Any, Any]:
         """Both ends."""
         return self.low, self.high
 
     @property
-    def written(self) -> dict[str, str]:
+    def written(self) -> dict[str, Any]:
         """The range as a file has it."""
-        return dict(zip(KEYS_OF_RANGE[:2], map(str, self.values), strict=True))
+        return dict(zip(KEYS_OF_RANGE[:2], map(_text, self.values), strict=True))
 
 
 @dataclass(frozen=True)
@@ -123,9 +126,9 @@ def in_words(value: Choice) -> str:
         ends = "" if value.low is None else f", {value.low} to {value.high}"
         return f"the series {value.series} of ISO 3 (unverified){ends}"
     if isinstance(value, Between):
-        return f"all values from {value.low} to {value.high}"
+        return "all values from {} to {}".format(*map(_text, value.values))
     values = sorted(values_of(value), key=lambda one: getattr(one, "value", one))
-    low, high = (v if isinstance(v, Quantity) else exact(v) for v in (values[0], values[-1]))
+    low, high = map(_text, (values[0], values[-1]))
     return f"{len(values)} values, {low} to {high}" if len(values) > 1 else ""
 
 
@@ -169,9 +172,10 @@ def to_choose(item: Reads, sample: Steps | Preferred, between: bool = False) -> 
 def _between(item: Reads, value: dict[str, Any], way: str) -> Choice:
     """Read a range without a step; way: what to write instead of a wrong one."""
     low, high = _entries(item, [value[name] for name in KEYS_OF_RANGE[:2]], way)
-    if low.value > high.value:
+    ends = [getattr(end, "value", end) for end in (low, high)]
+    if ends[0] > ends[1]:
         raise refuse("has its ends in the wrong order", way, action="tell")
-    return Between(low, high) if low.value < high.value else cast(Choice, low)
+    return Between(low, high) if ends[0] < ends[1] else cast(Choice, low)
 
 
 def _stepped(item: Reads, value: dict[str, Any], way: str, or_series: str) -> Choice:

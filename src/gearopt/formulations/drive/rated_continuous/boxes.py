@@ -13,17 +13,18 @@ import numpy as np
 
 from gearopt.formulations.drive.shares import least_share
 from gearopt.formulations.drive.train import Stage, Train
-from gearopt.formulations.strength.cells import LOWER, NUDGE, Cells
+from gearopt.formulations.strength.cells import LOWER, NUDGE, UPPER, Cells
 from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
 
 ROWS = (
-    *("teeth", "width_over_diameter", "diameter", "end", "helix"),
+    *("teeth", "width_over_diameter", "diameter", "end", "helix", "pinion_shift", "shift_sum"),
     *("module", "width", "wheel", "ratio"),
 )
-Z, B_OVER_D, D, END, T, M, B, D2, U = range(len(ROWS))
-FREE = (Z, B_OVER_D, D, END, T)  # from which the others follow
+Z, B_OVER_D, D, END, T, X1, SUM, M, B, D2, U = range(len(ROWS))
+# from which the others follow: how much a share changes with them, as with a logarithm
+FREE = {Z: 1.0, B_OVER_D: 1.0, D: 1.0, END: 1.0, T: 1.0, X1: 0.5, SUM: 0.25}
 LENGTHS = 1e-3, 1e5  # mm: of diameters
 NARROWEST, WIDEST = 1e-3, 1e3  # b/d1 without limits
 TEETH = 1e6
@@ -38,7 +39,8 @@ class Boxes:
     """Boxes (n,) of designs of a stage.
 
     sizes (rows, 2, n): logarithms of both ends of ROWS; end: the total ratio behind the last stage,
-    else 0; helix: tan(beta) of a stage with a range of it, else 0. before, after (n,): cells of the
+    else 0; helix: tan(beta) of a stage with a range of it, else 0. Of a range of profile shifts x1
+    and x1 + x2 themselves, else 0. before, after (n,): cells of the
     shafts before and after the stage.
     """
 
@@ -48,8 +50,8 @@ class Boxes:
 
     @property
     def widths(self) -> Array:
-        """Widths (rows, n) of the rows in FREE."""
-        return np.asarray(self.sizes[list(FREE), 1] - self.sizes[list(FREE), 0])
+        """Widths (rows, n) of the rows in FREE, those of shifts as of logarithms."""
+        return np.asarray(np.diff(self.sizes[list(FREE)], axis=1)[:, 0] * np.c_[[*FREE.values()]])
 
     def take(self, place: Any) -> "Boxes":
         """Return some of the boxes."""
@@ -140,7 +142,11 @@ def first_boxes(shafts: Shafts, k: int) -> Boxes:
     i, j = (side.ravel() for side in grid)
     some = (j >= i) | last
     i, j = i[some], j[some]
-    return Boxes(np.repeat(np.log(sizes)[:, :, None], len(i), axis=2), i, j)
+    sizes[[X1, SUM]] = 1.0
+    sizes = np.log(sizes)
+    if stage.shifts is not None:
+        sizes[[X1, SUM]] = stage.shifts
+    return Boxes(np.repeat(sizes[:, :, None], len(i), axis=2), i, j)
 
 
 def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
@@ -156,15 +162,15 @@ def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
     before, after, sizes = before[:, some], after[:, some], boxes.sizes
     if not len(boxes):
         return boxes, np.zeros(0)
-    torque = shafts.train.torque * np.exp(before)
-    size = np.exp(sizes)
-    speed = shafts.train.speed_at(torque)[::-1]
-    ends = size[Z], size[U], size[D], size[D2], size[M], size[B], size[B_OVER_D]
-    helix = None if stage.helix is None else np.arctan(size[T])
-    cells = Cells(stage.toothing, *ends, torque, speed, helix)
+    cells = _cells(shafts.train, k, sizes, before)
+    if stage.shifts is not None:
+        some = np.flatnonzero(_may_be_made(stage, cells))
+        boxes, before, after = boxes.take(some), before[:, some], after[:, some]
+        sizes, cells = boxes.sizes, _cells(shafts.train, k, boxes.sizes, before)
+    torque = cells.torque
     needed = needed_by_cells(shafts.train, stage, cells)
     weak = _needed_by_weak(stage, cells, shafts.train.safety, needed[0])
-    most = np.maximum(weak * (1.0 + 1.0 / size[U, 1]), needed[1]) * torque[0]
+    most = np.maximum(weak * (1.0 + 1.0 / cells.ratio[1]), needed[1]) * torque[0]
     with np.errstate(divide="ignore"):
         least = np.log(most * (1.0 - MARGIN))  # of d1^2 b = d1^3 (b/d1)
     sizes[D, 0] = np.maximum(sizes[D, 0], (least - sizes[B_OVER_D, 1]) / 3.0)
@@ -176,6 +182,27 @@ def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
         value = np.maximum(value, _bound_by_ratings(shafts, k, sizes, part, before, after))
     some = np.flatnonzero(possible(sizes))
     return boxes.take(some), value[some]
+
+
+def _cells(train: Train, k: int, sizes: Array, before: Array) -> Cells:
+    """Return the designs of boxes as cells; before: ln of the torque before the stage."""
+    torque, size, stage = train.torque * np.exp(before), np.exp(sizes), train.stages[k]
+    ends = size[Z], size[U], size[D], size[D2], size[M], size[B], size[B_OVER_D]
+    by_name = {
+        "helix_angle": np.arctan(size[T]),
+        "pinion_shift": sizes[X1],
+        "shift_sum": sizes[SUM],
+    }
+    ranges = {name: by_name[name] for name in stage.ranges}
+    return Cells(stage.toothing, *ends, torque, train.speed_at(torque)[::-1], ranges)
+
+
+def _may_be_made(stage: Stage, cells: Cells) -> Any:
+    """Return which cells may hold teeth within the limits of chosen profile shifts."""
+    shifting = stage.toothing.shifting
+    assert shifting is not None
+    rows = cells.teeth_alone(shifting.left).values()
+    return np.all([~(most < 0.0) for _, most in rows], axis=0)
 
 
 def possible(sizes: Array) -> Array:
@@ -220,6 +247,20 @@ def cosines(stage: Stage, sizes: Array) -> tuple[Any, Any]:
         return (math.log(stage.toothing.cosine),) * 2
     least, most = -0.5 * np.log1p(np.exp(2.0 * sizes[T]))
     return least, most
+
+
+def _bodies(stage: Stage, sizes: Array) -> tuple[Any, Any]:
+    """Least squares of the diameter d + 2 x m_n of the bodies over d, of pinion and wheel."""
+    if stage.shifts is None:
+        return 1.0, 1.0
+    (x_low, x_high), (sum_low, _) = sizes[X1], sizes[SUM]
+    cosine, squares = cosines(stage, sizes), []
+    for x, rows in ((x_low, [Z]), (sum_low - x_high, [Z, U])):
+        most = cosine[0] - sizes[rows, LOWER].sum(axis=0)  # of m_n/d, logarithms
+        least = cosine[1] - sizes[rows, UPPER].sum(axis=0)
+        part = 1.0 + 2.0 * x * np.exp(np.where(x > 0.0, least, most))
+        squares.append(np.maximum(part, 0.0) ** 2)
+    return squares[0], squares[1]
 
 
 def needed_by_cells(train: Train, stage: Stage, cells: Cells) -> tuple[Array, Array]:
@@ -272,8 +313,12 @@ def _least_sizes(
 ) -> tuple[Array, Array]:
     """Terms of `_bound_by_sizes`: share at the least sizes, least addition of the potentials."""
     size = np.exp(sizes[:, LOWER])
-    toothing = shafts.train.stages[k].toothing
-    pair = toothing.of_diameter(size[M], size[Z], size[D], size[U], size[B])
+    stage = shafts.train.stages[k]
+    pair = stage.toothing.by_reference.of_diameter(size[M], size[Z], size[D], size[U], size[B])
+    if stage.shifts is not None:
+        rows = zip(pair.gears, _bodies(stage, sizes), strict=True)
+        bodies = (replace(g, body_diameter=g.reference_diameter * s**0.5) for g, s in rows)
+        pair = GearPair(*bodies)
     first, second = shafts.potential[k : k + 2]
     moved = _potential_change(shafts, k, before[int(first < 0.0)], after[int(second > 0.0)])
     fewest = size[Z], size[Z] * size[U]
@@ -294,7 +339,7 @@ def _bound_by_ratings(
     half = 0.5 * (before[1] - before[0]), 0.5 * (after[1] - after[0])
     first, second = shafts.potential[k : k + 2]
     u, power = np.exp(e - t), 1.0
-    power, grown, rise = growth(shafts.train, k, u)
+    power, grown, rise = growth(shafts.train, k, u, _bodies(shafts.train.stages[k], sizes))
     wide, slope = (1.0 + 1.0 / u, 1.0 / (1.0 + u)) if pressed else (1.0, 0.0)
     least = shafts.train.torque * np.exp(t if loaded else before[0]) * coefficient * wide
     if not shafts.train.by_width:
@@ -320,15 +365,19 @@ def cut(shafts: Shafts, k: int, boxes: Boxes, limit: Array) -> Boxes:
     return Boxes(sizes, boxes.before, boxes.after)
 
 
-def growth(train: Train, k: int, u: Any) -> tuple[float, Any, Any]:
+def growth(
+    train: Train, k: int, u: Any, bodies: tuple[Any, Any] = (1.0, 1.0)
+) -> tuple[float, Any, Any]:
     """Return p, and of a ratio u the share over (d1^2 b)^p and its slope in logarithms.
 
-    Of lengths p is 1/3, and b = d1.
+    Of lengths p is 1/3, and b = d1. bodies: squares of the diameters of bodies over those of
+    reference circles, of pinion and wheel.
     """
     power, exponent = (1.0, 2.0) if train.by_width else (1.0 / 3.0, 1.0)
-    tooth = train.stages[k].toothing
+    tooth = train.stages[k].toothing.by_reference
     pairs = [tooth.of_diameter(1.0, 20.0, 1.0, x, 1.0) for x in (1.0, 2.0)]
     single, double = (least_share(train, k, pair) for pair in pairs)
-    rising = (double - single) / (2.0**exponent - 1.0) * u**exponent
-    grown = single - (double - single) / (2.0**exponent - 1.0) + rising
+    of_wheel = (double - single) / (2.0**exponent - 1.0)  # of u = 1
+    rising = of_wheel * bodies[1] * u**exponent
+    grown = (single - of_wheel) * bodies[0] + rising
     return power, grown, exponent * rising / grown

@@ -156,7 +156,7 @@ def _halves(shafts: Shafts, k: int, boxes: Boxes) -> Boxes:
     """Return both halves of boxes, across their widest side or at a border of a law."""
     wide = boxes.widths
     side, places = wide.argmax(axis=0), np.arange(len(boxes))
-    side = np.asarray(FREE)[side]
+    side = np.asarray(list(FREE))[side]
     at = boxes.sizes[side, :, places].mean(axis=1)
     border, number = _borders(shafts, k, boxes.sizes)
     row = number.argmax(axis=0)
@@ -252,5 +252,5 @@ def _design(train: Train, shafts: Shafts, rows: Rows, path: tuple[int, ...]) -> 
     return design_in_boxes(
         train,
         after,
-        lambda k, at, then: smallest(train, k, boxes[k], at, then, 2),
+        lambda k, at, then: smallest(train, k, boxes[k], at, then),
     )

@@ -18,7 +18,7 @@ from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import Group
 from gearopt.scenes.explaining.moves import Move
 from gearopt.scenes.explaining.numbers import Path, allowed, at, put
-from gearopt.scenes.reading.choices import Choice, Preferred, Steps, values_of
+from gearopt.scenes.reading.choices import Between, Choice, Preferred, Steps, values_of
 from gearopt.units import Quantity, parse
 
 FARTHEST = Fraction(5, 2)  # times the nearest distance of a file; of its sum, too
@@ -150,7 +150,7 @@ def _shifted(end: Any, step: Any, times: int) -> Any:
 
 def with_value(now: Any, value: Any) -> Any:
     """What a stage chooses from, with one value more; of one number that value in its place."""
-    if isinstance(now, Steps):
+    if isinstance(now, Steps | Between):
         low, high = sorted((now.low, now.high, value), key=_size)[::2]
         return replace(now, low=low, high=high)
     if isinstance(now, Preferred):
@@ -169,7 +169,7 @@ def _in(value: Any, values: Sequence[Any]) -> bool:
 
 def _together(now: Any, values: Sequence[Any]) -> Any:
     """What a stage chooses from, with several values more."""
-    new = now if isinstance(now, tuple | Steps | Preferred) else (now,)
+    new = now if isinstance(now, tuple | Steps | Preferred | Between) else (now,)
     for value in values:
         new = with_value(new, value)
     return new

@@ -14,7 +14,7 @@ from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.physics.geometry.profile_shift import ROOT_SAFETY, RULES, Shifting
 from gearopt.scenes.drive.tables.iso6336 import IsoGiven
 from gearopt.scenes.drive.tables.rating import GearKeys, GearTable, GivenTable
-from gearopt.scenes.reading.choices import Choice, Preferred, Steps, to_choose
+from gearopt.scenes.reading.choices import Between, Choice, Preferred, Steps, to_choose, values_of
 from gearopt.scenes.reading.fields import (
     Table,
     advised,
@@ -293,13 +293,14 @@ class Limits(Loaded):
 
 
 PINION_SHIFT = to_choose(
-    number(0.3, -1, 2, zero=True), Steps(*(Fraction(n, 10) for n in (0, 6, 1)))
+    number(0.3, -1, 2, zero=True), Steps(*(Fraction(n, 10) for n in (0, 6, 1))), between=True
 )
 
 
 SHIFT_SUM = to_choose(
     number(0.5, Fraction(-1, 2), Fraction(3, 2), zero=True),
     Steps(*(Fraction(n, 10) for n in (0, 10, 2))),
+    between=True,
 )
 
 
@@ -316,7 +317,7 @@ class ShiftTable(Table):
         None,
         description="Profile shift of the pinions instead of a rule, the wheels' follow from the "
         "distance: a number, or several to choose from, a list or a range { from = 0, to = 0.6, "
-        "step = 0.1 }",
+        "step = 0.1 }; of real-valued sizes, without [teeth], a range without a step",
     )
     sum: Annotated[Choice | None, SHIFT_SUM] = Field(
         None,
@@ -346,6 +347,15 @@ class ShiftTable(Table):
         """The rule and its limits in plain numbers."""
         thin, contact = float(self.tip_thickness), float(self.contact_ratio)
         return Shifting(self.rule, thin, contact, float(self.specific_sliding))
+
+    @property
+    def ranges(self) -> tuple[tuple[float, float], tuple[float, float]] | None:
+        """Ends of x1 and of x1 + x2 of real-valued sizes; None: neither a number nor a range."""
+        held = self.pinion_shift, self.sum
+        if not all(isinstance(value, Fraction | Between) for value in held):
+            return None
+        first, second = (values_of(value) for value in held if value is not None)
+        return (float(first[0]), float(first[-1])), (float(second[0]), float(second[-1]))
 
 
 class Teeth(Table):
