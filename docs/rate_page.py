@@ -116,7 +116,7 @@ It prints:
 | overload | `overload_factor` is K_o | the same number is K_A |
 | accuracy | `quality`, `accuracy`: K_v | `accuracy_grade`: K_v, K_Hbeta, K_Halpha |
 | mounting | `mounting`, `crowned`, `adjusted` | `helix_modification` |
-| steel | `treatment`, `grade` | `iso_material` or `treatment`; `iso_quality`, `iso_core` |
+| steel | `steel`, or `treatment`, `grade` | `steel`, or `iso_material`, `iso_quality`, `iso_core` |
 | reliability | `reliability`: K_R | that of the strengths, 99 % or more |
 | oil, roughness | | `oil_grade`, `flank_rz` (or 6 `roughness`), `root_rz` |
 | given, all stages | `[rating.given]` | `[rating.iso6336.given]` |
@@ -148,6 +148,24 @@ is printed: `iso_tr_6336_30.toml` and `wind_pair.toml`.
   Deviations are in µm or µin, stiffnesses in N/(mm µm) or lbf/(in µin); `--json` has both in mm and
   MPa, as its key `unit` says.
 - Power capacity by ISO is rated at that power: K_v and the other load factors depend on the load.
+
+## Steels by name
+
+`steel = "16MnCr5"` of a gear, of `[gears]` or of a `[[material]]` stands for its treatment, grade
+and hardness by AGMA 2001 and its class and quality by ISO 6336-5; a key beside it goes before.
+`gearopt materials` lists 68 steels and irons by their EN, AISI or SAE and JIS names, each with
+its sources; `gearopt materials 42CrMo4` one of them. Of several treatments of a steel the first
+one counts (42CrMo4: quenched and tempered), unless `treatment` or `iso_material` names another.
+The least hardness of its range counts for which the standards have strengths, unless the file
+gives one. Class, quality and grade are those usual for the treatment; no source prints them
+beside a steel, and the supplier's certificate decides: they are unverified, as rows of fewer than
+two sources are.
+
+What the steel does not reach is told with the rating: a hardness outside its range, the hardness
+of tempered steel in the section of the gear (R_m (1 - 0.26 lg(d/16 mm)) by DIN 743-2, from
+memory; d is the tip diameter or 1.5 face widths), the core of 16MnCr5 and 20MnCr5 above a module
+of 3 and 5 mm. So are a face width above 2 d1 or below 3 m_n and an overlap ratio between 0 and 1.
+Plastics are refused: VDI 2736 is not supported.
 
 ## A load spectrum
 

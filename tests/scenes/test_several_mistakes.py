@@ -57,8 +57,8 @@ gearopt: wrong.toml: bearings = {life = "20000 h"}: is not a key here. Nearest: 
 bearing_diameters and bearing_widths of [layout]
 gearopt: wrong.toml: gears.helix_angle = "95 deg": is above 45 deg. Write, for example, \
 helix_angle = "25 deg"
-gearopt: wrong.toml: stage[1].material = "16MnCr5": is not a key here. Nearest: treatment, grade \
-and hardness of a gear, or tables [[material]] to choose from, with a [rating]
+gearopt: wrong.toml: stage[1].material = "16MnCr5": is not a key here. Nearest: steel, or \
+treatment, grade and hardness of a gear, or tables [[material]] to choose from, with a [rating]
 gearopt: wrong.toml: limits.k_factor = "2 N": has the unit N of force; units of stress: MPa, Pa, \
 kPa, GPa, bar, N/mm^2, psi, ksi. Write, for example, k_factor = "2.07 MPa"
 gearopt: wrong.toml: limits.pinion_teeth: is missing. Write, for example, pinion_teeth = [20, 40]
@@ -167,7 +167,7 @@ def test_the_command_refuses_random_mistakes(here, tmp_path):
         ("limits", "safety_factor = 1.5", "minimum_bending_safety"),
         ("duty", "service_factor = 1.25", "multiply duty.power by the factor"),
         ("gears", 'lubricant = "VG 220"', "oil_grade of [rating.iso6336]"),
-        ("gears", 'steel = "16MnCr5"', "treatment, grade and hardness"),
+        ("gears", 'material = "16MnCr5"', "steel, or treatment, grade and hardness"),
         ("duty", 'output-torque = "900 N m"', "power is torque times angular speed"),
     ],
 )

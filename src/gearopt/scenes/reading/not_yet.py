@@ -76,7 +76,9 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
     "drive": {
         _but_keys(CENTRES): "Nearest: centre_distance of a [[stage]], or objective.minimise = "
         '"sum_of_centre_distances", or a [[place]] beside [layout], which says where a shaft is',
-        _but_keys(MATERIAL + " " + STRESS): "Nearest: treatment, grade and hardness of a gear, or "
+        _but_keys(
+            MATERIAL + " " + STRESS
+        ): "Nearest: steel, or treatment, grade and hardness of a gear, or "
         "tables [[material]] to choose from, with a [rating]",
         SAFETY: "Nearest: minimum_bending_safety and minimum_contact_safety of [rating], which "
         "limit sizes where [limits] has no k_factor and unit_load",

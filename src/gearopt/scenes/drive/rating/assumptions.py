@@ -8,6 +8,7 @@ from gearopt.physics.iso6336.case import Practice
 from gearopt.scenes.drive.rating.iso_material import steel
 from gearopt.scenes.drive.rating.materials import Named, choices, unused
 from gearopt.scenes.drive.rating.options import by
+from gearopt.scenes.drive.rating.steels import chosen
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.rating import GearTable, RatingTable
 
@@ -22,6 +23,7 @@ def rating_assumptions(scene: Scene) -> list[str]:
         "Torques and forces are those without losses.",
         "The standards themselves were not read: formulas and values are those of textbooks, "
         "tables and public programs; those from a single source are marked unverified.",
+        *_named_steels(scene),
         *(_agma_assumptions(scene, asked) if agma else []),
         *(_iso_assumptions(scene, asked) if iso else []),
         "Scuffing, micropitting, wear, shafts and bearings are not rated.",
@@ -30,6 +32,23 @@ def rating_assumptions(scene: Scene) -> list[str]:
     ]
     unstated = _unstated(asked, agma, iso)
     return [*sentences, f"Not in the file: {', '.join(unstated)}."] if unstated else sentences
+
+
+def _named_steels(scene: Scene) -> list[str]:
+    """Sentences on the steels that gears have by name: their treatment, hardness, sources."""
+    used = dict.fromkeys(one for table, _ in every_gear(scene) if (one := chosen(table)))
+    if not used:
+        return []
+    each = (
+        f"{one.name}, {one.heat}, {one.hardness[0]:g} to {one.hardness[1]:g} {one.unit} "
+        f"({'two sources or more' if one.verified else 'unverified'})"
+        for one in used
+    )
+    return [
+        f"Steels by name: {'; '.join(each)}. The least hardness counts for which the standards "
+        "have strengths, unless the file gives one; class, quality and grade are those usual for "
+        "the treatment (unverified: the supplier's certificate decides)."
+    ]
 
 
 def _agma_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
@@ -62,7 +81,7 @@ def _iso_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
     chosen = dict.fromkeys(
         f"{table.treatment or 'none given'} as {steel(table).name}"
         for table, _ in every_gear(scene)
-        if table.iso_material is None
+        if table.iso_material is None and table.steel is None
     )
     helix = asked.iso6336.helix_modification
     modified = "without helix modification" if helix == "none" else f"helix modification: {helix}"

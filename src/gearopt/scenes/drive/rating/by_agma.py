@@ -64,6 +64,7 @@ def material(table: GearTable) -> str:
     """Return a gear's material in words."""
     assert table.treatment
     words = [table.treatment, f"grade {table.grade or 1}"]
+    words = [table.steel, *words] if table.steel else words
     core = " core" if CURVES.get(table.treatment) == "nitrided" else ""
     words += [f"{table.hardness}{core}"] if table.hardness else []
     words += [table.surface_hardness] if table.surface_hardness else []

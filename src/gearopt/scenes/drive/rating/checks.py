@@ -339,6 +339,10 @@ def _check_hands(gears: Gears, stages: Sequence[StageTable]) -> None:
 
 def _check_material(gear: GearTable, place: Place, given: dict[str, Any]) -> None:
     """Refuse a gear whose material has no strength in ISO 6336-5."""
+    if gear.steel and gear.iso_material is None:
+        rule = "has no class of ISO 6336-5"
+        tell = "Give sigma_Hlim and sigma_Flim, and an iso_material for its life, without steel"
+        raise refuse(rule, tell, (*place, "steel"), "tell")
     if gear.treatment is None and gear.iso_material is None:
         rule = "is missing: a rating needs the material of every gear (or give treatment)"
         raise refuse(rule, "Eh", (*place, "iso_material"), "sample")
@@ -363,8 +367,12 @@ def _check_material(gear: GearTable, place: Place, given: dict[str, Any]) -> Non
 
 def _check_steel(gear: GearTable, place: Place, given: dict[str, Any]) -> None:
     """Refuse a gear whose steel has no strength in the tables, unless that is given."""
+    if gear.steel and gear.treatment is None:
+        rule = "has no strength by AGMA 2001, which has tables of four kinds of steel alone"
+        tell = 'Write standard = "iso6336" in [rating], or another steel'
+        raise refuse(rule, tell, (*place, "steel"), "tell")
     if gear.treatment is None:
-        rule = "is missing: a rating needs the steel of every gear"
+        rule = "is missing: a rating needs the steel of every gear (or give steel)"
         raise refuse(rule, "through-hardened", (*place, "treatment"), "sample")
     hardness = gear.hardness.value if gear.hardness else 0.0
     if not hardness and gear.treatment in NEED_HARDNESS:

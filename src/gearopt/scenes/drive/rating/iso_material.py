@@ -53,6 +53,7 @@ def material(table: GearTable) -> str:
     kind = steel(table)
     hardness = table.flank_hardness or (table.hardness if kind.hardness else None)
     words = [kind.name, kind.quality, *([str(hardness)] if hardness else [])]
+    words = [table.steel, *words] if table.steel else words
     words += [f"core {table.iso_core}"] if table.iso_core and kind.by_core else []
     words += [f"grade {table.accuracy_grade}"] if table.accuracy_grade is not None else []
     return ", ".join(words)

@@ -7,12 +7,21 @@ from typing import Annotated, Any
 from pydantic import Field, create_model
 
 from gearopt.physics.gears import MEMBERS
+from gearopt.scenes.drive.rating.steels import check_steel, of_steel
 from gearopt.scenes.drive.tables.rating import GearKeys, GearTable, with_shared
 from gearopt.scenes.reading.fields import Table, number, quantity, refuse, words
 from gearopt.units import Quantity
 
 STEEL = (  # keys of a gear that its material has
-    *("treatment", "grade", "hardness", "surface_hardness", "elastic_modulus", "poisson_ratio"),
+    *(
+        "steel",
+        "treatment",
+        "grade",
+        "hardness",
+        "surface_hardness",
+        "elastic_modulus",
+        "poisson_ratio",
+    ),
     *("iso_material", "iso_quality", "iso_core", "flank_hardness", "yield_strength"),
 )
 MADE = ("quality", "accuracy_grade")  # keys that a material may have, else the gear
@@ -56,8 +65,10 @@ def choices(
     known = {material.name: material for material in materials}
     allowed = [known[name] for name in names(own, shared)]
     if not allowed:
-        return ((table, None),)
-    return tuple((table.model_copy(update=_of(material)), material) for material in allowed)
+        return ((of_steel(table), None),)
+    return tuple(
+        (of_steel(table.model_copy(update=_of(material))), material) for material in allowed
+    )
 
 
 def _of(material: Named) -> dict[str, Any]:
@@ -80,7 +91,10 @@ def check_materials(
             remedy = f"Rename this one or material[{known.index(name) + 1}]: gears choose by name"
             rule = f"is that of material[{known.index(name) + 1}], too"
             raise refuse(rule, remedy, ("material", k, "name"), "tell")
+    for k, one in enumerate(materials):
+        check_steel(one, ("material", k))
     for place, table in _tables(stages, gears):
+        check_steel(table, place)
         for name in table.materials or ():
             if name not in known:
                 remedy = f"Known: {', '.join(known)}" if known else "Write a table [[material]]"

@@ -13,6 +13,7 @@ from gearopt.physics.agma.rating_factors import EDITIONS
 from gearopt.scenes.drive.tables.blanks import BlankKeys, beside
 from gearopt.scenes.drive.tables.given import Given
 from gearopt.scenes.drive.tables.iso6336 import ISO_KEYS, IsoGearKeys, IsoTable
+from gearopt.scenes.drive.tables.steel_names import steel_name
 from gearopt.scenes.reading.fields import (
     Table,
     advised,
@@ -38,7 +39,15 @@ Stresses = Annotated[
     tuple[Quantity, Quantity] | None, each_gear(quantity("stress", "220 MPa", "10 GPa"))
 ]
 MATERIAL = (  # keys of a gear that only a rating needs
-    *("treatment", "grade", "hardness", "surface_hardness", "elastic_modulus", "poisson_ratio"),
+    *(
+        "steel",
+        "treatment",
+        "grade",
+        "hardness",
+        "surface_hardness",
+        "elastic_modulus",
+        "poisson_ratio",
+    ),
     *("roughness", "reversed_load", "contacts", "materials", "quality"),
     *ISO_KEYS,
 )
@@ -61,6 +70,7 @@ TREATMENT = choice(
         "where they are not",
     ),
 )
+STEEL_NAME = steel_name()
 HARDNESS = advised(
     quantity("hardness", "240 HB", "800 HB"),
     {
@@ -124,8 +134,13 @@ class GearKeys(BlankKeys, IsoGearKeys):
         None,
         description="Protuberance of the tool in normal modules; by default 0",
     )
+    steel: Annotated[str | None, STEEL_NAME] = Field(
+        None,
+        description="Steel or iron by name or number (gearopt materials lists them), which sets "
+        "treatment, grade, hardness and the material of ISO 6336-5 where these are not given",
+    )
     treatment: Annotated[str | None, TREATMENT] = Field(
-        None, description="Heat treatment of the steel; a rating needs it"
+        None, description="Heat treatment of the steel; a rating needs it (or steel)"
     )
     grade: Annotated[int | None, GRADE] = Field(
         None, description="Metallurgical grade of AGMA; by default 1"
@@ -191,7 +206,21 @@ class GearTable(GearKeys):
         return self
 
 
-SAID_BY = tuple((name, beside(name)) for name in GearKeys.model_fields)  # and what says the same
+KIND = ("steel", "treatment", "iso_material")  # of a gear, each of which says what it is made of
+OF_STEEL = (  # what a steel of the gear's own leaves of another one's
+    *("grade", "hardness", "surface_hardness", "iso_quality", "iso_core", "flank_hardness"),
+    "yield_strength",
+)
+
+
+def _said_by(name: str) -> tuple[str, ...]:
+    """Keys of a gear that say the same as one, or take its place."""
+    if name == "steel":
+        return KIND
+    return (*beside(name), *(("steel",) if name in (*KIND, *OF_STEEL) else ()))
+
+
+SAID_BY = tuple((name, _said_by(name)) for name in GearKeys.model_fields)
 
 
 def with_shared(own: GearTable, shared: GearKeys) -> GearTable:

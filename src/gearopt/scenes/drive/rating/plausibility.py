@@ -1,0 +1,69 @@
+"""What is unusual about rated gears, told beside their rating: proportions, steel against size."""
+
+from collections.abc import Iterator, Sequence
+
+from gearopt.physics.gears import MEMBERS, Gear, GearPair
+from gearopt.scenes.drive.rating.gears import Tables
+from gearopt.scenes.drive.rating.steels import chosen
+from gearopt.scenes.drive.tables.rating import GearTable
+
+WIDEST, NARROWEST = 2.0, 3.0  # b/d1 and b/m_n, beyond which gears are unusual (books; unverified)
+PLATE = 1.5  # diameter of a bar that hardens as a plate of a thickness does (EN 10083; memory)
+
+
+def unusual(pairs: Sequence[GearPair], tables: Sequence[Tables]) -> Iterator[str]:
+    """Yield sentences on what is unusual about pairs of floats; tables: of their gears."""
+    for k, (pair, both) in enumerate(zip(pairs, tables, strict=True), 1):
+        yield from _proportions(pair, k)
+        for member, gear, table in zip(MEMBERS, pair.gears, both, strict=True):
+            yield from _of_steel(table, gear, f"the {member} of stage {k}")
+
+
+def _proportions(pair: GearPair, stage: int) -> Iterator[str]:
+    width = float(pair.face_width)
+    over = width / float(pair.pinion.reference_diameter)
+    if over > WIDEST:
+        yield (
+            f"The face width of stage {stage} is {over:.3g} d1: above {WIDEST:g} little of it "
+            "carries, as shafts bend and twist."
+        )
+    over = width / float(pair.normal_module)
+    if over < NARROWEST:
+        yield (
+            f"The face width of stage {stage} is {over:.3g} m_n: below {NARROWEST:g} it is too "
+            "narrow for the laws of the rating, which are those of usual gears."
+        )
+    overlap = float(pair.overlap_ratio)
+    if 0.0 < overlap < 1.0 - 1e-9:
+        yield (
+            f"The overlap ratio of stage {stage} is {overlap:.3g}: below 1 helical gears run "
+            "little quieter than spur gears, with their axial forces."
+        )
+
+
+def _of_steel(table: GearTable, gear: Gear, where: str) -> Iterator[str]:
+    """Yield where the hardness of a gear is not that of the steel that it names, or its core."""
+    steel = chosen(table)
+    if steel is None:
+        return
+    asked = table.flank_hardness if steel.hardened else table.hardness
+    low, high = steel.hardness
+    value = 0.0 if asked is None else asked.value
+    size = min(float(gear.tip_diameter), PLATE * float(gear.face_width))
+    reached = steel.hardness_at(size)
+    if asked is not None and not low <= value <= high:
+        yield (
+            f"{table.steel} is {steel.heat} to {low:g} to {high:g} {steel.unit} as a rule; "
+            f"{where} is rated with {asked}."
+        )
+    elif reached is not None and reached < value:
+        yield (
+            f"In the section of {where}, as a bar of {size:.3g} mm, {table.steel} reaches some "
+            f"{reached:.0f} HB (DIN 743-2, unverified); it is rated with {asked}."
+        )
+    if steel.module is not None and gear.normal_module > steel.module and table.iso_quality != "ML":
+        yield (
+            f"The core of {table.steel} reaches 25 HRC to a module of {steel.module:g} mm or so; "
+            f'{where} has {gear.normal_module:g} mm: rate it with iso_quality = "ML" unless its '
+            "core is certified."
+        )
