@@ -49,8 +49,8 @@ def test_the_terminal_has_the_printed_numbers():
     rating = shown.partition("Life")[0]
     assert re.search(r"^pinion .* 1,301\.3 .* 1\.028$", rating, re.M)
     assert re.search(r"^wheel .* 1,301\.3 .* 1\.087$", rating, re.M)
-    assert re.search(r"^K_Hβ +face load, contact +1\.1[56]\d\d *$", shown, re.M)
-    assert re.search(r"^Z_ε +contact ratio, contact +0\.803\d+ *$", shown, re.M)
+    assert re.search(r"^K_Hβ +face load factor +1\.1[56]\d\d *$", shown, re.M)
+    assert re.search(r"^Z_ε +contact ratio factor +0\.803\d+ *$", shown, re.M)
     assert re.search(r"^σ_Flim \[MPa\] .* 425 +425 +unverified$", shown, re.M)
     assert "σ_Flim: read from pictures of the table." in shown
 

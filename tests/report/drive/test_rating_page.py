@@ -139,7 +139,7 @@ def test_the_terminal_has_every_factor_and_what_is_given_or_unverified():
     for symbol in rows(cases.train(), "factors"):
         assert symbol == "symbol" or re.search(rf"^{symbol} ", single, re.M)
         assert symbol == "symbol" or re.search(rf"^{symbol} ", several, re.M)
-    assert re.search(r"^J +geometry, bending +0\.3 +0\.4 +given$", single, re.M)
+    assert re.search(r"^J +geometry factor, bending +0\.3 +0\.4 +given$", single, re.M)
     assert re.search(r"^I .*unverified$", several, re.M) and "unverified" not in single.lower()
     assert "F_t 732.94 N" in single and "F_t 164.77 lbf" in told(cases.shigley(), INCH)
 

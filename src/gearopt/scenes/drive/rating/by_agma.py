@@ -18,23 +18,23 @@ from gearopt.scenes.drive.tables.rating import GearTable, RatingTable
 __all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
 __all__ += ["NAME", "UNVERIFIED_SPECTRUM", "LIMIT", "bare_practice", "practice", "steel", "title"]
 NAME = "AGMA"  # in short
-NAMES = {
-    "K_o": "overload",
-    "K_v": "dynamic",
-    "K_m": "load distribution",
-    "K_R": "reliability",
-    "K_T": "temperature",
-    "C_f": "surface condition",
+NAMES = {  # of the factors, as AGMA 2001 has them
+    "K_o": "overload factor",
+    "K_v": "dynamic factor",
+    "K_m": "load distribution factor",
+    "K_R": "reliability factor",
+    "K_T": "temperature factor",
+    "C_f": "surface condition factor",
     "C_p": "elastic coefficient",
-    "I": "geometry, pitting",
-    "K_B": "rim thickness",
-    "K_s": "size",
-    "J": "geometry, bending",
+    "I": "geometry factor, pitting",
+    "K_B": "rim thickness factor",
+    "K_s": "size factor",
+    "J": "geometry factor, bending",
     "s_at": "allowable bending stress number",
     "s_ac": "allowable contact stress number",
-    "Y_N": "stress cycles, bending",
-    "Z_N": "stress cycles, pitting",
-    "C_H": "hardness ratio",
+    "Y_N": "stress cycle factor, bending",
+    "Z_N": "stress cycle factor, pitting",
+    "C_H": "hardness ratio factor",
 }
 UNITS = {"s_at": "MPa", "s_ac": "MPa", "C_p": "sqrt_MPa"}  # as suffixes of keys
 TITLES = {  # by edition

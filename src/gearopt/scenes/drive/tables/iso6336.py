@@ -17,46 +17,50 @@ from gearopt.scenes.reading.fields import Table, advised, choice, number, quanti
 from gearopt.scenes.reading.lists import each_gear
 from gearopt.units import Quantity
 
-NAMES = {  # of the factors
-    "K_A": "application",
-    "K_gamma": "mesh load, of several paths",
-    "K_v": "dynamic",
-    "K_Hbeta": "face load, contact",
-    "K_Fbeta": "face load, bending",
-    "K_Halpha": "transverse load, contact",
-    "K_Falpha": "transverse load, bending",
+NAMES = {  # of the factors, as ISO 6336 has them
+    "K_A": "application factor",
+    "K_gamma": "mesh load factor",
+    "K_v": "dynamic factor",
+    "K_Hbeta": "face load factor",
+    "K_Fbeta": "face load factor",
+    "K_Halpha": "transverse load factor",
+    "K_Falpha": "transverse load factor",
     "c_prime": "single stiffness",
     "c_gamma_alpha": "mean mesh stiffness",
     "c_gamma_beta": "mesh stiffness for K_Hbeta",
     "N": "resonance ratio",
     "f_pb": "base pitch deviation",
     "f_falpha": "profile form deviation",
-    "f_ma": "misalignment, manufacture",
+    "f_ma": "manufacturing misalignment",
     "C_a": "tip relief",
-    "Z_H": "zone",
-    "Z_E": "elasticity",
-    "Z_eps": "contact ratio, contact",
-    "Z_beta": "helix angle, contact",
-    "Y_beta": "helix angle, bending",
-    "Y_DT": "deep tooth",
+    "Z_H": "zone factor",
+    "Z_E": "elasticity factor",
+    "Z_eps": "contact ratio factor",
+    "Z_beta": "helix angle factor",
+    "Y_beta": "helix angle factor",
+    "Y_DT": "deep tooth factor",
     "Y_ST": "stress correction, test gear",
-    "Z_X": "size, contact",
-    "Z_BD": "single pair tooth contact",
-    "Z_NT": "life, contact",
-    "Z_L": "lubricant",
-    "Z_v": "velocity",
-    "Z_R": "roughness",
-    "Z_W": "work hardening",
+    "Z_X": "size factor",
+    "Z_BD": "single pair contact factor",
+    "Z_NT": "life factor",
+    "Z_L": "lubricant factor",
+    "Z_v": "velocity factor",
+    "Z_R": "roughness factor",
+    "Z_W": "work hardening factor",
     "sigma_Hlim": "allowable stress number",
-    "Y_F": "form",
-    "Y_S": "stress correction",
-    "Y_B": "rim thickness",
-    "Y_NT": "life, bending",
+    "Y_F": "form factor",
+    "Y_S": "stress correction factor",
+    "Y_B": "rim thickness factor",
+    "Y_NT": "life factor",
     "Y_deltarelT": "relative notch sensitivity",
-    "Y_RrelT": "relative surface",
-    "Y_X": "size, bending",
-    "Y_M": "mean stress",
+    "Y_RrelT": "relative surface factor",
+    "Y_X": "size factor",
+    "Y_M": "mean stress influence factor",
     "sigma_Flim": "nominal stress number",
+}
+OF = {  # what a factor of the same name as another one is for
+    **dict.fromkeys(("K_Hbeta", "K_Halpha", "Z_beta", "Z_X", "Z_NT"), ", contact stress"),
+    **dict.fromkeys(("K_Fbeta", "K_Falpha", "Y_beta", "Y_X", "Y_NT"), ", tooth root stress"),
 }
 READS = {  # by unit of a factor
     "": number(1.1, 0, 10**6),
@@ -93,9 +97,8 @@ def _field(symbol: str) -> Any:
     kind: Any = Fraction if CLAUSES[symbol][1] == "" else Quantity
     if symbol in PAIRED:
         kind, reads = tuple[kind, kind], each_gear(reads)
-    text, comma, of = NAMES[symbol].partition(",")
-    described = text[0].upper() + text[1:] + " factor" * (symbol[0] in "KYZ") + comma + of
-    return (Annotated[kind | None, reads], Field(None, description=described))
+    words = NAMES[symbol] + OF.get(symbol, "")
+    return (Annotated[kind | None, reads], Field(None, description=words[0].upper() + words[1:]))
 
 
 IsoGiven = create_model(
