@@ -191,7 +191,7 @@ FORMULAS = (
     ("Y_X", "1.05 - 0.01 m_n and two more", "part 3, 15", "`bending_factors.size_factor`"),
     (
         "Z_NT, Y_NT",
-        "straight in log-log from static to reference strength, to 0.85 at 1e10 cycles",
+        "straight in log-log from static to reference strength, to `life_factor_at_1e10` (0.85)",
         "parts 2, 3",
         "`curves`",
     ),

@@ -263,7 +263,7 @@ def test_weight_is_mass_and_volume_is_asked_back():
         ("[[stage]]", 'module = "7 in"', 'is a module of 177.8 mm. Write "7 1/in" for a diametral'),
         ("[[stage]]", 'diametral_pitch = "8 DP"', "Write diametral_pitch = 8, without a unit"),
         ("[[stage]]", "pinion_teeth = -20", "Write pinion_teeth = 20"),
-        ("[gears]", "sigma_Hlim = 1500", "belongs in another table. Write sigma_Hlim, or sigma"),
+        ("[gears]", "sigma_Hlim = 1500", 'Write sigma_Hlim = "1500 MPa"'),
         ("[[stage]]", 'pressure_angle = "50 deg"', "is above 45 deg"),
         ("[gears]", "poisson_ratio = 2", "Write, for example, poisson_ratio = 0.3"),
         ("[gears]", "poisson_ratio = -0.25", "Write poisson_ratio = 0.25"),

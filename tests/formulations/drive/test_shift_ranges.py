@@ -18,7 +18,7 @@ from gearopt.formulations.drive.rated_continuous.boxes import bounded, first_box
 from gearopt.formulations.drive.rated_continuous.cells import _halves
 from gearopt.formulations.drive.shares import objective_share
 from gearopt.formulations.drive.toothing import Toothing
-from gearopt.formulations.strength.cells import LOWER, UPPER
+from gearopt.formulations.strength.cells import LOWER, UPPER, Cells
 from gearopt.optimise.result import Budget
 from gearopt.optimise.solve import solve
 from gearopt.physics.gears import Rack
@@ -73,6 +73,55 @@ def test_no_design_needs_less_than_its_cell(name, helices, width, seed):
             for below, true in zip(least, exact, strict=True):
                 rated = np.isfinite(true) & good
                 assert (below / true)[rated].max() <= 1.0 + 1e-10
+
+
+INSIDE = [  # z1, u, x1 and x1 + x2 of cells whose least is inside, and where in z1 and u it is
+    ((21.42 * math.exp(-0.3), 21.42 * math.exp(0.3)), (5.27, 5.27), 0.752, 0.036, 0.43, 0.5),
+    ((29.41 * math.exp(-0.15), 29.41 * math.exp(0.15)), (6.8, 6.8), 0.565, -0.022, 0.6, 0.5),
+]
+
+
+@pytest.mark.parametrize(("teeth", "ratio", "x1", "total", "part", "other"), INSIDE)
+def test_shifted_teeth_need_least_within_a_range_of_teeth(teeth, ratio, x1, total, part, other):
+    """I of AGMA 908 rises and falls with z1 at a large x1: its corners are no bound."""
+    z, u = np.array(teeth)[:, None], np.array(ratio)[:, None]
+    same, both = np.ones((2, 1)), np.zeros((2, 1))
+    d, cut = 60.0 * same, shifting(0.0)
+    ranges = {"pinion_shift": both + x1, "shift_sum": both + total}
+    sizes = d, d * u, d / z[::-1], 0.6 * d, 0.6 * same
+    cells = Cells(cut, z, u, *sizes, 5e5 * same, 100.0 * same, ranges)
+    own = replace(cut, pinion_shift=np.full(1, x1), shift_sum=np.full(1, total))
+    teeth_at = z[0] ** (1.0 - part) * z[1] ** part
+    pair = own.of_diameter(d[0] / teeth_at, teeth_at, d[0], u[0], 0.6 * d[0])
+    assert kept(pair).all()
+    standard = STANDARDS["agma"]
+    exact = needed_by(standard, pair, np.full(1, 5e5), np.full(1, 100.0), SAFETY)
+    assert standard.needed(cells, SAFETY)[0] <= exact[0]
+
+
+@pytest.mark.parametrize(("ratio", "x1"), [(1.68688, 0.405059), (2.101256, 0.409616)])
+def test_cells_of_wide_ratios_keep_their_teeth(ratio, x1):
+    """What is left of a limit of sliding has a peak within the range of u."""
+    cut = shifting(0.0, Rack())
+    z, u = np.full((2, 1), 12.0), np.array([[1.5445], [4.6336]])
+    d, total = np.full((2, 1), 60.0), np.full((2, 1), 0.49882)
+    ranges = {"pinion_shift": np.array([[-0.18378], [0.41622]]), "shift_sum": total}
+    sizes = d, d * u, d / z[::-1], 0.6 * d, np.full((2, 1), 0.6)
+    cells = Cells(cut, z, u, *sizes, 1e4 * d, d, ranges)
+    own = replace(cut, pinion_shift=np.full(1, x1), shift_sum=total[0])
+    pair = own.of_diameter(np.full(1, 5.0), z[0], d[0], np.full(1, ratio), 36.0)
+    assert kept(pair).all() and rated_boxes._may_be_made(rated_drive_stage(cut), cells).all()
+
+
+@pytest.mark.parametrize("name", ["agma", "iso"])
+def test_a_drive_whose_teeth_all_exceed_their_limits_is_impossible(name):
+    train = ranging(
+        rated_drive(4, [FREE], options=by(name), pinion_teeth=(8, 9), helix=0.0),
+        (-0.3, -0.2),
+        (0.0, 0.1),
+    )
+    result = solve(continuous_sizing.problem(train), budget=Budget(5.0))
+    assert result.status == "infeasible"
 
 
 def rated_drive_stage(cut):

@@ -157,11 +157,11 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         'rating.edition = "2019"',
         "that of ISO 6336 is edition of [rating.iso6336]",
     ),
-    "strength of a gear": (
-        TREATMENT,
-        f'{TREATMENT}\nsigma_Hlim = "1500 MPa"',
-        'gears.sigma_Hlim = "1500 MPa"',
-        "sigma_Hlim, or sigma_Flim of bending, in [rating.iso6336.given]",
+    "strength of a stage": (
+        "[[stage]]",
+        '[[stage]]\nsigma_Hlim = "1500 MPa"',
+        'stage[1].sigma_Hlim = "1500 MPa"',
+        "sigma_Hlim, or sigma_Flim of bending, of a gear",
     ),
     **{
         f"{symbol} below 1": (

@@ -46,6 +46,7 @@ def test_real_valued_sizes_choose_from_all_shifts_of_ranges(tmp_path):
         (RANGES.replace("pinion_shift", "#"), "", "", "need such a range of pinion_shift, too"),
         (RANGES.replace("0.6 }", "0.6, step = 0.2 }"), "", "", "Write pinion_shift as a number"),
         (RANGES.replace("0, to = 1 ", "1, to = 0 "), "", "", "ends in the wrong order"),
+        (RANGES, "[[stage]]\n", "[[stage]]\nwheel.tool_tip_radius = 0.05\n", "tip radius of 0.1"),
         (RANGES, "[[stage]]\n", "[[stage]]\nwheel.bore = '20 mm'\n", "solid gears"),
         (RANGES, "[[stage]]\n", "[[load]]\nshare='1'\npower='1 kW'\n[[stage]]\n", "one load and"),
         (RANGES + "[objective]\nminimise = 'total_length'\n", "", "", "moves the centre distance"),

@@ -177,7 +177,7 @@ def variables(train: Train) -> tuple[Var, ...]:
             u = numbers.wheel_low[k] / z
         proportion = min(numbers.width_high[k], 1.0)
         cosine = numbers.helix_cosine[k]
-        unit = stage.toothing.of_diameter(cosine / z, z, 1.0, u, proportion)
+        unit = stage.toothing.by_reference.of_diameter(cosine / z, z, 1.0, u, proportion)
         law = train.law if stage.allowable else K_FACTOR
         allowable = (stage.allowable or (TYPICAL,))[0]
         load = law.indices(unit, torque, train.speed_at(torque))[0] / allowable

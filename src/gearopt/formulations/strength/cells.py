@@ -1,6 +1,6 @@
 """Cells of designs of a stage, over which ratings are bounded from below."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
 from itertools import chain, product
 from typing import Any
@@ -105,56 +105,62 @@ class Cells:
     def teeth_alone(self, law: Callable[[GearPair], dict[str, Any]]) -> dict[str, Array]:
         """Ranges (2, n) by name of quantities that follow from the teeth alone.
 
-        Thickness allowances are lengths: of teeth that have some the module counts, too. Along each
-        of `ranges` they are widened by what the middle is off the mean, ROUNDER times.
+        Thickness allowances are lengths: of teeth that have some the module counts, too. Corners
+        need not be the extremes along `ranges`, nor along any side where teeth have profile shifts:
+        ranges are widened by what the middle is off the mean of the ends there, ROUNDER times.
         """
-        thinner = any(self.toothing.thickness_allowances)
-        module = self.module if thinner else np.ones_like(self.module)
-        rows = np.stack([*self.teeth, *self.ratio, *module, *chain(*self.ranges.values())])
+        toothing = self.toothing
+        sides = {"teeth": self.teeth, "ratio": self.ratio}
+        if any(toothing.thickness_allowances):
+            sides["module"] = self.module
+        sides |= self.ranges
+        rows = np.stack([*chain(*sides.values())])
         order = np.lexsort(rows)
         fresh = np.append(True, np.any(np.diff(rows[:, order]) != 0.0, axis=0))
-        teeth, ratio, module, *between = rows[:, order[fresh]].reshape(len(rows) // 2, 2, -1)
         place = np.empty(len(order), int)
         place[order] = np.cumsum(fresh) - 1
-        corners = list(product(teeth, ratio, module if thinner else module[:1]))
-        several = [not np.array_equal(*ends) for ends in between]
-        places, arms = _places(sum(several))
-        at_ends, fields = zip(*places, strict=True), {}
-        for name, ends, many in zip(self.ranges, between, several, strict=True):
+        held = rows[:, order[fresh]].reshape(len(sides), 2, -1)
+        several = [not np.array_equal(*ends) for ends in held]
+        shifted = toothing.shifting is not None or any(toothing.profile_shifts)
+        wide = [name for name, many in zip(sides, several, strict=True) if many]
+        places, arms = _places([shifted or name in self.ranges for name in wide])
+        at_ends, columns = zip(*places, strict=True), {}
+        for name, ends, many in zip(sides, held, several, strict=True):
             at = next(at_ends) if many else (LOWER,) * len(places)
-            values = np.stack([*ends, ends.mean(axis=0)])
-            fields[name] = np.concatenate([np.tile(values[k], len(corners)) for k in at])
-        z, u, m = (np.tile(np.concatenate(c), len(places)) for c in zip(*corners, strict=True))
-        quantities = law(self.toothing.at(fields).pair(m, z, z * u, m))
-        shape, outer = (len(places), len(corners), -1), 2 ** sum(several)
+            middle = ends.mean(axis=0) if name in self.ranges else 2.0 / (1.0 / ends).sum(axis=0)
+            values = np.stack([*ends, middle])
+            columns[name] = np.concatenate([values[k] for k in at])
+        z, u = columns.pop("teeth"), columns.pop("ratio")
+        m = columns.pop("module", np.ones_like(z))
+        quantities = law(toothing.at(columns).pair(m, z, z * u, m))
+        shape, corners = (len(places), -1), 2 ** sum(several)
         return {
-            name: _widened(np.broadcast_to(value, z.shape).reshape(shape), outer, arms)[:, place]
+            name: _widened(np.broadcast_to(value, z.shape).reshape(shape), corners, arms)[:, place]
             for name, value in quantities.items()
         }
 
 
-def _widened(values: Array, outer: int, arms: list[tuple[int, int, int]]) -> Array:
-    """Return the range (2, n) of values (places, corners, n), of which the first are `outer`.
+def _widened(values: Array, corners: int, arms: list[tuple[int, int, int]]) -> Array:
+    """Return the range (2, n) of values (places, n), of which the first are at the corners.
 
     It is widened by what the middles of lines are off the means of their ends, ROUNDER times.
     """
-    least, most = values[:outer].min(axis=(0, 1)), values[:outer].max(axis=(0, 1))
+    least, most = values[:corners].min(axis=0), values[:corners].max(axis=0)
     off = np.zeros_like(least)
     for middle, low, high in arms:
-        mean = 0.5 * (values[low] + values[high])
-        off = off + ROUNDER * np.abs(values[middle] - mean).max(axis=0)
+        off = off + ROUNDER * np.abs(values[middle] - 0.5 * (values[low] + values[high]))
     least = np.where(least > 0.0, np.maximum(least - off, 0.0), least - off)
     return np.stack([least, most + off])
 
 
-def _places(count: int) -> tuple[list[tuple[int, ...]], list[tuple[int, int, int]]]:
-    """Return places within so many ranges, the corners first, and the three of each middle line.
+def _places(lines: Sequence[bool]) -> tuple[list[tuple[int, ...]], list[tuple[int, int, int]]]:
+    """Return places on sides, the corners first, and the three of each middle line.
 
-    A middle line goes along one range, through the middle of the others: its middle, its ends.
+    lines: of which sides there is one, through the middle of the others: its middle, its ends.
     """
-    places = list(product((LOWER, UPPER), repeat=count))
-    middle, arms = (MIDDLE,) * count, []
-    for k in range(count):
+    places = list(product((LOWER, UPPER), repeat=len(lines)))
+    middle, arms = (MIDDLE,) * len(lines), []
+    for k in (k for k, drawn in enumerate(lines) if drawn):
         line = [(*middle[:k], end, *middle[k + 1 :]) for end in (MIDDLE, LOWER, UPPER)]
         places += [at for at in line if at not in places]
         first, second, third = map(places.index, line)

@@ -24,7 +24,8 @@ class Steel:
 
     hardness [HB]: of through-hardened steel, of the core of nitrided steel; of a wheel against a
     surface hardened pinion its own. surface: as in `allowables.CONTACT`; modulus E [MPa], poisson
-    nu; finish R_a [mm] of the flanks; reversed_load: for idlers, s_at times 0.7.
+    nu; finish R_a [mm] of the flanks; reversed_load: for idlers, s_at times 0.7. allowables: its
+    own s_ac and s_at [MPa], 0: those of the tables.
     """
 
     treatment: str = "through-hardened"
@@ -35,6 +36,7 @@ class Steel:
     poisson: float = 0.3
     finish: float = 0.8e-3
     reversed_load: bool = False
+    allowables: tuple[float, float] = (0.0, 0.0)
 
     @property
     def kind(self) -> str:
@@ -247,12 +249,15 @@ def _strength(case: Case, contact: bool) -> Factor:
     """Return s_ac or s_at of both gears."""
     made = []
     for steel in case.steels:
-        if case.practice.edition == "B88" and steel.treatment == "through-hardened":
+        own = steel.allowables[not contact]
+        if own:
+            made.append(allowables.Allowable(own, "given with the gear", True))
+        elif case.practice.edition == "B88" and steel.treatment == "through-hardened":
             old = allowables.contact_allowable_b88 if contact else allowables.bending_allowable_b88
             made.append(old(steel.grade, steel.hardness))
         elif contact:
-            own = steel.treatment, steel.grade, steel.hardness, steel.surface
-            made.append(allowables.contact_allowable(*own))
+            kind = steel.treatment, steel.grade, steel.hardness, steel.surface
+            made.append(allowables.contact_allowable(*kind))
         else:
             made.append(allowables.bending_allowable(steel.treatment, steel.grade, steel.hardness))
     used = [

@@ -298,7 +298,7 @@ class Shifting:
 
     @np.errstate(invalid="ignore", divide="ignore")
     def left(self, pair: GearPair) -> dict[str, Any]:
-        """What a pair leaves of the limits but interference, by name; negative: they are exceeded.
+        """What a pair leaves of the limits but interference, of each gear; negative: exceeded.
 
         Smooth in all sizes, in modules: of specific sliding, 1 - rho_2/(u rho_1) >= -s at the root
         of the pinion, as rho_1 + rho_2 is the line of action's a sin(alpha_wt).
@@ -306,16 +306,18 @@ class Shifting:
         module, path, u = pair.normal_module, contact_path(pair), pair.ratio
         line = sum(path.curvatures)
         lowest = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
-        roots = lowest[0] * (1.0 + u * (1.0 + self.sliding)) - line
-        roots = np.minimum(roots, lowest[1] * (u + 1.0 + self.sliding) - u * line)
-        thin = np.minimum(*(tip_thickness(gear) for gear in pair.gears))
-        cut = np.maximum(*(undercut_depth(gear) for gear in pair.gears))
-        return {
-            "tip_thickness": thin / module - self.tip_thickness,
-            "undercut": NEGLIGIBLE - cut / module,
-            "contact_ratio": path.transverse_ratio - self.contact_ratio,
-            "specific_sliding": roots / module,
-        }
+        roots = (
+            lowest[0] * (1.0 + u * (1.0 + self.sliding)) - line,
+            lowest[1] * (u + 1.0 + self.sliding) - u * line,
+        )
+        found = {"contact_ratio": path.transverse_ratio - self.contact_ratio}
+        for k, (gear, root) in enumerate(zip(pair.gears, roots, strict=True)):
+            found |= {
+                f"tip_thickness{k}": tip_thickness(gear) / module - self.tip_thickness,
+                f"undercut{k}": NEGLIGIBLE - undercut_depth(gear) / module,
+                f"specific_sliding{k}": root / module,
+            }
+        return found
 
     @np.errstate(invalid="ignore", divide="ignore")
     def used_by_gears(self, pair: GearPair) -> dict[str, Any]:

@@ -216,7 +216,7 @@ def _confirmed(material: Material, stress: str) -> bool:
 def _strength(stress: str) -> Callable[[Case, Values], Doubt]:
     def doubt(case: Case, values: Values) -> Doubt:
         within = all(strength(m, stress).within for m in case.materials)
-        known = all(_confirmed(m, stress) for m in case.materials)
+        known = all(m.own(stress) or _confirmed(m, stress) for m in case.materials)
         remark = "" if within else "hardness outside the range of its line: its end is taken"
         return known, remark or ("" if known else "read from pictures of the table")
 

@@ -99,7 +99,8 @@ class Material:
     hardness: Brinell of St, St cast, GTS, GGG, GG, else Vickers; core: of CORES, for Eh.
     yield_strength: yield point sigma_S or 0.2 % proof stress [MPa] of St and V, tensile strength of
     GG and GGG ferritic; 0: estimated. modulus E [MPa], poisson nu, density [t/mm3]; flank and root:
-    roughness R_z [mm]; reversed_load: of idlers, 0.7 of sigma_Flim.
+    roughness R_z [mm]; reversed_load: of idlers, 0.7 of sigma_Flim; limits: its own sigma_Hlim and
+    sigma_Flim [MPa], 0: those of table 1.
     """
 
     name: str = "Eh"
@@ -113,6 +114,11 @@ class Material:
     flank: float = 4.8e-3
     root: float = 20e-3
     reversed_load: bool = False
+    limits: tuple[float, float] = (0.0, 0.0)
+
+    def own(self, stress: str) -> float:
+        """Its own sigma_Hlim ("H") or sigma_Flim ("F") [MPa], 0 where it has none."""
+        return self.limits[stress == "F"]
 
     @property
     def family(self) -> str:
@@ -157,12 +163,14 @@ class Strength:
 
 
 def strength(material: Material, stress: str) -> Strength:
-    """Return sigma_Hlim ("H") or sigma_Flim ("F") [MPa] of a material.
+    """Return sigma_Hlim ("H") or sigma_Flim ("F") [MPa] of a material, its own where it has one.
 
     Beyond the range of its line the end of the range counts: nothing is extrapolated. ValueError
     for a material, quality or core that is not known, and for a hardness that is missing where the
     strength depends on it. Source: ISO 6336-5:2016, table 1.
     """
+    if own := material.own(stress):
+        return Strength(own)
     name = "GGG" if material.name == "GGG ferritic" else material.name
     of_name = [line for line in LINES if line[0] == name and line[1] == stress]
     if not of_name:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from gearopt.scenes.drive.scene import Scene
 
 LEAST_HELIX = 1  # deg, of real-valued helix angles
+LEAST_RADIUS = 0.1  # m_n, of tools of which shifts are chosen in real values: fillets without a
+# radius have no notch parameter to be bounded
 MOST_WAYS = 10_000  # helix angles times distances or sums times shifts of a stage
 
 
@@ -117,6 +119,9 @@ def _lacks_of_real(scene: "Scene") -> str:
         return "one number of stages"
     if any(blank.has_web or blank.bore for both in scene.blanks for blank in both):
         return "solid gears"
+    tools = [cut for own in scene.stage_tables for cut in scene.toothings(own)[:1]]
+    if scene.shift and any(r.tip_radius < LEAST_RADIUS for cut in tools for r in cut.racks):
+        return f"tools with a tip radius of {LEAST_RADIUS:g} m_n or more"
     return ""
 
 

@@ -166,6 +166,8 @@ def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
     if stage.shifts is not None:
         some = np.flatnonzero(_may_be_made(stage, cells))
         boxes, before, after = boxes.take(some), before[:, some], after[:, some]
+        if not len(boxes):
+            return boxes, np.zeros(0)
         sizes, cells = boxes.sizes, _cells(shafts.train, k, boxes.sizes, before)
     torque = cells.torque
     needed = needed_by_cells(shafts.train, stage, cells)

@@ -84,6 +84,7 @@ def steel(table: GearTable) -> Steel:
         usual.poisson if table.poisson_ratio is None else float(table.poisson_ratio),
         table.roughness.value if table.roughness else usual.finish,
         bool(table.reversed_load),
+        (table.s_ac.value if table.s_ac else 0.0, table.s_at.value if table.s_at else 0.0),
     )
 
 

@@ -60,6 +60,7 @@ def bare_practice(rating: RatingTable, gears: Tables) -> Practice:
         helix_modification=asked.helix_modification,
         profile_modification=asked.profile_modification,
         limited_pitting=asked.limited_pitting,
+        lowest=float(asked.life_factor_at_1e10),
     )
 
 

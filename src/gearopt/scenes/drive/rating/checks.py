@@ -29,7 +29,7 @@ AGMA = (  # keys of [rating] that only AGMA has
     *("edition", "reliability", "temperature", "quality", "accuracy", "mounting", "crowned"),
     *("adjusted", "pinion_offset", "size_factor", "bending_load", "service", "given"),
 )
-AGMA_KEYS = ("grade", "surface_hardness", "quality")  # of gears
+AGMA_KEYS = ("grade", "surface_hardness", "quality", "s_ac", "s_at")  # of gears
 CORELESS = "changes nothing: only Eh of quality MQ has strengths by core"
 YIELDLESS = "changes nothing: of surface-hardened steel no strength depends on it"
 SMOOTHLESS = "changes nothing beside flank_rz, which the rating by ISO 6336 takes"
@@ -346,7 +346,9 @@ def _check_material(gear: GearTable, place: Place, given: dict[str, Any]) -> Non
     if gear.treatment is None and gear.iso_material is None:
         rule = "is missing: a rating needs the material of every gear (or give treatment)"
         raise refuse(rule, "Eh", (*place, "iso_material"), "sample")
-    if gear.treatment == SOFT_ROOTS and not gear.iso_material and "sigma_Flim" not in given:
+    _check_own(gear, place, given, ("sigma_Hlim", "sigma_Flim"))
+    soft = not gear.iso_material and "sigma_Flim" not in given and not gear.sigma_Flim
+    if gear.treatment == SOFT_ROOTS and soft:
         rule = "leaves the roots soft: ISO 6336-5 has the bending strength of hardened ones alone"
         tell = 'Give sigma_Flim in [rating.iso6336.given], or write treatment = "induction, roots"'
         raise refuse(rule, tell, (*place, "treatment"), "tell")
@@ -365,8 +367,17 @@ def _check_material(gear: GearTable, place: Place, given: dict[str, Any]) -> Non
             raise refuse(rule, write, (*place, key), "sample") from None
 
 
+def _check_own(gear: GearTable, place: Place, given: dict[str, Any], names: Sequence[str]) -> None:
+    """Refuse a strength of a gear's own beside the one that the file gives for both gears."""
+    for name in names:
+        if getattr(gear, name) is not None and name in given:
+            rule = "changes nothing beside the factor that is given for both gears"
+            raise refuse(rule, at=(*place, name), action="remove")
+
+
 def _check_steel(gear: GearTable, place: Place, given: dict[str, Any]) -> None:
     """Refuse a gear whose steel has no strength in the tables, unless that is given."""
+    _check_own(gear, place, given, ("s_ac", "s_at"))
     if gear.steel and gear.treatment is None:
         rule = "has no strength by AGMA 2001, which has tables of four kinds of steel alone"
         tell = 'Write standard = "iso6336" in [rating], or another steel'
@@ -384,9 +395,9 @@ def _check_steel(gear: GearTable, place: Place, given: dict[str, Any]) -> None:
         raise refuse(rule, at=(*place, "surface_hardness"), action="remove")
     grade = gear.grade or 1
     try:
-        if "s_at" not in given:
+        if "s_at" not in given and not gear.s_at:
             bending_allowable(gear.treatment, grade, hardness)
-        if "s_ac" not in given:
+        if "s_ac" not in given and not gear.s_ac:
             contact_allowable(gear.treatment, grade, hardness, gear.surface_hardness or "")
     except ValueError as reason:
         if "needs its hardness" in str(reason):

@@ -33,6 +33,10 @@ def steel(table: GearTable) -> Material:
         flank=_flank(table, usual),
         root=table.root_rz.value if table.root_rz else usual.root,
         reversed_load=bool(table.reversed_load),
+        limits=(
+            table.sigma_Hlim.value if table.sigma_Hlim else 0.0,
+            table.sigma_Flim.value if table.sigma_Flim else 0.0,
+        ),
     )
 
 

@@ -23,6 +23,7 @@ STEEL = (  # keys of a gear that its material has
         "poisson_ratio",
     ),
     *("iso_material", "iso_quality", "iso_core", "flank_hardness", "yield_strength"),
+    *("sigma_Hlim", "sigma_Flim", "s_ac", "s_at"),
 )
 MADE = ("quality", "accuracy_grade")  # keys that a material may have, else the gear
 Place = tuple[Any, ...]

@@ -85,6 +85,7 @@ MATERIAL = advised(
         'induction hardened, "NT" nitriding steel, "NV" nitrided through-hardening steel'
     },
 )
+OWN = quantity("stress", "430 MPa", "10 GPa")
 OIL = advised(
     quantity("kinematic viscosity", "220 mm^2/s"),
     {rf"(iso )?vg[ -]?{grade}": f'Write oil_grade = "{grade} mm^2/s"' for grade in VG},
@@ -129,6 +130,13 @@ class IsoGearKeys(Table):
     )
     yield_strength: Annotated[Quantity | None, quantity("stress", "600 MPa")] = Field(
         None, description="Yield point or 0.2 % proof stress, for Y_deltarelT; else estimated"
+    )
+    sigma_Hlim: Annotated[Quantity | None, OWN] = Field(
+        None, description="Allowable stress number (contact) of its own, instead of table 1"
+    )
+    sigma_Flim: Annotated[Quantity | None, OWN] = Field(
+        None,
+        description="Nominal stress number (bending) of its own, instead of table 1, without Y_ST",
     )
     flank_rz: Annotated[Quantity | None, quantity("length", "4.8 um", "1 mm")] = Field(
         None, description="Roughness R_z of the flanks; by default 6 R_a"
@@ -175,6 +183,12 @@ class IsoTable(Table):
     )
     limited_pitting: Annotated[bool, truth()] = Field(
         False, description="Some pitting is permitted, in Z_NT"
+    )
+    life_factor_at_1e10: Annotated[Fraction, number(0.9, Fraction(1, 2), 1)] = Field(
+        Fraction(17, 20),
+        description="Z_NT and Y_NT at 1e10 cycles: 0.85, up to 1 with optimum lubrication, "
+        "material and manufacture, by experience",
+        json_schema_extra={"default": 0.85},
     )
     given: IsoGiven = Field(
         default_factory=IsoGiven, description="Factors of all stages, instead of computed ones"

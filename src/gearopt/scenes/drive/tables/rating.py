@@ -12,7 +12,7 @@ from gearopt.physics.agma.life import SERVICES
 from gearopt.physics.agma.rating_factors import EDITIONS
 from gearopt.scenes.drive.tables.blanks import BlankKeys, beside
 from gearopt.scenes.drive.tables.given import Given
-from gearopt.scenes.drive.tables.iso6336 import ISO_KEYS, IsoGearKeys, IsoTable
+from gearopt.scenes.drive.tables.iso6336 import ISO_KEYS, OWN, IsoGearKeys, IsoTable
 from gearopt.scenes.drive.tables.steel_names import steel_name
 from gearopt.scenes.reading.fields import (
     Table,
@@ -48,7 +48,7 @@ MATERIAL = (  # keys of a gear that only a rating needs
         "elastic_modulus",
         "poisson_ratio",
     ),
-    *("roughness", "reversed_load", "contacts", "materials", "quality"),
+    *("roughness", "reversed_load", "contacts", "materials", "quality", "s_ac", "s_at"),
     *ISO_KEYS,
 )
 MATERIALS = several(words(), ["case-hardened", "through-hardened"])
@@ -154,6 +154,14 @@ class GearKeys(BlankKeys, IsoGearKeys):
         description="Hardness of nitrided and induction hardened flanks; by default the lower one "
         "of the tables",
     )
+    s_ac: Annotated[Quantity | None, OWN] = Field(
+        None,
+        description="Allowable contact stress number of its own, instead of the tables of AGMA",
+    )
+    s_at: Annotated[Quantity | None, OWN] = Field(
+        None,
+        description="Allowable bending stress number of its own, instead of the tables of AGMA",
+    )
     elastic_modulus: Annotated[Quantity | None, quantity("stress", "206 GPa")] = Field(
         None, description="Modulus of elasticity; by default 206 GPa"
     )
@@ -209,7 +217,7 @@ class GearTable(GearKeys):
 KIND = ("steel", "treatment", "iso_material")  # of a gear, each of which says what it is made of
 OF_STEEL = (  # what a steel of the gear's own leaves of another one's
     *("grade", "hardness", "surface_hardness", "iso_quality", "iso_core", "flank_hardness"),
-    "yield_strength",
+    *("yield_strength", "sigma_Hlim", "sigma_Flim", "s_ac", "s_at"),
 )
 
 
