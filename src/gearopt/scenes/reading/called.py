@@ -114,7 +114,8 @@ DRIVE = {
     "K_T, in [rating.given]": "y_theta",
     "s_at, in [rating.given]": "sigma_fp",
     "s_ac, in [rating.given]": "sigma_hp",
-    "sigma_Hlim, or sigma_Flim of bending, of a gear; by AGMA s_ac and s_at": "sigma_hlim sigma_flim sigma_h_lim sigma_f_lim endurance_limit",
+    "sigma_Hlim, or sigma_Flim of bending, of a gear; by AGMA s_ac and s_at": "sigma_hlim "
+    "sigma_flim sigma_h_lim sigma_f_lim endurance_limit",
     "K_Hbeta, in [rating.iso6336.given]": "k_hb k_h_beta",
     "K_Fbeta, in [rating.iso6336.given]": "k_fb k_f_beta",
     "K_Halpha, in [rating.iso6336.given]": "k_ha k_h_alpha",
