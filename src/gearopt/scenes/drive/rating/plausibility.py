@@ -15,6 +15,7 @@ def unusual(pairs: Sequence[GearPair], tables: Sequence[Tables]) -> Iterator[str
     """Yield sentences on what is unusual about pairs of floats; tables: of their gears."""
     for k, (pair, both) in enumerate(zip(pairs, tables, strict=True), 1):
         yield from _proportions(pair, k)
+        yield from dict.fromkeys(text for table in both for text in _soft_core(table, pair, k))
         for member, gear, table in zip(MEMBERS, pair.gears, both, strict=True):
             yield from _of_steel(table, gear, f"the {member} of stage {k}")
 
@@ -37,12 +38,12 @@ def _proportions(pair: GearPair, stage: int) -> Iterator[str]:
     if 0.0 < overlap < 1.0 - 1e-9:
         yield (
             f"The overlap ratio of stage {stage} is {overlap:.3g}: below 1 helical gears run "
-            "little quieter than spur gears, with their axial forces."
+            "little quieter than spur gears, and still load their bearings axially."
         )
 
 
 def _of_steel(table: GearTable, gear: Gear, where: str) -> Iterator[str]:
-    """Yield where the hardness of a gear is not that of the steel that it names, or its core."""
+    """Yield where the hardness of a gear is not that of the steel that it names."""
     steel = chosen(table)
     if steel is None:
         return
@@ -61,9 +62,16 @@ def _of_steel(table: GearTable, gear: Gear, where: str) -> Iterator[str]:
             f"In the section of {where}, as a bar of {size:.3g} mm, {table.steel} reaches some "
             f"{reached:.0f} HB (DIN 743-2, unverified); it is rated with {asked}."
         )
-    if steel.module is not None and gear.normal_module > steel.module and table.iso_quality != "ML":
-        yield (
-            f"The core of {table.steel} reaches 25 HRC to a module of {steel.module:g} mm or so; "
-            f'{where} has {gear.normal_module:g} mm: rate it with iso_quality = "ML" unless its '
-            "core is certified."
-        )
+
+
+def _soft_core(table: GearTable, pair: GearPair, stage: int) -> Iterator[str]:
+    """Yield where the module is above that to which the core of a steel reaches 25 HRC."""
+    steel = chosen(table)
+    module = float(pair.normal_module)
+    if steel is None or steel.module is None or module <= steel.module or table.iso_quality == "ML":
+        return
+    yield (
+        f"The core of {table.steel} reaches 25 HRC to a module of {steel.module:g} mm or so, and "
+        f'stage {stage} has {module:.4g} mm: rate it with iso_quality = "ML" unless the core is '
+        "certified."
+    )
