@@ -203,11 +203,11 @@ def variables(train: Train) -> tuple[Var, ...]:
 
 
 def _ranged(train: Train) -> list[Var]:
-    """Return what is chosen of the toothings, by one component a stage where one has a range."""
+    """Return the variables of toothings, one component a stage, where a stage has a range."""
     chosen = []
     for name, unit in RANGED.items():
-        own = [getattr(stage.toothing, name) or 0.0 for stage in train.stages]
-        ends = [s.ranges.get(name, (n, n)) for s, n in zip(train.stages, own, strict=True)]
+        given = [getattr(stage.toothing, name) or 0.0 for stage in train.stages]
+        ends = [s.ranges.get(name, (n, n)) for s, n in zip(train.stages, given, strict=True)]
         if any(name in stage.ranges for stage in train.stages):
             low, high = zip(*ends, strict=True)
             guess = tuple(0.5 * (a + b) for a, b in ends)

@@ -78,9 +78,9 @@ class Iso6336:
         teeth = cells.teeth_alone(iso_teeth(self.practice.shift))
         for name in ("contact", "virtual"):  # with less than one pair in contact none is rated
             teeth[name] = np.maximum(teeth[name], 1.0)
-        made = IsoCells(self, cells, teeth)
+        rated = IsoCells(self, cells, teeth)
         with np.errstate(all="ignore"):
-            return made.pressed(safety[1]), made.bent(safety[0])
+            return rated.pressed(safety[1]), rated.bent(safety[0])
 
     def strongest(self, made: IsoCells, member: int, contact: bool) -> Any:
         """Return the greatest sigma_HG or sigma_FG [MPa] of a gear in cells of designs."""

@@ -249,9 +249,8 @@ def _strength(case: Case, contact: bool) -> Factor:
     """Return s_ac or s_at of both gears."""
     made = []
     for steel in case.steels:
-        own = steel.allowables[not contact]
-        if own:
-            made.append(allowables.Allowable(own, "given with the gear", True))
+        if stress := steel.allowables[not contact]:
+            made.append(allowables.Allowable(stress, "given with the gear", True))
         elif case.practice.edition == "B88" and steel.treatment == "through-hardened":
             old = allowables.contact_allowable_b88 if contact else allowables.bending_allowable_b88
             made.append(old(steel.grade, steel.hardness))

@@ -310,14 +310,14 @@ class Shifting:
             lowest[0] * (1.0 + u * (1.0 + self.sliding)) - line,
             lowest[1] * (u + 1.0 + self.sliding) - u * line,
         )
-        found = {"contact_ratio": path.transverse_ratio - self.contact_ratio}
+        left = {"contact_ratio": path.transverse_ratio - self.contact_ratio}
         for k, (gear, root) in enumerate(zip(pair.gears, roots, strict=True)):
-            found |= {
+            left |= {
                 f"tip_thickness{k}": tip_thickness(gear) / module - self.tip_thickness,
                 f"undercut{k}": NEGLIGIBLE - undercut_depth(gear) / module,
                 f"specific_sliding{k}": root / module,
             }
-        return found
+        return left
 
     @np.errstate(invalid="ignore", divide="ignore")
     def used_by_gears(self, pair: GearPair) -> dict[str, Any]:

@@ -147,8 +147,8 @@ class Trials:
 
     def _made(self, shapes: Array, module: Array) -> GearPair:
         (z, tangent), (first, total) = np.exp(shapes[:2]), shapes[2:]
-        own = {"helix_angle": np.arctan(tangent), "pinion_shift": first, "shift_sum": total}
-        cut = self.stage.cut(**{name: own[name] for name in self.stage.ranges})
+        chosen = {"helix_angle": np.arctan(tangent), "pinion_shift": first, "shift_sum": total}
+        cut = self.stage.cut(**{name: chosen[name] for name in self.stage.ranges})
         return cut.pair(module, z, z * self.ratio, 1.0)
 
     def narrowest(self, train: Train, torque: float, low: Array, high: Array) -> Array:
@@ -194,8 +194,8 @@ def smallest(
     row, d = (side.ravel() for side in np.meshgrid(np.arange(shapes.shape[1]), d))
     trials = Trials(stage, ratio, shapes, row, d)
     low, high = _width_ends(stage, box, trials)
-    made = _keeps_size_limits(train, k, trials.pairs(low)) & (low <= high)
-    some = np.flatnonzero(made & _keeps_shift_limits(stage, trials.of_unit_module)[row])
+    allowed = _keeps_size_limits(train, k, trials.pairs(low)) & (low <= high)
+    some = np.flatnonzero(allowed & _keeps_shift_limits(stage, trials.of_unit_module)[row])
     trials, low, high = trials.take(some), low[some], high[some]
     width = trials.narrowest(train, train.torque * math.exp(before), low, high)
     some = np.flatnonzero(np.isfinite(width))

@@ -9,11 +9,12 @@ from gearopt.physics.agma.rating_factors import SURFACE_HARD_KINDS, Steel
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.materials import SURFACE_HARDENED, strength
 from gearopt.scenes.drive.rating.iso_material import SOFT_ROOTS, steel
-from gearopt.scenes.drive.rating.materials import STEEL, Named, choices
+from gearopt.scenes.drive.rating.materials import Named, choices
 from gearopt.scenes.drive.tables.drive import Gears, Objective, StageTable
 from gearopt.scenes.drive.tables.iso6336 import ISO_KEYS, IsoTable
 from gearopt.scenes.drive.tables.rating import (
     MATERIAL,
+    STEEL,
     GearTable,
     GivenTable,
     LoadTable,

@@ -8,23 +8,10 @@ from pydantic import Field, create_model
 
 from gearopt.physics.gears import MEMBERS
 from gearopt.scenes.drive.rating.steels import check_steel, of_steel
-from gearopt.scenes.drive.tables.rating import GearKeys, GearTable, with_shared
+from gearopt.scenes.drive.tables.rating import STEEL, GearKeys, GearTable, with_shared
 from gearopt.scenes.reading.fields import Table, number, quantity, refuse, words
 from gearopt.units import Quantity
 
-STEEL = (  # keys of a gear that its material has
-    *(
-        "steel",
-        "treatment",
-        "grade",
-        "hardness",
-        "surface_hardness",
-        "elastic_modulus",
-        "poisson_ratio",
-    ),
-    *("iso_material", "iso_quality", "iso_core", "flank_hardness", "yield_strength"),
-    *("sigma_Hlim", "sigma_Flim", "s_ac", "s_at"),
-)
 MADE = ("quality", "accuracy_grade")  # keys that a material may have, else the gear
 Place = tuple[Any, ...]
 

@@ -38,18 +38,16 @@ Loads = Annotated[tuple[Fraction, Fraction] | None, each_gear(LOAD)]
 Stresses = Annotated[
     tuple[Quantity, Quantity] | None, each_gear(quantity("stress", "220 MPa", "10 GPa"))
 ]
-MATERIAL = (  # keys of a gear that only a rating needs
-    *(
-        "steel",
-        "treatment",
-        "grade",
-        "hardness",
-        "surface_hardness",
-        "elastic_modulus",
-        "poisson_ratio",
-    ),
-    *("roughness", "reversed_load", "contacts", "materials", "quality", "s_ac", "s_at"),
-    *ISO_KEYS,
+KIND = ("steel", "treatment", "iso_material")  # keys of a gear that say what it is made of
+OF_STEEL = (  # what a steel of the gear's own leaves of another one's
+    *("grade", "hardness", "surface_hardness", "iso_quality", "iso_core", "flank_hardness"),
+    *("yield_strength", "sigma_Hlim", "sigma_Flim", "s_ac", "s_at"),
+)
+STEEL = (*KIND, *OF_STEEL, "elastic_modulus", "poisson_ratio")  # what a material has of a gear
+MATERIAL = tuple(  # keys of a gear that only a rating needs
+    dict.fromkeys(
+        (*STEEL, "roughness", "reversed_load", "contacts", "materials", "quality", *ISO_KEYS)
+    )
 )
 MATERIALS = several(words(), ["case-hardened", "through-hardened"])
 TREATMENT = choice(
@@ -212,13 +210,6 @@ class GearTable(GearKeys):
             rule = "is above zero: teeth are thinned, not thickened"
             raise refuse(rule, f"-{allowance}", ("thickness_allowance",))
         return self
-
-
-KIND = ("steel", "treatment", "iso_material")  # of a gear, each of which says what it is made of
-OF_STEEL = (  # what a steel of the gear's own leaves of another one's
-    *("grade", "hardness", "surface_hardness", "iso_quality", "iso_core", "flank_hardness"),
-    *("yield_strength", "sigma_Hlim", "sigma_Flim", "s_ac", "s_at"),
-)
 
 
 def _said_by(name: str) -> tuple[str, ...]:
