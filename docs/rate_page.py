@@ -167,6 +167,11 @@ memory; d is the tip diameter or 1.5 face widths), the core of 16MnCr5 and 20MnC
 of 3 and 5 mm. So are a face width above 2 d1 or below 3 m_n and an overlap ratio between 0 and 1.
 Plastics are refused: VDI 2736 is not supported.
 
+`sigma_Hlim`, `sigma_Flim`, `s_ac` and `s_at` of a gear or a `[[material]]` are strengths of its
+own, in place of those of the tables; its material still says which life curves and running-in it
+has. `life_factor_at_1e10` of `[rating.iso6336]` is what Z_NT and Y_NT fall to at 1e10 cycles:
+0.85, or up to 1.
+
 ## A load spectrum
 
 Tables `[[load]]` stand in the place of the power of `[duty]`, which a file still has but which is

@@ -29,7 +29,7 @@ def test_real_valued_sizes_choose_from_all_shifts_of_ranges(tmp_path):
     assert (
         "The profile shift of the pinion of stage 1 was chosen from all values from 0 to" in notes
     )
-    assert "cells of profile shifts" in notes
+    assert "Within ranges of profile shifts the bound interpolates" in notes
     for x1, total in ((0, 0), (0.3, 0.3), (0.6, 0.6), (0.3, 0.8)):
         given = f"[shift]\npinion_shift = {x1}\nsum = {total}\n"
         alone = gearopt.solve(written(tmp_path, given), remedies=False)
@@ -43,8 +43,13 @@ def test_real_valued_sizes_choose_from_all_shifts_of_ranges(tmp_path):
     [
         (RANGES, "[limits]\n", "[teeth]\n[limits]\n", "without a table [teeth] (or give a step)"),
         (RANGES.replace("sum", "#"), "", "", "nor by a sum of profile shifts"),
-        (RANGES.replace("pinion_shift", "#"), "", "", "need such a range of pinion_shift, too"),
-        (RANGES.replace("0.6 }", "0.6, step = 0.2 }"), "", "", "Write pinion_shift as a number"),
+        (
+            RANGES.replace("pinion_shift", "#"),
+            "",
+            "",
+            "needs pinion_shift as a number or such a range",
+        ),
+        (RANGES.replace("0.6 }", "0.6, step = 0.2 }"), "", "", "needs pinion_shift as a number"),
         (RANGES.replace("0, to = 1 ", "1, to = 0 "), "", "", "ends in the wrong order"),
         (RANGES, "[[stage]]\n", "[[stage]]\nwheel.tool_tip_radius = 0.05\n", "tip radius of 0.1"),
         (RANGES, "[[stage]]\n", "[[stage]]\nwheel.bore = '20 mm'\n", "solid gears"),

@@ -98,7 +98,7 @@ def test_real_valued_sizes_choose_from_all_angles_of_a_range(tmp_path):
     )
     assert 0.98 * result.value < result.bound <= result.value
     assert "chosen from all values from 8 deg to 30 deg." in str(result.report["notes"])
-    assert any("no proof does" in note for note in result.report["notes"])
+    assert any("is not proven" in note for note in result.report["notes"])
     for angle, volume in ((8, 289.1e3), (15, 256.3e3), (22, 250.5e3)):
         alone = written(tmp_path, f'"{angle} deg"', "pinion_teeth = [20, 21]\n[teeth]\n", free)
         value = gearopt.solve(alone, remedies=False).value
@@ -108,7 +108,7 @@ def test_real_valued_sizes_choose_from_all_angles_of_a_range(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ("HELIX", "HELIX", "need real-valued sizes, without a table [teeth] (or give a step)"),
+        ("HELIX", "HELIX", "needs real-valued sizes, without a table [teeth] (or give a step)"),
         ("[teeth]\n", "[[load]]\nshare = '1'\npower = '1 kW'\n", "one load and one material"),
         ("[teeth]\n", "k_factor = '2 MPa'\nunit_load = '9 MPa'\n", "limits by [rating] alone"),
         ("[[stage]]\n", "[[stage]]\nwheel.bore = '20 mm'\n[teeth]\n", "solid gears"),

@@ -85,6 +85,8 @@ def test_a_steel_of_a_gear_takes_the_place_of_all_that_others_share(tmp_path):
         ('steel = "16MnCr5"\ntreatment = "nitrided"', "does not go with 16MnCr5, which is case-"),
         ('steel = "GGG-50"', "has no strength by AGMA 2001"),
         ("steel = 4140", "is not the name of a steel"),
+        ('steel = ["42CrMo4"]', "Write materials = ['42CrMo4']"),
+        ('steel = "42CrMo4"\ntreatment = "induction, flanks"', "leaves the roots soft"),
     ],
 )
 def test_what_is_no_steel_of_a_gear_is_refused(tmp_path, gears, told):
@@ -105,6 +107,10 @@ def test_what_is_no_steel_of_a_gear_is_refused(tmp_path, gears, told):
             "as a bar of 72 mm, 42CrMo4 reaches some 285 HB",
         ),
         ('steel = "16MnCr5"', "reaches 25 HRC to a module of 3 mm"),
+        (
+            'steel = "42CrMo4"\ntreatment = "nitrided"\nhardness = "340 HB"',
+            "has 250 to 320 HB as a",
+        ),
     ],
 )
 def test_a_steel_that_does_not_reach_what_it_is_rated_with_is_told(tmp_path, gears, told):

@@ -286,7 +286,7 @@ def _claim(best: _Design | None, bound: float, clock: Clock) -> Outcome:
     if best is None:
         if bound == math.inf and done:
             return Outcome(None, infeasible=True, proof=proof, evaluations=clock.evaluations)
-        words = "no start led to a design that the ratings accept"
+        words = "no design that the ratings accept was found"
         words = words if done else "stopped before a design was found"
         return Outcome(None, done, evaluations=clock.evaluations, message=words)
     known = min(bound, best.value) if bound > -math.inf else None

@@ -65,8 +65,8 @@ def notes(scene: Scene, exact: bool) -> list[str]:
     if inclining or shifting:
         ranges = " and ".join(["helix angles"] * inclining + ["profile shifts"] * shifting)
         sentences.append(
-            f"The bound takes what teeth alone decide at the ends of cells of {ranges}, with a "
-            "margin that random designs confirm and no proof does."
+            f"Within ranges of {ranges} the bound interpolates what teeth alone decide, with a "
+            "margin that was checked on random designs and is not proven."
         )
     if exact and scene.teeth is not None:
         sentences += unverified(scene.teeth.modules)

@@ -60,7 +60,8 @@ def check_shift(scene: "Scene", shifted: list[int], lacks: str, asked: str) -> N
             "changes nothing: no gears are chosen at a given centre_distance of a [[stage]], nor "
             "by a sum of profile shifts"
         )
-        raise refuse(rule, at=("shift",), action="remove")
+        tell = "Write sum = 0.5 in [shift], or a centre_distance, or remove the table"
+        raise refuse(rule, tell, ("shift",), "tell")
     for name in ("pinion_shift", "sum"):
         if isinstance(value := getattr(shift, name), Between):
             check_range(scene, value, ("shift", name))
@@ -118,7 +119,7 @@ def _lacks_of_real(scene: "Scene") -> str:
     if scene.several:
         return "one number of stages"
     if any(blank.has_web or blank.bore for both in scene.blanks for blank in both):
-        return "solid gears"
+        return "solid gears: no bore, hub, rim or web"
     tools = [cut for own in scene.stage_tables for cut in scene.toothings(own)[:1]]
     if scene.shift and any(r.tip_radius < LEAST_RADIUS for cut in tools for r in cut.racks):
         return f"tools with a tip radius of {LEAST_RADIUS:g} m_n or more"
@@ -130,11 +131,11 @@ def check_range(scene: "Scene", value: Between, place: tuple[str | int, ...]) ->
     of_shifts, shift = place[0] == "shift", scene.shift
     if of_shifts and scene.teeth is None and shift is not None and shift.ranges is None:
         other = "sum" if place[1] == "pinion_shift" else "pinion_shift"
-        rule = f"has all values of a range to choose from, which need such a range of {other}, too"
-        tell = f"Write {other} as a number, too, or a range such as {{ from = 0, to = 0.5 }}"
+        rule = f"is a range without a step, which needs {other} as a number or such a range, too"
+        tell = f"Write, for example, {other} = {{ from = 0, to = 0.5 }}"
         raise refuse(rule, tell, place, "tell")
     if lacks := _lacks_of_real(scene):
-        rule = f"has all values of a range to choose from, which need {lacks}"
+        rule = f"is a range without a step, which needs {lacks}"
         first = exact(value.low) if of_shifts else str(value.low)
         raise refuse(rule, first, place, "sample")
     if not of_shifts and value.low.value < math.radians(LEAST_HELIX):

@@ -112,6 +112,8 @@ def of_real_values(drive: Drive, ask: Ask, known: Result | None) -> Result:
 def _checked(result: Result) -> Result:
     """Answer with a bound over ranges of teeth, part of which is checked, not proven (Lemma 64)."""
     proof = result.proof | {"checked": "between helix angles and shifts, on random designs"}
+    if sentence := proof.get("sentence"):
+        proof["sentence"] = sentence.replace("Proof: ", "The bound, checked: ", 1)
     status = "feasible" if result.status == "optimal" else result.status
     return replace(result, status=status, proof=proof)
 

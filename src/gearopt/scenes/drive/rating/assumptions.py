@@ -36,18 +36,22 @@ def rating_assumptions(scene: Scene) -> list[str]:
 
 def _named_steels(scene: Scene) -> list[str]:
     """Sentences on the steels that gears have by name: their treatment, hardness, sources."""
-    used = dict.fromkeys(one for table, _ in every_gear(scene) if (one := chosen(table)))
+    used = {table.steel: steel for table, _ in every_gear(scene) if (steel := chosen(table))}
     if not used:
         return []
-    each = (
-        f"{one.name}, {one.heat}, {one.hardness[0]:g} to {one.hardness[1]:g} {one.unit} "
-        f"({'two sources or more' if one.verified else 'unverified'})"
-        for one in used
-    )
+    each = []
+    for name, one in used.items():
+        heat = "" if one.heat == "none" else f"{one.heat}, "
+        known = "two sources or more" if one.verified else "unverified"
+        each.append(
+            f"{name}, {heat}{one.hardness[0]:g} to {one.hardness[1]:g} {one.unit} ({known})"
+        )
+    iron = any(not one.treatment and not one.hardened for one in used.values())
     return [
+        *["Irons and castings have the elastic modulus of steel unless the file gives one."] * iron,
         f"Steels by name: {'; '.join(each)}. The least hardness counts for which the standards "
         "have strengths, unless the file gives one; class, quality and grade are those usual for "
-        "the treatment (unverified: the supplier's certificate decides)."
+        "the treatment (unverified: the supplier's certificate decides).",
     ]
 
 

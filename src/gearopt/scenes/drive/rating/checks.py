@@ -340,7 +340,7 @@ def _check_hands(gears: Gears, stages: Sequence[StageTable]) -> None:
 
 def _check_material(gear: GearTable, place: Place, given: dict[str, Any]) -> None:
     """Refuse a gear whose material has no strength in ISO 6336-5."""
-    if gear.steel and gear.iso_material is None:
+    if gear.steel and gear.iso_material is None and gear.treatment != SOFT_ROOTS:
         rule = "has no class of ISO 6336-5"
         tell = "Give sigma_Hlim and sigma_Flim, and an iso_material for its life, without steel"
         raise refuse(rule, tell, (*place, "steel"), "tell")

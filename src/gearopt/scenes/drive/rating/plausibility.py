@@ -47,6 +47,12 @@ def _of_steel(table: GearTable, gear: Gear, where: str) -> Iterator[str]:
     steel = chosen(table)
     if steel is None:
         return
+    core = table.hardness if steel.hardened and steel.core else None
+    if core is not None and steel.core and not steel.core[0] <= core.value <= steel.core[1]:
+        yield (
+            f"The core of {table.steel}, {steel.heat}, has {steel.core[0]:g} to {steel.core[1]:g} "
+            f"HB as a rule; {where} is rated with {core}."
+        )
     asked = table.flank_hardness if steel.hardened else table.hardness
     low, high = steel.hardness
     value = 0.0 if asked is None else asked.value

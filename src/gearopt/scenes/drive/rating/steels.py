@@ -7,6 +7,7 @@ from gearopt.physics import steels
 from gearopt.physics.agma.allowables import CURVES, HARDNESS, NITRIDED_CORE
 from gearopt.physics.iso6336.materials import LINES
 from gearopt.physics.steels import Steel
+from gearopt.scenes.drive.rating.iso_material import SOFT_ROOTS
 from gearopt.scenes.drive.tables.rating import GearTable
 from gearopt.scenes.reading.fields import refuse
 from gearopt.units import Quantity
@@ -42,6 +43,8 @@ def of_steel(table: GearTable) -> GearTable:
         "iso_quality": steel.iso_quality,
         **_hardness(steel),
     }
+    if table.treatment == SOFT_ROOTS:  # whose roots have no strength in ISO 6336-5
+        del named["iso_material"]
     absent = {key: value for key, value in named.items() if getattr(table, key) is None}
     return table.model_copy(update=absent)
 

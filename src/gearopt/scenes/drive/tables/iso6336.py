@@ -184,7 +184,7 @@ class IsoTable(Table):
     limited_pitting: Annotated[bool, truth()] = Field(
         False, description="Some pitting is permitted, in Z_NT"
     )
-    life_factor_at_1e10: Annotated[Fraction, number(0.9, Fraction(1, 2), 1)] = Field(
+    life_factor_at_1e10: Annotated[Fraction, number(0.9, Fraction(17, 20), 1)] = Field(
         Fraction(17, 20),
         description="Z_NT and Y_NT at 1e10 cycles: 0.85, up to 1 with optimum lubrication, "
         "material and manufacture, by experience",

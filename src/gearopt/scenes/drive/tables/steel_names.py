@@ -12,6 +12,9 @@ def steel_name() -> Reads:
     """Read the name or number of a steel, as it is usually written."""
 
     def read(value: Any, example: Any) -> str:
+        if isinstance(value, list | tuple):
+            rule = "is a list: gears choose from materials, each a table [[material]] with a steel"
+            raise refuse(rule, f"Write materials = {[*map(str, value)]}", action="tell")
         if not isinstance(value, str):
             raise refuse("is not the name of a steel", str(value))
         if rows := steels.named(value):
