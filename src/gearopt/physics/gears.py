@@ -7,6 +7,7 @@ real. An inertia is in t mm^2 (1 kg m^2 = 1e3 t mm^2).
 import math
 from dataclasses import replace
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -161,7 +162,7 @@ class Gear:
         thinner = 0.5 * self.thickness_allowance / np.tan(self.rack.pressure_angle)
         return self.profile_shift + thinner / self.normal_module
 
-    @property
+    @cached_property
     def transverse_pressure_angle(self) -> Any:
         """Transverse pressure angle alpha_t = arctan(tan(alpha_n)/cos(beta)) [rad]."""
         return transverse_pressure_angle(self.rack.pressure_angle, self.helix_angle)
@@ -178,7 +179,7 @@ class Gear:
         depth = self.rack.dedendum - self.profile_shift
         return self.reference_diameter - 2.0 * depth * self.normal_module
 
-    @property
+    @cached_property
     def base_diameter(self) -> Any:
         """Base diameter d_b = d cos(alpha_t) [mm]."""
         return self.reference_diameter * np.cos(self.transverse_pressure_angle)
@@ -309,7 +310,7 @@ class GearPair:
         """Reference centre distance a_0 = d1 (1 + u)/2 [mm]."""
         return 0.5 * self.pinion.reference_diameter * (1.0 + self.ratio)
 
-    @property
+    @cached_property
     def working_angle(self) -> Any:
         """Transverse working pressure angle alpha_wt [rad]; NaN where there is none."""
         angle = self.pinion.transverse_pressure_angle
@@ -321,7 +322,7 @@ class GearPair:
         teeth = self.pinion.teeth + self.wheel.teeth
         return working_pressure_angle(shifts, teeth, self.pinion.rack.pressure_angle, angle)
 
-    @property
+    @cached_property
     def centre_distance(self) -> Any:
         """Centre distance a = a_0 cos(alpha_t)/cos(alpha_wt) [mm], or the one that is given."""
         if self.working_distance is not None:

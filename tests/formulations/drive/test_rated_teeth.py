@@ -208,7 +208,8 @@ def test_cells_of_use_hold_the_best_train():
     value, chosen = found.found[0]
     tables = stage_tables(train, train.highest_ratio)
     useful, delta, rest = None, 0.32, None
-    first = first_costs(train, tables[0], 0.01, np.inf)
+    widest = bound(train, tables, delta, lambda: None)
+    first = first_costs(train, tables[0], widest, 0.01, value * 1.001)
     for _ in range(4):
         rest = bound(train, tables, delta, lambda: None, useful, value * 1.001, rest)
         ratios = np.log([z2 / z1 for z1, z2 in chosen])

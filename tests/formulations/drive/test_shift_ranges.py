@@ -151,7 +151,7 @@ def test_no_body_of_a_box_is_smaller(helix):
     for _ in range(6):
         boxes = _halves(shafts, 0, boxes)
     sizes = boxes.sizes
-    first, second = rated_boxes._bodies(stage, sizes)
+    first, second = rated_boxes.body_squares(stage, sizes)
     rows = {n: getattr(rated_boxes, n) for n in ("Z", "U", "T", "X1", "SUM")}
     for _ in range(20):
         part = rng.uniform(size=(5, sizes.shape[2])) * rng.integers(0, 2, (5, 1)) ** 0.1

@@ -163,10 +163,11 @@ def test_the_bound_is_below_every_train_and_close(number):
         assert ((behind[0] + ahead).min() / trains.values.min()) > 0.9
         most = 1.0001 * trains.values.min()
         cheap = trains.teeth[trains.values <= most]
-        useful = useful_cells(tables, rest, first_costs(train, tables[0], 0.005, np.inf), most)
-        first, second = np.log(cheap[:, :2, 1] / cheap[:, :2, 0]).T
-        first, both, second = (bounds._cell(r, 0.0025) for r in (first, first + second, second))
-        assert useful[1][first, second].all() and useful[2][both].all()
+        first = first_costs(train, tables[0], rest, 0.005, np.inf)
+        useful = useful_cells(tables, rest, first, most)
+        before, second = np.log(cheap[:, :2, 1] / cheap[:, :2, 0]).T
+        before, both, second = (bounds._cell(r, 0.0025) for r in (before, before + second, second))
+        assert useful[1][before, second].all() and useful[2][both].all()
 
 
 def test_equal_inner_stages_share_what_was_made(monkeypatch):

@@ -29,6 +29,8 @@ from gearopt.physics.geometry.tooth import tip_thickness
 
 HALVINGS = 52  # of an interval of shifts: to the last digit
 SUMS = -1.0, 2.0  # of x1 + x2 that are looked at: 0 to 1 is usual
+ROUND = 1e-9  # of sums
+PINIONS = -1.0, 1.5  # of x1 by a rule that are looked at: -0.5 to 0.8 is usual
 STRIDE = 0.1  # of x1, from equal sliding to where root safeties change sides
 ROOT_STEPS, CLOSE = 40, 1e-13  # towards equal root safeties, within this of x1
 EQUAL = 1e-9  # of ln(S_F1/S_F2): farther off is a jump, no root
@@ -273,12 +275,12 @@ class Shifting:
     def shifts(self, meshing: Meshing, given: Any = None) -> tuple[Any, Any, Any]:
         """Return x1, x2 and the shortening k of both tips; NaN outside SUMS, and without a root.
 
-        given: x1, instead of that of the rule.
+        given: x1, instead of that of the rule, which is NaN outside PINIONS.
         """
         numbers = meshing.module, *meshing.teeth, meshing.helix_angle, meshing.distance
         columns = np.broadcast_arrays(*(np.asarray(v, float) for v in numbers))
         total = np.broadcast_to(meshing.shift_sum, columns[0].shape)
-        near = (total >= SUMS[0]) & (total <= SUMS[1])
+        near = (total >= SUMS[0] - ROUND) & (total <= SUMS[1] + ROUND)
         module, first, second, helix, distance = (column[near] for column in columns)
         inside = Meshing(module, (first, second), helix, meshing.racks, distance)
         pinion = np.full(total.shape, np.nan)
@@ -289,6 +291,8 @@ class Shifting:
             pinion[near] = equal_root_safety(inside, self.balance)
         else:
             pinion[near] = RULES[self.rule](inside)
+        if given is None:
+            pinion[(pinion < PINIONS[0]) | (pinion > PINIONS[1])] = np.nan
         return pinion[()], (total - pinion)[()], (meshing.tip_alteration + 0.0 * pinion)[()]
 
     @np.errstate(invalid="ignore", divide="ignore")

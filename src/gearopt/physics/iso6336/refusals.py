@@ -11,7 +11,7 @@ from gearopt.physics.geometry.tooth import tip_thickness
 from gearopt.physics.iso6336.case import Practice
 from gearopt.physics.iso6336.contact_factors import single_contact_ratios
 from gearopt.physics.iso6336.stiffness import theoretical_stiffness
-from gearopt.physics.iso6336.tooth_form import tooth_forms
+from gearopt.physics.iso6336.tooth_form import ToothForm, tooth_forms
 
 SENTENCES = {
     "internal gear": "internal gears are not covered, only external ones",
@@ -41,8 +41,20 @@ def refusal(pair: GearPair, shift: str = "nominal") -> Any:
 
     shift: as of `tooth_form.tooth_forms`. No exception for any finite numbers.
     """
-    path = contact_path(pair)
-    ratio, overlap = np.asarray(path.transverse_ratio), pair.overlap_ratio
+    ratio = contact_path(pair).transverse_ratio
+    forms = tooth_forms(pair, ratio, shift)
+    return refusal_of_teeth(pair, ratio, usable_path(pair).transverse_ratio, forms)
+
+
+@np.errstate(invalid="ignore", divide="ignore", over="ignore")
+def refusal_of_teeth(
+    pair: GearPair, ratio: Any, usable: Any, forms: tuple[ToothForm, ToothForm]
+) -> Any:
+    """`refusal` of teeth whose transverse contact ratios and forms are known.
+
+    usable: the contact ratio that undercut leaves.
+    """
+    ratio, overlap = np.asarray(ratio), pair.overlap_ratio
     first, second = single_contact_ratios(pair, ratio)
     pressed = np.isfinite(first) & np.isfinite(second)
     flags = [
@@ -50,20 +62,20 @@ def refusal(pair: GearPair, shift: str = "nominal") -> Any:
         ~np.isfinite(pair.working_angle) | ~(np.asarray(pair.working_angle) > 0.0),
         *_of_gears(pair),
         ~(ratio >= 1.0),
-        ~(usable_path(pair).transverse_ratio + overlap >= 1.0),
+        ~(usable + overlap >= 1.0),
         ~(ratio < 2.5),
         ~pressed & np.less(overlap, 1.0),
-        ~_section(pair, ratio, shift),
+        ~_section(forms),
         ~(np.asarray(theoretical_stiffness(pair)) > 0.0),
     ]
     shaped = np.broadcast_arrays(*flags, np.zeros(ratio.shape, bool))[:-1]
     return np.select(shaped, range(1, len(REFUSALS)), 0)[()]
 
 
-def _section(pair: GearPair, ratio: Any, shift: str) -> Any:
+def _section(forms: tuple[ToothForm, ToothForm]) -> Any:
     """Return whether both teeth have a critical section below their load."""
     sound = np.True_
-    for form in tooth_forms(pair, ratio, shift):
+    for form in forms:
         sizes = (form.height, form.thickness, form.fillet_radius, np.cos(form.load_angle))
         for size in sizes:
             sound = sound & (np.asarray(size) > 0.0) & np.isfinite(size)

@@ -13,7 +13,7 @@ from gearopt.frozen import dataclass
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.contact import contact_path, usable_path
 from gearopt.physics.iso6336 import contact_factors as contact
-from gearopt.physics.iso6336.refusals import refusal
+from gearopt.physics.iso6336.refusals import refusal_of_teeth
 from gearopt.physics.iso6336.stiffness import single_stiffness
 from gearopt.physics.iso6336.tooth_form import tooth_forms
 
@@ -67,12 +67,17 @@ def tooth_table(pair: GearPair, shift: str = "nominal") -> ToothTable:
     sine = np.abs(np.sin(pair.pinion.helix_angle))
     axial = np.pi * pair.normal_module / sine
     wide = pair.of_width(np.where(np.isfinite(axial), WIDEST_OVERLAP * axial, pair.normal_module))
-    ratio = contact_path(wide).transverse_ratio
-    ratio = np.where(np.asarray(refusal(wide, shift)) == 0, ratio, np.nan)
+    ratio, usable = contact_path(wide).transverse_ratio, usable_path(wide).transverse_ratio
+    forms = tooth_forms(wide, ratio, shift)
+    rated = np.asarray(refusal_of_teeth(wide, ratio, usable, forms)) == 0
+
+    def known(value: Any) -> Any:
+        return np.where(rated, value, np.nan)
+
+    ratio = known(ratio)
     made = contact.single_contact_ratios(wide, ratio)
     inside = np.isfinite(made[0]) & np.isfinite(made[1])
-    least = np.maximum(1.0 - usable_path(wide).transverse_ratio, np.where(inside, 0.0, 1.0))
-    forms = tooth_forms(wide, ratio, shift)
+    least = np.maximum(1.0 - usable, np.where(inside, 0.0, 1.0))
 
     def of(value: Any) -> Any:
         return np.broadcast_to(np.asarray(value, float), shape)
@@ -82,9 +87,9 @@ def tooth_table(pair: GearPair, shift: str = "nominal") -> ToothTable:
 
     return ToothTable(
         of(ratio),
-        of(forms[0].virtual_ratio),
-        both(*(form.form for form in forms)),
-        both(*(form.concentration for form in forms)),
+        of(known(forms[0].virtual_ratio)),
+        both(*(known(form.form) for form in forms)),
+        both(*(known(form.concentration) for form in forms)),
         both(*(form.notch for form in forms)),
         of(single_stiffness(wide, np.inf)),
         of(contact.zone_factor(wide)),

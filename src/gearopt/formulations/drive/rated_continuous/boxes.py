@@ -162,13 +162,13 @@ def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
     before, after, sizes = before[:, some], after[:, some], boxes.sizes
     if not len(boxes):
         return boxes, np.zeros(0)
-    cells = _cells(shafts.train, k, sizes, before)
+    cells = cells_of(shafts.train, k, sizes, before)
     if stage.shifts is not None:
         some = np.flatnonzero(_may_be_made(stage, cells))
         boxes, before, after = boxes.take(some), before[:, some], after[:, some]
         if not len(boxes):
             return boxes, np.zeros(0)
-        sizes, cells = boxes.sizes, _cells(shafts.train, k, boxes.sizes, before)
+        sizes, cells = boxes.sizes, cells_of(shafts.train, k, boxes.sizes, before)
     torque = cells.torque
     needed = needed_by_cells(shafts.train, stage, cells)
     weak = _needed_by_weak(stage, cells, shafts.train.safety, needed[0])
@@ -186,7 +186,7 @@ def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
     return boxes.take(some), value[some]
 
 
-def _cells(train: Train, k: int, sizes: Array, before: Array) -> Cells:
+def cells_of(train: Train, k: int, sizes: Array, before: Array) -> Cells:
     """Return the designs of boxes as cells; before: ln of the torque before the stage."""
     torque, size, stage = train.torque * np.exp(before), np.exp(sizes), train.stages[k]
     ends = size[Z], size[U], size[D], size[D2], size[M], size[B], size[B_OVER_D]
@@ -251,7 +251,7 @@ def cosines(stage: Stage, sizes: Array) -> tuple[Any, Any]:
     return least, most
 
 
-def _bodies(stage: Stage, sizes: Array) -> tuple[Any, Any]:
+def body_squares(stage: Stage, sizes: Array) -> tuple[Any, Any]:
     """Least squares of the diameter d + 2 x m_n of the bodies over d, of pinion and wheel."""
     if stage.shifts is None:
         return 1.0, 1.0
@@ -318,7 +318,7 @@ def _least_sizes(
     stage = shafts.train.stages[k]
     pair = stage.toothing.by_reference.of_diameter(size[M], size[Z], size[D], size[U], size[B])
     if stage.shifts is not None:
-        rows = zip(pair.gears, _bodies(stage, sizes), strict=True)
+        rows = zip(pair.gears, body_squares(stage, sizes), strict=True)
         bodies = (replace(g, body_diameter=g.reference_diameter * s**0.5) for g, s in rows)
         pair = GearPair(*bodies)
     first, second = shafts.potential[k : k + 2]
@@ -341,7 +341,7 @@ def _bound_by_ratings(
     half = 0.5 * (before[1] - before[0]), 0.5 * (after[1] - after[0])
     first, second = shafts.potential[k : k + 2]
     u, power = np.exp(e - t), 1.0
-    power, grown, rise = growth(shafts.train, k, u, _bodies(shafts.train.stages[k], sizes))
+    power, grown, rise = growth(shafts.train, k, u, body_squares(shafts.train.stages[k], sizes))
     wide, slope = (1.0 + 1.0 / u, 1.0 / (1.0 + u)) if pressed else (1.0, 0.0)
     least = shafts.train.torque * np.exp(t if loaded else before[0]) * coefficient * wide
     if not shafts.train.by_width:

@@ -11,63 +11,95 @@ from typing import Any
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from gearopt.formulations.drive.rated_continuous import boxes
-from gearopt.formulations.drive.rated_continuous.boxes import B_OVER_D, D2, MARGIN, B, D, M, U, Z
+from gearopt.formulations.drive.rated_continuous import boxes, ways
+from gearopt.formulations.drive.rated_continuous.boxes import B_OVER_D, MARGIN, D, U
 from gearopt.formulations.drive.train import LENGTHS, Train
-from gearopt.formulations.strength.cells import Cells
 from gearopt.formulations.strength.standard import Option, under_each_load
 from gearopt.optimise.terms import Array
 
 WIDE, PARTS = 16, 12  # cells of the logarithm of the total ratio, and narrow ones of each
 SIZES, SIZE = 16, 0.15  # cells of ln(d1) below the largest of use, and their width
 SLIM, MOST_SLIM = 0.5, 4  # width of cells of ln(b/d1), of at most so many
-MOST_KINDS = 6  # toothings and options of a stage that are looked at
+MOST_KINDS = ways.FEW  # ways and options of a stage that are looked at at first
+DIVISIONS, NEAR = 6, 0.9  # looks at the kinds of the least sum, up to so much of a known value
 EDGE = 1e-9  # cells overlap by this much in logarithms
 
 
 def quick_bound(train: Train, most: float) -> float:
-    """Lower bound of all trains, of which one has an objective of `most`; -inf: none is known."""
+    """Lower bound of all trains, of which one has an objective of `most`; -inf: none is known.
+
+    Of stages with ranges the kinds of the least sum are divided, a few times.
+    """
     sized = train.by_width or train.objective in LENGTHS
     if not (sized and most < math.inf) or train.lowest_ratio < 1:
         return -math.inf
-    kinds = [_kinds(train, k) for k in range(len(train.stages))]
+    count = len(train.stages)
+    kinds = [[(one, _shares(one, k, most)) for one in _kinds(train, k)] for k in range(count)]
     if not all(kinds):
         return -math.inf
+    for left in reversed(range(DIVISIONS)):
+        value, path = _least_sum(train, [[share for _, share in one] for one in kinds])
+        if value >= most * NEAR or not left or not path:
+            break
+        divided = False
+        for k, cell in enumerate(path):
+            place = int(np.argmin([share[cell] for _, share in kinds[k]]))
+            halves = [
+                replace(train, stages=(*train.stages[:k], way, *train.stages[k + 1 :]))
+                for way in ways.halves(kinds[k][place][0].stages[k])
+            ]
+            if halves:
+                kinds[k][place : place + 1] = [(one, _shares(one, k, most)) for one in halves]
+                divided = True
+        if not divided:
+            break
+    return min(value, most)
+
+
+def _least_sum(train: Train, shares: list[list[Array]]) -> tuple[float, list[tuple[int, int]]]:
+    """Least sum of shares along cells that meet, and the cells of it: none of an infinite one."""
     count, total = WIDE * PARTS, math.log(float(train.highest_ratio))
-    to_go = np.full(2 * count + 1, np.inf)
+    end = np.full(2 * count + 1, np.inf)
     low = math.log(float(train.lowest_ratio)) - EDGE
-    to_go[max(0, math.floor(low / total * count)) : count + 1] = 0.0
-    for k in reversed(range(len(train.stages))):
-        share = np.minimum.reduce([_shares(kind, k, most) for kind in kinds[k]])
+    end[max(0, math.floor(low / total * count)) : count + 1] = 0.0
+    sums, to_go = list[Array](), end
+    for rows in reversed(shares):
+        share = np.minimum.reduce(rows)
         ahead = sliding_window_view(np.minimum(to_go[:-1], to_go[1:]), count)[: len(share)]
+        sums.insert(0, share + ahead)
         to_go = np.full(2 * count + 1, np.inf)
-        to_go[: len(share)] = (share + ahead).min(axis=1)
-    return float(min(to_go[0], most))
+        to_go[: len(share)] = sums[0].min(axis=1)
+    value, row, path = float(to_go[0]), 0, list[tuple[int, int]]()
+    for later, total_sum in zip([*sums[1:], None], sums, strict=True):
+        column = int(total_sum[row].argmin())
+        path.append((row, column))
+        if later is not None:
+            nexts = [n for n in (row + column, row + column + 1) if n < len(later)]
+            row = min(nexts, key=lambda n: float(later[n].min()))
+    return value, path if value < math.inf else []
 
 
 def _kinds(train: Train, k: int) -> list[Train]:
-    """Drives of one toothing and option of a stage (from 0), one of which costs no more than any.
+    """Drives of one way and option of a stage (from 0), one of which costs no more than any.
 
     Of options with wheels of one price a virtual one, under each load alone, by the last of their
     standards: ISO 6336, if there are two, whose cells take half as long. None where there is no
-    such option, too many of them, or where teeth have shifts or centre distances of their own.
+    such option, or too many ways.
     """
     stage, groups = train.stages[k], dict[Any, list[Option]]()
     for option in stage.options:
         alike = groups.setdefault((option.densities[1], option.prices[1]), [])
         alike.append(replace(option, standards=under_each_load(option.standards[-1])))
     best = [first.strongest_with(rest) if rest else first for first, *rest in groups.values()]
-    cuts, kinds = stage.toothings, []
-    plain = all(cut.shifting is None and cut.working_distance is None for cut in cuts)
-    if not plain or stage.ratio[0] < 1 or len(cuts) * len(best) > MOST_KINDS:
+    cuts, kinds = ways.of(train, stage), []
+    if stage.ratio[0] < 1 or len(cuts) * len(best) > MOST_KINDS:
         return []
     for strongest, (_, *rest) in zip(best, groups.values(), strict=True):
         if strongest is None:
             return []
         option = strongest.cheapest_with(rest, train.density)
-        for cut in cuts:
-            kind = replace(stage, options=(option,), toothings=(cut,))
-            stages = (*train.stages[:k], kind, *train.stages[k + 1 :])
+        for way in cuts:
+            stages = (*train.stages[:k], replace(way, options=(option,)), *train.stages[k + 1 :])
             kinds.append(replace(train, stages=stages, same_option=False, distances=()))
     return kinds
 
@@ -87,15 +119,14 @@ def _shares(train: Train, k: int, most: float) -> Array:
     if not len(i):
         return share
     at, overlap = np.stack([i, i + rows]) * wide, EDGE * np.array([[-1.0], [1.0]])
-    torque, size = train.torque * np.exp(at + overlap), np.exp(sizes)
-    ends = size[Z], size[U], size[D], size[D2], size[M], size[B], size[B_OVER_D]
-    stage = train.stages[k]
-    cells = Cells(stage.toothing, *ends, torque, train.speed_at(torque)[::-1])
+    stage, size = train.stages[k], np.exp(sizes)
+    cells = boxes.cells_of(train, k, sizes, at + overlap)
     pressed, bent = (need[:, None, None] for need in boxes.needed_by_cells(train, stage, cells))
     step, part = wide / PARTS, np.arange(PARTS)
     row, column = i[:, None] * PARTS + part[: PARTS if rows else 1], j[:, None] * PARTS + part
     u, t = column[:, None, :] * step, row[:, :, None] * step
-    power, grown, _ = boxes.growth(train, k, np.exp(u - EDGE))
+    first, second = (np.reshape(s, (-1, 1, 1)) for s in boxes.body_squares(stage, sizes))
+    power, grown, _ = boxes.growth(train, k, np.exp(u - EDGE), (first, second))
     need = np.maximum(pressed * (1.0 + np.exp(-u - step - EDGE)), bent)
     need = need * train.torque * np.exp(t - EDGE) * (1.0 - MARGIN)  # of d1^2 b
     least, largest = np.exp(3.0 * sizes[D] + sizes[B_OVER_D])[:, :, None, None]
@@ -123,7 +154,8 @@ def _sizes(train: Train, k: int, most: float, i: Any, j: Any) -> tuple[Array, An
     sizes[U, 0] = np.maximum(every[U, 0], j * wide - EDGE)
     sizes[U, 1] = np.minimum(every[U, 1], (j + 1) * wide + EDGE)
     sizes[B_OVER_D] = thin + (thick - thin) / slims * np.stack([slim, slim + 1])
-    power, grown, _ = boxes.growth(train, k, np.exp(sizes[U, 0]))
+    bodies = boxes.body_squares(train.stages[k], sizes)
+    power, grown, _ = boxes.growth(train, k, np.exp(sizes[U, 0]), bodies)
     largest = np.log(most / grown) / power  # of d1^2 b; of lengths d1^3
     if face.fixed is not None and train.by_width:
         largest = (largest - math.log(float(face.fixed))) / 2.0

@@ -237,6 +237,8 @@ def _outcome(
         lower = progress.bound if math.isfinite(progress.bound) else None
         words = f"{compared} those not examined are bounded from below {opened}"
         partial = {**proof, "method": "branch and bound, stopped early", "sentence": words}
+        if progress.quick > progress.proven:
+            partial["checked"] = "in wide cells of sizes, on random designs"
         return Outcome(
             points[0] if points else None,
             finished=progress.enough,

@@ -22,8 +22,31 @@ from gearopt.optimise.terms import Array
 
 ENTRIES = 10_000_000  # of the last stage's table
 SLICE = 500_000  # of them, between two checks of the clock
+ROUNDING = 1e-6  # relative: above that of single precision
 
 Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class LastCosts:
+    """Lower bounds of what pairs of the last stage's table cost behind each cell, by the bound.
+
+    start, count (cells,): the pairs that may follow a cell; begins: their places in cost (n,).
+    """
+
+    table: Table
+    start: NDArray[np.int64]
+    count: NDArray[np.int64]
+    begins: NDArray[np.int64]
+    cost: NDArray[np.float32]
+
+    def least(self, cell: NDArray[np.int64], pair: NDArray[np.int64]) -> NDArray[np.float32]:
+        """Bounds of pairs behind cells; inf of those that the bound left out."""
+        number = pair - self.start[cell]
+        inside = (number >= 0) & (number < self.count[cell])
+        found = np.full(len(pair), np.inf, np.float32)
+        found[inside] = self.cost[(self.begins[cell] + number)[inside]]
+        return found
 
 
 @dataclass(frozen=True)
@@ -33,7 +56,7 @@ class Bound:
     to_go[k] (cells,): that of stages k..N-1 from a cell of log cumulative ratio. minimum[k] (cells,
     ratio cells): that of stage k alone. starts[k]: first pair of each ratio cell, so that pairs of
     cell r are starts[k][r] : starts[k][r + 1]. first[k] (cells, pairs): first modules of use, of
-    stages whose ratings are limits.
+    stages whose ratings are limits. last: costs of the last stage's pairs; None: not kept.
     """
 
     delta: float
@@ -41,6 +64,7 @@ class Bound:
     minimum: list[Array | None]
     starts: list[NDArray[np.int64]]
     first: list[NDArray[np.int16] | None]
+    last: LastCosts | None
 
     def cell(self, log_ratio: Array) -> NDArray[np.int64]:
         """Return the cell of a log ratio."""
@@ -79,9 +103,10 @@ def bound(
     minimum: list[Array | None] = [None] * count
     first: list[NDArray[np.int16] | None] = [None] * count
     to_go = [np.full(cells + ratio_cells + 2, np.inf) for _ in range(count)]
-    last = None if useful is None else useful[-1]
+    last = None
     if count > 1:  # a single stage has its exact costs alone
-        to_go[-1][:cells] = _last(train, tables[-1], cells, delta, tick, last, most)
+        mask = None if useful is None else useful[-1]
+        to_go[-1][:cells], last = _last(train, tables[-1], cells, delta, tick, mask, most)
     for k in range(count - 2, 0, -1):
         ahead = _ahead(to_go[k + 1], ratio_cells)[:cells]
         mask = None if useful is None else useful[k][:cells, :ratio_cells]
@@ -102,14 +127,19 @@ def bound(
     columns = [_cell(t.log_ratio, delta) for t in tables]
     edges = np.arange(ratio_cells)
     starts = [np.append(np.searchsorted(c, edges), len(c)) for c in columns]
-    return Bound(delta, to_go, minimum, starts, first)
+    return Bound(delta, to_go, minimum, starts, first, last)
 
 
-def first_costs(train: Train, table: Table, delta: float, most: float) -> Array:
-    """Return lower bounds of the first stage's pairs, close for the least of a cell of ratio."""
+def first_costs(train: Train, table: Table, rest: Bound, delta: float, most: float) -> Array:
+    """Return lower bounds of the first stage's pairs, close for the least of a cell of ratio.
+
+    inf: with what the rest takes at least, more than `most`.
+    """
     torque, every = np.full(len(table.ratio), train.torque), np.arange(len(table.ratio))
     place = _cell(table.log_ratio, delta)
-    return table.least_cost((torque, torque), every, place, delta, most)
+    ahead = rest.to_go[1][rest.cell(table.log_ratio)] if len(rest.to_go) > 1 else np.zeros(1)
+    room = np.where(np.isfinite(ahead), most, -np.inf) - np.where(np.isfinite(ahead), ahead, 0.0)
+    return table.least_cost((torque, torque), every, place, delta, room)
 
 
 def useful_cells(tables: list[Table], rest: Bound, first: Array, most: float) -> list[Mask]:
@@ -156,8 +186,11 @@ def _last(
     tick: Callable[[], float],
     useful: Mask | None,
     most: float,
-) -> Array:
-    """Return the last stage's minimum cost from every cell: exact pairs, lowest possible torque."""
+) -> tuple[Array, LastCosts | None]:
+    """Return the last stage's minimum cost from every cell: exact pairs, lowest possible torque.
+
+    Where ratings limit, also what each pair costs at least.
+    """
     low, high = math.log(train.lowest_ratio), math.log(train.highest_ratio)
     edge = np.arange(cells) * delta
     start = np.searchsorted(table.log_ratio, low - edge - delta - EDGE)
@@ -170,7 +203,7 @@ def _last(
             "the ratio tolerance leaves too many pairs to the last stage: narrow it, or limit "
             "wheel teeth or stage ratio (limits.wheel_teeth, limits.stage_ratio)"
         )
-    found = np.full(cells, np.inf)
+    found, kept = np.full(cells, np.inf), [np.empty(0, np.float32)]
     for part in slices(count, SLICE):
         tick()
         cell, pair = ragged(start[part], count[part])
@@ -182,7 +215,11 @@ def _last(
         ends = [train.torque * np.exp(r) for r in (reached[0] - EDGE, reached[1] + EDGE)]
         cost = table.least_cost((ends[0], ends[1]), pair, cell, delta, most)
         np.minimum.at(found[part], cell, cost)
-    return found
+        kept.append(np.asarray(cost * (1.0 - ROUNDING), np.float32))
+    if not train.rated:  # then costs themselves take no longer
+        return found, None
+    begins = np.cumsum(count) - count
+    return found, LastCosts(table, start, count, begins, np.concatenate(kept))
 
 
 def slices(count: NDArray[np.int64], maximum: int) -> Iterator[slice]:

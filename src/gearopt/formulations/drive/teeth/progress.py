@@ -24,7 +24,8 @@ class Progress:
     """Best trains and effort of a search; it has state because the search fills it.
 
     found: (objective, teeth) of the best trains; wanted: how many of them. floor: a bound on the
-    objective known from elsewhere; lower: that of this search, once it covers all trains (whole).
+    objective known from elsewhere; lower: that of this search, once it covers all trains (whole);
+    quick: one that is in part checked, not proven, and ends no search (Lemma 84).
     beside: a bound on the trains of drives that are searched in turn with the present one.
     clock: counts tooth pairs sized.
     enough: the budget's gap is reached. patience: seconds after the budget's until which the
@@ -36,6 +37,7 @@ class Progress:
     floor: float = -math.inf
     found: list[tuple[float, Teeth]] = field(default_factory=list)
     lower: float = -math.inf
+    quick: float = -math.inf
     beside: float = math.inf
     whole: bool = False
     compared: int = 0
@@ -46,6 +48,11 @@ class Progress:
     @property
     def bound(self) -> float:
         """The best lower bound known so far."""
+        return max(self.proven, self.quick)
+
+    @property
+    def proven(self) -> float:
+        """The best bound of which every part is proven."""
         return max(self.lower, self.floor)
 
     @property
@@ -94,6 +101,6 @@ class Progress:
         clock.bound = self.bound
         if self.found:
             clock.best = self.found[0][0]
-            close = clock.best - self.bound <= gap * clock.best
+            close = clock.best - self.proven <= gap * clock.best
             self.enough = close and gap > 0.0 and self.wanted == 1
         return clock.tell() and not self.enough

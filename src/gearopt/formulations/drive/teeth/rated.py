@@ -229,7 +229,7 @@ class RatedTable(Table):
         pair: Index,
         group: Index,
         delta: float,
-        most: float = np.inf,
+        most: Array | float = np.inf,
     ) -> Array:
         """Return lower bounds of `cost` at torques [N mm] between two ends.
 
@@ -260,14 +260,14 @@ class RatedTable(Table):
         group: Index,
         cost: Array,
         close: float,
-        most: float,
+        most: Array | float,
     ) -> Array:
         """Raise lower bounds of cost (n,) in place until the least of every group is close.
 
         torque: both ends [N mm]. group (n,): the group of each pair. most: costs above which any is
         as good as inf.
         """
-        rough = np.isfinite(cost)
+        rough, most = np.isfinite(cost), np.broadcast_to(most, len(cost))
         while rough.any():
             least = np.full(group.max(initial=-1) + 1, np.inf)
             np.minimum.at(least, group, cost)
@@ -280,7 +280,7 @@ class RatedTable(Table):
             )
             ends = torque[0][near], torque[1][near]
             cost[near] = np.maximum(
-                cost[near], self._found(ends, pair[near], most, close=close).cost
+                cost[near], self._found(ends, pair[near], most[near], close=close).cost
             )
             rough[near] = False
             if np.all(most == np.inf):  # without a train it counts alone which groups have a pair

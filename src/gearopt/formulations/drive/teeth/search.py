@@ -42,7 +42,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget, Event, Watch
 from gearopt.optimise.terms import Array
 
-FEW_WAYS = 16  # toothings of a stage that a first look is content with
+FEW_WAYS = 4, 16  # toothings of a stage that a first look begins with
 BEAM = 4  # nodes followed down at once; measured best for two to four stages
 LEAVES = 256  # nodes completed at once
 FIRST_LOOK = 20_000  # pairs examined for a first train
@@ -103,7 +103,7 @@ def search(
     progress.whole = whole
     try:
         apart = cut == maximum and len(train.of_one_option) * len(train.of_one_row) > 1
-        for one in _glimpses(train):
+        for one in _glimpses(train, progress):
             _glance(train, one, cut, progress, shelf)
             if apart and progress.found:
                 _bound_apart(train, cut, progress, shelf)
@@ -121,17 +121,22 @@ def search(
     return progress
 
 
-def _glimpses(train: Train) -> Iterator[Train]:
+def _glimpses(train: Train, progress: Progress) -> Iterator[Train]:
     """Rated drives of one material each, at one row of distances, in which a train is looked for.
 
-    Rows are taken from the middle of all, where most trains are; of many toothings FEW_WAYS first.
+    Rows are taken from the middle of all, where most trains are; of many toothings FEW_WAYS, and
+    more where there is no train yet.
     """
+    most_ways = max(len(stage.toothings) for stage in train.stages)
     for one in train.of_one_material if train.rated else ():
         rows = one.of_one_row
         for row in sorted(rows, key=lambda row: abs(rows.index(row) - len(rows) // 2)):
-            if (few := row.of_few_toothings(FEW_WAYS)) != row:
-                yield few
-            yield row
+            looked = list[Train]()
+            for count in (*FEW_WAYS, most_ways):
+                few = row.of_few_toothings(count)
+                if few not in looked and not (looked and progress.found):
+                    yield few
+                looked.append(few)
 
 
 def _glance(
@@ -156,7 +161,7 @@ def _glance(
             best = progress.found[0][1]
             progress.add(np.array([valued(train, best)[0]]), iter([best]))
         if progress.whole and progress.found and not before:
-            progress.raise_lower(quick_bound(train, progress.found[0][0]))
+            progress.quick = quick_bound(train, progress.found[0][0])
         progress.patience = 0.0
     progress.patience = -math.inf
     progress.tick()
@@ -179,7 +184,7 @@ def _bound_apart(train: Train, cut: Fraction, progress: Progress, shelf: list[Ra
     tables = stage_tables(apart, cut, progress.tick, shelf)
     delta = FIRST_CELLS * _width(tables)
     rest = bound(apart, tables, delta, progress.tick, None, progress.threshold)
-    first = first_costs(apart, tables[0], LAST_COARSE_CELL, progress.threshold)
+    first = first_costs(apart, tables[0], rest, LAST_COARSE_CELL, progress.threshold)
     progress.raise_lower(_least(tables, rest, first))
 
 
@@ -225,11 +230,11 @@ def _rounds(
         if train.rated:
             begins = first is None
             if first is None:
-                first = first_costs(train, tables[0], LAST_COARSE_CELL, progress.threshold)
+                first = first_costs(train, tables[0], rest, LAST_COARSE_CELL, progress.threshold)
             progress.raise_lower(_least(tables, rest, first))
             if begins:
                 _dive(train, tables, rest, progress, first)
-        lower = _closed(train, tables, rest, progress, enough)
+        lower = _closed(train, tables, rest, progress, enough, first)
         if lower < math.inf and patience <= PATIENCE and not coarse:
             return
         yield lower
@@ -275,9 +280,17 @@ def _root() -> Chunk:
 
 
 def _closed(
-    train: Train, tables: list[Table], rest: Bound, progress: Progress, patience: float
+    train: Train,
+    tables: list[Table],
+    rest: Bound,
+    progress: Progress,
+    patience: float,
+    first: Array | None,
 ) -> float:
-    """Least bound that one search leaves for a finer grid, inf where it is exhausted."""
+    """Least bound that one search leaves for a finer grid, inf where it is exhausted.
+
+    first: bounds of the first stage's pairs, where they are known.
+    """
 
     def goes_on(lower: float, _: Chunk) -> bool:
         if lower > progress.threshold:
@@ -294,7 +307,8 @@ def _closed(
             later = chunk.part(slice(width, None))
             if len(later.bound):
                 yield float(later.bound[0]), later
-            chunk = _expand(train, tables, rest, chunk.part(slice(0, width)), progress)
+            part = chunk.part(slice(0, width))
+            chunk = _expand(train, tables, rest, part, progress, (0, first))
 
     left = best_first([(-math.inf, _root())], goes_on, branch)
     return left.least if left.least <= progress.threshold else math.inf
@@ -319,7 +333,11 @@ def _expand(
         _complete(train, tables, rest, chunk, progress, few)
         return None
     if level == 0:
-        node, pair = np.zeros(len(stage.ratio), dtype=np.int64), np.arange(len(stage.ratio))
+        pair = np.arange(len(stage.ratio))
+        if few[1] is not None:
+            ahead = rest.to_go[1][rest.cell(stage.log_ratio)]
+            pair = np.flatnonzero(few[1] + ahead <= progress.threshold)
+        node = np.zeros(len(pair), dtype=np.int64)
     else:
         onward = chunk.cost[:, None] + rest.onward(level, rest.cell(chunk.log_ratio))
         owner, cell = np.nonzero(onward <= progress.threshold)
@@ -429,6 +447,10 @@ def _complete(
     start = np.searchsorted(stage.log_ratio, low - chunk.log_ratio - EDGE)
     stop = np.searchsorted(stage.log_ratio, high - chunk.log_ratio + EDGE)
     node, pair = ragged(start, stop - start)
+    if rest.last is not None and rest.last.table is stage:
+        own = rest.last.least(rest.cell(chunk.log_ratio)[node], pair)
+        some = np.flatnonzero(chunk.cost[node] + own <= progress.threshold)
+        node, pair = node[some], pair[some]
     if few[0]:
         node, pair = _promising(train, stage, rest, chunk, (node, pair), progress.threshold, *few)
     progress.clock.evaluations += len(pair)

@@ -128,7 +128,7 @@ class Table:
         pair: Index,
         group: Index,
         delta: float,
-        most: float = np.inf,
+        most: Array | float = np.inf,
     ) -> Array:
         """Return lower bounds of `cost` at torques [N mm] between two ends.
 
