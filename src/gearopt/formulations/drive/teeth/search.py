@@ -156,23 +156,30 @@ def _glance(
         before = progress.found[:1]
         if some is not few and not before and all(map(operator.is_, few, tables)):
             break  # the same again
-        _first_dive(own, tables, some, progress)
+        carries = _first_dive(own, tables, some, progress)
         if own is not train and progress.found[:1] != before:
             best = progress.found[0][1]
             progress.add(np.array([valued(train, best)[0]]), iter([best]))
         if progress.whole and progress.found and not before:
             progress.quick = quick_bound(train, progress.found[0][0])
         progress.patience = 0.0
+        if not carries:
+            break
     progress.patience = -math.inf
     progress.tick()
 
 
-def _first_dive(train: Train, tables: list[Table], few: list[Table], progress: Progress) -> None:
-    """Look for a train of all pairs of the last stage and few of the others."""
-    if all(len(t.ratio) for t in tables):
-        delta = FIRST_CELLS * _width(tables)
-        rest = bound(train, few, delta, progress.tick, None, progress.threshold)
-        _dive(train, [*few[:-1], tables[-1]], rest, progress)
+def _first_dive(train: Train, tables: list[Table], few: list[Table], progress: Progress) -> bool:
+    """Look for a train of all pairs of the last stage and few of the others.
+
+    Return whether some of the few of the last stage carry: else there is hardly a train.
+    """
+    if not all(len(t.ratio) for t in tables):
+        return False
+    delta = FIRST_CELLS * _width(tables)
+    rest = bound(train, few, delta, progress.tick, None, progress.threshold)
+    _dive(train, [*few[:-1], tables[-1]], rest, progress)
+    return len(tables) == 1 or bool(np.isfinite(rest.to_go[-1]).any())
 
 
 def _bound_apart(train: Train, cut: Fraction, progress: Progress, shelf: list[RatedTable]) -> None:

@@ -38,12 +38,14 @@ class Conflict:
     """Names of requirements that are proven to exclude each other.
 
     unsure: those of them of which it is not known whether they are needed.
-    any_resolves: any one of them, dropped alone, makes a design possible.
+    any_resolves: any one of them, dropped alone, makes a design possible. whatever_load: there are
+    no teeth, whatever they carry.
     """
 
     names: tuple[str, ...] = ()
     unsure: tuple[str, ...] = ()
     any_resolves: bool = False
+    whatever_load: bool = False
 
     @property
     def proven(self) -> bool:
@@ -156,7 +158,8 @@ def conflict(case: Case) -> Conflict:
     whole = _Filter(case) if filtering.exact else filtering
     unsure = tuple(name for name in every if name not in filtering.needed)
     alone = len(every) > 1 and all(whole.possible([name], GLANCE) for name in every)
-    return Conflict((*every, *_standard(case, filtering.dropped, every)), unsure, alone)
+    names = (*every, *_standard(case, filtering.dropped, every))
+    return Conflict(names, unsure, alone, bool(strength))
 
 
 def _filter_of_requirements(case: Case) -> tuple[_Filter, tuple[tuple[tuple[str, ...], ...], ...]]:

@@ -13,7 +13,13 @@ from gearopt.scenes.drive.explain.influences import GRADES, eases
 from gearopt.scenes.drive.explain.moves import WIDTH, next_module
 from gearopt.scenes.drive.explain.rated_choices import choices
 from gearopt.scenes.drive.explain.rated_conflict import Conflict, conflict
-from gearopt.scenes.drive.explain.requirements import DISTANCE, OF_SHIFTS, ORDER, TEETH
+from gearopt.scenes.drive.explain.requirements import (
+    DISTANCE,
+    OF_SHIFTS,
+    OF_TEETH,
+    ORDER,
+    TEETH,
+)
 from gearopt.scenes.drive.explain.tried import Case, any_possible
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import (
@@ -69,7 +75,8 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
     ways = singles(asked, _until(first, _groups(scene, known)), SHARPEN_SECONDS)
     if not ways:
         first = clock
-        ways = singles(asked, _groups(scene, Conflict(), REACH), SHARPEN_SECONDS)
+        unnamed = Conflict(whatever_load=known.whatever_load)
+        ways = singles(asked, _groups(scene, unnamed, REACH), SHARPEN_SECONDS)
     last = soon(CHOICE_SECONDS)
     untried = first.over
     chosen = choices(scene, known, lambda other: None if last.over else works(other))
@@ -98,7 +105,8 @@ def _doubts(known: Conflict) -> str:
 def _groups(scene: Scene, known: Conflict, far: float = FARTHEST_FACTOR) -> Iterator[Group]:
     """Yield the numbers that may help, each alone; teeth come last.
 
-    What is in no conflict keeps the drive impossible however it is moved.
+    What is in no conflict keeps the drive impossible however it is moved; where there are no teeth
+    whatever they carry, so does what they carry.
     """
     dropped = known.names and {name.split("[")[0] for name in known.names}
     yield from _of_distances(scene, far, 1)
@@ -107,7 +115,8 @@ def _groups(scene: Scene, known: Conflict, far: float = FARTHEST_FACTOR) -> Iter
             continue
         way = -1 if number.path == POWER else eases(scene, number) or _wider(number)
         name = _name(number) if way else ""
-        if way and not (dropped and name in _PROVEN and name not in dropped):
+        idle = known.whatever_load and name not in OF_TEETH
+        if way and not idle and not (dropped and name in _PROVEN and name not in dropped):
             yield Group((_move(scene, number, way, far),))
     yield from _of_distances(scene, far, -1)
 

@@ -26,7 +26,8 @@ def rating_assumptions(scene: Scene) -> list[str]:
         *_named_steels(scene),
         *(_agma_assumptions(scene, asked) if agma else []),
         *(_iso_assumptions(scene, asked) if iso else []),
-        "Scuffing, micropitting, wear, shafts and bearings are not rated.",
+        "Scuffing, micropitting, flank fracture, wear, the bending of shafts, and bearings were not "
+        "looked at.",
         "S_H is a ratio of contact stresses, its square one of loads. Lives are those at which a "
         "safety factor is 1.",
     ]

@@ -1,18 +1,24 @@
 """What is unusual about rated gears, told beside their rating: proportions, steel against size."""
 
+import math
 from collections.abc import Iterator, Sequence
 
+from gearopt.formulations.drive.rating import DriveRating
+from gearopt.formulations.drive.train import STEEL_DENSITY
 from gearopt.physics.gears import MEMBERS, Gear, GearPair
 from gearopt.scenes.drive.rating.gears import Tables
 from gearopt.scenes.drive.rating.steels import chosen
 from gearopt.scenes.drive.tables.rating import GearTable
 
 WIDEST, NARROWEST = 2.0, 3.0  # b/d1 and b/m_n, beyond which gears are unusual (books; unverified)
+FLAT = math.radians(10.0)  # normal pressure angle below which no law of the rating was tried
+HEAVY = 100.0  # kg, of gears from which on it is told what decides their size
 PLATE = 1.5  # diameter of a bar that hardens as a plate of a thickness does (EN 10083; memory)
 
 
 def unusual(pairs: Sequence[GearPair], tables: Sequence[Tables]) -> Iterator[str]:
     """Yield sentences on what is unusual about pairs of floats; tables: of their gears."""
+    yield from _modules(pairs)
     for k, (pair, both) in enumerate(zip(pairs, tables, strict=True), 1):
         yield from _proportions(pair, k)
         yield from dict.fromkeys(text for table in both for text in _soft_core(table, pair, k))
@@ -20,8 +26,47 @@ def unusual(pairs: Sequence[GearPair], tables: Sequence[Tables]) -> Iterator[str
             yield from _of_steel(table, gear, f"the {member} of stage {k}")
 
 
+def weighty(pairs: Sequence[GearPair], rated: DriveRating) -> Iterator[str]:
+    """Yield what decides the mass of heavy gears, were they solid steel.
+
+    The stage of most of it, and what governs its size: the mode whose safety factor, by the
+    standard of the least, is closest to the one asked for.
+    """
+    each = [sum(1e3 * float(g.mass(STEEL_DENSITY)) for g in pair.gears) for pair in pairs]
+    if sum(each) < HEAVY:
+        return
+    stage = max(range(len(each)), key=lambda k: each[k]) + 1
+    rows = [mesh for one in rated.each for mesh in one.meshes if mesh.stage == stage]
+    mesh = min(rows, key=lambda mesh: mesh.power_capacity_kW)
+    mode, power = ("contact", "the square of ") if "contact" in mesh.governs else ("bending", "")
+    part = f", stage {stage} {each[stage - 1]:,.0f} kg of it" if len(each) > 1 else ""
+    yield (
+        f"As solid steel the gears weigh {sum(each):,.0f} kg{part}. The {mesh.governs} decides "
+        "that: mass grows with the torque and falls with "
+        f"{power}the permissible {mode} stress, so that harder or better steel makes it lighter."
+    )
+
+
+def _modules(pairs: Sequence[GearPair]) -> Iterator[str]:
+    """Yield where a slower stage has the smaller module."""
+    for k, (pair, slower) in enumerate(zip(pairs, pairs[1:], strict=False), 1):
+        first, second = float(pair.normal_module), float(slower.normal_module)
+        if second < first * (1.0 - 1e-9) and float(pair.ratio) > 1.0:
+            yield (
+                f"The modules of stages {k} and {k + 1}, {first:.4g} and {second:.4g} mm, are out "
+                f"of proportion: the torque of stage {k + 1} is {float(pair.ratio):.3g} times as "
+                "large."
+            )
+
+
 def _proportions(pair: GearPair, stage: int) -> Iterator[str]:
-    width = float(pair.face_width)
+    width, angle = float(pair.face_width), float(pair.pinion.rack.pressure_angle)
+    if angle < FLAT:
+        yield (
+            f"The normal pressure angle of stage {stage} is {math.degrees(angle):.3g}°: below "
+            f"{math.degrees(FLAT):.0f}° teeth are undercut and slim, and the laws of the rating "
+            "were not made for them."
+        )
     over = width / float(pair.pinion.reference_diameter)
     if over > WIDEST:
         yield (

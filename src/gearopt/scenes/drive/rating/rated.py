@@ -26,7 +26,7 @@ from gearopt.scenes.drive.rating.gears import (
 from gearopt.scenes.drive.rating.geometry import tooth_geometry
 from gearopt.scenes.drive.rating.mesh import Materials, rated_meshes
 from gearopt.scenes.drive.rating.options import SECOND, STANDARDS, by, required
-from gearopt.scenes.drive.rating.plausibility import unusual
+from gearopt.scenes.drive.rating.plausibility import unusual, weighty
 from gearopt.scenes.drive.rating.rows import (
     factor_rows,
     gear_row,
@@ -213,7 +213,8 @@ def rating(
         gear_tables(own, scene.gears, scene.material, k, of_stage)
         for k, (own, of_stage) in enumerate(zip(scene.stage_tables, names, strict=True))
     ]
-    return replace(first, flaws=(*_partial_contact(first), *unusual(pairs, tables)))
+    flaws = (*_partial_contact(first), *unusual(pairs, tables), *weighty(pairs, first))
+    return replace(first, flaws=flaws)
 
 
 def _partial_contact(rated: DriveRating) -> Iterator[str]:

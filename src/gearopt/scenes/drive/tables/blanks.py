@@ -134,8 +134,11 @@ def body_flaws(
             root = float(gear.root_diameter)
             if shape.bore and not body.bore:
                 text = (
-                    f"The {name} is solid, without its bore: a hub of {shape.hub:.4g} mm does not "
-                    f"lie inside the root circle of {root:.4g} mm."
+                    f"The bore of the {name}, {shape.bore:.4g} mm, leaves nothing inside the root "
+                    f"circle of {root:.4g} mm; it is rated as solid."
+                    if shape.bore >= root
+                    else f"The {name} is solid, without its bore: a hub of {shape.hub:.4g} mm does "
+                    f"not lie inside the root circle of {root:.4g} mm."
                 )
                 wide = (shape.bore - root) / gear.normal_module if bored and bored[k][i] else -1.0
                 equal = 2.0 * ROUNDING  # a bore as wide as the root circle does not fit either
