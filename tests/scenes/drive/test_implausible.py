@@ -104,8 +104,9 @@ def test_what_is_unusual_is_told(name, tmp_path):
         text = text.replace(old, new, 1)
     path = tmp_path / "pair.toml"
     path.write_text(text)
-    rating = gearopt.rate(path).design["rating"]
-    every = *rating.get("flaws", ()), *rating.get("misfits", ())
+    result = gearopt.rate(path)
+    rating = result.design["rating"]
+    every = *rating.get("flaws", ()), *rating.get("misfits", ()), *result.report.get("notes", ())
     assert any(told in sentence for sentence in every)
 
 

@@ -21,7 +21,7 @@ class GearRating:
     hardness, temperature and reliability; by ISO 6336 the limits sigma_FG and sigma_HG. Of a load
     spectrum stresses are those of the level where they are largest, safety factors those of all
     levels. Lives: None beyond the end of the curves; 0 where it fails at once. damages: Miner's
-    sums, of a spectrum.
+    sums, of a spectrum. required safeties: of its stage; None: those of the drive.
     """
 
     stage: int
@@ -39,6 +39,8 @@ class GearRating:
     bending_life_cycles: Annotated[float | None, Shown("life, bending")]
     contact_life_cycles: Annotated[float | None, Shown("life, contact")]
     life_h: Annotated[float | None, Shown("life")]
+    required_bending_safety: float | None = None
+    required_contact_safety: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -195,6 +197,14 @@ class DriveRating:
         """Return the ratings by all standards, this one first."""
         return (self,) if self.beside is None else (self, self.beside)
 
+    def asked_of(self, gear: GearRating) -> tuple[float, float]:
+        """S_F and S_H asked for of a gear."""
+        bending, contact = gear.required_bending_safety, gear.required_contact_safety
+        return (
+            self.minimum_bending_safety if bending is None else bending,
+            self.minimum_contact_safety if contact is None else contact,
+        )
+
     def known_life_h(self, gear: GearRating) -> float:
         """Life of a gear [h] as far as its curve reaches: at least that."""
         if gear.life_h is not None:
@@ -210,9 +220,11 @@ class DriveRating:
     def met(self) -> bool:
         """Return whether every gear meets the safety factors asked for, whether or not it fits."""
         return all(
-            self.minimum_bending_safety <= (1.0 + FEASIBLE) * gear.bending_safety
-            and self.minimum_contact_safety <= (1.0 + FEASIBLE) * gear.contact_safety
+            asked <= (1.0 + FEASIBLE) * reached
             for gear in self.gears
+            for asked, reached in zip(
+                self.asked_of(gear), (gear.bending_safety, gear.contact_safety), strict=True
+            )
         )
 
     @property

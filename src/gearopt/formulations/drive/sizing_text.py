@@ -271,7 +271,8 @@ def terms(
         allowable = [of_stage[name] for name in train.law.names]
         rows = train.law.utilisations(pair, torque, numbers.speed / product, allowable)
         if stage.options:
-            safety = numbers.bending_safety, numbers.contact_safety
+            times = stage.safety
+            safety = numbers.bending_safety * times[0], numbers.contact_safety * times[1]
             load = torque, numbers.speed / product
             if rated is not None:
                 rows |= rated(k, pair, *load, safety)

@@ -99,6 +99,7 @@ class Stage:
     and pinion_shift alone.
     helix: least and greatest helix angle [rad], above 0, of real-valued sizes, else None; shifts:
     least and greatest x1, and so of x1 + x2, of real-valued sizes, else None.
+    safety: S_F and S_H asked of it over those of the train.
     overlap: minimum overlap ratio, 0: no limit; axial_force: maximum [N] at the train's torque.
     options: ways of making them that are rated, of which one is chosen; none: the law limits alone.
     blanks: of pinion and wheel.
@@ -118,6 +119,7 @@ class Stage:
     blanks: tuple[Blank, Blank] = (SOLID, SOLID)
     overlap: float = 0.0
     axial_force: float = math.inf
+    safety: tuple[float, float] = (1.0, 1.0)
 
     def __post_init__(self) -> None:
         if not all(self.toothings[0].alike(other) for other in self.toothings[1:]):
@@ -382,6 +384,10 @@ class Train:
         """
         cut = self.stages[stage].toothing_of(toothing)
         return cut.pair(module, pinion_teeth, wheel_teeth, face_width)
+
+    def safety_of(self, stage: Stage) -> tuple[float, float]:
+        """S_F and S_H asked for of a stage."""
+        return self.safety[0] * stage.safety[0], self.safety[1] * stage.safety[1]
 
     def speed_at(self, torque: Any) -> Any:
         """Return the speed [rad/s] of a shaft that carries a torque [N mm], without losses."""

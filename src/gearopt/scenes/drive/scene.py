@@ -28,7 +28,7 @@ from gearopt.scenes.drive.rating.checks import (
     not_given,
 )
 from gearopt.scenes.drive.rating.materials import MaterialTable, check_materials, check_same
-from gearopt.scenes.drive.rating.options import of_stages, required
+from gearopt.scenes.drive.rating.options import of_stage, of_stages, required
 from gearopt.scenes.drive.shifts import balanced, check_range, check_shift
 from gearopt.scenes.drive.tables.blanks import blank, check_blanks
 from gearopt.scenes.drive.tables.drive import (
@@ -467,9 +467,11 @@ class Scene(Table):
         if self.by_ratings:
             assert self.rating
             rated = of_stages(self.rating, tables, self.gears, self.material, self.duty, self.load)
-            both = zip(stages, rated, strict=True)
-            stages = tuple(replace(stage, options=options) for stage, options in both)
             safety = required(self.rating)
+            asked = (required(of_stage(self.rating, own)) for own in tables)
+            times = ((b / safety[0], c / safety[1]) for b, c in asked)
+            rows = zip(stages, rated, times, strict=True)
+            stages = tuple(replace(s, options=made, safety=more) for s, made, more in rows)
         return Train(
             torque=self.torque,
             ratio=self.duty.total_ratio,

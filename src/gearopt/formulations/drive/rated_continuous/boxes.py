@@ -171,7 +171,7 @@ def bounded(shafts: Shafts, k: int, boxes: Boxes) -> tuple[Boxes, Array]:
         sizes, cells = boxes.sizes, cells_of(shafts.train, k, boxes.sizes, before)
     torque = cells.torque
     needed = needed_by_cells(shafts.train, stage, cells)
-    weak = _needed_by_weak(stage, cells, shafts.train.safety, needed[0])
+    weak = _needed_by_weak(stage, cells, shafts.train.safety_of(stage), needed[0])
     most = np.maximum(weak * (1.0 + 1.0 / cells.ratio[1]), needed[1]) * torque[0]
     with np.errstate(divide="ignore"):
         least = np.log(most * (1.0 - MARGIN))  # of d1^2 b = d1^3 (b/d1)
@@ -280,7 +280,7 @@ def needed_by_cells(train: Train, stage: Stage, cells: Cells) -> tuple[Array, Ar
             needs.append((load / (1.0 + 1.0 / u), zero))
         given = stage.toothing.working_distance is not None  # then teeth alone say little
         for standard in stage.options[0].standards if stage.options and not given else ():
-            needs.append(standard.needed(cells, train.safety))
+            needs.append(standard.needed(cells, train.safety_of(stage)))
     pressed, bent = (np.maximum.reduce([one[i] for one in needs]) for i in (0, 1))
     return np.nan_to_num(pressed, nan=0.0), np.nan_to_num(bent, nan=0.0)
 

@@ -105,7 +105,7 @@ def _without_idle_standards(train: Train, pairs: Sequence[GearPair]) -> Train:
         for standard in option[0].standards if option else ():
             single = replace(option[0], standards=(standard,))
             speed = train.speed_at(torque)
-            utilisations = single.utilisations(pair, torque, speed, train.safety)
+            utilisations = single.utilisations(pair, torque, speed, train.safety_of(stages[k]))
             used.append((float(max(utilisations.values())), standard))
         most = max((u for u, _ in used), default=0.0)
         left = tuple(standard for u, standard in used if u >= GOVERNS * most)

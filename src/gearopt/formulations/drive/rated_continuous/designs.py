@@ -154,6 +154,7 @@ class Trials:
     def narrowest(self, train: Train, torque: float, low: Array, high: Array) -> Array:
         """Return the narrowest face widths [mm] from low to high that carry; inf: none."""
         speed, stage = float(train.speed_at(torque)), self.stage
+        safety = train.safety_of(stage)
         thinned = any(stage.toothing.thickness_allowances)
 
         def rows(standard: Standard, place: Array) -> Rows:
@@ -161,10 +162,10 @@ class Trials:
             pairs = some.pairs(1.0)
             ends = (np.full(len(place), torque),) * 2, (np.full(len(place), speed),) * 2
             if thinned:
-                return standard.rows(standard.prepared(pairs), pairs, *ends, train.safety)
+                return standard.rows(standard.prepared(pairs), pairs, *ends, safety)
             shape, at = np.unique(some.row, return_inverse=True)
             teeth = standard.prepared(self._made(self.shapes[:, shape], np.ones(len(shape))))
-            return standard.rows(teeth.take(at).scaled(some.module), pairs, *ends, train.safety)
+            return standard.rows(teeth.take(at).scaled(some.module), pairs, *ends, safety)
 
         standards = stage.options[0].standards[::-1] if stage.options else ()
         makers = [partial(rows, standard) for standard in standards]

@@ -459,7 +459,8 @@ class RatedTable(Table):
         """`_nominal` of one option, for every torque of the train."""
         low = np.full(len(pair), self.train.torque)
         ends = low, low * float(self.train.highest_ratio)
-        speed, safety = tuple(self.train.speed_at(end) for end in ends), self.train.safety
+        speed = tuple(self.train.speed_at(end) for end in ends)
+        safety = self.train.safety_of(self.stage)
         gears = self.made(self.modules[module], pair)
         least = [
             standard.nominal(
@@ -571,7 +572,7 @@ class RatedTable(Table):
                 ends = torque[0][place], torque[1][place]
                 speed = self.train.speed_at(ends[0]), self.train.speed_at(ends[1])
                 teeth = self._prepared_data(prepared, module[place], pair[place])
-                return standard.rows(teeth, gears, ends, speed, self.train.safety)
+                return standard.rows(teeth, gears, ends, speed, self.train.safety_of(self.stage))
 
             return rows
 

@@ -113,10 +113,7 @@ def _fields(rating: DriveRating) -> list[ListedField]:
 
 def _gear_rows(rating: DriveRating, measures: Measures) -> Iterator[list[Any]]:
     """Yield the rows of gears, and below every safety factor how much of it is used."""
-    asked = {
-        "bending_safety": rating.minimum_bending_safety,
-        "contact_safety": rating.minimum_contact_safety,
-    }
+    asked = {"bending_safety": 0, "contact_safety": 1}
     for it in _fields(rating):
         values = [getattr(gear, it.key) for _, gear in _columns(rating)]
         head = it.head(measures)
@@ -132,8 +129,10 @@ def _gear_rows(rating: DriveRating, measures: Measures) -> Iterator[list[Any]]:
         elif rating.levels:
             yield [head, *map(_damage, values)]
         if it.key in asked:
-            used = (_used(asked[it.key], value) for value in values)
-            yield [f"utilisation, {it.label} {asked[it.key]:g} required [%]", *used]
+            wanted = [rated.asked_of(gear)[asked[it.key]] for rated, gear in _columns(rating)]
+            used = (_used(*both) for both in zip(wanted, values, strict=True))
+            words = " and ".join(f"{least:g}" for least in dict.fromkeys(wanted))
+            yield [f"utilisation, {it.label} {words} required [%]", *used]
 
 
 def _used(asked: float, safety_factor: float) -> Cell:

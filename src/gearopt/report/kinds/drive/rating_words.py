@@ -163,12 +163,14 @@ def _powers(rating: DriveRating) -> tuple[str, list[str]]:
 
 def _all(rating: DriveRating) -> list[tuple[str, float, float]]:
     """Every safety factor: of what, its value, what is asked for."""
-    asked = rating.minimum_bending_safety, rating.minimum_contact_safety
     return [
         (f"{mode} of the {gear_words(rating, gear)}", reached, least)
         for gear in rating.gears
         for mode, reached, least in zip(
-            MODES, (gear.bending_safety, gear.contact_safety), asked, strict=True
+            MODES,
+            (gear.bending_safety, gear.contact_safety),
+            rating.asked_of(gear),
+            strict=True,
         )
     ]
 
@@ -199,8 +201,8 @@ def nearest(rating: DriveRating) -> list[str]:
             for gear in rated.gears
             if gear.stage == mesh.stage
             for mode, reached, asked in (
-                ("bending", gear.bending_safety, rated.minimum_bending_safety),
-                ("contact", gear.contact_safety, rated.minimum_contact_safety),
+                ("bending", gear.bending_safety, rated.asked_of(gear)[0]),
+                ("contact", gear.contact_safety, rated.asked_of(gear)[1]),
             )
         ]
         _, what, by = min(rows)
@@ -304,8 +306,9 @@ def tiles(result: Result, measures: Measures) -> list[Tile]:
 
 def _safety_tile(rating: DriveRating, mode: str, whole: DriveRating) -> Tile:
     """The least safety factor of a mode by one of the standards of the whole rating."""
-    key, asked = f"{mode}_safety", float(getattr(rating, f"minimum_{mode}_safety"))
-    least = min(rating.gears, key=lambda gear: float(getattr(gear, key)))
+    key, place = f"{mode}_safety", [*MODES].index(mode)
+    least = min(rating.gears, key=lambda g: float(getattr(g, key)) / rating.asked_of(g)[place])
+    asked = rating.asked_of(least)[place]
     remark = f"{gear_words(rating, least)}; {asked:g} required"
     of = "" if whole.beside is None else f" by {rating.by}"
     reached = beside(getattr(least, key), asked, f"{asked:g}")

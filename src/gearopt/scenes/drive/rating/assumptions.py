@@ -26,8 +26,7 @@ def rating_assumptions(scene: Scene) -> list[str]:
         *_named_steels(scene),
         *(_agma_assumptions(scene, asked) if agma else []),
         *(_iso_assumptions(scene, asked) if iso else []),
-        "Scuffing, micropitting, flank fracture, wear, the bending of shafts, and bearings were not "
-        "looked at.",
+        "Scuffing, micropitting, flank fracture, wear, shafts and bearings were not looked at.",
         "S_H is a ratio of contact stresses, its square one of loads. Lives are those at which a "
         "safety factor is 1.",
     ]

@@ -14,6 +14,7 @@ from gearopt.scenes.drive.tables.drive import Gears, Objective, StageTable
 from gearopt.scenes.drive.tables.iso6336 import ISO_KEYS, IsoTable
 from gearopt.scenes.drive.tables.rating import (
     MATERIAL,
+    OF_STAGE,
     STEEL,
     GearTable,
     GivenTable,
@@ -140,7 +141,8 @@ def _only_rated(
     for k, stage in enumerate(stages):
         yield from [("stage", k, "given")] * (stage.given != GivenTable())
         yield from [("stage", k, "given_iso6336")] * bool(stage.given_iso6336.factors())
-        yield from [("stage", k, "pinion_hand")] * (stage.pinion_hand is not None)
+        for name in ("pinion_hand", *OF_STAGE):
+            yield from [("stage", k, name)] * (getattr(stage, name) is not None)
         tables += [(("stage", k, member), getattr(stage, member)) for member in MEMBERS]
     for place, table in tables:
         yield from ((*place, n) for n in MATERIAL if getattr(table, n) is not None)

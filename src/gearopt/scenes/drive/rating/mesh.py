@@ -10,6 +10,7 @@ from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.rating import Operation, Rating
 from gearopt.scenes.drive.rating.gears import Tables, gear_tables, operations
+from gearopt.scenes.drive.rating.options import of_stage
 from gearopt.scenes.drive.scene import Scene
 
 Materials = Sequence[tuple[str, str]]
@@ -75,8 +76,9 @@ def _mesh(
     scene: Scene, k: int, pair: GearPair, slower: float, standard: Any, named: tuple[str, str]
 ) -> Mesh:
     """Rate one stage (from 0); slower: input over pinion speed; named: its materials."""
-    rating, stage = scene.rating, scene.stage_tables[k]
-    assert rating
+    stage = scene.stage_tables[k]
+    assert scene.rating
+    rating = of_stage(scene.rating, stage)
     tables = gear_tables(stage, scene.gears, scene.material, k, named)
     steels = standard.steel(tables[0]), standard.steel(tables[1])
     practice = standard.practice(rating, stage, pair, tables)

@@ -10,7 +10,7 @@ from gearopt.physics.gears import MEMBERS
 from gearopt.scenes.drive.rating.gears import blanks, loads, required_hours, unit_operation
 from gearopt.scenes.drive.rating.materials import Named, choices
 from gearopt.scenes.drive.tables.drive import Gears, StageTable
-from gearopt.scenes.drive.tables.rating import GearTable, LoadTable, RatingTable
+from gearopt.scenes.drive.tables.rating import OF_STAGE, GearTable, LoadTable, RatingTable
 from gearopt.scenes.parts import Duty
 
 STANDARDS = {  # of the key standard
@@ -43,7 +43,11 @@ def of_stages(
     for table in stages:
         pinion, wheel = (choices(getattr(table, member), gears, materials) for member in MEMBERS)
         options.append(
-            tuple(_option(rating, table, (a, b), hours, loaded) for a in pinion for b in wheel)
+            tuple(
+                _option(of_stage(rating, table), table, (a, b), hours, loaded)
+                for a in pinion
+                for b in wheel
+            )
         )
     if not gears.same_materials:
         return tuple(options)
@@ -85,6 +89,18 @@ def _option(
 
 def _two(values: tuple[Any, ...]) -> tuple[Any, Any]:
     return values[0], values[1]
+
+
+def of_stage(rating: RatingTable, own: StageTable) -> RatingTable:
+    """The table [rating] with what a stage has of its own."""
+    held = {name: getattr(own, name) for name in OF_STAGE}
+    return rating.model_copy(update={name: v for name, v in held.items() if v is not None})
+
+
+def own_safety(own: StageTable) -> tuple[float | None, float | None]:
+    """S_F and S_H that a stage asks for itself."""
+    bending, contact = own.minimum_bending_safety, own.minimum_contact_safety
+    return None if bending is None else float(bending), None if contact is None else float(contact)
 
 
 def required(rating: RatingTable) -> tuple[float, float]:

@@ -12,7 +12,7 @@ from gearopt.scenes.drive.tables.rating import GearTable
 
 WIDEST, NARROWEST = 2.0, 3.0  # b/d1 and b/m_n, beyond which gears are unusual (books; unverified)
 FLAT = math.radians(10.0)  # normal pressure angle below which no law of the rating was tried
-HEAVY = 100.0  # kg, of gears from which on it is told what decides their size
+HEAVY = 200.0  # kg, of gears from which on it is told what decides their size
 PLATE = 1.5  # diameter of a bar that hardens as a plate of a thickness does (EN 10083; memory)
 
 

@@ -25,7 +25,14 @@ from gearopt.scenes.drive.rating.gears import (
 )
 from gearopt.scenes.drive.rating.geometry import tooth_geometry
 from gearopt.scenes.drive.rating.mesh import Materials, rated_meshes
-from gearopt.scenes.drive.rating.options import SECOND, STANDARDS, by, required
+from gearopt.scenes.drive.rating.options import (
+    SECOND,
+    STANDARDS,
+    by,
+    of_stage,
+    own_safety,
+    required,
+)
 from gearopt.scenes.drive.rating.plausibility import unusual, weighty
 from gearopt.scenes.drive.rating.rows import (
     factor_rows,
@@ -59,8 +66,9 @@ def rate(scene: Scene, ask: Ask) -> Result:
 def with_given_rating(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Rating of gears that are all given; SolveError where they have none."""
     assert scene.rating is not None
-    rated = rating(scene, given_pairs(scene.stage, scene.gears))
-    limits, remarks = utilisations(rated), unused_materials(scene)
+    pairs = given_pairs(scene.stage, scene.gears)
+    rated = rating(scene, pairs)
+    limits, remarks = utilisations(rated), [*unused_materials(scene), *weighty(pairs, rated)]
     return Result(
         name="rating",
         status="evaluated",
@@ -159,7 +167,8 @@ def with_rating(scene: Scene, result: Result) -> Result:
     except SolveError as reason:
         report = result.report | {"notes": [*notes, f"There is no rating: {reason}."]}
         return replace(result, report=report)
-    return replace(result, design=result.design | {"rating": untyped(rated)})
+    told = result.report | {"notes": [*notes, *weighty(pairs, rated)]}
+    return replace(result, design=result.design | {"rating": untyped(rated)}, report=told)
 
 
 def check_safe(scene: Scene, result: Result) -> None:
@@ -189,8 +198,9 @@ def utilisations(rated: DriveRating) -> dict[str, float]:
     limits = {}
     for by_standard, of_second in zip(rated.each, ("", SECOND), strict=False):
         for gear in by_standard.gears:
-            bending = by_standard.minimum_bending_safety / gear.bending_safety
-            contact = by_standard.minimum_contact_safety / gear.contact_safety
+            asked = by_standard.asked_of(gear)
+            bending = asked[0] / gear.bending_safety
+            contact = asked[1] / gear.contact_safety
             limits[f"{gear.member}_bending{of_second}[{gear.stage}]"] = bending
             limits[f"{gear.member}_contact{of_second}[{gear.stage}]"] = contact
     return limits
@@ -213,8 +223,7 @@ def rating(
         gear_tables(own, scene.gears, scene.material, k, of_stage)
         for k, (own, of_stage) in enumerate(zip(scene.stage_tables, names, strict=True))
     ]
-    flaws = (*_partial_contact(first), *unusual(pairs, tables), *weighty(pairs, first))
-    return replace(first, flaws=flaws)
+    return replace(first, flaws=(*_partial_contact(first), *unusual(pairs, tables)))
 
 
 def _partial_contact(rated: DriveRating) -> Iterator[str]:
@@ -245,10 +254,11 @@ def _by(
     asked = scene.rating
     assert asked
     meshes = rated_meshes(scene, pairs, standard, materials)
-    wanted = required(asked)
-    rows = tuple(mesh_row(asked, mesh, wanted) for mesh in meshes)
+    wanted = [required(of_stage(asked, own)) for own in scene.stage_tables]
+    rows = tuple(mesh_row(asked, mesh, w) for mesh, w in zip(meshes, wanted, strict=True))
     least = min(rows, key=lambda row: row.power_capacity_kW)
-    gears = tuple(gear_row(mesh, k) for mesh in meshes for k in (0, 1))
+    each = zip(meshes, scene.stage_tables, strict=True)
+    gears = tuple(gear_row(mesh, k, own_safety(own)) for mesh, own in each for k in (0, 1))
     factors = tuple(row for mesh in meshes for row in factor_rows(asked, mesh))
     turned = hands([table.pinion_hand for table in scene.stage] or [None] * len(pairs))
     efficiency, error = _efficiency(rows)
@@ -256,8 +266,8 @@ def _by(
         standard=standard.title(asked, factors),
         safe=False,
         governs=f"{least.governs}, stage {least.stage}",
-        minimum_bending_safety=wanted[0],
-        minimum_contact_safety=wanted[1],
+        minimum_bending_safety=float(asked.minimum_bending_safety),
+        minimum_contact_safety=float(asked.minimum_contact_safety),
         power_capacity_kW=least.power_capacity_kW,
         required_life_h=required_hours(asked, scene.duty),
         life_h=None,

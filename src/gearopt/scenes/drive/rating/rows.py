@@ -40,8 +40,11 @@ MOST_STEPS, FLATTEST, LARGEST = (
 )  # of the search: steps, slope, logarithm of a factor
 
 
-def gear_row(mesh: Mesh, k: int) -> GearRating:
-    """Return the pinion (0) or the wheel (1) of a mesh."""
+def gear_row(mesh: Mesh, k: int, own: tuple[float | None, float | None]) -> GearRating:
+    """Return the pinion (0) or the wheel (1) of a mesh.
+
+    own: safety factors asked of its stage, None: those of the drive.
+    """
     hardest = mesh.hardest
     stresses = hardest.bending_stress[k], hardest.contact_stress[k]
     safeties = hardest.bending_safety[k], hardest.contact_safety[k]
@@ -63,6 +66,8 @@ def gear_row(mesh: Mesh, k: int) -> GearRating:
         life_h=None if _within(min(lives)) is None else _hours(mesh, min(lives), cycles),
         bending_damage=None if mesh.damages is None else mesh.damages[0][k],
         contact_damage=None if mesh.damages is None else mesh.damages[1][k],
+        required_bending_safety=own[0],
+        required_contact_safety=own[1],
     )
 
 

@@ -194,6 +194,15 @@ class StageTable(Loaded):
         'from: a list, "R10", "R20" or "R40" of ISO 3, or a range { from = "100 mm", to = '
         '"200 mm", series = "R20" } or with a step',
     )
+    overload_factor: Annotated[Fraction | None, number(1.25, 1, 10)] = Field(
+        None, description="K_A (K_o) of this stage; by default that of [rating]"
+    )
+    minimum_bending_safety: Annotated[Fraction | None, number(1.2, 0, 100)] = Field(
+        None, description="Required S_F of this stage; by default that of [rating]"
+    )
+    minimum_contact_safety: Annotated[Fraction | None, number(1.1, 0, 100)] = Field(
+        None, description="Required S_H of this stage; by default that of [rating]"
+    )
     pinion: GearTable = Field(default_factory=GearTable, description="Data of the pinion alone")
     wheel: GearTable = Field(default_factory=GearTable, description="Data of the wheel alone")
     given: GivenTable = Field(

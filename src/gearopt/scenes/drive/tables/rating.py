@@ -256,6 +256,9 @@ class GivenTable(Given):
     C_H: Numbers = Field(None, description="Hardness ratio factor")
 
 
+OF_STAGE = ("overload_factor", "minimum_bending_safety", "minimum_contact_safety")  # too
+
+
 class RatingTable(Table):
     """How the gears are rated: standard, service, quality, mounting, oil."""
 

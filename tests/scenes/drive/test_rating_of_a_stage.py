@@ -1,0 +1,92 @@
+"""Overload and safety factors that a stage has of its own, in place of those of [rating]."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import gearopt
+from gearopt.errors import SceneError
+
+PROBLEMS = Path(__file__).parents[3] / "problems"
+ELEVATOR = (PROBLEMS / "elevator_by_both.toml").read_text().partition("[x-expected]")[0]
+GIVEN = (PROBLEMS / "catalogue_pair.toml").read_text().partition("[x-expected]")[0]
+
+
+def of_stages(text, *lines):
+    """A file with a line of its own in every table [[stage]]."""
+    first, *stages = text.split("[[stage]]\n")
+    each = [f"[[stage]]\n{line}\n{rest}" for line, rest in zip(lines, stages, strict=True)]
+    return first + "".join(each)
+
+
+def of_rating(text, line):
+    """A file with a line of [rating] in the place of the one it may have."""
+    key = line.split(" = ")[0]
+    return re.sub(rf"^{key} = .*\n", "", text, flags=re.M).replace(
+        "[rating]\n", f"[rating]\n{line}\n"
+    )
+
+
+def solved(tmp_path, text, **options):
+    path = tmp_path / "file.toml"
+    path.write_text(text)
+    return gearopt.solve(path, **options)
+
+
+@pytest.mark.parametrize(
+    "line", ["overload_factor = 2", "minimum_contact_safety = 1.3", "minimum_bending_safety = 5"]
+)
+def test_factors_of_every_stage_are_those_of_the_rating(line, tmp_path):
+    by_stage = solved(tmp_path, of_stages(ELEVATOR, line, line))
+    whole = solved(tmp_path, of_rating(ELEVATOR, line))
+    assert by_stage.status == whole.status == "optimal"
+    assert by_stage.value == pytest.approx(whole.value, rel=1e-13)
+    assert by_stage.limits.keys() == whole.limits.keys()
+    for name, used in whole.limits.items():
+        assert by_stage.limits[name] == pytest.approx(used, rel=1e-12)
+
+
+def test_one_stage_of_its_own_lies_between(tmp_path):
+    """Stricter on one stage than on none, less strict than on both; the limits say which."""
+    line = "minimum_contact_safety = 1.3"
+    one = solved(tmp_path, of_stages(ELEVATOR, line, "# as [rating]"))
+    none = solved(tmp_path, ELEVATOR)
+    both = solved(tmp_path, of_rating(ELEVATOR, line))
+    assert none.value < one.value < both.value
+    gears = one.design["rating"]["beside"]["gears"]
+    for gear in gears:
+        asked = 1.3 if gear["stage"] == 1 else 1.0
+        name = f"{gear['member']}_contact_iso[{gear['stage']}]"
+        assert one.limits[name] == pytest.approx(asked / gear["contact_safety"], rel=1e-12)
+        assert one.limits[name] <= 1.0 + 1e-9
+
+
+def test_given_gears_are_rated_with_them(tmp_path):
+    path = tmp_path / "file.toml"
+    path.write_text(of_stages(GIVEN, "overload_factor = 2\nminimum_bending_safety = 3"))
+    own = gearopt.rate(path)
+    path.write_text(of_rating(GIVEN, "overload_factor = 2"))
+    whole = gearopt.rate(path)
+    (a, _), (b, _) = (r.design["rating"]["gears"] for r in (own, whole))
+    assert a["bending_safety"] == b["bending_safety"]
+    assert own.limits["pinion_bending[1]"] == pytest.approx(3.0 / a["bending_safety"], rel=1e-12)
+
+
+def test_real_valued_sizes_take_them(tmp_path):
+    line = "minimum_contact_safety = 1.3"
+    text = (PROBLEMS / "sized_and_rated.toml").read_text().partition("[x-expected]")[0]
+    text = re.sub(r"\[teeth\]\n(?:[^\[\n].*\n)*", "", text)
+    count = text.count("[[stage]]\n")
+    by_stage = solved(tmp_path, of_stages(text, *[line] * count))
+    whole = solved(tmp_path, of_rating(text, line))
+    assert by_stage.value == pytest.approx(whole.value, rel=1e-6)
+    assert by_stage.bound <= whole.value * (1.0 + 1e-9)
+
+
+def test_without_a_rating_they_are_refused(tmp_path):
+    path = tmp_path / "file.toml"
+    text = (PROBLEMS / "elevator.toml").read_text().partition("[x-expected]")[0]
+    path.write_text(text.replace("[[stage]]\n", "[[stage]]\noverload_factor = 1.5\n", 1))
+    with pytest.raises(SceneError, match=r"stage\[1\].overload_factor.*needs a table \[rating\]"):
+        gearopt.load(path)
