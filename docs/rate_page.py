@@ -35,6 +35,22 @@ metric terms) with the geometry factors of AGMA 908-B89, by ISO 6336, method B, 
 Formulas, sources and published values beside computed ones: [Rating by AGMA](agma.md), [Rating by
 ISO 6336](iso6336.md). All keys: [drive](drive.md).
 
+## What was read
+
+None of the standards was. A factor has a clause for its source because that is where others have it from; what
+fewer than two of the sources below have, or no published value confirms, is *unverified* beside the factor.
+
+| part | read | met by |
+| --- | --- | --- |
+| AGMA 2001-D04: stresses, K_v, K_m, K_s, K_B, K_R, life factors, strengths | Shigley and other textbooks, tables, public programs of 2001 and 2101 | examples of Shigley, Norton and Mott |
+| AGMA 908-B89: I and J of spur gears | textbooks, two public programs | the published tables of 908, to their digits |
+| AGMA 908-B89: I and J of helical gears | two public programs | each other; no print: unverified |
+| ISO 6336-1, -2, -3: factors of load, contact, bending | IACS UR M56, public programs, DIN 3990 by another program | ISO/TR 6336-30, example 1; the printed report of a 5 MW wind turbine (NREL) |
+| ISO 6336-5: strengths | pictures of its table in a public repository | ME lines of steels and 1500 MPa of Eh, MQ; the rest is unverified |
+| ISO 6336-6: load spectra | its annex C in print | that annex, of contact alone |
+| ISO 1328-1:1995 and 2013, ISO 53, ISO 54, ISO 21771 | tables and formulas in print and in programs | tolerances (1995) and geometry of the printed reports |
+| steels by name | EN, SAE and JIS data sheets of makers, two or more where *verified* | each other |
+
 ## A pair
 
 ```

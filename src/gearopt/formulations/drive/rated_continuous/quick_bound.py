@@ -1,4 +1,4 @@
-"""A quick bound of drives that ratings limit, in a tenth of a second.
+"""A quick bound of drives that ratings limit, in a tenth of a second or, of many ways, half of one.
 
 What ratings need in few wide cells of torque, ratio and sizes (Lemma 64) holds in narrow cells of
 torque and ratio within them, along which the least shares are summed up (Lemma 84).
@@ -21,14 +21,15 @@ WIDE, PARTS = 16, 12  # cells of the logarithm of the total ratio, and narrow on
 SIZES, SIZE = 16, 0.15  # cells of ln(d1) below the largest of use, and their width
 SLIM, MOST_SLIM = 0.5, 4  # width of cells of ln(b/d1), of at most so many
 MOST_KINDS = ways.FEW  # ways and options of a stage that are looked at at first
-DIVISIONS, NEAR = 6, 0.9  # looks at the kinds of the least sum, up to so much of a known value
+# looks at the kinds of the least sum, up to so much of a known value, and toothings for several
+DIVISIONS, NEAR, MANY_WAYS = 6, 0.9, 60
 EDGE = 1e-9  # cells overlap by this much in logarithms
 
 
 def quick_bound(train: Train, most: float) -> float:
     """Lower bound of all trains, of which one has an objective of `most`; -inf: none is known.
 
-    Of stages with ranges the kinds of the least sum are divided, a few times.
+    Of stages with many ways the kinds of the least sum are divided, a few times.
     """
     sized = train.by_width or train.objective in LENGTHS
     if not (sized and most < math.inf) or train.lowest_ratio < 1:
@@ -37,7 +38,8 @@ def quick_bound(train: Train, most: float) -> float:
     kinds = [[(one, _shares(one, k, most)) for one in _kinds(train, k)] for k in range(count)]
     if not all(kinds):
         return -math.inf
-    for left in reversed(range(DIVISIONS)):
+    many = max(len(stage.toothings) for stage in train.stages) > MANY_WAYS
+    for left in reversed(range(DIVISIONS if many else 1)):
         value, path = _least_sum(train, [[share for _, share in one] for one in kinds])
         if value >= most * NEAR or not left or not path:
             break

@@ -17,6 +17,7 @@ from gearopt.formulations.drive import sizing_text
 from gearopt.formulations.drive.teeth.choices import best_choices
 from gearopt.formulations.drive.teeth.front import fronts
 from gearopt.formulations.drive.teeth.progress import MARGIN, TIE, Progress, Teeth
+from gearopt.formulations.drive.teeth.rated import RatedTable
 from gearopt.formulations.drive.teeth.reach import largest_ratio, narrowed, trimmed
 from gearopt.formulations.drive.teeth.search import BEAM, search
 from gearopt.formulations.drive.teeth.tables import table
@@ -213,10 +214,11 @@ def _ends(span: tuple[int, int | None]) -> tuple[float, float]:
 def _outcome(
     train: Train, count: int, floor: float, budget: Budget, watch: Watch | None
 ) -> Outcome:
-    train, progress, missing = _searched(train, count, floor, budget, watch)
+    shelf = list[RatedTable]()
+    train, progress, missing = _searched(train, count, floor, budget, watch, shelf)
     found = _in_order(progress)
     if count > 1 and found and not (progress.clock.stopped or progress.enough):
-        more = search(train, count, progress.clock.left, watch, floor)
+        more = search(train, count, progress.clock.left, watch, floor, shelf=shelf)
         found = (found[:1] + [t for t in _in_order(more) if t != found[0]])[:count]
         progress.compared += more.compared
         progress.clock.evaluations += more.clock.evaluations
@@ -298,9 +300,16 @@ def _counted(count: int, noun: str) -> str:
 
 
 def _searched(
-    train: Train, count: int, floor: float, budget: Budget, watch: Watch | None
+    train: Train,
+    count: int,
+    floor: float,
+    budget: Budget,
+    watch: Watch | None,
+    shelf: list[RatedTable],
 ) -> tuple[Train, Progress, str]:
     """Search for the best train; return the drive that holds all of use and the search's reach.
+
+    shelf: as of `search`.
 
     Wide ranges are searched among few pinions first, which leaves out pinions of no use. If there
     still are more pairs than memory takes, the search among few pinions is all there is.
@@ -308,16 +317,16 @@ def _searched(
     first, few = Progress(count, Clock(budget, watch), floor), narrowed(train)
     if few == train:
         try:
-            return train, search(train, 1, budget, watch, floor), ""
+            return train, search(train, 1, budget, watch, floor, shelf=shelf), ""
         except SolveError as reason:
             first.clock.stopped = True
             return train, first, str(reason)
     try:
-        first = search(few, count, budget, watch, floor, whole=False)
+        first = search(few, count, budget, watch, floor, whole=False, shelf=shelf)
         if first.clock.stopped or first.enough:
             return train, first, ""
         useful = trimmed(train, first.threshold)
-        progress = search(useful, 1, first.clock.left, watch, floor)
+        progress = search(useful, 1, first.clock.left, watch, floor, shelf=shelf)
     except SolveError as reason:
         first.clock.stopped = True
         maximum = max(_ends(s.pinion_teeth)[1] for s in few.stages)

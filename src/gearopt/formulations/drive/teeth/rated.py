@@ -283,7 +283,7 @@ class RatedTable(Table):
                 cost[near], self._found(ends, pair[near], most[near], close=close).cost
             )
             rough[near] = False
-            if np.all(most == np.inf):  # without a train it counts alone which groups have a pair
+            if np.all(np.isinf(most)):  # without a train it counts alone which groups have a pair
                 rough &= ~np.isin(group, group[~rough & np.isfinite(cost)])
         return cost
 
