@@ -49,7 +49,7 @@ fewer than two of the sources below have, or no published value confirms, is *un
 | ISO 6336-5: strengths | pictures of its table in a public repository | ME lines of steels and 1500 MPa of Eh, MQ; the rest is unverified |
 | ISO 6336-6: load spectra | its annex C in print | that annex, of contact alone |
 | ISO 1328-1:1995 and 2013, ISO 53, ISO 54, ISO 21771 | tables and formulas in print and in programs | tolerances (1995) and geometry of the printed reports |
-| steels by name | EN, SAE and JIS data sheets of makers, two or more where *verified* | each other |
+| steels by name | public lists after DIN 743-3, suppliers' sheets after EN 10084, guides of makers | each other: rows of one source are unverified |
 
 ## A pair
 

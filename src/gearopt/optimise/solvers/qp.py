@@ -180,10 +180,11 @@ def _solved(
         ubx=program.high / unit,
     )
     stats = solver.stats()
-    x = np.clip(np.array(solution["x"]).ravel() * unit, program.low, program.high)
     status = "" if stats["success"] else str(stats["return_status"])
     lam = np.zeros(len(program.maximum))
-    lam[given] = np.array(solution["lam_a"]).ravel() * cost
+    with np.errstate(all="ignore"):  # a solver that gave up leaves any numbers
+        x = np.clip(np.array(solution["x"]).ravel() * unit, program.low, program.high)
+        lam[given] = np.array(solution["lam_a"]).ravel() * cost
     return x, lam, status
 
 
