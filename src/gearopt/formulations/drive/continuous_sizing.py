@@ -27,6 +27,7 @@ from gearopt.formulations.drive.rated_continuous.bounding_program import (
 )
 from gearopt.formulations.drive.rated_continuous.cells import Searched, search
 from gearopt.formulations.drive.rated_continuous.designs import polished
+from gearopt.formulations.drive.rated_continuous.quick_bound import quick_bound
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength.standard import MODES, Standard
 from gearopt.frozen import dataclass
@@ -404,7 +405,7 @@ LESS, SMALLEST, HALVINGS = 1e-5, 0.7, 24  # of lengths that an exact rating find
 FINER = (1.0, 1.4, 2.0)  # times the least teeth, of starts without a bounding program
 # teeth above the least of a pinion without a limit, of a search among whole teeth
 TEETH_SEARCHED = 20
-SECONDS, RANGED_SECONDS = 5.0, 1.0  # at most, for that search; where it has ranges
+SECONDS, RANGED_SECONDS = 5.0, 2.5  # at most, for that search; where it has ranges
 WAYS = {1: 5, 2: 4, 3: 3}  # values of each of so many ranges, of which that search chooses
 
 
@@ -463,6 +464,8 @@ def whole(train: Train, clock: Clock) -> list[Array]:
     follow = clock.inner()
 
     def watch(event: Event) -> bool:  # a first train is found without any seconds
+        if event.best is not None and clock.bound == -math.inf:
+            clock.bound = quick_bound(train, event.best)
         follow(event)
         return not clock.refused
 

@@ -18,6 +18,8 @@ def of(train: Train, stage: Stage) -> list[Stage]:
 
     Spur gears are apart from helical ones. None where cells have no bound over ranges.
     """
+    if stage.ranges:
+        return [stage]
     cuts, shifting = stage.toothings, stage.toothing.shifting
     if shifting is None and stage.toothing.working_distance is not None:
         return []

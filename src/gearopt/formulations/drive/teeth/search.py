@@ -125,7 +125,7 @@ def _glimpses(train: Train, progress: Progress) -> Iterator[Train]:
     """Rated drives of one material each, at one row of distances, in which a train is looked for.
 
     Rows are taken from the middle of all, where most trains are; of many toothings FEW_WAYS, and
-    more where there is no train yet.
+    all where there is no train yet.
     """
     most_ways = max(len(stage.toothings) for stage in train.stages)
     for one in train.of_one_material if train.rated else ():
@@ -134,7 +134,7 @@ def _glimpses(train: Train, progress: Progress) -> Iterator[Train]:
             looked = list[Train]()
             for count in (*FEW_WAYS, most_ways):
                 few = row.of_few_toothings(count)
-                if few not in looked and not (looked and progress.found):
+                if few not in looked and not (count not in FEW_WAYS and progress.found):
                     yield few
                 looked.append(few)
 
