@@ -25,6 +25,53 @@ GGG. Eh at MQ is that of a core of 25 HRC; `iso_core = "25 HRC, Jominy"` (28 HRC
 has 461 and `"30 HRC"` 500 MPa. IF is hardened at the roots, too: with "induction, flanks" give
 `sigma_Flim`. Most strengths are unverified: pictures of the table alone have them. They are those
 of a failure probability of 1 % or less (IACS UR M56, 2.8 and 3.8)."""
+READ = (  # of the standards: part, what was read, what it was met by
+    (
+        "part",
+        "read",
+        "met by",
+    ),
+    (
+        "AGMA 2001-D04: stresses, K_v, K_m, K_s, K_B, K_R, life factors, strengths",
+        "Shigley and other textbooks, tables, public programs of 2001 and 2101",
+        "examples of Shigley, Norton and Mott",
+    ),
+    (
+        "AGMA 908-B89: I and J of spur gears",
+        "textbooks, two public programs",
+        "the published tables of 908, to their digits",
+    ),
+    (
+        "AGMA 908-B89: I and J of helical gears",
+        "two public programs",
+        "each other; no print: unverified",
+    ),
+    (
+        "ISO 6336-1, -2, -3: factors of load, contact, bending",
+        "IACS UR M56, public programs, DIN 3990 by another program",
+        "ISO/TR 6336-30, example 1; the printed report of a 5 MW wind turbine (NREL)",
+    ),
+    (
+        "ISO 6336-5: strengths",
+        "pictures of its table in a public repository",
+        "ME lines of steels and 1500 MPa of Eh, MQ; the rest is unverified",
+    ),
+    (
+        "ISO 6336-6: load spectra",
+        "its annex C in print",
+        "that annex, of contact alone",
+    ),
+    (
+        "ISO 1328-1:1995 and 2013, ISO 53, ISO 54, ISO 21771",
+        "tables and formulas in print and in programs",
+        "tolerances (1995) and geometry of the printed reports",
+    ),
+    (
+        "steels by name",
+        "public lists after DIN 743-3, suppliers' sheets after EN 10084, guides of makers",
+        "each other: rows of one source are unverified",
+    ),
+)
 PROBLEMS = Path(__file__).parents[1] / "problems"
 TEXT = """\
 # Rate gears
@@ -37,19 +84,11 @@ ISO 6336](iso6336.md). All keys: [drive](drive.md).
 
 ## What was read
 
-None of the standards was. A factor has a clause for its source because that is where others have it from; what
-fewer than two of the sources below have, or no published value confirms, is *unverified* beside the factor.
+None of the standards was. A factor has a clause for its source because that is where others have it
+from; what fewer than two of the sources below have, or no published value confirms, is *unverified*
+beside the factor.
 
-| part | read | met by |
-| --- | --- | --- |
-| AGMA 2001-D04: stresses, K_v, K_m, K_s, K_B, K_R, life factors, strengths | Shigley and other textbooks, tables, public programs of 2001 and 2101 | examples of Shigley, Norton and Mott |
-| AGMA 908-B89: I and J of spur gears | textbooks, two public programs | the published tables of 908, to their digits |
-| AGMA 908-B89: I and J of helical gears | two public programs | each other; no print: unverified |
-| ISO 6336-1, -2, -3: factors of load, contact, bending | IACS UR M56, public programs, DIN 3990 by another program | ISO/TR 6336-30, example 1; the printed report of a 5 MW wind turbine (NREL) |
-| ISO 6336-5: strengths | pictures of its table in a public repository | ME lines of steels and 1500 MPa of Eh, MQ; the rest is unverified |
-| ISO 6336-6: load spectra | its annex C in print | that annex, of contact alone |
-| ISO 1328-1:1995 and 2013, ISO 53, ISO 54, ISO 21771 | tables and formulas in print and in programs | tolerances (1995) and geometry of the printed reports |
-| steels by name | public lists after DIN 743-3, suppliers' sheets after EN 10084, guides of makers | each other: rows of one source are unverified |
+{read}
 
 ## A pair
 
@@ -308,6 +347,7 @@ def page() -> str:
     used = max(rated["catalogue_pair"].limits.items(), key=lambda item: item[1])
     return TEXT.format(
         example=examples()["rating"],
+        read=_read(),
         start=examples()["sizing"],
         catalogue=_printed(rated["catalogue_pair"]),
         used=f"`{used[0]}`",
@@ -369,6 +409,12 @@ def _printed(result: Result) -> str:
     show(result, screen)
     lines = [line.rstrip() for line in screen.export_text().splitlines()]
     return "\n".join(lines).strip("\n") + "\n"
+
+
+def _read() -> str:
+    """What was read of the standards, as a table."""
+    head, *rows = (f"| {' | '.join(row)} |" for row in READ)
+    return "\n".join([head, "| --- | --- | --- |", *rows])
 
 
 def _table(name: str, pattern: str) -> str:

@@ -35,12 +35,12 @@ def quick_bound(train: Train, most: float) -> float:
     if not (sized and most < math.inf) or train.lowest_ratio < 1:
         return -math.inf
     count = len(train.stages)
-    kinds = [[(one, _shares(one, k, most)) for one in _kinds(train, k)] for k in range(count)]
+    kinds = [[(kind, _shares(kind, k, most)) for kind in _kinds(train, k)] for k in range(count)]
     if not all(kinds):
         return -math.inf
     many = max(len(stage.toothings) for stage in train.stages) > MANY_WAYS
     for left in reversed(range(DIVISIONS if many else 1)):
-        value, path = _least_sum(train, [[share for _, share in one] for one in kinds])
+        value, path = _least_sum(train, [[share for _, share in of_stage] for of_stage in kinds])
         if value >= most * NEAR or not left or not path:
             break
         divided = False
@@ -51,7 +51,7 @@ def quick_bound(train: Train, most: float) -> float:
                 for way in ways.halves(kinds[k][place][0].stages[k])
             ]
             if halves:
-                kinds[k][place : place + 1] = [(one, _shares(one, k, most)) for one in halves]
+                kinds[k][place : place + 1] = [(half, _shares(half, k, most)) for half in halves]
                 divided = True
         if not divided:
             break

@@ -455,8 +455,8 @@ def _complete(
     stop = np.searchsorted(stage.log_ratio, high - chunk.log_ratio + EDGE)
     node, pair = ragged(start, stop - start)
     if rest.last is not None and rest.last.table is stage:
-        own = rest.last.least(rest.cell(chunk.log_ratio)[node], pair)
-        some = np.flatnonzero(chunk.cost[node] + own <= progress.threshold)
+        least = rest.last.least(rest.cell(chunk.log_ratio)[node], pair)
+        some = np.flatnonzero(chunk.cost[node] + least <= progress.threshold)
         node, pair = node[some], pair[some]
     if few[0]:
         node, pair = _promising(train, stage, rest, chunk, (node, pair), progress.threshold, *few)

@@ -167,8 +167,8 @@ def with_rating(scene: Scene, result: Result) -> Result:
     except SolveError as reason:
         report = result.report | {"notes": [*notes, f"There is no rating: {reason}."]}
         return replace(result, report=report)
-    told = result.report | {"notes": [*notes, *weighty(pairs, rated)]}
-    return replace(result, design=result.design | {"rating": untyped(rated)}, report=told)
+    report = result.report | {"notes": [*notes, *weighty(pairs, rated)]}
+    return replace(result, design=result.design | {"rating": untyped(rated)}, report=report)
 
 
 def check_safe(scene: Scene, result: Result) -> None:
