@@ -185,7 +185,8 @@ def bound_words(result: Result, measures: Measures) -> list[str]:
         return []
     known = "Lower" if side == "below" else "Upper"
     text = measures.amount(bound, unit, WAYS[side], value)
-    return [f"{known} bound of the {name}{scope(result)}: {text}; {gap_words(result)}."]
+    sure = ", checked, not proven" if "checked" in result.proof else ""
+    return [f"{known} bound of the {name}{scope(result)}{sure}: {text}; {gap_words(result)}."]
 
 
 def gap_words(result: Result) -> str:

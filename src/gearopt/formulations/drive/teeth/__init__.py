@@ -241,6 +241,7 @@ def _outcome(
         partial = {**proof, "method": "branch and bound, stopped early", "sentence": words}
         if progress.quick > progress.proven:
             partial["checked"] = "in wide cells of sizes, on random designs"
+            partial["sentence"] = words.replace("Proof: ", "The bound, checked: ", 1)
         return Outcome(
             points[0] if points else None,
             finished=progress.enough,
