@@ -152,3 +152,17 @@ def test_what_sums_of_shifts_are_worth(tmp_path, table, volume):
     text = FREE.replace("[17, 18]", "[14, 40]") + table
     result = gearopt.solve(written(tmp_path, text), remedies=False)
     assert result.status == "optimal" and result.value == pytest.approx(1e3 * volume, abs=60.0)
+
+
+@pytest.mark.parametrize(
+    ("old", "place", "meant"),
+    [
+        ("sum = [0, 0.4, 0.9]", "shift.summ", "sum"),
+        ('helix_angle = "12 deg"', "gears.helix_angel", "helix_angle"),
+    ],
+)
+def test_a_misspelt_key_of_a_range_is_no_table(old, place, meant, tmp_path):
+    line = f"{place.split('.')[1]} = {{ from = 0, to = 1, step = 1 }}"
+    path = written(tmp_path, (FREE + SUMS).replace(old, line, 1))
+    with pytest.raises(SceneError, match=f"{place}: unknown key. Did you mean {meant}"):
+        load(path)

@@ -17,6 +17,7 @@ from gearopt.scenes.reading.not_yet import nearest
 from gearopt.scenes.reading.toml_writing import cut, dotted, short, toml_text
 
 OTHER_NAME, OTHER_TABLE = "has another name here", "belongs in another table"
+RANGE = {"from", "to", "step", "series"}  # keys of a range
 LISTED = 20  # keys of a table at most that the message on an unknown one names
 
 
@@ -161,7 +162,8 @@ def _unknown(
         return SceneError(file, shown, short(value), rule, way, Fix("remove", key))
     if lacking := absent(name):
         return SceneError(file, shown, short(value), lacking, "Remove it", Fix("remove", key))
-    what = "unknown table" if isinstance(_first(value), dict) else "unknown key"
+    first = _first(value)
+    what = "unknown table" if isinstance(first, dict) and not _is_range(first) else "unknown key"
     meant = _near_name(model, content, place)
     if homes := _homes(model, name, value if meant else None):
         rule = f"{what} here; it belongs {' or '.join(homes)}"
@@ -235,8 +237,13 @@ def _fits(value: Any, table: type[BaseModel] | None) -> bool:
     """Return whether a value may be meant for this table or list of tables (None: a plain key)."""
     first = _first(value)
     if table is None or not isinstance(first, dict):
-        return table is None and not isinstance(first, dict)
+        return table is None and (not isinstance(first, dict) or _is_range(first))
     return not first or not table.model_fields.keys().isdisjoint(first)
+
+
+def _is_range(value: Any) -> bool:
+    """Whether a value is a range of a key, such as { from = 0, to = 1 }, and no table."""
+    return isinstance(value, dict) and bool(value) and value.keys() <= RANGE
 
 
 def _first(value: Any) -> Any:
