@@ -182,7 +182,7 @@ def test_what_is_not_supported_yet_names_what_stands_nearest(table, line, said):
 def test_the_letters_of_the_field_are_told_their_keys():
     text = BASES["elevator"].replace("[gears]", '[gears]\nbeta = "20 deg"\nnumber_of_stages = 2')
     first, second = mistakes(text).errors
-    assert first.remedy == "Write helix_angle, in [gears]" and first.fix is None
+    assert first.remedy == "Write helix_angle, in [gears] or a [[stage]]" and first.fix is None
     assert second.remedy == "Write stages, at the top of the file"
     scene = kind_named("drive").scene
     known = {*scene.model_fields, *(k for _, t in tables(scene) for k in t.model_fields)}

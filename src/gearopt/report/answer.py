@@ -252,7 +252,8 @@ def meaning(result: Result) -> str:
     if result.value is None:
         return "No design was found; that is no proof that there is none."
     early = "The run ended early. " if status == "limit" else ""
-    below = f", but none{scope(result)} is better than the bound" if bounded else ""
+    sure = ", which is checked, not proven" if "checked" in result.proof else ""
+    below = f", but none{scope(result)} is better than the bound{sure}" if bounded else ""
     return f"{early}The design meets all limits; a better one may exist{below}."
 
 

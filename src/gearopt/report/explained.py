@@ -249,7 +249,7 @@ def _less(ways: Sequence[Mapping[str, Any]]) -> str:
     cut = any(change.get("short") for way in moved for change in way["changes"])
     short += ["to the side that eases the limit"] if cut else []
     rounded = f", before they were rounded {short[0]}" if short else ""
-    return f", and none with 0.1 % (or one tooth or module) less{rounded}{but}"
+    return f", and none with 0.1 % (or one tooth, module or value tried) less{rounded}{but}"
 
 
 def _doubtful(way: Mapping[str, Any]) -> bool:

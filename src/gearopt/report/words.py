@@ -147,6 +147,9 @@ def sentence(words: str) -> str:
 def edit(change: Mapping[str, Any]) -> str:
     """A change as it is written in the file."""
     key, write = change["key"], change.get("short") or change["write"]
+    if key.startswith("stage[") and key.endswith("]") and not change["was"]:  # a table of its own
+        held = write.strip("{} ")
+        return f"one more table [[stage]]{f' with {held}' if held else ''}"
     return f"{key} = {write}" if write else f"remove {key}"
 
 

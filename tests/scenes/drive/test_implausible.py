@@ -73,6 +73,10 @@ CASES = {  # name -> (replacements, what is told)
     "undercut": ({"profile_shift = 0.3": "profile_shift = -0.5"}, "undercut"),
     "pointed": ({"profile_shift = 0.3": "profile_shift = 1.2"}, "tip"),
     "thin tip": ({"profile_shift = 0.3": "profile_shift = 0.9"}, "tip"),
+    "large shift": (
+        {"#wheel": "profile_shift = 1.5"},
+        "profile shift of the wheel of stage 1 is 1.5: those of usual gears are from -0.7 to 1.2",
+    ),
     "few teeth": ({"pinion_teeth = 20": "pinion_teeth = 10"}, "undercut"),
     "bore through the root": ({"#pinion": 'bore = "75 mm"'}, "75 mm, leaves nothing"),
     "bore near the root": ({"#pinion": 'bore = "66 mm"'}, "a hub of 105.6 mm"),

@@ -7,6 +7,8 @@ import pytest
 
 import gearopt
 from gearopt.errors import SceneError
+from gearopt.report.kinds.drive.rating_words import tiles
+from gearopt.report.measures import METRIC
 
 PROBLEMS = Path(__file__).parents[3] / "problems"
 ELEVATOR = (PROBLEMS / "elevator_by_both.toml").read_text().partition("[x-expected]")[0]
@@ -60,6 +62,15 @@ def test_one_stage_of_its_own_lies_between(tmp_path):
         name = f"{gear['member']}_contact_iso[{gear['stage']}]"
         assert one.limits[name] == pytest.approx(asked / gear["contact_safety"], rel=1e-12)
         assert one.limits[name] <= 1.0 + 1e-9
+
+
+def test_key_figures_name_what_is_nearest_where_requirements_differ(tmp_path):
+    names = {}
+    for key, lines in (("own", ("minimum_contact_safety = 1.3", "#")), ("same", ("#", "#"))):
+        result = solved(tmp_path, of_stages(ELEVATOR, *lines))
+        names[key] = [tile.name for tile in tiles(result, METRIC)]
+    assert "S_H nearest to that required, contact by ISO 6336" in names["own"]
+    assert "minimum S_H, contact by ISO 6336" in names["same"]
 
 
 def test_given_gears_are_rated_with_them(tmp_path):

@@ -60,7 +60,12 @@ def check_shift(scene: "Scene", shifted: list[int], lacks: str, asked: str) -> N
             "changes nothing: no gears are chosen at a given centre_distance of a [[stage]], nor "
             "by a sum of profile shifts"
         )
-        tell = "Write sum = 0.5 in [shift], or a centre_distance, or remove the table"
+        tell = (
+            "Remove it: gears that are all given have profile_shift in [stage.pinion] and "
+            "[stage.wheel]"
+            if scene.given
+            else "Write sum = 0.5 in [shift], or a centre_distance, or remove the table"
+        )
         raise refuse(rule, tell, ("shift",), "tell")
     for name in ("pinion_shift", "sum"):
         if isinstance(value := getattr(shift, name), Between):

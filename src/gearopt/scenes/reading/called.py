@@ -37,7 +37,8 @@ DRIVE = {
     "ratio in [duty], stage_ratio in a [[stage]]": "i u i_ges u_ges m_g gear_ratio total_ratio "
     "transmission_ratio overall_ratio reduction reduction_ratio uebersetzung "
     "uebersetzungsverhaeltnis",
-    "helix_angle, in [gears]": "beta helix psi schraegungswinkel helix_angle_at_reference_diameter",
+    "helix_angle, in [gears] or a [[stage]]": "beta helix psi schraegungswinkel "
+    "helix_angle_at_reference_diameter",
     "pressure_angle, in [gears]": "alpha alpha_n phi phi_n normal_pressure_angle eingriffswinkel "
     "normaleingriffswinkel",
     "profile_shift, in [stage.pinion] and [stage.wheel]": "x1 x2 x_1 x_2 x_sum profile_shift_sum "
@@ -88,15 +89,16 @@ DRIVE = {
     "output_speed, in [duty]": "n2 n_2 n_out output_rpm speed_out output_shaft_speed "
     "abtriebsdrehzahl ausgangsdrehzahl",
     "stages, at the top of the file": "number_of_stages num_stages stage_count stufen stufenzahl",
-    "overload_factor, in [rating]; without a [rating] multiply power of [duty] by it": "k_a "
-    "application_factor anwendungsfaktor overload service_class",
+    "overload_factor, in [rating] or a [[stage]]; without a [rating] multiply power of [duty] by "
+    "it": "k_a application_factor anwendungsfaktor overload service_class",
     "quality, in [rating]": "q_v agma_quality",
     "accuracy, in [rating]": "a_v",
     "life, in [rating]": "hours required_life l_h",
-    "minimum_bending_safety, in [rating]": "s_f_min s_f_required minimum_root_safety "
-    "minimum_bending_safety_factor fusssicherheit zahnfusssicherheit",
-    "minimum_contact_safety, in [rating]": "s_h_min s_h_required minimum_pitting_safety "
-    "minimum_flank_safety minimum_contact_safety_factor flankensicherheit gruebchensicherheit",
+    "minimum_bending_safety, in [rating] or a [[stage]]": "s_f_min s_f_required "
+    "minimum_root_safety minimum_bending_safety_factor fusssicherheit zahnfusssicherheit",
+    "minimum_contact_safety, in [rating] or a [[stage]]": "s_h_min s_h_required "
+    "minimum_pitting_safety minimum_flank_safety minimum_contact_safety_factor flankensicherheit "
+    "gruebchensicherheit",
     "oil_grade, in [rating.iso6336]": "nu_40 iso_vg viscosity_grade",
     "shaft_diameters, in [layout], one of every shaft": "shaft_diameter wellendurchmesser d_sh "
     "d_shaft",

@@ -80,10 +80,10 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
             MATERIAL + " " + STRESS
         ): "Nearest: steel, or treatment, grade and hardness of a gear, or "
         "tables [[material]] to choose from, with a [rating]",
-        SAFETY: "Nearest: minimum_bending_safety and minimum_contact_safety of [rating], which "
-        "limit sizes where [limits] has no k_factor and unit_load",
-        FACTORS: "Nearest: overload_factor of [rating]; without one multiply duty.power by the "
-        "factor",
+        SAFETY: "Nearest: minimum_bending_safety and minimum_contact_safety, in [rating] or a "
+        "[[stage]], which limit sizes where [limits] has no k_factor and unit_load",
+        FACTORS: "Nearest: overload_factor, in [rating] or a [[stage]]; without it multiply "
+        "duty.power by the factor",
         _but_keys(SHIFT): "Nearest: profile_shift, in [stage.pinion] and [stage.wheel]",
         _but_keys(
             QUALITY

@@ -312,7 +312,9 @@ def _safety_tile(rating: DriveRating, mode: str, whole: DriveRating) -> Tile:
     remark = f"{gear_words(rating, least)}; {asked:g} required"
     of = "" if whole.beside is None else f" by {rating.by}"
     reached = beside(getattr(least, key), asked, f"{asked:g}")
-    return Tile(f"minimum {MODES[mode]}, {mode}{of}", reached, remark)
+    alike = len({rating.asked_of(gear)[place] for gear in rating.gears}) == 1
+    name = f"minimum {MODES[mode]}" if alike else f"{MODES[mode]} nearest to that required"
+    return Tile(f"{name}, {mode}{of}", reached, remark)
 
 
 def _tile(

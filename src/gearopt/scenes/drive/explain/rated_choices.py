@@ -143,13 +143,12 @@ def _others(scene: Scene) -> Ways:
         other = teeth.model_copy(update={"coprime": False})
         change = Change("teeth.coprime", "true", "false", 1.0)
         yield (change,), scene.model_copy(update={"teeth": other})
-    widest = family(teeth.modules)[-1]
-    if not set(SERIES[widest]) <= set(teeth.modules):
-        named = series_of(teeth.modules)
-        was = toml_text(named or [str(m) for m in teeth.modules])
-        other = teeth.model_copy(update={"modules": SERIES[widest]})
-        change = Change("teeth.modules", was, toml_text(widest), 1.0)
-        yield (change,), scene.model_copy(update={"teeth": other})
+    was = toml_text(series_of(teeth.modules) or [str(m) for m in teeth.modules])
+    for name in family(teeth.modules):
+        if not set(SERIES[name]) <= set(teeth.modules):
+            other = teeth.model_copy(update={"modules": SERIES[name]})
+            change = Change("teeth.modules", was, toml_text(name), 1.0)
+            yield (change,), scene.model_copy(update={"teeth": other})
 
 
 def _stages(scene: Scene, works: Works) -> Iterator[Remedy]:

@@ -6,7 +6,6 @@ from typing import Any
 
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Remedies
-from gearopt.optimise.explaining.handles import REACH
 from gearopt.optimise.result import Budget
 from gearopt.scenes.drive.explain.choice_moves import choice_groups
 from gearopt.scenes.drive.explain.influences import GRADES, eases
@@ -38,7 +37,7 @@ POWER = ("duty", "power")
 CONFLICT_SECONDS, CONFLICT_SECONDS_BESIDE_REMEDIES = 1.5, 5.0
 # s, at most, for the numbers that help, and for one question
 ROUGH_SECONDS, QUESTION_SECONDS = 7.0, 2.0
-FARTHEST_FACTOR = 3.0  # of a remedy of use
+FARTHEST_FACTOR, LAST_FACTOR = 3.0, 100.0  # of a remedy of use; of one, where there is none
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, for each of these
 SHARPEN_SECONDS, CHOICE_SECONDS = 2.0, 4.0  # s, at most, to make them sharper, and for choices
 CHOSEN = (DISTANCE, "sum_of_centre_distances", "helix_angle", "pinion_shift", "sum")
@@ -76,7 +75,7 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
     if not ways:
         first = clock
         unnamed = Conflict(whatever_load=known.whatever_load)
-        ways = singles(asked, _groups(scene, unnamed, REACH), SHARPEN_SECONDS)
+        ways = singles(asked, _groups(scene, unnamed, LAST_FACTOR), SHARPEN_SECONDS)
     last = soon(CHOICE_SECONDS)
     untried = first.over
     chosen = choices(scene, known, lambda other: None if last.over else works(other))

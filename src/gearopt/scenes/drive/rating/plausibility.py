@@ -12,6 +12,7 @@ from gearopt.scenes.drive.tables.rating import GearTable
 
 WIDEST, NARROWEST = 2.0, 3.0  # b/d1 and b/m_n, beyond which gears are unusual (books; unverified)
 FLAT = math.radians(10.0)  # normal pressure angle below which no law of the rating was tried
+LEAST_SHIFT, LARGEST_SHIFT = -0.7, 1.2  # x of usual gears (books; unverified)
 HEAVY = 200.0  # kg, of gears from which on it is told what decides their size
 PLATE = 1.5  # diameter of a bar that hardens as a plate of a thickness does (EN 10083; memory)
 
@@ -21,6 +22,7 @@ def unusual(pairs: Sequence[GearPair], tables: Sequence[Tables]) -> Iterator[str
     yield from _modules(pairs)
     for k, (pair, both) in enumerate(zip(pairs, tables, strict=True), 1):
         yield from _proportions(pair, k)
+        yield from _shifts(pair, k)
         yield from dict.fromkeys(text for table in both for text in _soft_core(table, pair, k))
         for member, gear, table in zip(MEMBERS, pair.gears, both, strict=True):
             yield from _of_steel(table, gear, f"the {member} of stage {k}")
@@ -80,11 +82,22 @@ def _proportions(pair: GearPair, stage: int) -> Iterator[str]:
             "narrow for the laws of the rating, which are those of usual gears."
         )
     overlap = float(pair.overlap_ratio)
-    if 0.0 < overlap < 1.0 - 1e-9:
+    if 0.0 < overlap < 1.0 and (text := f"{overlap:.3g}") != "1":
         yield (
-            f"The overlap ratio of stage {stage} is {overlap:.3g}: below 1 helical gears run "
+            f"The overlap ratio of stage {stage} is {text}: below 1 helical gears run "
             "little quieter than spur gears, and still load their bearings axially."
         )
+
+
+def _shifts(pair: GearPair, stage: int) -> Iterator[str]:
+    """Yield profile shifts beyond those of usual gears."""
+    for member, gear in zip(MEMBERS, pair.gears, strict=True):
+        shift = float(gear.profile_shift)
+        if not LEAST_SHIFT <= shift <= LARGEST_SHIFT:
+            yield (
+                f"The profile shift of the {member} of stage {stage} is {shift:.3g}: those of "
+                f"usual gears are from {LEAST_SHIFT:g} to {LARGEST_SHIFT:g}."
+            )
 
 
 def _of_steel(table: GearTable, gear: Gear, where: str) -> Iterator[str]:
