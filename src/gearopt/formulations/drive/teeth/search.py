@@ -157,11 +157,12 @@ def _glance(
         if some is not few and not before and all(map(operator.is_, few, tables)):
             break  # the same again
         carries = _first_dive(own, tables, some, progress)
+        if progress.whole and progress.found and not before:
+            progress.quick = quick_bound(train, progress.found[0][0])
+            progress.tick()  # which tells of both
         if own is not train and progress.found[:1] != before:
             best = progress.found[0][1]
             progress.add(np.array([valued(train, best)[0]]), iter([best]))
-        if progress.whole and progress.found and not before:
-            progress.quick = quick_bound(train, progress.found[0][0])
         progress.patience = 0.0
         if not carries:
             break
