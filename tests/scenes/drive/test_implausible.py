@@ -63,10 +63,17 @@ CASES = {  # name -> (replacements, what is told)
     ),
     "modules": ({"[rating]": SECOND.format("2 mm", "80 mm")}, "4 and 2 mm, are out of proportion"),
     "modules, a little": ({"[rating]": SECOND.format("3.5 mm", "80 mm")}, "4 and 3.5 mm, are out"),
-    "heavy": ({"[rating]": SECOND.format("10 mm", "200 mm")}, "weigh 682 kg, stage 2 654 kg of it"),
-    "heavy by contact": (
+    "heavy": (
         {"[rating]": SECOND.format("10 mm", "200 mm")},
-        "The contact of the pinion decides that: mass",
+        "weigh 682 kg, 654 kg of it in stage 2",
+    ),
+    "heavy by contact": (
+        {"[rating]": SECOND.format("10 mm", "200 mm"), '"12 kW"': '"60 kW"'},
+        "The contact stress of its pinion decides that: mass",
+    ),
+    "oversize": (
+        {'"4 mm"': '"10 mm"', '"48 mm"': '"100 mm"'},
+        "kW where 12 kW is asked for: far smaller gears would do",
     ),
     "wide distance": ({"#stage": 'centre_distance = "193.5 mm"'}, "than gears are made with"),
     "tight distance": ({"#stage": 'centre_distance = "190.5 mm"'}, "do not fit in"),

@@ -13,6 +13,7 @@ from gearopt.scenes.drive.tables.rating import GearTable
 WIDEST, NARROWEST = 2.0, 3.0  # b/d1 and b/m_n, beyond which gears are unusual (books; unverified)
 FLAT = math.radians(10.0)  # normal pressure angle below which no law of the rating was tried
 LEAST_SHIFT, LARGEST_SHIFT = -0.7, 1.2  # x of usual gears (books; unverified)
+OVERSIZED = 2.0  # times the power asked for, from which on no strength decides the size
 HEAVY = 200.0  # kg, of gears from which on it is told what decides their size
 PLATE = 1.5  # diameter of a bar that hardens as a plate of a thickness does (EN 10083; memory)
 
@@ -31,8 +32,8 @@ def unusual(pairs: Sequence[GearPair], tables: Sequence[Tables]) -> Iterator[str
 def weighty(pairs: Sequence[GearPair], rated: DriveRating) -> Iterator[str]:
     """Yield what decides the mass of heavy gears, were they solid steel.
 
-    The stage of most of it, and what governs its size: the mode whose safety factor, by the
-    standard of the least, is closest to the one asked for.
+    Of the stage of most of it, by the standard of least capacity: what governs; nothing does where
+    all stages carry far more than is asked for.
     """
     each = [sum(1e3 * float(g.mass(STEEL_DENSITY)) for g in pair.gears) for pair in pairs]
     if sum(each) < HEAVY:
@@ -40,11 +41,21 @@ def weighty(pairs: Sequence[GearPair], rated: DriveRating) -> Iterator[str]:
     stage = max(range(len(each)), key=lambda k: each[k]) + 1
     rows = [mesh for one in rated.each for mesh in one.meshes if mesh.stage == stage]
     mesh = min(rows, key=lambda mesh: mesh.power_capacity_kW)
-    mode, power = ("contact", "the square of ") if "contact" in mesh.governs else ("bending", "")
-    part = f", stage {stage} {each[stage - 1]:,.0f} kg of it" if len(each) > 1 else ""
+    mode, _, member = mesh.governs.partition(" of the ")
+    power = "the square of " * (mode == "contact")
+    first, capacity = rated.shafts[0], min(one.power_capacity_kW for one in rated.each)
+    asked = first.torque_Nm * first.speed_rpm * math.pi / 3e4
+    part = f", {each[stage - 1]:,.0f} kg of it in stage {stage}" if len(each) > 1 else ""
+    weight = f"As solid steel the gears weigh {sum(each):,.0f} kg{part}"
+    if capacity > OVERSIZED * asked:
+        yield (
+            f"{weight}, and carry {capacity:,.4g} kW where {asked:,.4g} kW is asked for: far "
+            "smaller gears would do."
+        )
+        return
     yield (
-        f"As solid steel the gears weigh {sum(each):,.0f} kg{part}. The {mesh.governs} decides "
-        "that: mass grows with the torque and falls with "
+        f"{weight}. The {mode} stress of {'its' if len(each) > 1 else 'the'} "
+        f"{member} decides that: mass grows with the torque and falls with "
         f"{power}the permissible {mode} stress, so that harder or better steel makes it lighter."
     )
 
