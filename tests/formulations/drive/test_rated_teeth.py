@@ -269,8 +269,7 @@ def test_without_time_a_first_train_is_looked_for_among_few_pairs(monkeypatch):
         searching, "bound", lambda t, few, *a: tables.append(few) or bounded(t, few, *a)
     )
     progress = search(train, 1, Budget(seconds=0.0))
-    assert [len(t.ratio) for t in tables[0]] == [20, 20] and len(tables) == 2
-    assert [len(t.ratio) > 20 for t in tables[1]] == [True, True]
+    assert [[len(t.ratio) for t in few] for few in tables] == [[20, 20]]
     value, chosen = progress.found[0]
     point = teeth.point(train, *choices.best_choices(train, chosen))
     assert progress.clock.stopped and within(train, chosen)

@@ -142,7 +142,7 @@ def _glimpses(train: Train, progress: Progress) -> Iterator[Train]:
 def _glance(
     train: Train, own: Train, cut: Fraction, progress: Progress, shelf: list[RatedTable]
 ) -> None:
-    """Look for a first train among few, then among more, whatever the budget's evaluations.
+    """Look for a first train among few, else among all, whatever the budget's evaluations.
 
     own: the drive of one material in which it is looked for; it is valued with the best materials.
     Where there is no train yet, the first look may end half the budget's seconds and GRACE after
@@ -164,7 +164,7 @@ def _glance(
             best = progress.found[0][1]
             progress.add(np.array([valued(train, best)[0]]), iter([best]))
         progress.patience = 0.0
-        if not carries:
+        if progress.found or not carries:
             break
     progress.patience = -math.inf
     progress.tick()
