@@ -30,7 +30,7 @@ from gearopt.physics.geometry.tooth import tip_thickness
 HALVINGS = 52  # of an interval of shifts: to the last digit
 SUMS = -1.0, 2.0  # of x1 + x2 that are looked at: 0 to 1 is usual
 ROUND = 1e-9  # of sums
-PINIONS = -1.0, 1.5  # of x1 by a rule that are looked at: -0.5 to 0.8 is usual
+PINIONS = -1.5, 1.5  # of x1 by a rule that are looked at: -0.5 to 0.8 is usual
 STRIDE = 0.1  # of x1, from equal sliding to where root safeties change sides
 ROOT_STEPS, CLOSE = 40, 1e-13  # towards equal root safeties, within this of x1
 EQUAL = 1e-9  # of ln(S_F1/S_F2): farther off is a jump, no root
