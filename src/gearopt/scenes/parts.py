@@ -4,11 +4,12 @@ from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from typing import Annotated, ClassVar
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from gearopt import units
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.flaws import Flaw, flaws
+from gearopt.physics.loads import torque
 from gearopt.scenes.reading.fields import Table, number, quantity, refuse, speed_ratio
 from gearopt.units import Quantity
 
@@ -18,8 +19,16 @@ class Duty(Table):
 
     RATIO_NEEDED: ClassVar[bool] = True  # a kind that does without checks it itself
 
-    power: Annotated[Quantity, quantity("power", "7.5 kW")] = Field(
-        description="Power at the input shaft; gears are taken as loss-free"
+    model_config = ConfigDict(
+        json_schema_extra={"oneOf": [{"required": ["power"]}, {"required": ["torque"]}]}
+    )
+    power: Annotated[Quantity | None, quantity("power", "7.5 kW")] = Field(
+        None,
+        description="Power at the input shaft; gears are taken as loss-free. Needed, unless torque "
+        "is given",
+    )
+    torque: Annotated[Quantity | None, quantity("torque", "49.4 N m")] = Field(
+        None, description="Torque at the input shaft, in place of power"
     )
     input_speed: Annotated[Quantity, quantity("speed", "1450 rpm")] = Field(
         description="Speed of the input shaft"
@@ -35,6 +44,14 @@ class Duty(Table):
         description="Allowed relative deviation of the total ratio",
         json_schema_extra={"default": "1 %"},
     )
+
+    @model_validator(mode="after")
+    def _one_load(self) -> "Duty":
+        if self.power is None and self.torque is None:
+            raise refuse("is missing (or give torque)", at=("power",), action="sample")
+        if self.power is not None and self.torque is not None:
+            raise refuse("conflicts with power; one is enough", at=("torque",), action="remove")
+        return self
 
     @model_validator(mode="after")
     def _one_ratio(self) -> "Duty":
@@ -63,6 +80,27 @@ class Duty(Table):
     def _slow(self) -> str:
         """Return an output speed that suits the input speed: a ratio of 20."""
         return f"{float(self.input_speed.number / 20):.4g} {self.input_speed.unit}"
+
+    @property
+    def load_key(self) -> str:
+        """Name of the number that says what is transmitted: "power" or "torque"."""
+        return "power" if self.torque is None else "torque"
+
+    @property
+    def input_torque(self) -> float:
+        """Torque at the input shaft [N mm]."""
+        if self.torque is not None:
+            return self.torque.value
+        assert self.power is not None
+        return float(torque(self.power.value, self.input_speed.value))
+
+    @property
+    def input_power(self) -> float:
+        """Power at the input shaft [N mm/s]."""
+        if self.power is not None:
+            return self.power.value
+        assert self.torque is not None
+        return self.torque.value * self.input_speed.value
 
     @property
     def asks_ratio(self) -> bool:

@@ -15,7 +15,6 @@ from gearopt.formulations.strength import RATED, Law
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair, transverse_pressure_angle
 from gearopt.physics.geometry.profile_shift import SUMS
-from gearopt.physics.loads import torque
 from gearopt.scenes.drive.distances import joint_limits, rows_together
 from gearopt.scenes.drive.face_widths import check_width, face_width
 from gearopt.scenes.drive.rating.checks import (
@@ -69,7 +68,6 @@ if TYPE_CHECKING:
 KEYS: dict[
     str, str | tuple[str, ...]
 ] = {  # of `Train.numbers`, those of the whole drive: their places in a file
-    "torque": "duty.power",
     "speed": "duty.input_speed",
     **dict.fromkeys(("lowest_ratio", "highest_ratio"), "duty.ratio_tolerance"),
     "density": "objective.density",
@@ -456,7 +454,7 @@ class Scene(Table):
     @property
     def torque(self) -> float:
         """Torque at the input shaft [N mm]."""
-        return float(torque(self.duty.power.value, self.duty.input_speed.value))
+        return self.duty.input_torque
 
     def train(self) -> Train:
         """Drive in plain numbers; it has one number of stages."""
@@ -485,7 +483,7 @@ class Scene(Table):
             safety=safety,
             same_option=self.gears.same_materials and self.by_ratings,
             distances=self._distances(tables),
-            keys=KEYS | self._keys(tables),
+            keys=KEYS | {"torque": f"duty.{self.duty.load_key}"} | self._keys(tables),
         )
 
     def _distances(self, tables: tuple[StageTable, ...]) -> tuple[tuple[float, ...], ...]:

@@ -14,7 +14,6 @@ from gearopt.physics.iso6336.stiffness import (
     mesh_stiffness,
     single_stiffness,
 )
-from gearopt.physics.loads import torque
 from gearopt.physics.tooth.elastic import POISSON, STEEL, ElasticPair
 from gearopt.physics.tooth.foundation import SAINSOT_BORE_RATIOS
 from gearopt.physics.tooth.ladder import COUPLINGS, LEVELS, USUAL
@@ -63,7 +62,7 @@ def mesh_of(
     asked, duty, relief = scene.sharing, scene.duty, scene.relief
     elastic = elastic_pair(scene, pair, materials)
     coupling = asked.coupling
-    moved = torque(duty.power.value, duty.input_speed.value)
+    moved = duty.input_torque
     loads = sorted({float(load) for load in (*asked.loads, *((relief and relief.loads) or ()))})
     level = level_of(scene, elastic)
     if excluded := refused(elastic, level):
@@ -152,7 +151,7 @@ def bore_of(blank: Blank, root: float) -> float:
 
 def line_load(scene: Scene, pair: GearPair) -> float:
     """Return F_t/b [N/mm] at the reference circle, at the torque of the duty."""
-    load = 2.0 * torque(scene.duty.power.value, scene.duty.input_speed.value)
+    load = 2.0 * scene.duty.input_torque
     return float(load / (pair.pinion.reference_diameter * pair.face_width))
 
 

@@ -84,6 +84,7 @@ DRIVE = {
     "coprime, in [teeth]": "hunting hunting_tooth hunting_teeth",
     "modules, in [teeth]": "teeth.module teeth.series module_series standard_modules",
     "power, in [duty]": "p p1 p_in input_power leistung antriebsleistung rated_power nominal_power",
+    "torque, in [duty]": "input_torque drehmoment antriebsmoment t1 t_1 nominal_torque",
     "input_speed, in [duty]": "n1 n_1 n_in rpm speed input_rpm speed_in input_shaft_speed "
     "motor_speed pinion_speed drehzahl antriebsdrehzahl eingangsdrehzahl",
     "output_speed, in [duty]": "n2 n_2 n_out output_rpm speed_out output_shaft_speed "

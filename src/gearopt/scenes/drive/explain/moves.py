@@ -43,7 +43,7 @@ FIELDS: dict[str, tuple[str, int | None]] = {
     "face_width": ("face_width", None),
     "face_width_over_diameter": ("face_width_over_diameter", None),
 }
-OF_DUTY = {"ratio_low": "ratio_tolerance", "ratio_high": "ratio_tolerance", "torque": "power"}
+OF_DUTY = {"ratio_low": "ratio_tolerance", "ratio_high": "ratio_tolerance"}
 WIDTH = "face_width_over_diameter"
 
 
@@ -55,11 +55,12 @@ def moves_of(scene: Scene, handles: Sequence[Handle]) -> list[Move]:
     """
     moves: list[Move] = []
     groups: dict[tuple[str, int], list[Handle]] = {}
+    of_duty = OF_DUTY | {"torque": scene.duty.load_key}
     for handle in handles:
         groups.setdefault((handle.family, handle.direction), []).append(handle)
     for (family, direction), group in groups.items():
-        if family in OF_DUTY:
-            path: Path = ("duty", OF_DUTY[family])
+        if family in of_duty:
+            path: Path = ("duty", of_duty[family])
             if inherited(scene, path):  # a tolerance of zero has no factor
                 end = {"ratio_low": 0, "ratio_high": 1}.get(family)
                 moves.append(_move(scene, family, path, end, direction, DUTY, tuple(group)))

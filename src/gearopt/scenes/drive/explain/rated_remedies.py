@@ -32,7 +32,7 @@ from gearopt.scenes.explaining.moves import DUTY, LIMIT, Move
 from gearopt.scenes.explaining.numbers import Number, apart, numbers, one_at
 from gearopt.scenes.explaining.possible import Verdict, of_status
 
-POWER = ("duty", "power")
+TRANSMITTED = (("duty", "power"), ("duty", "torque"))
 # at most, for the conflict beside an answer, and beside remedies
 CONFLICT_SECONDS, CONFLICT_SECONDS_BESIDE_REMEDIES = 1.5, 5.0
 # s, at most, for the numbers that help, and for one question
@@ -112,7 +112,7 @@ def _groups(scene: Scene, known: Conflict, far: float = FARTHEST_FACTOR) -> Iter
     for number in sorted(numbers(scene), key=_rank):
         if any(step in CHOSEN for step in number.path):
             continue
-        way = -1 if number.path == POWER else eases(scene, number) or _wider(number)
+        way = -1 if number.path in TRANSMITTED else eases(scene, number) or _wider(number)
         name = _name(number) if way else ""
         idle = known.whatever_load and name not in OF_TEETH
         if way and not idle and not (dropped and name in _PROVEN and name not in dropped):
@@ -131,7 +131,7 @@ def _of_distances(scene: Scene, far: float, way: int) -> Iterator[Group]:
 
 def _move(scene: Scene, number: Number, way: int, far: float) -> Move:
     """Return the move of a number; numbers of pinion teeth go no farther than TEETH."""
-    role = DUTY if number.path == POWER else LIMIT
+    role = DUTY if number.path in TRANSMITTED else LIMIT
     if values := _values(scene, number, way):
         return Move(number.path, way, role, inherits=one_at).to_values(number.value, values)
     if "pinion_teeth" in number.path:

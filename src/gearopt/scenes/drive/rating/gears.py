@@ -84,7 +84,7 @@ def operations(
 ) -> tuple[Operation, ...]:
     """Operation of a pair at every level of load; slower: input over pinion speed."""
     hours = required_hours(rating, duty)
-    at_duty = duty.power.value, duty.input_speed.value / slower
+    at_duty = duty.input_power, duty.input_speed.value / slower
     at_power = _operation(rating, *at_duty, hours, tables)
     each: list[Any] = [
         replace(
@@ -125,7 +125,7 @@ def loads(rating: RatingTable, duty: Duty, levels: Sequence[LoadTable]) -> tuple
     each = [
         Load(
             hours * float(level.share),
-            level.power.value / duty.power.value,
+            level.power.value / duty.input_power,
             (level.input_speed or duty.input_speed).value / duty.input_speed.value,
         )
         for level in levels

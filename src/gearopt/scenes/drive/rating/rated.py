@@ -309,5 +309,5 @@ def _largest_load(scene: Scene) -> tuple[float, float]:
     """Return torque [N mm] and speed [rad/s] of the input at the level of the largest torque."""
     usual = scene.duty.input_speed
     levels = [(level.power.value, (level.input_speed or usual).value) for level in scene.load]
-    levels = levels or [(scene.duty.power.value, usual.value)]
+    levels = levels or [(scene.duty.input_power, usual.value)]
     return max((torque(power, speed), speed) for power, speed in levels)

@@ -339,7 +339,7 @@ class ShiftTable(Table):
         "case-hardened gears (books)",
         json_schema_extra={"default": 0.2},
     )
-    contact_ratio: Annotated[Fraction, number(1.2, 0, 3)] = Field(
+    contact_ratio: Annotated[Fraction, number(1.2, 1, 3)] = Field(
         Fraction(11, 10),
         description="Smallest transverse contact ratio; 1.1 to 1.2 is usual (books)",
         json_schema_extra={"default": 1.1},
