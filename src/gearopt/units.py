@@ -31,6 +31,7 @@ _LENGTHS = {
     **_table(mm=1, cm=10, m=1000, um=Fraction(1, 1000)),
     **_table(**{"in": _INCH, "ft": 12 * _INCH, "uin": _INCH / 10**6}),
 }
+SYSTEMS = ("metric", "inch")  # in which answers are shown
 RECIPROCALS = ("1/in",)  # units that count how often a length goes into theirs: diametral pitches
 
 # dimension -> unit -> (rational factor, power of pi) to the inside unit

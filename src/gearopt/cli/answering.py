@@ -30,6 +30,7 @@ from gearopt.optimise.comparing.plan import EVALUATIONS, SEEDS, Progress
 from gearopt.optimise.comparing.plan import SECONDS as EACH
 from gearopt.optimise.result import Budget, Result
 from gearopt.report.words import SECONDS, TOP_ON_PAGE
+from gearopt.scenes.reading.load import units_of
 
 PAGE_SHARE = 1.0  # of the time of an answer, at most, for the sensitivities of its page
 Seconds = Annotated[float, typer.Option(min=0.0, help="Stop after this time.")]
@@ -75,14 +76,14 @@ def solve(
     seed: Seed = 0,
     html: Html = None,
     csv: Csv = None,
-    units: Units = "metric",
+    units: Units = None,
     as_json: Json = False,
 ) -> None:
     """Find the best design and prove how good it is. Ctrl-C keeps the best found so far."""
     from gearopt.api import idle_options
     from gearopt.api import solve as solve_file
 
-    files = checked(html, csv, units, file)
+    files = checked(html, csv, units or units_of(file), file)
     full = html is not None or csv is not None
     if not full:
         _metric(as_json, units)
@@ -118,9 +119,9 @@ def _advice(result: Result, file: Path) -> list[str]:
     return [f"\nWhat to write instead: gearopt explain {file}"]
 
 
-def _metric(as_json: bool, units: str) -> None:
+def _metric(as_json: bool, units: str | None) -> None:
     """Raise GearoptError for units that were chosen for JSON alone."""
-    if as_json and units != "metric":
+    if as_json and units not in (None, "metric"):
         raise GearoptError(f"--units {units} changes nothing of --json, which names its units")
 
 
@@ -136,13 +137,13 @@ def rate(
     file: File,
     html: Html = None,
     csv: Csv = None,
-    units: Units = "metric",
+    units: Units = None,
     as_json: Json = False,
 ) -> None:
     """Rate given gears: stresses, safety factors, lives. Exit code 0, safe or not; 3 if unfit."""
     from gearopt.api import rate as rate_file
 
-    files = checked(html, csv, units, file)
+    files = checked(html, csv, units or units_of(file), file)
     if html is None and csv is None:
         _metric(as_json, units)
     result = rate_file(file)
@@ -158,13 +159,13 @@ def rate(
 def explain(
     file: File,
     seconds: Seconds = 60.0,
-    units: Units = "metric",
+    units: Units = None,
     as_json: Json = False,
 ) -> None:
     """Show sensitivities to each number of a file; of an impossible one, what to write instead."""
     from gearopt.api import explain as explain_file
 
-    measures = checked(None, None, units, file).measures
+    measures = checked(None, None, units or units_of(file), file).measures
     _metric(as_json, units)
     with watching(seconds, quiet=as_json, measures=measures) as watch:
         explanation = explain_file(file, budget=Budget(seconds), watch=watch)

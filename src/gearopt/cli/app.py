@@ -47,9 +47,10 @@ File = Annotated[
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
 Units = Annotated[
-    str,
+    str | None,
     typer.Option(
-        help="Units to show: metric, or inch (in, psi, lb, diametral pitch).",
+        help="Units to show: metric, or inch (in, psi, lb, diametral pitch); by default those of "
+        "the key units of the file, else metric.",
         autocompletion=system_words,
     ),
 ]

@@ -60,13 +60,16 @@ def report(
     ],
     html: Html = None,
     csv: Csv = None,
-    units: Units = "metric",
+    units: Units = None,
 ) -> None:
     """Show a kept result, comparison or Pareto front again: on the terminal, as a page, as CSV."""
+    from gearopt.optimise.comparing.comparison import Comparison
     from gearopt.optimise.pareto.front import Front
 
-    files = checked(html, csv, units, file)
+    checked(html, csv, units or "metric", file)
     kept = _read(file)
+    asked = "metric" if isinstance(kept, Comparison) else kept.asked.get("units", "metric")
+    files = checked(html, csv, units or asked, file)
     screen = console()
     try:
         with screen.capture() as text, warnings.catch_warnings():

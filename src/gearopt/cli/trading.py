@@ -9,6 +9,7 @@ from gearopt.cli.reporting import answer, checked, traded
 from gearopt.cli.watching import watching
 from gearopt.optimise.result import Budget
 from gearopt.report.words import SECONDS
+from gearopt.scenes.reading.load import units_of
 
 
 @app.command(rich_help_panel=TO_BEGIN)
@@ -43,13 +44,13 @@ def pareto(
     seed: Annotated[int, typer.Option(help="Seed of random methods.")] = 0,
     html: Html = None,
     csv: Csv = None,
-    units: Units = "metric",
+    units: Units = None,
     as_json: Json = False,
 ) -> None:
     """Find the Pareto front of two or three objectives. Ctrl-C keeps the designs found so far."""
     from gearopt.api import pareto as pareto_of
 
-    files = checked(html, csv, units, file)
+    files = checked(html, csv, units or units_of(file), file)
     with watching(seconds, quiet=as_json, measures=files.measures) as watch:
         front = pareto_of(
             file,

@@ -9,6 +9,7 @@ from gearopt.scenes.reading.kinds import kinds
 from gearopt.scenes.reading.load import FORMAT, kind_named
 from gearopt.scenes.reading.mistakes import example_of, table_of, tables
 from gearopt.scenes.reading.toml_writing import toml_text
+from gearopt.units import SYSTEMS
 
 
 class _Schema(GenerateJsonSchema):
@@ -23,6 +24,10 @@ def json_schema(kind: str) -> dict[str, Any]:
     head = {
         "gearopt": {"const": FORMAT, "description": "Format version of the file"},
         "kind": {"const": kind, "description": "Kind of problem"},
+        "units": {
+            "enum": list(SYSTEMS),
+            "description": "Units in which answers are shown, unless --units says otherwise",
+        },
     }
     schema["properties"] = head | schema["properties"]
     schema["required"] = ["gearopt", "kind", *schema.get("required", [])]

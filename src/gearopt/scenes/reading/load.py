@@ -28,9 +28,10 @@ from gearopt.scenes.reading.kinds import kinds
 from gearopt.scenes.reading.mistakes import translate, wrong_name, wrong_value
 from gearopt.scenes.reading.near import near
 from gearopt.scenes.reading.toml_writing import cut, dotted, short
+from gearopt.units import SYSTEMS
 
 FORMAT = 1
-HEAD = ("gearopt", "kind")  # keys of every file
+HEAD = ("gearopt", "kind", "units")  # keys of every file
 FORMATS = {  # beginnings of files of other formats
     r"\s*<(\?xml[\s\S]*?>\s*(<!--[\s\S]*?-->\s*)*<)?model\b": "a REXS model (XML)",
     r"\s*<": "XML or HTML",
@@ -135,6 +136,15 @@ def load(
     return Loaded(scene, kind, asked, file, digest, edits)
 
 
+def units_of(file: Path) -> str:
+    """System of units that a problem file asks for; metric where it cannot be read so far."""
+    try:
+        asked = _parse(_bytes(file), str(file)).get("units")
+    except SceneError:  # told once the file is read as a whole
+        return SYSTEMS[0]
+    return asked if asked in SYSTEMS else SYSTEMS[0]
+
+
 def _bytes(path: str | Path) -> bytes:
     """Bytes of a file, one beyond the limit at most; SceneError says why not."""
     file = str(path)
@@ -220,6 +230,11 @@ def _head(content: dict[str, Any], file: str) -> tuple[str, list[SceneError]]:
     if not errors and (version != FORMAT or isinstance(version, bool)):
         rule = "is missing" if version is None else f"is not the format version {FORMAT}"
         errors.append(wrong_value(file, "gearopt", version, rule, FORMAT))
+    system = _pop(content, "units", file, errors)
+    if system is not None and system not in SYSTEMS:
+        known = " or ".join(f'"{name}"' for name in SYSTEMS)
+        close = (near(system, SYSTEMS) if isinstance(system, str) else None) or SYSTEMS[0]
+        errors.append(wrong_value(file, "units", system, f"is not {known}", close))
     kind = _pop(content, "kind", file, errors)
     if isinstance(kind, str) and kind in kinds():
         return kind, errors

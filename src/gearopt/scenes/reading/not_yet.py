@@ -119,8 +119,8 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
         "transverse_module m_t stirnmodul circular_pitch p_t p_n teilung": "Nearest: module, the "
         "normal one: the transverse module times the cosine of helix_angle, or normal pitch over "
         "pi",
-        "output_torque abtriebsmoment t2 t_2": "Nearest: torque of [duty], that of the input: gears "
-        "are taken as loss-free, so that it is the output torque over the ratio",
+        "output_torque abtriebsmoment t2 t_2": "Nearest: torque of [duty], that of the input: the "
+        "output torque over the ratio, as gears are loss-free",
         "weight mass maximum_mass max_mass maximum_weight max_weight": "Nearest: "
         'objective.minimise = "mass", with its density',
         "depth length width height size": "Nearest: largest_width, largest_height and "
