@@ -53,9 +53,7 @@ def test_remedies_and_sensitivities_are_those_of_the_torque():
         assert "duty.power" not in by_torque
         power, torque = by_power["duty.power"], by_torque["duty.torque"]
         assert torque.strip('"').endswith(" N m")
-        if (
-            name == "elevator_by_agma_small_wheels"
-        ):  # how sharp its remedies are depends on the time
+        if name == "elevator_by_agma_small_wheels":  # sharp as time allows
             continue
         watts = 1e3 * float(power.strip('"').split()[0])
         newton_metres = float(torque.strip('"').split()[0])

@@ -56,6 +56,11 @@ TREATMENT = choice(
         "carburized": "carburised",
         "through hardened": "through-hardened",
         "quenched and tempered": "through-hardened",
+        "einsatzgehärtet": "carburised",
+        "einsatzgehaertet": "carburised",
+        "vergütet": "through-hardened",
+        "verguetet": "through-hardened",
+        "nitriert": "nitrided",
     },
     other=dict.fromkeys(
         ("case hardened", "case-hardened", "surface hardened", "surface-hardened"),
