@@ -31,6 +31,8 @@ def materials(
     if not rows:
         close = steels.near(name)
         hint = f"; near: {', '.join(close)}" if close else ""
+        if steels.is_plastic(name):
+            hint = ": it is a plastic, and VDI 2736 is not supported; ratings are of metals"
         raise GearoptError(f"no steel {name!r} is known by name{hint}")
     if as_json:
         each = [asdict(row) | {"verified": row.verified} for row in rows]

@@ -1,4 +1,4 @@
-"""The key `units` of a problem file is what --units is, which wins over it."""
+"""What commands say: units that a file asks for, and materials that are not rated."""
 
 from pathlib import Path
 
@@ -30,3 +30,9 @@ def test_units_of_the_file(tmp_path):
     code, output, said = shown("rate", file)
     assert code != 0
     assert 'is not "metric" or "inch"' in output + said
+
+
+def test_of_a_plastic_it_is_said_that_none_is_rated():
+    code, output, said = shown("materials", "POM")
+    assert code != 0
+    assert "VDI 2736 is not supported" in output + said
