@@ -168,7 +168,7 @@ def test_the_command_refuses_random_mistakes(here, tmp_path):
         ("duty", "service_factor = 1.25", "multiply duty.power by the factor"),
         ("gears", 'lubricant = "VG 220"', "oil_grade of [rating.iso6336]"),
         ("gears", 'material = "16MnCr5"', "steel, or treatment, grade and hardness"),
-        ("duty", 'output-torque = "900 N m"', "power is torque times angular speed"),
+        ("duty", 'output-torque = "900 N m"', "the output torque over the ratio"),
     ],
 )
 def test_what_is_not_supported_yet_names_what_stands_nearest(table, line, said):
