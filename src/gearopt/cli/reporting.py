@@ -63,13 +63,12 @@ def report(
     units: Units = None,
 ) -> None:
     """Show a kept result, comparison or Pareto front again: on the terminal, as a page, as CSV."""
-    from gearopt.optimise.comparing.comparison import Comparison
     from gearopt.optimise.pareto.front import Front
 
     checked(html, csv, units or "metric", file)
     kept = _read(file)
-    asked = "metric" if isinstance(kept, Comparison) else kept.asked.get("units", "metric")
-    files = checked(html, csv, units or asked, file)
+    asked = kept.asked if isinstance(kept, Result | Front) else {}
+    files = checked(html, csv, units or asked.get("units", "metric"), file)
     screen = console()
     try:
         with screen.capture() as text, warnings.catch_warnings():

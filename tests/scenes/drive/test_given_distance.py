@@ -246,6 +246,12 @@ def test_what_teeth_at_a_distance_may_be_is_explained(tmp_path, table, key):
     assert gearopt.solve(file, nearest.edits, remedies=False).status == "optimal"
 
 
+def test_a_contact_ratio_below_1_is_not_asked_for(tmp_path):
+    text = PAIR + "[shift]\ncontact_ratio = 0.5\n"
+    with pytest.raises(SceneError, match=r"shift\.contact_ratio = 0\.5: is not between 1 and 3"):
+        gearopt.solve(written(tmp_path, text))
+
+
 ROOTS = "[shift]\nrule = 'equal root safety'\n"
 
 

@@ -253,6 +253,7 @@ def test_a_wrong_file_is_told_in_one_line(mistake, file, here):
 SPELT = {
     "carburized": ('"carburised"', '"carburized"'),
     "AGMA": ('"agma"', '"AGMA"'),
+    "German": ('"carburised"', '"einsatzgehärtet"'),
     "80 C": ("quality = 8 ", 'temperature = "80 C"\nquality = 8 '),
     "A_v": ("quality = 8 ", "accuracy = 9 "),
 }
