@@ -116,19 +116,44 @@ def solve(
 
 
 @in_turn
-def rate(what: File, changes: Changes = None) -> Result:
+def rate(what: "File | Front", changes: Changes = None, *, design: int | None = None) -> Result:
     """Return the rating of the gears that a problem file gives: the table [rating] says by what.
 
-    changes: of a file, as in `load`. The status is `evaluated`; `Result.feasible` says whether all
+    changes: of a file, as in `load`. design: the number of a design of a Front, from 1, which is
+    rated as gears that are given, by the file of the front. The status is `evaluated`; `Result.feasible` says whether all
     safety factors are met, limits holds them as utilisations (asked for over there), and
     design["rating"] stresses, safety factors, lives, factors, forces and tooth geometry.
     SceneError for a wrong file or change, SolveError names what cannot be rated.
     """
+    from gearopt.optimise.pareto.front import Front
+
+    if isinstance(what, Front):
+        return _rate_design(what, changes, design)
+    if design is not None:
+        raise SolveError(f"design={design} is for a Front, as `pareto` returns it; leave it out")
     scene, kind, names = _opened(what, changes)
     if kind.rate is None:
         name = names["scene"]
         raise SolveError(f'rate takes kind = "drive", not "{name}"; gearopt solve rates a pair')
     return _named(kind.rate(scene, Ask()), **names)
+
+
+def _rate_design(front: "Front", changes: Changes, design: int | None) -> Result:
+    """Return the rating of a design of a front, counted from 1."""
+    count = len(front.points)
+    if changes is not None:
+        raise SolveError("changes are those of a problem file; a design of a front is as it is")
+    if front.scene is None or (kind := kind_named(front.scene)).rate_design is None:
+        of = "a Problem" if front.scene is None else f'kind = "{front.scene}"'
+        raise SolveError(f'designs of fronts are rated of kind = "drive"; this front is of {of}')
+    if not count:
+        raise SolveError("the front has no design that could be rated")
+    if design is None or not 1 <= design <= count:
+        wrong = "name a design" if design is None else f"there is no design {design}"
+        raise SolveError(f"{wrong} of the front, from 1 to {count}")
+    scene, _, names = _opened(front.asked, None)
+    result = kind.rate_design(scene, Ask(), front.points[design - 1].design)
+    return _named(result, **names | {"options": {"design": design}})
 
 
 @in_turn

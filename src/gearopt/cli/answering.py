@@ -1,6 +1,8 @@
 """`solve`, `explain`, `compare`: the best design, why it is what it is, methods side by side."""
 
+import hashlib
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -23,7 +25,7 @@ from gearopt.cli.app import (
     print_whole,
 )
 from gearopt.cli.names import method_lists, method_words
-from gearopt.cli.reporting import answer, checked, compared, written
+from gearopt.cli.reporting import answer, checked, compared, kept_front, written
 from gearopt.cli.watching import following, reached, watching
 from gearopt.errors import GearoptError
 from gearopt.optimise.comparing.plan import EVALUATIONS, SEEDS, Progress
@@ -135,6 +137,10 @@ def _refuse(given: Mapping[str, tuple[int | None, int]], idle: Mapping[str, str]
 @app.command(rich_help_panel=TO_BEGIN)
 def rate(
     file: File,
+    design: Annotated[
+        int | None,
+        typer.Option(help="Rate this design of a Pareto front, FILE of `gearopt pareto --json`."),
+    ] = None,
     html: Html = None,
     csv: Csv = None,
     units: Units = None,
@@ -146,7 +152,12 @@ def rate(
     files = checked(html, csv, units or units_of(file), file)
     if html is None and csv is None:
         _metric(as_json, units)
-    result = rate_file(file)
+    if design is None:
+        result = rate_file(file)
+    else:
+        result = rate_file(kept_front(file), design=design)
+        digest = hashlib.sha256(file.read_bytes()).hexdigest()
+        result = replace(result, file=str(file), file_sha256=digest)
     lines: list[str] = []
     try:
         lines = written(result, files)

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 REASON_LENGTH = 200  # characters shown of what is wrong with a file
 HOW = "write one with `gearopt solve FILE --json > result.json`"
+HOW_FRONT = "write a front with `gearopt pareto FILE --json > front.json`"
 
 
 @dataclass(frozen=True)
@@ -205,8 +206,21 @@ def _make_folder(folder: Path) -> None:
         raise GearoptError(f"--csv {folder}: {refused.strerror}") from refused
 
 
-def _read(file: Path) -> "Kept":
-    """Result, comparison or front that a file keeps; GearoptError for anything else."""
+def kept_front(file: Path) -> "Front":
+    """The Pareto front that a file keeps; GearoptError for anything else."""
+    from gearopt.optimise.pareto.front import Front
+
+    kept = _read(file, HOW_FRONT)
+    if not isinstance(kept, Front):
+        raise GearoptError(f"{file}: is no Pareto front, so --design has none; {HOW_FRONT}")
+    return kept
+
+
+def _read(file: Path, how: str = HOW) -> "Kept":
+    """Result, comparison or front that a file keeps; GearoptError for anything else.
+
+    how: what to write instead.
+    """
     from gearopt.optimise.comparing.comparison import Comparison
     from gearopt.optimise.pareto.front import Front
 
@@ -221,12 +235,12 @@ def _read(file: Path) -> "Kept":
             return Front.from_dict(data)
         return Result.from_dict(data)
     except OSError as refused:
-        raise GearoptError(f"{file}: cannot be read ({refused.strerror}); {HOW}") from refused
+        raise GearoptError(f"{file}: cannot be read ({refused.strerror}); {how}") from refused
     except UnicodeDecodeError:
-        raise GearoptError(f"{file}: is not UTF-8 text; {HOW}") from None
+        raise GearoptError(f"{file}: is not UTF-8 text; {how}") from None
     except json.JSONDecodeError as wrong:
         raise GearoptError(
-            f"{file}: is not JSON (line {wrong.lineno}: {wrong.msg}); {HOW}"
+            f"{file}: is not JSON (line {wrong.lineno}: {wrong.msg}); {how}"
         ) from None
     except ValueError as wrong:
-        raise GearoptError(f"{file}: {wrong}; {HOW}") from None
+        raise GearoptError(f"{file}: {wrong}; {how}") from None

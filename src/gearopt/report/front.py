@@ -170,14 +170,23 @@ def _beside(front: Front, place: int) -> str:
             )
             if before
         ]
-        rows.append(f"design {other + 1}: {', '.join(changes)}")
-    return f" Its neighbours: {'; '.join(rows)}." if rows else ""
+        rows.append(f"with design {other + 1} instead {_and(changes)}")
+    told = "; ".join(rows)
+    return f" {told[0].upper()}{told[1:]}." if told else ""
+
+
+def _and(parts: Sequence[str]) -> str:
+    """Parts of a sentence with commas and an "and"."""
+    return " and ".join(filter(None, (", ".join(parts[:-1]), *parts[-1:])))
 
 
 def _change(part: float) -> str:
-    """A relative change in per cent, to two digits."""
-    share = 100.0 * part
-    return f"{share:+.2g} %" if abs(share) < 99.5 else f"{share:+,.0f} %"
+    """A relative change in per cent, to two digits, with its verb."""
+    share = abs(100.0 * part)
+    if not share:
+        return "stays"
+    size = f"{share:.2g}" if share < 99.5 else f"{share:,.0f}"
+    return f"{'rises' if part > 0.0 else 'falls'} by {size} %"
 
 
 def table(front: Front, measures: Measures = METRIC, most: int | None = None) -> Table:
@@ -303,6 +312,16 @@ def _choice(stage: Mapping[str, Any], keys: Sequence[str]) -> str:
     if isinstance(values[0], str):
         return "/".join(dict.fromkeys(values))
     return "/".join(rounded(value, CHOICE_DIGITS) for value in values)
+
+
+def rating_command(front: Front) -> str:
+    """The command that rates a design of a front whose file has a rating; "" for others.
+
+    The number is that of the last pick, the compromise.
+    """
+    if front.scene != "drive" or "rating" not in front.asked or not front.picks:
+        return ""
+    return f"gearopt rate front.json --design {front.picks[-1].place + 1}"
 
 
 def command(front: Front, measures: Measures = METRIC, html: str = "") -> str:

@@ -204,6 +204,10 @@ def show_front(pareto: Front, console: Console, measures: Measures = METRIC) -> 
         hidden = len(pareto.points) - ROWS_ON_TERMINAL
         if hidden > 0:
             console.print(Text("Some of the designs; --csv, --html and --json hold all.", "dim"))
+        if rating := front.rating_command(pareto):
+            console.print(
+                Text(f"Full rating of a design: {rating}, of --json > front.json.", "dim")
+            )
     for line in front.picked(pareto, measures):
         console.print()
         console.print(Text(line))

@@ -330,7 +330,9 @@ def again(result: Result, html: str, measures: Measures) -> str:
     if changes := result.options.get("changes"):
         return f"gearopt.{verb}({result.file!r}, {changes!r})"
     words = ["gearopt", verb, result.file]
-    if result.options and result.options.get("seconds") is None:
+    if design := result.options.get("design"):
+        words += ["--design", str(design)]
+    elif result.options and result.options.get("seconds") is None:
         words += ["--seconds", "1e9"]
     for name in ("method", "seconds", "gap", "seed", "top"):
         value = result.options.get(name)

@@ -110,7 +110,8 @@ class Kind(Generic[S]):
     by solving changed files.
     influences: what every number does to an answer, in what time is left; None: by solving changed
     files. assumptions: sentences on what every answer to the file takes for granted. trades: its
-    fronts. rate: the rating of given gears. idle: the options of `solve` that change nothing, each
+    fronts. rate: the rating of given gears; rate_design: of a design that
+    was found. idle: the options of `solve` that change nothing, each
     with the reason.
     """
 
@@ -128,6 +129,7 @@ class Kind(Generic[S]):
     assumptions: Callable[[S], list[str]] = _no_assumptions
     trades: Trades[S] = NO_TRADES
     rate: Callable[[S, Ask], Result] | None = None
+    rate_design: Callable[[S, Ask, Mapping[str, Any]], Result] | None = None
     idle: Callable[[S, str | None], dict[str, str]] = _no_next_best
 
     def solve(self, scene: S, ask: Ask) -> Result:

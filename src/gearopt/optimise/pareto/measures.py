@@ -111,18 +111,34 @@ def picks(values: Array, names: Sequence[str], weights: Mapping[str, float] | No
         return []
     unit = scaled(values)
     wide = tuple(n for n, log in zip(names, by_decades(values), strict=True) if log)
+    parts = by_parts(values)
     picked = []
     if weights is not None:
         w = tuple(float(weights.get(name, 0.0)) for name in names)
         reason = "the minimum weighted sum of the normalised objectives"
         picked.append(Pick(int((unit @ np.array(w)).argmin()), WEIGHTS, reason, wide, w))
-    if (k := knee(unit)) is not None:
+    sizes, scale = (unit, "") if parts is None else (parts, ", in logarithms")
+    if (k := knee(sizes)) is not None:
         reason = "the point furthest below the straight line between the ends of the front"
-        picked.append(Pick(k, KNEE, reason, wide))
-    near = int(np.linalg.norm(unit, axis=1).argmin())
+        picked.append(Pick(k, KNEE, f"{reason}{scale}", wide))
+    near = int(np.linalg.norm(sizes, axis=1).argmin())
     reason = "the point nearest to the ideal point, in normalised objectives"
+    if parts is not None:
+        reason = "the point nearest to the least value of every objective, per cent for per cent"
     picked.append(Pick(near, COMPROMISE, reason, wide))
     return picked
+
+
+def by_parts(values: Array) -> Array | None:
+    """Return ln(value/least value) of objectives (N, k): equal parts more of each count alike.
+
+    None where an objective is not positive, or spans more than DECADES, so that parts of it are not
+    what a designer weighs.
+    """
+    low = ideal(values)
+    if (low <= 0.0).any() or by_decades(values).any():
+        return None
+    return np.asarray(np.log(values / low))
 
 
 def scaled(values: Array) -> Array:

@@ -45,6 +45,7 @@ def page(front: Front, html: str = "page.html", measures: Measures = METRIC) -> 
         last=[section for section in sections if section],
         json=_link(data) if front is every else "",
         source=_source(front),
+        rating=front_words.rating_command(front),
         **_picking(front, each, measures),
     )
 

@@ -5,8 +5,9 @@ without one, or by the method ipopt, sizes are continuous and proven by a dual b
 need (layout, rating, remedies) is imported where it is asked for: the command answers sooner.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive.continuous_sizing import problem as real_valued
@@ -120,6 +121,13 @@ def rate(scene: Scene, ask: Ask) -> Result:
     return rate_given(scene, ask)
 
 
+def rate_design(scene: Scene, ask: Ask, design: Mapping[str, Any]) -> Result:
+    """Rating of a design that was found: `rated.rate_design`."""
+    from gearopt.scenes.drive.rating.rated import rate_design as rate_found
+
+    return rate_found(scene, ask, design)
+
+
 def possible(scene: Scene, clock: Clock) -> Verdict:
     """Whether a changed drive has a design: `answers.possible`."""
     from gearopt.scenes.drive.explain import answers
@@ -162,5 +170,6 @@ KIND = Kind(
     assumptions=assumptions,
     trades=Trades(objectives, traded, advice, of_objectives),
     rate=rate,
+    rate_design=rate_design,
     idle=idle,
 )

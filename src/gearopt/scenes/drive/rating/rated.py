@@ -1,7 +1,7 @@
 """The rating of a drive: of gears that are all given, and of those that were chosen."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -18,6 +18,7 @@ from gearopt.scenes.drive.notes import masses
 from gearopt.scenes.drive.rating.assumptions import rating_assumptions, unused_materials
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.gears import (
+    Blanks,
     blanks,
     gear_tables,
     given_pairs,
@@ -53,8 +54,7 @@ FULL_CONTACT = 2.0  # K_Hbeta up to which the whole face width carries load
 
 def rate(scene: Scene, ask: Ask) -> Result:
     """Rating of gears that are all given, status `evaluated`; SolveError why not."""
-    if scene.rating is None:
-        raise SolveError("there is no table [rating]: write one; gearopt new rating shows how")
+    _check_rated(scene)
     if missing := [dotted(place) for place in not_given(scene.gears, scene.stage)]:
         raise SolveError(
             f"the gears are not all given, which a rating needs: write {', '.join(missing)}; or "
@@ -63,11 +63,42 @@ def rate(scene: Scene, ask: Ask) -> Result:
     return carried_out((Step(with_given_rating), Step(with_given_gears)), scene, ask)
 
 
+def _check_rated(scene: Scene) -> None:
+    """Raise SolveError for a file without a rating."""
+    if scene.rating is None:
+        raise SolveError("there is no table [rating]: write one; gearopt new rating shows how")
+
+
+def rate_design(scene: Scene, ask: Ask, design: Mapping[str, Any]) -> Result:
+    """Rating of a design that was found for a file, as of gears that are given."""
+    _check_rated(scene)
+    try:
+        found = replace(drive_design(design), rating=None)
+    except ValueError as why:
+        raise SolveError(f"the design is no drive: {why}") from None
+    scene = scene.held(len(found.stages))
+    pairs = scene.pairs(found)
+    materials = [(stage.pinion_material, stage.wheel_material) for stage in found.stages]
+    bodies = [
+        blanks(own, gear_tables(own, scene.gears, scene.material, k, chosen), pair)
+        for k, (own, chosen, pair) in enumerate(
+            zip(scene.stage_tables, materials, pairs, strict=True)
+        )
+    ]
+    return _with_gears(scene, _rated(scene, ask, pairs, materials), pairs, found, bodies)
+
+
 def with_given_rating(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Rating of gears that are all given; SolveError where they have none."""
+    return _rated(scene, ask, given_pairs(scene.stage, scene.gears))
+
+
+def _rated(
+    scene: Scene, ask: Ask, pairs: tuple[GearPair, ...], materials: Materials | None = None
+) -> Result:
+    """Rating of gears, status `evaluated`; materials: as of `rating`."""
     assert scene.rating is not None
-    pairs = given_pairs(scene.stage, scene.gears)
-    rated = rating(scene, pairs)
+    rated = rating(scene, pairs, materials)
     limits, remarks = utilisations(rated), [*unused_materials(scene), *weighty(pairs, rated)]
     return Result(
         name="rating",
@@ -89,8 +120,18 @@ def with_given_gears(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """The rating with its gears and their flaws: by some it is not safe, others may be accepted."""
     assert known is not None
     pairs = given_pairs(scene.stage, scene.gears)
-    design, bodies = given_design(scene, pairs)
-    bored = [(s.pinion.bore is not None, s.wheel.bore is not None) for s in scene.stage]
+    return _with_gears(scene, known, pairs, *given_design(scene, pairs))
+
+
+def _with_gears(
+    scene: Scene,
+    known: Result,
+    pairs: tuple[GearPair, ...],
+    design: DriveDesign,
+    bodies: Sequence[Blanks],
+) -> Result:
+    """The rating of a design with its gears and their flaws."""
+    bored = [(s.pinion.bore is not None, s.wheel.bore is not None) for s in scene.stage_tables]
     geometric = (*tooth_flaws(pairs), *body_flaws(bodies, pairs, bored))
     accepted = (flaw.sentence for flaw in geometric if not flaw.misfit)
     rated: DriveRating = typed(DriveRating, known.design["rating"])
