@@ -120,9 +120,10 @@ def rate(what: "File | Front", changes: Changes = None, *, design: int | None = 
     """Return the rating of the gears that a problem file gives: the table [rating] says by what.
 
     changes: of a file, as in `load`. design: the number of a design of a Front, from 1, which is
-    rated as gears that are given, by the file of the front. The status is `evaluated`; `Result.feasible` says whether all
-    safety factors are met, limits holds them as utilisations (asked for over there), and
-    design["rating"] stresses, safety factors, lives, factors, forces and tooth geometry.
+    rated as gears that are given, by the file of the front. The status is `evaluated`;
+    `Result.feasible` says whether all safety factors are met, limits holds them as utilisations
+    (asked for over there), and design["rating"] stresses, safety factors, lives, factors, forces
+    and tooth geometry.
     SceneError for a wrong file or change, SolveError names what cannot be rated.
     """
     from gearopt.optimise.pareto.front import Front

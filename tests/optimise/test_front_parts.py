@@ -70,7 +70,7 @@ def test_picks_are_scaled_by_ideal_and_nadir():
     assert knee(scaled(values)) == 1 and knee(scaled(values)[:2]) is None
     assert knee(np.array([[0.0, 1.0], [0.5, 0.5], [1.0, 0.0]])) is None  # on the line
     found = picks(values, ["mass", "cost"], {"mass": 3.0})
-    assert [(p.place, p.rule) for p in found] == [(0, "weights"), (1, "knee"), (1, "compromise")]
+    assert [(p.place, p.rule) for p in found] == [(0, "weights"), (1, "knee"), (3, "compromise")]
     assert [p.weights for p in found] == [(3.0, 0.0), (), ()] and not found[0].decades
     assert picks(np.empty((0, 2)), ["mass", "cost"], None) == []
     assert [p.rule for p in picks(values[:1], ["mass", "cost"], None)] == ["compromise"]
@@ -81,6 +81,24 @@ def test_picks_are_scaled_by_ideal_and_nadir():
     places = cloud.argsort(axis=0).argsort(axis=0)
     beside = (np.abs(places[:, None] - places) == 1).any(axis=2)
     assert [neighbours(cloud, k) for k in range(12)] == [np.flatnonzero(b).tolist() for b in beside]
+
+
+def test_picks_weigh_per_cent_against_per_cent():
+    """In powers of two (0, 3), (1, 1), (3, 0): the middle one is nearest to both axes."""
+    values = np.array([[1.0, 8.0], [2.0, 2.0], [8.0, 1.0]])
+    for unit in ([1.0, 1.0], [1e3, 1e-6]):
+        taken = picks(values * unit, ["a", "b"], None)
+        assert [(p.place, p.rule) for p in taken] == [(1, "knee"), (1, "compromise")]
+
+
+def test_no_pick_is_five_times_as_heavy_for_a_tenth_of_the_cost():
+    """ln: (0, 0.108), (1.700, 0.029), (2.031, 0): the middle is above the line, the first nearest.
+
+    In the ranges of the objectives the middle one lies at (0.68, 0.26), below the line of (0, 1).
+    """
+    front = np.array([[63.0, 1140.0], [345.0, 1053.0], [480.0, 1023.0]])
+    assert knee(scaled(front)) == 1
+    assert [(p.place, p.rule) for p in picks(front, ["mass", "cost"], None)] == [(0, "compromise")]
 
 
 def test_an_objective_of_many_decades_is_measured_in_them():
@@ -485,7 +503,7 @@ def test_fronts_of_several_problems_are_one(statuses, status):
         for n, s, values in zip(("two", "three"), statuses, (first, second), strict=True)
     ]
     front = united(fronts, None)
-    assert front.name == "two" and [pick.place for pick in front.picks] == [1]
+    assert front.name == "two" and [pick.place for pick in front.picks] == [0]
     assert [p.values for p in front.points] == [(1.0, 5.0), (2.0, 4.0), (3.0, 3.0)]
     assert front.beaten == ((3.0, 4.0),) and front.status == status and front.evaluations == 8
     assert {p.proven for p in front.points} == {status == "complete"}

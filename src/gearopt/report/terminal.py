@@ -206,7 +206,7 @@ def show_front(pareto: Front, console: Console, measures: Measures = METRIC) -> 
             console.print(Text("Some of the designs; --csv, --html and --json hold all.", "dim"))
         if rating := front.rating_command(pareto):
             console.print(
-                Text(f"Full rating of a design: {rating}, of --json > front.json.", "dim")
+                Text(f"Full rating of a design: write --json > front.json, then {rating}", "dim")
             )
     for line in front.picked(pareto, measures):
         console.print()
