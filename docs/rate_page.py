@@ -90,6 +90,9 @@ beside the factor.
 
 {read}
 
+A design of a Pareto front is rated by its number: `gearopt rate front.json --design 9`
+([Trade-offs](trade_offs.md#a-page-to-pick-from)).
+
 ## A pair
 
 ```

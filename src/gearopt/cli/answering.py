@@ -152,6 +152,10 @@ def rate(
     files = checked(html, csv, units or units_of(file), file)
     if html is None and csv is None:
         _metric(as_json, units)
+    if design is None and file.suffix == ".json":
+        raise GearoptError(
+            f"{file}: is no problem file; of a Pareto front add --design 1, or another"
+        )
     if design is None:
         result = rate_file(file)
     else:
