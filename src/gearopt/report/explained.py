@@ -217,6 +217,7 @@ def remedy_words(report: Mapping[str, Any]) -> tuple[list[list[Any]], str]:
     if not ways:
         return [], missing or "No remedy was found by relaxing limits."
     rows = [row for way in ways for row in _rows(way)]
+    rows[0][0] = rows[0][0].removeprefix("or ")
     words = f"Each remedy was verified: a design exists with it{_less(ways)}."
     if any(way["verified"].get("others") == "need more" for way in ways):
         words += (

@@ -11,7 +11,7 @@ from test_several_distances import AGMA_ONLY
 import gearopt
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
-from gearopt.scenes.drive.explain.choice_moves import choice_groups
+from gearopt.scenes.drive.explain.choice_moves import choice_groups, teeth_groups
 from gearopt.scenes.drive.explain.rated_conflict import conflict
 from gearopt.scenes.drive.explain.tried import Case, any_possible
 from gearopt.scenes.explaining.engine import FeasibilityQuestions, smallest
@@ -39,7 +39,7 @@ def at(distance, text=ISO):
 
 def groups(tmp_path, text, way=1):
     scene = load(written(tmp_path, text)).scene
-    return scene, list(choice_groups(scene, way))
+    return scene, [*choice_groups(scene, way), *teeth_groups(scene, way)]
 
 
 @pytest.mark.parametrize(
@@ -63,6 +63,15 @@ def test_the_next_value_goes_on_as_the_file_does(tmp_path, distance, way, writte
     entries = value.values() if isinstance(value, dict) else value
     assert ", ".join(entries) == written_first
     assert move.steps[0] > 1.0 and len(set(move.steps)) == len(move.steps)
+
+
+def test_distances_of_both_stages_get_one_more_together(tmp_path):
+    _, found = groups(tmp_path, asked(""))
+    both = next(group for group in found if len(group.numbers) > 1)
+    assert [move.path[1] for move in both.numbers] == [0, 1]
+    for move in both.numbers:
+        text = move.text(move.write(None, move.steps[0], move), move.path)
+        assert [*text] == ["112 mm", "125 mm", "140 mm"]
 
 
 @pytest.mark.parametrize(

@@ -164,7 +164,8 @@ def test_the_nearest_ratio_is_told(text, key, write):
     asked = read(text.encode())[1].duty.total_ratio
     assert way.factor == pytest.approx(float(max(ratio / asked, asked / ratio)))
     words = remedy_words(found.to_dict())
-    assert any("or choose" in row[0] and key in row[1] for row in words[0])
+    assert any("choose" in row[0] and key in row[1] for row in words[0])
+    assert not words[0][0][0].startswith("or ")  # nothing stands before it
     assert "keeps the duty" in words[1]
     assert "is the nearest feasible one" in words[1]
 

@@ -11,7 +11,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.result import Budget
 from gearopt.report.headline import lead
 from gearopt.scenes.drive.explain import rated_remedies
-from gearopt.scenes.drive.explain.rated_conflict import conflict
+from gearopt.scenes.drive.explain.rated_conflict import _Filter, conflict
 from gearopt.scenes.drive.explain.requirements import requirements, without
 from gearopt.scenes.drive.explain.tried import Case
 from gearopt.scenes.reading.load import load
@@ -32,6 +32,23 @@ def is_a_conflict(scene, found):
         and not any(map(has_a_design, without(scene, rest)))
         and all(any(map(has_a_design, without(scene, rest | {name}))) for name in members)
     )
+
+
+@pytest.mark.parametrize(
+    ("known", "asked", "answer"),
+    [
+        ({"module", "life"}, {"module", "life", "coprime"}, True),
+        ({"module", "life"}, {"life"}, False),
+        ({"materials", "life"}, {"life"}, None),  # of other materials are other best grades
+        ({"module", "centre_distance[1]"}, {"module"}, None),
+    ],
+)
+def test_a_design_that_keeps_more_answers_and_none_where_less_is_kept(known, asked, answer):
+    """None: asked anew, for which there is no time."""
+    over = Clock(Budget(seconds=0.0), None)
+    scene = load(some_file(1)).scene
+    case = Case(scene, over, answers={frozenset(known): answer is True})
+    assert _Filter(case).possible(asked) is answer
 
 
 @pytest.mark.parametrize("seed", [1, pytest.param(0, marks=pytest.mark.slow)])

@@ -193,7 +193,8 @@ class Train:
     what limits the stages. speed: that of the input [rad/s], for laws that depend on it. safety:
     S_F and S_H asked for of stages with options. same_option: all stages take their options of
     one and the same number, which have the same materials. distances: rows of given centre
-    distances [mm] of all stages that go together; (): all do. keys: places of `numbers` in a
+    distances [mm] of all stages that go together; (): all do. any_will_do: whether it is asked
+    alone if there is a train, whatever it costs. keys: places of `numbers` in a
     problem file, one per stage for what a stage has of its own.
     """
 
@@ -211,6 +212,7 @@ class Train:
     safety: tuple[float, float] = (1.0, 1.0)
     same_option: bool = False
     distances: tuple[tuple[float, ...], ...] = ()
+    any_will_do: bool = False
     keys: Mapping[str, str | tuple[str, ...]] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
@@ -310,8 +312,8 @@ class Train:
             places = np.linspace(0, len(stage.toothings) - 1, count).round().astype(int)
             return replace(stage, toothings=tuple(stage.toothings[k] for k in places))
 
-        stages = (few(s) if len(s.toothings) > count else s for s in self.stages)
-        return replace(self, stages=tuple(stages))
+        stages = tuple(few(s) if len(s.toothings) > count else s for s in self.stages)
+        return self if stages == self.stages else replace(self, stages=stages)
 
     @property
     def of_one_material(self) -> tuple["Train", ...]:

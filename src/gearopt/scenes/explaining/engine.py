@@ -185,7 +185,7 @@ def _first_step(
     """Return the first step of numbers that take the same ones with which the file is possible."""
     steps = numbers[0].steps
     few = _too_few(asked, numbers)
-    sure, before = True, steps[few - 1] if few else 1.0
+    sure, before, doubts = True, steps[few - 1] if few else 1.0, 0
     for factor in steps[few:]:
         moves = tuple((move, factor) for move in numbers)
         verdict = asked.verdict(moves)
@@ -198,6 +198,9 @@ def _first_step(
         if verdict.answer:
             return FactorBracket(moves, before / factor, 1.0, sure, bound=bound, stepped=True)
         sure, before = sure and verdict.answer is False, factor
+        doubts += verdict.answer is None
+        if doubts > asked.doubts:
+            break
     return None
 
 
@@ -215,10 +218,10 @@ def _too_few(asked: FeasibilityQuestions, numbers: Sequence[Move]) -> int:
         return asked.possible_with(tuple((move, steps[count - 1]) for move in together))
 
     low, high = 0, len(steps)
-    if suffice(1):
-        return 0
     if suffice(high) is False:
         return high
+    if suffice(1):
+        return 0
     low = 1 if suffice(1) is False else 0
     while high - low > 1:
         middle = (low + high) // 2

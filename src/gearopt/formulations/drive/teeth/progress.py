@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import field
+from typing import Any
 
 from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
@@ -29,7 +30,8 @@ class Progress:
     beside: a bound on the trains of drives that are searched in turn with the present one.
     clock: counts tooth pairs sized.
     enough: the budget's gap is reached. patience: seconds after the budget's until which the
-    watcher alone ends what is under way, whatever its evaluations.
+    watcher alone ends what is under way, whatever its evaluations. begun: drive and
+    tables of a first look at all of them, and their bound.
     """
 
     wanted: int
@@ -44,6 +46,7 @@ class Progress:
     nodes: int = 0
     enough: bool = False
     patience: float = -math.inf
+    begun: tuple[Any, list[Any], Any] = (None, [], None)
 
     @property
     def bound(self) -> float:

@@ -391,7 +391,7 @@ class RatedTable(Table):
                 tried = rows[some], pair[rows[some]], module[some]
                 ends = ends[0][some], ends[1][some]
                 self._try(best, torque, tried, ends, most, (close, steps))
-            goes = np.ones(len(pair), bool)
+            goes = np.isinf(best.cost) | (not self.train.any_will_do)
             goes[rows[~larger]] = False
             left = left[goes[left]]
             at[left] += several

@@ -179,6 +179,8 @@ def _first_dive(train: Train, tables: list[Table], few: list[Table], progress: P
         return False
     delta = FIRST_CELLS * _width(tables)
     rest = bound(train, few, delta, progress.tick, None, progress.threshold)
+    if all(map(operator.is_, few, tables)):
+        progress.begun = train, tables, rest
     _dive(train, [*few[:-1], tables[-1]], rest, progress)
     return len(tables) == 1 or bool(np.isfinite(rest.to_go[-1]).any())
 
@@ -234,7 +236,10 @@ def _rounds(
         last = not coarse and (len(tables) <= 2 or finer > CELLS)
         own = DIVE if coarse else math.inf if last else PATIENCE
         enough = progress.clock.evaluations + min(patience, own)
-        rest = bound(train, tables, delta, progress.tick, useful, progress.threshold, rest)
+        if first is None and not progress.found and _same(train, tables, progress.begun):
+            _, tables, rest = progress.begun
+        else:
+            rest = bound(train, tables, delta, progress.tick, useful, progress.threshold, rest)
         if train.rated:
             begins = first is None
             if first is None:
@@ -251,6 +256,12 @@ def _rounds(
             useful = useful_cells(tables, rest, first, progress.threshold)
         delta /= 2
         coarse = coarse and delta > LAST_COARSE_CELL
+
+
+def _same(train: Train, tables: list[Table], begun: tuple[Any, list[Table], Any]) -> bool:
+    """Return whether a first look was at these tables, of no larger ratios than there are."""
+    alike = [len(t.ratio) for t in tables] == [len(t.ratio) for t in begun[1]]
+    return alike and train == begun[0]
 
 
 def _width(tables: list[Table]) -> float:
@@ -551,6 +562,7 @@ def any_train(
         wanted = watch is None or watch(event) is not False
         return event.best is None and wanted  # one train is enough
 
+    train = replace(train, any_will_do=train.rated)
     try:
         progress = search(train, 1, Budget(seconds=seconds), first, whole=False, shelf=shelf)
     except SolveError:  # too many pairs to examine

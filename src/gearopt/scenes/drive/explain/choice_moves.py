@@ -31,14 +31,22 @@ USUAL_SERIES = "R20"  # of distances that belong to none
 
 
 def choice_groups(scene: Scene, way: int) -> Iterator[Group]:
-    """Yield what stages choose from with further values above (way +1) or below it (-1).
+    """Yield distances to choose from with further values above (way +1) or below them (-1).
 
-    The sum of centre distances comes first, which distances of stages have to keep.
+    The sum of centre distances comes first, which distances of stages have to keep; last those of
+    all stages together.
     """
     if scene.limits.sum_of_centre_distances is not None:
         yield from _sums(scene, way)
-    for paths in _distances(scene):
+    places = _distances(scene)
+    if len(places) > 1:
+        places.append([path for own in places for path in own])
+    for paths in places:
         yield from _group(scene, paths, _further_distances(scene, paths, way), way)
+
+
+def teeth_groups(scene: Scene, way: int) -> Iterator[Group]:
+    """Yield helix angles and profile shifts with further values above or below, as of distances."""
     for path, usual in _of_teeth(scene):
         now = at(scene, path)
         step = now.step if isinstance(now, Steps) else None

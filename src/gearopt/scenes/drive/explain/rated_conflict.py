@@ -30,6 +30,7 @@ from gearopt.scenes.drive.explain.tried import Case, any_of, any_possible
 from gearopt.scenes.drive.rating.options import STANDARDS
 
 GLANCE, PROOF = 0.5, 4.0  # s, for a design without one family; for the proof without all others
+APART = *GIVEN, "materials"  # without which a drive need not have all designs that it has with them
 RATED_BY = {"agma": "rating_by_AGMA", "iso6336": "rating_by_ISO_6336"}
 
 
@@ -37,7 +38,8 @@ RATED_BY = {"agma": "rating_by_AGMA", "iso6336": "rating_by_ISO_6336"}
 class Conflict:
     """Names of requirements that are proven to exclude each other.
 
-    unsure: those of them of which it is not known whether they are needed.
+    unsure: those of them of which it is not known whether they are needed. Of a requirement that
+    several stages have it may not be known which of them need it, where time was short.
     any_resolves: any one of them, dropped alone, makes a design possible. whatever_load: there are
     no teeth, whatever they carry.
     """
@@ -75,6 +77,8 @@ class _Filter:
         """
         key = frozenset(dropped)
         if key not in self.answers:
+            if (known := self._known(key)) is not None:
+                return known
             case = replace(self.case, seconds=seconds, open=[]) if seconds else self.case
             if self.exact and case.clock.over:
                 return None
@@ -83,7 +87,18 @@ class _Filter:
             if answer is None and 0.0 < seconds < self.case.seconds:
                 return None
             self.answers[key] = answer
+            if answer is not None and not self.exact:
+                self.case.answers[key] = answer
         return self.answers[key]
+
+    def _known(self, key: Dropped) -> bool | None:
+        """Answer that others have given: a design that keeps more, or none where less is kept."""
+        for other, answer in (self.answers if self.exact else self.case.answers).items():
+            if answer and other <= key and not {*map(_base, key - other)} & {*APART}:
+                return True
+            if answer is False and key <= other and not {*map(_base, other - key)} & {*APART}:
+                return False
+        return None
 
     def look(self, families: Sequence[Sequence[str]]) -> None:
         """Note the families without which, alone, a design is known soon: none without all."""
@@ -112,13 +127,13 @@ class _Filter:
             self.needed |= {*names}
 
     def split(self, family: Sequence[str]) -> None:
-        """Drop single stages of a family that is in the conflict."""
-        self.needed -= {*family}
+        """Drop single stages of a family; undecided ones of one that is needed stay so."""
         for name in family:
-            verdict = self.possible([name]) or self.possible(self.dropped | {name})
+            verdict = self.possible([name], GLANCE) or self.possible(self.dropped | {name})
             if verdict:
                 self.needed.add(name)
             elif verdict is False:
+                self.needed.discard(name)
                 self.dropped |= {name}
 
 
@@ -135,10 +150,11 @@ def conflict(case: Case) -> Conflict:
     families = [family for group in groups for family in group]
     fixed = [family for family in families if _base(family[0]) in GIVEN]
     ties = [family for family in families if family[0] in OF_DISTANCES]
-    for family in (*ties, *fixed, *groups[0]):
+    for family in (*ties, *fixed):
         if filtering.possible(filtering.dropped | {*family}, GLANCE):
             filtering.needed |= {*family}
-    filtering.look([family for family in groups[1] if family not in (*fixed, *ties)])
+    for each in groups:
+        filtering.look([family for family in each if family not in (*fixed, *ties)])
     spare = [
         [f for f in group if f not in fixed and not filtering.needed & {*f}] for group in groups
     ]

@@ -7,7 +7,7 @@ from typing import Any
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Remedies
 from gearopt.optimise.result import Budget
-from gearopt.scenes.drive.explain.choice_moves import choice_groups
+from gearopt.scenes.drive.explain.choice_moves import choice_groups, teeth_groups
 from gearopt.scenes.drive.explain.influences import GRADES, eases
 from gearopt.scenes.drive.explain.moves import WIDTH, next_module
 from gearopt.scenes.drive.explain.rated_choices import choices
@@ -33,8 +33,8 @@ from gearopt.scenes.explaining.numbers import Number, apart, numbers, one_at
 from gearopt.scenes.explaining.possible import Verdict, of_status
 
 TRANSMITTED = (("duty", "power"), ("duty", "torque"))
-# at most, for the conflict beside an answer, and beside remedies
-CONFLICT_SECONDS, CONFLICT_SECONDS_BESIDE_REMEDIES = 1.5, 5.0
+# s, at most, for the conflict: beside an answer, before remedies, and after them if it is open
+CONFLICT_SECONDS, CONFLICT_SECONDS_BESIDE_REMEDIES, CONFLICT_SECONDS_LATER = 1.5, 2.0, 3.0
 # s, at most, for the numbers that help, and for one question
 ROUGH_SECONDS, QUESTION_SECONDS = 7.0, 2.0
 FARTHEST_FACTOR, LAST_FACTOR = 3.0, 100.0  # of a remedy of use; of one, where there is none
@@ -61,8 +61,9 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
     def soon(seconds: float) -> Clock:
         return within(clock, seconds, SHARE_OF_TIME)
 
-    known = conflict(Case(scene, soon(CONFLICT_SECONDS_BESIDE_REMEDIES)))
-    case = Case(scene, clock, seconds=QUESTION_SECONDS)
+    early = Case(scene, soon(CONFLICT_SECONDS_BESIDE_REMEDIES))
+    known = conflict(early)
+    case = replace(early, clock=clock, open=[], seconds=QUESTION_SECONDS)
 
     def works(other: Scene) -> bool | None:
         if other.teeth is None:
@@ -80,6 +81,9 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
     untried = first.over
     chosen = choices(scene, known, lambda other: None if last.over else works(other))
     ways += chosen
+    if early.clock.over and not known.proven:
+        again = conflict(replace(early, clock=soon(CONFLICT_SECONDS_LATER), open=[]))
+        known = again if again.names else known
     complete = not (untried or clock.over or case.open)
     late = "time ran out before all remedies were tried" if clock.over else ""
     late = late or ("not all remedies were tried" if untried or last.over else "")
@@ -102,7 +106,7 @@ def _doubts(known: Conflict) -> str:
 
 
 def _groups(scene: Scene, known: Conflict, far: float = FARTHEST_FACTOR) -> Iterator[Group]:
-    """Yield the numbers that may help, each alone; teeth come last.
+    """Yield the numbers that may help, each alone; those of teeth, which take longest, come last.
 
     What is in no conflict keeps the drive impossible however it is moved; where there are no teeth
     whatever they carry, so does what they carry.
@@ -118,10 +122,12 @@ def _groups(scene: Scene, known: Conflict, far: float = FARTHEST_FACTOR) -> Iter
         if way and not idle and not (dropped and name in _PROVEN and name not in dropped):
             yield Group((_move(scene, number, way, far),))
     yield from _of_distances(scene, far, -1)
+    for way in (1, -1):
+        yield from teeth_groups(scene, way)
 
 
 def _of_distances(scene: Scene, far: float, way: int) -> Iterator[Group]:
-    """Yield given centre distances and what stages choose from, up (way +1) or down (-1)."""
+    """Yield centre distances, given or chosen from, and their sum, up (way +1) or down (-1)."""
     given = [n for n in numbers(scene) if n.path[-1] == DISTANCE]
     if not scene.limits.coaxial and scene.limits.sum_of_centre_distances is None:
         for number in given:

@@ -1,13 +1,13 @@
 """Whether an impossible drive is possible with some numbers moved."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import field, replace
 
 from gearopt.formulations.drive import continuous_sizing
 from gearopt.formulations.drive.teeth.progress import Teeth
 from gearopt.formulations.drive.teeth.rated import RatedTable
 from gearopt.formulations.drive.teeth.reach import narrowed
-from gearopt.formulations.drive.teeth.search import any_train, possible
+from gearopt.formulations.drive.teeth.search import any_train, possible, reaches
 from gearopt.formulations.drive.train import Train
 from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
@@ -20,6 +20,7 @@ from gearopt.scenes.explaining.engine import FeasibilityQuestions
 from gearopt.scenes.explaining.possible import Verdict, of_status
 
 SECONDS = 2.0  # at most, for one question
+LIKE = 2  # known designs whose teeth are tried
 WHOLE, FEW = 0.7, 0.1  # parts of them, for a rated drive and for one of few pinions
 
 
@@ -28,7 +29,9 @@ class Case:
     """A drive that is impossible, and the time to look for remedies.
 
     open: questions that no answer was found to in time; a list, to be added to. seconds: at most,
-    for one question whether whole teeth are possible; shelf: tables that questions share.
+    for one question whether whole teeth are possible; shelf: tables that questions share. known:
+    teeth of designs of rated drives that questions found, the last one first; a list, too.
+    answers: to questions without some requirements.
     """
 
     scene: Scene
@@ -36,6 +39,8 @@ class Case:
     open: list[Train] = field(default_factory=list)
     seconds: float = SECONDS
     shelf: list[RatedTable] = field(default_factory=list)
+    known: list[Teeth] = field(default_factory=list)
+    answers: dict[frozenset[str], bool] = field(default_factory=dict)
 
     def possible(self, train: Train) -> bool | None:
         """Return whether a drive has a design, with whole teeth where the file asks for them.
@@ -60,15 +65,24 @@ class Case:
     def _rated(self, train: Train) -> bool | None:
         """Return whether a drive that ratings limit has a design.
 
-        Where that is not known soon, drives of one pinion and of the widest faces are tried, which
-        are searched quickly.
+        Teeth of designs of like drives are tried first, where there are teeth at all. Where it is
+        not known soon then, drives of one pinion and of the widest faces are tried, which are
+        searched quickly.
         """
+        if reaches(train) is False:
+            return False
+        tried = self.known[:LIKE] if len(train.stages) > 1 else ()
+        like = [one for teeth in tried for one in _of_teeth(train, teeth)]
         few = _widest(train), _of_pinion(train, 0), _of_pinion(train, -1)
-        for narrower, part in ((train, WHOLE), *((one, FEW) for one in few)):
+        parts = (*((one, FEW) for one in like), (train, WHOLE), *((one, FEW) for one in few))
+        for narrower, part in parts:
             seconds = part * self.clock.within(self.seconds)
-            verdict = possible(narrower, seconds, self.clock.watch, self.shelf)
-            if verdict or narrower is train and verdict is False:
-                return verdict
+            teeth = any_train(narrower, seconds, self.clock.watch, self.shelf)
+            if teeth:
+                self.known[:] = [teeth, *(other for other in self.known if other != teeth)]
+                return True
+            if narrower is train and teeth is not None:
+                return False
         self.open.append(train)
         return None
 
@@ -127,6 +141,19 @@ def _of_pinion(train: Train, end: int) -> Train:
         teeth = stage.pinion_teeth[end] or stage.pinion_teeth[0]
         stages.append(replace(stage, pinion_teeth=(teeth, teeth)))
     return replace(train, stages=tuple(stages))
+
+
+def _of_teeth(train: Train, teeth: Teeth) -> Iterator[Train]:
+    """Yield the drive of these teeth alone, where every stage may have them."""
+    stages = []
+    for stage, pair in zip(train.stages, teeth, strict=False):
+        for z, (low, high) in zip(pair, (stage.pinion_teeth, stage.wheel_teeth), strict=True):
+            if z < low or high is not None and z > high:
+                return
+        ends = [(z, z) for z in pair]
+        stages.append(replace(stage, pinion_teeth=ends[0], wheel_teeth=ends[1]))
+    if len(teeth) == len(train.stages):
+        yield replace(train, stages=tuple(stages))
 
 
 def _widest(train: Train) -> Train:
