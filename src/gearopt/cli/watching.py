@@ -20,6 +20,7 @@ from gearopt.optimise.scale import gap
 from gearopt.report.measures import METRIC, Measures, read_in
 from gearopt.report.screen import Screen
 
+NEWS_OF = ("kernels", "remedies")  # loggers that are heard
 PATIENCE = 0.5  # seconds of a run without a line about it
 PAUSE = 0.2  # seconds between one line and the next
 LONGEST_SECONDS = 1e5  # seconds: a limit above it is none
@@ -149,15 +150,16 @@ def _line(screen: Screen, shown: bool, limit: float) -> Iterator["_Line | None"]
 
 @contextmanager
 def _told_news(screen: Screen, quiet: bool) -> Iterator[None]:
-    """Print what kernels log meanwhile."""
-    logger, news = logging.getLogger("gearopt.kernels"), _News(screen)
-    if not quiet:
+    """Print what kernels and remedies log meanwhile."""
+    loggers, news = [logging.getLogger(f"gearopt.{name}") for name in NEWS_OF], _News(screen)
+    for logger in loggers if not quiet else ():
         logger.addHandler(news)
         logger.setLevel(logging.INFO)
     try:
         yield
     finally:
-        logger.removeHandler(news)
+        for logger in loggers:
+            logger.removeHandler(news)
 
 
 @contextmanager

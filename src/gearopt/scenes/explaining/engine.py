@@ -7,6 +7,7 @@ design is known, else to the farthest first, which rejects most by one question,
 logarithm of the change. A remedy is reported only if the file with it, as written, has a design.
 """
 
+import logging
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import field, replace
@@ -23,6 +24,7 @@ from gearopt.scenes.explaining.moves import DUTY, Edited, Move, Moves, edited, l
 from gearopt.scenes.explaining.possible import UNKNOWN, WORDS, Possible, Verdict
 from gearopt.scenes.reading.toml_writing import dotted
 
+logger = logging.getLogger("gearopt.remedies")
 FACTORS_TRIED = (1e6, 1e3, 16.0, 4.0, 2.0, 1.3, 1.1)  # the first that is decided counts
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, to make numbers sharper in given seconds
 SECANTS = 24
@@ -437,11 +439,14 @@ def singles(
 
     seconds: at most, to make them sharper.
     """
-    rough = [(g, k) for g in groups if (k := smallest(asked, g.moves, g.bound)) is not None]
-    sufficient, sharp = (
-        [],
-        within(asked.clock, seconds, SHARE_OF_TIME if math.isfinite(seconds) else 1.0),
-    )
+    rough = list[tuple[Group, FactorBracket]]()
+    for group in groups:
+        known = smallest(asked, group.moves, group.bound)
+        if known is not None:
+            _tell_first(asked, known, rough)
+            rough.append((group, known))
+    sharp = within(asked.clock, seconds, SHARE_OF_TIME if math.isfinite(seconds) else 1.0)
+    sufficient = list[tuple[Remedy, Edited]]()
     for group, known in rough:
         narrow(asked, known, FACTOR_TOLERANCE, sharp)
         if asked.lower_bounds and known.sure and known.low > 1.0 and known.bound is None:
@@ -451,6 +456,14 @@ def singles(
         tried = _checked_remedy(asked, known, kind, group.what, sharp)
         sufficient += [] if tried is None else [tried]
     return [_with_short_form(asked, *tried) for tried in sufficient]
+
+
+def _tell_first(asked: FeasibilityQuestions, known: FactorBracket, others: Sequence[Any]) -> None:
+    """Log the first change that makes the file possible, while smaller ones are sought."""
+    there = None if others else _edits_as_written(asked, known)
+    if there is not None:
+        edits = ", ".join(f"{change.key} = {change.write}" for change in there.changes)
+        logger.info("a design exists with %s; smaller changes are looked for", edits)
 
 
 def with_least(found: Sequence[Remedy], complete: bool) -> tuple[Remedy, ...]:
