@@ -63,13 +63,13 @@ def agma_nominal(at: AgmaRow, way: AgmaWay, low: Any, high: Any) -> Any:
     """
     most, above = at.contact / at.cosine, high > at.axial
     rise = np.maximum(1.0, 1.0 - np.minimum(high / at.axial, 1.0) * at.slope)
-    pitting, first, second = (
-        choose(above, np.fmax(narrow, wide * most), narrow)
-        for narrow, wide in zip(
-            (at.low[0] * rise, at.low[1] * rise**0.5, at.low[2] * rise**0.5), at.high, strict=True
-        )
+    root = rise**0.5
+    factors = (
+        choose(above, np.fmax(at.low[0] * rise, at.high[0] * most), at.low[0] * rise),
+        choose(above, np.fmax(at.low[1] * root, at.high[1] * most), at.low[1] * root),
+        choose(above, np.fmax(at.low[2] * root, at.high[2] * most), at.low[2] * root),
     )
-    return part(at, way, low, (pitting, first, second), 1.0)
+    return part(at, way, low, factors, 1.0)
 
 
 def part(at: AgmaRow, way: AgmaWay, low: Any, factors: Three, width: Any) -> Any:

@@ -5,8 +5,14 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.strength import ALLOWANCE
-from gearopt.formulations.strength.use.agma import AgmaRow, agma_border, agma_use
-from gearopt.formulations.strength.use.iso6336 import IsoRow, iso_border, least_part, refused
+from gearopt.formulations.strength.use.agma import AgmaRow, agma_border, agma_nominal, agma_use
+from gearopt.formulations.strength.use.iso6336 import (
+    IsoRow,
+    iso_border,
+    least_part,
+    nominal_part,
+    refused,
+)
 from gearopt.formulations.strength.widths import MAX_STEPS, stepped, tried
 from gearopt.optimise.jit_kernel import entry, law, light
 
@@ -23,9 +29,11 @@ def is_so(condition):
     return condition
 
 
+NOT_CARRIED = 1.0 + 1e-6  # part in use that is surely above 1, roundings and close included
 INSTEAD = {"choose": chosen, "some": is_so}
 least, unrated, iso_end = (law(f, INSTEAD) for f in (least_part, refused, iso_border))
 by_agma, agma_end = law(agma_use, INSTEAD), law(agma_border, INSTEAD)
+iso_parts, agma_least = law(nominal_part, INSTEAD), law(agma_nominal, INSTEAD)
 wider, beyond = law(tried, INSTEAD), law(stepped, INSTEAD)
 
 
@@ -38,13 +46,22 @@ def by_iso(at, way, low, high, same):
     return max(max(a, b), max(c, d))
 
 
-def _search(use: Any, end: Any) -> Any:
-    """First width of one row, by what is used of it and its borders."""
+@light
+def iso_least(at, way, low, high):
+    """Width times the greatest part that is used by the nominal load."""
+    a, b, c, d = iso_parts(at, way, low, high)
+    return max(max(a, b), max(c, d))
+
+
+def _search(use: Any, end: Any, nominal: Any) -> Any:
+    """First width of one row, by what is used of it, its borders and nominal stresses."""
 
     @light
     def first(at, way, alike, low, high, close, steps):
         here, power = low, 1.0
         if not here <= high * (1.0 + ALLOWANCE):
+            return np.inf
+        if nominal(at, way, low, high) > high * NOT_CARRIED:
             return np.inf
         for _ in range(steps):
             now = use(at, way, here, here, alike)
@@ -65,7 +82,8 @@ def _search(use: Any, end: Any) -> Any:
     return first
 
 
-first_by_iso, first_by_agma = _search(by_iso, iso_end), _search(by_agma, agma_end)
+first_by_iso = _search(by_iso, iso_end, iso_least)
+first_by_agma = _search(by_agma, agma_end, agma_least)
 
 
 @entry
