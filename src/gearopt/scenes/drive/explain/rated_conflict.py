@@ -137,9 +137,10 @@ class _Filter:
                 self.dropped |= {name}
 
 
-def conflict(case: Case) -> Conflict:
+def conflict(case: Case, resolving: bool = True) -> Conflict:
     """Return requirements of an impossible drive that are in conflict with all others dropped.
 
+    resolving: whether it is asked if any of them, dropped alone, makes a design possible.
     None where everything can be dropped, teeth are real-valued, or nothing is known to be needed,
     unless there are no teeth whatever they carry.
     """
@@ -173,7 +174,7 @@ def conflict(case: Case) -> Conflict:
         return Conflict()
     whole = _Filter(case) if filtering.exact else filtering
     unsure = tuple(name for name in every if name not in filtering.needed)
-    alone = len(every) > 1 and all(whole.possible([name], GLANCE) for name in every)
+    alone = resolving and len(every) > 1 and all(whole.possible([n], GLANCE) for n in every)
     names = (*every, *_standard(case, filtering.dropped, every))
     return Conflict(names, unsure, alone, bool(strength))
 

@@ -46,7 +46,8 @@ STEPPED = (*GRADES, "accuracy_grade", "grade")  # moved by ones
 
 def conflict_soon(scene: Scene, clock: Clock) -> Remedies | None:
     """Conflict of an impossible drive alone; None where it is not found soon."""
-    known = conflict(Case(scene, Clock(Budget(clock.within(CONFLICT_SECONDS)), clock.watch)))
+    case = Case(scene, Clock(Budget(clock.within(CONFLICT_SECONDS)), clock.watch))
+    known = conflict(case, resolving=False)
     if not known.names:
         return None
     return Remedies(known.names, (), "", known.any_resolves, known.unsure, untried=True)
