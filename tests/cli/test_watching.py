@@ -5,12 +5,15 @@ import re
 import subprocess
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from gearopt.cli.watching import progress, watching
 from gearopt.optimise.result import Budget, Event, Result
 from gearopt.scenes.reading.ask import Ask
+
+PROBLEMS = Path(__file__).parents[2] / "problems"
 
 
 @pytest.mark.parametrize(
@@ -96,6 +99,15 @@ def test_what_is_proven_is_told_before_remedies_are_sought(capsys):
     assert said.endswith(
         "Looking for changes with which a design exists (at most 59 s); Ctrl-C ends it."
     )
+
+
+def test_the_first_change_that_helps_is_told_as_soon_as_it_is_known(here, tmp_path):
+    text = (PROBLEMS / "given_distance.toml").read_text(encoding="utf-8")
+    text = text.replace("[limits]\n", "[limits]\nwheel_teeth = [20, 24]\n", 1)
+    (tmp_path / "drive.toml").write_text(text.split("[x-expected]")[0], encoding="utf-8")
+    said = " ".join(here("explain", tmp_path / "drive.toml").stderr.split())
+    assert said.count("A design exists with ") == 1
+    assert said.endswith("; smaller changes are looked for.")
 
 
 def test_sensitivities_of_a_page_take_no_longer_than_its_answer():
