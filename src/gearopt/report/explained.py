@@ -61,6 +61,8 @@ def of_influences(
 
     prices: influences, message and basis, see `optimise.explaining.explanation`.
     """
+    if not any(map(_is_known, prices["influences"])):
+        prices = {**prices, "influences": []}
     rows = [_row(influence) for influence in prices["influences"]]
     steps = [k for k, head in enumerate(HEADS) if _sloped(prices) or head not in SLOPES]
     rows = [[row[k] for k in steps] for row in rows]
@@ -85,6 +87,12 @@ def of_influences(
     return Section("Sensitivities", words=words, tables=tables, half=True, terminal=terminal)
 
 
+def _is_known(influence: Mapping[str, Any]) -> bool:
+    """Whether anything is known of what a number does."""
+    values = influence["price"], influence["sensitivity"], *influence["resolved"]
+    return any(value is not None for value in values)
+
+
 def _sloped(prices: Mapping[str, Any]) -> bool:
     """Whether a sensitivity is shown of some number, by multipliers or by solving again."""
     shown = (i for i in prices["influences"] if not _is_steep(i))
@@ -94,10 +102,8 @@ def _sloped(prices: Mapping[str, Any]) -> bool:
 def _is_idle(influence: Mapping[str, Any]) -> bool:
     """Whether a number changes nothing: not by 1 %, to either side, nor when it is eased."""
     slopes = [s for s in (influence["sensitivity"], *influence["resolved"]) if s is not None]
-    known = bool(slopes) or influence["price"] is not None
-    return (
-        known and all(abs(s) < FLAT for s in slopes) and abs(influence["price"] or 0.0) < NO_CHANGE
-    )
+    flat = all(abs(s) < FLAT for s in slopes) and abs(influence["price"] or 0.0) < NO_CHANGE
+    return _is_known(influence) and flat
 
 
 def _is_steep(influence: Mapping[str, Any]) -> bool:

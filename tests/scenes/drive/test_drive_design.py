@@ -141,7 +141,7 @@ def test_an_undercut_pinion_is_named(tmp_path, result, teeth):
     assert len(notes) == (teeth < 17)
     if notes:
         assert "stage 1" in notes[0] and f"(z = {teeth})" in notes[0]
-        assert "A rack cuts 17 teeth or more without undercut at x = 0 (theory 17.1)" in notes[0]
+        assert "A rack cuts 17 teeth or more without undercut at x = 0 (strictly 17.1)" in notes[0]
 
 
 @pytest.mark.parametrize(

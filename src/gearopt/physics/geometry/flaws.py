@@ -108,7 +108,7 @@ def _undercut(member: str, gear: Gear, depth: float) -> str:
     needed = math.ceil(100.0 * (gear.profile_shift + depth)) / 100.0
     return (
         f"The {member} is undercut (z = {gear.teeth:.4g}{shift}). A rack cuts {least} teeth or "
-        f"more without undercut at x = 0 (theory {limit:.1f}); {gear.teeth:.4g} teeth need "
+        f"more without undercut at x = 0 (strictly {limit:.1f}); {gear.teeth:.4g} teeth need "
         f"x = {needed:.2f}."
     )
 

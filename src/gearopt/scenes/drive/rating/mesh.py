@@ -53,22 +53,24 @@ class Mesh:
 def rated_meshes(
     scene: Scene, pairs: tuple[GearPair, ...], standard: Any, materials: Materials
 ) -> list[Mesh]:
-    """Rate all stages; SolveError names the one that has no rating, and why.
+    """Rate all stages; SolveError names those that have no rating, and why.
 
     materials: names of those chosen, of pinion and wheel of every stage; "": there was no choice.
     """
-    meshes, slower = [], 1.0
+    meshes, slower, refused = [], 1.0, list[str]()
     for k, pair in enumerate(pairs):
         known = flaws(pair)
         sentences = [flaw.sentence[0].lower() + flaw.sentence[1:].rstrip(".") for flaw in known]
-        if known and known[0].fatal:
-            raise SolveError(f"stage {k + 1} cannot be rated: {sentences[0]}")
         try:
+            if known and known[0].fatal:
+                raise ValueError(sentences.pop(0))
             meshes.append(_mesh(scene, k, pair, slower, standard, materials[k]))
         except ValueError as reason:
             why = "; ".join([str(reason), *sentences])
-            raise SolveError(f"stage {k + 1} cannot be rated: {why}") from None
+            refused.append(f"stage {k + 1} cannot be rated: {why}")
         slower *= float(pair.ratio)
+    if refused:
+        raise SolveError("; ".join(refused))
     return meshes
 
 

@@ -21,12 +21,17 @@ PLATE = 1.5  # diameter of a bar that hardens as a plate of a thickness does (EN
 def unusual(pairs: Sequence[GearPair], tables: Sequence[Tables]) -> Iterator[str]:
     """Yield sentences on what is unusual about pairs of floats; tables: of their gears."""
     yield from _modules(pairs)
+    alike = dict[str, list[str]]()
     for k, (pair, both) in enumerate(zip(pairs, tables, strict=True), 1):
         yield from _proportions(pair, k)
         yield from _shifts(pair, k)
         yield from dict.fromkeys(text for table in both for text in _soft_core(table, pair, k))
         for member, gear, table in zip(MEMBERS, pair.gears, both, strict=True):
-            yield from _of_steel(table, gear, f"the {member} of stage {k}")
+            for text in _of_steel(table, gear):
+                alike.setdefault(text, []).append(f"the {member} of stage {k}")
+    for text, gears in alike.items():
+        rest, last = ", ".join(gears[:-1]), gears[-1]
+        yield text.format(f"{rest} and {last} are" if rest else f"{last} is")
 
 
 def weighty(pairs: Sequence[GearPair], rated: DriveRating) -> Iterator[str]:
@@ -111,8 +116,8 @@ def _shifts(pair: GearPair, stage: int) -> Iterator[str]:
             )
 
 
-def _of_steel(table: GearTable, gear: Gear, where: str) -> Iterator[str]:
-    """Yield where the hardness of a gear is not that of the steel that it names."""
+def _of_steel(table: GearTable, gear: Gear) -> Iterator[str]:
+    """Yield where the hardness of a gear is not that of its steel; {} is for gears with a verb."""
     steel = chosen(table)
     if steel is None:
         return
@@ -120,7 +125,7 @@ def _of_steel(table: GearTable, gear: Gear, where: str) -> Iterator[str]:
     if core is not None and steel.core and not steel.core[0] <= core.value <= steel.core[1]:
         yield (
             f"The core of {table.steel}, {steel.heat}, has {steel.core[0]:g} to {steel.core[1]:g} "
-            f"HB as a rule; {where} is rated with {core}."
+            f"HB as a rule; {{}} rated with {core}."
         )
     asked = table.flank_hardness if steel.hardened else table.hardness
     low, high = steel.hardness
@@ -130,12 +135,12 @@ def _of_steel(table: GearTable, gear: Gear, where: str) -> Iterator[str]:
     if asked is not None and not low <= value <= high:
         yield (
             f"{table.steel} is {steel.heat} to {low:g} to {high:g} {steel.unit} as a rule; "
-            f"{where} is rated with {asked}."
+            f"{{}} rated with {asked}."
         )
     elif reached is not None and reached < value:
         yield (
-            f"In the section of {where}, as a bar of {size:.3g} mm, {table.steel} reaches some "
-            f"{reached:.0f} HB (DIN 743-2, unverified); it is rated with {asked}."
+            f"In such a section, as a bar of {size:.3g} mm, {table.steel} reaches some "
+            f"{reached:.0f} HB (DIN 743-2, unverified); {{}} rated with {asked}."
         )
 
 
