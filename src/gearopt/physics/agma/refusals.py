@@ -42,7 +42,7 @@ SENTENCES = dict(
             "undercut or interference leaves a transverse contact ratio below 1, and the overlap "
             "does not make up for it",
             "AGMA 908 has no geometry factors for spur gears, and helical gears with an overlap "
-            "ratio of at most 1, with a transverse contact ratio of 2 or more",
+            "ratio of at most 1, with a transverse contact ratio of 2 or more by their tip circles",
             "the pinion is the gear with fewer teeth: AGMA 908 takes I at its lowest point of "
             "single tooth contact",
             "the point of the load that AGMA 908 asks for lies at or below a base circle",

@@ -134,9 +134,10 @@ def _of_pair(pair: GearPair, of: str) -> list[Flaw]:
         fatal = not ratio + pair.overlap_ratio >= 1.0
         of_mesh.append(Flaw("usable contact ratio below 1", text, fatal))
     elif pair.overlap_ratio < 1.0 and ratio < LEAST_RATIO:
+        left = " that the form circles leave" if ratio < bare else ""
         text = (
-            f"The contact ratio{of} is small, {ratio:.3f}: errors of the gears may take contact "
-            f"away for a moment; {LEAST_RATIO:g} is a usual minimum."
+            f"The contact ratio{of}{left} is small, {ratio:.3f}: errors of the gears may take "
+            f"contact away for a moment; {LEAST_RATIO:g} is a usual minimum."
         )
         of_mesh.append(Flaw("small contact ratio", text))
     if not any(flaw.fatal for flaw in of_mesh):
