@@ -196,6 +196,13 @@ FORMULAS = (
         "`curves`",
     ),
     (
+        "static strength",
+        "the rating at N_L = 0, the peak torque in place of K_A: Z_NT, Y_NT static, Z_L = Z_v = "
+        "Z_R = 1, Y_deltarelT static, Y_RrelT = Y_X = 1",
+        "parts 2, 3",
+        "`static`",
+    ),
+    (
         "load spectrum",
         "sum n_i/N_i = 1 (of bending *unverified*)",
         "part 6",

@@ -253,6 +253,28 @@ largest force: K_v rises with speed. The first pinion of
 |---|---|---|
 {levels}
 
+## A peak torque
+
+Starting, braking and blocking load teeth far more than the duty, but seldom. `static_torque_factor`
+of `[rating]` is that torque over the one of the duty; ISO 6336 rates it against static strength:
+
+```toml
+[rating]
+standard = "iso6336"
+static_torque_factor = 3 # of the torque of [duty]
+minimum_static_bending_safety = 1.5
+minimum_static_contact_safety = 1.2
+```
+
+The peak torque stands in the place of K_A; K_v, K_Hbeta and the other factors of load are those at
+that torque and at the speed of the duty, which is on the safe side of a peak at standstill. Z_NT
+and Y_NT stand at their static ends, Z_L, Z_v, Z_R, Y_RrelT and Y_X are 1, Z_W and Y_deltarelT those
+of static stress (Z_W of a soft wheel against a hard pinion is *unverified*); given factors of these
+names hold for endurance alone. The peaks are taken to be too few to add to Miner's sum: more than
+some 1000 of them belong to a spectrum. `gearopt solve` takes the static safety factors as further
+limits (`pinion_contact_static[1]`), proven like the others. AGMA has momentary overloads by yield
+strengths of its own, which are not built in: with `standard = "agma"` the key is refused.
+
 ## Forces and hands
 
 Forces act at the working pitch circles: F_t = 2 T/d_w drives, F_r = F_t tan alpha_wt pushes the

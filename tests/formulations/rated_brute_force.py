@@ -39,7 +39,8 @@ def safe(train, k, pair, torque):
             bending, contact = found.bending_safety, found.contact_safety
         else:
             bending, contact = (iso_safeties if iso else agma_safeties)(pair, operations[0], *made)
-        bending, contact = min(bending), min(contact)
+        more = standard.safety if iso else (1.0, 1.0)
+        bending, contact = min(bending) / more[0], min(contact) / more[1]
         if min(bending / train.safety[0], contact / train.safety[1]) < 1.0 - 1e-11:
             return False
     return True

@@ -42,9 +42,16 @@ def iso(materials=MATERIALS, practice=EIGHT, hours=20000.0, **given):
     return Iso6336((Load(hours),), operation, materials, practice, **given)
 
 
+def static(factor=2.5, safety=(1.0, 1.0), **given):
+    """Return the static strength of both gears by ISO 6336 at a factor of the torque."""
+    still = iso(hours=0.0, suffix="_static", safety=safety, **given)
+    operation = replace(still.operation, overload=1.0)
+    return replace(still, loads=(Load(0.0, factor),), operation=operation)
+
+
 def by(*standards):
-    """Return the only way of making gears, rated by "agma", "iso" or both."""
-    made = {"agma": agma(), "iso": iso(suffix="_iso")}
+    """Return the only way of making gears, rated by "agma", "iso", "static" or several."""
+    made = {"agma": agma(), "iso": iso(suffix="_iso"), "static": static(7.0, (1.4, 1.2))}
     return (Option(tuple(made[name] for name in standards)),)
 
 

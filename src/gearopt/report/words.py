@@ -105,9 +105,9 @@ def _stem_words(stem: str) -> str:
     for end, words in (("_low", "minimum"), ("_high", "maximum")):
         if stem.endswith(end):
             return f"{words} {stem.removesuffix(end).replace('_', ' ')}"
-    name = stem.removesuffix("_iso")
-    words = known.get(name, name.replace("_", " "))
-    return words if name == stem else f"{words} by ISO 6336"
+    name, static, _ = stem.removesuffix("_iso").partition("_static")
+    words = f"{'static ' if static else ''}{known.get(name, name.replace('_', ' '))}"
+    return words if not stem.endswith("_iso") else f"{words} by ISO 6336"
 
 
 def grouped(names: Iterable[str], staged: bool = True) -> list[str]:

@@ -18,6 +18,7 @@ from rated_drives import (
     rated_drive,
     some_iso,
     some_rated_drive,
+    static,
 )
 
 from gearopt.formulations.drive import continuous_sizing, sizing_text, teeth
@@ -71,6 +72,7 @@ STANDARDS = {
     "iso, given": iso(given={"K_v": 1.2, "Z_eps": 0.8, "Y_F": (2.5, 2.3), "f_ma": 0.01}),
     "iso, c_gamma given": iso(given={"c_gamma_alpha": 19e3, "N": 0.3, "C_a": 0.02}),
     "iso, others given": iso(given=OTHERS),
+    "iso, static": static(),
 }
 # what cells ask for over what designs in them need, medians: of contact and bending, helical teeth
 # and shifted ones
@@ -87,6 +89,7 @@ TIGHT = {
     "iso, c_gamma given": (0.9776, 0.9664, 0.9753, 0.9681),
     "iso, given": (0.9868, 0.9764, 0.9846, 0.9793),
     "iso, others given": (0.9875, 0.9779, 0.9851, 0.9786),
+    "iso, static": (0.9896, 0.9703, 0.9847, 0.9746),
 }
 TOOTHINGS = {
     "spur": Toothing(0.0, (RACK, RACK)),

@@ -41,7 +41,11 @@ STEPPED = FaceWidth(F(3, 10), F(3, 4), step=F(5))
 @pytest.mark.parametrize("helix", [0.0, 0.4])
 @pytest.mark.parametrize(
     "options",
-    [by("agma"), *(pytest.param(by(*n), marks=SLOW) for n in (("iso",), ("agma", "iso")))],
+    [
+        by("agma"),
+        by("static", "iso"),
+        *(pytest.param(by(*n), marks=SLOW) for n in (("iso",), ("agma", "static", "iso"))),
+    ],
 )
 def test_the_best_of_one_stage_is_that_of_all_candidates(face, helix, options):
     choice = {"pinion_teeth": (20, 23), "modules": MODULES[4:9], "helix": helix}

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 from campaigns import few
-from rated_drives import RACK, agma, iso
+from rated_drives import RACK, agma, iso, static
 
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.strength import ALLOWANCE
@@ -46,6 +46,7 @@ KINDS = {
     "K_v given": (iso(given={"K_v": 1.2}), 0.3),
     "many given": (iso(given=MANY), 0.3),
     "others given": (iso(given=OTHERS), 0.3),
+    "static": (static(materials=(EH, SOFT)), 0.3),
     "rough": (iso((EH, EH), practice=Practice(grades=(12.0, 12.0)), given={"Z_NT": (9, 9)}), 0.4),
 }
 LEVELS = Load(2000.0), Load(9000.0, 0.6, 0.9), Load(9000.0, 0.3, 1.1)
@@ -78,6 +79,7 @@ LOOSE = {
     "K_v given": 2028,
     "many given": 1868,
     "others given": 1304,
+    "static": 1425,
     "rough": 2490,
 }
 

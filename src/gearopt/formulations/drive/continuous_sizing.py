@@ -39,6 +39,7 @@ from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
 from gearopt.physics.gears import SERIES_I, GearPair
 
 ROUNDS = 4  # of correcting the smooth form by the exact one
+MOST_STANDARDS = 3  # of a stage: AGMA, ISO 6336 and its static strength
 EQUAL = 1e-7  # relative; of safety factors that are those of the exact rating
 CORRECTION_TOLERANCE = 1e-9  # of corrections that no longer change
 GAP_TOLERANCE = 5e-7  # relative gap that ends the search
@@ -91,9 +92,9 @@ def smooth_problem(train: Train, choice: Choice) -> Problem:
 
     Variables are those of `problem` and the unknowns of the standards, one component a
     stage. The parameter trim has factors of the smooth safeties, by default 1, by stage, standard
-    (two) and mode.
+    (MOST_STANDARDS) and mode.
     """
-    unknowns, size = _unknowns(train), 8 * len(train.stages)
+    unknowns, size = _unknowns(train), 4 * MOST_STANDARDS * len(train.stages)
 
     def evaluate(x: Any, p: Any) -> Terms:
         extra: dict[str, dict[str, Any]] = {"defines": {}, "equal": {}}
@@ -105,7 +106,8 @@ def smooth_problem(train: Train, choice: Choice) -> Problem:
                 of_standard = {n: each(getattr(x, n + suffix))[k] for n in standard.unknowns}
                 smooth_form = standard.smooth(pair, torque, speed, choice[k][j], of_standard)
                 for i, (mode, actual) in enumerate(zip(MODES, smooth_form.safeties, strict=True)):
-                    rows[mode + suffix] = safety[i // 2] / (actual * p.trim[8 * k + 4 * j + i])
+                    trim = p.trim[4 * (MOST_STANDARDS * k + j) + i]
+                    rows[mode + suffix] = safety[i // 2] / (actual * trim)
                 rows |= {n + suffix: v for n, v in smooth_form.limits.items()}
                 for part in extra:
                     of_part = getattr(smooth_form, part).items()
@@ -343,7 +345,7 @@ def _design(
     if clock.stopped:
         return None
     made = made or smooth_problem(train, choice)
-    trims, size, at = np.ones((len(train.stages), 2, 4)), len(start), start
+    trims, size, at = np.ones((len(train.stages), MOST_STANDARDS, 4)), len(start), start
     best: _Design | None = None
     for _ in range(ROUNDS):
         if clock.stopped:

@@ -3,6 +3,7 @@
 Fields are keys of a result, with their units; a list is a table. Stages and shafts count from 1.
 """
 
+from collections.abc import Iterator
 from typing import Annotated
 
 from gearopt.frozen import dataclass
@@ -41,6 +42,23 @@ class GearRating:
     life_h: Annotated[float | None, Shown("life")]
     required_bending_safety: float | None = None
     required_contact_safety: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class StaticRating:
+    """One gear under the peak torque, against static strength, with what is asked of it."""
+
+    stage: int
+    member: str
+    torque_Nm: Annotated[float, Shown("peak torque of the pinion")]
+    static_bending_stress_MPa: Annotated[float, Shown("bending stress sigma_F")]
+    static_bending_limit_MPa: Annotated[float, Shown("static bending stress limit sigma_FG")]
+    static_bending_safety: Annotated[float, Shown("static S_F")]
+    static_contact_stress_MPa: Annotated[float, Shown("contact stress sigma_H")]
+    static_contact_limit_MPa: Annotated[float, Shown("static contact stress limit sigma_HG")]
+    static_contact_safety: Annotated[float, Shown("static S_H")]
+    required_static_bending_safety: float
+    required_static_contact_safety: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -168,6 +186,7 @@ class DriveRating:
     factors, and what else no second source has. misfits: sentences on gears that cannot be
     assembled or cannot run. flaws: on what a designer may accept, and on the ratio of given gears
     that is not the one asked for. by: the standard in short; beside: the rating by another one.
+    static: of every gear under a peak torque.
     """
 
     standard: str
@@ -190,6 +209,7 @@ class DriveRating:
     misfits: tuple[str, ...] = ()
     flaws: tuple[str, ...] = ()
     by: str = "AGMA"
+    static: tuple[StaticRating, ...] = ()
     beside: "DriveRating | None" = None
 
     @property
@@ -219,13 +239,20 @@ class DriveRating:
     @property
     def met(self) -> bool:
         """Return whether every gear meets the safety factors asked for, whether or not it fits."""
-        return all(
-            asked <= (1.0 + FEASIBLE) * reached
-            for gear in self.gears
-            for asked, reached in zip(
-                self.asked_of(gear), (gear.bending_safety, gear.contact_safety), strict=True
-            )
-        )
+        return all(asked <= (1.0 + FEASIBLE) * reached for *_, reached, asked in self.margins)
+
+    @property
+    def margins(self) -> Iterator[tuple[GearRating | StaticRating, str, float, float]]:
+        """Every gear with a mode, the safety factor reached and the one asked for."""
+        for gear in self.gears:
+            bending, contact = self.asked_of(gear)
+            yield gear, "bending", gear.bending_safety, bending
+            yield gear, "contact", gear.contact_safety, contact
+        for held in self.static:
+            bending = held.required_static_bending_safety
+            contact = held.required_static_contact_safety
+            yield held, "static bending", held.static_bending_safety, bending
+            yield held, "static contact", held.static_contact_safety, contact
 
     @property
     def met_by_all(self) -> bool:

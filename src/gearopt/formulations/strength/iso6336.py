@@ -46,7 +46,8 @@ class Iso6336:
 
     operation: its overload and contacts count. blanks: of pinion and wheel, for Y_B, C_R and m_red,
     which practice does not have. given: as of `iso6336.rating.rate`. rivals: other ways of making
-    them; of all of them `rows` then has every factor at its best.
+    them; of all of them `rows` then has every factor at its best. safety: S_F and S_H asked by it
+    over those of the stage.
     """
 
     loads: tuple[Load, ...]
@@ -58,6 +59,7 @@ class Iso6336:
     suffix: str = ""
     monotone: bool = False
     rivals: tuple["Iso6336", ...] = ()
+    safety: tuple[float, float] = (1.0, 1.0)
 
     def case(self, pair: GearPair, torque: Any, speed: Any, level: int = 0) -> Case:
         """Return the case of a level of load."""
@@ -80,7 +82,7 @@ class Iso6336:
             teeth[name] = np.maximum(teeth[name], 1.0)
         rated = IsoCells(self, cells, teeth)
         with np.errstate(all="ignore"):
-            return rated.pressed(safety[1]), rated.bent(safety[0])
+            return rated.pressed(safety[1] * self.safety[1]), rated.bent(safety[0] * self.safety[0])
 
     def strongest(self, made: IsoCells, member: int, contact: bool) -> Any:
         """Return the greatest sigma_HG or sigma_FG [MPa] of a gear in cells of designs."""
@@ -119,7 +121,12 @@ class Iso6336:
             ratings = rate_rows(pair, operations[0], *made)
         else:
             ratings = spectrum_rows(pair, operations, *made)
-        return (*ratings.bending, *ratings.contact)
+        return self._of_stage((*ratings.bending, *ratings.contact))
+
+    def _of_stage(self, found: tuple[Any, Any, Any, Any]) -> tuple[Any, Any, Any, Any]:
+        """Return safety factors as they compare with those asked of the stage."""
+        (bending, contact), (b1, b2, c1, c2) = self.safety, found
+        return b1 / bending, b2 / bending, c1 / contact, c2 / contact
 
     def root_balance(self, pair: GearPair, speed: Any) -> Any:
         """Return S_F1/S_F2 of pairs (n,) under the first load, whatever the width and the torque.
@@ -159,7 +166,7 @@ class Iso6336:
         operation = self.loads[0].of(self.operation, torque, speed)
         practice = self._practice(pair)
         made = smooth_safeties(pair, operation, self.materials, practice, choice, self.given)
-        return Smooth(made, {}, {}, {})
+        return Smooth(self._of_stage(made), {}, {}, {})
 
     def floor(self, box: Box, choice: str) -> None:
         """Lower bounds of the used capacity as posynomials: None, for none are known."""
@@ -299,8 +306,8 @@ class Iso6336:
         factors = self.found | {"Z_E": min(way.found["Z_E"] for way in self.each)}
         pressed, bent = self._contact(table, slow, factors), self._bending(table, slow, factors)
         for k in GEARS:
-            columns[f"contact_used{k}"] = pressed * safety[1] ** 2
-            columns[f"bending_used{k}"] = bent[k] * safety[0]
+            columns[f"contact_used{k}"] = pressed * (safety[1] * self.safety[1]) ** 2
+            columns[f"bending_used{k}"] = bent[k] * safety[0] * self.safety[0]
             for contact, name in ((True, "contact"), (False, "bending")):
                 strengths = self._strengths(cases, table, k, contact)
                 if len(self.loads) == 1:

@@ -101,7 +101,8 @@ class Standard(Protocol):
     def safeties(self, pair: GearPair, torque: Any, speed: Any) -> tuple[Any, Any, Any, Any]:
         """Return S_F1, S_F2, S_H1, S_H2 (of stress); NaN where the standard refuses the pair.
 
-        torque [N mm] and speed [rad/s] of the pinion; arrays of one shape or floats.
+        They are over what the standard asks beyond the stage. torque [N mm] and speed [rad/s] of
+        the pinion; arrays of one shape or floats.
         """
 
     def root_balance(self, pair: GearPair, speed: Any) -> Any:

@@ -92,6 +92,8 @@ DRIVE = {
     "stages, at the top of the file": "number_of_stages num_stages stage_count stufen stufenzahl",
     "overload_factor, in [rating] or a [[stage]]; without a [rating] multiply power of [duty] by "
     "it": "k_a application_factor anwendungsfaktor overload service_class",
+    "static_torque_factor, in [rating]": "peak_torque_factor maximum_torque starting_torque "
+    "static_torque peak_load anfahrmoment spitzenmoment maximalmoment",
     "quality, in [rating]": "q_v agma_quality",
     "accuracy, in [rating]": "a_v",
     "life, in [rating]": "hours required_life l_h",

@@ -10,6 +10,7 @@ from gearopt.formulations.drive.rating import (
     GearRating,
     LoadLevel,
     RatingFactor,
+    StaticRating,
 )
 from gearopt.formulations.strength.standard import MIDWAY
 from gearopt.optimise.result import Result
@@ -45,6 +46,11 @@ PERMISSIBLE = (
 LOAD_FACTORS = (
     "By ISO 6336, K_v and the face and transverse load factors depend on the load: the power "
     "capacity is rated with their values at that power."
+)
+AT_PEAK = (
+    "Static strength by ISO 6336 at the peak torque, at the speed of the duty: K_A is 1, the other "
+    "load factors are those of that torque; Z_NT and Y_NT are at their static ends, Z_L, Z_v, Z_R, "
+    "Y_RrelT and Y_X are 1. The peak torque is taken to act seldom: it adds nothing to the lives."
 )
 ABREAST = {"AGMA": 3, "ISO 6336": 2}  # stages whose factors fit side by side on a terminal
 
@@ -206,6 +212,25 @@ def levels(result: Result, measures: Measures) -> Section | None:
         if any(name.startswith("load spectrum") for name in rated.unverified)
     ]
     return Section("Load spectrum", words=said, tables=(Table("levels", heads, rows),))
+
+
+def static(result: Result, measures: Measures) -> Section | None:
+    """Gears under the peak torque, against static strength; None without one."""
+    rating = rating_of(result)
+    rated = next((one for one in rating.each if one.static), None) if rating else None
+    if rating is None or rated is None:
+        return None
+    rows: list[list[Any]] = []
+    for it in listed_fields(StaticRating):
+        values = [getattr(gear, it.key) for gear in rated.static]
+        rows.append([greek(it.head(measures)), *(figure(v, it.key, measures) for v in values)])
+        if it.key.endswith("_safety"):
+            least = getattr(rated.static[0], f"required_{it.key}")
+            used = [_used(least, value) for value in values]
+            rows.append([f"utilisation, {it.label} {least:g} required [%]", *used])
+    heads = ["", *(name(rating, gear) for gear in rated.static)]
+    table = Table("static", heads, rows, across=True)
+    return Section("Static strength", words=[AT_PEAK], tables=(table,), terminal=(table,))
 
 
 def _level_fields(rating: DriveRating) -> list[ListedField]:

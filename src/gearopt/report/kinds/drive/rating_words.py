@@ -4,7 +4,12 @@ import re
 from collections.abc import Sequence
 from math import isclose, pi
 
-from gearopt.formulations.drive.rating import DriveRating, GearRating, MeshRating
+from gearopt.formulations.drive.rating import (
+    DriveRating,
+    GearRating,
+    MeshRating,
+    StaticRating,
+)
 from gearopt.optimise.result import FEASIBLE, Result
 from gearopt.optimise.typed import typed
 from gearopt.physics.agma import life as life_curves
@@ -22,6 +27,7 @@ LONGEST_LIFE = f"{life_curves.LONGEST_LIFE:g}".replace("e+", "e")  # cycles
 AT_ONCE = "fails at once"
 FAR_APART = 2.0  # times the power capacity by one standard: by the other one it governs by far
 MODES = {"bending": "S_F", "contact": "S_H"}
+ALL_MODES = MODES | {f"static {mode}": f"static {symbol}" for mode, symbol in MODES.items()}
 STANDARD_HEADS = {"AGMA": "AGMA", "ISO 6336": "ISO"}  # a standard in a column's head
 SYMBOLS = {  # of stresses, by standard
     "AGMA": {
@@ -165,13 +171,7 @@ def _all(rating: DriveRating) -> list[tuple[str, float, float]]:
     """Every safety factor: of what, its value, what is asked for."""
     return [
         (f"{mode} of the {gear_words(rating, gear)}", reached, least)
-        for gear in rating.gears
-        for mode, reached, least in zip(
-            MODES,
-            (gear.bending_safety, gear.contact_safety),
-            rating.asked_of(gear),
-            strict=True,
-        )
+        for gear, mode, reached, least in rating.margins
     ]
 
 
@@ -184,7 +184,7 @@ def _governing(rating: DriveRating) -> tuple[str, str, float, float]:
     reached, asked = next(
         (reached, asked) for name, reached, asked in _all(rating) if name == words
     )
-    return words, MODES[mode], reached, asked
+    return words, ALL_MODES[mode], reached, asked
 
 
 def nearest(rating: DriveRating) -> list[str]:
@@ -194,16 +194,12 @@ def nearest(rating: DriveRating) -> list[str]:
         rows = [
             (
                 reached / asked,
-                f"{mode} ({MODES[mode]}) of the {gear.member}",
+                f"{mode} ({ALL_MODES[mode]}) of the {gear.member}",
                 rated.by,
             )
             for rated in rating.each
-            for gear in rated.gears
+            for gear, mode, reached, asked in rated.margins
             if gear.stage == mesh.stage
-            for mode, reached, asked in (
-                ("bending", gear.bending_safety, rated.asked_of(gear)[0]),
-                ("contact", gear.contact_safety, rated.asked_of(gear)[1]),
-            )
         ]
         _, what, by = min(rows)
         of = f" by {by}" if rating.beside is not None else ""
@@ -216,7 +212,7 @@ def weakest(rating: DriveRating) -> MeshRating:
     return min(rating.meshes, key=lambda mesh: mesh.power_capacity_kW)
 
 
-def gear_words(rating: DriveRating, gear: GearRating) -> str:
+def gear_words(rating: DriveRating, gear: GearRating | StaticRating) -> str:
     """A gear in a sentence: of several stages with its own."""
     return gear.member if len(rating.meshes) == 1 else f"{gear.member} of stage {gear.stage}"
 

@@ -31,6 +31,8 @@ RATED = (  # of drives that ratings limit, or whose gears have webs
 OF_RATING = {  # keys of ratings: the direction that eases them
     **dict.fromkeys(("life", "input_revolutions", "overload_factor", "reliability"), -1),
     **dict.fromkeys(("minimum_bending_safety", "minimum_contact_safety", "pinion_offset"), -1),
+    **dict.fromkeys((f"minimum_static_{mode}_safety" for mode in ("bending", "contact")), -1),
+    "static_torque_factor": -1,
     **dict.fromkeys(("accuracy", "accuracy_grade", "roughness", "flank_rz", "root_rz"), -1),
     **dict.fromkeys(("quality", "hardness", "grade", "flank_hardness"), 1),
     **dict.fromkeys(("tip_thickness", "contact_ratio"), -1),  # of [shift]

@@ -217,7 +217,8 @@ def _rated_by(train: Train, standard: int) -> Train:
     """Return the drive that one of two standards (0 or 1) rates alone."""
 
     def alone(option: Option) -> Option:
-        return replace(option, standards=option.standards[standard : standard + 1])
+        each = option.standards
+        return replace(option, standards=each[1:] if standard else each[:1])
 
     stages = [replace(s, options=tuple(map(alone, s.options))) for s in train.stages]
     return replace(train, stages=tuple(stages))

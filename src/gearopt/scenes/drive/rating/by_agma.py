@@ -16,7 +16,8 @@ from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, RatingTable
 
 __all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
-__all__ += ["NAME", "UNVERIFIED_SPECTRUM", "LIMIT", "bare_practice", "practice", "steel", "title"]
+__all__ += ["NAME", "STATIC", "UNVERIFIED_SPECTRUM", "LIMIT", "bare_practice", "practice", "steel"]
+__all__ += ["title"]
 NAME = "AGMA"  # in short
 NAMES = {  # of the factors, as AGMA 2001 has them
     "K_o": "overload factor",
@@ -43,6 +44,7 @@ TITLES = {  # by edition
 }
 LIMIT = Agma  # the rating as a limit of a stage
 PROPORTIONAL = True  # stresses, or their squares, grow with the load
+STATIC = False  # whether it rates a peak torque against static strength
 UNVERIFIED_SPECTRUM = ()  # of a load spectrum: what no second source has
 
 

@@ -16,12 +16,14 @@ from gearopt.scenes.drive.tables.iso6336 import NAMES
 from gearopt.scenes.drive.tables.rating import RatingTable
 
 __all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
-__all__ += ["NAME", "UNVERIFIED_SPECTRUM", "LIMIT", "bare_practice", "practice", "steel", "title"]
+__all__ += ["NAME", "STATIC", "UNVERIFIED_SPECTRUM", "LIMIT", "bare_practice", "practice", "steel"]
+__all__ += ["title"]
 NAME = "ISO 6336"  # in short
 SUFFIXES = {"MPa": "MPa", "mm": "mm", "sqrt(MPa)": "sqrt_MPa"}
 UNITS = {symbol: SUFFIXES[unit] for symbol, (_, unit) in CLAUSES.items() if unit}
 LIMIT = Iso6336  # the rating as a limit of a stage
 PROPORTIONAL = False  # stresses, or their squares, grow with the load
+STATIC = True  # whether it rates a peak torque against static strength
 UNVERIFIED_SPECTRUM = ("load spectrum by part 6",)  # what no second source has
 
 

@@ -8,8 +8,9 @@ from gearopt.errors import SolveError
 from gearopt.frozen import dataclass
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.flaws import flaws
+from gearopt.physics.iso6336.static import static_given, static_operation
 from gearopt.physics.rating import Operation, Rating
-from gearopt.scenes.drive.rating.gears import Tables, gear_tables, operations
+from gearopt.scenes.drive.rating.gears import Tables, duty_operation, gear_tables, operations
 from gearopt.scenes.drive.rating.options import of_stage
 from gearopt.scenes.drive.scene import Scene
 
@@ -33,6 +34,7 @@ class Mesh:
     contact_safety: tuple[float, float]
     damages: tuple[tuple[float, float], tuple[float, float]] | None  # of bending, of contact
     grown: Callable[[float], "Mesh"]  # the same with all powers times a factor
+    static: Rating | None = None  # under the peak torque, if there is one
 
     @property
     def hardest(self) -> Rating:
@@ -85,17 +87,27 @@ def _mesh(
     steels = standard.steel(tables[0]), standard.steel(tables[1])
     practice = standard.practice(rating, stage, pair, tables)
     levels = operations(rating, scene.duty, scene.load, slower, tables)
-    given = standard.given(rating, stage)
+    given, peak = standard.given(rating, stage), rating.static_torque_factor
+    at_duty = duty_operation(rating, scene.duty, slower, tables)
+
+    def static(factor: float) -> Rating | None:
+        if peak is None or not standard.STATIC:
+            return None
+        loaded = static_operation(at_duty, factor * float(peak))
+        rated: Rating = standard.rate(pair, loaded, steels, practice, static_given(given))
+        return rated
 
     def grown(factor: float) -> Mesh:
         loaded = tuple(replace(operation, power=factor * operation.power) for operation in levels)
         if not scene.load:
             rated = standard.rate(pair, loaded[0], steels, practice, given)
             both = rated.bending_safety, rated.contact_safety
-            return Mesh(standard, k + 1, pair, tables, loaded, (rated,), *both, None, grown)
+            made = standard, k + 1, pair, tables, loaded, (rated,)
+            return Mesh(*made, *both, None, grown, static(factor))
         spectrum = standard.rate_spectrum(pair, loaded, steels, practice, given)
         damages = spectrum.bending_damage, spectrum.contact_damage
         both = spectrum.bending_safety, spectrum.contact_safety
-        return Mesh(standard, k + 1, pair, tables, loaded, spectrum.levels, *both, damages, grown)
+        made = standard, k + 1, pair, tables, loaded, spectrum.levels
+        return Mesh(*made, *both, damages, grown, static(factor))
 
     return grown(1.0)

@@ -2,11 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from fractions import Fraction
 from importlib import import_module
 from typing import Any
 
+from gearopt.formulations.strength.iso6336 import Iso6336
 from gearopt.formulations.strength.standard import Load, Option
 from gearopt.physics.gears import MEMBERS
+from gearopt.physics.iso6336.static import static_given, static_operation
 from gearopt.scenes.drive.rating.gears import blanks, loads, required_hours, unit_operation
 from gearopt.scenes.drive.rating.materials import Named, choices
 from gearopt.scenes.drive.tables.drive import Gears, StageTable
@@ -19,6 +22,7 @@ STANDARDS = {  # of the key standard
     "both": ("agma", "iso6336"),
 }
 SECOND = "_iso"  # after the names of limits by the second of two standards
+STATIC = "_static"  # after the names of limits on static strength
 
 
 def by(standard: str) -> Any:
@@ -80,11 +84,26 @@ def _option(
     ]
     if len(standards) > 1:
         standards[1] = replace(standards[1], suffix=SECOND)
+    if rating.static_torque_factor is not None:
+        standards.insert(-1, _static(standards[-1], rating, rating.static_torque_factor))
     named = tuple(m.name if m else "" for m in materials)
     densities = tuple(m.density.value if m and m.density else None for m in materials)
     prices = tuple(float(m.price) if m and m.price is not None else 1.0 for m in materials)
     words = " and ".join(filter(None, named))
     return Option(tuple(standards), words, _two(densities), _two(prices), _two(named))
+
+
+def _static(standard: Iso6336, rating: RatingTable, factor: Fraction) -> Iso6336:
+    """The rating against static strength beside that by ISO 6336; factor: of the duty's torque."""
+    (bending, contact), asked = required(rating), required_static(rating)
+    return replace(
+        standard,
+        loads=(Load(0.0, float(factor)),),
+        operation=static_operation(standard.operation, 1.0),
+        given=static_given(standard.given),
+        suffix=STATIC,
+        safety=(asked[0] / bending, asked[1] / contact),
+    )
 
 
 def _two(values: tuple[Any, ...]) -> tuple[Any, Any]:
@@ -106,3 +125,9 @@ def own_safety(own: StageTable) -> tuple[float | None, float | None]:
 def required(rating: RatingTable) -> tuple[float, float]:
     """Safety factors asked for against bending and against pitting."""
     return float(rating.minimum_bending_safety), float(rating.minimum_contact_safety)
+
+
+def required_static(rating: RatingTable) -> tuple[float, float]:
+    """Safety factors asked for of static strength, against bending and of contact."""
+    bending, contact = rating.minimum_static_bending_safety, rating.minimum_static_contact_safety
+    return float(bending or 1), float(contact or 1)

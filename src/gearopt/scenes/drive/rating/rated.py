@@ -29,10 +29,12 @@ from gearopt.scenes.drive.rating.mesh import Materials, rated_meshes
 from gearopt.scenes.drive.rating.options import (
     SECOND,
     STANDARDS,
+    STATIC,
     by,
     of_stage,
     own_safety,
     required,
+    required_static,
 )
 from gearopt.scenes.drive.rating.plausibility import unusual, weighty
 from gearopt.scenes.drive.rating.rows import (
@@ -41,6 +43,7 @@ from gearopt.scenes.drive.rating.rows import (
     level_rows,
     mesh_row,
     shaft_rows,
+    static_rows,
 )
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.blanks import body_flaws
@@ -238,12 +241,10 @@ def utilisations(rated: DriveRating) -> dict[str, float]:
     """
     limits = {}
     for by_standard, of_second in zip(rated.each, ("", SECOND), strict=False):
-        for gear in by_standard.gears:
-            asked = by_standard.asked_of(gear)
-            bending = asked[0] / gear.bending_safety
-            contact = asked[1] / gear.contact_safety
-            limits[f"{gear.member}_bending{of_second}[{gear.stage}]"] = bending
-            limits[f"{gear.member}_contact{of_second}[{gear.stage}]"] = contact
+        for gear, mode, reached, asked in by_standard.margins:
+            static, end = mode.startswith("static "), mode.split(" ")[-1]
+            name = f"{gear.member}_{end}{STATIC if static else of_second}[{gear.stage}]"
+            limits[name] = asked / reached
     return limits
 
 
@@ -296,7 +297,10 @@ def _by(
     assert asked
     meshes = rated_meshes(scene, pairs, standard, materials)
     wanted = [required(of_stage(asked, own)) for own in scene.stage_tables]
-    rows = tuple(mesh_row(asked, mesh, w) for mesh, w in zip(meshes, wanted, strict=True))
+    still = required_static(asked)
+    rows = tuple(
+        mesh_row(asked, mesh, (*w, *still)) for mesh, w in zip(meshes, wanted, strict=True)
+    )
     least = min(rows, key=lambda row: row.power_capacity_kW)
     each = zip(meshes, scene.stage_tables, strict=True)
     gears = tuple(gear_row(mesh, k, own_safety(own)) for mesh, own in each for k in (0, 1))
@@ -330,10 +334,19 @@ def _by(
             for row in level_rows(scene.load, scene.duty.input_speed, mesh)
         ),
         unverified=(
-            *dict.fromkeys(f"{r.symbol} of stage {r.stage}" for r in factors if not r.verified),
+            *dict.fromkeys(
+                [f"{r.symbol} of stage {r.stage}" for r in factors if not r.verified]
+                + [
+                    f"{n} of stage {m.stage}"
+                    for m in meshes
+                    if m.static
+                    for n in m.static.unverified
+                ]
+            ),
             *(standard.UNVERIFIED_SPECTRUM if scene.load else ()),
         ),
         by=standard.NAME,
+        static=tuple(row for mesh in meshes for row in static_rows(mesh, still)),
     )
     return replace(rated, safe=rated.met, life_h=rated.shortest_lived.life_h)
 

@@ -11,6 +11,7 @@ from gearopt.formulations.drive.rating import (
     MeshRating,
     RatingFactor,
     ShaftRating,
+    StaticRating,
 )
 from gearopt.physics.agma.life import LONGEST_LIFE
 from gearopt.physics.gears import MEMBERS, GearPair
@@ -92,8 +93,8 @@ def _hours(mesh: Mesh, life: float, cycles: float) -> float:
     return float(life / cycles * sum(level.hours for level in mesh.operations))
 
 
-def mesh_row(rating: RatingTable, mesh: Mesh, wanted: tuple[float, float]) -> MeshRating:
-    """Row of a mesh; wanted: the safety factors asked for, of bending and contact."""
+def mesh_row(rating: RatingTable, mesh: Mesh, wanted: Sequence[float]) -> MeshRating:
+    """Row of a mesh; wanted: S_F and S_H asked for, then those of static strength."""
     pair, (moved, speed) = mesh.pair, mesh.largest_load
     growth, governs = _capacity(mesh, wanted), _margins(mesh, wanted)[1]
     forces = mesh_forces(pair, moved)
@@ -138,16 +139,20 @@ def _losses(rating: RatingTable, mesh: Mesh) -> dict[str, Any]:
     return fields
 
 
-def _margins(mesh: Mesh, wanted: tuple[float, float]) -> tuple[float, str]:
+def _margins(mesh: Mesh, wanted: Sequence[float]) -> tuple[float, str]:
     """Return the least margin of load against the safety factors asked for, and whose it is."""
     rows = []
     for k, member in enumerate(MEMBERS):
         rows.append((mesh.bending_safety[k] / wanted[0], f"bending of the {member}"))
         rows.append(((mesh.contact_safety[k] / wanted[1]) ** 2, f"contact of the {member}"))
+        if (held := mesh.static) is not None:
+            bent, pressed = held.bending_safety[k] / wanted[2], held.contact_safety[k] / wanted[3]
+            rows.append((bent, f"static bending of the {member}"))
+            rows.append((pressed**2, f"static contact of the {member}"))
     return min(rows)
 
 
-def _capacity(mesh: Mesh, wanted: tuple[float, float]) -> float:
+def _capacity(mesh: Mesh, wanted: Sequence[float]) -> float:
     """Return the factor by which all loads may grow until the least margin is 1.
 
     The margin itself where factors of load do not depend on it, as by AGMA; else by secants of its
@@ -220,6 +225,28 @@ def shaft_rows(
         )
         for shaft in range(1, len(pairs) + 2)
     )
+
+
+def static_rows(mesh: Mesh, asked: tuple[float, float]) -> list[StaticRating]:
+    """Return pinion and wheel of a mesh under the peak torque, if any; asked: static S_F, S_H."""
+    if (held := mesh.static) is None:
+        return []
+    return [
+        StaticRating(
+            stage=mesh.stage,
+            member=member,
+            torque_Nm=5e-4 * held.load * float(mesh.pair.pinion.reference_diameter),
+            static_bending_stress_MPa=held.bending_stress[k],
+            static_bending_limit_MPa=held.bending_stress[k] * held.bending_safety[k],
+            static_bending_safety=held.bending_safety[k],
+            static_contact_stress_MPa=held.contact_stress[k],
+            static_contact_limit_MPa=held.contact_stress[k] * held.contact_safety[k],
+            static_contact_safety=held.contact_safety[k],
+            required_static_bending_safety=asked[0],
+            required_static_contact_safety=asked[1],
+        )
+        for k, member in enumerate(MEMBERS)
+    ]
 
 
 def level_rows(levels: Sequence[LoadTable], usual: Quantity, mesh: Mesh) -> list[LoadLevel]:

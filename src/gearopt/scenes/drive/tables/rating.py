@@ -337,6 +337,17 @@ class RatingTable(Table):
         description="Required safety factor against pitting, of stress: its square is of load",
         json_schema_extra={"default": 1},
     )
+    static_torque_factor: Annotated[Fraction | None, number(2.5, 1, 100)] = Field(
+        None,
+        description="Peak torque, of starting or of a seldom overload, over the torque of the "
+        "duty: takes the place of K_A against static strength (ISO 6336 alone)",
+    )
+    minimum_static_bending_safety: Annotated[Fraction | None, number(1.5, 0, 100)] = Field(
+        None, description="Required safety factor of static bending strength; by default 1"
+    )
+    minimum_static_contact_safety: Annotated[Fraction | None, number(1.2, 0, 100)] = Field(
+        None, description="Required safety factor of static contact strength; by default 1"
+    )
     friction_coefficient: Annotated[Fraction | None, number(0.05, 0, 1)] = Field(
         None, description="Mean coefficient of friction of a mesh, for its efficiency"
     )
@@ -378,9 +389,20 @@ class RatingTable(Table):
         bare = self.quality is None and self.accuracy is None and self.given.K_v is None
         if bare and self.by_agma:
             raise refuse("is missing (or give accuracy)", 8, ("quality",), "sample")
+        self._check_static()
         if not Fraction(1, 2) <= self.reliability <= Fraction(9999, 10000):
             raise refuse("is not from 50 % to 99.99 %", "99 %", ("reliability",), "sample")
         return self
+
+    def _check_static(self) -> None:
+        """Refuse a peak torque without ISO 6336, and safety factors without a peak torque."""
+        if self.static_torque_factor is not None and not self.by_iso6336:
+            rule = "is rated by ISO 6336 alone, not by AGMA"
+            tell = 'Write standard = "both" or "iso6336", or remove static_torque_factor'
+            raise refuse(rule, tell, ("static_torque_factor",), "tell")
+        for name in ("minimum_static_bending_safety", "minimum_static_contact_safety"):
+            if self.static_torque_factor is None and getattr(self, name) is not None:
+                raise refuse("needs static_torque_factor", at=(name,), action="remove")
 
 
 class LoadTable(Table):
