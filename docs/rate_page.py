@@ -253,6 +253,17 @@ largest force: K_v rises with speed. The first pinion of
 |---|---|---|
 {levels}
 
+## Ground teeth
+
+`tool_protuberance` pr is how far the tip of the cutter juts out of its flank, `grinding_allowance`
+q what grinding takes off a flank, both in normal modules. The rest, s_pr = pr - q, is the undercut
+of the finished root: it enters E of ISO 6336-3, the fillet of AGMA 908 and the form circle, while
+the thickness of the flanks is the finished one. `tool_addendum` counts from the profile of the
+finished tooth: of a hob that stands q/sin alpha_n farther out, take its addendum less q/(m_n sin
+alpha_n). More than pr would leave a notch and is refused. Its Y_Sg = 1.3 Y_S/(1.3 - 0.6
+sqrt(t_g/rho_g)) (ISO 6336-3, 7.4, *unverified*), of depth t_g and radius rho_g, may be given as Y_S
+in `[rating.iso6336.given]`.
+
 ## A peak torque
 
 Starting, braking and blocking load teeth far more than the duty, but seldom. `static_torque_factor`

@@ -52,6 +52,7 @@ from gearopt.scenes.drive.toothings import (
     check_centre_distances,
     check_follows,
     check_mesh,
+    check_tools,
     inclination,
     toothings,
 )
@@ -304,6 +305,7 @@ class Scene(Table):
             check_follows(k, tables[k])
         lacks = "" if self.given else self._lacks("by sums of their profile shifts")
         check_shift(self, shifted, lacks, "" if follows else asked)
+        check_tools(self.stage_tables, self.gears)
         for k, table in enumerate(self.stage if self.to_size else ()):  # else a rating refuses it
             if k not in shifted:
                 check_mesh(self._stage(table), k, table, self.gears)

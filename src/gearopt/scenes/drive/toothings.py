@@ -85,7 +85,7 @@ def _rack(gear: GearTable, pressure_angle: float) -> Rack:
         _or(gear.addendum, usual.addendum),
         _or(gear.tool_addendum, usual.dedendum),
         _or(gear.tool_tip_radius, usual.tip_radius),
-        _or(gear.tool_protuberance, usual.protuberance),
+        float((gear.tool_protuberance or 0) - (gear.grinding_allowance or 0)),
     )
 
 
@@ -143,6 +143,19 @@ def check_follows(k: int, own: StageTable) -> None:
                 )
                 rule = f"follows from {of}[shift]"
                 raise refuse(rule, at=("stage", k, member, key), action="remove")
+
+
+def check_tools(stages: tuple[StageTable, ...], gears: Gears) -> None:
+    """Refuse grinding that takes more than the protuberance: it leaves a notch."""
+    for k, own in enumerate(stages):
+        for member in MEMBERS:
+            table, alone = with_shared(getattr(own, member), gears), getattr(own, member)
+            depth, juts = table.grinding_allowance or 0, table.tool_protuberance or 0
+            if depth > juts:
+                rule = f"is above tool_protuberance, {float(juts):g}: grinding would cut a notch"
+                tell = f"Write tool_protuberance = {float(depth):g} or more, or remove it"
+                place = ("gears",) if alone.grinding_allowance is None else ("stage", k, member)
+                raise refuse(rule, tell, (*place, "grinding_allowance"), "tell")
 
 
 def check_mesh(stage: Stage, k: int, own: StageTable, gears: Gears) -> None:

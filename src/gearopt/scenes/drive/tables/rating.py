@@ -137,6 +137,11 @@ class GearKeys(BlankKeys, IsoGearKeys):
         None,
         description="Protuberance of the tool in normal modules; by default 0",
     )
+    grinding_allowance: Annotated[Fraction | None, number(0.02, 0, 1, zero=True)] = Field(
+        None,
+        description="Stock q that grinding takes off a flank, in normal modules, of the "
+        "protuberance: the rest is the undercut of the finished tooth; by default 0",
+    )
     steel: Annotated[str | None, STEEL_NAME] = Field(
         None,
         description="Steel or iron by name or number (gearopt materials lists them), which sets "
