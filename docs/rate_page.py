@@ -264,6 +264,14 @@ alpha_n). More than pr would leave a notch and is refused. Its Y_Sg = 1.3 Y_S/(1
 sqrt(t_g/rho_g)) (ISO 6336-3, 7.4, *unverified*), of depth t_g and radius rho_g, may be given as Y_S
 in `[rating.iso6336.given]`.
 
+## Chamfered tips
+
+`tip_chamfer` is the radial height h_K of a chamfer or round of the tips, in normal modules. Flanks
+then touch up to d_Na = d_a - 2 h_K m_n: contact ratios, Z_eps, Z_B, Z_D, sliding, losses, d_Nf of
+the mate, the point of load of Y_F (d_en) and J, and I take d_Na, as ISO 6336-3 and the effective
+outside radius of AGMA 908 ask. d_a stays in drawings, clearances, masses, and where tips are asked
+whether they reach into the mate's fillet, which a chamfer eases.
+
 ## A peak torque
 
 Starting, braking and blocking load teeth far more than the duty, but seldom. `static_torque_factor`

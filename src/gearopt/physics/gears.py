@@ -47,7 +47,8 @@ class Rack:
 
     addendum h_aP; dedendum h_fP, which the tool's addendum h_a0 cuts; tip_radius rho_fP of the
     tool's tip, the root radius of the rack; protuberance pr: how far the tool's tip juts out of its
-    flank, normal to it, beyond what finishing takes away.
+    flank, normal to it, beyond what finishing takes away. tip_chamfer: radial height of a chamfer
+    or round of the gear's tips, which takes no part in contact.
     Source: ISO 53:1998, profile A; the same in Rack.m of github.com/gfsReboucas/Drivetrain, and
     what the diameters of its KISSsoft report (NREL 5 MW gearbox, stage 3) follow.
     """
@@ -57,6 +58,12 @@ class Rack:
     dedendum: Any = 1.25
     tip_radius: Any = 0.38
     protuberance: Any = 0.0
+    tip_chamfer: Any = 0.0
+
+    @property
+    def active_addendum(self) -> Any:
+        """Addendum up to the tip form circle, on which a chamfer begins."""
+        return self.addendum - self.tip_chamfer
 
 
 ISO_53_A = Rack()
@@ -172,6 +179,13 @@ class Gear:
         """Tip diameter d_a = d + 2 (h_aP + x + k) m_n [mm]."""
         height = self.rack.addendum + self.profile_shift + self.tip_alteration
         return self.reference_diameter + 2.0 * height * self.normal_module
+
+    @property
+    def active_tip_diameter(self) -> Any:
+        """Tip form diameter d_Na [mm], to which flanks touch: below d_a by the chamfer."""
+        if _none(self.rack.tip_chamfer):
+            return self.tip_diameter
+        return self.tip_diameter - 2.0 * self.rack.tip_chamfer * self.normal_module
 
     @property
     def root_diameter(self) -> Any:
@@ -362,7 +376,7 @@ class GearPair:
         """Transverse contact ratio eps_alpha; validity as the law of this name."""
         pinion, wheel = self.gears
         return transverse_contact_ratio(
-            (pinion.tip_diameter, wheel.tip_diameter),
+            (pinion.active_tip_diameter, wheel.active_tip_diameter),
             (pinion.base_diameter, wheel.base_diameter),
             self.centre_distance,
             self.working_angle,

@@ -19,7 +19,8 @@ from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import ISO_53_A, MEMBERS, Gear, GearPair, Rack
 from gearopt.physics.loads import pitch_line_velocity
 
-TOOL = ("addendum", "tool_addendum", "tool_tip_radius", "tool_protuberance")  # as in a `Rack`
+# as in a `Rack`
+TOOL = ("addendum", "tool_addendum", "tool_tip_radius", "tool_protuberance", "tip_chamfer")
 TEETH = ("profile_shift", "tip_alteration", "thickness_allowance_mm")  # as in a `Gear`
 
 
@@ -88,6 +89,8 @@ class StageDesign:
     wheel_tool_tip_radius: float = ISO_53_A.tip_radius
     pinion_tool_protuberance: float = ISO_53_A.protuberance
     wheel_tool_protuberance: float = ISO_53_A.protuberance
+    pinion_tip_chamfer: float = ISO_53_A.tip_chamfer
+    wheel_tip_chamfer: float = ISO_53_A.tip_chamfer
 
     @property
     def pair(self) -> GearPair:
@@ -260,7 +263,7 @@ def _teeth(pair: GearPair) -> dict[str, Any]:
         words[f"{member}_tip_alteration"] = float(gear.tip_alteration)
         words[f"{member}_thickness_allowance_mm"] = float(gear.thickness_allowance)
         rack = gear.rack
-        tool = rack.addendum, rack.dedendum, rack.tip_radius, rack.protuberance
+        tool = rack.addendum, rack.dedendum, rack.tip_radius, rack.protuberance, rack.tip_chamfer
         words |= {f"{member}_{n}": float(v) for n, v in zip(TOOL, tool, strict=True)}
     return words
 

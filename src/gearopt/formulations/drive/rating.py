@@ -148,6 +148,7 @@ class ToothGeometry:
     working_pitch_diameter_mm: Annotated[float, Shown("working pitch diameter d_w")]
     base_diameter_mm: Annotated[float, Shown("base diameter d_b")]
     tip_diameter_mm: Annotated[float, Shown("tip diameter d_a")]
+    tip_form_diameter_mm: Annotated[float | None, Shown("tip form diameter d_Na")] = None
     root_diameter_mm: Annotated[float, Shown("root diameter d_f")]
     form_diameter_mm: Annotated[float, Shown("root form diameter d_Ff")]
     active_root_diameter_mm: Annotated[float | None, Shown("active root diameter d_Nf")]

@@ -90,8 +90,8 @@ def loaded_tooth(mesh: Mesh, load: str = "highest single") -> LoadedTooth:
     helix = pair.pinion.helix_angle
     base_helix = np.arcsin(np.sin(helix) * np.cos(angle))
     working = np.arcsin(np.cos(base_helix) * np.sin(pair.working_angle))
-    at_tip = np.sqrt((0.5 * gear.tip_diameter / base) ** 2 - 1.0)
-    mate_reach = np.sqrt((0.5 * mate.tip_diameter) ** 2 - mate_base**2)
+    at_tip = np.sqrt((0.5 * gear.active_tip_diameter / base) ** 2 - 1.0)
+    mate_reach = np.sqrt((0.5 * mate.active_tip_diameter) ** 2 - mate_base**2)
     start = (base + mate_base) * np.tan(working) - mate_reach
     highest = (start + np.pi * np.cos(angle)) / base
     tangent = mesh.chosen(at_tip, highest) if load == "highest single" else at_tip

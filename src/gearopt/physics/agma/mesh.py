@@ -83,7 +83,7 @@ def mean_curvatures(pair: GearPair, path: ContactPath) -> tuple[Any, Any]:
 
     R_m1 = (R_o1 + a - R_o2)/2. Source: AGMA 908-B89, clause 4.
     """
-    pinion, wheel = (0.5 * gear.tip_diameter for gear in pair.gears)
+    pinion, wheel = (0.5 * gear.active_tip_diameter for gear in pair.gears)
     mean = 0.5 * (pinion + pair.centre_distance - wheel)
     first = np.sqrt(mean**2 - (0.5 * pair.pinion.base_diameter) ** 2)
     return first, sum(path.curvatures) - first

@@ -107,7 +107,7 @@ def _of_gears(pair: GearPair) -> list[Any]:
 
 
 def _no_involute(gear: Gear) -> Any:
-    return np.less_equal(gear.tip_diameter, gear.base_diameter)
+    return np.less_equal(gear.active_tip_diameter, gear.base_diameter)
 
 
 def single_factors(pair: GearPair, load: str = "highest single") -> GeometryFactors:

@@ -63,7 +63,7 @@ def contact_path(pair: GearPair, form_diameters: tuple[Any, Any] | None = None) 
     """
     tangent = np.tan(pair.working_angle)
     first, second = (0.5 * gear.base_diameter * tangent for gear in pair.gears)
-    reaches = [0.5 * np.sqrt(g.tip_diameter**2 - g.base_diameter**2) for g in pair.gears]
+    reaches = [0.5 * np.sqrt(g.active_tip_diameter**2 - g.base_diameter**2) for g in pair.gears]
     start, end = second - reaches[1], reaches[0] - first
     if form_diameters is not None:
         rows = zip(form_diameters, pair.gears, strict=True)

@@ -84,7 +84,7 @@ def _of_gear(member: str, gear: Gear) -> list[Flaw]:
         of_gear.append(Flaw("no root", f"The root circle of the {member} has no diameter.", True))
         return of_gear
     thin = float(tip_thickness(gear)) / gear.normal_module
-    if gear.tip_diameter <= gear.base_diameter:
+    if gear.active_tip_diameter <= gear.base_diameter:
         text = f"The tip circle of the {member} lies inside its base circle: it has no involute."
         of_gear.append(Flaw("no involute", text, True))
     elif thin <= 0.0:

@@ -55,7 +55,7 @@ def single_contact_ratios(pair: GearPair, transverse: Any) -> tuple[Any, Any]:
     tan(alpha_wt)/sqrt((t1 - 2 pi/z1) (t2 - (eps_alpha - 1) 2 pi/z2)), t = sqrt((d_a/d_b)^2 - 1),
     and the same seen from the wheel. NaN where the point lies at or below a base circle. Part 2, 6.
     """
-    tips = [np.sqrt((g.tip_diameter / g.base_diameter) ** 2 - 1.0) for g in pair.gears]
+    tips = [np.sqrt((g.active_tip_diameter / g.base_diameter) ** 2 - 1.0) for g in pair.gears]
     steps = [2.0 * np.pi / g.teeth for g in pair.gears]
     found = []
     for own, other in ((0, 1), (1, 0)):

@@ -89,7 +89,7 @@ def _of_gears(pair: GearPair) -> list[Any]:
     for fault in (
         lambda g: ~np.asarray(has_tip(g)),
         lambda g: np.less_equal(g.root_diameter, 0.0),
-        lambda g: np.less_equal(g.tip_diameter, g.base_diameter),
+        lambda g: np.less_equal(g.active_tip_diameter, g.base_diameter),
         lambda g: ~(np.asarray(tip_thickness(g)) > 0.0),
     ):
         made.append(fault(gears[0]) | fault(gears[1]))

@@ -86,6 +86,7 @@ def _rack(gear: GearTable, pressure_angle: float) -> Rack:
         _or(gear.tool_addendum, usual.dedendum),
         _or(gear.tool_tip_radius, usual.tip_radius),
         float((gear.tool_protuberance or 0) - (gear.grinding_allowance or 0)),
+        _or(gear.tip_chamfer, usual.tip_chamfer),
     )
 
 
@@ -177,7 +178,7 @@ def _check_fewest(stage: Stage, made: Toothing, k: int, own: StageTable, gears: 
     for member, gear in zip(MEMBERS, pair.gears, strict=True):
         if gear.root_diameter <= 0.0:
             rule, keys = "leaves the root circle of {} teeth no diameter", ROOT
-        elif gear.tip_diameter <= gear.base_diameter:
+        elif gear.active_tip_diameter <= gear.base_diameter:
             rule, keys = "leaves {} teeth no involute below their tips", TIP
         else:
             continue

@@ -50,6 +50,8 @@ DRIVE = {
     "flank_rz, in [gears]": "rz r_z flank_roughness surface_roughness",
     "reversed_load, of a gear": "idler reverse_bending alternating alternating_load wechselbiegung",
     "tool_protuberance, of a gear": "protuberance",
+    "tip_chamfer, of a gear, in normal modules": "chamfer tip_form_diameter tip_break tip_rounding "
+    "tip_round d_na kopfkantenbruch kopfnutzkreis kopfkantenschutz",
     "grinding_allowance, of a gear, in normal modules": "machining_allowance grinding_stock "
     "finishing_allowance schleifzugabe schleifaufmass bearbeitungszugabe",
     "rim_thickness, of a gear: the ratio is computed": "backup_ratio m_b",

@@ -39,6 +39,7 @@ def tooth_geometry(stage: int, pair: GearPair, member: int, pinion_hand: str) ->
         working_pitch_diameter_mm=float(pair.working_diameters[member]),
         base_diameter_mm=float(gear.base_diameter),
         tip_diameter_mm=float(gear.tip_diameter),
+        tip_form_diameter_mm=float(gear.active_tip_diameter) if gear.rack.tip_chamfer else None,
         root_diameter_mm=float(gear.root_diameter),
         form_diameter_mm=float(form_diameter(gear)),
         active_root_diameter_mm=_finite(active_root_diameters(pair)[member]),
@@ -60,7 +61,7 @@ def _measured(gear: Gear) -> dict[str, Any]:
     Both ends of the span of helical teeth lie within the face width; balls stand out of the tips.
     """
     teeth = span_teeth(gear)
-    low, high = float(form_diameter(gear)), float(gear.tip_diameter)
+    low, high = float(form_diameter(gear)), float(gear.active_tip_diameter)
     dimensions: dict[str, Any] = {}
     width = float(span(gear, teeth))
     helical = width * abs(math.sin(base_helix_angle(gear)))  # along the axis

@@ -127,6 +127,11 @@ class GearKeys(BlankKeys, IsoGearKeys):
     addendum: Annotated[Fraction | None, number(1.0, 0, 3)] = Field(
         None, description="Addendum of the basic rack, in normal modules; by default 1"
     )
+    tip_chamfer: Annotated[Fraction | None, number(0.05, 0, 1, zero=True)] = Field(
+        None,
+        description="Radial height of the chamfer or round of the tips, in normal modules: contact "
+        "ends below it, at the tip form diameter d_Na; by default 0",
+    )
     tool_addendum: Annotated[Fraction | None, number(1.25, 0, 3)] = Field(
         None, description="Addendum of the tool, in normal modules; by default 1.25 (ISO 53 A)"
     )

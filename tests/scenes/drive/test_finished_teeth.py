@@ -1,4 +1,4 @@
-"""Grinding allowances: what they leave of a protuberance is the undercut of the finished root."""
+"""Finished teeth: what grinding leaves of a protuberance, and chamfered tips."""
 
 import math
 
@@ -20,7 +20,7 @@ def ground(allowance, **tables):
     return made
 
 
-def by_hand(z, residual, ratio):
+def by_hand(z, residual, ratio, chamfer=0):
     """Y_F and Y_S of a spur gear by ISO 6336-3, 6.2 and 7, rack 1/1.4/0.3, alpha 20 degrees.
 
     E = pi/4 - h_fP tan alpha + s_pr/cos alpha - (1 - sin alpha) rho/cos alpha; G = rho - h_fP;
@@ -36,7 +36,9 @@ def by_hand(z, residual, ratio):
     thick = z * math.sin(math.pi / 3 - theta) + math.sqrt(3) * (g / math.cos(theta) - rho)
     fillet = rho + 2 * g**2 / (math.cos(theta) * (z * math.cos(theta) ** 2 - 2 * g))
     base = z * math.cos(a)
-    reach = math.sqrt(((z + 2) / 2) ** 2 - (base / 2) ** 2) - math.pi * math.cos(a) * (ratio - 1)
+    reach = math.sqrt(((z + 2) / 2 - chamfer) ** 2 - (base / 2) ** 2) - math.pi * math.cos(a) * (
+        ratio - 1
+    )
     d_en = 2 * math.sqrt(reach**2 + (base / 2) ** 2)
     angle = math.acos(base / d_en)
     gamma = (math.pi / 2) / z + math.tan(a) - a - math.tan(angle) + angle
@@ -81,3 +83,56 @@ def test_grinding_below_the_protuberance_is_refused(tables):
     made["gears"] = {k: v for k, v in made["gears"].items() if v is not None}
     with pytest.raises(SceneError, match="grinding_allowance.*is above tool_protuberance"):
         gearopt.rate(made)
+
+
+CHAMFERED = {"tip_chamfer": 0.1, "tool_protuberance": 0}
+
+
+def test_a_chamfer_shortens_the_path_of_contact():
+    """Of spur gears of 20 degrees: d_Na = m (z + 2 - 0.2), d_b = m z cos(20 degrees), a = m (z1 +
+    z2)/2; eps_alpha = (sqrt(d_Na1^2 - d_b1^2) + sqrt(d_Na2^2 - d_b2^2) - 2 a sin(20 degrees))/(2
+    pi m cos(20 degrees)); Z_eps = sqrt((4 - eps_alpha)/3); Y_F as `by_hand`.
+    """
+    rating = gearopt.rate(ground(0, **CHAMFERED)).design["rating"]
+    z, angle = [tooth["teeth"] for tooth in rating["teeth"]], math.radians(20)
+    reach = sum(math.sqrt((n + 1.8) ** 2 - (n * math.cos(angle)) ** 2) for n in z)
+    ratio = (reach - sum(z) * math.sin(angle)) / (2 * math.pi * math.cos(angle))
+    assert rating["meshes"][0]["transverse_contact_ratio"] == pytest.approx(ratio, rel=1e-12)
+    found = {row["symbol"]: row for row in rating["factors"]}
+    assert found["Z_eps"]["pinion"] == pytest.approx(math.sqrt((4 - ratio) / 3), rel=1e-12)
+    for tooth in rating["teeth"]:
+        form, _ = by_hand(tooth["teeth"], 0, ratio, 0.1)
+        assert found["Y_F"][tooth["member"]] == pytest.approx(form, rel=1e-9)
+        module = tooth["reference_diameter_mm"] / tooth["teeth"]
+        for name, height in (("tip_diameter_mm", 2), ("tip_form_diameter_mm", 1.8)):
+            assert tooth[name] == pytest.approx(module * (tooth["teeth"] + height), rel=1e-12)
+
+
+@pytest.mark.parametrize("helix", [{}, {"helix_angle": "15 deg"}])
+def test_chamfered_teeth_carry_as_shorter_ones_by_agma(helix):
+    """I, J, sliding and losses are those of teeth that end at d_Na; d_a is not."""
+    chamfered, shorter = pair(**helix), pair(**helix)
+    chamfered["gears"] = chamfered["gears"] | {"tip_chamfer": 0.08}
+    shorter["gears"] = shorter["gears"] | {"addendum": 0.92}
+    one, other = (gearopt.rate(t).design["rating"] for t in (chamfered, shorter))
+    assert one["factors"] == other["factors"] and one["gears"] == other["gears"]
+    assert one["meshes"] == other["meshes"]
+    for tooth, short in zip(one["teeth"], other["teeth"], strict=True):
+        assert tooth["tip_diameter_mm"] > short["tip_diameter_mm"]
+        for name in ("active_root_diameter_mm", "largest_specific_sliding"):
+            assert tooth[name] == pytest.approx(short[name], rel=1e-12)
+
+
+@pytest.mark.parametrize("teeth", [{"teeth": {}}, {}])
+def test_a_sized_drive_of_chamfered_teeth_is_that_of_shorter_ones(teeth):
+    values = []
+    for key, value in (("tip_chamfer", 0.08), ("addendum", 0.92)):
+        tables = pair()
+        tables["gears"] = tables["gears"] | {key: value}
+        tables["stage"] = [{"face_width_over_diameter": 0.8}]
+        tables["duty"] = tables["duty"] | {"ratio": 3}
+        tables |= {"limits": {"pinion_teeth": [20, 24]}} | teeth
+        result = gearopt.solve(tables)
+        assert result.feasible and result.design["rating"]["safe"]
+        values.append(result.value)
+    assert values[0] == pytest.approx(values[1], rel=1e-9)
