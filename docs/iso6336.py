@@ -56,7 +56,7 @@ FORMULAS = (
     ("sigma_HG", "sigma_Hlim Z_NT Z_L Z_v Z_R Z_W Z_X", "part 2, 5", "`chain`"),
     (
         "sigma_F0",
-        "F_t/(b m_n) Y_F Y_S Y_beta Y_B Y_DT",
+        "F_t/(b_F m_n) Y_F Y_S Y_beta Y_B Y_DT",
         "part 3, 5",
         "`bending_factors.root_stress`",
     ),
@@ -249,6 +249,10 @@ Correct programs differ in these; this one does as follows.
     keeps Z_L, Z_v and Z_R of reference strength at all lives, as given factors do here.
 17. Edition 2019 is held to two printed reports (suns and planets of m_n 40, beta 15°): f_eps,
     Y_F, Y_S, h_F, s_Fn, rho_F to the last digit, sigma_H with f_ZCa = 1.2, sigma_F to 0.2 %.
+18. b is the width of both gears in mesh. A gear that is wider bends over its own width, at most one
+    module beyond the mesh at each end: b_F1 = min(b_1, b + 2 m_n), and so of the wheel. That is
+    part 3 from memory, *unverified*. Line loads, stiffness, K factors, tolerances of the helix,
+    eps_beta and m_red are those of b. AGMA takes b for bending, too.
 """
 
 

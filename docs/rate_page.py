@@ -107,6 +107,8 @@ The first command prints this file. A pair is a drive of one stage:
 
 With all teeth, modules and widths given, `[limits]` and the ratio of `[duty]` are left out. What
 both gears share stands in `[gears]`; the data of one alone in `[stage.pinion]`, `[stage.wheel]`.
+A gear that is wider than its mate has a `face_width` there, or the stage
+`pinion_face_width_excess = "5 mm"`: see *wider pinions* in [drive](drive.md).
 `overload_factor`, `minimum_bending_safety` and `minimum_contact_safety` of one stage stand in its
 `[[stage]]`, in place of those of `[rating]`.
 They are cut by the tool of ISO 53 profile A unless a tool is given, and run at the centre distance

@@ -106,7 +106,7 @@ class Blank:
         if self.has_web:
             recess = (1.0 - self.web_over_width) * (self.inside(gear) ** 2 - self.hub**2)
             off = off + self.where_rim(gear, recess, 0.0)
-        return 0.25 * np.pi * gear.face_width * (gear.body**2 - off)
+        return 0.25 * np.pi * gear.width * (gear.body**2 - off)
 
     @property
     def _hub_part(self) -> float:
@@ -182,7 +182,7 @@ class Blank:
         web = rim and self.has_web
         return Body(
             float(self.rim(gear)) if rim else None,
-            float(self.web_over_width * gear.face_width) if web else None,
+            float(self.web_over_width * gear.width) if web else None,
             self.hub if bored and web else None,
             self.bore if bored else None,
         )

@@ -138,10 +138,11 @@ def _external(teeth: Any) -> None:
 class Gear:
     """An external gear: normal module m_n [mm], number of teeth z, reference diameter d [mm].
 
-    face_width b [mm]; helix_angle beta [rad], |beta| < pi/2; rack: its basic rack. profile_shift x
-    and tip_alteration k (negative: shorter teeth) in normal modules; thickness_allowance A_sn [mm]
-    of the normal tooth thickness, negative: thinner. d is m_n z/cos(beta); `GearPair` sees to that.
-    body_diameter [mm]: of the cylinder that volume, mass and inertia count; None: d.
+    face_width b [mm] of the mesh; helix_angle beta [rad], |beta| < pi/2; rack: its basic rack.
+    profile_shift x and tip_alteration k (negative: shorter teeth) in normal modules;
+    thickness_allowance A_sn [mm] of the normal tooth thickness, negative: thinner. d is
+    m_n z/cos(beta); `GearPair` sees to that. body_diameter [mm]: of the cylinder that volume, mass
+    and inertia count; None: d. width_excess [mm]: by which the gear is wider than the mesh.
     Diameters are nominal: without backlash. Source: ISO 21771:2007.
     """
 
@@ -155,11 +156,26 @@ class Gear:
     tip_alteration: Any = 0.0
     thickness_allowance: Any = 0.0
     body_diameter: Any = None
+    width_excess: Any = 0.0
 
     @property
     def body(self) -> Any:
         """Diameter [mm] of the cylinder that counts as the gear."""
         return self.reference_diameter if self.body_diameter is None else self.body_diameter
+
+    @property
+    def width(self) -> Any:
+        """Face width [mm] of the gear itself, b_1 or b_2."""
+        return self.face_width + self.width_excess
+
+    @property
+    def root_excess(self) -> Any:
+        """What of `width_excess` [mm] bends with the teeth: at most a module at each end.
+
+        Source: ISO 6336-3, face width at the root [memory: unverified].
+        """
+        excess = self.width_excess
+        return excess if _none(excess) else np.minimum(excess, 2.0 * self.normal_module)
 
     @property
     def generating_shift(self) -> Any:
@@ -206,15 +222,15 @@ class Gear:
     @property
     def volume(self) -> Any:
         """Volume (pi/4) b d^2 [mm3] as a solid cylinder, the reference one unless told."""
-        return 0.25 * np.pi * self.face_width * self.body**2
+        return 0.25 * np.pi * self.width * self.body**2
 
     def mass(self, density: Any) -> Any:
         """Return the mass [t] as a solid cylinder, see `volume`; density [t/mm3]."""
-        return disc_mass(density, self.face_width, self.body)
+        return disc_mass(density, self.width, self.body)
 
     def inertia(self, density: Any) -> Any:
         """Return the moment of inertia [t mm2] as a solid cylinder, see `volume`."""
-        return disc_inertia(density, self.face_width, self.body)
+        return disc_inertia(density, self.width, self.body)
 
 
 @dataclass(frozen=True)
@@ -306,7 +322,7 @@ class GearPair:
 
     @property
     def face_width(self) -> Any:
-        """Face width b [mm]."""
+        """Face width b [mm] of the mesh: of the narrower gear."""
         return self.pinion.face_width
 
     @property
@@ -359,7 +375,8 @@ class GearPair:
         Of other bodies the sum of their volumes. Source: Chong and Lee, eq. (4), correct as
         printed.
         """
-        if self.pinion.body_diameter is not None:
+        wider = self.pinion.width_excess or self.wheel.width_excess
+        if wider or self.pinion.body_diameter is not None:
             return self.pinion.volume + self.wheel.volume
         d = self.pinion.reference_diameter
         return 0.25 * np.pi * self.face_width * d**2 * (1.0 + self.ratio**2)

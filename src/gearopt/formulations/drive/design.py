@@ -46,6 +46,8 @@ class StageDesign:
     wheel_teeth: Annotated[float, Shown("teeth z2")]
     ratio: Annotated[float, Shown("ratio u")]
     face_width_mm: Annotated[float, Shown("face width b")]
+    pinion_face_width_mm: Annotated[float | None, Shown("pinion face width b1")] = None
+    wheel_face_width_mm: Annotated[float | None, Shown("wheel face width b2")] = None
     pinion_diameter_mm: Annotated[float, Shown("reference diameter d1")]
     wheel_diameter_mm: Annotated[float, Shown("reference diameter d2")]
     pinion_tip_diameter_mm: Annotated[float, Shown("tip diameter d_a1")]
@@ -103,7 +105,8 @@ class StageDesign:
         values = {
             n: getattr(self, f"{member}_{n}") for n in (*TOOL, *TEETH, "teeth", "diameter_mm")
         }
-        return Gear(
+        own = getattr(self, f"{member}_face_width_mm") or self.face_width_mm
+        gear = Gear(
             self.normal_module_mm,
             values["teeth"],
             values["diameter_mm"],
@@ -112,6 +115,7 @@ class StageDesign:
             Rack(math.radians(self.pressure_angle_deg), *(values[n] for n in TOOL)),
             *(values[n] for n in TEETH),
         )
+        return replace(gear, width_excess=own - self.face_width_mm)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -227,6 +231,8 @@ def _stage(
         wheel_teeth=_whole(pair.wheel_teeth),
         ratio=float(pair.ratio),
         face_width_mm=float(pair.face_width),
+        pinion_face_width_mm=_own_width(pinion),
+        wheel_face_width_mm=_own_width(wheel),
         pinion_diameter_mm=float(d),
         wheel_diameter_mm=float(wheel.reference_diameter),
         pinion_tip_diameter_mm=float(pinion.tip_diameter),
@@ -248,6 +254,11 @@ def _stage(
         **_teeth(pair),
         **_bodies(pair, blanks),
     )
+
+
+def _own_width(gear: Gear) -> float | None:
+    """Return the face width [mm] of a gear that is wider than its mesh."""
+    return float(gear.width) if gear.width_excess else None
 
 
 def _teeth(pair: GearPair) -> dict[str, Any]:

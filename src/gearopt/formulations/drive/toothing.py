@@ -21,9 +21,10 @@ class Toothing:
 
     helix_angle beta [rad] of both, below 60 degrees; racks: the basic rack of each, of one normal
     pressure angle; profile_shifts x and tip_alterations k in normal modules; thickness_allowances
-    A_sn [mm]; working_distance: a given centre distance [mm], None: the one without backlash of
-    nominal teeth. shifting: how profile shifts and tip alterations follow from it, None: they are
-    given. shift_sum: a given x1 + x2, from which the distance follows in place of a given one.
+    A_sn, and width_excesses by which gears are wider than the mesh [mm]; working_distance: a given
+    centre distance [mm], None: the one without backlash of nominal teeth. shifting: how profile
+    shifts and tip alterations follow from it, None: they are given. shift_sum: a given x1 + x2,
+    from which the distance follows in place of a given one.
     pinion_shift: x1 of the sum, None: that of the rule of shifting. Of many pairs (n,) helix angle,
     distance, shift_sum and pinion_shift may be arrays. ValueError for other angles.
     Source: ISO 21771:2007.
@@ -38,6 +39,7 @@ class Toothing:
     shifting: Shifting | None = None
     pinion_shift: Any = None
     shift_sum: Any = None
+    width_excesses: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         if not np.all(np.abs(self.helix_angle) < math.pi / 3.0):  # whose cosine is rational
@@ -149,6 +151,7 @@ class Toothing:
                 alterations[i],
                 self.thickness_allowances[i],
                 bodies[i],
+                self.width_excesses[i],
             )
             for i in range(2)
         )
@@ -177,7 +180,10 @@ class Toothing:
 
 
 COLUMNS = ("helix_angle", "working_distance", "pinion_shift", "shift_sum")  # that may differ
-ALIKE = ("racks", "profile_shifts", "tip_alterations", "thickness_allowances", "shifting")
+ALIKE = (
+    *("racks", "profile_shifts", "tip_alterations", "thickness_allowances", "shifting"),
+    "width_excesses",
+)
 _columns_of, _alike_of = attrgetter(*COLUMNS), attrgetter(*ALIKE)
 
 

@@ -340,7 +340,8 @@ class Train:
     def by_width(self) -> bool:
         """Whether the share of a stage is proportional to its face width."""
         named = [name for name, _ in self.weights] or [self.objective]
-        return all(name in BY_WIDTH for name in named)
+        wider = any(any(cut.width_excesses) for stage in self.stages for cut in stage.toothings)
+        return not wider and all(name in BY_WIDTH for name in named)
 
     @property
     def on_reference(self) -> bool:

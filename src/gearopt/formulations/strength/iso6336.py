@@ -359,6 +359,8 @@ class Iso6336:
             "helix": pair.pinion.helix_angle,
             "diameter0": pair.pinion.reference_diameter,
             "diameter1": pair.wheel.reference_diameter,
+            "excess0": pair.pinion.root_excess,
+            "excess1": pair.wheel.root_excess,
         }
 
     def _loads(self, cases: tuple[Case, Case], load: Load, torque: tuple[Array, Array]) -> Columns:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearopt.formulations.strength.cells import LOWER, UPPER, Cells
+from gearopt.formulations.strength.use.iso6336 import meshing
 from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 from gearopt.physics.blanks import Blank
@@ -370,6 +371,8 @@ class IsoCells:
             form = given["Y_F"][k] if "Y_F" in given else self.teeth[f"form{k}"][LOWER]
             notch = self.teeth[f"concentration{k}"][LOWER]
             form = form * (given["Y_S"][k] if "Y_S" in given else notch)
+            excess = np.minimum(cells.toothing.width_excesses[k], 2.0 * cells.module[UPPER])
+            form = form * meshing(cells.width[LOWER], excess)
             used.append(form * self._rim(k) / self.standard.strongest(self, k, False))
         return self._unit * factor * module * self._root_factor() * np.maximum(*used) * safety
 

@@ -270,7 +270,7 @@ def _nominal_root(case: Case, values: Values) -> Any:
     first, second = (
         bending.root_stress(
             case.load,
-            pair.face_width,
+            pair.face_width + pair.gears[k].root_excess,
             pair.normal_module,
             both * values["Y_F"][k] * values["Y_S"][k] * values["Y_B"][k],
         )

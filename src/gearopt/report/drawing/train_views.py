@@ -51,6 +51,12 @@ class DrawnStage:
     pinion_tip_diameter_mm: float
     wheel_tip_diameter_mm: float
     centre_distance_mm: float
+    pinion_face_width_mm: float | None = None
+    wheel_face_width_mm: float | None = None
+
+    def width(self, member: str) -> float:
+        """Face width [mm] of a gear."""
+        return getattr(self, f"{member}_face_width_mm") or self.face_width_mm
 
 
 def section(result: Result, measures: Measures, hint: str = "") -> Section | None:
@@ -102,14 +108,17 @@ def beside(
 
 def _picked(stages: Sequence[Mapping[str, Any]]) -> Sequence[DrawnStage]:
     """Sizes of stages that are drawn; KeyError where one is not known."""
-    picked = [{f.name: stage[f.name] for f in fields(DrawnStage)} for stage in stages]
+    picked = [
+        {f.name: stage[f.name] for f in fields(DrawnStage) if f.default or f.name in stage}
+        for stage in stages
+    ]
     drawn: Sequence[DrawnStage] = typed(tuple[DrawnStage, ...], picked, "stages")
     return drawn
 
 
 def is_drawn(stages: Sequence[Mapping[str, Any]]) -> bool:
     """Whether there are stages, and all sizes that are drawn of them."""
-    keys = [f.name for f in fields(DrawnStage)]
+    keys = [f.name for f in fields(DrawnStage) if f.default is not None]
     return bool(stages) and all(key in stage for stage in stages for key in keys)
 
 
@@ -165,7 +174,8 @@ def in_one_line(stages: Sequence[DrawnStage], folded: bool = False) -> tuple[Bod
     scale = (WIDE - 2.0 * EDGE) / long  # no wheel is higher than the row is long
     if not 0.0 < scale < math.inf:
         raise ValueError(f"stages {long:g} mm long cannot be drawn")
-    scale, starts = _along([s.face_width_mm for s in stages], scale)
+    wide = [max(map(stage.width, MEMBERS)) for stage in stages]
+    scale, starts = _along(wide, scale)
     gears = [
         GearDesign(
             name=f"{member} {k}",
@@ -178,8 +188,8 @@ def in_one_line(stages: Sequence[DrawnStage], folded: bool = False) -> tuple[Bod
             tip_diameter_mm=getattr(stage, f"{member}_tip_diameter_mm"),
             root_diameter_mm=0.0,
             helix_angle_deg=0.0,
-            from_mm=start,
-            to_mm=start + stage.face_width_mm,
+            from_mm=start + 0.5 * (wide[k - 1] - stage.width(member)),
+            to_mm=start + 0.5 * (wide[k - 1] + stage.width(member)),
         )
         for k, (stage, start) in enumerate(zip(stages, starts, strict=True), 1)
         for member, shaft in (("pinion", k), ("wheel", k + 1))
@@ -309,4 +319,5 @@ def _side(train: Bodies, scale: float, measures: Measures) -> Drawing:
 
 
 def _widths(train: Bodies) -> list[float]:
-    return [g.to_mm - g.from_mm for g in train.gears if g.member == "wheel"]
+    pairs = ((g for g in train.gears if g.stage == k) for (k,) in train.slabs)
+    return [max(g.to_mm - g.from_mm for g in pair) for pair in pairs]

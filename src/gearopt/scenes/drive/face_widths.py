@@ -1,17 +1,94 @@
 """Face widths in the tables of a drive: how they fit together, and how one is chosen."""
 
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gearopt.formulations.drive.train import FaceWidth
+from gearopt.physics.gears import MEMBERS
+from gearopt.physics.geometry.profile_shift import ROOT_SAFETY
 from gearopt.scenes.drive.tables.drive import Gears, StageTable
 from gearopt.scenes.reading.fields import refuse
+from gearopt.units import Quantity
+
+if TYPE_CHECKING:
+    from gearopt.scenes.drive.scene import Scene
+
+
+def fixed_width(own: StageTable) -> Quantity | None:
+    """Face width of a mesh that is given: that of the narrower gear."""
+    first, second = (gear.face_width or own.face_width for gear in (own.pinion, own.wheel))
+    return first and second and min(first, second, key=lambda width: width.value)
+
+
+def excesses(own: StageTable, gears: Gears) -> tuple[float, float]:
+    """By how much [mm] pinion and wheel are wider than their mesh."""
+    width = fixed_width(own)
+    if width is not None and _own_widths(own):
+        each = ((gear.face_width or own.face_width or width) for gear in (own.pinion, own.wheel))
+        first, second = (own_width.value - width.value for own_width in each)
+        return first, second
+    excess = own.pinion_face_width_excess or gears.pinion_face_width_excess
+    return excess.value if excess else 0.0, 0.0
+
+
+def widths(own: StageTable, gears: Gears) -> tuple[float | None, float | None]:
+    """Face widths [mm] of pinion and wheel, where they are given."""
+    width = fixed_width(own)
+    if width is None:
+        return None, None
+    first, second = (width.value + excess for excess in excesses(own, gears))
+    return first, second
+
+
+def check_excess(scene: "Scene", lacks: str) -> None:
+    """Refuse gears that are wider than their mesh where something takes them for as wide.
+
+    lacks: what the file lacks to choose gears with one, "" for nothing.
+    """
+    layout, shift = scene.layout, scene.shift
+    rules = {
+        "needs a table [rating]": scene.rating is None,
+        f"needs {lacks}": bool(lacks),
+        "does not go together with the layout, whose bounds take one width of a stage": layout
+        and layout.together,
+        f"changes S_F1/S_F2 with the width; the rule {ROOT_SAFETY} takes one of all": shift
+        and shift.rule == ROOT_SAFETY,
+    }
+    for k, own in enumerate(scene.stage_tables):
+        key, alone = "pinion_face_width_excess", _own_widths(own)
+        at = ("stage", k) if alone or getattr(own, key) is not None else ("gears",)
+        place: tuple[Any, ...] = (*at, alone[0], "face_width") if alone else (*at, key)
+        if alone and (not scene.given or scene.to_size):
+            rule = "is for gears that are all given and rated alone"
+            raise refuse(rule, f"Write {key}: the pinion is wider by it", place, "tell")
+        for rule, wrong in rules.items() if any(excesses(own, scene.gears)) else ():
+            if wrong:
+                raise refuse(rule, at=place, action="remove")
+
+
+def _own_widths(own: StageTable) -> list[str]:
+    """Gears of a stage whose face width is given alone."""
+    return [member for member in MEMBERS if getattr(own, member).face_width is not None]
+
+
+def _check_own(own: StageTable, place: tuple[Any, ...]) -> None:
+    """Check face widths of single gears: of both, or beside that of the stage."""
+    alone = _own_widths(own)
+    if alone and fixed_width(own) is None:
+        other = MEMBERS[1 - MEMBERS.index(alone[0])]
+        rule = "is missing (or give the stage a face_width)"
+        raise refuse(rule, "40 mm", (*place, other, "face_width"), "sample")
+    for key in ("pinion_face_width_excess", "face_width")[: len(alone)]:
+        if getattr(own, key) is not None:
+            rule = "conflicts with the face widths of its gears"
+            raise refuse(rule, at=(*place, key), action="remove")
 
 
 def check_width(own: StageTable, gears: Gears, place: tuple[Any, ...]) -> None:
     """Check that one rule sets the face width, and that it is a range where one is needed."""
     key = (*place, "face_width_over_diameter")
-    if own.face_width is not None:
+    _check_own(own, place)
+    if fixed_width(own) is not None:
         if own.face_width_step is not None:
             raise refuse(
                 "conflicts with face_width, which fixes the width",
@@ -47,9 +124,9 @@ def face_width(own: StageTable, gears: Gears) -> FaceWidth:
         "over_module": own.face_width_over_module or gears.face_width_over_module or (None, None),
         "least": least.exact[0] if least else Fraction(0),
     }
-    if own.face_width is not None:
+    if (fixed := fixed_width(own)) is not None:
         low, high = proportion or (Fraction(0), None)
-        return FaceWidth(low, high, fixed=own.face_width.exact[0], **limits)
+        return FaceWidth(low, high, fixed=fixed.exact[0], **limits)
     span = proportion or gears.face_width_over_diameter
     assert span is not None  # checked by `check_width`
     step = own.face_width_step or gears.face_width_step

@@ -16,7 +16,14 @@ from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair, transverse_pressure_angle
 from gearopt.physics.geometry.profile_shift import SUMS
 from gearopt.scenes.drive.distances import joint_limits, rows_together
-from gearopt.scenes.drive.face_widths import check_width, face_width
+from gearopt.scenes.drive.face_widths import (
+    check_excess,
+    check_width,
+    excesses,
+    face_width,
+    fixed_width,
+    widths,
+)
 from gearopt.scenes.drive.rating.checks import (
     check_given,
     check_objective,
@@ -231,6 +238,7 @@ class Scene(Table):
     def rated_real(self) -> bool:
         """Return whether ratings can limit real-valued teeth: under one load, without a choice."""
         chosen = self.load or self.material or any(map(self.choosing, self.stage_tables))
+        chosen = chosen or any(any(excesses(own, self.gears)) for own in self.stage_tables)
         return self.rating is not None and not chosen
 
     @property
@@ -254,7 +262,7 @@ class Scene(Table):
         """Check that rims, webs, bores and hubs of every gear belong together."""
         rows = []
         for k, stage in enumerate(self.stage or (StageTable(),)):
-            open_width = stage.face_width is None and not self.given
+            open_width = fixed_width(stage) is None and not self.given
             for member in MEMBERS:
                 gear = getattr(stage, member)
                 table = with_shared(gear, self.gears)
@@ -294,6 +302,8 @@ class Scene(Table):
         asked = asked or ("process_two" if self.process_two is not None else "")
         self._check_choices()
         self._check_helix_limits()
+        free = self.given and not self.to_size
+        check_excess(self, "" if free else self._lacks("with a wider pinion"))
         if not self.several:
             self._distances(self.stage_tables)
         lacks = "" if self.given else self._lacks("at a given centre distance")
@@ -586,6 +596,6 @@ class Scene(Table):
 
     def _blanks(self, own: StageTable) -> tuple[Blank, Blank]:
         """Return the blanks of a stage."""
-        width = own.face_width.value if own.face_width else None
         pinion, wheel = (with_shared(getattr(own, m), self.gears) for m in MEMBERS)
-        return blank(pinion, width), blank(wheel, width)
+        first, second = widths(own, self.gears)
+        return blank(pinion, first), blank(wheel, second)

@@ -206,9 +206,9 @@ def takes_real_values(scene: Scene, method: str | None) -> bool:
     continuous = scene.teeth is None or method in CONTINUOUS
     if continuous and scene.by_ratings and not scene.rated_real:
         raise SolveError(
-            "load spectra, materials to choose from, several helix angles and given centre "
-            "distances are for whole teeth alone: write a table [teeth], and use a method of whole "
-            "teeth"
+            "load spectra, materials to choose from, several helix angles, given centre distances "
+            "and wider pinions are for whole teeth alone: write a table [teeth], and use a method "
+            "of whole teeth"
         )
     if continuous and scene.by_ratings and method not in (None, SMOOTH):
         raise SolveError(f"{method} takes no real-valued gears that ratings limit; smooth does")

@@ -10,6 +10,7 @@ from typing import Any
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import LENGTHS, Stage
 from gearopt.physics.gears import ISO_53_A, MEMBERS, Rack
+from gearopt.scenes.drive.face_widths import excesses
 from gearopt.scenes.drive.tables.drive import Gears, ShiftTable, StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, with_shared
 from gearopt.scenes.reading.choices import Between, Choice, values_of
@@ -42,6 +43,7 @@ def toothings(
         (_or(pinion.profile_shift, 0.0), _or(wheel.profile_shift, 0.0)),
         (_or(pinion.tip_alteration, 0.0), _or(wheel.tip_alteration, 0.0)),
         (_allowance(pinion), _allowance(wheel)),
+        width_excesses=excesses(own, gears),
     )
     distances: list[float | None] = [None]
     shifts: list[float | None] = [None]

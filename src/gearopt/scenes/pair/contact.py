@@ -136,7 +136,7 @@ def elastic_pair(scene: Scene, pair: GearPair, materials: Materials = ("", "")) 
 
 def blanks_of(scene: Scene, pair: GearPair, materials: Materials) -> tuple[Blank, Blank]:
     """Blanks of the gears of a pair."""
-    return blanks(scene.drive.stage_tables[0], _tables(scene, materials), pair)
+    return blanks(_tables(scene, materials), pair)
 
 
 def _tables(scene: Scene, materials: Materials) -> Tables:

@@ -177,7 +177,7 @@ def _bodies(box: Gearbox, slabs: Slabs) -> tuple[tuple[tuple[Body, ...], ...], f
     x = end
     for slab in slabs:
         start |= dict.fromkeys(slab, x)
-        x += max(box.pairs[s].face_width for s in slab) + gap
+        x += max(gear.width for s in slab for gear in box.pairs[s].gears) + gap
     length = x - gap + end
     return tuple(_on(box, k, start, length) for k in range(len(box.shafts))), length
 
@@ -187,8 +187,9 @@ def _on(box: Gearbox, k: int, start: dict[int, float], length: float) -> tuple[B
     gears = []
     for stage, word in ((k - 1, "wheel"), (k, "pinion")):
         if 0 <= stage < len(box.pairs):
-            gear = getattr(box.pairs[stage], word)
-            x = (start[stage], start[stage] + gear.face_width)
+            gear, both = getattr(box.pairs[stage], word), box.pairs[stage].gears
+            x0 = start[stage] + 0.5 * (max(each.width for each in both) - gear.width)
+            x = (x0, x0 + gear.width)
             gears.append(Body(f"{word} {stage + 1}", 0.5 * gear.tip_diameter, x, True, stage))
     shaft, wide = box.shafts[k], box.shafts[k].bearing_width
     span = (0.0, length)

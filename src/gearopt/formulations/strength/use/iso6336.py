@@ -65,6 +65,8 @@ class IsoRow(NamedTuple):
     bending_used1: Any
     contact_used0: Any
     contact_used1: Any
+    excess0: Any
+    excess1: Any
 
 
 class IsoWay(NamedTuple):
@@ -174,11 +176,16 @@ def parts(at: IsoRow, way: IsoWay, box: IsoBox, bent: Any, pressed: Any) -> tupl
     first = least_single(way.Z_BD0, at.single0, way, box)
     second = least_single(way.Z_BD1, at.single1, way, box)
     return (
-        bending * at.bending_used0,
-        bending * at.bending_used1,
+        bending * at.bending_used0 * meshing(box.low, at.excess0),
+        bending * at.bending_used1 * meshing(box.low, at.excess1),
         contact * first**2 * at.contact_used0,
         contact * second**2 * at.contact_used1,
     )
+
+
+def meshing(width: Any, excess: Any) -> Any:
+    """Return b/b_F of a gear whose root is wider than the mesh; it rises with the width b."""
+    return (width + SMALLEST) / (width + excess + SMALLEST)
 
 
 def nominal_part(at: IsoRow, way: IsoWay, low: Any, high: Any) -> tuple[Any, ...]:

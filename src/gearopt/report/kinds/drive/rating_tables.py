@@ -7,6 +7,7 @@ from typing import Any
 
 from gearopt.formulations.drive.rating import DriveRating, MeshRating
 from gearopt.optimise.result import Result
+from gearopt.physics.gears import MEMBERS
 from gearopt.report.design_tables import design_section, stage_label
 from gearopt.report.kinds.drive.rating_words import FRICTION, ROUNDING, rating_of, safety
 from gearopt.report.measures import Measures
@@ -140,6 +141,7 @@ def _mesh_words(rating: DriveRating, stage: Mapping[str, Any], k: int, measures:
         f"Stage {k + 1}: {module_words(stage[MODULE], measures)}",
         f"z {number(stage['pinion_teeth'])}/{number(stage['wheel_teeth'])}",
         f"b {size(stage['face_width_mm'], 'mm')}",
+        *(f"{m} {size(b, 'mm')}" for m in MEMBERS if (b := stage.get(f"{m}_face_width_mm"))),
         f"a {size(stage['centre_distance_mm'], 'mm')}; contact ratio "
         f"{number(mesh.total_contact_ratio)}{_left(mesh)}",
         f"v {size(mesh.pitch_line_velocity_m_per_s, 'm_per_s')}; "

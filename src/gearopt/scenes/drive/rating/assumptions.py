@@ -5,12 +5,19 @@ from collections.abc import Iterator
 from gearopt.formulations.strength.standard import MIDWAY
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.case import Practice
+from gearopt.scenes.drive.face_widths import excesses
 from gearopt.scenes.drive.rating.iso_material import steel
 from gearopt.scenes.drive.rating.materials import Named, choices, unused
 from gearopt.scenes.drive.rating.options import by
 from gearopt.scenes.drive.rating.steels import chosen
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.rating import GearTable, RatingTable
+
+WIDER = (
+    "Teeth of a gear that is wider than its mesh bend over its own width, at most one module m_n "
+    "beyond the mesh at each end (ISO 6336-3 from memory: unverified); contact and all load "
+    "factors are those of the common width."
+)
 
 
 def rating_assumptions(scene: Scene) -> list[str]:
@@ -96,6 +103,7 @@ def _iso_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
         "K_Hβ by method C of ISO 6336-1, for a pinion midway between its bearings on a solid "
         f"shaft; {modified}. Bending by method B: the load acts at the outer point of single pair "
         "contact.",
+        *[WIDER] * any(any(excesses(own, scene.gears)) for own in scene.stage_tables),
         *[f"K_A = {float(asked.overload_factor):g} multiplies every level of load."][:overloaded],
     ]
 

@@ -97,7 +97,7 @@ def finish(table: GearTable) -> float:
 
 def practice(rating: RatingTable, own: StageTable, pair: GearPair, tables: Tables) -> Practice:
     """Manufacture and rating practice of the pair of a stage."""
-    rows = zip(blanks(own, tables, pair), pair.gears, strict=True)
+    rows = zip(blanks(tables, pair), pair.gears, strict=True)
     first, second = (blank.backup(gear) for blank, gear in rows)
     return replace(bare_practice(rating, tables), backup=(first, second))
 

@@ -43,7 +43,7 @@ def title(asked: RatingTable, factors: Sequence[RatingFactor]) -> str:
 
 def practice(rating: RatingTable, own: StageTable, pair: GearPair, tables: Tables) -> Practice:
     """Manufacture and rating practice of the pair of a stage."""
-    return of_blanks(bare_practice(rating, tables), pair, blanks(own, tables, pair))
+    return of_blanks(bare_practice(rating, tables), pair, blanks(tables, pair))
 
 
 def bare_practice(rating: RatingTable, gears: Tables) -> Practice:

@@ -8,6 +8,7 @@ from gearopt.physics.agma.allowables import CONTACT, bending_allowable, contact_
 from gearopt.physics.agma.rating_factors import SURFACE_HARD_KINDS, Steel
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.materials import SURFACE_HARDENED, strength
+from gearopt.scenes.drive.face_widths import fixed_width
 from gearopt.scenes.drive.rating.iso_material import SOFT_ROOTS, steel
 from gearopt.scenes.drive.rating.materials import Named, choices
 from gearopt.scenes.drive.tables.drive import Gears, Objective, StageTable
@@ -48,7 +49,7 @@ def not_given(gears: Gears, stages: Sequence[StageTable]) -> Iterator[Place]:
         yield ("stage",)
     for k, stage in enumerate(stages):
         width = stage.face_width_over_diameter or gears.face_width_over_diameter
-        fixed: Any = (stage.face_width,) * 2 if stage.face_width else width
+        fixed: Any = (given,) * 2 if (given := fixed_width(stage)) else width
         for name, ends in (
             ("module", stage.size),
             ("pinion_teeth", stage.pinion_teeth),

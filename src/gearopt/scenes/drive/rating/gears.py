@@ -10,6 +10,7 @@ from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.rating import Operation
 from gearopt.physics.shaft_forces import rpm
+from gearopt.scenes.drive.face_widths import fixed_width
 from gearopt.scenes.drive.rating.materials import Named, choices
 from gearopt.scenes.drive.tables.blanks import blank
 from gearopt.scenes.drive.tables.drive import Gears, StageTable
@@ -53,8 +54,8 @@ def given_pairs(stages: Sequence[StageTable], gears: Gears) -> tuple[GearPair, .
         assert stage.size and stage.pinion_teeth and stage.wheel_teeth
         teeth = float(stage.pinion_teeth[0]), float(stage.wheel_teeth[0])
         module, teeth_of = float(stage.size[0].exact[0]), toothing(stage, gears)
-        if stage.face_width is not None:
-            width = stage.face_width.value
+        if (fixed := fixed_width(stage)) is not None:
+            width = fixed.value
         else:
             span = stage.face_width_over_diameter or gears.face_width_over_diameter
             assert span
@@ -64,11 +65,10 @@ def given_pairs(stages: Sequence[StageTable], gears: Gears) -> tuple[GearPair, .
     return tuple(pairs)
 
 
-def blanks(own: StageTable, tables: Tables, pair: GearPair | None = None) -> Blanks:
-    """Blanks of the gears of a stage, whose face width is given, or a pair's."""
-    given = own.face_width
-    width = float(pair.face_width) if pair is not None else given.value if given else None
-    return blank(tables[0], width), blank(tables[1], width)
+def blanks(tables: Tables, pair: GearPair) -> Blanks:
+    """Blanks of the gears of a pair."""
+    pinion, wheel = pair.gears
+    return blank(tables[0], float(pinion.width)), blank(tables[1], float(wheel.width))
 
 
 def required_hours(rating: RatingTable, duty: Duty) -> float:

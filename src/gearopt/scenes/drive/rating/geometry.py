@@ -65,7 +65,7 @@ def _measured(gear: Gear) -> dict[str, Any]:
     dimensions: dict[str, Any] = {}
     width = float(span(gear, teeth))
     helical = width * abs(math.sin(base_helix_angle(gear)))  # along the axis
-    if low <= float(span_diameter(gear, teeth)) <= high and helical < gear.face_width:
+    if low <= float(span_diameter(gear, teeth)) <= high and helical < gear.width:
         dimensions |= {"span_teeth": teeth, "span_mm": width}
     ball = BALL * gear.normal_module
     over = float(over_balls(gear, ball))

@@ -10,8 +10,10 @@ from gearopt.formulations.strength.iso6336 import Iso6336
 from gearopt.formulations.strength.standard import Load, Option
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.static import static_given, static_operation
-from gearopt.scenes.drive.rating.gears import blanks, loads, required_hours, unit_operation
+from gearopt.scenes.drive.face_widths import widths
+from gearopt.scenes.drive.rating.gears import loads, required_hours, unit_operation
 from gearopt.scenes.drive.rating.materials import Named, choices
+from gearopt.scenes.drive.tables.blanks import blank
 from gearopt.scenes.drive.tables.drive import Gears, StageTable
 from gearopt.scenes.drive.tables.rating import OF_STAGE, GearTable, LoadTable, RatingTable
 from gearopt.scenes.parts import Duty
@@ -48,7 +50,7 @@ def of_stages(
         pinion, wheel = (choices(getattr(table, member), gears, materials) for member in MEMBERS)
         options.append(
             tuple(
-                _option(of_stage(rating, table), table, (a, b), hours, loaded)
+                _option(of_stage(rating, table), table, gears, (a, b), hours, loaded)
                 for a in pinion
                 for b in wheel
             )
@@ -63,6 +65,7 @@ def of_stages(
 def _option(
     rating: RatingTable,
     own: StageTable,
+    gears: Gears,
     made: tuple[tuple[GearTable, Named | None], tuple[GearTable, Named | None]],
     hours: float,
     loaded: tuple[Load, ...],
@@ -70,14 +73,14 @@ def _option(
     """One way of making the gears of a stage; made: the table and the material of each."""
     tables, materials = (made[0][0], made[1][0]), (made[0][1], made[1][1])
     operation = unit_operation(rating, hours, tables)
-    bodies = blanks(own, tables)
+    first, second = map(blank, tables, widths(own, gears))
     standards = [
         standard.LIMIT(
             loaded,
             operation,
             (standard.steel(tables[0]), standard.steel(tables[1])),
             standard.bare_practice(rating, tables),
-            bodies,
+            (first, second),
             standard.given(rating, own),
         )
         for standard in map(by, STANDARDS[rating.standard])

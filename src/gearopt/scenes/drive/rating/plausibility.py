@@ -130,7 +130,7 @@ def _of_steel(table: GearTable, gear: Gear) -> Iterator[str]:
     asked = table.flank_hardness if steel.hardened else table.hardness
     low, high = steel.hardness
     value = 0.0 if asked is None else asked.value
-    size = min(float(gear.tip_diameter), PLATE * float(gear.face_width))
+    size = min(float(gear.tip_diameter), PLATE * float(gear.width))
     reached = steel.hardness_at(size)
     if asked is not None and not low <= value <= high:
         yield (

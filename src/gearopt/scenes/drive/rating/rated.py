@@ -164,7 +164,7 @@ def given_design(
     asked = scene.duty.total_ratio if scene.duty.asks_ratio else None
     density = scene.objective.density
     bodies = [
-        blanks(own, gear_tables(own, scene.gears, scene.material, k), pair)
+        blanks(gear_tables(own, scene.gears, scene.material, k), pair)
         for k, (own, pair) in enumerate(zip(scene.stage_tables, pairs, strict=True))
     ]
     design = of_pairs(

@@ -72,6 +72,7 @@ Ratios = Annotated[tuple[Fraction, Fraction] | None, RATIOS]
 OverModule = Annotated[tuple[Fraction, Fraction] | None, OVER_MODULE]
 Length = Annotated[Quantity | None, LENGTH]
 Step = Annotated[Quantity | None, STEP]
+Excess = Annotated[Quantity | None, quantity("length", "5 mm", "1 m", zero=True)]
 Lengths = tuple[Quantity, Quantity]
 Overlap = Annotated[Fraction | None, number(1, 0, 100)]
 Force = Annotated[Quantity | None, quantity("force", "2 kN")]
@@ -81,6 +82,10 @@ PROPORTION_IS = (
 )
 OVER_MODULE_IS = "Range of face width over normal module b/m_n"
 LEAST_IS = "Smallest face width that a stage may have"
+EXCESS_IS = (
+    "By how much the pinion is wider than the face width, which the wheel has; for gears that are "
+    "rated, of whole teeth"
+)
 STEP_IS = "Face widths are whole multiples of this"
 WHEEL_IS = "Largest reference diameter of a wheel"
 OVERLAP_IS = "Smallest overlap ratio b sin(beta)/(pi m_n); for whole teeth that ratings limit"
@@ -139,6 +144,7 @@ class Gears(GearKeys):
     face_width_step: Step = Field(None, description=STEP_IS)
     face_width_over_module: OverModule = Field(None, description=OVER_MODULE_IS)
     minimum_face_width: Length = Field(None, description=LEAST_IS)
+    pinion_face_width_excess: Excess = Field(None, description=EXCESS_IS)
     same_materials: Annotated[bool, truth()] = Field(
         False,
         description="One material for the pinions of all stages and one for all wheels, of those "
@@ -172,6 +178,7 @@ class StageTable(Loaded):
     face_width_step: Step = Field(None, description=STEP_IS)
     face_width_over_module: OverModule = Field(None, description=OVER_MODULE_IS)
     minimum_face_width: Length = Field(None, description=LEAST_IS)
+    pinion_face_width_excess: Excess = Field(None, description=EXCESS_IS)
     stage_ratio: Ratios = Field(None, description="Range of the stage's ratio")
     wheel_diameter: Length = Field(None, description=WHEEL_IS)
     overlap_ratio: Overlap = Field(None, description=OVERLAP_IS)

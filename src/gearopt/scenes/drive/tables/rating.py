@@ -203,8 +203,11 @@ class GearKeys(BlankKeys, IsoGearKeys):
 
 
 class GearTable(GearKeys):
-    """Keys of one gear, [stage.pinion] or [stage.wheel]: shift, tool, material, body."""
+    """Keys of one gear, [stage.pinion] or [stage.wheel]: width, shift, tool, material, body."""
 
+    face_width: Annotated[Quantity | None, quantity("length", "45 mm")] = Field(
+        None, description="Face width of this gear, where all are given; by default the stage's"
+    )
     profile_shift: Annotated[Fraction | None, SHIFT] = Field(
         None, description="Profile shift coefficient x; by default 0"
     )
