@@ -331,12 +331,13 @@ quality or a tenth less life brings, each solved again; of an impossible file it
 alone.
 
 Gears may choose of materials: tables `[[material]]` have a name, the keys of a steel, a density
-and the price of a kilogram, and `materials = ["a", "b"]` in `[gears]`, `[stage.pinion]` or
-`[stage.wheel]` names those that a gear may have. Pinion and wheel choose freely, each of its own
-list: all combinations are compared, and `minimise = "cost"` takes the sum of masses times prices
-(`problems/materials_by_cost.toml`). A material may have a `quality` or an `accuracy_grade`, so
-that finer gears have their own price; of Q_v the lower one of a pair counts. The search begins with
-each material alone, which gives a design soon, and a run that ends early has a bound.
+and prices, and `materials = ["a", "b"]` in `[gears]`, `[stage.pinion]` or `[stage.wheel]` names
+those that a gear may have. Pinion and wheel choose freely, each of its own list: all combinations
+are compared, and `minimise = "cost"` takes material, heat treatment and cutting by the
+[prices](drive.md) of a kilogram and of a metre of teeth (`problems/materials_by_cost.toml`). A
+material may have a `quality` or an `accuracy_grade`, so that finer gears have their own price; of
+Q_v the lower one of a pair counts. The search begins with each material alone, which gives a design
+soon, and a run that ends early has a bound.
 `same_materials = true` in `[gears]` asks for one material for the pinions of all stages and one for
 all wheels: the best of all pairs that every stage may have, matched by name, proven
 (`problems/same_materials.toml`: 114.39, in place of 110.54 with a pair for each stage). Rims, webs

@@ -107,17 +107,33 @@ def least_share(train, k, torque, z1, z2, most=math.inf):
     for module in train.stages[k].modules:
         for width in widths(train, k, module, z1):
             pair = train.pair(k, float(module), z1, z2, float(width))
-            value = objective_share(train, k, pair) if not train.hollow else mass(train, k, pair)
+            value = worth(train, k, pair)
             found += [(value, len(found), pair)] if value < most else []
     return next((value for value, _, p in sorted(found) if safe(train, k, p, torque)), math.inf)
 
 
-def mass(train, k, pair):
-    """Return the mass of a pair in rings."""
+def worth(train, k, pair):
+    """Share of a pair in the objective: cost and masses of webs by hand."""
+    if train.objective == "cost":
+        return sum(costs(train, k, pair))
+    return sum(masses(train, k, pair)) if train.hollow else objective_share(train, k, pair)
+
+
+def masses(train, k, pair):
+    """Return the masses [kg] of a pair in rings."""
     m, b = pair.normal_module, pair.face_width
     each = zip(train.stages[k].blanks, pair.gears, strict=True)
+    densities = [own or train.density for own in train.stages[k].options[0].densities]
     volumes = [volume(blank, m, gear.reference_diameter, b) for blank, gear in each]
-    return 1000 * train.density * sum(volumes)
+    return [1000 * rho * v for rho, v in zip(densities, volumes, strict=True)]
+
+
+def costs(train, k, pair):
+    """Return the costs of a pair: kilograms at their price, and metres of teeth cut at theirs."""
+    made, teeth = train.stages[k].options[0], (pair.pinion_teeth, pair.wheel_teeth)
+    metres = [z * pair.face_width / 1000 for z in teeth]
+    rows = zip(masses(train, k, pair), made.prices, metres, made.cutting_prices, strict=True)
+    return [kg * price + cut * per_metre for kg, price, cut, per_metre in rows]
 
 
 def cheapest(train):

@@ -54,7 +54,7 @@ def design_section(result: Result, measures: Measures) -> Section | None:
     chosen = result.report.get("chosen", ())
     shown = [stage_table(stages, measures, chosen=chosen)] if stages else []
     shown += tables_of("", design, measures)
-    short = [table for table in shown if table.name in ("stages", "totals")]
+    short = [table for table in shown if table.name in ("stages", "totals", "costs")]
     known = result.value is not None or result.given
     return Section("Design", tables=shown, terminal=short if known else ())
 

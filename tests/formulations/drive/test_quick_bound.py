@@ -33,7 +33,8 @@ def some_options(rng):
         made = [law(steels, quality, hours) for law in laws]
         made = [replace(one, loads=levels) if levels else one for one in made]
         prices = tuple(float(p) for p in rng.integers(1, 4, size=2))
-        options.append(Option(tuple(made), prices=prices))
+        cutting = 0.5 * prices[1], 3.0 * prices[0]
+        options.append(Option(tuple(made), prices=prices, cutting_prices=cutting))
     return tuple(options)
 
 

@@ -96,10 +96,11 @@ def test_options_that_cannot_be_compared_have_no_virtual_one():
 
 
 def test_a_virtual_option_is_as_light_and_as_cheap_as_any():
-    first = Option((), "", (None, 7.0e-9), (2.0, 1.5))
-    second = Option((), "", (8.0e-9, None), (1.0, 3.0))
+    first = Option((), "", (None, 7.0e-9), (2.0, 1.5), cutting_prices=(4.0, 0.0))
+    second = Option((), "", (8.0e-9, None), (1.0, 3.0), cutting_prices=(3.0, 5.0))
     made = first.cheapest_with([second], 7.5e-9)
     assert made.densities == (7.5e-9, 7.0e-9) and made.prices == (1.0, 1.5)
+    assert made.cutting_prices == (3.0, 0.0)
     assert first.cheapest_with([second], None).densities == (8.0e-9, 7.0e-9)
 
 

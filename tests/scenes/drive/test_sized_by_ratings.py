@@ -401,3 +401,23 @@ def test_a_search_that_is_cut_short_has_the_bound_of_real_valued_sizes(monkeypat
     (real,) = found.parts
     assert found.status == "limit" and real.name == "sizing"
     assert 0.0 < real.bound <= found.bound < 67020184.0
+
+
+def test_costs_are_split_into_material_treatment_and_cutting():
+    """Of every gear by hand; together they are the objective."""
+    prices = ("price", "treatment_price", "cutting_price")
+    tables = [{"name": "hard", "price": 3, "treatment_price": 2.5, "cutting_price": 6}]
+    tables = [STEELS["hard"] | tables[0]]
+    found = gearopt.solve(of_materials(["hard"], ["hard"], "cost", tables))
+    (stage,), costs = found.design["stages"], found.design["costs"]
+    for member, cost in zip(("pinion", "wheel"), costs, strict=True):
+        mass, metres = (
+            stage[f"{member}_mass_kg"],
+            stage[f"{member}_teeth"] * stage["face_width_mm"] / 1e3,
+        )
+        by_hand = [u * tables[0][p] for u, p in zip((mass, mass, metres), prices, strict=True)]
+        split = [cost[name] for name in ("material", "treatment", "cutting")]
+        assert cost["gear"] == f"{member} 1" and cost["total"] == pytest.approx(sum(by_hand))
+        assert split == pytest.approx(by_hand, rel=1e-12)
+    assert found.value == pytest.approx(sum(cost["total"] for cost in costs), rel=1e-12)
+    assert "costs" not in gearopt.solve(of_materials(["hard"], ["hard"], "mass", tables)).design

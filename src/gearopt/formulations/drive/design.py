@@ -1,7 +1,7 @@
 """The design of a drive for its drawing: diameters, distances and loads of every stage."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, field, replace
 from fractions import Fraction
 from typing import Annotated, Any
@@ -119,10 +119,23 @@ class StageDesign:
 
 
 @dataclass(frozen=True, kw_only=True)
+class GearCost:
+    """What a gear costs, in the currency of the prices."""
+
+    gear: str
+    mass_kg: float
+    material: float
+    treatment: float
+    cutting: float
+    total: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class DriveDesign:
     """Stages and totals of a drive; where its gears are, once laid out.
 
-    contact, relief: of one pair whose file asks for them.
+    costs: of every gear, where cost is an objective. contact, relief: of one pair whose file asks
+    for them.
     """
 
     stages: tuple[StageDesign, ...]
@@ -133,6 +146,7 @@ class DriveDesign:
     sum_of_centre_distances_mm: float
     total_length_mm: float
     mass_kg: float
+    costs: tuple[GearCost, ...] = ()
     layout: LayoutDesign | None = None
     rating: DriveRating | None = None
     contact: PairContact | None = None
@@ -155,10 +169,34 @@ def describe(train: Train, pairs: tuple[GearPair, ...], options: Sequence[int] =
     design = of_pairs(train.law, pairs, *loaded, train.ratio, train.density, blanks)
     if not train.rated:
         return design
-    chosen = zip(design.stages, train.stages, options or (0,) * len(pairs), strict=True)
-    usual = train.density or STEEL_DENSITY
-    stages = tuple(_of_materials(one, stage.options[k], usual) for one, stage, k in chosen)
-    return replace(design, stages=stages, mass_kg=sum(s.mass_kg for s in stages))
+    chosen = zip(train.stages, options or (0,) * len(pairs), strict=True)
+    usual, made = train.density or STEEL_DENSITY, [stage.options[k] for stage, k in chosen]
+    stages = tuple(map(_of_materials, design.stages, made, [usual] * len(made)))
+    costs = tuple(cost for k in range(len(made)) for cost in _costs(k + 1, stages[k], made[k]))
+    priced = "cost" in train.objectives
+    return replace(
+        design,
+        stages=stages,
+        mass_kg=sum(s.mass_kg for s in stages),
+        costs=costs if priced else (),
+    )
+
+
+def _costs(number: int, stage: StageDesign, option: Option) -> Iterator[GearCost]:
+    """Yield what the gears of a stage cost, its number counted from 1."""
+    for k, (member, gear) in enumerate(zip(MEMBERS, stage.pair.gears, strict=True)):
+        mass = stage.pinion_mass_kg if k == 0 else stage.wheel_mass_kg
+        treatment = mass * option.treatment_prices[k]
+        material = mass * option.prices[k] - treatment
+        cutting = 1e-3 * option.cutting_prices[k] * gear.teeth * gear.face_width
+        yield GearCost(
+            gear=f"{member} {number}",
+            mass_kg=mass,
+            material=material,
+            treatment=treatment,
+            cutting=cutting,
+            total=material + treatment + cutting,
+        )
 
 
 def _of_materials(stage: StageDesign, option: Option, usual: float) -> StageDesign:

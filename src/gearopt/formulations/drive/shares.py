@@ -36,7 +36,8 @@ def objective_share(
     if objective in MASSES:
         rows = zip(train.stages[stage].blanks, pair.gears, strict=True)
         volumes = [blank.volume(gear) for blank, gear in rows]
-        return _worth(train, stage, volumes, density, option, objective)
+        worth = _worth(train, stage, volumes, density, option, objective)
+        return worth + (_making(train, stage, option).cutting(pair) if objective == "cost" else 0.0)
     if objective == "gear_volume":
         return pair.volume
     if objective == "mesh_loss":
@@ -60,10 +61,10 @@ def least_share(
     fewest: Sequence[Any] | None = None,
     objective: str | None = None,
 ) -> Any:
-    """Lower bound of a share that grows with every size of the pair; equal of solid gears.
+    """Lower bound of a share that grows with every size of the pair, without what cutting costs.
 
-    fewest: least numbers of teeth of pinion and wheel; None: unknown, then it is proportional to
-    b d1^2 at a given ratio.
+    Equal of solid gears but for that. fewest: least numbers of teeth of pinion and wheel; None:
+    unknown, then it is proportional to b d1^2 at a given ratio.
     """
     objective, blanks = objective or train.objective, train.stages[stage].blanks
     if objective == WEIGHTED:
@@ -71,9 +72,11 @@ def least_share(
         return sum(w * least_share(train, stage, pair, *rest, n) for n, w in train.weights)
     if objective == "mesh_loss" and fewest is None:
         return 0.0 * pair.volume  # it falls with more teeth
-    if objective not in MASSES or not train.hollow:
+    if objective not in MASSES:
         return objective_share(train, stage, pair, density, option, objective)
-    if fewest is None:
+    if not train.hollow:
+        volumes = [gear.volume for gear in pair.gears]
+    elif fewest is None:
         rows = zip(blanks, pair.gears, strict=True)
         volumes = [blank.least_fraction * gear.volume for blank, gear in rows]
     else:
@@ -85,10 +88,15 @@ def least_share(
 def _worth(
     train: Train, stage: int, volumes: Sequence[Any], density: Any, option: int, objective: str
 ) -> Any:
-    """Return mass [kg] or cost of gears of these volumes [mm3] of a stage."""
+    """Return mass [kg] or cost of gears of these volumes [mm3] of a stage, its cutting left out."""
     usual: Any = train.density if density is None else density
-    options = train.stages[stage].options
-    making = options[option] if options else Option(())
+    making = _making(train, stage, option)
     rows = zip(volumes, making.densities, making.prices, strict=True)
     masses = [(1000.0 * (rho or usual) * volume, price) for volume, rho, price in rows]
     return sum(kg if objective == "mass" else kg * price for kg, price in masses)
+
+
+def _making(train: Train, stage: int, option: int) -> Option:
+    """The way of making the gears of a stage."""
+    options = train.stages[stage].options
+    return options[option] if options else Option(())

@@ -184,27 +184,41 @@ class Standard(Protocol):
 class Option:
     """One way of making the gears of a stage: its standards, and its name among others.
 
-    densities [t/mm3], or None for that of the drive, prices of a kilogram, and names of materials,
-    of pinion and wheel.
+    Of pinion and wheel: densities [t/mm3], or None for that of the drive; prices of a kilogram,
+    heat treatment included, and the parts of them that are its; prices of a metre of teeth cut;
+    names of materials.
     """
 
     standards: tuple[Standard, ...]
     words: str = ""
     densities: tuple[float | None, float | None] = (None, None)
     prices: tuple[float, float] = (1.0, 1.0)
+    treatment_prices: tuple[float, float] = (0.0, 0.0)
+    cutting_prices: tuple[float, float] = (0.0, 0.0)
     materials: tuple[str, str] = ("", "")
+
+    def cutting(self, pair: GearPair) -> Any:
+        """Cost of cutting the teeth of a pair: a metre of them is z b = 1000 mm."""
+        rows = zip(self.cutting_prices, pair.gears, strict=True)
+        return sum(1e-3 * price * gear.teeth * gear.face_width for price, gear in rows if price)
 
     def cheapest_with(self, rivals: Sequence["Option"], density: float | None) -> "Option":
         """Return a virtual option as light and as cheap as the best of all, rated as this one.
 
         rivals: the others; density: of gears without one of their own.
         """
-        densities, prices = [], []
+        densities, prices, cutting = [], [], []
         for k in (0, 1):
             heavy = [rho for way in (self, *rivals) if (rho := way.densities[k] or density)]
             densities.append(min(heavy, default=None))
             prices.append(min(way.prices[k] for way in (self, *rivals)))
-        return replace(self, densities=(densities[0], densities[1]), prices=(prices[0], prices[1]))
+            cutting.append(min(way.cutting_prices[k] for way in (self, *rivals)))
+        return replace(
+            self,
+            densities=(densities[0], densities[1]),
+            prices=(prices[0], prices[1]),
+            cutting_prices=(cutting[0], cutting[1]),
+        )
 
     def strongest_with(self, rivals: Sequence["Option"]) -> "Option | None":
         """Return this option, but rated as a virtual one that uses no more than any; or None."""

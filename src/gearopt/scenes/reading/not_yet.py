@@ -115,7 +115,7 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
         "thickness_allowance of a gear and centre_distance of a [[stage]]; kind = "
         '"servo" counts backlash and its causes',
         CONTACT: "The contact ratio is reported. Nearest: gears.helix_angle, which raises it",
-        MONEY: 'Nearest: objective.minimise = "cost", with the price of every [[material]]',
+        MONEY: 'Nearest: objective.minimise = "cost", with prices of every [[material]]',
         "transverse_module m_t stirnmodul circular_pitch p_t p_n teilung": "Nearest: module, the "
         "normal one: the transverse module times the cosine of helix_angle, or normal pitch over "
         "pi",

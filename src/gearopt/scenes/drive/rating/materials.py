@@ -13,6 +13,7 @@ from gearopt.scenes.reading.fields import Table, number, quantity, refuse, words
 from gearopt.units import Quantity
 
 MADE = ("quality", "accuracy_grade")  # keys that a material may have, else the gear
+PRICE = number(1.5, 0, 10**9, zero=True)
 Place = tuple[Any, ...]
 
 
@@ -25,6 +26,16 @@ class Named(Table):
     )
     price: Annotated[Fraction | None, number(2.5, 0, 10**9)] = Field(
         None, description="Price of a kilogram of finished gear, in any currency; cost needs it"
+    )
+    treatment_price: Annotated[Fraction, PRICE] = Field(
+        default_factory=lambda: Fraction(0),
+        description="Price of the heat treatment of a kilogram of finished gear",
+        json_schema_extra={"default": 0},
+    )
+    cutting_price: Annotated[Fraction, PRICE] = Field(
+        default_factory=lambda: Fraction(0),
+        description="Price of a metre of teeth cut: number of teeth times face width",
+        json_schema_extra={"default": 0},
     )
 
 

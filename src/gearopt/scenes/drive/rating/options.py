@@ -91,9 +91,15 @@ def _option(
         standards.insert(-1, _static(standards[-1], rating, rating.static_torque_factor))
     named = tuple(m.name if m else "" for m in materials)
     densities = tuple(m.density.value if m and m.density else None for m in materials)
-    prices = tuple(float(m.price) if m and m.price is not None else 1.0 for m in materials)
+    treatments = tuple(float(m.treatment_price) if m else 0.0 for m in materials)
+    prices = tuple(
+        (1.0 if m is None or m.price is None else float(m.price)) + treatment
+        for m, treatment in zip(materials, treatments, strict=True)
+    )
+    cuttings = tuple(float(m.cutting_price) if m else 0.0 for m in materials)
     words = " and ".join(filter(None, named))
-    return Option(tuple(standards), words, _two(densities), _two(prices), _two(named))
+    columns = densities, prices, treatments, cuttings, named
+    return Option(tuple(standards), words, *map(_two, columns))
 
 
 def _static(standard: Iso6336, rating: RatingTable, factor: Fraction) -> Iso6336:

@@ -398,8 +398,8 @@ class Objective(Table):
 
     minimise: Annotated[str, AIM] = Field(
         "gear_volume",
-        description="gear_volume (solid reference cylinders), mass (or weight), cost (mass times "
-        "the prices of [[material]]), "
+        description="gear_volume (solid reference cylinders), mass (or weight), cost (of material, "
+        "heat treatment and cutting, by the prices of [[material]]), "
         "sum_of_centre_distances, total_length (shafts in one line, over reference circles), or "
         "mesh_loss (0.06 π (1/z1 + 1/z2) of the input power a stage, not checked against a source)",
     )
