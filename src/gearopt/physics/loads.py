@@ -4,6 +4,7 @@ Arguments are floats, arrays of one shape, or casadi scalars.
 """
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 
@@ -13,6 +14,20 @@ def torque(power: Any, angular_speed: Any) -> Any:
     angular_speed > 0. Equals 30e6 P/(pi n) for P in kW and n in rpm.
     """
     return power / angular_speed
+
+
+def torque_ratios(ratios: Sequence[Any], drivers: Sequence[str] = ()) -> list[tuple[Any, Any]]:
+    """Torque of every stage's pinion, and of the shaft behind the stage, over that of the input.
+
+    Without losses, so that the input's speed over theirs is the same. ratios u = z2/z1; drivers:
+    the member that drives each stage, by default every pinion: a wheel that drives leaves 1/u.
+    """
+    reached, rows = 1.0, []
+    for u, driver in zip(ratios, drivers or ("pinion",) * len(ratios), strict=True):
+        behind = reached * u if driver == "pinion" else reached / u
+        rows.append((reached if driver == "pinion" else behind, behind))
+        reached = behind
+    return rows
 
 
 def k_factor(pinion_torque: Any, pinion_diameter: Any, face_width: Any, ratio: Any) -> Any:

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from gearopt.frozen import dataclass
-from gearopt.physics.gears import GearPair
+from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.physics.geometry.tooth import helix_angle_at
+from gearopt.physics.loads import torque_ratios
 
 HANDS = {"right": 1.0, "left": -1.0}  # sign of a helix
 OTHER = {"right": "left", "left": "right"}
@@ -57,39 +58,47 @@ def mesh_forces(pair: GearPair, torque: Any) -> MeshForces:
     return MeshForces(load, load * np.tan(pair.working_angle), load * np.tan(helix))
 
 
-def hands(first: Sequence[str | None]) -> list[str]:
+def hands(first: Sequence[str | None], drivers: Sequence[str] = ()) -> list[str]:
     """Return the hand of every pinion; None: right of the first, else that of the wheel beside it.
 
     Two gears of one hand on an intermediate shaft, of which one is driven and one drives, have
-    opposite axial forces.
+    opposite axial forces: so pinions follow in turn, but where the driver is another member than
+    that of the stage before (drivers: as of `torque_ratios`).
     """
     every: list[str] = []
-    for hand in first:
-        every.append(hand or (OTHER[every[-1]] if every else "right"))
+    for k, hand in enumerate(first):
+        alike = not drivers or drivers[k] == drivers[k - 1]
+        before = every[-1] if every else "left"
+        every.append(hand or (OTHER[before] if alike or not every else before))
     return every
 
 
 def train_forces(
-    pairs: Sequence[GearPair], torque: float, pinion_hands: Sequence[str]
+    pairs: Sequence[GearPair],
+    torque: float,
+    pinion_hands: Sequence[str],
+    drivers: Sequence[str] = (),
 ) -> list[GearForces]:
-    """Return the forces on every gear of a train, pinions drive; torque of the input [N mm].
+    """Return the forces on every gear of a train; torque of the input [N mm].
 
-    The axial force of a driving gear points along its angular velocity where its helix is right
-    handed (the right-hand rule); its mate has the opposite force.
+    drivers: as of `torque_ratios`. The axial force of a driving gear points along its angular
+    velocity where its helix is right handed (the right-hand rule); its mate has the opposite force.
     """
     every = []
-    for k, pair in enumerate(pairs):
-        forces = mesh_forces(pair, torque)
+    ratios = torque_ratios([float(pair.ratio) for pair in pairs], drivers)
+    for k, (pair, (at_pinion, _)) in enumerate(zip(pairs, ratios, strict=True)):
+        forces = mesh_forces(pair, torque * at_pinion)
         turning = 1.0 if k % 2 == 0 else -1.0  # shafts turn in turn one way and the other
-        axial = turning * HANDS[pinion_hands[k]] * float(forces.axial)
-        radii = [0.5 * float(d) for d in pair.working_diameters]
         load, radial = float(forces.tangential), float(forces.radial)
-        pinion_hand, wheel_hand = pinion_hands[k], OTHER[pinion_hands[k]]
-        every.append(
-            GearForces(k + 1, k + 1, "pinion", pinion_hand, radii[0], -load, radial, axial)
-        )
-        every.append(GearForces(k + 1, k + 2, "wheel", wheel_hand, radii[1], load, radial, -axial))
-        torque *= float(pair.ratio)
+        for member, diameter in zip(MEMBERS, pair.working_diameters, strict=True):
+            drives = member == (drivers[k] if drivers else "pinion")
+            hand = pinion_hands[k] if member == "pinion" else OTHER[pinion_hands[k]]
+            way = 1.0 if drives else -1.0  # the driven one turns and is handed the other way
+            axial = turning * HANDS[hand if drives else OTHER[hand]] * float(forces.axial)
+            shaft, radius = k + 1 if drives else k + 2, 0.5 * float(diameter)
+            every.append(
+                GearForces(k + 1, shaft, member, hand, radius, -way * load, radial, way * axial)
+            )
     return every
 
 

@@ -36,8 +36,10 @@ class Duty(Table):
     output_speed: Annotated[Quantity | None, quantity("speed", "66.5 rpm")] = Field(
         None, description="Speed of the output shaft (or give ratio)"
     )
-    ratio: Annotated[Fraction | None, speed_ratio(20, 1, total=True)] = Field(
-        None, description='Total ratio, input over output speed; also as a fraction, "127/120"'
+    ratio: Annotated[Fraction | None, speed_ratio(20, Fraction(1, 10**6))] = Field(
+        None,
+        description="Total ratio, input over output speed, below 1 of a drive that increases the "
+        'speed; also as a fraction, "127/120"',
     )
     ratio_tolerance: Annotated[Fraction, number("1 %", 0, Fraction(1, 2), True, True)] = Field(
         default_factory=lambda: Fraction(1, 100),
@@ -63,18 +65,9 @@ class Duty(Table):
             if self.RATIO_NEEDED:
                 raise refuse(*self.missing_ratio(), at=("output_speed",), action="sample")
             return self
-        if self.total_ratio < 1:
-            raise refuse(
-                "is above the input speed: gearopt sizes reducers, and a loss-free speed increaser "
-                "has the same gears with input and output exchanged",
-                "input_speed",
-                ("output_speed",),
-                "swap",
-            )
-        if self.total_ratio > 10**6:
-            raise refuse(
-                "asks for a ratio above 1000000", self._slow(), ("output_speed",), "sample"
-            )
+        if not 1 <= 10**6 * self.total_ratio <= 10**12:
+            rule = f"asks for a ratio {'above' if self.total_ratio > 1 else 'below 1 over'} 1000000"
+            raise refuse(rule, self._slow(), ("output_speed",), "sample")
         return self
 
     def _slow(self) -> str:

@@ -17,7 +17,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import INLINE, Shown, typed
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import ISO_53_A, MEMBERS, Gear, GearPair, Rack
-from gearopt.physics.loads import pitch_line_velocity
+from gearopt.physics.loads import pitch_line_velocity, torque_ratios
 
 # as in a `Rack`
 TOOL = ("addendum", "tool_addendum", "tool_tip_radius", "tool_protuberance", "tip_chamfer")
@@ -44,6 +44,7 @@ class StageDesign:
     normal_module_mm: float
     pinion_teeth: Annotated[float, Shown("teeth z1")]
     wheel_teeth: Annotated[float, Shown("teeth z2")]
+    driver: Annotated[str, Shown("driving gear")] = "pinion"
     ratio: Annotated[float, Shown("ratio u")]
     face_width_mm: Annotated[float, Shown("face width b")]
     pinion_face_width_mm: Annotated[float | None, Shown("pinion face width b1")] = None
@@ -93,6 +94,12 @@ class StageDesign:
     wheel_tool_protuberance: float = ISO_53_A.protuberance
     pinion_tip_chamfer: float = ISO_53_A.tip_chamfer
     wheel_tip_chamfer: float = ISO_53_A.tip_chamfer
+
+    @property
+    def end_diameters(self) -> tuple[float, float]:
+        """Reference diameters [mm] of the gear that drives and of the one that is driven."""
+        first, second = self.pinion_diameter_mm, self.wheel_diameter_mm
+        return (first, second) if self.driver == "pinion" else (second, first)
 
     @property
     def pair(self) -> GearPair:
@@ -221,28 +228,32 @@ def of_pairs(
     asked_ratio: Fraction | None = None,
     density: float | None = None,
     blanks: Sequence[tuple[Blank, Blank]] = (),
+    drivers: Sequence[str] = (),
 ) -> DriveDesign:
     """Return stages and totals of a drive.
 
     torque [N mm], speed [rad/s] of the input; asked_ratio: None where none is asked for. Masses are
-    those of the blanks of every stage, by default solid and of steel; density [t/mm3].
+    those of the blanks of every stage, by default solid and of steel; density [t/mm3]. drivers: as
+    of `torque_ratios`.
     """
-    stages: list[StageDesign] = []
-    density = density or STEEL_DENSITY
-    for pair, bodies in zip(pairs, blanks or [(SOLID, SOLID)] * len(pairs), strict=True):
-        stages.append(_stage(law, pair, torque, speed, density, bodies))
-        torque, speed = torque * float(pair.ratio), speed / float(pair.ratio)
-    ratio = math.prod(s.ratio for s in stages)
+    density, drivers = density or STEEL_DENSITY, drivers or ("pinion",) * len(pairs)
+    ratios = torque_ratios([float(pair.ratio) for pair in pairs], drivers)
+    rows = zip(pairs, blanks or [(SOLID, SOLID)] * len(pairs), drivers, ratios, strict=True)
+    stages = [
+        _stage(law, pair, torque * at, speed / at, density, bodies, driver)
+        for pair, bodies, driver, (at, _) in rows
+    ]
+    ratio = ratios[-1][1]
     volume = sum(s.gear_volume_mm3 for s in stages)
     centres = sum(s.centre_distance_mm for s in stages)
-    ends = stages[0].pinion_diameter_mm + stages[-1].wheel_diameter_mm
+    ends = stages[0].end_diameters[0] + stages[-1].end_diameters[1]
     return DriveDesign(
         stages=tuple(stages),
         ratio=ratio,
         ratio_error_percent=(
             0.0 if asked_ratio is None else round(100.0 * (ratio / float(asked_ratio) - 1.0), 9)
         ),
-        output_torque_Nm=1e-3 * torque,
+        output_torque_Nm=1e-3 * torque * ratio,
         gear_volume_mm3=volume,
         sum_of_centre_distances_mm=centres,
         total_length_mm=0.5 * ends + centres,
@@ -257,6 +268,7 @@ def _stage(
     speed: float,
     density: float,
     blanks: tuple[Blank, Blank],
+    driver: str,
 ) -> StageDesign:
     """Describe a pair; torque [N mm] and speed [rad/s] are its pinion's."""
     pinion, wheel = pair.gears
@@ -267,6 +279,7 @@ def _stage(
         normal_module_mm=float(pair.normal_module),
         pinion_teeth=_whole(pair.pinion_teeth),
         wheel_teeth=_whole(pair.wheel_teeth),
+        driver=driver,
         ratio=float(pair.ratio),
         face_width_mm=float(pair.face_width),
         pinion_face_width_mm=_own_width(pinion),

@@ -18,15 +18,16 @@ FILLET, FLANK = 8, 13  # points of a tooth's side
 DOT = 2.6  # px: radius of a point of contact
 WORDS = (
     "Transverse sections of the teeth as their tools cut them, touching at the pitch point C; the "
-    "pinion, below, turns clockwise and drives. Dash-dotted: working pitch circles. The line of "
-    "action from A to E is that of contact"
+    "pinion, below, {turns}. Dash-dotted: working pitch circles. The line of action from A to E is "
+    "that of contact"
 )
+TURNS = {"pinion": "turns clockwise and drives", "wheel": "turns anticlockwise and is driven"}
 ALONE = "; from B to D one pair of spur teeth carries alone"
 HELICAL = (
     " in this section. Helical teeth touch along slanting lines: other sections are in contact at "
     "other moments, so that more pairs of teeth touch than one section shows"
 )
-SEVERAL = " Each mesh is drawn as seen from the end from which its pinion turns clockwise."
+SEVERAL = " Each mesh is drawn as seen from the end from which its pinion turns so."
 ROUNDING = 1e-9  # of a contact ratio: so near to a whole number it is that
 
 
@@ -37,16 +38,18 @@ def section(result: Result, measures: Measures) -> Section | None:
     """
     if not result.design.get("rating"):
         return None
-    pairs = [stage.pair for stage in drive_design(result.design).stages]
+    stages = drive_design(result.design).stages
+    pairs = [stage.pair for stage in stages]
     drawn = [(pair, _mesh(pair, k, len(pairs))) for k, pair in enumerate(pairs, 1)]
     meshes = [(pair, drawing) for pair, drawing in drawn if drawing is not None]
     if not meshes:
         return None
     helical = HELICAL * any(pair.pinion.helix_angle for pair, _ in meshes)
     alone = ALONE * any(carries_alone(pair, contact_path(pair)) for pair, _ in meshes)
+    words = WORDS.format(turns=" or ".join(dict.fromkeys(TURNS[stage.driver] for stage in stages)))
     return Section(
         "Teeth in mesh",
-        words=(f"{WORDS}{helical}{alone}.{SEVERAL * (len(pairs) > 1)}",),
+        words=(f"{words}{helical}{alone}.{SEVERAL * (len(pairs) > 1)}",),
         drawings=tuple(drawing for _, drawing in meshes),
     )
 

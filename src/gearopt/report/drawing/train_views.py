@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import MISSING, fields, replace
 from itertools import pairwise
 from typing import Any
 
@@ -53,6 +53,12 @@ class DrawnStage:
     centre_distance_mm: float
     pinion_face_width_mm: float | None = None
     wheel_face_width_mm: float | None = None
+    driver: str = "pinion"
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """The gear that drives and the one that is driven."""
+        return MEMBERS if self.driver == "pinion" else MEMBERS[::-1]
 
     def width(self, member: str) -> float:
         """Face width [mm] of a gear."""
@@ -108,17 +114,15 @@ def beside(
 
 def _picked(stages: Sequence[Mapping[str, Any]]) -> Sequence[DrawnStage]:
     """Sizes of stages that are drawn; KeyError where one is not known."""
-    picked = [
-        {f.name: stage[f.name] for f in fields(DrawnStage) if f.default or f.name in stage}
-        for stage in stages
-    ]
+    names = [f.name for f in fields(DrawnStage)]
+    picked = [{n: stage[n] for n in names if n in stage} for stage in stages]
     drawn: Sequence[DrawnStage] = typed(tuple[DrawnStage, ...], picked, "stages")
     return drawn
 
 
 def is_drawn(stages: Sequence[Mapping[str, Any]]) -> bool:
     """Whether there are stages, and all sizes that are drawn of them."""
-    keys = [f.name for f in fields(DrawnStage) if f.default is not None]
+    keys = [f.name for f in fields(DrawnStage) if f.default is MISSING]
     return bool(stages) and all(key in stage for stage in stages for key in keys)
 
 
@@ -166,9 +170,9 @@ def in_one_line(stages: Sequence[DrawnStage], folded: bool = False) -> tuple[Bod
     if folded:
         axes[2] = axes[0]
     rims = [
-        (axes[k + end], 0.5 * tip)
+        (axes[k + end], 0.5 * getattr(stage, f"{member}_tip_diameter_mm"))
         for k, stage in enumerate(stages)
-        for end, tip in enumerate((stage.pinion_tip_diameter_mm, stage.wheel_tip_diameter_mm))
+        for end, member in enumerate(stage.members)
     ]
     long = max(y + r for y, r in rims) - min(y - r for y, r in rims)
     scale = (WIDE - 2.0 * EDGE) / long  # no wheel is higher than the row is long
@@ -192,7 +196,7 @@ def in_one_line(stages: Sequence[DrawnStage], folded: bool = False) -> tuple[Bod
             to_mm=start + 0.5 * (wide[k - 1] + stage.width(member)),
         )
         for k, (stage, start) in enumerate(zip(stages, starts, strict=True), 1)
-        for member, shaft in (("pinion", k), ("wheel", k + 1))
+        for shaft, member in enumerate(stage.members, k)
     ]
     shafts = []
     for k, y in enumerate(axes, 1):

@@ -1,16 +1,44 @@
-"""Centre distances of all stages that go together: those of a coaxial drive, or of a given sum."""
+"""Centre distances: those a stage may have, and those of all stages that go together."""
 
 import itertools
 import math
 from collections.abc import Sequence
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
-from gearopt.scenes.drive.tables.drive import Limits
+from gearopt.physics.gears import transverse_pressure_angle
+from gearopt.physics.geometry.profile_shift import SUMS
+from gearopt.scenes.drive.tables.drive import Limits, StageTable
 from gearopt.scenes.reading.fields import refuse
+
+if TYPE_CHECKING:
+    from gearopt.scenes.drive.scene import Scene
 
 MAX_ROWS = 20_000  # rows of centre distances of all stages
 
 Row = tuple[Fraction, ...]
+
+
+def reach(scene: "Scene", own: StageTable) -> tuple[float, float]:
+    """Ends of the centre distances [mm] that teeth of a stage may have, whatever their shifts.
+
+    By base circles that touch, and y <= x1 + x2 <= 2 modules.
+    """
+    modules, limits = scene.modules(own), scene.limits
+    fewest, most = own.pinion_teeth or limits.pinion_teeth
+    wheels = own.wheel_teeth or limits.wheel_teeth or (1, None)
+    ratios = own.stage_ratio or limits.stage_ratio or (Fraction(1), None)
+    top = scene.duty.total_ratio * (1 + scene.duty.ratio_tolerance)
+    top = top if ratios[1] is None else min(top, ratios[1])
+    teeth = fewest * (1 + ratios[0]), most * (1 + top)
+    if wheels[1] is not None:
+        teeth = teeth[0], min(teeth[1], Fraction(most + wheels[1]))
+    helices = [angle.value for angle in scene.helix_angles(own)]
+    normal = (own.pressure_angle or scene.gears.pressure_angle).value
+    base = math.cos(transverse_pressure_angle(normal, max(helices)))
+    low = 0.5 * base * float(min(modules) * teeth[0]) / math.cos(min(helices))
+    high = 0.5 * float(max(modules) * teeth[1]) / math.cos(max(helices))
+    return low, high + SUMS[1] * float(max(modules))
 
 
 def joint_limits(limits: Limits) -> list[str]:

@@ -13,9 +13,9 @@ from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength import RATED, Law
 from gearopt.physics.blanks import Blank
-from gearopt.physics.gears import MEMBERS, GearPair, transverse_pressure_angle
-from gearopt.physics.geometry.profile_shift import SUMS
-from gearopt.scenes.drive.distances import joint_limits, rows_together
+from gearopt.physics.gears import MEMBERS, GearPair
+from gearopt.scenes.drive.distances import joint_limits, reach, rows_together
+from gearopt.scenes.drive.driving import check_driving, drivers
 from gearopt.scenes.drive.face_widths import (
     check_excess,
     check_width,
@@ -180,9 +180,10 @@ class Scene(Table):
             raise refuse(RANGE if self.several else rule, number, ("stages",))
         for k, stage in enumerate(self.stage or (StageTable(),)):
             check_width(stage, self.gears, ("stage", k) if self.stage else ("gears",))
-            if self.teeth is not None and not self._modules(stage):
+            if self.teeth is not None and not self.modules(stage):
                 place = ("stage", k, "module") if stage.size else ("limits", "module")
                 raise refuse("holds no module that [teeth] allows", self._around(stage), place)
+        check_driving(self)
         self._check_layout()
         self._check_loads()
         self._check_teeth()
@@ -210,6 +211,11 @@ class Scene(Table):
     def stage_tables(self) -> tuple[StageTable, ...]:
         """Tables of the stages of the least number; empty ones where the file has none."""
         return self.stage or (StageTable(),) * self.counts[0]
+
+    @property
+    def drivers(self) -> tuple[str, ...]:
+        """The gear that drives each stage of given gears; of chosen ones a design says it."""
+        return drivers(self)
 
     @property
     def several(self) -> bool:
@@ -353,29 +359,8 @@ class Scene(Table):
         """Ways in which the teeth of a stage may be cut."""
         if not self.shifted(own):
             return toothings(own, self.gears)
-        reach = (0.0, 0.0) if own.centre_distance is None else self._reach(own)
-        return toothings(own, self.gears, reach, self.shift or ShiftTable())
-
-    def _reach(self, own: StageTable) -> tuple[float, float]:
-        """Ends of the centre distances [mm] that teeth of a stage may have, whatever their shifts.
-
-        By base circles that touch, and y <= x1 + x2 <= 2 modules.
-        """
-        modules, limits = self._modules(own), self.limits
-        fewest, most = own.pinion_teeth or limits.pinion_teeth
-        wheels = own.wheel_teeth or limits.wheel_teeth or (1, None)
-        ratios = own.stage_ratio or limits.stage_ratio or (Fraction(1), None)
-        top = self.duty.total_ratio * (1 + self.duty.ratio_tolerance)
-        top = top if ratios[1] is None else min(top, ratios[1])
-        teeth = fewest * (1 + ratios[0]), most * (1 + top)
-        if wheels[1] is not None:
-            teeth = teeth[0], min(teeth[1], Fraction(most + wheels[1]))
-        helices = [angle.value for angle in self.helix_angles(own)]
-        normal = (own.pressure_angle or self.gears.pressure_angle).value
-        base = math.cos(transverse_pressure_angle(normal, max(helices)))
-        low = 0.5 * base * float(min(modules) * teeth[0]) / math.cos(min(helices))
-        high = 0.5 * float(max(modules) * teeth[1]) / math.cos(max(helices))
-        return low, high + SUMS[1] * float(max(modules))
+        ends = (0.0, 0.0) if own.centre_distance is None else reach(self, own)
+        return toothings(own, self.gears, ends, self.shift or ShiftTable())
 
     def choosing(self, own: StageTable) -> bool:
         """Whether the teeth of a stage may be cut in several ways, or shifts are chosen."""
@@ -437,7 +422,8 @@ class Scene(Table):
         if self.layout.together and self.teeth is None:
             raise refuse("needs a table [teeth]", False, ("layout", "together"))
 
-    def _modules(self, own: StageTable) -> tuple[Fraction, ...]:
+    def modules(self, own: StageTable) -> tuple[Fraction, ...]:
+        """Modules [mm] that a stage may have."""
         span = own.size or self.limits.module
         ends = () if span is None else tuple(end.exact[0] for end in span)
         if self.teeth is None:
@@ -503,7 +489,7 @@ class Scene(Table):
         if not joint_limits(self.limits):
             return ()
         lists = [
-            sorted({one.exact[0] for one in values_of(own.centre_distance, self._reach(own))})
+            sorted({one.exact[0] for one in values_of(own.centre_distance, reach(self, own))})
             if own.centre_distance is not None
             else []
             for own in tables
@@ -581,7 +567,7 @@ class Scene(Table):
                 (getattr(own, name) or limits.load(name)).value for name in self.law.names
             ),
             face_width=face_width(own, self.gears),
-            modules=self._modules(own),
+            modules=self.modules(own),
             pinion_teeth=own.pinion_teeth or limits.pinion_teeth,
             wheel_teeth=own.wheel_teeth or limits.wheel_teeth or (1, None),
             ratio=own.stage_ratio or limits.stage_ratio or (Fraction(1), None),

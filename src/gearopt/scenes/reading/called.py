@@ -57,7 +57,7 @@ DRIVE = {
     "rim_thickness, of a gear: the ratio is computed": "backup_ratio m_b",
     "pinion_hand, in a [[stage]]; the wheel has the other hand": "hand wheel_hand helix_hand "
     "hand_of_helix flank_direction",
-    "pinion, a table [stage.pinion]": "ritzel pinion_gear driver",
+    "pinion, a table [stage.pinion]": "ritzel pinion_gear",
     "wheel, a table [stage.wheel]": "rad gear wheel_gear gegenrad grossrad driven",
     "duty, a table of its own": ".motor .drive .operation .operating_data .input antrieb",
     "gears, a table of its own": ".gear .gear_data",

@@ -268,17 +268,8 @@ def _number_schema(
     return schema
 
 
-INCREASER = (
-    "is below 1: gearopt sizes reducers, and a loss-free speed increaser has the same gears with "
-    "input and output exchanged"
-)
-
-
-def speed_ratio(example: Any, minimum: int, total: bool = False) -> Reads:
-    """Read a ratio of speeds up to a million, exactly: a number, or a fraction as "127/120".
-
-    total: that of a drive; where it is below 1, that of the drive with its ends exchanged is told.
-    """
+def speed_ratio(example: Any, minimum: int | Fraction) -> Reads:
+    """Read a ratio of speeds up to a million, exactly: a number, or a fraction as "127/120"."""
     item = number(example, minimum, 10**6, fraction=True)
 
     def read(value: Any, example: Any) -> Fraction:
@@ -289,13 +280,14 @@ def speed_ratio(example: Any, minimum: int, total: bool = False) -> Reads:
             above, below = (Fraction(p or 1) for p in (parts.group(1, 3) if parts else "00"))
             if parts is None or not above or not below:
                 raise
-            if above < below <= 10**6 * above and total:
-                raise refuse(INCREASER, Decimal(f"{float(below / above):.5g}")) from None
             if parts[2] != ":":
                 raise
             ratio = above / below
             write = ratio.numerator if ratio.denominator == 1 else str(ratio)
             item.reader(write, example)
+            if ratio < 1:  # that of a reducer, most likely
+                rule = f"is written with a colon: {write} is that of a drive that increases speed"
+                raise refuse(rule, Decimal(f"{float(1 / ratio):.5g}")) from None
             raise refuse("is written with a colon", write) from None
         return ratio
 

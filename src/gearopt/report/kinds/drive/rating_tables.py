@@ -139,7 +139,8 @@ def _mesh_words(rating: DriveRating, stage: Mapping[str, Any], k: int, measures:
     mesh, size = rating.meshes[k], measures.amount
     parts = [
         f"Stage {k + 1}: {module_words(stage[MODULE], measures)}",
-        f"z {number(stage['pinion_teeth'])}/{number(stage['wheel_teeth'])}",
+        f"z {number(stage['pinion_teeth'])}/{number(stage['wheel_teeth'])}"
+        + (", the wheel drives" if "driver" in stage else ""),
         f"b {size(stage['face_width_mm'], 'mm')}",
         *(f"{m} {size(b, 'mm')}" for m in MEMBERS if (b := stage.get(f"{m}_face_width_mm"))),
         f"a {size(stage['centre_distance_mm'], 'mm')}; contact ratio "

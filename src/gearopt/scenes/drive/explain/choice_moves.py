@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import Any
 
 from gearopt.physics.preferred_numbers import PREFERRED, preferred_numbers
-from gearopt.scenes.drive.distances import MAX_ROWS
+from gearopt.scenes.drive.distances import MAX_ROWS, reach
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import Group
 from gearopt.scenes.explaining.moves import Move
@@ -72,7 +72,7 @@ def _of_teeth(scene: Scene) -> Iterator[tuple[Path, Sequence[Any]]]:
 def distances_of(scene: Scene) -> list[list[Fraction]]:
     """Centre distances [mm] that every stage chooses from."""
     return [
-        sorted({a.exact[0] for a in values_of(own.centre_distance, scene._reach(own))})
+        sorted({a.exact[0] for a in values_of(own.centre_distance, reach(scene, own))})
         for own in scene.stage
         if own.centre_distance is not None
     ]

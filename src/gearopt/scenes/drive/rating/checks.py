@@ -169,7 +169,6 @@ def check_rated(
             if name in given or name in given_factors:
                 rule = "follows from the levels [[load]] and cannot be given"
                 raise refuse(rule, at=_given_at(rating, stage, k, name), action="remove")
-        check_pinion(stage, k)
         if rating.by_iso6336:
             _check_accuracy(rating, given_factors)
         for member in MEMBERS:
@@ -201,11 +200,12 @@ def _given_at(rating: RatingTable, stage: StageTable, k: int, name: str) -> Plac
     return (*next(place for place, held in places if name in held), name)
 
 
-def check_pinion(stage: StageTable, k: int) -> None:
-    """Refuse given gears of which the wheel has fewer teeth."""
+def check_pinion(stage: StageTable, k: int, drives: bool = False) -> None:
+    """Refuse given gears of which the wheel has fewer teeth; drives: it may be the one to drive."""
     pinion, wheel = stage.pinion_teeth, stage.wheel_teeth
     if pinion and wheel and wheel[1] < pinion[0]:
         rule = "is below pinion_teeth: the pinion is the gear with fewer teeth"
+        rule += ', and driver = "wheel" says that the other one drives' * drives
         raise refuse(rule, "pinion_teeth", ("stage", k, "wheel_teeth"), "swap")
 
 

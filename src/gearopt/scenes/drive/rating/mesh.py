@@ -9,6 +9,7 @@ from gearopt.frozen import dataclass
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.iso6336.static import static_given, static_operation
+from gearopt.physics.loads import torque_ratios
 from gearopt.physics.rating import Operation, Rating
 from gearopt.scenes.drive.rating.gears import Tables, duty_operation, gear_tables, operations
 from gearopt.scenes.drive.rating.options import of_stage
@@ -53,24 +54,29 @@ class Mesh:
 
 
 def rated_meshes(
-    scene: Scene, pairs: tuple[GearPair, ...], standard: Any, materials: Materials
+    scene: Scene,
+    pairs: tuple[GearPair, ...],
+    standard: Any,
+    materials: Materials,
+    drivers: Sequence[str],
 ) -> list[Mesh]:
     """Rate all stages; SolveError names those that have no rating, and why.
 
     materials: names of those chosen, of pinion and wheel of every stage; "": there was no choice.
+    drivers: as of `torque_ratios`.
     """
-    meshes, slower, refused = [], 1.0, list[str]()
+    meshes, refused = [], list[str]()
+    slower = torque_ratios([float(pair.ratio) for pair in pairs], drivers)
     for k, pair in enumerate(pairs):
         known = flaws(pair)
         sentences = [flaw.sentence[0].lower() + flaw.sentence[1:].rstrip(".") for flaw in known]
         try:
             if known and known[0].fatal:
                 raise ValueError(sentences.pop(0))
-            meshes.append(_mesh(scene, k, pair, slower, standard, materials[k]))
+            meshes.append(_mesh(scene, k, pair, slower[k][0], standard, materials[k]))
         except ValueError as reason:
             why = "; ".join([str(reason), *sentences])
             refused.append(f"stage {k + 1} cannot be rated: {why}")
-        slower *= float(pair.ratio)
     if refused:
         raise SolveError("; ".join(refused))
     return meshes

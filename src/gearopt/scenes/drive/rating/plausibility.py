@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from gearopt.formulations.drive.rating import DriveRating
 from gearopt.formulations.drive.train import STEEL_DENSITY
 from gearopt.physics.gears import MEMBERS, Gear, GearPair
+from gearopt.physics.loads import torque_ratios
 from gearopt.scenes.drive.rating.gears import Tables
 from gearopt.scenes.drive.rating.steels import chosen
 from gearopt.scenes.drive.tables.rating import GearTable
@@ -18,9 +19,11 @@ HEAVY = 200.0  # kg, of gears from which on it is told what decides their size
 PLATE = 1.5  # diameter of a bar that hardens as a plate of a thickness does (EN 10083; memory)
 
 
-def unusual(pairs: Sequence[GearPair], tables: Sequence[Tables]) -> Iterator[str]:
+def unusual(
+    pairs: Sequence[GearPair], tables: Sequence[Tables], drivers: Sequence[str]
+) -> Iterator[str]:
     """Yield sentences on what is unusual about pairs of floats; tables: of their gears."""
-    yield from _modules(pairs)
+    yield from _modules(pairs, drivers)
     alike = dict[str, list[str]]()
     for k, (pair, both) in enumerate(zip(pairs, tables, strict=True), 1):
         yield from _proportions(pair, k)
@@ -65,15 +68,18 @@ def weighty(pairs: Sequence[GearPair], rated: DriveRating) -> Iterator[str]:
     )
 
 
-def _modules(pairs: Sequence[GearPair]) -> Iterator[str]:
-    """Yield where a slower stage has the smaller module."""
-    for k, (pair, slower) in enumerate(zip(pairs, pairs[1:], strict=False), 1):
-        first, second = float(pair.normal_module), float(slower.normal_module)
-        if second < first * (1.0 - 1e-9) and float(pair.ratio) > 1.0:
+def _modules(pairs: Sequence[GearPair], drivers: Sequence[str]) -> Iterator[str]:
+    """Yield where the stage of the larger torque has the smaller module."""
+    torques = [at for at, _ in torque_ratios([float(pair.ratio) for pair in pairs], drivers)]
+    for k in range(len(pairs) - 1):
+        weak, strong = (k, k + 1) if torques[k] < torques[k + 1] else (k + 1, k)
+        modules = [float(pair.normal_module) for pair in pairs]
+        times = torques[strong] / torques[weak]
+        if modules[strong] < modules[weak] * (1.0 - 1e-9) and times > 1.0:
             yield (
-                f"The modules of stages {k} and {k + 1}, {first:.4g} and {second:.4g} mm, are out "
-                f"of proportion: the torque of stage {k + 1} is {float(pair.ratio):.3g} times as "
-                "large."
+                f"The modules of stages {k + 1} and {k + 2}, {modules[k]:.4g} and "
+                f"{modules[k + 1]:.4g} mm, are out of proportion: the torque of stage "
+                f"{strong + 1} is {times:.3g} times as large."
             )
 
 

@@ -83,25 +83,31 @@ def rate_design(scene: Scene, ask: Ask, design: Mapping[str, Any]) -> Result:
     pairs = scene.pairs(found)
     materials = [(stage.pinion_material, stage.wheel_material) for stage in found.stages]
     bodies = [
-        blanks(own, gear_tables(own, scene.gears, scene.material, k, chosen), pair)
+        blanks(gear_tables(own, scene.gears, scene.material, k, chosen), pair)
         for k, (own, chosen, pair) in enumerate(
             zip(scene.stage_tables, materials, pairs, strict=True)
         )
     ]
-    return _with_gears(scene, _rated(scene, ask, pairs, materials), pairs, found, bodies)
+    drivers = [stage.driver for stage in found.stages]
+    rated = _rated(scene, ask, pairs, drivers, materials)
+    return _with_gears(scene, rated, pairs, found, bodies)
 
 
 def with_given_rating(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Rating of gears that are all given; SolveError where they have none."""
-    return _rated(scene, ask, given_pairs(scene.stage, scene.gears))
+    return _rated(scene, ask, given_pairs(scene.stage, scene.gears), scene.drivers)
 
 
 def _rated(
-    scene: Scene, ask: Ask, pairs: tuple[GearPair, ...], materials: Materials | None = None
+    scene: Scene,
+    ask: Ask,
+    pairs: tuple[GearPair, ...],
+    drivers: Sequence[str],
+    materials: Materials | None = None,
 ) -> Result:
-    """Rating of gears, status `evaluated`; materials: as of `rating`."""
+    """Rating of gears, status `evaluated`; drivers, materials: as of `rating`."""
     assert scene.rating is not None
-    rated = rating(scene, pairs, materials)
+    rated = rating(scene, pairs, drivers, materials)
     limits, remarks = utilisations(rated), [*unused_materials(scene), *weighty(pairs, rated)]
     return Result(
         name="rating",
@@ -175,6 +181,7 @@ def given_design(
         asked,
         density.value if density else None,
         bodies,
+        scene.drivers,
     )
     return design, bodies
 
@@ -207,7 +214,8 @@ def with_rating(scene: Scene, result: Result) -> Result:
         return result
     try:
         materials = [(s.pinion_material, s.wheel_material) for s in design.stages]
-        rated = fitted(rating(held, pairs, materials), misfits)
+        drivers = [stage.driver for stage in design.stages]
+        rated = fitted(rating(held, pairs, drivers, materials), misfits)
     except SolveError as reason:
         report = result.report | {"notes": [*notes, f"There is no rating: {reason}."]}
         return replace(result, report=report)
@@ -249,23 +257,28 @@ def utilisations(rated: DriveRating) -> dict[str, float]:
 
 
 def rating(
-    scene: Scene, pairs: tuple[GearPair, ...], materials: Materials | None = None
+    scene: Scene,
+    pairs: tuple[GearPair, ...],
+    drivers: Sequence[str],
+    materials: Materials | None = None,
 ) -> DriveRating:
     """Return the rating of all stages by all standards asked for; SolveError why there is none.
 
-    materials: as of `rated_meshes`; by default there was no choice. Flaws are those of load.
+    drivers, materials: as of `rated_meshes`, which has no choice by default. Flaws are those of
+    load.
     """
     assert scene.rating
     names = materials or [("", "")] * len(pairs)
     first, *others = (
-        _by(scene, pairs, standard, names) for standard in map(by, STANDARDS[scene.rating.standard])
+        _by(scene, pairs, standard, names, drivers)
+        for standard in map(by, STANDARDS[scene.rating.standard])
     )
     first = replace(first, beside=others[0]) if others else first
     tables = [
         gear_tables(own, scene.gears, scene.material, k, of_stage)
         for k, (own, of_stage) in enumerate(zip(scene.stage_tables, names, strict=True))
     ]
-    return replace(first, flaws=(*_partial_contact(first), *unusual(pairs, tables)))
+    return replace(first, flaws=(*_partial_contact(first), *unusual(pairs, tables, drivers)))
 
 
 def _partial_contact(rated: DriveRating) -> Iterator[str]:
@@ -290,12 +303,16 @@ def _partial_contact(rated: DriveRating) -> Iterator[str]:
 
 
 def _by(
-    scene: Scene, pairs: tuple[GearPair, ...], standard: Any, materials: Materials
+    scene: Scene,
+    pairs: tuple[GearPair, ...],
+    standard: Any,
+    materials: Materials,
+    drivers: Sequence[str],
 ) -> DriveRating:
     """Return the rating of all stages; SolveError names the stage that has none, and why."""
     asked = scene.rating
     assert asked
-    meshes = rated_meshes(scene, pairs, standard, materials)
+    meshes = rated_meshes(scene, pairs, standard, materials, drivers)
     wanted = [required(of_stage(asked, own)) for own in scene.stage_tables]
     still = required_static(asked)
     rows = tuple(
@@ -305,7 +322,7 @@ def _by(
     each = zip(meshes, scene.stage_tables, strict=True)
     gears = tuple(gear_row(mesh, k, own_safety(own)) for mesh, own in each for k in (0, 1))
     factors = tuple(row for mesh in meshes for row in factor_rows(asked, mesh))
-    turned = hands([table.pinion_hand for table in scene.stage] or [None] * len(pairs))
+    turned = hands([table.pinion_hand for table in scene.stage] or [None] * len(pairs), drivers)
     efficiency, error = _efficiency(rows)
     rated = DriveRating(
         standard=standard.title(asked, factors),
@@ -321,7 +338,7 @@ def _by(
         gears=gears,
         meshes=rows,
         factors=factors,
-        shafts=shaft_rows(pairs, turned, *_largest_load(scene)),
+        shafts=shaft_rows(pairs, turned, drivers, *_largest_load(scene)),
         teeth=tuple(
             tooth_geometry(mesh.stage, mesh.pair, k, turned[mesh.stage - 1])
             for mesh in meshes

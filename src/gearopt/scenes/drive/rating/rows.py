@@ -21,6 +21,7 @@ from gearopt.physics.geometry.tooth import (
     helix_angle_at,
     normal_backlash,
 )
+from gearopt.physics.loads import torque_ratios
 from gearopt.physics.mesh_loss import (
     FRICTION_ERROR,
     friction_coefficient,
@@ -210,20 +211,24 @@ def factor_rows(rating: RatingTable, mesh: Mesh) -> list[RatingFactor]:
 
 
 def shaft_rows(
-    pairs: Sequence[GearPair], pinion_hands: Sequence[str], moved: float, speed: float
+    pairs: Sequence[GearPair],
+    pinion_hands: Sequence[str],
+    drivers: Sequence[str],
+    moved: float,
+    speed: float,
 ) -> tuple[ShaftRating, ...]:
     """Loads of every shaft; moved: torque [N mm] of the input, speed [rad/s]."""
-    forces = train_forces(pairs, moved, pinion_hands)
-    ratios = [float(pair.ratio) for pair in pairs]
+    forces = train_forces(pairs, moved, pinion_hands, drivers)
+    ratios = torque_ratios([float(pair.ratio) for pair in pairs], drivers)
     return tuple(
         ShaftRating(
             shaft=shaft,
-            torque_Nm=1e-3 * moved * math.prod(ratios[: shaft - 1]),
-            speed_rpm=rpm(speed / math.prod(ratios[: shaft - 1])),
+            torque_Nm=1e-3 * moved * ratio,
+            speed_rpm=rpm(speed / ratio),
             rotation=rotation(shaft),
             axial_force_N=sum(f.axial for f in forces if f.shaft == shaft),
         )
-        for shaft in range(1, len(pairs) + 2)
+        for shaft, ratio in enumerate((1.0, *(behind for _, behind in ratios)), 1)
     )
 
 

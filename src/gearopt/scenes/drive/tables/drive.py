@@ -189,10 +189,15 @@ class StageTable(Loaded):
     pressure_angle: Annotated[Quantity | None, PRESSURE] = Field(
         None, description="Normal pressure angle of this stage, instead of that of [gears]"
     )
+    driver: Annotated[str | None, choice("wheel", "pinion")] = Field(
+        None,
+        description="Gear that drives, of a stage whose gears are given; by default the pinion, "
+        "the gear with fewer teeth, or the wheel where [duty] asks for a ratio below 1",
+    )
     pinion_hand: Annotated[str | None, choice("right", "left")] = Field(
         None,
         description="Hand of the pinion's helix; by default right, and of later stages the one "
-        "whose thrust opposes that of the wheel on the same shaft",
+        "whose thrust opposes that of the other gear on the same shaft",
     )
     centre_distance: Annotated[Choice | None, DISTANCES] = Field(
         None,
