@@ -1,4 +1,4 @@
-"""Allowable stress numbers of steel gears, s_at of bending and s_ac of pitting, by AGMA 2001-D04.
+"""Allowable stress numbers of steel and iron by AGMA 2001-D04: s_at of bending, s_ac of pitting.
 
 For 1e7 cycles, unidirectional load and a reliability of 0.99, as a hardness times HB plus a
 constant in psi, converted exactly. 2101 calls them sigma_FP and sigma_HP. What has a single source,
@@ -21,6 +21,17 @@ SHIGLEY = "2001-D04, table 4, as in Shigley, table 14-3, and in a transcription"
 TABLE = "2001-D04, table 3, as in a public table of it"
 OLD = "2001-B88; two public programs of its allowables"
 SINGLE = "2001-B88; a single source"
+IRON = "2001-D04, tables 3 and 4, lower values of ranges, as in Shigley, ch. 14; a single source"
+IRONS = {  # by ASTM: s_ac, s_at [ksi], E [10^6 psi], the last of Shigley, table 14-8
+    "ASTM A48 class 20": (50.0, 5.0, 22.0),
+    "ASTM A48 class 30": (65.0, 8.5, 22.0),
+    "ASTM A48 class 40": (75.0, 13.0, 22.0),
+    "ASTM A536 60-40-18": (77.0, 22.0, 24.0),
+    "ASTM A536 80-55-06": (77.0, 22.0, 24.0),
+    "ASTM A536 100-70-03": (92.0, 27.0, 24.0),
+    "ASTM A536 120-90-02": (103.0, 31.0, 24.0),
+}
+MODULI = {iron: 1e6 * PSI * modulus for iron, (_, _, modulus) in IRONS.items()}  # MPa
 
 # (treatment, surface, grade): psi per HB, psi, source; surface: "" where it does not matter
 BENDING: dict[tuple[str, str, int], tuple[float, float, str]] = {
@@ -40,6 +51,7 @@ BENDING: dict[tuple[str, str, int], tuple[float, float, str]] = {
     ("induction, roots", "", 2): (0.0, 55000.0, SHIGLEY),
     ("induction, flanks", "", 1): (0.0, 22000.0, SHIGLEY),
     ("induction, flanks", "", 2): (0.0, 22000.0, SHIGLEY),
+    **{(iron, "", 1): (0.0, 1000.0 * bending, IRON) for iron, (_, bending, _) in IRONS.items()},
 }
 
 CONTACT: dict[tuple[str, str, int], tuple[float, float, str]] = {
@@ -62,6 +74,7 @@ CONTACT: dict[tuple[str, str, int], tuple[float, float, str]] = {
         )
         for grade, ksi in enumerate(values, 1)
     },
+    **{(iron, "", 1): (0.0, 1000.0 * contact, IRON) for iron, (contact, _, _) in IRONS.items()},
 }
 
 # through-hardened steel, psi: constant, per HB, per HB^2
@@ -69,8 +82,10 @@ BENDING_B88 = {1: (-274.0, 167.0, -0.152, OLD), 2: (6235.0, 174.0, -0.126, SINGL
 CONTACT_B88 = {1: (26000.0, 327.0, 0.0, OLD), 2: (27000.0, 364.0, 0.0, OLD)}
 
 TREATMENTS = tuple(dict.fromkeys(treatment for treatment, _, _ in BENDING))
-CURVES = {"through-hardened": "through-hardened"} | dict.fromkeys(
-    ("nitrided", "nitralloy", "2.5 % chrome"), "nitrided"
+CURVES = (
+    {"through-hardened": "through-hardened"}
+    | dict.fromkeys(("nitrided", "nitralloy", "2.5 % chrome"), "nitrided")
+    | dict.fromkeys(IRONS, "iron")
 )  # kind of the life curves; carburised for all others
 
 
@@ -168,4 +183,5 @@ def _allowable(
         raise ValueError(f"the strength of {treatment} steel needs its hardness in HB")
     low, high = NITRIDED_CORE.get(treatment, HARDNESS)
     within = not slope or low <= hardness <= high
-    return Allowable(PSI * (base + slope * min(hardness, high)), source, source != SINGLE, within)
+    verified = source not in (SINGLE, IRON)
+    return Allowable(PSI * (base + slope * min(hardness, high)), source, verified, within)

@@ -21,7 +21,7 @@ PITTING, PITTING_NITRIDED = (2.466, 0.056), (1.249, 0.0138)
 PITTING_LONG = {"general": (1.4488, 0.023), "critical": (2.466, 0.056)}
 SHORTEST_BENDING, SHORTEST_PITTING = 1e3, 1e4  # cycles; the curves are flat below
 LONGEST_LIFE = 1e10  # cycles up to which the curves are drawn
-KINDS = ("through-hardened", "carburised", "nitrided")
+KINDS = ("through-hardened", "carburised", "nitrided", "iron")
 SERVICES = ("general", "critical")
 
 
@@ -64,14 +64,16 @@ class Curve:
 def bending_curve(kind: str, hardness: float = 250.0, service: str = "general") -> Curve:
     """Return the curve of Y_N; hardness [HB] of through-hardened steel, 160 to 400.
 
-    kind: one of KINDS (flame and induction hardened steels count as carburised: unverified);
+    kind: one of KINDS (flame and induction hardened steels count as carburised: unverified; the
+    standard's curves are of steel, of which iron has the lowest: unverified);
     service: one of SERVICES, "critical" where little pitting and wear is allowed. Between the
     curves of 160, 250 and 400 HB ln Y_N is linear in the hardness, outside it is that of the
     nearest; the standard says nothing. ValueError for other words. Source: AGMA 2001-D04, clause
     17.
     """
     _check(kind, service)
-    short = {"carburised": CARBURISED, "nitrided": NITRIDED}.get(kind) or _between(hardness)
+    known = {"carburised": CARBURISED, "nitrided": NITRIDED, "iron": BENDING[160.0]}
+    short = known.get(kind) or _between(hardness)
     return Curve(short, BENDING_LONG[service], SHORTEST_BENDING)
 
 
@@ -81,7 +83,7 @@ def pitting_curve(kind: str, service: str = "general") -> Curve:
     Source: AGMA 2001-D04, clause 17.
     """
     _check(kind, service)
-    if kind == "nitrided":
+    if kind in ("nitrided", "iron"):
         return Curve(PITTING_NITRIDED, PITTING_LONG[service], SHORTEST_PITTING, least=True)
     return Curve(PITTING, PITTING_LONG[service], SHORTEST_PITTING)
 

@@ -275,6 +275,8 @@ def _cycle_factor(case: Case, contact: bool) -> Factor:
         remark = remark or f"no hardness: curve of {min(life.BENDING):g} HB"
     symbol = "Z_N" if contact else "Y_N"
     induction = not contact and any(s.treatment.startswith("induction") for s in case.steels)
+    if any(s.kind == "iron" for s in case.steels):
+        induction, remark = True, remark or "iron by the lowest curve of steel"
     made = _floats(_life_factors(case, contact))
     return Factor(symbol, made, "2001-D04, 17", "", not induction, remark)
 

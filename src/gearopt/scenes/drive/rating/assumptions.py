@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from gearopt.formulations.strength.standard import MIDWAY
+from gearopt.physics.agma.allowables import IRONS
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.case import Practice
 from gearopt.scenes.drive.face_widths import excesses
@@ -26,7 +27,7 @@ def rating_assumptions(scene: Scene) -> list[str]:
     assert asked
     agma, iso = asked.standard != "iso6336", asked.standard != "agma"
     sentences = [
-        "The rating is of external cylindrical steel gears on parallel shafts; the pinions drive. "
+        "The rating is of external cylindrical gears on parallel shafts; the pinions drive. "
         "Torques and forces are those without losses.",
         "The standards themselves were not read: formulas and values are those of textbooks, "
         "tables and public programs; those from a single source are marked unverified.",
@@ -77,6 +78,7 @@ def _agma_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
     )
     words = "" if all("K_v" in own for own in known) else by("agma").stated_accuracy(asked)
     owned = any(table.quality is not None for table, _ in every_gear(scene))
+    iron = any(table.treatment in IRONS for table, _ in every_gear(scene))
     others = ", or of the gear's own where the file gives it" if owned else ""
     return [
         *([f"K_v is that of transmission accuracy {words}{others}."] if words else []),
@@ -84,6 +86,12 @@ def _agma_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
         + (", crowned" if asked.crowned else ", teeth without crowning")
         + f"; the pinion offset S_1/S is {float(asked.pinion_offset):g}.",
         *([] if all("J" in own for own in known) else [bending]),
+        *[
+            "Irons by ASTM have the lower strengths of AGMA's ranges (unverified) and the lowest "
+            "stress cycle factors of steel, for the standard has none of iron; unless the file "
+            "gives one, the elastic modulus of A48 is 152 GPa, of A536 165 GPa (unverified)."
+        ]
+        * iron,
     ]
 
 

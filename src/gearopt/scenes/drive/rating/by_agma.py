@@ -6,7 +6,7 @@ from typing import Any
 
 from gearopt.formulations.drive.rating import GIVEN, RatingFactor
 from gearopt.formulations.strength.agma import Agma
-from gearopt.physics.agma.allowables import CURVES
+from gearopt.physics.agma.allowables import CURVES, IRONS
 from gearopt.physics.agma.factors import ACCURACIES, quality_of_accuracy
 from gearopt.physics.agma.rating import rate, rate_spectrum
 from gearopt.physics.agma.rating_factors import Practice, Steel
@@ -65,7 +65,7 @@ def names(asked: RatingTable) -> dict[str, str]:
 def material(table: GearTable) -> str:
     """Return a gear's material in words."""
     assert table.treatment
-    words = [table.treatment, f"grade {table.grade or 1}"]
+    words = [table.treatment, *([] if table.treatment in IRONS else [f"grade {table.grade or 1}"])]
     words = [table.steel, *words] if table.steel else words
     core = " core" if CURVES.get(table.treatment) == "nitrided" else ""
     words += [f"{table.hardness}{core}"] if table.hardness else []
@@ -80,9 +80,9 @@ def steel(table: GearTable) -> Steel:
     return Steel(
         table.treatment or usual.treatment,
         table.grade or usual.grade,
-        table.hardness.value if table.hardness else usual.hardness,
+        table.hardness.value if table.hardness and table.treatment not in IRONS else usual.hardness,
         table.surface_hardness or usual.surface,
-        table.elastic_modulus.value if table.elastic_modulus else usual.modulus,
+        table.modulus or usual.modulus,
         usual.poisson if table.poisson_ratio is None else float(table.poisson_ratio),
         table.roughness.value if table.roughness else usual.finish,
         bool(table.reversed_load),

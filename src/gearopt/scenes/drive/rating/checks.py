@@ -4,13 +4,14 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from gearopt.formulations.strength import Law
-from gearopt.physics.agma.allowables import CONTACT, bending_allowable, contact_allowable
+from gearopt.physics.agma.allowables import CONTACT, IRONS, bending_allowable, contact_allowable
 from gearopt.physics.agma.rating_factors import SURFACE_HARD_KINDS, Steel
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.materials import SURFACE_HARDENED, strength
 from gearopt.scenes.drive.face_widths import fixed_width
 from gearopt.scenes.drive.rating.iso_material import SOFT_ROOTS, steel
 from gearopt.scenes.drive.rating.materials import Named, choices
+from gearopt.scenes.drive.rating.steels import chosen
 from gearopt.scenes.drive.tables.drive import Gears, Objective, StageTable
 from gearopt.scenes.drive.tables.iso6336 import ISO_KEYS, IsoTable
 from gearopt.scenes.drive.tables.rating import (
@@ -383,8 +384,10 @@ def _check_steel(gear: GearTable, place: Place, given: dict[str, Any]) -> None:
     """Refuse a gear whose steel has no strength in the tables, unless that is given."""
     _check_own(gear, place, given, ("s_ac", "s_at"))
     if gear.steel and gear.treatment is None:
-        rule = "has no strength by AGMA 2001, which has tables of four kinds of steel alone"
-        tell = 'Write standard = "iso6336" in [rating], or another steel'
+        rule = "has no strength by AGMA 2001, which has tables by treatment and by ASTM classes"
+        iron, tell = chosen(gear), 'Write standard = "iso6336" in [rating], or another steel'
+        if iron and iron.us in IRONS:
+            tell = f'Write treatment = "{iron.us}" instead of steel, or standard = "iso6336"'
         raise refuse(rule, tell, (*place, "steel"), "tell")
     if gear.treatment is None:
         rule = "is missing: a rating needs the steel of every gear (or give steel)"

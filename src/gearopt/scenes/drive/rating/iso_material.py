@@ -1,5 +1,6 @@
 """The material of a gear by ISO 6336-5, from its table."""
 
+from gearopt.physics.agma.allowables import MODULI
 from gearopt.physics.iso6336.materials import SURFACE_HARDENED, Material
 from gearopt.scenes.drive.tables.rating import GearTable
 
@@ -11,6 +12,8 @@ OF_TREATMENT = {  # treatment of AGMA: the nearest material of ISO 6336-5
     "nitrided": "NV",
     "nitralloy": "NT",
     "2.5 % chrome": "NT",
+    **{iron: "GG" if "A48" in iron else "GGG" for iron in MODULI},
+    "ASTM A536 60-40-18": "GGG ferritic",
 }
 SOFT_ROOTS = "induction, flanks"  # IF of table 1 is hardened at the roots, too (memory)
 RZ = 6.0  # R_z over R_a. Source: ISO 6336-2:2006, 12.3.1.3.1: R_a = R_z/6
@@ -28,7 +31,7 @@ def steel(table: GearTable) -> Material:
         hardness.value if hardness else 0.0,
         table.iso_core or usual.core,
         yield_strength=table.yield_strength.value if table.yield_strength else 0.0,
-        modulus=table.elastic_modulus.value if table.elastic_modulus else usual.modulus,
+        modulus=table.modulus or usual.modulus,
         poisson=usual.poisson if table.poisson_ratio is None else float(table.poisson_ratio),
         flank=_flank(table, usual),
         root=table.root_rz.value if table.root_rz else usual.root,

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from gearopt.physics.agma.allowables import CONTACT, TREATMENTS
+from gearopt.physics.agma.allowables import CONTACT, MODULI, TREATMENTS
 from gearopt.physics.agma.bending import LOADS
 from gearopt.physics.agma.factors import ALIGNMENT, QUALITIES
 from gearopt.physics.agma.life import SERVICES
@@ -153,7 +153,8 @@ class GearKeys(BlankKeys, IsoGearKeys):
         "treatment, grade, hardness and the material of ISO 6336-5 where these are not given",
     )
     treatment: Annotated[str | None, TREATMENT] = Field(
-        None, description="Heat treatment of the steel; a rating needs it (or steel)"
+        None,
+        description="Heat treatment of the steel, or iron by ASTM; a rating needs it (or steel)",
     )
     grade: Annotated[int | None, GRADE] = Field(
         None, description="Metallurgical grade of AGMA; by default 1"
@@ -176,7 +177,7 @@ class GearKeys(BlankKeys, IsoGearKeys):
         description="Allowable bending stress number of its own, instead of the tables of AGMA",
     )
     elastic_modulus: Annotated[Quantity | None, quantity("stress", "206 GPa")] = Field(
-        None, description="Modulus of elasticity; by default 206 GPa"
+        None, description="Modulus of elasticity; by default 206 GPa, of irons by ASTM less"
     )
     poisson_ratio: Annotated[Fraction | None, number(0.3, 0, Fraction(1, 2), zero=True)] = Field(
         None, description="Poisson's ratio; by default 0.3"
@@ -200,6 +201,12 @@ class GearKeys(BlankKeys, IsoGearKeys):
         None,
         description="Names of [[material]], of which the best one is chosen, instead of a steel",
     )
+
+    @property
+    def modulus(self) -> float | None:
+        """Modulus of elasticity [MPa]; None: that of steel."""
+        own = self.elastic_modulus
+        return own.value if own else MODULI.get(self.treatment or "")
 
 
 class GearTable(GearKeys):
