@@ -199,8 +199,6 @@ class Gear:
     @property
     def active_tip_diameter(self) -> Any:
         """Tip form diameter d_Na [mm], to which flanks touch: below d_a by the chamfer."""
-        if _none(self.rack.tip_chamfer):
-            return self.tip_diameter
         return self.tip_diameter - 2.0 * self.rack.tip_chamfer * self.normal_module
 
     @property

@@ -386,16 +386,14 @@ def _in_one_line(result: Result, measures: Measures) -> Section | None:
 
 
 DRAWINGS = (layout_views.section, layout_solid.section, _in_one_line)
+CAPACITIES = rating_gears.gears, rating_gears.static
 RATINGS = (
     *(rating_gears.gears, rating_tables.forces, rating_gears.factors),
     *(rating_gears.levels, rating_gears.static, mesh_view.section, rating_tables.teeth),
 )
 PAGES_OF_GIVEN = Pages(
     sections=(summary, *RATINGS[:2], *DRAWINGS, *RATINGS[2:], numbers, asked, assumptions),
-    terminal=(
-        *(rating_gears.gears, rating_gears.static, rating_gears.factors),
-        rating_tables.forces,
-    ),
+    terminal=(*CAPACITIES, rating_gears.factors, rating_tables.forces),
     tiles=rating_words.tiles,
     binding_limit=rating_words.binding_limit,
     figures=rating_words.figures,
@@ -420,7 +418,7 @@ PAGES = Pages(
         places,
         counts,
         limits,
-        *(rating_gears.gears, rating_gears.static),
+        *CAPACITIES,
         trains,
         processes,
         *AFTER_DESIGN,

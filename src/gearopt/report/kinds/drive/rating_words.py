@@ -4,12 +4,7 @@ import re
 from collections.abc import Sequence
 from math import isclose, pi
 
-from gearopt.formulations.drive.rating import (
-    DriveRating,
-    GearRating,
-    MeshRating,
-    StaticRating,
-)
+from gearopt.formulations.drive.rating import DriveRating, GearRating, MeshRating, StaticRating
 from gearopt.optimise.result import FEASIBLE, Result
 from gearopt.optimise.typed import typed
 from gearopt.physics.agma import life as life_curves

@@ -15,9 +15,7 @@ from gearopt.scenes.drive.rating.gears import Tables, blanks
 from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, RatingTable
 
-__all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
-__all__ += ["NAME", "STATIC", "UNVERIFIED_SPECTRUM", "LIMIT", "bare_practice", "practice", "steel"]
-__all__ += ["title"]
+__all__ = ["rate", "rate_spectrum"]  # a standard has these names of another module, too
 NAME = "AGMA"  # in short
 NAMES = {  # of the factors, as AGMA 2001 has them
     "K_o": "overload factor",

@@ -15,9 +15,8 @@ from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.drive.tables.iso6336 import NAMES
 from gearopt.scenes.drive.tables.rating import RatingTable
 
-__all__ = ["NAMES", "PROPORTIONAL", "UNITS", "finish", "given", "material", "rate", "rate_spectrum"]
-__all__ += ["NAME", "STATIC", "UNVERIFIED_SPECTRUM", "LIMIT", "bare_practice", "practice", "steel"]
-__all__ += ["title"]
+# a standard has these names of other modules, too
+__all__ = ["NAMES", "finish", "material", "rate", "rate_spectrum", "steel"]
 NAME = "ISO 6336"  # in short
 SUFFIXES = {"MPa": "MPa", "mm": "mm", "sqrt(MPa)": "sqrt_MPa"}
 UNITS = {symbol: SUFFIXES[unit] for symbol, (_, unit) in CLAUSES.items() if unit}

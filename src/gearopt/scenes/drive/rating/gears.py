@@ -83,7 +83,9 @@ def operations(
     rating: RatingTable, duty: Duty, levels: Sequence[LoadTable], slower: float, tables: Tables
 ) -> tuple[Operation, ...]:
     """Operation of a pair at every level of load; slower: input over pinion speed."""
-    hours, at_power = required_hours(rating, duty), duty_operation(rating, duty, slower, tables)
+    hours = required_hours(rating, duty)
+    at_duty = duty.input_power, duty.input_speed.value / slower
+    at_power = _operation(rating, *at_duty, hours, tables)
     each: list[Any] = [
         replace(
             at_power,
@@ -94,12 +96,6 @@ def operations(
         for level in levels
     ]
     return tuple(each) or (at_power,)
-
-
-def duty_operation(rating: RatingTable, duty: Duty, slower: float, tables: Tables) -> Operation:
-    """Operation of a pair at the power of the duty; slower: input over pinion speed."""
-    at_duty = duty.input_power, duty.input_speed.value / slower
-    return _operation(rating, *at_duty, required_hours(rating, duty), tables)
 
 
 def unit_operation(rating: RatingTable, hours: float, tables: Tables) -> Operation:

@@ -11,7 +11,7 @@ from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.iso6336.static import static_given, static_operation
 from gearopt.physics.loads import torque_ratios
 from gearopt.physics.rating import Operation, Rating
-from gearopt.scenes.drive.rating.gears import Tables, duty_operation, gear_tables, operations
+from gearopt.scenes.drive.rating.gears import Tables, gear_tables, operations
 from gearopt.scenes.drive.rating.options import of_stage
 from gearopt.scenes.drive.scene import Scene
 
@@ -41,6 +41,11 @@ class Mesh:
     def hardest(self) -> Rating:
         """Return the rating at the level of the largest stresses, which K_v raises with speed."""
         return max(self.levels, key=lambda level: level.bending_stress)
+
+    @property
+    def unverified(self) -> tuple[str, ...]:
+        """Return the symbols of factors that have no second source."""
+        return (*self.hardest.unverified, *(self.static.unverified if self.static else ()))
 
     @property
     def largest_load(self) -> tuple[float, float]:
@@ -94,7 +99,7 @@ def _mesh(
     practice = standard.practice(rating, stage, pair, tables)
     levels = operations(rating, scene.duty, scene.load, slower, tables)
     given, peak = standard.given(rating, stage), rating.static_torque_factor
-    at_duty = duty_operation(rating, scene.duty, slower, tables)
+    (at_duty,) = operations(rating, scene.duty, (), slower, tables)
 
     def static(factor: float) -> Rating | None:
         if peak is None or not standard.STATIC:

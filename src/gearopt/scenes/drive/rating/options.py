@@ -6,7 +6,6 @@ from fractions import Fraction
 from importlib import import_module
 from typing import Any
 
-from gearopt.formulations.strength.iso6336 import Iso6336
 from gearopt.formulations.strength.standard import Load, Option
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.static import static_given, static_operation
@@ -102,7 +101,7 @@ def _option(
     return Option(tuple(standards), words, *map(_two, columns))
 
 
-def _static(standard: Iso6336, rating: RatingTable, factor: Fraction) -> Iso6336:
+def _static(standard: Any, rating: RatingTable, factor: Fraction) -> Any:
     """The rating against static strength beside that by ISO 6336; factor: of the duty's torque."""
     (bending, contact), asked = required(rating), required_static(rating)
     return replace(

@@ -313,11 +313,9 @@ def _by(
     asked = scene.rating
     assert asked
     meshes = rated_meshes(scene, pairs, standard, materials, drivers)
-    wanted = [required(of_stage(asked, own)) for own in scene.stage_tables]
     still = required_static(asked)
-    rows = tuple(
-        mesh_row(asked, mesh, (*w, *still)) for mesh, w in zip(meshes, wanted, strict=True)
-    )
+    wanted = [(*required(of_stage(asked, own)), *still) for own in scene.stage_tables]
+    rows = tuple(mesh_row(asked, mesh, w) for mesh, w in zip(meshes, wanted, strict=True))
     least = min(rows, key=lambda row: row.power_capacity_kW)
     each = zip(meshes, scene.stage_tables, strict=True)
     gears = tuple(gear_row(mesh, k, own_safety(own)) for mesh, own in each for k in (0, 1))
@@ -351,15 +349,7 @@ def _by(
             for row in level_rows(scene.load, scene.duty.input_speed, mesh)
         ),
         unverified=(
-            *dict.fromkeys(
-                [f"{r.symbol} of stage {r.stage}" for r in factors if not r.verified]
-                + [
-                    f"{n} of stage {m.stage}"
-                    for m in meshes
-                    if m.static
-                    for n in m.static.unverified
-                ]
-            ),
+            *dict.fromkeys(f"{name} of stage {m.stage}" for m in meshes for name in m.unverified),
             *(standard.UNVERIFIED_SPECTRUM if scene.load else ()),
         ),
         by=standard.NAME,
