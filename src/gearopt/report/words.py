@@ -48,7 +48,10 @@ LIMITS = {  # the same of limits
     "rss": "root-sum-square error",
     "worst_case": "worst-case error",
 }
-INVERSE = {"inverse acceleration": ("acceleration", "rad/s²")}  # name and unit of the inverse
+INVERSE = {  # name and unit of the inverse
+    "inverse acceleration": ("acceleration", "rad/s²"),
+    "inverse contact ratio": ("contact ratio", ""),
+}
 _NUMBER = r"-?[0-9.]+(?:e[+-]?[0-9]+)?"
 VIOLATION = re.compile(  # a sentence of `optimise.scale.broken`
     rf"(?P<name>\S+) (?:is violated by (?P<excess>{_NUMBER})|= (?P<value>{_NUMBER}) is "

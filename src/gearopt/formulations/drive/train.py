@@ -14,11 +14,12 @@ from typing import Any
 import numpy as np
 
 from gearopt.formulations.drive.toothing import Toothing, in_columns, taken
-from gearopt.formulations.strength import Law
+from gearopt.formulations.strength import ALLOWANCE, Law
 from gearopt.formulations.strength.standard import Option
 from gearopt.frozen import dataclass
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import GearPair
+from gearopt.physics.geometry.contact import largest_sliding
 
 OBJECTIVES = {  # name -> unit
     "gear_volume": "mm3",
@@ -27,6 +28,11 @@ OBJECTIVES = {  # name -> unit
     "total_length": "mm",
     "cost": "",
     "mesh_loss": "percent",
+}
+EXTREMES = {  # largest values over the stages, which do not add up, and their units
+    "axial_force": "N",
+    "specific_sliding": "",
+    "inverse_contact_ratio": "",
 }
 WEIGHTED = "weighted sum"  # of objectives, by the train's weights
 LENGTHS = ("sum_of_centre_distances", "total_length")  # objectives along the line of centres
@@ -101,6 +107,8 @@ class Stage:
     least and greatest x1, and so of x1 + x2, of real-valued sizes, else None.
     safety: S_F and S_H asked of it over those of the train.
     overlap: minimum overlap ratio, 0: no limit; axial_force: maximum [N] at the train's torque.
+    specific_sliding: maximum, without its sign; inverse_contact_ratio: maximum of one over the
+    total contact ratio; both, and axial_force, of stages that ratings limit.
     options: ways of making them that are rated, of which one is chosen; none: the law limits alone.
     blanks: of pinion and wheel.
     """
@@ -119,6 +127,8 @@ class Stage:
     blanks: tuple[Blank, Blank] = (SOLID, SOLID)
     overlap: float = 0.0
     axial_force: float = math.inf
+    specific_sliding: float = math.inf
+    inverse_contact_ratio: float = math.inf
     safety: tuple[float, float] = (1.0, 1.0)
 
     def __post_init__(self) -> None:
@@ -166,10 +176,27 @@ class Stage:
             return np.divide(self.overlap * math.pi, sine) * pair.normal_module
 
     def axial_use(self, pair: GearPair, torque: Any) -> Any:
-        """Part of the maximum axial force in use, F_a = 2 T tan(beta)/d1, at a torque [N mm]."""
-        first = pair.pinion
-        force = 2.0 * torque * np.tan(np.abs(first.helix_angle)) / first.reference_diameter
-        return force / self.axial_force
+        """Part of the maximum axial force in use at a torque [N mm]."""
+        return axial_force(pair, torque) / self.axial_force
+
+    def least_width(self, pair: GearPair, torque: Any, width: Any) -> Any:
+        """Face widths [mm] from some on that the contact ratio allows; inf: other limits do not.
+
+        Limits on axial force and specific sliding leave a pair out, whatever its width.
+        """
+        if math.isfinite(self.axial_force):
+            allowed = axial_force(pair, torque) <= self.axial_force * (1.0 + ALLOWANCE)
+            width = np.where(allowed, width, np.inf)
+        if math.isfinite(self.specific_sliding):
+            allowed = largest_sliding(pair) <= self.specific_sliding * (1.0 + ALLOWANCE)
+            width = np.where(allowed, width, np.inf)
+        if math.isfinite(self.inverse_contact_ratio):
+            asked = (1.0 - ALLOWANCE) / self.inverse_contact_ratio
+            lacking = asked - pair.transverse_contact_ratio
+            overlap = pair.of_width(1.0).overlap_ratio  # of a millimetre
+            with np.errstate(divide="ignore", invalid="ignore"):
+                width = np.maximum(width, np.where(lacking > 0.0, lacking / overlap, 0.0))
+        return width
 
     @property
     def pinion_fixed(self) -> bool:
@@ -441,6 +468,12 @@ class Train:
         low = tuple(float(face.over_module[0] or 0) for face in faces)
         high = tuple(_or_inf(face.over_module[1]) for face in faces)
         return dict(zip(WIDTHS, (low, high, tuple(float(f.least) for f in faces)), strict=True))
+
+
+def axial_force(pair: GearPair, torque: Any) -> Any:
+    """F_a = 2 T tan(beta)/d1 [N] at a torque of the pinion [N mm]."""
+    first = pair.pinion
+    return 2.0 * torque * np.tan(np.abs(first.helix_angle)) / first.reference_diameter
 
 
 def _or_inf(number: Fraction | int | None) -> float:

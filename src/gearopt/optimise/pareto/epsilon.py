@@ -216,7 +216,7 @@ def _stairs(state: Run, points: int) -> bool:
         if point is None or not point.proven:
             return point is None and state.skipped[-1].proven
         _keep(state, point)
-        held[second] = float(point.values[1]) * (1.0 - STEP)
+        held[second] = float(point.values[1]) * (1.0 - STEP) or -STEP
     return False
 
 

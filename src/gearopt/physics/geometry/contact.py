@@ -111,6 +111,19 @@ def specific_sliding(path: ContactPath, ratio: Any, position: Any) -> tuple[Any,
     return 1.0 - second / (ratio * first), 1.0 - ratio * first / second
 
 
+@np.errstate(invalid="ignore", divide="ignore")
+def largest_sliding(pair: GearPair) -> Any:
+    """Largest specific sliding of both flanks, without its sign, at their root ends of contact.
+
+    Inf where the mate's tip passes the end of an involute.
+    """
+    path = contact_path(pair)
+    roots = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
+    first = specific_sliding(path, pair.ratio, path.start)[0]
+    second = specific_sliding(path, pair.ratio, path.end)[1]
+    return np.where(np.minimum(*roots) > 0.0, -np.minimum(first, second), np.inf)[()]
+
+
 def sliding_velocity(position: Any, pinion_speed: Any, ratio: Any) -> Any:
     """Return the sliding velocity v_g = omega_1 (1 + 1/u) s [mm/s].
 

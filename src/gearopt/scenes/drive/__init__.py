@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive.continuous_sizing import problem as real_valued
+from gearopt.formulations.drive.train import EXTREMES
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.result import Result
@@ -72,6 +73,10 @@ def idle(scene: Scene, method: str | None) -> dict[str, str]:
         reasons["top"] = (
             "next best answers are listed of whole teeth, which a table [teeth] asks for"
         )
+    elif scene.objective.extreme:
+        reasons["top"] = (
+            f"one design of the least {scene.objective.extreme} is found, of the least volume"
+        )
     elif not boxed and method not in (None, "exact"):
         reasons["top"] = f"{method} finds one answer; exact lists the next best ones"
     return reasons if boxed else reasons | unseeded(method)
@@ -111,7 +116,8 @@ def posed(scene: Scene, method: str) -> Model:
     if takes_real_values(scene, method):
         train = drive.train
         return Model(real_valued(train), "Real-valued teeth and modules", train.unit)
-    return Model(whole_teeth(drive), "Whole teeth and standard modules", drive.train.unit)
+    unit = EXTREMES.get(scene.objective.extreme, drive.train.unit)
+    return Model(whole_teeth(drive), "Whole teeth and standard modules", unit)
 
 
 def rate(scene: Scene, ask: Ask) -> Result:

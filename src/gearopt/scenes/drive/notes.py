@@ -40,15 +40,29 @@ MESH_LOSS = (
 )
 
 
+OF_EXTREMES = {
+    "axial_force": "The axial force is the largest of all stages, 2 T tan(β)/d; spur gears have "
+    "none, so that every spur drive is one of least axial force, and large gears have little: "
+    "limit wheel_diameter, or weigh it against gear_volume by gearopt pareto",
+    "specific_sliding": "The specific sliding is the largest of all gears, without its sign, at "
+    "the ends of contact",
+    "inverse_contact_ratio": "The contact ratio is the smallest of all stages, of ε_α + ε_β; its "
+    "inverse is minimised",
+}
+TIES = "Of designs up to this value the one of least gear volume is shown."
+
+
 def of_objectives(scene: Scene, names: Sequence[str]) -> list[str]:
     """How objectives are computed whose names alone do not say it."""
-    return [MESH_LOSS] if "mesh_loss" in names else []
+    sentences = {"mesh_loss": MESH_LOSS} | {n: f"{words}." for n, words in OF_EXTREMES.items()}
+    return [words for name, words in sentences.items() if name in names]
 
 
 def notes(scene: Scene, exact: bool) -> list[str]:
     """Notes for the reader of a result beside the numbers."""
     sentences = of_objectives(scene, [scene.objective.minimise])
     limits, stages = scene.limits, scene.stage
+    sentences += [TIES] * bool(scene.objective.extreme)
     if limits.preset is not None:
         sentences.append(f"The load limits are those of preset {limits.preset}, not of a standard.")
     if scene.teeth is not None and not exact:

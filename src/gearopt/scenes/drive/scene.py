@@ -335,7 +335,16 @@ class Scene(Table):
         return ""
 
     def _check_helix_limits(self) -> None:
-        """Refuse limits of overlap ratio and axial force where no search keeps to them."""
+        """Refuse limits of overlap ratio and axial force where no search keeps to them.
+
+        Such an objective, too, which takes one number of stages.
+        """
+        if self.objective.extreme and self.to_size:
+            several = "one number of stages" if self.several else ""
+            at_once = self.layout is not None and self.layout.together
+            sized = "gears that are sized before their layout (without together)" if at_once else ""
+            if lacks := several or sized or self._lacks("for such an objective"):
+                raise refuse(f"needs {lacks}", "gear_volume", ("objective", "minimise"))
         tables: list[tuple[Any, Limits | StageTable]] = [(("limits",), self.limits)]
         tables += [(("stage", k), own) for k, own in enumerate(self.stage)]
         for place, table in tables:
@@ -474,7 +483,7 @@ class Scene(Table):
             tolerance=self.duty.ratio_tolerance,
             stages=stages,
             coprime=bool(self.teeth and self.teeth.coprime),
-            objective=self.objective.minimise,
+            objective="gear_volume" if self.objective.extreme else self.objective.minimise,
             density=density.value if density else None,
             law=self.law,
             speed=self.duty.input_speed.value,

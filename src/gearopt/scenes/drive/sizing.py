@@ -7,7 +7,8 @@ from typing import Any
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import continuous_sizing, sizing_text, teeth
 from gearopt.formulations.drive.processes import ProcessOne, ProcessTwo, methods
-from gearopt.formulations.drive.train import MASSES, Train
+from gearopt.formulations.drive.teeth import load_front
+from gearopt.formulations.drive.train import EXTREMES, MASSES, Train
 from gearopt.frozen import dataclass
 from gearopt.optimise.certificate import reconcile
 from gearopt.optimise.certified import run
@@ -150,7 +151,8 @@ def _rated(drive: Drive, ask: Ask) -> Result:
     share of the seconds is kept for them.
     """
     train, whole, seconds = drive.train, whole_teeth(drive, ask.top), ask.budget.seconds
-    if seconds is None or not drive.one_load or ask.method not in (None, "exact"):
+    bounded = drive.one_load and not drive.scene.objective.extreme
+    if seconds is None or not bounded or ask.method not in (None, "exact"):
         return _solved(train, ask, whole)
     kept, clock = min(BOUND_SECONDS, BOUND_SHARE * seconds), Clock(ask.budget)
     result = _solved(train, replace(ask, budget=ask.budget.less(kept)), whole)
@@ -192,6 +194,10 @@ def _by_load_limits(train: Train) -> Train | None:
 def whole_teeth(drive: Drive, top: int = 1, floor: float = -math.inf) -> Problem:
     """Problem of whole teeth, with all methods that a drive has for it."""
     train = drive.train
+    if drive.scene.objective.extreme:
+        return load_front.limited(
+            train, drive.scene.objective.extreme, {}, drive.scene.objective.extreme
+        )
     problem = teeth.problem(train, top, floor)
     if not train.law.limits:
         return problem
@@ -204,6 +210,10 @@ def takes_real_values(scene: Scene, method: str | None) -> bool:
     if scene.teeth is None and method in ("exact", *(n.replace("_", "-") for n in PROCESSES)):
         raise SolveError(f"the method {method} needs a [teeth] table in the file")
     continuous = scene.teeth is None or method in CONTINUOUS
+    if continuous and scene.objective.extreme:
+        raise SolveError(
+            f"{method} takes real-valued teeth, which have no least {scene.objective.extreme}"
+        )
     if continuous and scene.by_ratings and not scene.rated_real:
         raise SolveError(
             "load spectra, materials to choose from, several helix angles, given centre distances "
@@ -217,9 +227,10 @@ def takes_real_values(scene: Scene, method: str | None) -> bool:
 
 def _solved(train: Train, ask: Ask, problem: Problem) -> Result:
     """Answer to one formulation of the drive, in a drawing's words."""
-    watch = in_part(ask.watch, train.unit)
+    unit = EXTREMES.get(problem.rows.objectives[0], train.unit)
+    watch = in_part(ask.watch, unit)
     result, outcome = run(problem, ask.method, ask.budget, ask.seed, watch, ask.gap)
-    result = replace(result, objective=result.objective | {"unit": train.unit})
+    result = replace(result, objective=result.objective | {"unit": unit})
     if result.value is None or outcome.x is None:
         return result
     from gearopt.formulations.drive.design import describe  # a design was found

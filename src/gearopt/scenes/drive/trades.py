@@ -7,7 +7,7 @@ from typing import Any
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import continuous_sizing, sizing_text, teeth
 from gearopt.formulations.drive.teeth import load_front
-from gearopt.formulations.drive.train import OBJECTIVES, Train
+from gearopt.formulations.drive.train import EXTREMES, OBJECTIVES, Train
 from gearopt.optimise.pareto.objectives import EPSILON, EXACT, Limiting, Objective, Tradeoff
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
@@ -22,7 +22,8 @@ def objectives(scene: Scene) -> dict[str, str]:
     to_choose(scene)
     names = {name: unit for name, unit in OBJECTIVES.items() if not _why_lacking(scene, name)}
     used = {load_front.UTILISATION: ""} if scene.teeth is not None else {}
-    return names | used | _of_box(scene)
+    by_rating = used and scene.by_ratings and not scene.limits.loaded
+    return names | used | (EXTREMES if by_rating else {}) | _of_box(scene)
 
 
 def _of_box(scene: Scene) -> dict[str, str]:
@@ -56,6 +57,8 @@ def advice(scene: Scene, names: Sequence[str]) -> str:
     """Return why the drive has not one of these objectives; "" where nothing is known of it."""
     why = (_why_lacking(scene, name) for name in names if name in OBJECTIVES)
     what = next(filter(None, why), "")
+    if not what and any(name in EXTREMES for name in names):
+        what = "it needs a table [teeth] and limits by [rating] alone"
     hint = ', as in [objective] density = "7.85 kg/dm^3"' if "density" in what else ""
     return what + hint
 
@@ -91,8 +94,8 @@ def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
                 "stages = 2, or another number"
             )
         return replace(each[0], others=tuple(each[1:]))
-    if load_front.UTILISATION in names:
-        return _against_utilisation(scene, names, method)
+    if any(name in EXTREMES or name == load_front.UTILISATION for name in names):
+        return _against_extreme(scene, names)
     train = replace(_train(scene), objective=names[0], others=tuple(names[1:]))
     listed = tuple(Objective(name, OBJECTIVES[name]) for name in names)
     whole = scene.teeth is not None and method != EPSILON
@@ -106,17 +109,21 @@ def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
     return Tradeoff(teeth.problem(train), listed, lambda x: _whole_design(train, x))
 
 
-def _against_utilisation(scene: Scene, names: Sequence[str], method: str | None) -> Tradeoff:
-    """Return the problem of a front against the utilisation of the load limits."""
-    if len(names) != 2 or names[1] != load_front.UTILISATION:
+def _against_extreme(scene: Scene, names: Sequence[str]) -> Tradeoff:
+    """Return the problem of a front against a largest value over the stages."""
+    *others, extreme = (name for name in names if name not in OBJECTIVES)
+    if others or len(names) != 2 or names[1] != extreme:
         raise SolveError(
-            f"{load_front.UTILISATION} is a maximum over the stages, which does not add up: it is "
-            f"the second of two objectives, as in gear_volume,{load_front.UTILISATION}"
+            f"{extreme} is a maximum over the stages, which does not add up: it is the second of "
+            f"two objectives, as in gear_volume,{extreme}"
         )
     train = replace(_train(scene), objective=names[0])
-    listed = Objective(names[0], OBJECTIVES[names[0]]), Objective(names[1])
+    listed = (
+        Objective(names[0], OBJECTIVES[names[0]]),
+        Objective(extreme, EXTREMES.get(extreme, "")),
+    )
     limiting = Limiting(
-        lambda name, most: load_front.limited(train, name, most),
+        lambda name, most: load_front.limited(train, name, most, extreme),
         tuple(names),
         load_front.discrete(train),
     )

@@ -70,7 +70,7 @@ def problem(train: Train, count: int = 1, floor: float = -math.inf) -> Problem:
     def evaluate(x: Any, p: Any) -> Terms:
         if train.rated and not _is_plain(each(x.module)[0]):
             raise SolveError(RATED)
-        terms = sizing_text.terms(train, numbers, _pairs(train, x), _options(train, x))
+        terms = sizing_text.terms(train, numbers, pairs_of(train, x), _options(train, x))
         # A module is one of a set: the ends of the set are no limits of their own here.
         limits = {n: v for n, v in terms.limits.items() if not n.startswith("module_")}
         if not train.coprime:
@@ -111,7 +111,7 @@ def gears(train: Train, x: Array) -> tuple[tuple[GearPair, ...], tuple[int, ...]
     variables = _variables(train)
     named = namespace(variables, [float(v) for v in x])
     options = tuple(round(option) for option in _options(train, named))
-    return _pairs(train, named), options or (0,) * len(train.stages)
+    return pairs_of(train, named), options or (0,) * len(train.stages)
 
 
 def _options(train: Train, x: Any) -> list[Any]:
@@ -126,7 +126,8 @@ def _is_plain(value: Any) -> bool:
     return isinstance(value, float | np.ndarray | np.generic)
 
 
-def _pairs(train: Train, x: Any) -> tuple[GearPair, ...]:
+def pairs_of(train: Train, x: Any) -> tuple[GearPair, ...]:
+    """Gear pairs of the variables of `problem` by name."""
     columns = zip(each(x.module), each(x.pinion_teeth), each(x.wheel_teeth), strict=True)
     rows = _toothings(train, x)
     return tuple(

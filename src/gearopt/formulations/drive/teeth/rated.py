@@ -549,10 +549,8 @@ class RatedTable(Table):
         """Return the narrowest face widths [mm] of pairs with modules (indices); inf: none."""
         one = self.made(self.modules[module], pair)
         rows = self._rows(torque, one, pair, module, option)
-        widths = rows.first_width(np.arange(len(pair)), *ends, close, steps)
-        if math.isfinite(self.stage.axial_force):
-            carries = self.stage.axial_use(one, torque[0]) <= 1.0 + ALLOWANCE
-            widths = np.where(carries, widths, np.inf)
+        low = self.stage.least_width(one, torque[0], ends[0])
+        widths = rows.first_width(np.arange(len(pair)), low, ends[1], close, steps)
         if self.steps is None:
             return widths
         return self._stepped(rows, widths, ends[1], close)

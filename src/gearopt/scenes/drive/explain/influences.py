@@ -137,7 +137,7 @@ def _is_series(scene: Scene) -> bool:
 def _easing(scene: Scene, number: Number, result: Result, solved: Any) -> tuple[str, float | None]:
     """Return the step that eases a limit of the file, and what it brings; "" for no limit."""
     direction = eases(scene, number)
-    if direction == 0 or result.value is None:
+    if direction == 0 or not result.value:  # nothing is below 0
         return "", None
     value: Any
     if scene.teeth is not None and "module" in number.path:

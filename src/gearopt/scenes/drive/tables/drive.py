@@ -8,7 +8,7 @@ from pydantic import Field, create_model, model_validator
 
 from gearopt import units
 from gearopt.formulations.drive.processes import ProcessOne, ProcessTwo
-from gearopt.formulations.drive.train import OBJECTIVES
+from gearopt.formulations.drive.train import EXTREMES, OBJECTIVES
 from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.physics.geometry.profile_shift import ROOT_SAFETY, RULES, Shifting
@@ -53,6 +53,7 @@ PITCH = advised(
 PROPORTION = span(number(0.6, 0, 10), [0.3, 0.6], single=True)
 AIM = choice(
     *OBJECTIVES,
+    *EXTREMES,
     means={"weight": "mass"},
     other={
         "volume": 'Write "gear_volume" for that of the gears; for that of the box minimise = '
@@ -61,6 +62,8 @@ AIM = choice(
         'minimise = "box_volume" in a table [layout]',
         "efficiency": 'Write "mesh_loss"',
         "losses": 'Write "mesh_loss"',
+        "contact_ratio": 'Write "inverse_contact_ratio": its least is the largest contact ratio',
+        "sliding": 'Write "specific_sliding"',
         "centre_distance": 'Write "sum_of_centre_distances", of all stages',
     },
 )
@@ -405,12 +408,19 @@ class Objective(Table):
         "gear_volume",
         description="gear_volume (solid reference cylinders), mass (or weight), cost (of material, "
         "heat treatment and cutting, by the prices of [[material]]), "
-        "sum_of_centre_distances, total_length (shafts in one line, over reference circles), or "
-        "mesh_loss (0.06 π (1/z1 + 1/z2) of the input power a stage, not checked against a source)",
+        "sum_of_centre_distances, total_length (shafts in one line, over reference circles), "
+        "mesh_loss (0.06 π (1/z1 + 1/z2) of the input power a stage, not checked against a "
+        "source); of whole teeth that [rating] alone limits the largest of all stages: "
+        "axial_force, specific_sliding, inverse_contact_ratio (one over the total contact ratio)",
     )
     density: Annotated[Quantity | None, quantity("density", "7.85 kg/dm^3")] = Field(
         None, description="Density of the gears; mass and cost need it, or that of every material"
     )
+
+    @property
+    def extreme(self) -> str:
+        """The largest value over the stages that is minimised; "" where shares add up."""
+        return self.minimise if self.minimise in EXTREMES else ""
 
 
 EACH_RATIO = several(speed_ratio(5, 1), [4.96, 4.36], in_order=True)
