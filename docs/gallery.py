@@ -190,6 +190,9 @@ UNITS = {  # as keys of a result have them
     "rms": "um_or_uin",
     "rms_torque": "Nm",
     "cost": "",
+    "axial_force": "N",
+    "specific_sliding": "",
+    "inverse_contact_ratio": "",
 }
 
 
