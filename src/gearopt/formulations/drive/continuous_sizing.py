@@ -37,6 +37,7 @@ from gearopt.optimise.result import FEASIBLE, Budget, Event, Outcome, Result, Wa
 from gearopt.optimise.solve import solve
 from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
 from gearopt.physics.gears import SERIES_I, GearPair
+from gearopt.physics.loads import torque_ratios
 
 ROUNDS = 4  # of correcting the smooth form by the exact one
 MOST_STANDARDS = 3  # of a stage: AGMA, ISO 6336 and its static strength
@@ -370,10 +371,9 @@ def _design(
 
 
 def _loads(train: Train, pairs: tuple[GearPair, ...]) -> Iterator[tuple[GearPair, float, float]]:
-    torque = train.torque
-    for pair in pairs:
-        yield pair, torque, float(train.speed_at(torque))
-        torque *= float(pair.ratio)
+    ratios = torque_ratios([float(pair.ratio) for pair in pairs], train.drivers)
+    for pair, (at_pinion, _) in zip(pairs, ratios, strict=True):
+        yield pair, train.torque * at_pinion, train.speed / at_pinion
 
 
 def guess(train: Train, at: Array, choice: Choice) -> Array:

@@ -173,7 +173,8 @@ def describe(train: Train, pairs: tuple[GearPair, ...], options: Sequence[int] =
     """
     loaded = float(train.torque), float(train.speed)
     blanks = [stage.blanks for stage in train.stages]
-    design = of_pairs(train.law, pairs, *loaded, train.ratio, train.density, blanks)
+    asked, drivers = train.asked_ratio, train.drivers
+    design = of_pairs(train.law, pairs, *loaded, asked, train.density, blanks, drivers)
     if not train.rated:
         return design
     chosen = zip(train.stages, options or (0,) * len(pairs), strict=True)

@@ -23,7 +23,7 @@ def objective_share(
 
     density [t/mm3], by default the train's; those of the stage's option come first. objective: by
     default the train's. total_length is that of the shafts in one line, from the rim of the first
-    pinion to that of the last wheel over reference circles: d1/2 + sum of centre distances + d2/2.
+    gear to that of the last one over reference circles: d1/2 + sum of centre distances + d2/2.
     Given centre distances count as they are given.
     mesh_loss is the power lost by tooth friction, in per cent of the input power: FRICTION pi
     (1/z1 + 1/z2).
@@ -45,10 +45,11 @@ def objective_share(
     length = pair.centre_distance
     if pair.working_distance is not None:  # one of all pairs, of each its own
         length = length + 0.0 * pair.pinion.reference_diameter
+    first, last = pair.gears if train.driver == "pinion" else pair.gears[::-1]
     if objective == "total_length" and stage == 0:
-        length = length + 0.5 * pair.pinion.reference_diameter
+        length = length + 0.5 * first.reference_diameter
     if objective == "total_length" and stage == len(train.stages) - 1:
-        length = length + 0.5 * pair.wheel.reference_diameter
+        length = length + 0.5 * last.reference_diameter
     return length
 
 

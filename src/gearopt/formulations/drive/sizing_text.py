@@ -22,6 +22,7 @@ from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.terms import Array, Param, Terms, Var, each, namespace
 from gearopt.physics.gears import GearPair, reference_diameter
+from gearopt.physics.loads import torque_ratios
 
 # factor between any length of a drive and the ends of the search: they never bind
 SEARCH_SPAN = 1e6
@@ -168,13 +169,15 @@ def variables(train: Train) -> tuple[Var, ...]:
     columns: dict[str, list[tuple[float, float, float]]] = {name: [] for name in VARIABLES}
     lengths = _lengths(train)
     numbers = SimpleNamespace(**train.numbers())
-    torque = train.torque
+    ratios = [float(train.ratio) ** (1.0 / len(train.stages))] * len(train.stages)
+    for k, stage in enumerate(train.stages):
+        if stage.pinion_fixed and stage.wheel_fixed:
+            ratios[k] = numbers.wheel_low[k] / max(1.0, numbers.pinion_low[k])
+    over_input = torque_ratios(ratios, train.drivers)
     for k, stage in enumerate(train.stages):
         given = stage.pinion_fixed and stage.wheel_fixed
         z = max(1.0, numbers.pinion_low[k])
-        u = float(train.ratio) ** (1.0 / len(train.stages))
-        if given:
-            u = numbers.wheel_low[k] / z
+        u, torque = ratios[k], train.torque * over_input[k][0]
         proportion = min(numbers.width_high[k], 1.0)
         cosine = numbers.helix_cosine[k]
         unit = stage.toothing.by_reference.of_diameter(cosine / z, z, 1.0, u, proportion)
@@ -192,7 +195,6 @@ def variables(train: Train) -> tuple[Var, ...]:
         columns["face_width"].append(
             _column(lengths, width, b_fixed is not None or stage.face_width.tied)
         )
-        torque *= u
     if all(s.face_width.tied for s in train.stages):
         del columns["face_width"]
     posed = []
@@ -220,11 +222,10 @@ def _lengths(train: Train) -> tuple[float, float]:
 
     Finite, for the dual bound. A stage's size follows (T/s)^(1/3) at its torque, for a limit s.
     """
-    torques = (train.torque, train.torque * float(train.highest_ratio))
     sizes = [
         (torque / limit) ** (1.0 / 3.0)
         for stage in train.stages
-        for torque in torques
+        for torque in train.torques
         for limit in stage.allowable or (TYPICAL,)
     ]
     for stage in train.stages:
@@ -256,7 +257,7 @@ def terms(
     where the drive leaves it open or fixes the quantity.
     """
     totals: dict[str, Any] = dict.fromkeys(train.objectives, 0.0)
-    product, torque = 1.0, numbers.torque
+    over_input = torque_ratios([pair.ratio for pair in pairs], train.drivers)
     limits: dict[str, Any] = {}
     equal: dict[str, Any] = {}
     for k, pair in enumerate(pairs):
@@ -269,11 +270,12 @@ def terms(
             worth = [shares(train, k, pair, numbers.density, one, name) for one in asked]
             totals[name] = totals[name] + _chosen(worth, option)
         allowable = [of_stage[name] for name in train.law.names]
-        rows = train.law.utilisations(pair, torque, numbers.speed / product, allowable)
+        torque, speed = numbers.torque * over_input[k][0], numbers.speed / over_input[k][0]
+        rows = train.law.utilisations(pair, torque, speed, allowable)
         if stage.options:
             times = stage.safety
             safety = numbers.bending_safety * times[0], numbers.contact_safety * times[1]
-            load = torque, numbers.speed / product
+            load = torque, speed
             if rated is not None:
                 rows |= rated(k, pair, *load, safety)
             else:
@@ -291,11 +293,11 @@ def terms(
         if stage.wheel_fixed and not stage.pinion_fixed:
             equal[f"wheel_teeth[{k + 1}]"] = pair.wheel_teeth / of_stage["wheel_low"]
         limits |= {f"{name}[{k + 1}]": value for name, value in rows.items()}
-        torque = torque * pair.ratio
-        product = product * pair.ratio
+    product = math.prod(pair.ratio for pair in pairs)
+    ends = ("ratio_low", "ratio_high") if train.driver == "pinion" else ("ratio_high", "ratio_low")
     if train.tolerance > 0:
-        limits["ratio_low"] = numbers.lowest_ratio / product
-        limits["ratio_high"] = product / numbers.highest_ratio
+        limits[ends[0]] = numbers.lowest_ratio / product
+        limits[ends[1]] = product / numbers.highest_ratio
     else:
         equal["ratio"] = product / numbers.highest_ratio
     return Terms(totals, limits, equal=equal)

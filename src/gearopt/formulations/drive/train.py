@@ -213,6 +213,8 @@ class Stage:
 class Train:
     """A drive: input torque [N mm], total ratio and its relative tolerance, and its stages.
 
+    driver: the member that drives every stage; where it is the wheel, total ratios are those of
+    output over input speed.
     coprime: z1 and z2 without common divisor (hunting teeth). objective: a key of OBJECTIVES; mass
     needs density [t/mm3]; LENGTHS are those of reference circles, for which profile shifts must
     cancel, or of given centre distances that shifts follow from.
@@ -229,6 +231,7 @@ class Train:
     ratio: Fraction
     tolerance: Fraction
     stages: tuple[Stage, ...]
+    driver: str = field(default="pinion", kw_only=True)
     coprime: bool = False
     objective: str = "gear_volume"
     others: tuple[str, ...] = ()
@@ -252,7 +255,7 @@ class Train:
             raise ValueError(f"every stage needs limits for {', '.join(self.law.names)}")
         if any(s.pinion_teeth[0] < self.law.minimum_teeth for s in self.stages):
             raise ValueError(f"{self.law.title} needs pinions of {self.law.minimum_teeth} teeth")
-        if self.ratio < 1 or not 0 <= self.tolerance < 1 or not self.stages:
+        if self.highest_ratio < 1 or not 0 <= self.tolerance < 1 or not self.stages:
             raise ValueError("a drive needs stages, ratio >= 1 and a tolerance from 0 to below 1")
         for objective in (*self.objectives, *(name for name, _ in self.weights)):
             self._check(objective)
@@ -384,6 +387,32 @@ class Train:
     def highest_ratio(self) -> Fraction:
         """Maximum total ratio."""
         return self.ratio * (1 + self.tolerance)
+
+    @property
+    def asked_ratio(self) -> Fraction:
+        """The ratio that is asked for, input over output speed."""
+        return self.ratio if self.driver == "pinion" else 1 / (self.ratio * (1 - self.tolerance**2))
+
+    @property
+    def drivers(self) -> tuple[str, ...]:
+        """The member that drives each stage."""
+        return (self.driver,) * len(self.stages)
+
+    @property
+    def torques(self) -> tuple[float, float]:
+        """Ends of the torques [N mm] that pinions have."""
+        far = float(self.highest_ratio)
+        low = self.torque if self.driver == "pinion" else self.torque / far
+        return low, low * far
+
+    def pinion_torques(self, low: Any, high: Any, own: Any) -> tuple[Any, Any]:
+        """Ends of the torques [N mm] of pinions, whose stages have a ratio of the logarithm `own`.
+
+        low, high: ends of the logarithm of the ratio that the stages before them have.
+        """
+        if self.driver == "wheel":
+            low, high = -(high + own), -(low + own)
+        return self.torque * np.exp(low), self.torque * np.exp(high)
 
     def fixed_teeth(
         self, stage: int, pinion: int, wheel: int, toothing: int | None = None

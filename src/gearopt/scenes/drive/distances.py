@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from gearopt.physics.gears import transverse_pressure_angle
 from gearopt.physics.geometry.profile_shift import SUMS
+from gearopt.scenes.drive.driving import largest_ratio
 from gearopt.scenes.drive.tables.drive import Limits, StageTable
 from gearopt.scenes.reading.fields import refuse
 
@@ -28,7 +29,7 @@ def reach(scene: "Scene", own: StageTable) -> tuple[float, float]:
     fewest, most = own.pinion_teeth or limits.pinion_teeth
     wheels = own.wheel_teeth or limits.wheel_teeth or (1, None)
     ratios = own.stage_ratio or limits.stage_ratio or (Fraction(1), None)
-    top = scene.duty.total_ratio * (1 + scene.duty.ratio_tolerance)
+    top = largest_ratio(scene.duty)
     top = top if ratios[1] is None else min(top, ratios[1])
     teeth = fewest * (1 + ratios[0]), most * (1 + top)
     if wheels[1] is not None:

@@ -1,12 +1,21 @@
 """Which gear drives each stage: the pinion, or the wheel where the speed is increased."""
 
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from gearopt.scenes.drive.rating.checks import check_pinion
+from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.fields import refuse
 
 if TYPE_CHECKING:
+    from gearopt.formulations.drive.train import Train
     from gearopt.scenes.drive.scene import Scene
+
+REDUCING = "is for drives that reduce the speed"
+MIRRORED = (
+    "Remove it, or write the mirrored drive, which has it: ratio = {:.6g}, the speed of the output "
+    "as input_speed, stages in reverse order"
+)
 
 
 def drivers(scene: "Scene") -> tuple[str, ...]:
@@ -15,12 +24,66 @@ def drivers(scene: "Scene") -> tuple[str, ...]:
     return tuple(own.driver or usual for own in scene.stage_tables)
 
 
+def may_drive(scene: "Scene") -> tuple[str, ...]:
+    """What may drive all stages of a drive: both where its ratio may be above 1 and below.
+
+    Only pinions then drive what is laid out, follows a process, or is rated with real-valued sizes.
+    """
+    low, high = ends(scene.duty) if scene.duty.asks_ratio else (1, 1)
+    if low >= 1 or high > 1 and (_laid(scene) or scene.rating is not None and scene.teeth is None):
+        return ("pinion",)
+    return ("wheel",) if high <= 1 else ("pinion", "wheel")
+
+
+def driving_words(scene: "Scene") -> list[str]:
+    """Sentences on what drives, where it is not the pinion alone or could be the wheel."""
+    members = may_drive(scene)
+    if members == ("wheel",):
+        return ["Every stage increases the speed: its wheel, the larger gear, drives."]
+    if len(members) > 1:
+        return ["Every stage reduces the speed, or every one increases it; both were searched."]
+    reducing = scene.duty.asks_ratio and ends(scene.duty)[0] < 1
+    return ["Drives whose stages increase the speed were not searched."] * reducing
+
+
+def ends(duty: Duty) -> tuple[Fraction, Fraction]:
+    """Ends of the total ratio, input over output speed."""
+    within = duty.ratio_tolerance
+    return duty.total_ratio * (1 - within), duty.total_ratio * (1 + within)
+
+
+def largest_ratio(duty: Duty) -> Fraction:
+    """The largest ratio of wheel to pinion teeth that a stage may have."""
+    low, high = ends(duty)
+    return max(1 / low, high)
+
+
+def trains(scene: "Scene") -> tuple["Train", ...]:
+    """The drives of which one with one number of stages is the best."""
+    return tuple(map(scene.train, may_drive(scene)))
+
+
+def ratio_of(duty: Duty, driver: str) -> Fraction:
+    """The ratio of a train of the same tolerance; of wheels output over input speed."""
+    of_wheels = 1 / (duty.total_ratio * (1 - duty.ratio_tolerance**2))
+    return duty.total_ratio if driver == "pinion" else of_wheels
+
+
+def _laid(scene: "Scene") -> str:
+    """The table of a file that is for pinions that drive; "" where it has none."""
+    names = ("layout", "process_one", "process_two")
+    return next((name for name in names if getattr(scene, name) is not None), "")
+
+
 def check_driving(scene: "Scene") -> None:
     """Refuse drivers of gears that are chosen, wheels of fewer teeth, what cannot speed up."""
     duty, alone = scene.duty, scene.given and scene.rating is not None and not scene.UNRATED
-    if duty.asks_ratio and duty.total_ratio < 1 and (scene.to_size or scene.UNRATED):
-        rule = "is below 1: write that of the drive with input and output exchanged"
-        raise refuse(rule, float(1 / duty.total_ratio), ("duty", "ratio"))
+    if scene.UNRATED and duty.asks_ratio and duty.total_ratio < 1:
+        rule = "is below 1, and the pinion of a pair drives"
+        at = ("duty", "ratio" if duty.output_speed is None else "output_speed")
+        raise refuse(rule, at=at, action="remove")
+    if scene.to_size and may_drive(scene) == ("wheel",) and (name := _laid(scene)):
+        raise refuse(REDUCING, MIRRORED.format(float(1 / duty.total_ratio)), (name,), "tell")
     for k, own in enumerate(scene.stage):
         if own.driver is not None and (scene.to_size or not alone):
             rule = "is for given gears that are only rated: chosen ones follow the ratio of [duty]"

@@ -8,6 +8,7 @@ from gearopt.formulations.drive.train import STEEL_DENSITY
 from gearopt.optimise.result import Result
 from gearopt.physics.gears import ISO_53_A, MEMBERS
 from gearopt.physics.geometry.profile_shift import ROOT_SAFETY
+from gearopt.scenes.drive.driving import driving_words
 from gearopt.scenes.drive.rating.assumptions import (
     every_gear,
     pinions_in_box,
@@ -164,6 +165,7 @@ def assumptions(scene: Scene) -> list[str]:
         *_teeth(scene),
         *_loads(scene, angle, assumed),
         masses(scene),
+        *driving_words(scene),
     ]
     if scene.limits.preset is not None:
         name = scene.limits.preset

@@ -15,7 +15,7 @@ from gearopt.formulations.strength import RATED, Law
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.scenes.drive.distances import joint_limits, reach, rows_together
-from gearopt.scenes.drive.driving import check_driving, drivers
+from gearopt.scenes.drive.driving import check_driving, may_drive, ratio_of
 from gearopt.scenes.drive.face_widths import (
     check_excess,
     check_width,
@@ -213,11 +213,6 @@ class Scene(Table):
         return self.stage or (StageTable(),) * self.counts[0]
 
     @property
-    def drivers(self) -> tuple[str, ...]:
-        """The gear that drives each stage of given gears; of chosen ones a design says it."""
-        return drivers(self)
-
-    @property
     def several(self) -> bool:
         """Return whether the number of stages is to be chosen."""
         return len(self.counts) > 1
@@ -242,10 +237,10 @@ class Scene(Table):
 
     @property
     def rated_real(self) -> bool:
-        """Return whether ratings can limit real-valued teeth: under one load, without a choice."""
+        """Whether ratings can limit real-valued teeth: of one load and choice, pinions drive."""
         chosen = self.load or self.material or any(map(self.choosing, self.stage_tables))
         chosen = chosen or any(any(excesses(own, self.gears)) for own in self.stage_tables)
-        return self.rating is not None and not chosen
+        return self.rating is not None and not chosen and may_drive(self) == ("pinion",)
 
     @property
     def law(self) -> Law:
@@ -463,8 +458,8 @@ class Scene(Table):
         """Torque at the input shaft [N mm]."""
         return self.duty.input_torque
 
-    def train(self) -> Train:
-        """Drive in plain numbers; it has one number of stages."""
+    def train(self, driver: str = "") -> Train:
+        """Drive in plain numbers; it has one number of stages. driver: by default the first."""
         assert not self.several
         tables, density = self.stage_tables, self.objective.density
         stages = tuple(self._stage(s) for s in tables)
@@ -477,9 +472,11 @@ class Scene(Table):
             times = ((b / safety[0], c / safety[1]) for b, c in asked)
             rows = zip(stages, rated, times, strict=True)
             stages = tuple(replace(s, options=made, safety=more) for s, made, more in rows)
+        driver = driver or may_drive(self)[0]
         return Train(
             torque=self.torque,
-            ratio=self.duty.total_ratio,
+            ratio=ratio_of(self.duty, driver),
+            driver=driver,
             tolerance=self.duty.ratio_tolerance,
             stages=stages,
             coprime=bool(self.teeth and self.teeth.coprime),

@@ -37,7 +37,7 @@ def balanced(scene: "Scene", own: StageTable, ways: tuple[Toothing, ...]) -> tup
         return ways
     tables = scene.stage_tables
     place = next(k for k, table in enumerate(tables) if table is own)
-    slower = float(scene.duty.total_ratio) ** (place / len(tables))
+    slower = float(ratio := scene.duty.total_ratio) ** ((place + (ratio < 1)) / len(tables))
     rating = scene.rating, (own,), scene.gears, scene.material, scene.duty, scene.load
     standard = of_stages(*rating)[0][0].standards[-1]
     speed, cut = scene.duty.input_speed.value / slower, ways[0]

@@ -10,13 +10,14 @@ from gearopt.formulations.drive.processes import ProcessOne, ProcessTwo, methods
 from gearopt.formulations.drive.teeth import load_front
 from gearopt.formulations.drive.train import EXTREMES, MASSES, Train
 from gearopt.frozen import dataclass
-from gearopt.optimise.certificate import reconcile
+from gearopt.optimise.certificate import least, reconcile
 from gearopt.optimise.certified import run
 from gearopt.optimise.clock import Clock, in_part
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Budget, Result
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.counts import best_count
+from gearopt.scenes.drive.driving import may_drive, trains
 from gearopt.scenes.drive.notes import with_notes
 from gearopt.scenes.drive.scene import PROCESSES, Scene
 from gearopt.scenes.drive.without import without
@@ -25,6 +26,10 @@ from gearopt.scenes.reading.ask import Ask
 
 SMOOTH = "smooth"  # of real-valued sizes that ratings limit
 CONTINUOUS = ("ipopt", "gp", "multistart", SMOOTH)  # methods that take no whole teeth
+BOTH_SIDES = (
+    "Proof: drives that reduce the speed and drives that increase it were searched in turn; the "
+    "least bound counts."
+)
 BOUND_SECONDS, BOUND_SHARE = 2.0, 0.3  # s, and share of all, kept for the bound of rated drives
 
 
@@ -45,14 +50,14 @@ class Drive:
     two: ProcessTwo | None
 
 
-def drive_of(scene: Scene) -> Drive:
-    """The drive that a file with one number of stages states."""
-    train, process_one, process_two = scene.train(), scene.process_one, scene.process_two
+def drive_of(scene: Scene, driver: str = "") -> Drive:
+    """The drive that a file with one number of stages states; driver: as of `Scene.train`."""
+    train, process_one, process_two = scene.train(driver), scene.process_one, scene.process_two
     webs_alone = train.hollow and not train.rated  # limits are those of solid gears, masses are not
     return Drive(
         scene,
         train,
-        without(scene, "webs").train() if webs_alone else None,
+        without(scene, "webs").train(driver) if webs_alone else None,
         scene.rated_real,
         process_one.inputs() if process_one else None,
         process_two.inputs() if process_two else None,
@@ -69,6 +74,8 @@ def steps(scene: Scene, ask: Ask, own: bool = True) -> tuple[Step[Scene], ...]:
     sizes: Step[Scene]
     if scene.several:
         sizes = Step(of_best_count, own=own)
+    elif len(may_drive(scene)) > 1:
+        sizes = Step(of_both_sides, own=own)
     elif takes_real_values(scene, ask.method if own else None):
         sizes = Step(of_real_values, bare_drive, own)
     else:
@@ -94,14 +101,39 @@ def of_best_count(scene: Scene, ask: Ask, known: Result | None) -> Result:
 
 def ideal_of_count(scene: Scene, ask: Ask) -> Result:
     """Real-valued gears of a drive with one number of stages."""
-    return ideal(scene.train(), ask)
+    each = [ideal(train, ask) for train in trains(scene)]
+    return least(each, ask.gap) if len(each) > 1 else each[0]
 
 
 def of_count(scene: Scene, ask: Ask, real: Result | None = None) -> Result:
     """Gears of a drive with one number of stages; real: the real-valued ones, where known."""
+    if len(may_drive(scene)) > 1:
+        return of_both_sides(scene, ask, None)
     if takes_real_values(scene, ask.method):
         return of_real_values(drive_of(scene), ask, None)
     return of_whole_teeth(drive_of(scene), ask, real)
+
+
+def of_both_sides(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The best gears of a drive whose ratio may be above 1 and below: each is sized in turn."""
+    clock, results, left = Clock(ask.budget, ask.watch), [], ask.budget.seconds
+    sized = of_real_values if takes_real_values(scene, ask.method) else of_whole_teeth
+    for driver, share in zip(may_drive(scene), (0.5, 1.0), strict=True):
+        budget = replace(clock.left, seconds=left and clock.within(share * left))
+        asked = replace(ask, budget=budget, watch=clock.inner(values=False))
+        results.append(sized(drive_of(scene, driver), asked, None))
+    best = least(results, ask.gap)
+    sentence = str(best.proof.get("sentence", "")).removeprefix("Proof: ")
+    proof = best.proof | ({"sentence": f"{BOTH_SIDES} {sentence}"} if sentence else {})
+    if best.status == "infeasible":
+        proof["conflict"] = [
+            *dict.fromkeys(n for r in results for n in r.proof.get("conflict", ()))
+        ]
+    listed = [train for r in results for train in r.report.get("trains", ())]
+    listed = sorted(listed, key=lambda train: float(train["objective"]))[: ask.top]
+    report = best.report | ({"trains": listed} if listed and best.status == "optimal" else {})
+    count = sum(result.evaluations for result in results)
+    return replace(best, proof=proof, report=report, evaluations=count)
 
 
 def of_real_values(drive: Drive, ask: Ask, known: Result | None) -> Result:
@@ -216,9 +248,9 @@ def takes_real_values(scene: Scene, method: str | None) -> bool:
         )
     if continuous and scene.by_ratings and not scene.rated_real:
         raise SolveError(
-            "load spectra, materials to choose from, several helix angles, given centre distances "
-            "and wider pinions are for whole teeth alone: write a table [teeth], and use a method "
-            "of whole teeth"
+            "load spectra, materials to choose from, several helix angles, given centre distances, "
+            "ratios below 1 and wider pinions are for whole teeth alone: write a table [teeth], "
+            "and use a method of whole teeth"
         )
     if continuous and scene.by_ratings and method not in (None, SMOOTH):
         raise SolveError(f"{method} takes no real-valued gears that ratings limit; smooth does")

@@ -11,6 +11,7 @@ from gearopt.formulations.drive.train import EXTREMES, OBJECTIVES, Train
 from gearopt.optimise.pareto.objectives import EPSILON, EXACT, Limiting, Objective, Tradeoff
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
+from gearopt.scenes.drive.driving import may_drive
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.sizing import sized
 from gearopt.scenes.drive.without import without
@@ -82,21 +83,29 @@ def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
         gears = sized(without(scene, "layout"), ask.beforehand)
         held = scene.held(len(gears.design["stages"])) if gears.value is not None else scene
         return sides.traded(held, names, gears)
-    if scene.several:
-        each = [
-            replace(traded(scene.held(n), names, ask), part=f"{n} stage{'s' * (n > 1)}")
-            for n in scene.counts
-        ]
-        curves = any(one.limiting is not None and not one.limiting.whole for one in each)
-        if scene.teeth is None or method not in (None, EXACT) or curves:
-            raise SolveError(
-                "numbers of stages are compared by complete fronts alone, of whole teeth: write "
-                "stages = 2, or another number"
-            )
-        return replace(each[0], others=tuple(each[1:]))
+    each = [
+        replace(
+            _of_train(scene, scene.held(n).train(driver), names, method),
+            part=f"{n} stage{'s' * (n > 1)}, {driver} drives".removesuffix(", pinion drives"),
+        )
+        for n in scene.counts
+        for driver in may_drive(scene)
+    ]
+    curves = any(one.limiting is not None and not one.limiting.whole for one in each)
+    if len(each) > 1 and (scene.teeth is None or method not in (None, EXACT) or curves):
+        raise SolveError(
+            "numbers of stages, and ratios above 1 and below, are compared by complete fronts "
+            "alone, of whole teeth: write stages = 2, or another number, and a ratio_tolerance on "
+            "one side of 1"
+        )
+    return replace(each[0], others=tuple(each[1:])) if len(each) > 1 else replace(each[0], part="")
+
+
+def _of_train(scene: Scene, train: Train, names: Sequence[str], method: str | None) -> Tradeoff:
+    """The problem of a front of one number of stages, of which one member drives."""
     if any(name in EXTREMES or name == load_front.UTILISATION for name in names):
-        return _against_extreme(scene, names)
-    train = replace(_train(scene), objective=names[0], others=tuple(names[1:]))
+        return _against_extreme(train, names)
+    train = replace(train, objective=names[0], others=tuple(names[1:]))
     listed = tuple(Objective(name, OBJECTIVES[name]) for name in names)
     whole = scene.teeth is not None and method != EPSILON
     if not whole and train.rated:
@@ -109,7 +118,7 @@ def traded(scene: Scene, names: Sequence[str], ask: Ask) -> Tradeoff:
     return Tradeoff(teeth.problem(train), listed, lambda x: _whole_design(train, x))
 
 
-def _against_extreme(scene: Scene, names: Sequence[str]) -> Tradeoff:
+def _against_extreme(train: Train, names: Sequence[str]) -> Tradeoff:
     """Return the problem of a front against a largest value over the stages."""
     *others, extreme = (name for name in names if name not in OBJECTIVES)
     if others or len(names) != 2 or names[1] != extreme:
@@ -117,7 +126,7 @@ def _against_extreme(scene: Scene, names: Sequence[str]) -> Tradeoff:
             f"{extreme} is a maximum over the stages, which does not add up: it is the second of "
             f"two objectives, as in gear_volume,{extreme}"
         )
-    train = replace(_train(scene), objective=names[0])
+    train = replace(train, objective=names[0])
     listed = (
         Objective(names[0], OBJECTIVES[names[0]]),
         Objective(extreme, EXTREMES.get(extreme, "")),

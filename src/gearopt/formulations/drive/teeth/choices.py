@@ -11,6 +11,7 @@ from gearopt.formulations.drive.teeth.tables import table
 from gearopt.formulations.drive.train import Train
 from gearopt.optimise.terms import Array
 from gearopt.physics.gears import GearPair
+from gearopt.physics.loads import torque_ratios
 
 
 def best_pairs(train: Train, teeth: Teeth) -> tuple[GearPair, ...]:
@@ -33,12 +34,12 @@ def valued(train: Train, teeth: Teeth) -> tuple[float, tuple[GearPair, ...], tup
 
 def _choices(train: Train, teeth: Teeth) -> tuple[float, tuple[GearPair, ...], tuple[int, ...]]:
     """Return the objective of a train with the best pairs and options, and these; inf: none."""
-    torque, value, pairs, options = train.torque, 0.0, [], []
+    value, pairs, options = 0.0, [], []
     loaded: list[tuple[Table, float]] = []
+    ratios = torque_ratios([z2 / z1 for z1, z2 in teeth], train.drivers)
     for k, (z1, z2) in enumerate(teeth):
         only = table(train.fixed_teeth(k, z1, z2), k, train.highest_ratio, _no_kernels)
-        loaded.append((only, torque))
-        torque *= z2 / z1
+        loaded.append((only, train.torque * ratios[k][0]))
     rows = _best_rows(train, loaded)
     if len(rows) < len(teeth):
         return math.inf, (), ()

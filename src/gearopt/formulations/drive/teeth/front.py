@@ -297,7 +297,8 @@ def _children(state: Search, nodes: Nodes, places: tuple[Index, Index]) -> Nodes
     if level < len(state.tables) - 1 and state.rest:
         ahead = np.stack([r.to_go[level + 1][r.cell(log_ratio)] for r in state.rest], axis=1)
     lower = nodes.cost[node] + ahead
-    torque = state.train.torque * np.exp(nodes.log_ratio[node])
+    reached = nodes.log_ratio[node]
+    torque, _ = state.train.pinion_torques(reached, reached, table.log_ratio[pair])
     parts = list(_rows(state, level, torque, pair, lower))
     owner, module, width, option, cost = (np.concatenate(c) for c in zip(*parts, strict=True))
     use = useful(lower[owner] + cost, state.open)

@@ -1,10 +1,11 @@
 """A lower bound on the stages still to come, as a function of the ratio reached so far.
 
 What stages k..N cost depends on the past only through the cumulative ratio p (it sets the torque)
-and on how much of the total ratio is left. On a grid of log p, cell [x, x + delta): torque is
-taken at the lower edge and the ratio still needed from the whole cell, so every value is a rigorous
-lower bound; the last stage moreover carries at least the torque that its own ratio leaves over.
-Backward recursion over the stages; the finer the grid, the closer the bound.
+and on how much of the total ratio is left. On a grid of log p, cell [x, x + delta): torque is the
+least of the cell, at its lower edge where pinions drive, and the ratio still needed is from the
+whole cell, so every value is a rigorous lower bound; the last stage moreover carries at least the
+torque that its own ratio leaves over. Backward recursion over the stages; the finer the grid, the
+closer the bound.
 """
 
 import math
@@ -135,7 +136,8 @@ def first_costs(train: Train, table: Table, rest: Bound, delta: float, most: flo
 
     inf: with what the rest takes at least, more than `most`.
     """
-    torque, every = np.full(len(table.ratio), train.torque), np.arange(len(table.ratio))
+    every, begin = np.arange(len(table.ratio)), np.zeros(len(table.ratio))
+    torque, _ = train.pinion_torques(begin, begin, table.log_ratio)
     place = _cell(table.log_ratio, delta)
     ahead = rest.to_go[1][rest.cell(table.log_ratio)] if len(rest.to_go) > 1 else np.zeros(1)
     room = np.where(np.isfinite(ahead), most, -np.inf) - np.where(np.isfinite(ahead), ahead, 0.0)
@@ -212,8 +214,8 @@ def _last(
             np.maximum(edge[part][cell], low - ratio),
             np.minimum(edge[part][cell] + delta, high - ratio),
         )
-        ends = [train.torque * np.exp(r) for r in (reached[0] - EDGE, reached[1] + EDGE)]
-        cost = table.least_cost((ends[0], ends[1]), pair, cell, delta, most)
+        ends = train.pinion_torques(reached[0] - EDGE, reached[1] + EDGE, ratio)
+        cost = table.least_cost(ends, pair, cell, delta, most)
         np.minimum.at(found[part], cell, cost)
         kept.append(np.asarray(cost * (1.0 - ROUNDING), np.float32))
     if not train.rated:  # then costs themselves take no longer

@@ -242,15 +242,15 @@ class RatedTable(Table):
     def useful_ratio(self, least: float, most: float) -> float:
         """Return the largest ratio whose share of a train is at most so much; at least `least`.
 
-        Any stage carries at least the input torque.
+        Any stage carries at least the least torque.
         """
         pair = np.flatnonzero(self.ratio > least)
-        low = np.full(len(pair), self.train.torque)
-        ends = low, low * float(self.train.highest_ratio)
-        cost = self._found(ends, pair, most, steps=FIRST_STEPS).cost
+        ends = np.full((2, len(pair)), np.array(self.train.torques)[:, None])
+        cost = self._found((ends[0], ends[1]), pair, most, steps=FIRST_STEPS).cost
         near = np.flatnonzero(cost <= most)
-        ends = ends[0][near], ends[1][near]
-        cost = self._found(ends, pair[near], most, close=CELL_TOLERANCE * FINEST).cost
+        cost = self._found(
+            (ends[0, near], ends[1, near]), pair[near], most, close=CELL_TOLERANCE * FINEST
+        ).cost
         return float(self.ratio[pair[near]][cost <= most].max(initial=least))
 
     def _closer(
@@ -307,15 +307,13 @@ class RatedTable(Table):
                 inside &= cells.useful[rows[:, None], column]
             row, pair = np.nonzero(inside)
             low, kept = rows[row] * delta, (rows[row] * keeps, pair)
-            ends = [self.train.torque * np.exp(e) for e in (low - EDGE, low + delta + EDGE)]
+            ends = self.train.pinion_torques(low - EDGE, low + delta + EDGE, self.log_ratio[pair])
             place = row * cells.ratio + column[pair]
             begins = first[kept].astype(np.int64)
-            rough = self._found((ends[0], ends[1]), pair, most, begins, steps=FIRST_STEPS)
+            rough = self._found(ends, pair, most, begins, steps=FIRST_STEPS)
             if keeps:  # with options one in a larger module may hide another one in this cell
                 first[kept] = rough.first
-            cost = self._closer(
-                (ends[0], ends[1]), pair, place, rough.cost, CELL_TOLERANCE * delta, most
-            )
+            cost = self._closer(ends, pair, place, rough.cost, CELL_TOLERANCE * delta, most)
             np.minimum.at(found, (rows[row], column[pair]), cost)
         return found, first if keeps else None
 
@@ -457,8 +455,8 @@ class RatedTable(Table):
         self, option: int, module: Index, pair: Index, widths: tuple[Array, Array]
     ) -> Array:
         """`_nominal` of one option, for every torque of the train."""
-        low = np.full(len(pair), self.train.torque)
-        ends = low, low * float(self.train.highest_ratio)
+        low, high = np.full((2, len(pair)), np.array(self.train.torques)[:, None])
+        ends = low, high
         speed = tuple(self.train.speed_at(end) for end in ends)
         safety = self.train.safety_of(self.stage)
         gears = self.made(self.modules[module], pair)

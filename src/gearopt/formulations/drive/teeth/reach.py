@@ -42,7 +42,7 @@ def reach(
     """Return the largest stage ratio that a train at least as good as `threshold` may have.
 
     tick: called several times a second; what it raises ends the work.
-    Any stage carries at least the input torque; its share alone then grows with its ratio, where
+    Any stage carries at least the least torque; its share alone then grows with its ratio, where
     its law is proportional and the objective a volume, mass or length.
     """
     if train.rated:
@@ -74,11 +74,11 @@ def reach(
 
 
 def _least_size(train: Train, k: int, ratios: Array) -> Array:
-    """Return the minimum b d1^2 [mm3] for the input torque at given ratios, of the fewest teeth."""
+    """Return the minimum b d1^2 [mm3] for the least torque at given ratios, of the fewest teeth."""
     stage = train.stages[k]
     z = float(stage.pinion_teeth[0])
     unit = stage.toothing.of_diameter(stage.toothing.cosine / z, z, 1.0, ratios, 1.0)
-    return train.law.largest_utilisation(unit, train.torque, train.speed, stage.allowable)
+    return train.law.largest_utilisation(unit, train.torques[0], train.speed, stage.allowable)
 
 
 PAIRS_AT_ONCE = 200_000  # tooth pairs of a stage that are searched at once

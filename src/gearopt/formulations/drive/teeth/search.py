@@ -407,7 +407,8 @@ def _promising(
         ahead = rest.to_go[chunk.level + 1][cell]
         goes = np.isfinite(ahead)
         node, pair, ahead = node[goes], pair[goes], ahead[goes]
-    torque = (train.torque * np.exp(chunk.log_ratio))[node]
+    reached = chunk.log_ratio[node]
+    torque, _ = train.pinion_torques(reached, reached, stage.log_ratio[pair])
     before = chunk.cost[node] + ahead
     own = stage.rough_cost(torque, pair, most - before) if first is None else first[pair]
     rough = before + own
@@ -425,13 +426,14 @@ def _costs(
 ) -> Array:
     """Return the cost of pairs of a stage behind nodes of a chunk, where it is at most so much."""
     node, pair = places
-    torque = train.torque * np.exp(chunk.log_ratio)
+    reached = chunk.log_ratio[node]
+    torque, _ = train.pinion_torques(reached, reached, stage.log_ratio[pair])
     found = np.empty(len(pair))
     for start in range(0, len(pair), SLICE):
         if start:  # a first dive, however short the budget, ends with a train
             progress.tick()
         part = slice(start, start + SLICE)
-        found[part] = stage.cost(torque[node[part]], pair[part], most[part])
+        found[part] = stage.cost(torque[part], pair[part], most[part])
     return found
 
 

@@ -147,19 +147,23 @@ class Table:
         """
         column = (self.log_ratio / cells.delta).astype(np.int64)
         found = np.full(cells.torque * cells.ratio, np.inf)
+        wheel = self.train.driver == "wheel"  # then torques fall from cell to cell, and by ratios
         for k in range(len(self.modules)):
             tick()
             with np.errstate(divide="ignore"):
                 reach = np.log(self.capacity(k) / self.train.torque) + EDGE
-            carries = reach >= 0.0
-            row = np.minimum(reach[carries] / cells.delta, cells.torque - 1).astype(np.int64)
+            least = np.ceil(-(reach + self.log_ratio) / cells.delta) - 1.0
+            carries = least < cells.torque if wheel else reach >= 0.0
+            end = (least if wheel else reach / cells.delta)[carries]
+            row = np.clip(end, 0, cells.torque - 1).astype(np.int64)
             np.minimum.at(found, row * cells.ratio + column[carries], self.floor(k)[carries])
-        grid = found.reshape(cells.torque, cells.ratio)
-        grid = np.minimum.accumulate(grid[::-1], axis=0)[::-1]  # what carries more carries less
+        on = slice(None, None, 1 if wheel else -1)  # what carries more carries less
+        grid = np.minimum.accumulate(found.reshape(cells.torque, cells.ratio)[on], axis=0)[on]
         tick()
         slope = np.full(cells.ratio, np.inf)
-        np.minimum.at(slope, column, self.slope)
-        torque = self.train.torque * np.exp(np.arange(cells.torque) * cells.delta - EDGE)
+        np.minimum.at(slope, column, self.slope / self.ratio if wheel else self.slope)
+        low = np.arange(cells.torque) * cells.delta - EDGE
+        torque = self.train.pinion_torques(low, low + cells.delta + 2.0 * EDGE, 0.0)[0]
         loaded = np.zeros_like(grid)
         np.multiply(torque[:, None], slope, out=loaded, where=np.isfinite(slope))
         return np.asarray(np.maximum(grid, loaded)), None
@@ -289,8 +293,7 @@ class Table:
                 <= 1.0 + ALLOWANCE
             )
 
-        low = np.full(len(every), train.torque)
-        high = low * float(train.highest_ratio)
+        low, high = np.full((2, len(every)), np.array(train.torques)[:, None])
         with np.errstate(all="ignore"):  # of widths of zero, where no step is allowed
             some, all_ = carries(low), carries(high)
             for _ in range(HALVINGS):

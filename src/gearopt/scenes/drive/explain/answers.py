@@ -7,6 +7,7 @@ from gearopt.optimise.certified import GAP
 from gearopt.optimise.clock import Clock, of_others
 from gearopt.optimise.explaining.explanation import Explanation, Remedies
 from gearopt.optimise.result import Result
+from gearopt.scenes.drive.driving import trains
 from gearopt.scenes.drive.explain.counts import remedies_of_counts
 from gearopt.scenes.drive.explain.influences import explained
 from gearopt.scenes.drive.explain.rated_remedies import conflict_soon
@@ -68,7 +69,7 @@ def _of_boxes(scene: Scene, clock: Clock) -> Remedies:
 def possible(scene: Scene, clock: Clock) -> Verdict:
     """Whether a drive has a design; of one that is laid out not known where it has gears."""
     case = Case(scene, clock)
-    answer = any_possible(case, [scene.held(count).train() for count in scene.counts])
+    answer = any_possible(case, [t for n in scene.counts for t in trains(scene.held(n))])
     return UNKNOWN if answer and scene.layout is not None else Verdict(answer)
 
 

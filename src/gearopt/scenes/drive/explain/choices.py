@@ -11,9 +11,10 @@ from gearopt.frozen import dataclass
 from gearopt.optimise.explaining.explanation import Change, Remedy
 from gearopt.optimise.explaining.proposed import DIGITS
 from gearopt.optimise.explaining.repair import SLACK_TRIED
+from gearopt.scenes.drive.driving import largest_ratio, trains
 from gearopt.scenes.drive.explain.least_product import is_real
 from gearopt.scenes.drive.explain.moves import inherited
-from gearopt.scenes.drive.explain.tried import Case
+from gearopt.scenes.drive.explain.tried import Case, any_possible
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import as_remedy, least
 from gearopt.scenes.explaining.moves import DUTY, Move, changed
@@ -53,7 +54,7 @@ def nearest_ratio(case: Case, away: Fraction | None) -> Remedy | None:
 
     away: the smallest tolerance known to suffice, None where the file can hold none.
     """
-    far = max(WIDEST[0], min(WIDEST[1], 1 - 1 / case.scene.duty.total_ratio))
+    far = max(WIDEST[0], min(WIDEST[1], 1 - 1 / largest_ratio(case.scene.duty)))
     reached = _ratio_within(case, away or far)
     if isinstance(reached, str) or reached.away == 0:
         return None
@@ -103,11 +104,14 @@ def _ratio_within(case: Case, away: Fraction) -> Reached | str:
         return Reached(away, (below, above)) if word == "feasible" else word
     if is_real(within, case.clock):
         return "infeasible"
-    teeth = case.teeth(within.train())
-    if not teeth:
-        return "undecided" if teeth is None else "infeasible"
-    ratio = Fraction(math.prod(z2 for _, z2 in teeth), math.prod(z1 for z1, _ in teeth))
-    return Reached(abs(ratio / asked - 1), (ratio,))
+    for train in trains(within):
+        if teeth := case.teeth(train):
+            ratio = Fraction(math.prod(z2 for _, z2 in teeth), math.prod(z1 for z1, _ in teeth))
+            ratio = ratio if train.driver == "pinion" else 1 / ratio
+            return Reached(abs(ratio / asked - 1), (ratio,))
+        if teeth is None:
+            return "undecided"
+    return "infeasible"
 
 
 def _within(scene: Scene, tolerance: Fraction) -> Scene:
@@ -177,7 +181,7 @@ def switches(case: Case) -> Iterator[Remedy]:
     for field, was, write, update in ways:
         kind = (field, write.startswith("["))
         other = case.scene.model_copy(update={"teeth": teeth.model_copy(update=update)})
-        if kind not in done and case.possible(other.train()):
+        if kind not in done and any_possible(case, trains(other)):
             done.add(kind)
             change = Change(f"teeth.{field}", was, write, 1.0)
             yield Remedy("choice", field, (change,), 1.0, None, {"with": "feasible"})

@@ -13,6 +13,7 @@ from gearopt.optimise.explaining.repair import CERTAIN, value_within
 from gearopt.optimise.explaining.sensitivity import sensitivities
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.result import Result
+from gearopt.scenes.drive.driving import may_drive
 from gearopt.scenes.drive.explain.moves import fields, next_module
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.blanks import HUBS, RIM, WEB
@@ -65,6 +66,7 @@ def explained(
         n for n in numbers(spelt) if not (n.path[:2] == ("teeth", "modules") and _is_series(scene))
     ]
     stepped = scene.by_ratings or scene.train().hollow  # slopes are known of posynomials alone
+    stepped |= len(may_drive(scene)) > 1  # and of one of them
     if stepped:
         wanted = [n for n in wanted if eases(scene, n)]
     of_numbers = tuple(

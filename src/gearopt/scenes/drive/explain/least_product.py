@@ -23,6 +23,7 @@ from gearopt.optimise.explaining.handles import Handle, handles
 from gearopt.optimise.explaining.repair import FARTHEST, PRODUCT_TIE, least_factors
 from gearopt.optimise.problem import Problem
 from gearopt.optimise.solve import solve_within
+from gearopt.scenes.drive.driving import trains
 from gearopt.scenes.drive.explain.moves import (
     WIDTH,
     applied,
@@ -191,7 +192,8 @@ def _moves(choices: list[Choice], box: Box) -> Moves:
 
 def is_real(scene: Scene, clock: Clock) -> bool:
     """Return whether real-valued sizes are impossible too."""
-    return solve_within(clock, continuous_sizing.problem(scene.train())).status == "infeasible"
+    real = (continuous_sizing.problem(train) for train in trains(scene))
+    return all(solve_within(clock, one).status == "infeasible" for one in real)
 
 
 def posed(scene: Scene) -> tuple[Problem, list[Handle], list[Move]]:

@@ -11,6 +11,7 @@ from gearopt.optimise.explaining.explanation import Remedies, Remedy
 from gearopt.optimise.explaining.handles import Handle
 from gearopt.optimise.explaining.repair import FARTHEST, PRODUCT_TIE, any_resolves, conflict, even
 from gearopt.optimise.problem import Problem
+from gearopt.scenes.drive.driving import may_drive
 from gearopt.scenes.drive.explain.choices import eased_tolerance, nearest_ratio, switches
 from gearopt.scenes.drive.explain.least_product import (
     is_real,
@@ -46,7 +47,7 @@ def remedies(scene: Scene, clock: Clock) -> Remedies:
 
     Every remedy was tried: a design exists with it.
     """
-    case, real = Case(scene, clock), is_real(scene, clock)
+    case, real = Case(scene, clock), len(may_drive(scene)) == 1 and is_real(scene, clock)
     asked = case.asked
     base, known, movable = posed(scene)
     blamed = _conflict(base, known, clock) if real else ()

@@ -7,6 +7,7 @@ from typing import Any
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Remedies
 from gearopt.optimise.result import Budget
+from gearopt.scenes.drive.driving import trains
 from gearopt.scenes.drive.explain.choice_moves import choice_groups, teeth_groups
 from gearopt.scenes.drive.explain.influences import GRADES, eases
 from gearopt.scenes.drive.explain.moves import WIDTH, next_module
@@ -69,7 +70,7 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
     def works(other: Scene) -> bool | None:
         if other.teeth is None:
             return of_status(status(other)).answer
-        return any_possible(case, [other.held(count).train() for count in other.counts])
+        return any_possible(case, [t for n in other.counts for t in trains(other.held(n))])
 
     asked = FeasibilityQuestions(scene, lambda other, clock: Verdict(works(other)), clock)
     first = soon(ROUGH_SECONDS)

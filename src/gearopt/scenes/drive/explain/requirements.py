@@ -17,6 +17,7 @@ from typing import Any
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.physics.iso6336.materials import QUALITIES
+from gearopt.scenes.drive.driving import trains
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.explaining.numbers import allowed, times
@@ -145,11 +146,11 @@ def without(scene: Scene, dropped: Dropped) -> tuple[Train, ...]:
     if gone := {name: None for name in OF_DISTANCES if name in dropped}:
         limits = scene.limits.model_copy(update=gone)
         scene = scene.model_copy(update={"limits": limits})
-    return tuple(_without(scene.held(count), dropped) for count in scene.counts)
+    each = (train for count in scene.counts for train in trains(scene.held(count)))
+    return tuple(_without(scene, train, dropped) for train in each)
 
 
-def _without(scene: Scene, dropped: Dropped) -> Train:
-    train = scene.train()
+def _without(scene: Scene, train: Train, dropped: Dropped) -> Train:
     stages = []
     for k, stage in enumerate(train.stages):
         here = {name for name in dropped if name.endswith(f"[{k + 1}]") or "[" not in name}

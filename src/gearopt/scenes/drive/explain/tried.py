@@ -14,6 +14,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.repair import FARTHEST
 from gearopt.optimise.result import THERE
 from gearopt.optimise.solve import solve_within
+from gearopt.scenes.drive.driving import trains
 from gearopt.scenes.drive.explain.moves import applied
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import FeasibilityQuestions
@@ -100,12 +101,10 @@ class Case:
         if self.clock.over:
             return "undecided"
         if scene.teeth is not None:
-            if (
-                solve_within(self.clock, continuous_sizing.problem(scene.train())).status
-                == "infeasible"
-            ):
+            real = (continuous_sizing.problem(train) for train in trains(scene))
+            if all(solve_within(self.clock, one).status == "infeasible" for one in real):
                 return "infeasible"
-        verdict = self.possible(scene.train())
+        verdict = any_possible(self, trains(scene))
         return "undecided" if verdict is None else ("feasible" if verdict else "infeasible")
 
     @property
@@ -113,7 +112,7 @@ class Case:
         """Return the questions of the search for the smallest change."""
 
         def sized(scene: Scene, clock: Clock) -> Verdict:
-            return Verdict(self.possible(scene.train()))
+            return Verdict(any_possible(self, trains(scene)))
 
         def sure(scene: Scene, clock: Clock) -> Verdict:
             return of_status(self.status(scene))

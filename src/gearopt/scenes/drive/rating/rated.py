@@ -14,6 +14,7 @@ from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
+from gearopt.scenes.drive.driving import drivers
 from gearopt.scenes.drive.notes import masses
 from gearopt.scenes.drive.rating.assumptions import rating_assumptions, unused_materials
 from gearopt.scenes.drive.rating.checks import not_given
@@ -95,7 +96,7 @@ def rate_design(scene: Scene, ask: Ask, design: Mapping[str, Any]) -> Result:
 
 def with_given_rating(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Rating of gears that are all given; SolveError where they have none."""
-    return _rated(scene, ask, given_pairs(scene.stage, scene.gears), scene.drivers)
+    return _rated(scene, ask, given_pairs(scene.stage, scene.gears), drivers(scene))
 
 
 def _rated(
@@ -181,7 +182,7 @@ def given_design(
         asked,
         density.value if density else None,
         bodies,
-        scene.drivers,
+        drivers(scene),
     )
     return design, bodies
 
