@@ -41,6 +41,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "three_stage_by_both": "Three stages by both standards.",
         "wind_pair_sized": "The pair of `wind_pair`, its teeth, module and width chosen.",
         "servo_pair_by_agma": "A pair of 50 W.",
+        "idler": "A pinion, an idler and a wheel: the idler's teeth are chosen, too, proven.",
         "helical_unit": "A unit as of catalogues: hunting teeth, whole widths, both standards.",
         "given_distance": "Teeth, module and shifts chosen for a housing of 125 mm, proven.",
         "preferred_distance": "A distance of the series R20 and a helix angle chosen, too.",

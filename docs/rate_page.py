@@ -319,6 +319,36 @@ end, where the input turns clockwise, → is away from the eye (`problems/two_st
 
 The sum is what the bearings of a shaft hold. Turned the other way round all thrusts change sides.
 
+## Idlers
+
+With `idler = true` the pinion of a `[[stage]]` is the wheel of the stage before: one gear in two
+meshes, between a pinion and a wheel. Its teeth, module, helix angle, shift, width and material are
+those of that wheel; of its stage `wheel_teeth` is left to be written:
+
+```toml
+[[stage]]
+module = "3 mm"
+pinion_teeth = 20
+wheel_teeth = 31 # of the idler
+face_width = "40 mm"
+
+[[stage]]
+idler = true
+wheel_teeth = 60
+```
+
+The ratio is 60/20, whatever the idler's teeth. It is rated in both meshes, *idler 1* and *idler 2*
+in the tables, and counted once in volume and mass, in the first. The tooth force of both meshes is
+the same, and its shaft has no torque. It has a reversed load by itself: 0.7 of s_at by AGMA 2001,
+Y_M = 0.7 by ISO 6336. A revolution loads each of its flanks once, and bends its teeth once each
+way, which counts as one load cycle (unverified). Load distribution (K_m, K_Hβ) is that of pairs,
+though both meshes load its shaft. Several idlers may follow each other. With `[limits]` and a ratio
+its teeth are chosen, too: see [drive](drive.md). There is no `[layout]` of gears with an idler.
+
+A driving gear has no more teeth than the gear that it drives, so that an idler's teeth lie between
+those of pinion and wheel. Of another idler rate each mesh as a pair of its own, with
+`reversed_load = true` in the table of the idler.
+
 ## A drive that is sized
 
 With a table `[rating]` beside `[limits]` its safety factors, at the required life, are

@@ -38,7 +38,8 @@ class StageDesign:
     Fields with a default say how its teeth are cut, of which materials, of several, its gears are,
     and what their blanks have, None of what a gear does not have; a result leaves out those that
     hold it. Fields stand in the order of the table of stages. working_pressure_angle: transverse;
-    None: on the reference circles.
+    None: on the reference circles. idler: its pinion is the wheel of the stage before, where it is
+    counted.
     """
 
     normal_module_mm: float
@@ -56,6 +57,7 @@ class StageDesign:
     pinion_root_diameter_mm: Annotated[float, Shown("root diameter d_f1")]
     wheel_root_diameter_mm: Annotated[float, Shown("root diameter d_f2")]
     centre_distance_mm: Annotated[float, Shown("centre distance a")]
+    idler: bool = False
     helix_angle_deg: Annotated[float, Shown("helix angle β")] = 0.0
     pressure_angle_deg: Annotated[float, Shown("normal pressure angle α_n")] = 20.0
     working_pressure_angle_deg: Annotated[float | None, Shown("working pressure angle α_wt")] = None
@@ -169,17 +171,23 @@ def drive_design(data: Mapping[str, Any]) -> DriveDesign:
 def describe(train: Train, pairs: tuple[GearPair, ...], options: Sequence[int] = ()) -> DriveDesign:
     """Return stages and totals of a drive; masses as of `of_pairs`, or of the options' materials.
 
-    options: of every stage, from 0; none: the first.
+    options: of every stage, from 0; none: the first. Only the last one may have an idler.
     """
-    loaded = float(train.torque), float(train.speed)
-    blanks = [stage.blanks for stage in train.stages]
-    asked, drivers = train.asked_ratio, train.drivers
-    design = of_pairs(train.law, pairs, *loaded, asked, train.density, blanks, drivers)
+    loaded, asked = (float(train.torque), float(train.speed)), train.asked_ratio
     if not train.rated:
-        return design
-    chosen = zip(train.stages, options or (0,) * len(pairs), strict=True)
-    usual, made = train.density or STEEL_DENSITY, [stage.options[k] for stage, k in chosen]
-    stages = tuple(map(_of_materials, design.stages, made, [usual] * len(made)))
+        blanks = [stage.blanks for stage in train.stages]
+        return of_pairs(train.law, pairs, *loaded, asked, train.density, blanks, train.drivers)
+    chosen = zip(train.stages, options or (0,) * len(pairs), pairs, train.drivers, strict=True)
+    rows = [
+        (mesh, s.blanks, s.options[k], driver)
+        for s, k, pair, driver in chosen
+        for mesh in s.options[k].meshes(pair)
+    ]
+    meshes, bodies, made, drivers = zip(*rows, strict=True)
+    idlers = range(len(rows), len(pairs), -1)
+    design = of_pairs(train.law, meshes, *loaded, asked, train.density, bodies, drivers, idlers)
+    usual, each = train.density or STEEL_DENSITY, zip(design.stages, made, strict=True)
+    stages = tuple(_of_materials(stage, option, usual) for stage, option in each)
     costs = tuple(cost for k in range(len(made)) for cost in _costs(k + 1, stages[k], made[k]))
     priced = "cost" in train.objectives
     return replace(
@@ -230,8 +238,9 @@ def of_pairs(
     density: float | None = None,
     blanks: Sequence[tuple[Blank, Blank]] = (),
     drivers: Sequence[str] = (),
+    idlers: Sequence[int] = (),
 ) -> DriveDesign:
-    """Return stages and totals of a drive.
+    """Return stages and totals of a drive; idlers: stages whose pinion is the wheel before, from 1.
 
     torque [N mm], speed [rad/s] of the input; asked_ratio: None where none is asked for. Masses are
     those of the blanks of every stage, by default solid and of steel; density [t/mm3]. drivers: as
@@ -244,6 +253,8 @@ def of_pairs(
         _stage(law, pair, torque * at, speed / at, density, bodies, driver)
         for pair, bodies, driver, (at, _) in rows
     ]
+    for k in idlers:
+        stages[k - 1] = _without_pinion(stages[k - 1], pairs[k - 1])
     ratio = ratios[-1][1]
     volume = sum(s.gear_volume_mm3 for s in stages)
     centres = sum(s.centre_distance_mm for s in stages)
@@ -260,6 +271,12 @@ def of_pairs(
         total_length_mm=0.5 * ends + centres,
         mass_kg=sum(s.mass_kg for s in stages),
     )
+
+
+def _without_pinion(stage: StageDesign, pair: GearPair) -> StageDesign:
+    """A stage whose pinion is an idler, which is counted in the stage before."""
+    volume, mass = stage.gear_volume_mm3 - float(pair.pinion.volume), stage.wheel_mass_kg
+    return replace(stage, idler=True, gear_volume_mm3=volume, pinion_mass_kg=0.0, mass_kg=mass)
 
 
 def _stage(

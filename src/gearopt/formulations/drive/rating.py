@@ -188,6 +188,7 @@ class DriveRating:
     assembled or cannot run. flaws: on what a designer may accept, and on the ratio of given gears
     that is not the one asked for. by: the standard in short; beside: the rating by another one.
     static: of every gear under a peak torque.
+    idlers: stages whose pinion is the wheel of the stage before, one gear in two meshes.
     """
 
     standard: str
@@ -211,6 +212,7 @@ class DriveRating:
     flaws: tuple[str, ...] = ()
     by: str = "AGMA"
     static: tuple[StaticRating, ...] = ()
+    idlers: tuple[int, ...] = ()
     beside: "DriveRating | None" = None
 
     @property
@@ -225,6 +227,10 @@ class DriveRating:
             self.minimum_bending_safety if bending is None else bending,
             self.minimum_contact_safety if contact is None else contact,
         )
+
+    def called(self, gear: GearRating | StaticRating | ToothGeometry | LoadLevel) -> str:
+        """What a gear is: pinion, wheel or idler."""
+        return "idler" if gear.stage + (gear.member == "wheel") in self.idlers else gear.member
 
     def known_life_h(self, gear: GearRating) -> float:
         """Life of a gear [h] as far as its curve reaches: at least that."""

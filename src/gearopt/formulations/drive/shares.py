@@ -33,13 +33,15 @@ def objective_share(
         return sum(
             w * objective_share(train, stage, pair, density, option, n) for n, w in train.weights
         )
+    idler = _idler(train, stage, pair, option)
     if objective in MASSES:
         rows = zip(train.stages[stage].blanks, pair.gears, strict=True)
         volumes = [blank.volume(gear) for blank, gear in rows]
+        volumes[1] = volumes[1] + idler
         worth = _worth(train, stage, volumes, density, option, objective)
         return worth + (_making(train, stage, option).cutting(pair) if objective == "cost" else 0.0)
     if objective == "gear_volume":
-        return pair.volume
+        return pair.volume + idler
     if objective == "mesh_loss":
         return 100.0 * FRICTION * math.pi * (1.0 / pair.pinion_teeth + 1.0 / pair.wheel_teeth)
     length = pair.centre_distance
@@ -51,6 +53,13 @@ def objective_share(
     if objective == "total_length" and stage == len(train.stages) - 1:
         length = length + 0.5 * last.reference_diameter
     return length
+
+
+def _idler(train: Train, stage: int, pair: GearPair, option: int) -> Any:
+    """Volume [mm3] of the idler of an option; 0 where there is none."""
+    options = train.stages[stage].options
+    teeth = options[option].idler if options else 0
+    return pair.pinion.volume * (teeth / pair.pinion_teeth) ** 2 if teeth else 0.0
 
 
 def least_share(

@@ -269,6 +269,9 @@ class Train:
             stage.options and all(all(option.densities) for option in stage.options)
             for stage in self.stages
         )
+        idle = any(option.idler for stage in self.stages for option in stage.options)
+        if idle and objective not in ("gear_volume", "mass", WEIGHTED):
+            raise ValueError(f"the objective {objective} is not for stages with an idler")
         if objective == "cost" and not all(stage.options for stage in self.stages):
             raise ValueError("the objective cost needs the price of every stage's materials")
         if objective in MASSES and not solid:

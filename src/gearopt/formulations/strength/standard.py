@@ -186,7 +186,7 @@ class Option:
 
     Of pinion and wheel: densities [t/mm3], or None for that of the drive; prices of a kilogram,
     heat treatment included, and the parts of them that are its; prices of a metre of teeth cut;
-    names of materials.
+    names of materials. idler: teeth of a gear between them, 0: none.
     """
 
     standards: tuple[Standard, ...]
@@ -196,6 +196,12 @@ class Option:
     treatment_prices: tuple[float, float] = (0.0, 0.0)
     cutting_prices: tuple[float, float] = (0.0, 0.0)
     materials: tuple[str, str] = ("", "")
+    idler: int = 0
+
+    def meshes(self, pair: GearPair) -> tuple[GearPair, ...]:
+        """The pairs in mesh: two where an idler is between pinion and wheel."""
+        ends: tuple[Any, Any] = self.standards[0], self.standards[-1]
+        return tuple(one.mesh(pair) for one in ends) if self.idler else (pair,)
 
     def cutting(self, pair: GearPair) -> Any:
         """Cost of cutting the teeth of a pair: a metre of them is z b = 1000 mm."""
@@ -218,6 +224,7 @@ class Option:
             densities=(densities[0], densities[1]),
             prices=(prices[0], prices[1]),
             cutting_prices=(cutting[0], cutting[1]),
+            idler=min(way.idler for way in (self, *rivals)),
         )
 
     def strongest_with(self, rivals: Sequence["Option"]) -> "Option | None":

@@ -54,6 +54,7 @@ class DrawnStage:
     pinion_face_width_mm: float | None = None
     wheel_face_width_mm: float | None = None
     driver: str = "pinion"
+    idler: bool = False  # the pinion is the wheel of the stage before
 
     @property
     def members(self) -> tuple[str, ...]:
@@ -148,7 +149,7 @@ def circles(stage: Mapping[str, Any], member: str) -> list[float]:
 def is_folded(stages: Sequence[DrawnStage]) -> bool:
     """Whether the output is drawn in line with the input: two stages of one centre distance."""
     distances = [stage.centre_distance_mm for stage in stages]
-    return len(distances) == 2 and math.isclose(*distances)
+    return len(distances) == 2 and not stages[1].idler and math.isclose(*distances)
 
 
 def _in_plane(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
@@ -179,7 +180,10 @@ def in_one_line(stages: Sequence[DrawnStage], folded: bool = False) -> tuple[Bod
     if not 0.0 < scale < math.inf:
         raise ValueError(f"stages {long:g} mm long cannot be drawn")
     wide = [max(map(stage.width, MEMBERS)) for stage in stages]
-    scale, starts = _along(wide, scale)
+    apart = [0.0 if stage.idler else width for stage, width in zip(stages, wide, strict=True)]
+    scale, starts = _along(apart, scale)
+    for k in (k for k, stage in enumerate(stages) if stage.idler):
+        starts[k], wide[k] = starts[k - 1], wide[k - 1]
     gears = [
         GearDesign(
             name=f"{member} {k}",
@@ -196,7 +200,7 @@ def in_one_line(stages: Sequence[DrawnStage], folded: bool = False) -> tuple[Bod
             to_mm=start + 0.5 * (wide[k - 1] + stage.width(member)),
         )
         for k, (stage, start) in enumerate(zip(stages, starts, strict=True), 1)
-        for shaft, member in enumerate(stage.members, k)
+        for shaft, member in list(enumerate(stage.members, k))[stage.idler :]
     ]
     shafts = []
     for k, y in enumerate(axes, 1):
@@ -205,7 +209,7 @@ def in_one_line(stages: Sequence[DrawnStage], folded: bool = False) -> tuple[Bod
         shafts.append(
             ShaftDesign(shaft=k, y_mm=y, z_mm=0.0, diameter_mm=0.0, from_mm=start, to_mm=end)
         )
-    slabs = tuple((k,) for k in range(1, len(stages) + 1))
+    slabs = tuple((k,) for k, stage in enumerate(stages, 1) if not stage.idler)
     return Bodies(tuple(shafts), tuple(gears), slabs), scale
 
 
@@ -306,7 +310,7 @@ def _side(train: Bodies, scale: float, measures: Measures) -> Drawing:
     for gear in train.gears:
         top = places[gear.shaft] + 0.5 * gear.tip_diameter_mm
         tops[gear.stage] = max(top, tops.get(gear.stage, top))
-    for gear in (g for g in train.gears if g.member == "wheel"):
+    for gear in (g for g in train.gears if g.member == "wheel" and (g.stage,) in train.slabs):
         x = sheet.at(0.5 * (gear.from_mm + gear.to_mm), 0.0)[0]
         module = measures.of_module(gear.normal_module_mm)
         sheet.label(f"{measures.module[1]} {number(module)}", [Place(x, LEVEL - MODULES)], "size")

@@ -90,4 +90,4 @@ def check_driving(scene: "Scene") -> None:
             rule = "changes nothing: the pinion of a pair drives" if scene.UNRATED else rule
             raise refuse(rule, at=("stage", k, "driver"), action="remove")
         if scene.rating is not None:
-            check_pinion(own, k, alone)
+            check_pinion(own, k, alone, any(near.idler for near in scene.stage[k : k + 2]))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
 
 from gearopt.formulations.drive.gearbox import Gearbox
+from gearopt.formulations.drive.idler import with_idler
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength import RATED, Law
@@ -24,6 +25,7 @@ from gearopt.scenes.drive.face_widths import (
     fixed_width,
     widths,
 )
+from gearopt.scenes.drive.idlers import check_idlers, with_idlers
 from gearopt.scenes.drive.rating.checks import (
     check_given,
     check_objective,
@@ -51,7 +53,7 @@ from gearopt.scenes.drive.tables.layout import (
     KeepOutTable,
     Layout,
     PlaceTable,
-    check_shared,
+    check_layout,
     gearbox,
 )
 from gearopt.scenes.drive.tables.rating import LoadTable, RatingTable, with_shared
@@ -155,6 +157,12 @@ class Scene(Table):
     process_one: ProcessOneTable | None = None
     process_two: ProcessTwoTable | None = None
 
+    @field_validator("stage")
+    @classmethod
+    def _idlers(cls, stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
+        """Stages whose idlers have the keys of the wheels that they are."""
+        return with_idlers(stages)
+
     @field_validator("limits", mode="wrap")
     @classmethod
     def _needed(cls, value: Any, handler: Callable[[Any], Limits], info: ValidationInfo) -> Limits:
@@ -184,7 +192,8 @@ class Scene(Table):
                 place = ("stage", k, "module") if stage.size else ("limits", "module")
                 raise refuse("holds no module that [teeth] allows", self._around(stage), place)
         check_driving(self)
-        self._check_layout()
+        check_idlers(self, self._lacks("beside an idler"))
+        check_layout(self)
         self._check_loads()
         self._check_teeth()
         self._check_blanks()
@@ -369,7 +378,7 @@ class Scene(Table):
     def choosing(self, own: StageTable) -> bool:
         """Whether the teeth of a stage may be cut in several ways, or shifts are chosen."""
         several = len(self.helix_angles(own)) > 1 and not inclination(own, self.gears)
-        return self.shifted(own) and not self.shift_ranges(own) or several
+        return self.shifted(own) and not self.shift_ranges(own) or several or own.idler
 
     def shift_ranges(
         self, own: StageTable
@@ -404,27 +413,6 @@ class Scene(Table):
                 if not one_fits or (isinstance(value, Preferred) and value.low is None):
                     raise refuse(rule, at=place, action="remove")
                 raise refuse(rule, str(values_of(value)[0]), place, "sample")
-
-    def _check_layout(self) -> None:
-        """Check the tables of a layout against the drive and each other."""
-        if self.layout is None:
-            for name in ("place", "keep_out"):
-                if getattr(self, name):
-                    raise refuse("needs a table [layout]", at=(name,), action="remove")
-            return
-        self.layout.check(self.counts)
-        last = self.counts[0] + 1
-        for k, place in enumerate(self.place):
-            at = ("place", k, "shaft")
-            if self.several:
-                check_shared(place.shaft, self.counts, at)
-            elif place.shaft > last:
-                raise refuse(f"is above {last}, the output shaft", last, at, "sample")
-            elif self.limits.coaxial and place.shaft == last:
-                rule = "is the output shaft, which coaxial = true puts in line with the input"
-                raise refuse(rule, at=("place", k), action="remove")
-        if self.layout.together and self.teeth is None:
-            raise refuse("needs a table [teeth]", False, ("layout", "together"))
 
     def modules(self, own: StageTable) -> tuple[Fraction, ...]:
         """Modules [mm] that a stage may have."""
@@ -472,6 +460,8 @@ class Scene(Table):
             times = ((b / safety[0], c / safety[1]) for b, c in asked)
             rows = zip(stages, rated, times, strict=True)
             stages = tuple(replace(s, options=made, safety=more) for s, made, more in rows)
+        if tables[-1].idler:
+            stages = (*stages[:-2], with_idler(*stages[-2:]))
         driver = driver or may_drive(self)[0]
         return Train(
             torque=self.torque,

@@ -48,7 +48,9 @@ DRIVE = {
     "modulus_of_elasticity",
     "poisson_ratio, in [gears]": "poisson poissons_ratio poissonzahl querkontraktionszahl",
     "flank_rz, in [gears]": "rz r_z flank_roughness surface_roughness",
-    "reversed_load, of a gear": "idler reverse_bending alternating alternating_load wechselbiegung",
+    "idler, in a [[stage]]: its pinion is the wheel before": "idler_gear intermediate_gear "
+    "zwischenrad",
+    "reversed_load, of a gear": "reverse_bending alternating alternating_load wechselbiegung",
     "tool_protuberance, of a gear": "protuberance",
     "tip_chamfer, of a gear, in normal modules": "chamfer tip_form_diameter tip_break tip_rounding "
     "tip_round d_na kopfkantenbruch kopfnutzkreis kopfkantenschutz",

@@ -32,7 +32,9 @@ def quick_bound(train: Train, most: float) -> float:
     Of stages with many ways the kinds of the least sum are divided, a few times.
     """
     sized = train.by_width or train.objective in LENGTHS
-    if not (sized and most < math.inf) or train.lowest_ratio < 1 or train.driver == "wheel":
+    idle = any(option.idler for stage in train.stages for option in stage.options)
+    raised = train.lowest_ratio < 1 or train.driver == "wheel"
+    if not (sized and most < math.inf) or raised or idle:
         return -math.inf
     count = len(train.stages)
     kinds = [[(kind, _shares(kind, k, most)) for kind in _kinds(train, k)] for k in range(count)]

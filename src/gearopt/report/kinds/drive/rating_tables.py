@@ -63,7 +63,7 @@ def names(rating: DriveRating) -> list[str]:
 
 def name(rating: DriveRating, gear: Any) -> str:
     """The name of a gear of some table, with its stage where there are several."""
-    return gear.member if len(rating.meshes) == 1 else f"{gear.member} {gear.stage}"
+    return gear.member if len(rating.meshes) == 1 else f"{rating.called(gear)} {gear.stage}"
 
 
 def figure(value: Any, key: str, measures: Measures) -> Any:

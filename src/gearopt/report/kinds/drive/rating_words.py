@@ -189,7 +189,7 @@ def nearest(rating: DriveRating) -> list[str]:
         rows = [
             (
                 reached / asked,
-                f"{mode} ({ALL_MODES[mode]}) of the {gear.member}",
+                f"{mode} ({ALL_MODES[mode]}) of the {rating.called(gear)}",
                 rated.by,
             )
             for rated in rating.each
@@ -209,7 +209,8 @@ def weakest(rating: DriveRating) -> MeshRating:
 
 def gear_words(rating: DriveRating, gear: GearRating | StaticRating) -> str:
     """A gear in a sentence: of several stages with its own."""
-    return gear.member if len(rating.meshes) == 1 else f"{gear.member} of stage {gear.stage}"
+    called = rating.called(gear)
+    return called if len(rating.meshes) == 1 else f"{called} of stage {gear.stage}"
 
 
 def required(rating: DriveRating) -> float:

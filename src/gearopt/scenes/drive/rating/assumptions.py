@@ -7,6 +7,7 @@ from gearopt.physics.agma.allowables import IRONS
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.case import Practice
 from gearopt.scenes.drive.face_widths import excesses
+from gearopt.scenes.drive.idlers import idlers
 from gearopt.scenes.drive.rating.iso_material import steel
 from gearopt.scenes.drive.rating.materials import Named, choices, unused
 from gearopt.scenes.drive.rating.options import by
@@ -31,6 +32,7 @@ def rating_assumptions(scene: Scene) -> list[str]:
         "Torques and forces are those without losses.",
         "The standards themselves were not read: formulas and values are those of textbooks, "
         "tables and public programs; those from a single source are marked unverified.",
+        *_idlers(scene),
         *_named_steels(scene),
         *(_agma_assumptions(scene, asked) if agma else []),
         *(_iso_assumptions(scene, asked) if iso else []),
@@ -40,6 +42,17 @@ def rating_assumptions(scene: Scene) -> list[str]:
     ]
     unstated = _unstated(asked, agma, iso)
     return [*sentences, f"Not in the file: {', '.join(unstated)}."] if unstated else sentences
+
+
+def _idlers(scene: Scene) -> Iterator[str]:
+    """Sentences on gears in two meshes."""
+    for k in idlers(scene.stage):
+        yield (
+            f"The idler of stages {k - 1} and {k} is one gear, counted in the first, on a shaft "
+            "without torque. A revolution loads each flank once and bends its teeth once each way: "
+            "one load cycle, of reversed bending (unverified). Load distribution is that of pairs. "
+            "Pinion and wheel are taken not to touch: their axes lie in one plane, or nearly."
+        )
 
 
 def _named_steels(scene: Scene) -> list[str]:

@@ -143,6 +143,7 @@ def _only_rated(
     for k, stage in enumerate(stages):
         yield from [("stage", k, "given")] * (stage.given != GivenTable())
         yield from [("stage", k, "given_iso6336")] * bool(stage.given_iso6336.factors())
+        yield from [("stage", k, "idler")] * stage.idler
         for name in ("pinion_hand", *OF_STAGE):
             yield from [("stage", k, name)] * (getattr(stage, name) is not None)
         tables += [(("stage", k, member), getattr(stage, member)) for member in MEMBERS]
@@ -201,11 +202,17 @@ def _given_at(rating: RatingTable, stage: StageTable, k: int, name: str) -> Plac
     return (*next(place for place, held in places if name in held), name)
 
 
-def check_pinion(stage: StageTable, k: int, drives: bool = False) -> None:
-    """Refuse given gears of which the wheel has fewer teeth; drives: it may be the one to drive."""
+def check_pinion(stage: StageTable, k: int, drives: bool = False, idle: bool = False) -> None:
+    """Refuse given gears of which the wheel has fewer teeth.
+
+    drives: it may be the one to drive; idle: one of them is an idler.
+    """
     pinion, wheel = stage.pinion_teeth, stage.wheel_teeth
     if pinion and wheel and wheel[1] < pinion[0]:
         rule = "is below pinion_teeth: the pinion is the gear with fewer teeth"
+        if idle:
+            tell = "Rate each mesh as a pair, the idler with reversed_load = true"
+            raise refuse(rule, tell, ("stage", k, "wheel_teeth"), "tell")
         rule += ', and driver = "wheel" says that the other one drives' * drives
         raise refuse(rule, "pinion_teeth", ("stage", k, "wheel_teeth"), "swap")
 

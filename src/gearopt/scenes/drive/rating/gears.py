@@ -49,13 +49,15 @@ def gear_tables(
 
 def given_pairs(stages: Sequence[StageTable], gears: Gears) -> tuple[GearPair, ...]:
     """Gear pairs of stages whose gears are all given."""
-    pairs = []
+    pairs: list[GearPair] = []
     for stage in stages:
         assert stage.size and stage.pinion_teeth and stage.wheel_teeth
         teeth = float(stage.pinion_teeth[0]), float(stage.wheel_teeth[0])
         module, teeth_of = float(stage.size[0].exact[0]), toothing(stage, gears)
         if (fixed := fixed_width(stage)) is not None:
             width = fixed.value
+        elif stage.idler:
+            width = float(pairs[-1].face_width)
         else:
             span = stage.face_width_over_diameter or gears.face_width_over_diameter
             assert span

@@ -97,8 +97,8 @@ def _option(
     )
     cuttings = tuple(float(m.cutting_price) if m else 0.0 for m in materials)
     words = " and ".join(filter(None, named))
-    columns = densities, prices, treatments, cuttings, named
-    return Option(tuple(standards), words, *map(_two, columns))
+    paid = _two(prices), _two(treatments), _two(cuttings)
+    return Option(tuple(standards), words, _two(densities), *paid, _two(named))
 
 
 def _static(standard: Any, rating: RatingTable, factor: Fraction) -> Any:

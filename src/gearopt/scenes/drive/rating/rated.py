@@ -15,6 +15,7 @@ from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
 from gearopt.scenes.drive.driving import drivers
+from gearopt.scenes.drive.idlers import idlers
 from gearopt.scenes.drive.notes import masses
 from gearopt.scenes.drive.rating.assumptions import rating_assumptions, unused_materials
 from gearopt.scenes.drive.rating.checks import not_given
@@ -183,6 +184,7 @@ def given_design(
         density.value if density else None,
         bodies,
         drivers(scene),
+        idlers(scene.stage),
     )
     return design, bodies
 
@@ -322,7 +324,7 @@ def _by(
     gears = tuple(gear_row(mesh, k, own_safety(own)) for mesh, own in each for k in (0, 1))
     factors = tuple(row for mesh in meshes for row in factor_rows(asked, mesh))
     turned = hands([table.pinion_hand for table in scene.stage] or [None] * len(pairs), drivers)
-    efficiency, error = _efficiency(rows)
+    (efficiency, error), idle = _efficiency(rows), idlers(scene.stage)
     rated = DriveRating(
         standard=standard.title(asked, factors),
         safe=False,
@@ -337,7 +339,10 @@ def _by(
         gears=gears,
         meshes=rows,
         factors=factors,
-        shafts=shaft_rows(pairs, turned, drivers, *_largest_load(scene)),
+        shafts=tuple(
+            replace(row, torque_Nm=0.0) if row.shaft in idle else row
+            for row in shaft_rows(pairs, turned, drivers, *_largest_load(scene))
+        ),
         teeth=tuple(
             tooth_geometry(mesh.stage, mesh.pair, k, turned[mesh.stage - 1])
             for mesh in meshes
@@ -355,6 +360,7 @@ def _by(
         ),
         by=standard.NAME,
         static=tuple(row for mesh in meshes for row in static_rows(mesh, still)),
+        idlers=idle,
     )
     return replace(rated, safe=rated.met, life_h=rated.shortest_lived.life_h)
 

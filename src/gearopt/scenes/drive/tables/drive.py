@@ -159,6 +159,11 @@ class Gears(GearKeys):
 class StageTable(Loaded):
     """One stage: what differs from the other tables, and what is fixed."""
 
+    idler: Annotated[bool, truth()] = Field(
+        False,
+        description="The pinion is the wheel of the stage before, an idler: one gear in two meshes,"
+        " whose keys are those of that wheel",
+    )
     module: Annotated[Lengths | None, span(MODULE, "2 mm", single=True)] = Field(
         None, description="Normal module: fixed, or a range; or a diametral pitch in 1/in"
     )

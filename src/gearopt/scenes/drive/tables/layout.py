@@ -1,7 +1,7 @@
 """[layout], [[place]] and [[keep_out]]: the box around a drive, and obstacles."""
 
 import math
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
@@ -32,6 +32,9 @@ from gearopt.scenes.reading.fields import (
 from gearopt.scenes.reading.lists import several, span
 from gearopt.scenes.reading.numbered_names import numbered
 from gearopt.units import Quantity
+
+if TYPE_CHECKING:
+    from gearopt.scenes.drive.scene import Scene
 
 CLEARANCE = quantity("length", "5 mm", zero=True)
 PLACE = quantity("length", "0 mm", zero=True, signed=True)
@@ -200,6 +203,28 @@ class Layout(Table):
             if any(b - a == 1 for a, b in zip(ordered, ordered[1:], strict=False)):
                 rule = "puts stages that share a shaft into one slab"
                 raise refuse(rule, right, ("layout", "slabs"), "sample")
+
+
+def check_layout(scene: "Scene") -> None:
+    """Check the tables of a layout against the drive and each other."""
+    if scene.layout is None:
+        for name in ("place", "keep_out"):
+            if getattr(scene, name):
+                raise refuse("needs a table [layout]", at=(name,), action="remove")
+        return
+    scene.layout.check(scene.counts)
+    last = scene.counts[0] + 1
+    for k, place in enumerate(scene.place):
+        at = ("place", k, "shaft")
+        if scene.several:
+            check_shared(place.shaft, scene.counts, at)
+        elif place.shaft > last:
+            raise refuse(f"is above {last}, the output shaft", last, at, "sample")
+        elif scene.limits.coaxial and place.shaft == last:
+            rule = "is the output shaft, which coaxial = true puts in line with the input"
+            raise refuse(rule, at=("place", k), action="remove")
+    if scene.layout.together and scene.teeth is None:
+        raise refuse("needs a table [teeth]", False, ("layout", "together"))
 
 
 def check_shared(shaft: int, counts: tuple[int, ...], at: tuple[str | int, ...]) -> None:
