@@ -46,9 +46,9 @@ OF_EXTREMES = {
     "none, so that every spur drive is one of least axial force, and large gears have little: "
     "limit wheel_diameter, or weigh it against gear_volume by gearopt pareto",
     "specific_sliding": "The specific sliding is the largest of all gears, without its sign, at "
-    "the ends of contact",
-    "inverse_contact_ratio": "The contact ratio is the smallest of all stages, of ε_α + ε_β; its "
-    "inverse is minimised",
+    "the ends of contact between tip circles",
+    "inverse_contact_ratio": "The contact ratio is the smallest of all stages, of ε_α + ε_β "
+    "between tip circles; its inverse is minimised",
 }
 TIES = "Of designs up to this value the one of least gear volume is shown."
 
