@@ -51,6 +51,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "wind_pair_at_distance": "The pair of `wind_pair` chosen anew at its centre distance.",
         "minimum_volume_pair": "A spur pair of minimum volume, as a paper has it, proven.",
         "materials_by_cost": "Materials chosen of a list, `[[material]]`, at least cost.",
+        "cutting_by_cost": "Cost of material, heat treatment and cutting, split by gear.",
         "light_wheels": "Least mass with rims, webs and hubs, which the rating knows, too.",
         "same_materials": "The same with one for all pinions and one for all wheels.",
         "sized_and_rated": "Sized by load limits and ratings; here the load limits bind.",

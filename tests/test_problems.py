@@ -64,6 +64,7 @@ LONG = (
         "helical_unit",
         "elevator_by_both",
         "materials_by_cost",
+        "cutting_by_cost",
         "same_materials",
     ),
     "elevator_processes_rated",
