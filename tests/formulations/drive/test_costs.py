@@ -51,7 +51,7 @@ def of_one_option(train):
 SMALL = [(1, seed) for seed in range(20)] + [(2, seed) for seed in TWO_STAGES]
 
 
-@pytest.mark.parametrize(("stages", "seed"), few(SMALL, [(1, 4), (1, 7)]))
+@pytest.mark.parametrize(("stages", "seed"), few(SMALL, [(1, 4)]))
 def test_the_least_cost_is_that_of_every_candidate(stages, seed):
     train = priced_drive(seed, stages)
     best, result = min(map(cheapest, of_one_option(train))), solve(teeth.problem(train))
@@ -75,7 +75,7 @@ def every_row(train):
             yield [values[name] for name in names]
 
 
-@pytest.mark.parametrize("seed", few(range(12), [4, 1]))
+@pytest.mark.parametrize("seed", few(range(12), [4]))
 def test_fronts_of_cost_equal_all_candidates(seed):
     train = priced_drive(seed, 1)
     others = (("mesh_loss",), ("mass",), ("total_length", "mass"))[seed % 3]
