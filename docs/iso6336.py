@@ -90,6 +90,13 @@ FORMULAS = (
         "`load_factors.dynamic_factor`",
     ),
     (
+        "f_sh",
+        "w 0.023 um (abs(0.7 + K) + 0.3) (b/d_1)², w = F_t K_A K_v/b; K = K' l s/d_1² (d_1/d_sh)⁴: "
+        "choice 19",
+        "part 1, 7.5",
+        "`load_factors.shaft_misalignment`",
+    ),
+    (
         "K_Hbeta",
         "1 + x, 2 sqrt(x) from x = 1; x = F_betay c_gamma_beta/(2 F_m/b), F_betax = 1.33 B_1 f_sh "
         "+ B_2 f_ma",
@@ -253,6 +260,20 @@ Correct programs differ in these; this one does as follows.
     module beyond the mesh at each end: b_F1 = min(b_1, b + 2 m_n), and so of the wheel. That is
     part 3 from memory, *unverified*. Line loads, stiffness, K factors, tolerances of the helix,
     eps_beta and m_red are those of b. AGMA takes b for bending, too.
+19. K = 0 of a pinion midway between its bearings. A table `[stage.shaft]` or `[rating.shaft]` puts
+    it s off the middle of a span l on a shaft d_sh. K' of figure 13 is 0.8, -0.8, 1.33, -0.6, -1.0
+    of arrangements a to e, and 0.48, -0.48, 1.33, -0.36, -0.6 of a pinion that stiffens its shaft,
+    d_1/d_sh ≥ 1.15: two public programs have these numbers, one of DIN 3990-11; no published case
+    was found, so that K_Hbeta is *unverified* then. The figure holds for s/l below 0.3 (c: 0.5).
+    Which arrangement is which is from memory: between bearings, a off towards the end with torque,
+    where bending adds to twist, b away from it; c overhung; d and e are to be seen in the figure.
+    `stiffened = false` is for pinions that slide or are keyed on. AGMA takes s/l for S_1/S.
+20. Method C knows helix modifications by kind, not by amount: B_1, B_2 of f_sh and f_ma are 1, 1
+    without one; 1, 0.5 crowned; 0.5, 0.5 crowned for deflection; 0.1, 1 helix corrected; 0.1, 0.5
+    both; 0.7, 0.7 with end relief. They take a crowning of C_beta = 0.5 f_ma for granted, for
+    deflection 0.5 (f_ma + f_sh), and a correction that fits the load: the height is told beside
+    K_Hbeta, and other amounts have no formula here. B_1, B_2 have a second source but for *crowned
+    for deflection*; the heights are from memory: *unverified*.
 """
 
 

@@ -177,7 +177,7 @@ It prints:
 |---|---|---|
 | overload | `overload_factor` is K_o | the same number is K_A |
 | accuracy | `quality`, `accuracy`: K_v | `accuracy_grade`: K_v, K_Hbeta, K_Halpha |
-| mounting | `mounting`, `crowned`, `adjusted` | `helix_modification` |
+| mounting | `mounting`, `crowned`, `adjusted` | `helix_modification`, `[stage.shaft]` |
 | steel | `steel`, or `treatment`, `grade` | `steel`, or `iso_material`, `iso_quality`, `iso_core` |
 | reliability | `reliability`: K_R | that of the strengths, 99 % or more |
 | oil, roughness | | `oil_grade`, `flank_rz` (or 6 `roughness`), `root_rz` |

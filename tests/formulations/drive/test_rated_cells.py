@@ -42,6 +42,7 @@ from gearopt.physics.agma.rating_factors import Steel
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import Rack
 from gearopt.physics.iso6336.case import Practice
+from gearopt.physics.iso6336.load_factors import Shaft
 
 F = Fraction
 SAFETY = (1.2, 1.1)
@@ -73,6 +74,8 @@ STANDARDS = {
     "iso, c_gamma given": iso(given={"c_gamma_alpha": 19e3, "N": 0.3, "C_a": 0.02}),
     "iso, others given": iso(given=OTHERS),
     "iso, static": static(),
+    "iso, offset": iso(practice=Practice(shaft=Shaft(200.0, 20.0, 80.0, "a"))),
+    "iso, away": iso(practice=Practice(shaft=Shaft(200.0, 40.0, 60.0, "b"))),
 }
 # what cells ask for over what designs in them need, medians: of contact and bending, helical teeth
 # and shifted ones
@@ -90,12 +93,15 @@ TIGHT = {
     "iso, given": (0.9868, 0.9764, 0.9846, 0.9793),
     "iso, others given": (0.9875, 0.9779, 0.9851, 0.9786),
     "iso, static": (0.9896, 0.9703, 0.9847, 0.9746),
+    "iso, offset": (0.9851, 0.9723, 0.9801, 0.9749),
+    "iso, away": (0.9841, 0.9718, 0.9792, 0.9745),
 }
 TOOTHINGS = {
     "spur": Toothing(0.0, (RACK, RACK)),
     "helical": Toothing(0.4363, (RACK, RACK)),
     "thinned": Toothing(0.1745, (RACK, RACK), thickness_allowances=(-0.1, -0.15)),
     "shifted": Toothing(0.1745, (Rack(), Rack()), (0.48, 0.67), (-0.067, -0.067)),
+    "wider": Toothing(0.2, (RACK, RACK), width_excesses=(10.0, 0.0)),
 }
 
 

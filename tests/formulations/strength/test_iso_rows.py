@@ -16,7 +16,12 @@ from gearopt.formulations.strength.widths import first_width
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.geometry.contact import usable_path
 from gearopt.physics.iso6336.case import Practice
-from gearopt.physics.iso6336.load_factors import limited, root_exponent, transverse_load_factor
+from gearopt.physics.iso6336.load_factors import (
+    Shaft,
+    limited,
+    root_exponent,
+    transverse_load_factor,
+)
 from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.iso6336.rating import rate
 from gearopt.physics.rating import Operation
@@ -29,6 +34,7 @@ MANY |= {"f_pb": 0.02, "N": 0.9, "Z_eps": 0.8, "Y_B": (1.1, 1.2)}
 OTHERS = {"K_Halpha": 1.2, "Z_BD": (1.1, 1.0), "Z_NT": (1.0, 1.1), "Y_beta": 0.9}
 OTHERS |= {"sigma_Hlim": (900.0, 800.0), "c_gamma_beta": 15e3, "Y_S": (1.6, 1.7), "Z_W": (1, 1.1)}
 OTHERS |= {"K_Falpha": 1.3, "c_prime": 14e3, "Y_F": (1.5, 1.4)}
+AWAY = Shaft(200.0, 30.0, 90.0, "b")  # of large pinions bending is more than twist
 NEW = Practice(edition="2019", tolerances="2013", grades=(7.0, 6.0))
 KINDS = {
     "tempered": (iso(), 0.4363),
@@ -37,7 +43,8 @@ KINDS = {
     "hard on soft": (iso((EH, SOFT)), 0.3),
     "2019": (iso(practice=NEW), 0.35),
     "2019, spur, fine": (iso(practice=Practice(edition="2019", grades=(4.0, 4.0))), 0.0),
-    "crowned": (iso(practice=Practice(helix_modification="crowned", offset=-2.0)), 0.2),
+    "crowned": (iso(practice=Practice(helix_modification="crowned", shaft=AWAY)), 0.2),
+    "overhung": (iso(practice=Practice(shaft=Shaft(150.0, 20.0, 120.0, "c"))), 0.3),
     "webs": (iso((EH, EH), blanks=(Blank(bore=10.0), Blank(None, 12.0, 0.4, 30.0))), 0.3),
     "cast": (iso((GREY, GREY), practice=Practice(grades=(9.0, 9.0))), 0.1),
     "short life": (iso((NITRIDED, EH), hours=1.0, practice=Practice(relief=0.03)), 0.15),
@@ -70,7 +77,8 @@ LOOSE = {
     "hard on soft": 2840,
     "2019": 2440,
     "2019, spur, fine": 2435,
-    "crowned": 2892,
+    "crowned": 2356,
+    "overhung": 2582,
     "webs": 2106,
     "cast": 1678,
     "short life": 1930,
@@ -84,13 +92,14 @@ LOOSE = {
 }
 
 
-def pairs(helix, seed, shifts=(0.0, 0.0)):
+def pairs(helix, seed, shifts=(0.0, 0.0), excesses=(0.0, 0.0)):
     """Return random pairs of unit width, their widths, torques and powers."""
     rng = np.random.default_rng(seed)
     z1 = rng.integers(18, 45, COUNT).astype(float)
     z2 = np.round(z1 * rng.uniform(1.0, 7.0, COUNT))
     module = rng.choice([1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0], COUNT)
-    pair = Toothing(helix, (RACK, RACK), shifts).pair(module, z1, z2, 1.0)
+    cut = Toothing(helix, (RACK, RACK), shifts, width_excesses=excesses)
+    pair = cut.pair(module, z1, z2, 1.0)
     d = pair.pinion.reference_diameter
     width = d * rng.uniform(0.2, 1.2, COUNT)
     torque = 0.5 * rng.uniform(0.1, 6.0, COUNT) * d**2 * width
@@ -117,6 +126,24 @@ def test_one_width_and_torque_give_what_is_rated(kind):
     pair, width, torque, power, _ = pairs(helix, 1)
     found = rows(standard, pair, (torque, torque), power).used(width, width)
     np.testing.assert_allclose(found, exact(standard, pair, width, torque, power), rtol=1e-12)
+
+
+@pytest.mark.parametrize("excesses", [(7.0, 0.0), (0.0, 3.0)])
+def test_rows_of_a_gear_that_is_wider_than_its_mesh(excesses):
+    """Of one width what is rated, of boxes no more; by given life factors its root governs."""
+    lives = tuple(0.3 if excess else 1.0 for excess in excesses)
+    standard = iso(given={"Z_NT": (9.0, 9.0), "Y_NT": lives})
+    pair, width, torque, power, _ = pairs(0.3, 5, excesses=excesses)
+    of_rows = rows(standard, pair, (torque, torque), power)
+    found = of_rows.used(width, width)
+    np.testing.assert_allclose(found, exact(standard, pair, width, torque, power), rtol=1e-12)
+    plain = exact(standard, pairs(0.3, 5)[0], width, torque, power)
+    assert (found < plain * (1.0 - 1e-3)).sum() > 0.9 * COUNT
+    bound = of_rows.used(width, width * 1.05)
+    for share in np.linspace(0.0, 1.0, 9):
+        assert np.all(
+            bound <= exact(standard, pair, width * 1.05**share, torque, power) * (1 + 1e-12)
+        )
 
 
 QUICK = "tempered", "2019, spur, fine", "webs", "short life", "many given", "others given"

@@ -178,7 +178,9 @@ def test_face_load_by_hand():
     found = loads.initial_misalignment(shaft, 10.0 * UM, 300.0, 8.0 * UM)
     assert found == pytest.approx(19.177 * UM)
     assert loads.shaft_misalignment(300.0, 1.0, -1.0) == pytest.approx(300 * 0.023 * 0.6 * UM)
-    crowned = loads.initial_misalignment(shaft, 10.0 * UM, 300.0, 8.0 * UM, "crowned")
+    crowned = loads.initial_misalignment(
+        shaft, 10.0 * UM, 300.0, 8.0 * UM, loads.HELIX_MODIFICATIONS["crowned"]
+    )
     assert crowned == pytest.approx(14.177 * UM)
     least = loads.initial_misalignment(0.0, 0.0, 300.0, 2.0 * UM)
     assert least == pytest.approx(1.5 * UM)  # 0.005 um w
@@ -355,7 +357,7 @@ def test_parts_of_helix_modifications():
     }
     assert set(parts) == set(loads.HELIX_MODIFICATIONS)
     for word, (first, second) in parts.items():
-        found = loads.initial_misalignment(0.1, 1.0, 1.0, 0.0, word)
+        found = loads.initial_misalignment(0.1, 1.0, 1.0, 0.0, loads.HELIX_MODIFICATIONS[word])
         assert found == pytest.approx(0.133 * first + second)
     assert contact.PROFILE_MODIFICATIONS == {"none": 1.2, "by experience": 1.07, "by analysis": 1.0}
 

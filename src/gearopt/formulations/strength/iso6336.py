@@ -359,6 +359,7 @@ class Iso6336:
             "helix": pair.pinion.helix_angle,
             "diameter0": pair.pinion.reference_diameter,
             "diameter1": pair.wheel.reference_diameter,
+            "bending": self.practice.shaft.bending(pair.pinion.reference_diameter),
             "excess0": pair.pinion.root_excess,
             "excess1": pair.wheel.root_excess,
         }

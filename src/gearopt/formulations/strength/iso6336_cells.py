@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gearopt.formulations.strength.cells import LOWER, UPPER, Cells
+from gearopt.formulations.strength.cells import LOWER, NUDGE, UPPER, Cells
 from gearopt.formulations.strength.use.iso6336 import meshing
 from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
@@ -242,7 +242,7 @@ class IsoCells:
         practice, slow = self.standard.practice, self.cases[LOWER]
         alignment, slope = self._alignment(LOWER)
         first, second = loads.HELIX_MODIFICATIONS[practice.helix_modification]
-        bent = loads.shaft_misalignment(1.0, self.cells.slim[LOWER], practice.offset)
+        bent = loads.shaft_misalignment(1.0, self.cells.slim[LOWER], self._bending[LOWER])
         parts = (
             (1.33 * first * bent, second * alignment),
             (loads.LEAST_PER_LOAD, 0.0),
@@ -258,6 +258,17 @@ class IsoCells:
                 by_fixed = rest * np.where(rest >= 0.0, sure, possible)
                 x = np.maximum(x, 0.5 * (stiff * share * per_load + by_fixed))
         return loads.face_load_factor(x, 2.0, 1.0)
+
+    @cached_property
+    def _bending(self) -> tuple[Any, Any]:
+        """K of the shaft where |0.7 + K| is least and greatest: at ends, and where K' jumps."""
+        shaft, (low, high) = self.standard.practice.shaft, self.cells.diameter
+        jump = loads.STIFF * shaft.diameter
+        inside = [np.clip(jump * (1.0 + e), low, high) for e in (-NUDGE, NUDGE)]
+        ends = np.stack([shaft.bending(d) for d in (low, high, *inside)])
+        least, most = ends.min(axis=0), ends.max(axis=0)
+        far = np.abs(loads.STRAIGHT + least) > np.abs(loads.STRAIGHT + most)
+        return np.clip(-loads.STRAIGHT, least, most), np.where(far, least, most)
 
     def _alignment(self, end: int) -> tuple[Any, Any]:
         """Return f_ma and f_Hbeta [mm]."""
@@ -293,9 +304,9 @@ class IsoCells:
         practice, fast = self.standard.practice, self.cases[UPPER]
         alignment, slope = self._alignment(UPPER)
         line = self.loaded * self.single(UPPER, UPPER)
-        shaft = loads.shaft_misalignment(line, self.cells.slim[UPPER], practice.offset)
+        shaft = loads.shaft_misalignment(line, self.cells.slim[UPPER], self._bending[UPPER])
         before = loads.initial_misalignment(
-            shaft, alignment, line, slope, practice.helix_modification
+            shaft, alignment, line, slope, loads.HELIX_MODIFICATIONS[practice.helix_modification]
         )
         worn: Any = 0.0
         for k, m in enumerate(() if self.standard.rivals else self.standard.materials):

@@ -53,7 +53,6 @@ def way_of(standard: "Iso6336") -> IsoWay:
         newer=newer,
         shared=newer and "Y_F" not in given,
         modified=modified if newer else 1.0,
-        offset=float(practice.offset),
         relieved=load_factors.HELIX_MODIFICATIONS[practice.helix_modification],
         light_ends=practice.helix_modification in load_factors.LIGHT_ENDS,
         wearing0=_wearing(standard.wearing[0]),
@@ -85,11 +84,12 @@ class IsoRows:
     eps_beta that is rated), axial pitch, stiffness c' from 100 N/mm on, tooth depth, both
     diameters; at both ends of the torques force (F_t K_A K_gamma), pace (omega z1 sqrt(m_red)),
     speed v, deviations after running-in (pitch f_pb, form f_falpha, the one of K_Halpha);
-    excess of both roots over the mesh [mm]; contact_used and bending_used of both gears: what is
-    used at W = Z_eps = Z_BD = 1 and at W = f_eps = Y_beta = 1, b_F = b. Of several levels these are
-    stresses (of contact squared) times the safety factors asked for; contact0_0 and so on are
-    strengths at the knots of life curves, cycles0 and cycles1 least numbers of cycles, contact0_own
-    and contact0_all strengths (squared, of contact) at these of the level and of all levels.
+    bending K of the shaft, excess of both roots over the mesh [mm]; contact_used and bending_used
+    of both gears: what is used at W = Z_eps = Z_BD = 1 and at W = f_eps = Y_beta = 1, b_F = b. Of
+    several levels these are stresses (of contact squared) times the safety factors asked for;
+    contact0_0 and so on are strengths at the knots of life curves, cycles0 and cycles1 least
+    numbers of cycles, contact0_own and contact0_all strengths (squared, of contact) at these of the
+    level and of all levels.
     """
 
     standard: "Iso6336"

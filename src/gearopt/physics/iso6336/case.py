@@ -14,7 +14,7 @@ from gearopt.physics.geometry.contact import contact_path
 from gearopt.physics.iso6336.accuracy import TOLERANCES, Deviations, deviations
 from gearopt.physics.iso6336.contact_factors import PROFILE_MODIFICATIONS
 from gearopt.physics.iso6336.curves import LOWEST, Curve, bending_curve, pitting_curve
-from gearopt.physics.iso6336.load_factors import HELIX_MODIFICATIONS
+from gearopt.physics.iso6336.load_factors import ARRANGEMENTS, HELIX_MODIFICATIONS, Shaft
 from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.iso6336.tooth_form import SHIFTS, ToothForm, tooth_forms
 from gearopt.physics.rating import Operation
@@ -30,7 +30,7 @@ class Practice:
     pinion and wheel; shift: of `tooth_form.SHIFTS`, the one that Y_F takes; viscosity nu_40
     [mm2/s]; relief C_a of the tips [mm], or None for what wear gives; helix_modification: of
     `load_factors.HELIX_MODIFICATIONS`; profile_modification: of `contact_factors.
-    PROFILE_MODIFICATIONS`, for 2019; offset: of `load_factors.shaft_misalignment`; webs: (b_s/b,
+    PROFILE_MODIFICATIONS`, for 2019; shaft: of the pinion, by default midway; webs: (b_s/b,
     s_R/m_n) of gears with webs; bores: inner diameters d_i [mm], of bore or rim; backup: ratios
     s_R/h_t of rims;
     limited_pitting: permitted; lowest: Z_NT and Y_NT at 1e10 cycles, 0.85 to 1.
@@ -44,7 +44,7 @@ class Practice:
     relief: float | None = None
     helix_modification: str = "none"
     profile_modification: str = "none"
-    offset: float = 0.0
+    shaft: Shaft = Shaft()
     webs: tuple[tuple[float, float] | None, tuple[float, float] | None] = (None, None)
     bores: tuple[float, float] = (0.0, 0.0)
     backup: tuple[float | None, float | None] = (None, None)
@@ -70,6 +70,7 @@ def check(practice: Practice) -> None:
         ("tolerances", practice.tolerances, TOLERANCES),
         ("shift", practice.shift, SHIFTS),
         ("helix modification", practice.helix_modification, tuple(HELIX_MODIFICATIONS)),
+        ("arrangement", practice.shaft.arrangement, tuple(ARRANGEMENTS)),
         ("profile modification", practice.profile_modification, tuple(PROFILE_MODIFICATIONS)),
     )
     for what, word, known in words:

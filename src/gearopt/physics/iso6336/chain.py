@@ -88,13 +88,22 @@ def _dynamic(case: Case, values: Values) -> Any:
     return loads.dynamic_factor(dynamics, values["N"], line, case.within)
 
 
-def _face(case: Case, values: Values) -> Any:
-    pair, practice = case.pair, case.practice
+def shaft_misalignment(case: Case, values: Values) -> Any:
+    """Return f_sh [mm]."""
+    diameter = case.pair.pinion.reference_diameter
+    bending = case.practice.shaft.bending(diameter)
     line = _line_load(case, values, "K_v")
-    width = pair.face_width / pair.pinion.reference_diameter
-    shaft = loads.shaft_misalignment(line, width, practice.offset)
+    return loads.shaft_misalignment(line, case.pair.face_width / diameter, bending)
+
+
+def _face(case: Case, values: Values) -> Any:
+    line, parts = _line_load(case, values, "K_v"), case.practice.helix_modification
     before = loads.initial_misalignment(
-        shaft, values["f_ma"], line, case.deviations.helix_slope, practice.helix_modification
+        shaft_misalignment(case, values),
+        values["f_ma"],
+        line,
+        case.deviations.helix_slope,
+        loads.HELIX_MODIFICATIONS[parts],
     )
     limits = values["sigma_Hlim"]
     worn = [

@@ -6,7 +6,7 @@ from typing import Any
 
 from gearopt.physics.iso6336.accuracy import beyond
 from gearopt.physics.iso6336.case import Case
-from gearopt.physics.iso6336.chain import shared
+from gearopt.physics.iso6336.chain import shaft_misalignment, shared
 from gearopt.physics.iso6336.contact_factors import HARD_LIMIT
 from gearopt.physics.iso6336.curves import LONGEST_LIFE
 from gearopt.physics.iso6336.load_factors import MAIN, lower_limit
@@ -19,6 +19,11 @@ Values = dict[str, Any]
 SHIFTS = -0.5, 2.0  # x_1 + x_2 for which c' holds. Source: part 1, 9.3 [memory]
 # angles above which results want experience. Source: IACS UR M56, 3.1, of parts 2 and 3
 PRESSURE_ANGLE, HELIX_ANGLE = math.radians(25.0) + 1e-9, math.radians(30.0) + 1e-9
+CROWNING = {  # parts of f_ma and f_sh in the crowning that B_1 and B_2 take for granted [memory]
+    "crowned": (0.5, 0.0),
+    "crowned for deflection": (0.5, 0.5),
+    "helix corrected and crowned": (0.5, 0.0),
+}
 UNCHECKED = "not checked against any source"
 EXPERIENCE = "to be confirmed by experience"
 NITROCARBURISED = "NV nitrocarburised"
@@ -145,10 +150,13 @@ def _dynamic(case: Case, values: Values) -> Doubt:
 
 
 def _face(case: Case, values: Values) -> Doubt:
-    if case.practice.helix_modification != "none":
-        return False, f"helix modification: {UNCHECKED}"
-    if case.practice.offset:
-        return False, f"pinion off the middle: {UNCHECKED}"
+    if (chosen := case.practice.helix_modification) != "none":
+        of_alignment, of_shaft = CROWNING.get(chosen, (0.0, 0.0))
+        height = of_alignment * values["f_ma"] + of_shaft * shaft_misalignment(case, values)
+        taken = f", C_beta of {1e3 * height:.3g} µm taken for granted" if height else ""
+        return False, f"{chosen}{taken}: {UNCHECKED}"
+    if case.practice.shaft.offset:
+        return False, f"pinion off the middle, K' for s/l below 0.3 (c: 0.5): {UNCHECKED}"
     sound, remark = _stiffness(case, values)
     return sound, remark or (
         "above 2: one end is out of contact" if values["K_Hbeta"] > 2.0 else ""

@@ -87,8 +87,8 @@ def dynamic_ranges(dynamics: Dynamics, resonance: Any) -> tuple[Any, Any, Any]:
     return low, 1.0 + shared + c4 * relief, c5 * pitch + c6 * form + c7
 
 
-# Part of f_sh and f_ma that remains: B_1, B_2. Source: ISO 6336-1:2006, 7.5 [memory; only "none" is
-# met by published values]
+# Part of f_sh and f_ma that remains: B_1, B_2. Source: ISO 6336-1:2006, 7.5 [memory; iso.py of
+# efirvida/python-gearbox has all but "crowned for deflection"; only "none" is met by print]
 HELIX_MODIFICATIONS = {
     "none": (1.0, 1.0),
     "crowned": (1.0, 0.5),
@@ -98,34 +98,53 @@ HELIX_MODIFICATIONS = {
     "end relief": (0.7, 0.7),
 }
 LIGHT_ENDS = ("crowned", "crowned for deflection", "helix corrected and crowned", "end relief")
+# K' of figure 13, of pinions that do not stiffen their shaft. Source: ISO 6336-1:2006, in iso.py of
+# efirvida/python-gearbox; a public program of DIN 3990-11, figure 3.2, has the same.
+ARRANGEMENTS = {"a": 0.8, "b": -0.8, "c": 1.33, "d": -0.6, "e": -1.0}
+STIFF, LEFT = 1.15, 0.6  # d1/d_sh from which a pinion stiffens its shaft; what is left of K'
+STRAIGHT = 0.7  # of f_sh: what twist adds to bending
 PER_LOAD = 0.023e-3  # mm of f_sh per N/mm
 LEAST_PER_LOAD = 0.005e-3  # mm of F_betax per N/mm, at least
 
 
-def shaft_misalignment(line_load: Any, width_ratio: Any, offset: Any = 0.0) -> Any:
+@dataclass(frozen=True)
+class Shaft:
+    """A pinion s off the middle of bearings l apart, on a shaft of diameter d_sh, all [mm].
+
+    arrangement: of ARRANGEMENTS; stiffened: by the pinion, where d1 >= STIFF d_sh.
+    """
+
+    span: float = 0.0
+    offset: float = 0.0
+    diameter: float = 1.0
+    arrangement: str = "a"
+    stiffened: bool = True
+
+    def bending(self, diameter: Any) -> Any:
+        """Return K = K' l s/d1^2 (d1/d_sh)^4 of a pinion diameter d1 [mm]."""
+        part: Any = ARRANGEMENTS[self.arrangement]
+        if self.stiffened and self.arrangement != "c":
+            part = choose(diameter >= STIFF * self.diameter, LEFT * part, part)
+        return part * self.span * self.offset * diameter**2 / self.diameter**4
+
+
+def shaft_misalignment(line_load: Any, width_ratio: Any, bending: Any = 0.0) -> Any:
     """Return f_sh = w 0.023 um (|1 + K - 0.3| + 0.3) (b/d1)^2 [mm].
 
-    line_load w = F_t K_A K_v/b [N/mm]; width_ratio b/d1; offset K = K' l s/d1^2 (d1/d_sh)^4, of a
-    pinion s off the middle of its bearings, l apart. Source: ISO 6336-1:2006, 7.5.
+    line_load w = F_t K_A K_v/b [N/mm]; width_ratio b/d1; bending K of a `Shaft`.
+    Source: ISO 6336-1:2006, 7.5.
     """
-    return line_load * PER_LOAD * (np.abs(0.7 + offset) + 0.3) * width_ratio**2
+    return line_load * PER_LOAD * (np.abs(STRAIGHT + bending) + 0.3) * width_ratio**2
 
 
 def initial_misalignment(
-    shaft: Any, alignment: Any, line_load: Any, slope: Any, modification: str = "none"
+    shaft: Any, alignment: Any, line_load: Any, slope: Any, parts: tuple[float, float] = (1.0, 1.0)
 ) -> Any:
     """Return F_betax = 1.33 B_1 f_sh + B_2 f_ma [mm], at least 0.005 um w and 0.5 f_Hbeta.
 
-    line_load w [N/mm]; slope: the larger f_Hbeta [mm]; modification: of HELIX_MODIFICATIONS.
+    line_load w [N/mm]; slope: the larger f_Hbeta [mm]; parts B_1, B_2: of HELIX_MODIFICATIONS.
     Source: ISO 6336-1:2006, 7.5.
     """
-    return remaining(shaft, alignment, line_load, slope, HELIX_MODIFICATIONS[modification])
-
-
-def remaining(
-    shaft: Any, alignment: Any, line_load: Any, slope: Any, parts: tuple[float, float]
-) -> Any:
-    """F_betax of `initial_misalignment` of parts B_1, B_2."""
     initial = 1.33 * parts[0] * shaft + parts[1] * alignment
     return np.maximum(initial, np.maximum(LEAST_PER_LOAD * line_load, 0.5 * slope))
 

@@ -107,8 +107,8 @@ NEAREST: dict[str, dict[str, str]] = {  # kind -> names -> what stands nearest
         ): "Nearest: rim_over_module, web_over_face_width, bore and hub_over_bore, in [gears], "
         "[stage.pinion] or [stage.wheel]; holes in webs are not counted",
         BEARINGS: "Nearest: bearing_diameters and bearing_widths of [layout]",
-        SPANS: "It follows from the layout. Nearest: span of [layout], which says whether shafts "
-        "reach from wall to wall",
+        SPANS: "It follows from the layout. Nearest: span of [stage.shaft], for K_Hbeta, and of "
+        "[layout], which says whether shafts reach from wall to wall",
         DIAMETERS: "It follows from module, teeth and profile_shift. Nearest: wheel_diameter of "
         "[limits], the largest that is allowed; addendum and tip_alteration of a gear",
         "backlash flank_clearance normal_backlash circumferential_backlash j_bn j_wt": "Nearest: "

@@ -18,9 +18,9 @@ from gearopt.physics.iso6336.load_factors import (
     SUPER,
     coefficients,
     face_load_factor,
+    initial_misalignment,
     limited,
     lower_limit,
-    remaining,
     root_exponent,
     shaft_misalignment,
     transverse_load_factor,
@@ -65,6 +65,7 @@ class IsoRow(NamedTuple):
     bending_used1: Any
     contact_used0: Any
     contact_used1: Any
+    bending: Any
     excess0: Any
     excess1: Any
 
@@ -95,7 +96,6 @@ class IsoWay(NamedTuple):
     newer: bool
     shared: bool
     modified: float
-    offset: float
     relieved: tuple[float, float]
     light_ends: bool
     wearing0: tuple[float, float, float]
@@ -259,11 +259,11 @@ def spread(at: IsoRow, way: IsoWay, box: IsoBox, before: Any, upper: Any) -> Any
         return before * way.K_Hbeta
     width, speed = (box.high, at.speed1) if upper else (box.low, at.speed0)
     single = box.single1 if upper else box.single0
-    shaft = shaft_misalignment(before, width / at.diameter0, way.offset)
+    shaft = shaft_misalignment(before, width / at.diameter0, at.bending)
     first = slope(way, way.slopes0, at.diameter0, width, way.grades[0])
     second = slope(way, way.slopes1, at.diameter1, width, way.grades[1])
     alignment = (first**2 + second**2) ** 0.5 if np.isnan(way.f_ma) else way.f_ma
-    skew = remaining(shaft, alignment, before, np.maximum(first, second), way.relieved)
+    skew = initial_misalignment(shaft, alignment, before, np.maximum(first, second), way.relieved)
     worn = 0.5 * (allowance(way.wearing0, skew, speed) + allowance(way.wearing1, skew, speed))
     stiff = 0.85 * mesh(at, way, single) if np.isnan(way.c_gamma_beta) else way.c_gamma_beta
     return before * face_load_factor(skew - worn, stiff, before)

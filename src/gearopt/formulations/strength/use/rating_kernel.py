@@ -88,14 +88,14 @@ first_by_agma = _search(by_agma, agma_end, agma_least)
 
 @entry
 def iso_widths(c, way, alike, low, high, close, steps):
-    """First widths [mm] of rows by ISO 6336; c (30, n): `IsoRow`, alike: of one torque."""
+    """First widths [mm] of rows by ISO 6336; c (31, n): `IsoRow`, alike: of one torque."""
     widths = np.empty(len(low))
     for i in range(len(low)):
         at = IsoRow(
             c[0, i], c[1, i], c[2, i], c[3, i], c[4, i], c[5, i], c[6, i], c[7, i], c[8, i],
             c[9, i], c[10, i], c[11, i], c[12, i], c[13, i], c[14, i], c[15, i], c[16, i],
             c[17, i], c[18, i], c[19, i], c[20, i], c[21, i], c[22, i], c[23, i], c[24, i],
-            c[25, i], c[26, i], c[27, i], c[28, i], c[29, i],
+            c[25, i], c[26, i], c[27, i], c[28, i], c[29, i], c[30, i],
         )  # fmt: skip
         widths[i] = first_by_iso(at, way, alike, low[i], high[i], close, steps)
     return widths

@@ -10,7 +10,7 @@ from gearopt.scenes.drive.face_widths import excesses
 from gearopt.scenes.drive.idlers import idlers
 from gearopt.scenes.drive.rating.iso_material import steel
 from gearopt.scenes.drive.rating.materials import Named, choices, unused
-from gearopt.scenes.drive.rating.options import by
+from gearopt.scenes.drive.rating.options import by, of_stage
 from gearopt.scenes.drive.rating.steels import chosen
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.rating import GearTable, RatingTable
@@ -84,6 +84,8 @@ def _agma_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
         else "at the tip"
     )
     known = [by("agma").given(asked, own) for own in scene.stage_tables]
+    staged = [float(of_stage(asked, own).pinion_offset) for own in scene.stage_tables]
+    offsets = dict.fromkeys(f"{offset:g}" for offset in staged)
     bending = (
         "Bending stresses of spur gears, and of helical ones of low overlap ratio, are those of a "
         f"load {load}"
@@ -97,7 +99,7 @@ def _agma_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
         *([f"K_v is that of transmission accuracy {words}{others}."] if words else []),
         f"K_m follows the curve of {asked.mounting} gearing"
         + (", crowned" if asked.crowned else ", teeth without crowning")
-        + f"; the pinion offset S_1/S is {float(asked.pinion_offset):g}.",
+        + f"; the pinion offset S_1/S is {' and '.join(offsets)}.",
         *([] if all("J" in own for own in known) else [bending]),
         *[
             "Irons by ASTM have the lower strengths of AGMA's ranges (unverified) and the lowest "
@@ -117,11 +119,13 @@ def _iso_assumptions(scene: Scene, asked: RatingTable) -> list[str]:
     )
     helix = asked.iso6336.helix_modification
     modified = "without helix modification" if helix == "none" else f"helix modification: {helix}"
+    placed = any(of_stage(asked, own).shaft for own in scene.stage_tables)
+    where = "where its [shaft] has it, else " * placed + "midway between its bearings"
     overloaded = bool(scene.load) and asked.overload_factor != 1
     words = [f"Materials of ISO 6336-5 by treatment: {', '.join(chosen)}."] if chosen else []
     return [
         *words,
-        "K_Hβ by method C of ISO 6336-1, for a pinion midway between its bearings on a solid "
+        f"K_Hβ by method C of ISO 6336-1, for a pinion {where} on a solid "
         f"shaft; {modified}. Bending by method B: the load acts at the outer point of single pair "
         "contact.",
         *[WIDER] * any(any(excesses(own, scene.gears)) for own in scene.stage_tables),
@@ -136,7 +140,8 @@ def pinions_in_box(scene: Scene) -> list[str]:
         return []
     stages = scene.stage_tables
     iso = asked.standard != "agma" and any(
-        "K_Hbeta" not in by("iso6336").given(asked, own) for own in stages
+        not of_stage(asked, own).shaft and "K_Hbeta" not in by("iso6336").given(asked, own)
+        for own in stages
     )
     agma = (asked.standard != "iso6336" and not asked.pinion_offset) and any(
         "K_m" not in by("agma").given(asked, own) for own in stages

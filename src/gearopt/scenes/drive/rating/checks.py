@@ -250,7 +250,9 @@ def _check_standard(rating: RatingTable, gears: Gears, stages: Sequence[StageTab
 
 def _of_iso6336(rating: RatingTable, gears: Gears, stages: Sequence[StageTable]) -> Iterator[Place]:
     yield from [("rating", "iso6336")] * (rating.iso6336 != IsoTable())
+    yield from [("rating", "shaft")] * (rating.shaft is not None)
     for k, stage in enumerate(stages):
+        yield from [("stage", k, "shaft")] * (stage.shaft is not None)
         yield from [("stage", k, "given_iso6336")] * bool(stage.given_iso6336.factors())
     yield from _written(gears, stages, ISO_KEYS)
 

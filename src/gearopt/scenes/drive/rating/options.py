@@ -121,7 +121,9 @@ def _two(values: tuple[Any, ...]) -> tuple[Any, Any]:
 def of_stage(rating: RatingTable, own: StageTable) -> RatingTable:
     """The table [rating] with what a stage has of its own."""
     held = {name: getattr(own, name) for name in OF_STAGE}
-    return rating.model_copy(update={name: v for name, v in held.items() if v is not None})
+    made = rating.model_copy(update={name: v for name, v in held.items() if v is not None})
+    share = {} if made.shaft is None else {"pinion_offset": made.shaft.share}
+    return made.model_copy(update=share)
 
 
 def own_safety(own: StageTable) -> tuple[float | None, float | None]:

@@ -13,7 +13,7 @@ from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.physics.geometry.profile_shift import ROOT_SAFETY, RULES, Shifting
 from gearopt.scenes.drive.tables.iso6336 import IsoGiven
-from gearopt.scenes.drive.tables.rating import GearKeys, GearTable, GivenTable
+from gearopt.scenes.drive.tables.rating import GearKeys, GearTable, GivenTable, ShaftTable
 from gearopt.scenes.reading.choices import Between, Choice, Preferred, Steps, to_choose, values_of
 from gearopt.scenes.reading.fields import (
     Table,
@@ -223,6 +223,7 @@ class StageTable(Loaded):
     minimum_contact_safety: Annotated[Fraction | None, number(1.1, 0, 100)] = Field(
         None, description="Required S_H of this stage; by default that of [rating]"
     )
+    shaft: ShaftTable | None = None
     pinion: GearTable = Field(default_factory=GearTable, description="Data of the pinion alone")
     wheel: GearTable = Field(default_factory=GearTable, description="Data of the wheel alone")
     given: GivenTable = Field(

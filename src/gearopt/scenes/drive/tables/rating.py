@@ -10,6 +10,7 @@ from gearopt.physics.agma.bending import LOADS
 from gearopt.physics.agma.factors import ALIGNMENT, QUALITIES
 from gearopt.physics.agma.life import SERVICES
 from gearopt.physics.agma.rating_factors import EDITIONS
+from gearopt.physics.iso6336.load_factors import ARRANGEMENTS
 from gearopt.scenes.drive.tables.blanks import BlankKeys, beside
 from gearopt.scenes.drive.tables.given import Given
 from gearopt.scenes.drive.tables.iso6336 import ISO_KEYS, OWN, IsoGearKeys, IsoTable
@@ -281,7 +282,41 @@ class GivenTable(Given):
     C_H: Numbers = Field(None, description="Hardness ratio factor")
 
 
-OF_STAGE = ("overload_factor", "minimum_bending_safety", "minimum_contact_safety")  # too
+OF_STAGE = ("overload_factor", "minimum_bending_safety", "minimum_contact_safety", "shaft")  # too
+
+
+class ShaftTable(Table):
+    """Where a pinion is on its shaft: K_Hbeta of ISO 6336, and K_m of AGMA beside it."""
+
+    span: Annotated[Quantity, quantity("length", "200 mm")] = Field(
+        description="Distance l of the bearings"
+    )
+    offset: Annotated[Quantity, quantity("length", "30 mm", zero=True)] = Field(
+        description="Distance s of the pinion from the middle of the bearings"
+    )
+    diameter: Annotated[Quantity, quantity("length", "45 mm")] = Field(
+        description="Diameter d_sh of the shaft"
+    )
+    arrangement: Annotated[str, choice(*ARRANGEMENTS)] = Field(
+        "a",
+        description="K' by figure 13 of ISO 6336-1: a, b between bearings, off towards the end "
+        "with torque or the other one; c overhung; d, e as drawn there",
+    )
+    stiffened: Annotated[bool, truth()] = Field(
+        True, description="The pinion stiffens its shaft, where d1 >= 1.15 d_sh"
+    )
+
+    @property
+    def share(self) -> Fraction:
+        """The offset over the span, S_1/S."""
+        return self.offset.exact[0] / self.span.exact[0]
+
+    @model_validator(mode="after")
+    def _between(self) -> "ShaftTable":
+        if self.share >= Fraction(1, 2):
+            fifth = str(self.span.of(self.span.exact[0] / 5))
+            raise refuse("is half of the span or more", fifth, ("offset",), "sample")
+        return self
 
 
 class RatingTable(Table):
@@ -376,6 +411,7 @@ class RatingTable(Table):
         description="Dynamic viscosity of the oil at its temperature, from which the friction is "
         "computed",
     )
+    shaft: ShaftTable | None = None
     given: GivenTable = Field(
         default_factory=GivenTable, description="Factors of all stages, instead of computed ones"
     )
@@ -406,6 +442,9 @@ class RatingTable(Table):
         if self.quality is not None and self.accuracy is not None:
             rule = "conflicts with quality; one is enough"
             raise refuse(rule, at=("accuracy",), action="remove")
+        if self.shaft is not None and "pinion_offset" in self.model_fields_set:
+            rule = "conflicts with shaft, whose offset over span it is"
+            raise refuse(rule, at=("pinion_offset",), action="remove")
         bare = self.quality is None and self.accuracy is None and self.given.K_v is None
         if bare and self.by_agma:
             raise refuse("is missing (or give accuracy)", 8, ("quality",), "sample")
