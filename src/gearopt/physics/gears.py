@@ -170,10 +170,7 @@ class Gear:
 
     @property
     def root_excess(self) -> Any:
-        """What of `width_excess` [mm] bends with the teeth: at most a module at each end.
-
-        Source: ISO 6336-3, face width at the root [memory: unverified].
-        """
+        """What of it [mm] bends, a module at each end. Source: ISO 6336-3 [memory: unverified]."""
         excess = self.width_excess
         return excess if _none(excess) else np.minimum(excess, 2.0 * self.normal_module)
 

@@ -300,8 +300,8 @@ def _stage(
         driver=driver,
         ratio=float(pair.ratio),
         face_width_mm=float(pair.face_width),
-        pinion_face_width_mm=_own_width(pinion),
-        wheel_face_width_mm=_own_width(wheel),
+        pinion_face_width_mm=float(pinion.width) if pinion.width_excess else None,
+        wheel_face_width_mm=float(wheel.width) if wheel.width_excess else None,
         pinion_diameter_mm=float(d),
         wheel_diameter_mm=float(wheel.reference_diameter),
         pinion_tip_diameter_mm=float(pinion.tip_diameter),
@@ -323,11 +323,6 @@ def _stage(
         **_teeth(pair),
         **_bodies(pair, blanks),
     )
-
-
-def _own_width(gear: Gear) -> float | None:
-    """Return the face width [mm] of a gear that is wider than its mesh."""
-    return float(gear.width) if gear.width_excess else None
 
 
 def _teeth(pair: GearPair) -> dict[str, Any]:

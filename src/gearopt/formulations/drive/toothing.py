@@ -180,11 +180,8 @@ class Toothing:
 
 
 COLUMNS = ("helix_angle", "working_distance", "pinion_shift", "shift_sum")  # that may differ
-ALIKE = (
-    *("racks", "profile_shifts", "tip_alterations", "thickness_allowances", "shifting"),
-    "width_excesses",
-)
-_columns_of, _alike_of = attrgetter(*COLUMNS), attrgetter(*ALIKE)
+ALIKE = ("racks", "profile_shifts", "tip_alterations", "thickness_allowances", "shifting")
+_columns_of, _alike_of = attrgetter(*COLUMNS), attrgetter(*ALIKE, "width_excesses")
 
 
 def in_columns(toothings: Sequence[Toothing]) -> Toothing:

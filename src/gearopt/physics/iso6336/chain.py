@@ -98,13 +98,9 @@ def shaft_misalignment(case: Case, values: Values) -> Any:
 
 def _face(case: Case, values: Values) -> Any:
     line, parts = _line_load(case, values, "K_v"), case.practice.helix_modification
-    before = loads.initial_misalignment(
-        shaft_misalignment(case, values),
-        values["f_ma"],
-        line,
-        case.deviations.helix_slope,
-        loads.HELIX_MODIFICATIONS[parts],
-    )
+    shaft, slope = shaft_misalignment(case, values), case.deviations.helix_slope
+    left = loads.HELIX_MODIFICATIONS[parts]
+    before = loads.initial_misalignment(shaft, values["f_ma"], line, slope, left)
     limits = values["sigma_Hlim"]
     worn = [
         running_in.helix_allowance(case.materials[k].family, before, limits[k], case.speed)

@@ -19,11 +19,6 @@ Values = dict[str, Any]
 SHIFTS = -0.5, 2.0  # x_1 + x_2 for which c' holds. Source: part 1, 9.3 [memory]
 # angles above which results want experience. Source: IACS UR M56, 3.1, of parts 2 and 3
 PRESSURE_ANGLE, HELIX_ANGLE = math.radians(25.0) + 1e-9, math.radians(30.0) + 1e-9
-CROWNING = {  # parts of f_ma and f_sh in the crowning that B_1 and B_2 take for granted [memory]
-    "crowned": (0.5, 0.0),
-    "crowned for deflection": (0.5, 0.5),
-    "helix corrected and crowned": (0.5, 0.0),
-}
 UNCHECKED = "not checked against any source"
 EXPERIENCE = "to be confirmed by experience"
 NITROCARBURISED = "NV nitrocarburised"
@@ -151,9 +146,9 @@ def _dynamic(case: Case, values: Values) -> Doubt:
 
 def _face(case: Case, values: Values) -> Doubt:
     if (chosen := case.practice.helix_modification) != "none":
-        of_alignment, of_shaft = CROWNING.get(chosen, (0.0, 0.0))
-        height = of_alignment * values["f_ma"] + of_shaft * shaft_misalignment(case, values)
-        taken = f", C_beta of {1e3 * height:.3g} µm taken for granted" if height else ""
+        bent = shaft_misalignment(case, values) if "deflection" in chosen else 0.0
+        height = 500.0 * (values["f_ma"] + bent)  # that B_1 and B_2 take for granted [memory]
+        taken = f", C_beta of {height:.3g} µm taken for granted" * ("crowned" in chosen)
         return False, f"{chosen}{taken}: {UNCHECKED}"
     if case.practice.shaft.offset:
         return False, f"pinion off the middle, K' for s/l below 0.3 (c: 0.5): {UNCHECKED}"

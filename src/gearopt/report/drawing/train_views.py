@@ -327,5 +327,4 @@ def _side(train: Bodies, scale: float, measures: Measures) -> Drawing:
 
 
 def _widths(train: Bodies) -> list[float]:
-    pairs = ((g for g in train.gears if g.stage == k) for (k,) in train.slabs)
-    return [max(g.to_mm - g.from_mm for g in pair) for pair in pairs]
+    return [max(g.to_mm - g.from_mm for g in train.gears if g.stage == k) for (k,) in train.slabs]

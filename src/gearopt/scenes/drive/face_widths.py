@@ -24,41 +24,28 @@ def excesses(own: StageTable, gears: Gears) -> tuple[float, float]:
     """By how much [mm] pinion and wheel are wider than their mesh."""
     width = fixed_width(own)
     if width is not None and _own_widths(own):
-        each = ((gear.face_width or own.face_width or width) for gear in (own.pinion, own.wheel))
-        first, second = (own_width.value - width.value for own_width in each)
+        each = (gear.face_width or own.face_width or width for gear in (own.pinion, own.wheel))
+        first, second = (one.value - width.value for one in each)
         return first, second
     excess = own.pinion_face_width_excess or gears.pinion_face_width_excess
     return excess.value if excess else 0.0, 0.0
 
 
-def widths(own: StageTable, gears: Gears) -> tuple[float | None, float | None]:
-    """Face widths [mm] of pinion and wheel, where they are given."""
-    width = fixed_width(own)
-    if width is None:
-        return None, None
-    first, second = (width.value + excess for excess in excesses(own, gears))
-    return first, second
-
-
 def check_excess(scene: "Scene", lacks: str) -> None:
-    """Refuse gears that are wider than their mesh where something takes them for as wide.
-
-    lacks: what the file lacks to choose gears with one, "" for nothing.
-    """
-    layout, shift = scene.layout, scene.shift
+    """Refuse gears wider than their mesh where that is not known; lacks: what they need, or ""."""
+    layout, shift, free = scene.layout, scene.shift, scene.given and not scene.to_size
+    together, balanced = layout and layout.together, shift and shift.rule == ROOT_SAFETY
     rules = {
         "needs a table [rating]": scene.rating is None,
-        f"needs {lacks}": bool(lacks),
-        "does not go together with the layout, whose bounds take one width of a stage": layout
-        and layout.together,
-        f"changes S_F1/S_F2 with the width; the rule {ROOT_SAFETY} takes one of all": shift
-        and shift.rule == ROOT_SAFETY,
+        f"needs {lacks}": bool(lacks) and not free,
+        "does not go together with the layout, whose bounds take one width of a stage": together,
+        f"changes S_F1/S_F2 with the width; the rule {ROOT_SAFETY} takes one of all": balanced,
     }
     for k, own in enumerate(scene.stage_tables):
         key, alone = "pinion_face_width_excess", _own_widths(own)
         at = ("stage", k) if alone or getattr(own, key) is not None else ("gears",)
         place: tuple[Any, ...] = (*at, alone[0], "face_width") if alone else (*at, key)
-        if alone and (not scene.given or scene.to_size):
+        if alone and not free:
             rule = "is for gears that are all given and rated alone"
             raise refuse(rule, f"Write {key}: the pinion is wider by it", place, "tell")
         for rule, wrong in rules.items() if any(excesses(own, scene.gears)) else ():

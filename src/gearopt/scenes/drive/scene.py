@@ -17,14 +17,7 @@ from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.scenes.drive.distances import joint_limits, reach, rows_together
 from gearopt.scenes.drive.driving import check_driving, may_drive, ratio_of
-from gearopt.scenes.drive.face_widths import (
-    check_excess,
-    check_width,
-    excesses,
-    face_width,
-    fixed_width,
-    widths,
-)
+from gearopt.scenes.drive.face_widths import check_excess, check_width, excesses, face_width
 from gearopt.scenes.drive.idlers import check_idlers, with_idlers
 from gearopt.scenes.drive.rating.checks import (
     check_given,
@@ -272,8 +265,8 @@ class Scene(Table):
         """Check that rims, webs, bores and hubs of every gear belong together."""
         rows = []
         for k, stage in enumerate(self.stage or (StageTable(),)):
-            open_width = fixed_width(stage) is None and not self.given
-            for member in MEMBERS:
+            for wider, member in zip(excesses(stage, self.gears), MEMBERS, strict=True):
+                open_width = not self.given and (stage.face_width is None or wider > 0.0)
                 gear = getattr(stage, member)
                 table = with_shared(gear, self.gears)
                 rows.append((("stage", k, member), gear, table, open_width))
@@ -312,8 +305,7 @@ class Scene(Table):
         asked = asked or ("process_two" if self.process_two is not None else "")
         self._check_choices()
         self._check_helix_limits()
-        free = self.given and not self.to_size
-        check_excess(self, "" if free else self._lacks("with a wider pinion"))
+        check_excess(self, self._lacks("with a wider pinion"))
         if not self.several:
             self._distances(self.stage_tables)
         lacks = "" if self.given else self._lacks("at a given centre distance")
@@ -579,5 +571,5 @@ class Scene(Table):
     def _blanks(self, own: StageTable) -> tuple[Blank, Blank]:
         """Return the blanks of a stage."""
         pinion, wheel = (with_shared(getattr(own, m), self.gears) for m in MEMBERS)
-        first, second = widths(own, self.gears)
-        return blank(pinion, first), blank(wheel, second)
+        width = own.face_width.value if own.face_width else None
+        return blank(pinion, width), blank(wheel, width)

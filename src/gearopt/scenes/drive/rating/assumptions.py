@@ -16,9 +16,8 @@ from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.rating import GearTable, RatingTable
 
 WIDER = (
-    "Teeth of a gear that is wider than its mesh bend over its own width, at most one module m_n "
-    "beyond the mesh at each end (ISO 6336-3 from memory: unverified); contact and all load "
-    "factors are those of the common width."
+    "A gear that is wider than its mesh bends over its own width, at most one module m_n beyond "
+    "the mesh at each end (ISO 6336-3 from memory: unverified); all K factors are of the mesh's."
 )
 
 

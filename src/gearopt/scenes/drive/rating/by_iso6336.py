@@ -8,13 +8,12 @@ from gearopt.formulations.strength.iso6336 import Iso6336
 from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336.case import Practice, of_blanks
 from gearopt.physics.iso6336.factors import CLAUSES
-from gearopt.physics.iso6336.load_factors import Shaft
 from gearopt.physics.iso6336.rating import rate, rate_spectrum
 from gearopt.scenes.drive.rating.gears import Tables, blanks
 from gearopt.scenes.drive.rating.iso_material import finish, material, steel
 from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.drive.tables.iso6336 import NAMES
-from gearopt.scenes.drive.tables.rating import RatingTable, ShaftTable
+from gearopt.scenes.drive.tables.rating import RatingTable
 
 # a standard has these names of other modules, too
 __all__ = ["NAMES", "finish", "material", "rate", "rate_spectrum", "steel"]
@@ -60,16 +59,11 @@ def bare_practice(rating: RatingTable, gears: Tables) -> Practice:
         viscosity=asked.oil_grade.value if asked.oil_grade else usual.viscosity,
         relief=asked.tip_relief.value if asked.tip_relief else None,
         helix_modification=asked.helix_modification,
-        shaft=_shaft(rating.shaft) if rating.shaft else usual.shaft,
+        shaft=rating.shaft.made if rating.shaft else usual.shaft,
         profile_modification=asked.profile_modification,
         limited_pitting=asked.limited_pitting,
         lowest=float(asked.life_factor_at_1e10),
     )
-
-
-def _shaft(table: ShaftTable) -> Shaft:
-    lengths = table.span.value, table.offset.value, table.diameter.value
-    return Shaft(*lengths, table.arrangement, table.stiffened)
 
 
 def given(rating: RatingTable, own: StageTable) -> dict[str, Any]:

@@ -9,7 +9,6 @@ from typing import Any
 from gearopt.formulations.strength.standard import Load, Option
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.static import static_given, static_operation
-from gearopt.scenes.drive.face_widths import widths
 from gearopt.scenes.drive.rating.gears import loads, required_hours, unit_operation
 from gearopt.scenes.drive.rating.materials import Named, choices
 from gearopt.scenes.drive.tables.blanks import blank
@@ -49,7 +48,7 @@ def of_stages(
         pinion, wheel = (choices(getattr(table, member), gears, materials) for member in MEMBERS)
         options.append(
             tuple(
-                _option(of_stage(rating, table), table, gears, (a, b), hours, loaded)
+                _option(of_stage(rating, table), table, (a, b), hours, loaded)
                 for a in pinion
                 for b in wheel
             )
@@ -64,7 +63,6 @@ def of_stages(
 def _option(
     rating: RatingTable,
     own: StageTable,
-    gears: Gears,
     made: tuple[tuple[GearTable, Named | None], tuple[GearTable, Named | None]],
     hours: float,
     loaded: tuple[Load, ...],
@@ -72,14 +70,14 @@ def _option(
     """One way of making the gears of a stage; made: the table and the material of each."""
     tables, materials = (made[0][0], made[1][0]), (made[0][1], made[1][1])
     operation = unit_operation(rating, hours, tables)
-    first, second = map(blank, tables, widths(own, gears))
+    width = own.face_width.value if own.face_width else None
     standards = [
         standard.LIMIT(
             loaded,
             operation,
             (standard.steel(tables[0]), standard.steel(tables[1])),
             standard.bare_practice(rating, tables),
-            (first, second),
+            (blank(tables[0], width), blank(tables[1], width)),
             standard.given(rating, own),
         )
         for standard in map(by, STANDARDS[rating.standard])

@@ -114,7 +114,9 @@ def check_blanks(tables: Sequence[tuple[Place, BlankKeys, BlankKeys, bool]]) -> 
             raise refuse("needs bore, which the hub surrounds", at=at(HUBS), action="remove")
         if web == WEB[0] and open_width:
             rule = "is a length, and the face width of its gear is to be chosen"
-            tell = "Write web_over_face_width = 0.3, or give the stage a face_width"
+            tell = (
+                "Write web_over_face_width = 0.3, or give the stage a face_width that its gear has"
+            )
             raise refuse(rule, tell, at(web), "tell")
 
 

@@ -86,8 +86,7 @@ PROPORTION_IS = (
 OVER_MODULE_IS = "Range of face width over normal module b/m_n"
 LEAST_IS = "Smallest face width that a stage may have"
 EXCESS_IS = (
-    "By how much the pinion is wider than the face width, which the wheel has; for gears that are "
-    "rated, of whole teeth"
+    "By how much the pinion is wider than the wheel, which has the face width; with [rating]"
 )
 STEP_IS = "Face widths are whole multiples of this"
 WHEEL_IS = "Largest reference diameter of a wheel"

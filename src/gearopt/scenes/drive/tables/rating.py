@@ -10,7 +10,7 @@ from gearopt.physics.agma.bending import LOADS
 from gearopt.physics.agma.factors import ALIGNMENT, QUALITIES
 from gearopt.physics.agma.life import SERVICES
 from gearopt.physics.agma.rating_factors import EDITIONS
-from gearopt.physics.iso6336.load_factors import ARRANGEMENTS
+from gearopt.physics.iso6336.load_factors import ARRANGEMENTS, Shaft
 from gearopt.scenes.drive.tables.blanks import BlankKeys, beside
 from gearopt.scenes.drive.tables.given import Given
 from gearopt.scenes.drive.tables.iso6336 import ISO_KEYS, OWN, IsoGearKeys, IsoTable
@@ -288,15 +288,11 @@ OF_STAGE = ("overload_factor", "minimum_bending_safety", "minimum_contact_safety
 class ShaftTable(Table):
     """Where a pinion is on its shaft: K_Hbeta of ISO 6336, and K_m of AGMA beside it."""
 
-    span: Annotated[Quantity, quantity("length", "200 mm")] = Field(
-        description="Distance l of the bearings"
-    )
+    span: Annotated[Quantity, quantity("length", "200 mm")] = Field(description="Bearing span l")
     offset: Annotated[Quantity, quantity("length", "30 mm", zero=True)] = Field(
         description="Distance s of the pinion from the middle of the bearings"
     )
-    diameter: Annotated[Quantity, quantity("length", "45 mm")] = Field(
-        description="Diameter d_sh of the shaft"
-    )
+    diameter: Annotated[Quantity, quantity("length", "45 mm")] = Field(description="Diameter d_sh")
     arrangement: Annotated[str, choice(*ARRANGEMENTS)] = Field(
         "a",
         description="K' by figure 13 of ISO 6336-1: a, b between bearings, off towards the end "
@@ -305,6 +301,12 @@ class ShaftTable(Table):
     stiffened: Annotated[bool, truth()] = Field(
         True, description="The pinion stiffens its shaft, where d1 >= 1.15 d_sh"
     )
+
+    @property
+    def made(self) -> Shaft:
+        """The shaft in plain numbers [mm]."""
+        lengths = self.span.value, self.offset.value, self.diameter.value
+        return Shaft(*lengths, self.arrangement, self.stiffened)
 
     @property
     def share(self) -> Fraction:
@@ -431,20 +433,17 @@ class RatingTable(Table):
 
     @model_validator(mode="after")
     def _one_of_two(self) -> "RatingTable":
-        if self.life is not None and self.input_revolutions is not None:
-            rule = "conflicts with life; one is enough"
-            raise refuse(rule, at=("input_revolutions",), action="remove")
+        conflicts = {
+            "input_revolutions": ("life", "; one is enough"),
+            "friction_coefficient": ("oil_viscosity", ", from which it is computed"),
+            "accuracy": ("quality", "; one is enough"),
+            "pinion_offset": ("shaft", ", whose offset over span it is"),
+        }
+        for name, (other, why) in conflicts.items():
+            if {name, other} <= self.model_fields_set:
+                raise refuse(f"conflicts with {other}{why}", at=(name,), action="remove")
         if self.life is None and self.input_revolutions is None:
             raise refuse("is missing (or give input_revolutions)", "20000 h", ("life",), "sample")
-        if self.friction_coefficient is not None and self.oil_viscosity is not None:
-            rule = "conflicts with oil_viscosity, from which it is computed"
-            raise refuse(rule, at=("friction_coefficient",), action="remove")
-        if self.quality is not None and self.accuracy is not None:
-            rule = "conflicts with quality; one is enough"
-            raise refuse(rule, at=("accuracy",), action="remove")
-        if self.shaft is not None and "pinion_offset" in self.model_fields_set:
-            rule = "conflicts with shaft, whose offset over span it is"
-            raise refuse(rule, at=("pinion_offset",), action="remove")
         bare = self.quality is None and self.accuracy is None and self.given.K_v is None
         if bare and self.by_agma:
             raise refuse("is missing (or give accuracy)", 8, ("quality",), "sample")
