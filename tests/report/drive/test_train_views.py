@@ -20,6 +20,7 @@ from gearopt.report.drawing.train_views import BESIDE, PITCH, WIDE, beside
 from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page
 
+HELICAL = Toothing(0.4)
 TRAINS = {  # m_n, z1, z2, b of every stage
     "two stages": ((2.0, 21, 115, 27.805), (3.0, 23, 91, 57.1)),
     "one stage": ((1.5, 28, 125, 33.6),),
@@ -46,9 +47,9 @@ TRAINS = {  # m_n, z1, z2, b of every stage
 }
 
 
-def result(rows, **blanks):
+def result(rows, toothing=HELICAL, **blanks):
     width = FaceWidth(0, None)
-    stage = Stage((1.0, 1.0), width, (), (1, None), toothings=(Toothing(0.4),), **blanks)
+    stage = Stage((1.0, 1.0), width, (), (1, None), toothings=(toothing,), **blanks)
     stages = (stage,) * len(rows)
     train = Train(5e4, 1, 0, stages, law=K_FACTOR, speed=150.0)
     pairs = tuple(train.pair(k, *row) for k, row in enumerate(rows))
@@ -180,6 +181,23 @@ def test_rims_hubs_and_bores_are_circles():
     words = "thin ones the insides of rims, hubs and bores"
     assert words in "".join(Reader(html).text)
     assert words not in "".join(Reader(page(result(TRAINS["one stage"]), "x")).text)
+
+
+def test_wider_gears_are_drawn_about_the_middle_of_their_mesh():
+    """Pinions 20 mm wider than the mesh, wheels 4 mm; the page tells all widths."""
+    found = result(TRAINS["six alike"][:3], Toothing(0.4, width_excesses=(20.0, 4.0)))
+    html = page(found, "x")
+    front, side = drawings(html)
+    scale, _ = scale_of(found.design["stages"], front)
+    drawn = sorted(numbers(e, "x", "width") for e in marks(side, "rect", "tip"))
+    widths = sorted(wide / scale for _, wide in drawn)
+    assert widths == pytest.approx([34.0] * 3 + [50.0] * 3, abs=0.05)
+    middles = [x + wide / 2 for x, wide in sorted(drawn, key=sum)]
+    assert sorted(middles)[::2] == pytest.approx(sorted(middles)[1::2], abs=0.05)
+    pinions = sorted(each for each in drawn if each[1] > 40.0 * scale)
+    assert all(b[0] - a[0] - a[1] > 15.9 for a, b in zip(pinions, pinions[1:], strict=False))
+    shown = "".join(Reader(html).text)
+    assert "pinion face width b1" in shown and "wheel face width b2" in shown
 
 
 def test_words_say_that_nothing_is_optimised_and_how_it_would_be():
