@@ -173,7 +173,9 @@ def describe(train: Train, pairs: tuple[GearPair, ...], options: Sequence[int] =
 
     options: of every stage, from 0; none: the first. Only the last one may have an idler.
     """
-    loaded, asked = (float(train.torque), float(train.speed)), train.asked_ratio
+    loaded, asked = (float(train.torque), float(train.speed)), train.ratio
+    if train.driver == "wheel":
+        asked = 1 / (train.ratio * (1 - train.tolerance**2))
     if not train.rated:
         blanks = [stage.blanks for stage in train.stages]
         return of_pairs(train.law, pairs, *loaded, asked, train.density, blanks, train.drivers)

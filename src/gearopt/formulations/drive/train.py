@@ -392,11 +392,6 @@ class Train:
         return self.ratio * (1 + self.tolerance)
 
     @property
-    def asked_ratio(self) -> Fraction:
-        """The ratio that is asked for, input over output speed."""
-        return self.ratio if self.driver == "pinion" else 1 / (self.ratio * (1 - self.tolerance**2))
-
-    @property
     def drivers(self) -> tuple[str, ...]:
         """The member that drives each stage."""
         return (self.driver,) * len(self.stages)

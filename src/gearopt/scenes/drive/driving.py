@@ -8,6 +8,7 @@ from gearopt.scenes.parts import Duty
 from gearopt.scenes.reading.fields import refuse
 
 if TYPE_CHECKING:
+    from gearopt.formulations.drive.design import DriveDesign
     from gearopt.formulations.drive.train import Train
     from gearopt.scenes.drive.scene import Scene
 
@@ -22,6 +23,13 @@ def drivers(scene: "Scene") -> tuple[str, ...]:
     """The gear that drives each stage of gears that are given."""
     usual = "wheel" if scene.duty.asks_ratio and scene.duty.total_ratio < 1 else "pinion"
     return tuple(own.driver or usual for own in scene.stage_tables)
+
+
+def driven(scene: "Scene", design: "DriveDesign") -> "Scene":
+    """A drive whose stages are driven as those of a design."""
+    rows = zip(scene.stage_tables, design.stages, strict=True)
+    stages = tuple(own.model_copy(update={"driver": stage.driver}) for own, stage in rows)
+    return scene.model_copy(update={"stage": stages})
 
 
 def may_drive(scene: "Scene") -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from gearopt.physics.geometry.flaws import flaws
 from gearopt.physics.iso6336.static import static_given, static_operation
 from gearopt.physics.loads import torque_ratios
 from gearopt.physics.rating import Operation, Rating
+from gearopt.scenes.drive.driving import drivers
 from gearopt.scenes.drive.rating.gears import Tables, gear_tables, operations
 from gearopt.scenes.drive.rating.options import of_stage
 from gearopt.scenes.drive.scene import Scene
@@ -59,19 +60,14 @@ class Mesh:
 
 
 def rated_meshes(
-    scene: Scene,
-    pairs: tuple[GearPair, ...],
-    standard: Any,
-    materials: Materials,
-    drivers: Sequence[str],
+    scene: Scene, pairs: tuple[GearPair, ...], standard: Any, materials: Materials
 ) -> list[Mesh]:
     """Rate all stages; SolveError names those that have no rating, and why.
 
     materials: names of those chosen, of pinion and wheel of every stage; "": there was no choice.
-    drivers: as of `torque_ratios`.
     """
     meshes, refused = [], list[str]()
-    slower = torque_ratios([float(pair.ratio) for pair in pairs], drivers)
+    slower = torque_ratios([float(pair.ratio) for pair in pairs], drivers(scene))
     for k, pair in enumerate(pairs):
         known = flaws(pair)
         sentences = [flaw.sentence[0].lower() + flaw.sentence[1:].rstrip(".") for flaw in known]

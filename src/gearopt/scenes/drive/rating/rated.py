@@ -14,7 +14,7 @@ from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import GearPair
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
-from gearopt.scenes.drive.driving import drivers
+from gearopt.scenes.drive.driving import driven, drivers
 from gearopt.scenes.drive.idlers import idlers
 from gearopt.scenes.drive.notes import masses
 from gearopt.scenes.drive.rating.assumptions import rating_assumptions, unused_materials
@@ -81,7 +81,7 @@ def rate_design(scene: Scene, ask: Ask, design: Mapping[str, Any]) -> Result:
         found = replace(drive_design(design), rating=None)
     except ValueError as why:
         raise SolveError(f"the design is no drive: {why}") from None
-    scene = scene.held(len(found.stages))
+    scene = driven(scene.held(len(found.stages)), found)
     pairs = scene.pairs(found)
     materials = [(stage.pinion_material, stage.wheel_material) for stage in found.stages]
     bodies = [
@@ -90,26 +90,21 @@ def rate_design(scene: Scene, ask: Ask, design: Mapping[str, Any]) -> Result:
             zip(scene.stage_tables, materials, pairs, strict=True)
         )
     ]
-    drivers = [stage.driver for stage in found.stages]
-    rated = _rated(scene, ask, pairs, drivers, materials)
+    rated = _rated(scene, ask, pairs, materials)
     return _with_gears(scene, rated, pairs, found, bodies)
 
 
 def with_given_rating(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Rating of gears that are all given; SolveError where they have none."""
-    return _rated(scene, ask, given_pairs(scene.stage, scene.gears), drivers(scene))
+    return _rated(scene, ask, given_pairs(scene.stage, scene.gears))
 
 
 def _rated(
-    scene: Scene,
-    ask: Ask,
-    pairs: tuple[GearPair, ...],
-    drivers: Sequence[str],
-    materials: Materials | None = None,
+    scene: Scene, ask: Ask, pairs: tuple[GearPair, ...], materials: Materials | None = None
 ) -> Result:
-    """Rating of gears, status `evaluated`; drivers, materials: as of `rating`."""
+    """Rating of gears, status `evaluated`; materials: as of `rating`."""
     assert scene.rating is not None
-    rated = rating(scene, pairs, drivers, materials)
+    rated = rating(scene, pairs, materials)
     limits, remarks = utilisations(rated), [*unused_materials(scene), *weighty(pairs, rated)]
     return Result(
         name="rating",
@@ -217,8 +212,7 @@ def with_rating(scene: Scene, result: Result) -> Result:
         return result
     try:
         materials = [(s.pinion_material, s.wheel_material) for s in design.stages]
-        drivers = [stage.driver for stage in design.stages]
-        rated = fitted(rating(held, pairs, drivers, materials), misfits)
+        rated = fitted(rating(driven(held, design), pairs, materials), misfits)
     except SolveError as reason:
         report = result.report | {"notes": [*notes, f"There is no rating: {reason}."]}
         return replace(result, report=report)
@@ -260,28 +254,23 @@ def utilisations(rated: DriveRating) -> dict[str, float]:
 
 
 def rating(
-    scene: Scene,
-    pairs: tuple[GearPair, ...],
-    drivers: Sequence[str],
-    materials: Materials | None = None,
+    scene: Scene, pairs: tuple[GearPair, ...], materials: Materials | None = None
 ) -> DriveRating:
     """Return the rating of all stages by all standards asked for; SolveError why there is none.
 
-    drivers, materials: as of `rated_meshes`, which has no choice by default. Flaws are those of
-    load.
+    materials: as of `rated_meshes`; by default there was no choice. Flaws are those of load.
     """
     assert scene.rating
     names = materials or [("", "")] * len(pairs)
     first, *others = (
-        _by(scene, pairs, standard, names, drivers)
-        for standard in map(by, STANDARDS[scene.rating.standard])
+        _by(scene, pairs, standard, names) for standard in map(by, STANDARDS[scene.rating.standard])
     )
     first = replace(first, beside=others[0]) if others else first
     tables = [
         gear_tables(own, scene.gears, scene.material, k, of_stage)
         for k, (own, of_stage) in enumerate(zip(scene.stage_tables, names, strict=True))
     ]
-    return replace(first, flaws=(*_partial_contact(first), *unusual(pairs, tables, drivers)))
+    return replace(first, flaws=(*_partial_contact(first), *unusual(pairs, tables, drivers(scene))))
 
 
 def _partial_contact(rated: DriveRating) -> Iterator[str]:
@@ -306,16 +295,12 @@ def _partial_contact(rated: DriveRating) -> Iterator[str]:
 
 
 def _by(
-    scene: Scene,
-    pairs: tuple[GearPair, ...],
-    standard: Any,
-    materials: Materials,
-    drivers: Sequence[str],
+    scene: Scene, pairs: tuple[GearPair, ...], standard: Any, materials: Materials
 ) -> DriveRating:
     """Return the rating of all stages; SolveError names the stage that has none, and why."""
     asked = scene.rating
     assert asked
-    meshes = rated_meshes(scene, pairs, standard, materials, drivers)
+    meshes = rated_meshes(scene, pairs, standard, materials)
     still = required_static(asked)
     wanted = [(*required(of_stage(asked, own)), *still) for own in scene.stage_tables]
     rows = tuple(mesh_row(asked, mesh, w) for mesh, w in zip(meshes, wanted, strict=True))
@@ -323,7 +308,8 @@ def _by(
     each = zip(meshes, scene.stage_tables, strict=True)
     gears = tuple(gear_row(mesh, k, own_safety(own)) for mesh, own in each for k in (0, 1))
     factors = tuple(row for mesh in meshes for row in factor_rows(asked, mesh))
-    turned = hands([table.pinion_hand for table in scene.stage] or [None] * len(pairs), drivers)
+    drive = drivers(scene)
+    turned = hands([table.pinion_hand for table in scene.stage] or [None] * len(pairs), drive)
     (efficiency, error), idle = _efficiency(rows), idlers(scene.stage)
     rated = DriveRating(
         standard=standard.title(asked, factors),
@@ -341,7 +327,7 @@ def _by(
         factors=factors,
         shafts=tuple(
             replace(row, torque_Nm=0.0) if row.shaft in idle else row
-            for row in shaft_rows(pairs, turned, drivers, *_largest_load(scene))
+            for row in shaft_rows(pairs, turned, drive, *_largest_load(scene))
         ),
         teeth=tuple(
             tooth_geometry(mesh.stage, mesh.pair, k, turned[mesh.stage - 1])
