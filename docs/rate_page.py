@@ -109,6 +109,9 @@ With all teeth, modules and widths given, `[limits]` and the ratio of `[duty]` a
 both gears share stands in `[gears]`; the data of one alone in `[stage.pinion]`, `[stage.wheel]`.
 A gear that is wider than its mate has a `face_width` there, or the stage
 `pinion_face_width_excess = "5 mm"`: see *wider pinions* in [drive](drive.md).
+The pinion is the gear with fewer teeth. It drives, unless `driver = "wheel"` of the `[[stage]]`
+says that the other gear does: a drive that increases the speed, whose page says so
+([Drives that increase the speed](#drives-that-increase-the-speed)).
 `overload_factor`, `minimum_bending_safety` and `minimum_contact_safety` of one stage stand in its
 `[[stage]]`, in place of those of `[rating]`.
 They are cut by the tool of ISO 53 profile A unless a tool is given, and run at the centre distance
@@ -348,6 +351,18 @@ its teeth are chosen, too: see [drive](drive.md). There is no `[layout]` of gear
 A driving gear has no more teeth than the gear that it drives, so that an idler's teeth lie between
 those of pinion and wheel. Of another idler rate each mesh as a pair of its own, with
 `reversed_load = true` in the table of the idler.
+
+## Drives that increase the speed
+
+`driver = "wheel"` in a `[[stage]]`, or a `ratio` of `[duty]` below 1 for all of them, says that the
+wheel drives. Both standards rate a pair by its smaller gear, whichever drives: d1, b/d1, u ≥ 1,
+Z_B, Z_D, Z_W, C_H, J and I are those of pinion and wheel all the same, and every gear has the
+cycles of its own speed. Without losses the gears are loaded as those of the mirrored drive, with
+input and output exchanged and the stages in reverse order, so that all stresses and safety factors
+are the same. Rows and keys are by pinion and wheel; *driving gear* beside the teeth of a stage
+names the one that drives. Stages up and down may follow one another, as on a layshaft of 1:1;
+pinions are handed so that the two thrusts of an intermediate shaft oppose each other, unless
+`pinion_hand` says otherwise. How such drives are sized: [drive](drive.md).
 
 ## A drive that is sized
 
