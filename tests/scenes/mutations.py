@@ -224,12 +224,11 @@ def ends_swapped(rng, text):
 
 
 @mutation()
-def speeds_swapped(rng, text):
-    duty = parse(text)["duty"]
-    slow = duty.get("output_speed", "7 rpm")
-    content = parse(put(text, ("duty", "output_speed"), duty["input_speed"]).decode())
+def output_too_fast(rng, text):
+    content = parse(text)
     content["duty"].pop("ratio", None)
-    return put(dump(content), ("duty", "input_speed"), slow)
+    speed = f"{rng.randint(2, 9)}e12 rpm"  # more than a million times the input's
+    return put(dump(content), ("duty", "output_speed"), speed)
 
 
 @mutation()

@@ -17,7 +17,7 @@ from gearopt.scenes.servo import KIND
 EXAMPLE = KIND.example.text
 
 OF_DRIVES = (  # mutations that look for tables of a drive
-    *("speeds_swapped", "two_that_exclude_each_other", "no_module_left", "too_many_stages"),
+    *("output_too_fast", "two_that_exclude_each_other", "no_module_left", "too_many_stages"),
 )
 KINDS = [k for k in MUTATIONS if k not in OF_DRIVES]
 STEPS = 12  # a table that comes back brings those that it needs, each with its keys

@@ -12,10 +12,9 @@ if TYPE_CHECKING:
     from gearopt.formulations.drive.train import Train
     from gearopt.scenes.drive.scene import Scene
 
-REDUCING = "is for drives that reduce the speed"
-MIRRORED = (
-    "Remove it, or write the mirrored drive, which has it: ratio = {:.6g}, the speed of the output "
-    "as input_speed, stages in reverse order"
+REDUCING = (
+    "is for drives that reduce the speed, as the mirrored one does: ratio = {:.6g}, the speed of "
+    "the output as input_speed, stages in reverse order"
 )
 
 
@@ -91,7 +90,8 @@ def check_driving(scene: "Scene") -> None:
         at = ("duty", "ratio" if duty.output_speed is None else "output_speed")
         raise refuse(rule, at=at, action="remove")
     if scene.to_size and may_drive(scene) == ("wheel",) and (name := _laid(scene)):
-        raise refuse(REDUCING, MIRRORED.format(float(1 / duty.total_ratio)), (name,), "tell")
+        rule = REDUCING.format(float(1 / duty.total_ratio))
+        raise refuse(rule, at=(name,), action="remove")
     for k, own in enumerate(scene.stage):
         if own.driver is not None and (scene.to_size or not alone):
             rule = "is for given gears that are only rated: chosen ones follow the ratio of [duty]"
