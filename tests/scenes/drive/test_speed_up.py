@@ -202,12 +202,14 @@ def test_the_end_of_the_ratio_is_that_of_input_over_output_speed():
 def test_what_is_for_reducing_drives_is_refused(more, words):
     with pytest.raises(SceneError, match=words):
         gearopt.solve(by_loads(**more))
+    with pytest.raises(SceneError, match="ratio_tolerance lets this one increase it"):
+        gearopt.solve(by_loads({"ratio": 1, "ratio_tolerance": 0.01}, **more))
 
 
 def test_real_valued_gears_by_ratings_need_pinions_that_drive():
     tables = sized()
     del tables["teeth"]
-    with pytest.raises(SolveError, match=r"ratios below 1 .* write a table \[teeth\]"):
+    with pytest.raises(SolveError, match=r"ratios that may be below 1 .* write a table \[teeth\]"):
         gearopt.solve(tables)
 
 

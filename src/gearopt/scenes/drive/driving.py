@@ -18,6 +18,12 @@ REDUCING = (
 )
 
 
+ABOUT_1 = (
+    "is for drives that reduce the speed, and ratio_tolerance lets this one increase it, too: ask "
+    "for a larger ratio, or a smaller tolerance"
+)
+
+
 def drivers(scene: "Scene") -> tuple[str, ...]:
     """The gear that drives each stage of gears that are given."""
     usual = "wheel" if scene.duty.asks_ratio and scene.duty.total_ratio < 1 else "pinion"
@@ -32,25 +38,19 @@ def driven(scene: "Scene", design: "DriveDesign") -> "Scene":
 
 
 def may_drive(scene: "Scene") -> tuple[str, ...]:
-    """What may drive all stages of a drive: both where its ratio may be above 1 and below.
-
-    Only pinions then drive what is laid out, follows a process, or is rated with real-valued sizes.
-    """
+    """What may drive all stages of a drive: both where its ratio may be above 1 and below."""
     low, high = ends(scene.duty) if scene.duty.asks_ratio else (1, 1)
-    if low >= 1 or high > 1 and (_laid(scene) or scene.rating is not None and scene.teeth is None):
-        return ("pinion",)
-    return ("wheel",) if high <= 1 else ("pinion", "wheel")
+    return ("pinion",) * (low >= 1 or high > 1) + ("wheel",) * (low < 1)
 
 
 def driving_words(scene: "Scene") -> list[str]:
-    """Sentences on what drives, where it is not the pinion alone or could be the wheel."""
+    """A sentence on what drives, where that may be the wheel."""
     members = may_drive(scene)
     if members == ("wheel",):
         return ["Every stage increases the speed: its wheel, the larger gear, drives."]
     if len(members) > 1:
         return ["Every stage reduces the speed, or every one increases it; both were searched."]
-    reducing = scene.duty.asks_ratio and ends(scene.duty)[0] < 1
-    return ["Drives whose stages increase the speed were not searched."] * reducing
+    return []
 
 
 def ends(duty: Duty) -> tuple[Fraction, Fraction]:
@@ -76,12 +76,6 @@ def ratio_of(duty: Duty, driver: str) -> Fraction:
     return duty.total_ratio if driver == "pinion" else of_wheels
 
 
-def _laid(scene: "Scene") -> str:
-    """The table of a file that is for pinions that drive; "" where it has none."""
-    names = ("layout", "process_one", "process_two")
-    return next((name for name in names if getattr(scene, name) is not None), "")
-
-
 def check_driving(scene: "Scene") -> None:
     """Refuse drivers of gears that are chosen, wheels of fewer teeth, what cannot speed up."""
     duty, alone = scene.duty, scene.given and scene.rating is not None and not scene.UNRATED
@@ -89,9 +83,12 @@ def check_driving(scene: "Scene") -> None:
         rule = "is below 1, and the pinion of a pair drives"
         at = ("duty", "ratio" if duty.output_speed is None else "output_speed")
         raise refuse(rule, at=at, action="remove")
-    if scene.to_size and may_drive(scene) == ("wheel",) and (name := _laid(scene)):
-        rule = REDUCING.format(float(1 / duty.total_ratio))
-        raise refuse(rule, at=(name,), action="remove")
+    members = may_drive(scene) if scene.to_size else ()
+    for name in ("layout", "process_one", "process_two") if "wheel" in members else ():
+        if getattr(scene, name) is not None:
+            one = members == ("wheel",)
+            rule = REDUCING.format(float(1 / duty.total_ratio)) if one else ABOUT_1
+            raise refuse(rule, at=(name,), action="remove")
     for k, own in enumerate(scene.stage):
         if own.driver is not None and (scene.to_size or not alone):
             rule = "is for given gears that are only rated: chosen ones follow the ratio of [duty]"

@@ -249,8 +249,8 @@ def takes_real_values(scene: Scene, method: str | None) -> bool:
     if continuous and scene.by_ratings and not scene.rated_real:
         raise SolveError(
             "load spectra, materials to choose from, several helix angles, given centre distances, "
-            "ratios below 1 and wider pinions are for whole teeth alone: write a table [teeth], "
-            "and use a method of whole teeth"
+            "ratios that may be below 1 and wider pinions are for whole teeth alone: write a table "
+            "[teeth], and use a method of whole teeth"
         )
     if continuous and scene.by_ratings and method not in (None, SMOOTH):
         raise SolveError(f"{method} takes no real-valued gears that ratings limit; smooth does")
