@@ -16,6 +16,7 @@ from gearopt.optimise.clock import Clock
 from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.result import Result
 from gearopt.scenes.drive import processes, sizing
+from gearopt.scenes.drive.driving import may_drive
 from gearopt.scenes.drive.notes import assumptions, of_objectives
 from gearopt.scenes.drive.scene import PROCESSES, Scene
 from gearopt.scenes.drive.sizing import SMOOTH, drive_of, takes_real_values, whole_teeth
@@ -117,7 +118,8 @@ def posed(scene: Scene, method: str) -> Model:
         train = drive.train
         return Model(real_valued(train), "Real-valued teeth and modules", train.unit)
     unit = EXTREMES.get(scene.objective.extreme, drive.train.unit)
-    return Model(whole_teeth(drive), "Whole teeth and standard modules", unit)
+    side = f", {drive.train.driver}s drive" * (len(may_drive(scene)) > 1)
+    return Model(whole_teeth(drive), f"Whole teeth and standard modules{side}", unit)
 
 
 def rate(scene: Scene, ask: Ask) -> Result:

@@ -12,15 +12,12 @@ if TYPE_CHECKING:
     from gearopt.formulations.drive.train import Train
     from gearopt.scenes.drive.scene import Scene
 
-REDUCING = (
-    "is for drives that reduce the speed, as the mirrored one does: ratio = {:.6g}, the speed of "
-    "the output as input_speed, stages in reverse order"
+REDUCING = "is for drives that reduce the speed"
+MIRRORED = (
+    ", as the mirrored one does: ratio = {:.6g}, the output's speed at its input, stages reversed"
 )
-
-
 ABOUT_1 = (
-    "is for drives that reduce the speed, and ratio_tolerance lets this one increase it, too: ask "
-    "for a larger ratio, or a smaller tolerance"
+    ", and ratio_tolerance lets this one increase it: ask for a larger ratio, or less tolerance"
 )
 
 
@@ -86,9 +83,8 @@ def check_driving(scene: "Scene") -> None:
     members = may_drive(scene) if scene.to_size else ()
     for name in ("layout", "process_one", "process_two") if "wheel" in members else ():
         if getattr(scene, name) is not None:
-            one = members == ("wheel",)
-            rule = REDUCING.format(float(1 / duty.total_ratio)) if one else ABOUT_1
-            raise refuse(rule, at=(name,), action="remove")
+            why = ABOUT_1 if len(members) > 1 else MIRRORED.format(float(1 / duty.total_ratio))
+            raise refuse(REDUCING + why, at=(name,), action="remove")
     for k, own in enumerate(scene.stage):
         if own.driver is not None and (scene.to_size or not alone):
             rule = "is for given gears that are only rated: chosen ones follow the ratio of [duty]"

@@ -125,10 +125,9 @@ def of_both_sides(scene: Scene, ask: Ask, known: Result | None) -> Result:
     best = least(results, ask.gap)
     sentence = str(best.proof.get("sentence", "")).removeprefix("Proof: ")
     proof = best.proof | ({"sentence": f"{BOTH_SIDES} {sentence}"} if sentence else {})
-    if best.status == "infeasible":
-        proof["conflict"] = [
-            *dict.fromkeys(n for r in results for n in r.proof.get("conflict", ()))
-        ]
+    if best.status == "infeasible":  # either side by its own limits
+        named = (name for result in results for name in result.proof.get("conflict", ()))
+        proof["conflict"] = [*dict.fromkeys(named)]
     listed = [train for r in results for train in r.report.get("trains", ())]
     listed = sorted(listed, key=lambda train: float(train["objective"]))[: ask.top]
     report = best.report | ({"trains": listed} if listed and best.status == "optimal" else {})

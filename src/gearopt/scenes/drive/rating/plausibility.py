@@ -71,9 +71,9 @@ def weighty(pairs: Sequence[GearPair], rated: DriveRating) -> Iterator[str]:
 def _modules(pairs: Sequence[GearPair], drivers: Sequence[str]) -> Iterator[str]:
     """Yield where the stage of the larger torque has the smaller module."""
     torques = [at for at, _ in torque_ratios([float(pair.ratio) for pair in pairs], drivers)]
+    modules = [float(pair.normal_module) for pair in pairs]
     for k in range(len(pairs) - 1):
-        weak, strong = (k, k + 1) if torques[k] < torques[k + 1] else (k + 1, k)
-        modules = [float(pair.normal_module) for pair in pairs]
+        weak, strong = sorted((k, k + 1), key=torques.__getitem__)
         times = torques[strong] / torques[weak]
         if modules[strong] < modules[weak] * (1.0 - 1e-9) and times > 1.0:
             yield (
