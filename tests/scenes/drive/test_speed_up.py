@@ -1,15 +1,20 @@
 """Drives that increase the speed: the gears of the mirrored reducing drive, to every number."""
 
 import math
+import tomllib
 from dataclasses import fields
+from fractions import Fraction
+from pathlib import Path
 
 import pytest
 from rated_files import pair, two_stages
 
 import gearopt
+from gearopt import units
 from gearopt.errors import SceneError, SolveError
 from gearopt.report.drawing.train_views import DrawnStage, in_one_line
 
+PROBLEMS = Path(__file__).parents[3] / "problems"
 FIRST = {"module": "3 mm", "pinion_teeth": 20, "wheel_teeth": 61, "face_width": "31 mm"}
 SECOND = {"module": "4 mm", "pinion_teeth": 18, "wheel_teeth": 67, "face_width": "60 mm"}
 RATIO = 61 / 20 * 67 / 18
@@ -237,3 +242,31 @@ def test_the_drawing_begins_with_the_gear_that_drives():
     train, _ = in_one_line(picked)
     names = [[g.name for g in train.gears if g.shaft == k] for k in (1, 2, 3)]
     assert names == [["wheel 1"], ["pinion 1", "wheel 2"], ["pinion 2"]]
+
+
+FILES = ("given_distance", "materials_by_cost", "light_wheels", "coaxial_unit", "unit_of_r20")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [*FILES, "elevator_by_both", "three_stage_by_agma"])
+def test_problem_files_written_both_ways(name):
+    """At the ratio of its best teeth, exactly: the mirrored file has the best drive mirrored."""
+    content = tomllib.loads((PROBLEMS / f"{name}.toml").read_text(encoding="utf-8"))
+    content = {k: v for k, v in content.items() if k not in ("layout", "place", "process_one")}
+    best = gearopt.solve(content).design["stages"]
+    ratio = math.prod(Fraction(s["wheel_teeth"], s["pinion_teeth"]) for s in best)
+    duty = {k: v for k, v in content["duty"].items() if k not in ("output_speed", "ratio")}
+    duty |= {"ratio": str(ratio), "ratio_tolerance": 0}
+    forth = gearopt.solve(content | {"duty": duty})
+    speed = units.parse(duty["input_speed"], "speed")
+    slow = f"{float(speed.number / ratio)!r} {speed.unit}"
+    more = {"duty": duty | {"ratio": str(1 / ratio), "input_speed": slow}}
+    more |= {"stage": content["stage"][::-1]} if "stage" in content else {}
+    back = gearopt.solve(content | more)
+    assert back.status == forth.status == "optimal"
+    assert back.value == pytest.approx(forth.value, rel=1e-10)
+    teeth = [
+        [(s["pinion_teeth"], s["wheel_teeth"]) for s in result.design["stages"]]
+        for result in (forth, back)
+    ]
+    assert teeth[0] == teeth[1][::-1]
