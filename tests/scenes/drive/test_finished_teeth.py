@@ -77,6 +77,17 @@ def test_a_sized_drive_takes_the_rest_of_the_protuberance():
     assert found.design["stages"] == same.design["stages"]
 
 
+def test_a_chamfer_that_leaves_no_involute_is_refused():
+    """d_Na = m (18 + 2 (0.4 - 1)) = 16.8 m, d_b = 18 m cos(20 degrees) = 16.91 m."""
+    tables = pair()
+    tables["gears"] = tables["gears"] | {"tip_chamfer": 1, "addendum": 0.4}
+    tables["stage"] = [{"face_width_over_diameter": 0.8}]
+    tables["duty"] = tables["duty"] | {"ratio": 3}
+    tables |= {"limits": {"pinion_teeth": [18, 20]}, "teeth": {}}
+    with pytest.raises(SceneError, match="tip_chamfer.*leaves 18 teeth no involute"):
+        gearopt.solve(tables)
+
+
 @pytest.mark.parametrize("tables", [{}, {"tool_protuberance": None}])
 def test_grinding_below_the_protuberance_is_refused(tables):
     made = ground(0.06, **tables)

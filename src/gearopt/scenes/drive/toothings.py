@@ -16,7 +16,8 @@ from gearopt.scenes.drive.tables.rating import GearTable, with_shared
 from gearopt.scenes.reading.choices import Between, Choice, values_of
 from gearopt.scenes.reading.fields import refuse
 
-USUAL = {"profile_shift": 0, "tip_alteration": 0, "addendum": 1, "tool_addendum": 1.25}
+USUAL: dict[str, float] = dict.fromkeys(("profile_shift", "tip_alteration", "tip_chamfer"), 0)
+USUAL |= {"addendum": 1, "tool_addendum": 1.25}
 SAME = 1e-9  # m_n
 ROOT: tuple[str, ...] = ("profile_shift", "tool_addendum")  # what sets a root circle
 TIP: tuple[str, ...] = ("profile_shift", "tip_alteration", "addendum")
@@ -181,7 +182,7 @@ def _check_fewest(stage: Stage, made: Toothing, k: int, own: StageTable, gears: 
         if gear.root_diameter <= 0.0:
             rule, keys = "leaves the root circle of {} teeth no diameter", ROOT
         elif gear.active_tip_diameter <= gear.base_diameter:
-            rule, keys = "leaves {} teeth no involute below their tips", TIP
+            rule, keys = "leaves {} teeth no involute below their tips", (*TIP, "tip_chamfer")
         else:
             continue
         place, write = cause(k, member, own, gears, keys)
