@@ -60,11 +60,6 @@ class Rack:
     protuberance: Any = 0.0
     tip_chamfer: Any = 0.0
 
-    @property
-    def active_addendum(self) -> Any:
-        """Addendum up to the tip form circle, on which a chamfer begins."""
-        return self.addendum - self.tip_chamfer
-
 
 ISO_53_A = Rack()
 

@@ -64,8 +64,8 @@ class Curve:
 def bending_curve(kind: str, hardness: float = 250.0, service: str = "general") -> Curve:
     """Return the curve of Y_N; hardness [HB] of through-hardened steel, 160 to 400.
 
-    kind: one of KINDS (flame and induction hardened steels count as carburised: unverified; the
-    standard's curves are of steel, of which iron has the lowest: unverified);
+    kind: one of KINDS (flame and induction hardened steels count as carburised, iron, of which the
+    standard has no curve, has the lowest of steel: unverified);
     service: one of SERVICES, "critical" where little pitting and wear is allowed. Between the
     curves of 160, 250 and 400 HB ln Y_N is linear in the hardness, outside it is that of the
     nearest; the standard says nothing. ValueError for other words. Source: AGMA 2001-D04, clause

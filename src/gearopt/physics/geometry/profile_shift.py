@@ -118,7 +118,7 @@ class Meshing:
         lift = (self.distance - sum(self.reference_radii)) / self.module
         rows = zip(self.base_radii, self.reference_radii, self.racks, strict=True)
         first, second = (
-            (np.hypot(base, line) - r) / self.module - rack.active_addendum - lift
+            (np.hypot(base, line) - r) / self.module - rack.addendum + rack.tip_chamfer - lift
             for base, r, rack in rows
         )
         return -second, first + self.shift_sum
@@ -144,7 +144,7 @@ def equal_sliding(meshing: Meshing) -> Any:
         middle = 0.5 * (low + high)
         shifts = middle, total - middle
         tips = [
-            r + (rack.active_addendum + lift - other) * meshing.module
+            r + (rack.addendum - rack.tip_chamfer + lift - other) * meshing.module
             for r, rack, other in zip(radii, meshing.racks, shifts[::-1], strict=True)
         ]
         end, start = (

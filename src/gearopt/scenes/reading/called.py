@@ -52,8 +52,7 @@ DRIVE = {
     "zwischenrad",
     "reversed_load, of a gear": "reverse_bending alternating alternating_load wechselbiegung",
     "tool_protuberance, of a gear": "protuberance",
-    "tip_chamfer, of a gear, in normal modules": "chamfer tip_form_diameter tip_break tip_rounding "
-    "tip_round d_na kopfkantenbruch kopfnutzkreis kopfkantenschutz",
+    "tip_chamfer, of a gear, in normal modules": "chamfer tip_form_diameter d_na kopfkantenbruch",
     "grinding_allowance, of a gear, in normal modules": "machining_allowance grinding_stock "
     "finishing_allowance schleifzugabe schleifaufmass bearbeitungszugabe",
     "rim_thickness, of a gear: the ratio is computed": "backup_ratio m_b",

@@ -15,7 +15,7 @@ from gearopt.scenes.drive.rating.gears import Tables, blanks
 from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.drive.tables.rating import GearTable, RatingTable
 
-__all__ = ["rate", "rate_spectrum"]  # a standard has these names of another module, too
+__all__ = ["rate", "rate_spectrum"]
 NAME = "AGMA"  # in short
 NAMES = {  # of the factors, as AGMA 2001 has them
     "K_o": "overload factor",

@@ -15,7 +15,6 @@ from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.drive.tables.iso6336 import NAMES
 from gearopt.scenes.drive.tables.rating import RatingTable
 
-# a standard has these names of other modules, too
 __all__ = ["NAMES", "finish", "material", "rate", "rate_spectrum", "steel"]
 NAME = "ISO 6336"  # in short
 SUFFIXES = {"MPa": "MPa", "mm": "mm", "sqrt(MPa)": "sqrt_MPa"}
