@@ -222,7 +222,7 @@ class StageTable(Loaded):
     minimum_contact_safety: Annotated[Fraction | None, number(1.1, 0, 100)] = Field(
         None, description="Required S_H of this stage; by default that of [rating]"
     )
-    shaft: ShaftTable | None = None
+    shaft: ShaftTable | None = Field(None, description="Where the pinion is on its shaft")
     pinion: GearTable = Field(default_factory=GearTable, description="Data of the pinion alone")
     wheel: GearTable = Field(default_factory=GearTable, description="Data of the wheel alone")
     given: GivenTable = Field(

@@ -413,7 +413,7 @@ class RatingTable(Table):
         description="Dynamic viscosity of the oil at its temperature, from which the friction is "
         "computed",
     )
-    shaft: ShaftTable | None = None
+    shaft: ShaftTable | None = Field(None, description="Where every pinion is on its shaft")
     given: GivenTable = Field(
         default_factory=GivenTable, description="Factors of all stages, instead of computed ones"
     )
