@@ -214,10 +214,10 @@ def test_an_overload_of_a_spectrum_counts_by_miner():
 
 
 def test_marks_travel():
-    """B88 bending of grade 2, its rim factor, and Y_N of induction hardening are unverified."""
+    """B88 bending of grade 2 and Y_N of induction hardening are unverified."""
     old = Practice(edition="B88", backup=(0.9, None))
     steels = tuple(replace(steel, grade=2) for steel in STEELS)
-    assert set(rate(spur(), EXAMPLE, steels, old).unverified) == {"K_B", "s_at"}
+    assert set(rate(spur(), EXAMPLE, steels, old).unverified) == {"s_at"}
     hard = Steel("induction, roots"), Steel("carburised")
     assert rate(spur(), EXAMPLE, hard).unverified == ("Y_N",)
     assert rate(helical(), EXAMPLE, STEELS).unverified == ("I", "J")

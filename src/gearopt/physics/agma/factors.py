@@ -202,9 +202,10 @@ def rim_factor(backup_ratio: Any) -> Any:
 
 
 def rim_factor_b88(backup_ratio: Any) -> Any:
-    """Return K_B = 3.4 - 2 m_B, at least 1, for m_B from 0.5; unverified, of a single source.
+    """Return K_B = 3.4 - 2 m_B, at least 1, for m_B from 0.5.
 
-    Source: AGMA 2001-B88.
+    Source: AGMA 2001-B88, as a textbook has it; a course's program of its tables agrees
+    (github.com/nadimasmar/MECH-393, gears_tables.py).
     """
     return np.maximum(1.0, 3.4 - 2.0 * backup_ratio)
 

