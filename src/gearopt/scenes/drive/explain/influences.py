@@ -1,6 +1,7 @@
 """A drive that was sized, explained: its binding limits, its sensitivities to every number."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from gearopt.formulations.drive import continuous_sizing
@@ -66,7 +67,6 @@ def explained(
         n for n in numbers(spelt) if not (n.path[:2] == ("teeth", "modules") and _is_series(scene))
     ]
     stepped = scene.by_ratings or scene.train().hollow  # slopes are known of posynomials alone
-    stepped |= len(may_drive(scene)) > 1  # and of one of them
     if stepped:
         wanted = [n for n in wanted if eases(scene, n)]
     of_numbers = tuple(
@@ -94,20 +94,32 @@ def explained(
 
 
 def _basis(scene: Scene, clock: Clock) -> Basis | None:
-    """Return the optimum of real-valued sizes; None where it is not known."""
+    """Return the optimum of real-valued sizes; None where it is not known.
 
-    def posed(other: Scene) -> Problem:
-        return continuous_sizing.problem(other.train())
+    Of pinions and wheels that may drive, of those with which it is best.
+    """
+    best: Basis | None = None
+    for driver in may_drive(scene):
+        posed = partial(_real_valued, driver=driver)
+        base = posed(scene)
+        ideal, outcome = run(base, "ipopt", clock.left, watch=clock.watch)
+        if ideal.status != "optimal" or ideal.value is None or outcome.x is None:
+            return None
+        if best is None or ideal.value < best.value:
+            known = sensitivities(base, outcome.x)
+            solved = partial(_least, clock=clock)
+            best = Basis(ideal.value, solved, posed, outcome.x, known, STEP)
+    return best
 
-    base = posed(scene)
-    ideal, outcome = run(base, "ipopt", clock.left, watch=clock.watch)
-    if ideal.status != "optimal" or ideal.value is None or outcome.x is None:
-        return None
-    x = outcome.x
-    known = sensitivities(base, x)
-    return Basis(
-        ideal.value, lambda other: value_within(clock, posed(other)), posed, x, known, STEP
-    )
+
+def _real_valued(scene: Scene, driver: str) -> Problem:
+    return continuous_sizing.problem(scene.train(driver))
+
+
+def _least(scene: Scene, clock: Clock) -> float | None:
+    """The least objective of a drive of real-valued sizes; None: not known in time."""
+    values = [value_within(clock, _real_valued(scene, driver)) for driver in may_drive(scene)]
+    return None if None in values else min(value for value in values if value is not None)
 
 
 def _smooth(scene: Scene, number: Number) -> bool:
