@@ -234,7 +234,7 @@ Plastics are refused: VDI 2736 is not supported.
 
 Iron by AGMA 2001 is a `treatment`: `"ASTM A48 class 20"`, `30` or `40`, `"ASTM A536 60-40-18"`,
 `80-55-06`, `100-70-03` or `120-90-02`. s_ac and s_at are the lower values of the ranges of tables 3
-and 4, as one textbook prints them (*unverified*); stress cycle factors are the lowest curves of
+and 4, from memory of a textbook (*unverified*); stress cycle factors are the lowest curves of
 steel, for the standard draws none of iron (*unverified*: beyond 1e7 cycles all curves are one); C_H
 is 1; unless the file gives one, E is 22e6 psi of A48 and 24e6 psi of A536 (*unverified*). ISO 6336
 rates them as GG, GGG ferritic (60-40-18) and GGG of the given `hardness`.

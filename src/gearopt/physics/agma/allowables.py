@@ -21,7 +21,7 @@ SHIGLEY = "2001-D04, table 4, as in Shigley, table 14-3, and in a transcription"
 TABLE = "2001-D04, table 3, as in a public table of it"
 OLD = "2001-B88; two public programs of its allowables"
 SINGLE = "2001-B88; a single source"
-IRON = "2001-D04, tables 3 and 4, lower values of ranges, as in Shigley, ch. 14; a single source"
+IRON = "2001-D04, tables 3 and 4, lower values of ranges, from memory of Shigley, ch. 14"
 IRONS = {  # by ASTM: s_ac, s_at [ksi], E [10^6 psi], the last of Shigley, table 14-8
     "ASTM A48 class 20": (50.0, 5.0, 22.0),
     "ASTM A48 class 30": (65.0, 8.5, 22.0),

@@ -6,6 +6,7 @@ from gearopt.formulations.strength.standard import MIDWAY
 from gearopt.physics.agma.allowables import IRONS
 from gearopt.physics.gears import MEMBERS
 from gearopt.physics.iso6336.case import Practice
+from gearopt.scenes.drive.driving import drivers
 from gearopt.scenes.drive.face_widths import excesses
 from gearopt.scenes.drive.idlers import idlers
 from gearopt.scenes.drive.rating.iso_material import steel
@@ -26,8 +27,10 @@ def rating_assumptions(scene: Scene) -> list[str]:
     asked = scene.rating
     assert asked
     agma, iso = asked.standard != "iso6336", asked.standard != "agma"
+    members = dict.fromkeys(drivers(scene))
+    drive = "the gears named drive" if len(members) > 1 else f"the {next(iter(members))}s drive"
     sentences = [
-        "The rating is of external cylindrical gears on parallel shafts; the pinions drive. "
+        f"The rating is of external cylindrical gears on parallel shafts; {drive}. "
         "Torques and forces are those without losses.",
         "The standards themselves were not read: formulas and values are those of textbooks, "
         "tables and public programs; those from a single source are marked unverified.",
