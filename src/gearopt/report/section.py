@@ -18,7 +18,7 @@ from gearopt.frozen import dataclass
 from gearopt.optimise.typed import Shown
 from gearopt.report.drawing.player import Animation
 from gearopt.report.drawing.sheet import Drawing, Row
-from gearopt.report.measures import Measures
+from gearopt.report.measures import EXACT, Measures
 from gearopt.report.plots import Figure
 from gearopt.report.words import is_module, number, parted, share
 
@@ -217,6 +217,8 @@ class ListedField:
         """A value of the field as it is read; a length has decimals by its unit."""
         if self.form == "share":
             return percent(value)
+        if self.key.endswith("face_width_mm") and value is not None:
+            return _not_narrower(value, measures)
         if not self.form or value is None:
             return cell(value, self.unit, measures)
         if self.form.isdigit():
@@ -225,6 +227,14 @@ class ListedField:
             return Cell(measures.of(value, "mm"), measures.length(value, int(self.form[1:-1])))
         size = measures.of(value, self.unit)
         return Cell(size, format(size, self.form))
+
+
+def _not_narrower(width: float, measures: Measures) -> Cell:
+    """A face width, rounded up where it is not exact, so that gears as shown carry as much."""
+    size, text = measures.of(width, "mm"), measures.number(width, "mm")
+    if float(text.replace(",", "")) < size * (1.0 - EXACT):
+        text = measures.number(width, "mm", 1)
+    return Cell(size, text)
 
 
 def _unit(key: str) -> str:

@@ -108,6 +108,8 @@ def _stem_words(stem: str) -> str:
     for end, words in (("_low", "minimum"), ("_high", "maximum")):
         if stem.endswith(end):
             return f"{words} {stem.removesuffix(end).replace('_', ' ')}"
+    if "_after_idler" in stem:  # of the mesh of an idler, its pinion, and the wheel
+        stem = stem.replace("_after_idler", "").replace("pinion", "idler_towards_the_wheel_in")
     name, static, _ = stem.removesuffix("_iso").partition("_static")
     words = f"{'static ' if static else ''}{known.get(name, name.replace('_', ' '))}"
     return words if not stem.endswith("_iso") else f"{words} by ISO 6336"

@@ -197,7 +197,7 @@ def test_wider_gears_are_drawn_about_the_middle_of_their_mesh():
     pinions = sorted(each for each in drawn if each[1] > 40.0 * scale)
     assert all(b[0] - a[0] - a[1] > 15.9 for a, b in zip(pinions, pinions[1:], strict=False))
     shown = "".join(Reader(html).text)
-    assert "pinion face width b1" in shown and "wheel face width b2" in shown
+    assert "face width of the pinion" in shown and "face width of the wheel" in shown
 
 
 def test_words_say_that_nothing_is_optimised_and_how_it_would_be():

@@ -161,3 +161,27 @@ REFUSED = [
 def test_what_a_wider_gear_does_not_go_with(changes, words):
     with pytest.raises(SceneError, match=words):
         gearopt.solve(copy.deepcopy(DRIVE), changes=changes)
+
+
+def test_cutting_costs_the_width_of_each_gear():
+    """A metre of teeth is z b = 1000 mm, with b of the gear itself."""
+    steel = {"name": "hard", "treatment": "carburised", "price": 0.001, "cutting_price": 8}
+    found = gearopt.solve(
+        "problems/given_distance.toml",
+        {
+            "material": [steel],
+            "gears.materials": ["hard"],
+            "gears.treatment": None,
+            "gears.grade": None,
+            "gears.iso_material": None,
+            "gears.iso_quality": None,
+            "gears.pinion_face_width_excess": "12 mm",
+            "objective": {"minimise": "cost", "density": "7.85 kg/dm^3"},
+        },
+    )
+    (stage,) = found.design["stages"]
+    widths = stage["face_width_mm"] + 12.0, stage["face_width_mm"]
+    teeth = stage["pinion_teeth"], stage["wheel_teeth"]
+    by_hand = [8e-3 * z * b for z, b in zip(teeth, widths, strict=True)]
+    assert [row["cutting"] for row in found.design["costs"]] == pytest.approx(by_hand, rel=1e-12)
+    assert found.value == pytest.approx(sum(row["total"] for row in found.design["costs"]))

@@ -165,24 +165,30 @@ def _diameters(stage):
 @pytest.mark.parametrize(
     ("tables", "words"),
     [
-        (sized({"objective": {"minimise": "mesh_loss"}}), "an objective gear_volume or mass"),
+        (sized({"objective": {"minimise": "mesh_loss"}}), "needs minimise"),
         (sized({"teeth": {"coprime": True}}), "without coprime"),
-        (sized({"stage": [{}, {"idler": True}]}), "its teeth, wheel_teeth of stage 1"),
-        (sized({"stage": [{"wheel_teeth": 20}, {"idler": True}, {}]}), "of the last stage"),
-        (sized(second={"centre_distance": "90 mm"}), "stages without centre_distance"),
-        (sized(second={"minimum_contact_safety": 2}), "stages without minimum_contact_safety"),
+        (sized({"stage": [{}, {"idler": True}]}), "needs its teeth: wheel_teeth of stage 1"),
+        (sized({"stage": [{"wheel_teeth": 20}, {"idler": True}, {}]}), "in the last stage alone"),
+        (sized(second={"centre_distance": "90 mm"}), "together with centre_distance"),
+        (sized(second={"minimum_contact_safety": 2}), "together with minimum_contact_safety"),
         (sized(gears={"helix_angle": ["0 deg", "10 deg"]}), "one material, helix angle"),
         (sized(stage={"wheel": {"bore": "20 mm"}}), "solid gears"),
+        (sized(stage={"wheel_diameter": "60 mm"}), "together with wheel_diameter of stage 1"),
+        (sized(gears={"pinion_face_width_excess": "5 mm"}), "with pinion_face_width_excess"),
         (sized({"shift": {"sum": 0.3}}), "helix angle and shift"),
         (sized(limits={"preset": "chong-lee-elevator"}), "limits by .rating. alone"),
-        (sized({"layout": {"shaft_diameters": ["20 mm"] * 3}}), "no .layout."),
+        (sized({"layout": {"shaft_diameters": ["20 mm"] * 3}}), "together with a .layout."),
     ],
 )
 def test_what_no_search_knows_beside_an_idler_is_refused(tables, words):
-    with pytest.raises(
-        SceneError, match=rf"stage\[\d\].idler = true: needs .*{words}.*gearopt rate"
-    ):
+    with pytest.raises(SceneError, match=rf"stage\[\d\].idler = true: .*{words}.*gearopt rate"):
         gearopt.solve(tables)
+
+
+def test_extremes_are_no_objective_of_a_front_beside_an_idler():
+    """They would be those of pinion and wheel, which are not in mesh."""
+    with pytest.raises(SolveError, match="no idler"):
+        gearopt.pareto(sized(), objectives=["gear_volume", "inverse_contact_ratio"])
 
 
 def test_lengths_are_no_objective_of_a_front_beside_an_idler():

@@ -186,3 +186,13 @@ REFUSED = [
 def test_what_a_shaft_does_not_go_with(changes, words):
     with pytest.raises(SceneError, match=words):
         gearopt.solve(copy.deepcopy(DRIVE), changes=changes)
+
+
+def test_shafts_that_do_not_fit_are_told():
+    """Root circle 63/cos(12 deg) - 7.5 = 56.9 mm; 90 + 20 mm off the middle of 200 mm; s/l 0.45."""
+    odd = SHAFT | {"diameter": "60 mm", "offset": "90 mm"}
+    flaws = gearopt.rate(PAIR, {"stage[1].shaft": odd}).design["rating"]["flaws"]
+    for words in ("60 mm, is not thinner than the root circle", "beyond a bearing", "0.45 of the"):
+        assert any(words in flaw for flaw in flaws), (words, flaws)
+    flaws = gearopt.rate(PAIR, {"stage[1].shaft": SHAFT}).design["rating"]["flaws"]
+    assert not any("shaft of stage" in flaw or "beyond a bearing" in flaw for flaw in flaws)

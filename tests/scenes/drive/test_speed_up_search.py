@@ -111,3 +111,29 @@ SEEDS = [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in r
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_best_is_that_of_all_candidates(seed):
     assert_best(*drawn(seed))
+
+
+FORCES = {
+    "gearopt": 1,
+    "kind": "drive",
+    "duty": {"power": "6 kW", "input_speed": "900 rpm", "ratio": "4/25", "ratio_tolerance": 0.0},
+    "gears": {"treatment": "carburised", "helix_angle": "12 deg"},
+    "stage": [{}, {}],
+    "limits": {"pinion_teeth": [18, 22], "wheel_teeth": [18, 90]},
+    "teeth": {"modules": ["1.5 mm", "2 mm", "2.5 mm", "3 mm", "4 mm"]},
+    "rating": {"standard": "iso6336", "life": "10000 h", "iso6336": {"accuracy_grade": 6}},
+    "objective": {"minimise": "axial_force"},
+}
+
+
+def test_the_least_axial_force_is_that_of_wheels_that_drive():
+    """2 T tan(beta)/d with T from the input on, which falls from stage to stage."""
+    gears = FORCES["gears"] | {"face_width_over_diameter": [0.3, 1.0]}
+    found = gearopt.solve(FORCES | {"gears": gears})
+    torque, forces = 6000.0 / (900.0 * math.pi / 30.0), []  # N m
+    for stage in found.design["stages"]:
+        forces.append(2e3 * torque * math.tan(math.radians(12.0)) / stage["wheel_diameter_mm"])
+        torque /= stage["ratio"]
+    assert found.status == "optimal" and found.value == pytest.approx(max(forces), rel=1e-9)
+    rated = [mesh["axial_force_N"] for mesh in found.design["rating"]["meshes"]]
+    assert rated == pytest.approx(forces, rel=1e-9)

@@ -82,7 +82,10 @@ def test_sizes_are_limited_by_static_strength(sizes):
     "more, words",
     [
         ({"standard": "agma", "quality": 8, "iso6336": None}, "rated by ISO 6336 alone"),
-        ({"static_torque_factor": None, "minimum_static_contact_safety": 2}, "needs static_torque"),
+        (
+            {"static_torque_factor": None, "minimum_static_contact_safety": 2},
+            "static_torque_factor: is missing",
+        ),
         ({"static_torque_factor": 0.5}, "static_torque_factor"),
     ],
 )

@@ -48,8 +48,8 @@ class StageDesign:
     driver: Annotated[str, Shown("driving gear")] = "pinion"
     ratio: Annotated[float, Shown("ratio u")]
     face_width_mm: Annotated[float, Shown("face width b")]
-    pinion_face_width_mm: Annotated[float | None, Shown("pinion face width b1")] = None
-    wheel_face_width_mm: Annotated[float | None, Shown("wheel face width b2")] = None
+    pinion_face_width_mm: Annotated[float | None, Shown("face width of the pinion")] = None
+    wheel_face_width_mm: Annotated[float | None, Shown("face width of the wheel")] = None
     pinion_diameter_mm: Annotated[float, Shown("reference diameter d1")]
     wheel_diameter_mm: Annotated[float, Shown("reference diameter d2")]
     pinion_tip_diameter_mm: Annotated[float, Shown("tip diameter d_a1")]
@@ -206,7 +206,7 @@ def _costs(number: int, stage: StageDesign, option: Option) -> Iterator[GearCost
         mass = stage.pinion_mass_kg if k == 0 else stage.wheel_mass_kg
         treatment = mass * option.treatment_prices[k]
         material = mass * option.prices[k] - treatment
-        cutting = 1e-3 * option.cutting_prices[k] * gear.teeth * gear.face_width
+        cutting = 1e-3 * option.cutting_prices[k] * gear.teeth * gear.width
         yield GearCost(
             gear=f"{member} {number}",
             mass_kg=mass,

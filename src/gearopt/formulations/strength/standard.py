@@ -204,9 +204,9 @@ class Option:
         return tuple(one.mesh(pair) for one in ends) if self.idler else (pair,)
 
     def cutting(self, pair: GearPair) -> Any:
-        """Cost of cutting the teeth of a pair: a metre of them is z b = 1000 mm."""
+        """Cost of cutting the teeth of a pair: a metre of them is z b = 1000 mm, b of each."""
         rows = zip(self.cutting_prices, pair.gears, strict=True)
-        return sum(1e-3 * price * gear.teeth * gear.face_width for price, gear in rows if price)
+        return sum(1e-3 * price * gear.teeth * gear.width for price, gear in rows if price)
 
     def cheapest_with(self, rivals: Sequence["Option"], density: float | None) -> "Option":
         """Return a virtual option as light and as cheap as the best of all, rated as this one.

@@ -120,10 +120,15 @@ class Shaft:
     arrangement: str = "a"
     stiffened: bool = True
 
+    @property
+    def overhung(self) -> bool:
+        """Whether the pinion is beyond the bearings."""
+        return self.arrangement == "c"
+
     def bending(self, diameter: Any) -> Any:
         """Return K = K' l s/d1^2 (d1/d_sh)^4 of a pinion diameter d1 [mm]."""
         part: Any = ARRANGEMENTS[self.arrangement]
-        if self.stiffened and self.arrangement != "c":
+        if self.stiffened and not self.overhung:
             part = choose(diameter >= STIFF * self.diameter, LEFT * part, part)
         return part * self.span * self.offset * diameter**2 / self.diameter**4
 

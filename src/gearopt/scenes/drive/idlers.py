@@ -31,30 +31,37 @@ def check_idlers(scene: Any, lacks: str) -> None:
     """
     for k in idlers(scene.stage):
         sized = scene.to_size or not scene.given
-        wants = (lacks or _wanting(scene, k)) if sized else ""
+        rule = _beside(scene, k) if sized else ""
+        rule = f"needs {lacks}" if lacks and sized else rule
         if "wheel" in (may_drive(scene) if sized else drivers(scene)[k - 2 : k]):
-            wants = "pinions that drive, and a ratio of 1 at least, tolerance included"
-        if wants := "no [layout]" if scene.layout is not None else wants:
+            rule = "needs pinions that drive, and a ratio of 1 at least, tolerance included"
+        if scene.layout is not None:
+            rule = "does not go together with a [layout]: a gear in two meshes is not laid out"
+        if rule:
             tell = "Or give all gears, without [limits] and [layout], and gearopt rate FILE"
-            raise refuse(f"needs {wants}", tell, ("stage", k - 1, "idler"), "tell")
+            raise refuse(rule, tell, ("stage", k - 1, "idler"), "tell")
 
 
-def _wanting(scene: Any, k: int) -> str:
-    """What keeps gears beside the idler of a stage (from 1) from being sized; "" for nothing."""
+def _beside(scene: Any, k: int) -> str:
+    """Why gears beside the idler of a stage (from 1) are not sized; "" where they are."""
     both = scene.stage[k - 2 : k]
     gears = [with_shared(gear, scene.gears) for own in both for gear in (own.pinion, own.wheel)]
     if k < len(scene.stage) or any(own.idler for own in scene.stage[: k - 1]):
-        return "to be the only idler, of the last stage, where gears are sized"
-    if both[0].wheel_teeth is None or scene.objective.minimise not in ("gear_volume", "mass"):
-        return f"its teeth, wheel_teeth of stage {k - 1}, and an objective gear_volume or mass"
+        return "is sized in the last stage alone, without another idler"
+    if both[0].wheel_teeth is None:
+        return f"needs its teeth: wheel_teeth of stage {k - 1}, a number or a range"
+    if scene.objective.minimise not in ("gear_volume", "mass"):
+        return f'needs minimise = "gear_volume" or "mass", not "{scene.objective.minimise}"'
     plain = all(blank(g, None).solid and not (g.thickness_allowance or g.materials) for g in gears)
     chosen = scene.shift or len(scene.helix_angles(both[0])) > 1
     if not plain or chosen or (scene.teeth and scene.teeth.coprime):
-        return "solid gears of one material, helix angle and shift each, without coprime"
+        return "needs solid gears of one material, helix angle and shift each, without coprime"
     if any(any(excesses(own, scene.gears)) for own in both):
-        return "gears as wide as their mesh, without pinion_face_width_excess"
+        return "does not go together with pinion_face_width_excess"
+    if both[0].wheel_diameter is not None:
+        return f"does not go together with wheel_diameter of stage {k - 1}: limit its wheel_teeth"
     names = [name for own in both for name in UNSIZED if getattr(own, name) is not None]
-    return f"stages without {names[0]}" if names else ""
+    return f"does not go together with {names[0]} of its stages" if names else ""
 
 
 def with_idlers(stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:

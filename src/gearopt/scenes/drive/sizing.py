@@ -128,8 +128,9 @@ def of_both_sides(scene: Scene, ask: Ask, known: Result | None) -> Result:
     if best.status == "infeasible":  # either side by its own limits
         named = (name for result in results for name in result.proof.get("conflict", ()))
         proof["conflict"] = [*dict.fromkeys(named)]
-    listed = [train for r in results for train in r.report.get("trains", ())]
-    listed = sorted(listed, key=lambda train: float(train["objective"]))[: ask.top]
+    every = [train for r in results for train in r.report.get("trains", ())]
+    alike = {repr(train["stages"]): train for train in every}  # of 1:1 both sides have the same
+    listed = sorted(alike.values(), key=lambda train: float(train["objective"]))[: ask.top]
     report = best.report | ({"trains": listed} if listed and best.status == "optimal" else {})
     count = sum(result.evaluations for result in results)
     return replace(best, proof=proof, report=report, evaluations=count)

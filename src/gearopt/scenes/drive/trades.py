@@ -12,6 +12,7 @@ from gearopt.optimise.pareto.objectives import EPSILON, EXACT, Limiting, Objecti
 from gearopt.optimise.terms import Array
 from gearopt.optimise.typed import untyped
 from gearopt.scenes.drive.driving import may_drive
+from gearopt.scenes.drive.idlers import idlers
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.sizing import sized
 from gearopt.scenes.drive.without import without
@@ -23,7 +24,7 @@ def objectives(scene: Scene) -> dict[str, str]:
     to_choose(scene)
     names = {name: unit for name, unit in OBJECTIVES.items() if not _why_lacking(scene, name)}
     used = {load_front.UTILISATION: ""} if scene.teeth is not None else {}
-    by_rating = used and scene.by_ratings and not scene.limits.loaded
+    by_rating = used and scene.by_ratings and not scene.limits.loaded and not idlers(scene.stage)
     return names | used | (EXTREMES if by_rating else {}) | _of_box(scene)
 
 
@@ -59,7 +60,7 @@ def advice(scene: Scene, names: Sequence[str]) -> str:
     why = (_why_lacking(scene, name) for name in names if name in OBJECTIVES)
     what = next(filter(None, why), "")
     if not what and any(name in EXTREMES for name in names):
-        what = "it needs a table [teeth] and limits by [rating] alone"
+        what = "it needs a table [teeth], limits by [rating] alone and no idler"
     hint = ', as in [objective] density = "7.85 kg/dm^3"' if "density" in what else ""
     return what + hint
 

@@ -24,6 +24,7 @@ from gearopt.optimise.result import Budget, Outcome, Watch
 from gearopt.optimise.terms import Terms
 from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.contact import largest_sliding
+from gearopt.physics.loads import torque_ratios
 
 UTILISATION = "utilisation"
 OBJECTIVE_TOO_LARGE = (
@@ -52,10 +53,12 @@ def problem(train: Train, names: tuple[str, ...]) -> Problem:
         if extreme == UTILISATION:
             values = [v for name, v in terms.limits.items() if name.partition("[")[0] in limited]
         else:
-            values, torque = [], train.torque
-            for pair in teeth.pairs_of(train, x):
-                values.append(OF_STAGE[extreme](pair, torque))
-                torque = torque * pair.ratio
+            pairs = teeth.pairs_of(train, x)
+            ratios = torque_ratios([pair.ratio for pair in pairs], train.drivers)
+            values = [
+                OF_STAGE[extreme](pair, train.torque * at)
+                for pair, (at, _) in zip(pairs, ratios, strict=True)
+            ]
         worth = {**terms.minimise, extreme: _largest(values)}
         return replace(terms, minimise={name: worth[name] for name in names})
 

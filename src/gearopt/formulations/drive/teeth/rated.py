@@ -415,6 +415,7 @@ class RatedTable(Table):
             narrow = np.where(least <= ends[1], np.maximum(narrow, least), np.inf)
         bounded = until[1] == MAX_STEPS and self._virtual_option is not None
         for option in (VIRTUAL, *self._by_price) if bounded else self._by_price:
+            self.tick()
             limit = np.minimum(most[rows], best.cost[rows])
             with np.errstate(invalid="ignore"):  # of no width
                 worth = self._worth(one, narrow, option)

@@ -380,8 +380,9 @@ def _in_one_line(result: Result, measures: Measures) -> Section | None:
     """Draw the gears; None where they are laid out."""
     asks = " A [layout] table in the file places the gears in the smallest box."
     shown, sized = _with_gears(result)
-    idle = any(stage.get("idler") for stage in shown.design.get("stages", ()))
-    hint = "" if sized or idle or result.status == "evaluated" else asks
+    stages = shown.design.get("stages", ())
+    not_laid = any(stage.get("idler") or stage.get("driver") == "wheel" for stage in stages)
+    hint = "" if sized or not_laid or result.status == "evaluated" else asks
     drawn = train_views.section(shown, measures, hint)
     return replace(drawn, heading=f"{sized}, all shafts in one plane") if drawn and sized else drawn
 

@@ -1,6 +1,6 @@
 """Remedies of an impossible drive that ratings limit: each number or choice of the file alone."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -42,6 +42,8 @@ FARTHEST_FACTOR, LAST_FACTOR = 3.0, 100.0  # of a remedy of use; of one, where t
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, for each of these
 SHARPEN_SECONDS, CHOICE_SECONDS = 2.0, 4.0  # s, at most, to make them sharper, and for choices
 CHOSEN = (DISTANCE, "sum_of_centre_distances", "helix_angle", "pinion_shift", "sum")
+MODES = ("bending", "contact")
+SAFETIES = tuple(f"minimum_{mode}_safety" for mode in MODES)
 STEPPED = (*GRADES, "accuracy_grade", "grade")  # moved by ones
 
 
@@ -51,7 +53,8 @@ def conflict_soon(scene: Scene, clock: Clock) -> Remedies | None:
     known = conflict(case, resolving=False)
     if not known.names:
         return None
-    return Remedies(known.names, (), "", known.any_resolves, known.unsure, untried=True)
+    names, unsure = (_told(scene, each) for each in (known.names, known.unsure))
+    return Remedies(names, (), "", known.any_resolves, unsure, untried=True)
 
 
 def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Remedies:
@@ -90,9 +93,15 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
     late = "time ran out before all remedies were tried" if clock.over else ""
     late = late or ("not all remedies were tried" if untried or last.over else "")
     words = "; ".join(filter(None, (_doubts(known), late)))
-    return Remedies(
-        known.names, with_least(ways, complete), words, known.any_resolves, known.unsure
-    )
+    names, unsure = (_told(scene, each) for each in (known.names, known.unsure))
+    return Remedies(names, with_least(ways, complete), words, known.any_resolves, unsure)
+
+
+def _told(scene: Scene, names: Sequence[str]) -> tuple[str, ...]:
+    """Names of a conflict; safety factors are those of a peak torque, too, where there is one."""
+    peak = scene.rating is not None and scene.rating.static_torque_factor is not None
+    tail = "_or_that_at_the_peak_torque" * peak
+    return tuple(f"{name}{tail}" if name in SAFETIES else name for name in names)
 
 
 def _until(clock: Clock, groups: Iterator[Group]) -> Iterator[Group]:
@@ -174,6 +183,7 @@ def _name(number: Number) -> str:
     end = number.path[-1] if isinstance(number.path[-1], int) else None
     field = str(number.path[-1] if end is None else number.path[-2])
     requirements = {"minimum_face_width": "least_face_width", "input_revolutions": "life"}
+    requirements |= {f"minimum_static_{m}_safety": f"minimum_{m}_safety" for m in MODES}
     tail = ("_low", "_high")[end] if end in (0, 1) else ""
     return requirements.get(field, field.replace(WIDTH, "face_width" if tail else WIDTH)) + tail
 

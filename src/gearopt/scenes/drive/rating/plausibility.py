@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from gearopt.formulations.drive.rating import DriveRating
 from gearopt.formulations.drive.train import STEEL_DENSITY
 from gearopt.physics.gears import MEMBERS, Gear, GearPair
+from gearopt.physics.iso6336.load_factors import Shaft
 from gearopt.physics.loads import torque_ratios
 from gearopt.scenes.drive.rating.gears import Tables
 from gearopt.scenes.drive.rating.steels import chosen
@@ -15,12 +16,16 @@ WIDEST, NARROWEST = 2.0, 3.0  # b/d1 and b/m_n, beyond which gears are unusual (
 FLAT = math.radians(10.0)  # normal pressure angle below which no law of the rating was tried
 LEAST_SHIFT, LARGEST_SHIFT = -0.7, 1.2  # x of usual gears (books; unverified)
 OVERSIZED = 2.0  # times the power asked for, from which on no strength decides the size
+FARTHEST, FARTHEST_OVERHUNG = 0.3, 0.5  # s/l up to which figure 13 of ISO 6336-1 holds
 HEAVY = 200.0  # kg, of gears from which on it is told what decides their size
 PLATE = 1.5  # diameter of a bar that hardens as a plate of a thickness does (EN 10083; memory)
 
 
 def unusual(
-    pairs: Sequence[GearPair], tables: Sequence[Tables], drivers: Sequence[str]
+    pairs: Sequence[GearPair],
+    tables: Sequence[Tables],
+    drivers: Sequence[str],
+    shafts: Sequence[Shaft | None],
 ) -> Iterator[str]:
     """Yield sentences on what is unusual about pairs of floats; tables: of their gears."""
     yield from _modules(pairs, drivers)
@@ -28,6 +33,7 @@ def unusual(
     for k, (pair, both) in enumerate(zip(pairs, tables, strict=True), 1):
         yield from _proportions(pair, k)
         yield from _shifts(pair, k)
+        yield from _on_shaft(pair, shafts[k - 1], k)
         yield from dict.fromkeys(text for table in both for text in _soft_core(table, pair, k))
         for member, gear, table in zip(MEMBERS, pair.gears, both, strict=True):
             for text in _of_steel(table, gear):
@@ -108,6 +114,29 @@ def _proportions(pair: GearPair, stage: int) -> Iterator[str]:
         yield (
             f"The overlap ratio of stage {stage} is {text}: below 1 helical gears run "
             "little quieter than spur gears, and still load their bearings axially."
+        )
+
+
+def _on_shaft(pair: GearPair, shaft: Shaft | None, stage: int) -> Iterator[str]:
+    """Yield where a shaft does not fit its pinion, or K_Hbeta has no figure for it."""
+    if shaft is None:
+        return
+    root, share = float(pair.pinion.root_diameter), shaft.offset / shaft.span
+    if shaft.diameter >= root:
+        yield (
+            f"The shaft of stage {stage}, {shaft.diameter:.4g} mm, is not thinner than the root "
+            f"circle of its pinion, {root:.4g} mm."
+        )
+    if not shaft.overhung and shaft.offset + 0.5 * float(pair.pinion.width) > 0.5 * shaft.span:
+        yield (
+            f"The pinion of stage {stage} reaches beyond a bearing: it is "
+            f"{float(pair.pinion.width):.4g} mm wide, {shaft.offset:.4g} mm off the middle of a "
+            f"span of {shaft.span:.4g} mm."
+        )
+    if share > (most := FARTHEST_OVERHUNG if shaft.overhung else FARTHEST):
+        yield (
+            f"The pinion of stage {stage} is {share:.3g} of the span off its middle; figure 13 of "
+            f"ISO 6336-1, by which K_Hbeta is rated, ends at {most:g}."
         )
 
 

@@ -270,7 +270,10 @@ def rating(
         gear_tables(own, scene.gears, scene.material, k, of_stage)
         for k, (own, of_stage) in enumerate(zip(scene.stage_tables, names, strict=True))
     ]
-    return replace(first, flaws=(*_partial_contact(first), *unusual(pairs, tables, drivers(scene))))
+    placed = [of_stage(scene.rating, own).shaft for own in scene.stage_tables]
+    shafts = [None if table is None else table.made for table in placed]
+    odd = unusual(pairs, tables, drivers(scene), shafts)
+    return replace(first, flaws=(*_partial_contact(first), *odd))
 
 
 def _partial_contact(rated: DriveRating) -> Iterator[str]:

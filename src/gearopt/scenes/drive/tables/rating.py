@@ -460,7 +460,8 @@ class RatingTable(Table):
             raise refuse(rule, tell, ("static_torque_factor",), "tell")
         for name in ("minimum_static_bending_safety", "minimum_static_contact_safety"):
             if self.static_torque_factor is None and getattr(self, name) is not None:
-                raise refuse("needs static_torque_factor", at=(name,), action="remove")
+                rule = f"is missing: {name} is of a peak torque"
+                raise refuse(rule, 2.5, ("static_torque_factor",), "sample")
 
 
 class LoadTable(Table):
