@@ -217,7 +217,7 @@ class ListedField:
         """A value of the field as it is read; a length has decimals by its unit."""
         if self.form == "share":
             return percent(value)
-        if self.key.endswith("face_width_mm") and value is not None:
+        if self.key.endswith("face_width_mm") and value is not None and not self.form:
             return _not_narrower(value, measures)
         if not self.form or value is None:
             return cell(value, self.unit, measures)
