@@ -84,6 +84,7 @@ def test_given_gears_are_rated_with_them(tmp_path):
     assert own.limits["pinion_bending[1]"] == pytest.approx(3.0 / a["bending_safety"], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_real_valued_sizes_take_them(tmp_path):
     line = "minimum_contact_safety = 1.3"
     text = (PROBLEMS / "sized_and_rated.toml").read_text().partition("[x-expected]")[0]
