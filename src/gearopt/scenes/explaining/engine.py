@@ -9,6 +9,7 @@ logarithm of the change. A remedy is reported only if the file with it, as writt
 
 import logging
 import math
+import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import field, replace
 from typing import Any
@@ -26,14 +27,18 @@ from gearopt.scenes.reading.toml_writing import dotted
 
 logger = logging.getLogger("gearopt.remedies")
 FACTORS_TRIED = (1e6, 1e3, 16.0, 4.0, 2.0, 1.3, 1.1)  # the first that is decided counts
+LAST = 3.0  # times the time to make numbers sharper, for whether less suffices
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, to make numbers sharper in given seconds
 SECANTS = 24
 NO_PROGRESS = 1e-2  # of that logarithm: what falls by less in a step does not fall
+NEGLIGIBLE = 1e-9  # of a factor
 LOG_TOLERANCE = 2e-5  # of the logarithm of a utilisation that counts as 1
 ROOM = (1.0, 1.001, 1.01)  # times a factor that was found by an excess, until a design is found
 CLOSER = (1.00005, 1.000005, 1.0 + 1e-7, 1.0 + 1e-9)  # in turn, where a little less suffices
 JOINT = "least"  # kind of a remedy whose numbers do not move alike: each of them is needed
 EACH = (JOINT, "pair")
+DEAR = 0.1  # s, of a question whose answer is no
+FASTER = 4.0  # power by which steps grow as long as there are designs
 DIGITS = (3, 4)  # significant digits of what one would write, tried in turn
 
 
@@ -64,6 +69,8 @@ class FeasibilityQuestions:
     as it is written, where that takes longer. clock: of all questions; seconds: of one, at most.
     excess: that of the file itself, where it is known. lower_bounds: whether a factor that is
     proven too small is told as a bound. far: the factor, beyond a floor, up to which is tried.
+    likely: whether known designs suffice for a changed file, asked as a factor is narrowed once a
+    no was dear; only yes counts.
     apply: makes the file with numbers moved. halving: seconds of a question while a change is
     halved, and once one stayed open, of which so many doubts may; ladder: factors tried where the
     farthest stays open. open: keys of numbers of which no factor was decided.
@@ -76,12 +83,14 @@ class FeasibilityQuestions:
     seconds: float = math.inf
     excess: float | None = None
     lower_bounds: bool = False
+    likely: Possible[Any] | None = None
     far: float = REACH
     halving: tuple[float, float] = (math.inf, math.inf)
     doubts: int = DOUBTS
     ladder: tuple[float, ...] = FACTORS_TRIED
     apply: Callable[[Any, Moves], Edited | None] = edited
     open: list[str] = field(default_factory=list)
+    dear: bool = False
     answers: dict[tuple[Any, ...], Verdict] = field(default_factory=dict)
 
     def edited(self, moves: Moves) -> Edited | None:
@@ -97,9 +106,11 @@ class FeasibilityQuestions:
         """Return whether a changed file is possible, which is asked once; in seconds, at most."""
         key = tuple((change.key, change.write) for change in there.changes)
         if key not in self.answers:
+            begun = time.monotonic()
             verdict = self.ask(there.scene, self.possible, seconds)
             if self.clock.over:
                 return verdict
+            self.dear |= not verdict.answer and time.monotonic() - begun > DEAR
             self.answers[key] = verdict
         return self.answers[key]
 
@@ -313,6 +324,9 @@ def narrow(
         return
     ends = [asked.edited(known.at(end)) for end in (known.low, known.high)]
     for middle in middles(known, close, asked.doubts):
+        if asked.likely is not None and asked.dear:
+            _narrow_by_designs(asked, known, close, clock or asked.clock)
+            return
         if asked.clock.over or clock is not None and clock.over:
             return
         there = asked.edited(known.at(middle))
@@ -322,6 +336,43 @@ def narrow(
         verdict = UNKNOWN if there is None else asked.verdict_of(there, seconds)
         take(known, middle, verdict.answer)
         ends[bool(verdict.answer)] = there
+
+
+def _narrow_by_designs(
+    asked: FeasibilityQuestions, known: FactorBracket, close: float, clock: Clock
+) -> None:
+    """Lower a factor to what known designs need, until a little less does not suffice.
+
+    As long as there are other designs for less the steps grow; of rough ones there are none.
+    """
+    near = min(close, FACTOR_TOLERANCE)
+    _lower(asked, known, near)
+    step, known.doubts = near, 0
+    while close < ROUGH and known.high > known.low * near * (1.0 + NEGLIGIBLE):
+        if known.doubts >= asked.doubts or asked.clock.over or clock.over:
+            return
+        factor = max(known.high / step, between(known.low, known.high))
+        there = asked.edited(known.at(factor))
+        if there is not None and _same(there, asked.edited(known.at(known.high))):
+            return  # of whole numbers
+        verdict = UNKNOWN if there is None else asked.verdict_of(there)
+        take(known, factor, verdict.answer)
+        step = min(step**FASTER, REACH) if verdict.answer else near
+        if verdict.answer:
+            _lower(asked, known, near)
+
+
+def _lower(asked: FeasibilityQuestions, known: FactorBracket, near: float) -> None:
+    """Lower the factor that is known to suffice to what known designs need."""
+    assert asked.likely is not None
+    low, step = max(1.0, known.low), near
+    while known.high > low * near * (1.0 + NEGLIGIBLE) and not asked.clock.over:
+        factor = max(known.high / step, between(low, known.high))
+        there = asked.edited(known.at(factor))
+        if there is not None and asked.ask(there.scene, asked.likely).answer:
+            known.high, step = factor, min(step**FASTER, REACH)
+        else:
+            low, step = factor, max(step ** (1.0 / FASTER**2), near)
 
 
 def _same(one: Edited, other: Edited | None) -> bool:
@@ -340,16 +391,24 @@ def _checked_remedy(
     kind: str,
     what: str = "",
     sharp: Clock | None = None,
+    last: Clock | None = None,
 ) -> tuple[Remedy, Edited] | None:
-    """Return a remedy and its edits, exactly; sharp: a clock of whether less suffices, too."""
+    """Return a remedy and its edits, exactly.
+
+    sharp: a clock of making it smaller; last: of whether less suffices.
+    """
     there = _edits_as_written(asked, known)
     if there is None:
         return None
-    word, closer = _less(asked, known, there, kind, sharp), list(CLOSER)
+    word, closer = _less(asked, known, there, kind, last), list(CLOSER)
     while word == "feasible" and kind not in EACH and closer:
+        before = known.high
+        if asked.likely is not None and not known.sure:  # what stayed open is possible
+            known.low, known.sure = 1.0, True
         narrow(asked, known, closer[0], sharp)
-        there, closer = _edits_as_written(asked, known) or there, closer[1:]
-        word = _less(asked, known, there, kind, sharp)
+        closer = closer[1:] if known.high == before or asked.likely is None else closer
+        there = _edits_as_written(asked, known) or there
+        word = _less(asked, known, there, kind, last)
     factors = [change.factor for change in there.changes]
     factor = math.prod(factors) if kind in EACH else max(factors)
     names = dict.fromkeys(move.words for move, _ in known.moves)
@@ -369,17 +428,32 @@ def _edits_as_written(asked: FeasibilityQuestions, known: FactorBracket) -> Edit
 
 
 def _less(
-    asked: FeasibilityQuestions, known: FactorBracket, there: Edited, kind: str, sharp: Clock | None
+    asked: FeasibilityQuestions, known: FactorBracket, there: Edited, kind: str, last: Clock | None
 ) -> str:
     """Verdict, in one word, on moves taken back a little, together or each of them."""
     if known.stepped:
         return "infeasible" if known.sure else "undecided"
-    if known.excess or sharp is not None and sharp.over:
+    if known.excess or last is not None and last.over:
         return "undecided"
     moved = [k for k, move in enumerate(there.places) if move.switch is None]
     each = moved if kind in EACH else [None]
-    words = {WORDS[_possible(asked, less(asked.scene, there, SLACK_TRIED, k))] for k in each}
+    tried = [less(asked.scene, there, SLACK_TRIED, k) for k in each]
+    if kind not in EACH and _is_excluded(asked, known, tried[0]):
+        return "infeasible"
+    words = {WORDS[_possible(asked, scene)] for scene in tried}
     return "mixed" if len(words) > 1 else next(iter(words), "")
+
+
+def _is_excluded(asked: FeasibilityQuestions, known: FactorBracket, scene: Any) -> bool:
+    """Return whether numbers of a changed file move no farther than what is proven too little."""
+    if scene is None or not known.sure or known.low <= 1.0:
+        return False
+    return all(
+        move.far_first
+        and move.factor(*(move.inherits(one, move.path) for one in (asked.scene, scene)))
+        <= factor * known.low
+        for move, factor in known.moves
+    )
 
 
 def least(asked: FeasibilityQuestions, moves: Moves) -> FactorBracket | None:
@@ -432,12 +506,32 @@ def _with_short_form(asked: FeasibilityQuestions, remedy: Remedy, there: Edited)
     return remedy
 
 
+def of_use(asked: FeasibilityQuestions, groups: Sequence[Group]) -> list[Group]:
+    """Return groups but for those that do not suffice all at once at their farthest, by halves.
+
+    Of numbers that are easier the farther they move, whether in steps or not.
+    """
+    far = [(move, _farthest(asked, move)) for group in groups for move in group.numbers]
+    if len(groups) < 2 or asked.possible_with(tuple(far)) is False:
+        return list(groups) if len(groups) < 2 else []
+    middle = len(groups) // 2
+    return of_use(asked, groups[:middle]) + of_use(asked, groups[middle:])
+
+
+def _farthest(asked: FeasibilityQuestions, move: Move) -> float:
+    """Return the largest factor of a number that the rules of the file allow, nearly."""
+    if move.steps:
+        allowed = (f for f in move.steps[::-1] if asked.edited(((move, f),)) is not None)
+        return next(allowed, 1.0)
+    return _largest_allowed_factor(asked, ((move, 1.0),), min(asked.far, move.far))
+
+
 def singles(
     asked: FeasibilityQuestions, groups: Iterable[Group], seconds: float = math.inf
 ) -> list[Remedy]:
     """Return the groups of numbers that suffice by one factor: first roughly, then sharper.
 
-    seconds: at most, to make them sharper.
+    seconds: at most, to make them sharper; LAST times as many, for whether less suffices.
     """
     rough = list[tuple[Group, FactorBracket]]()
     for group in groups:
@@ -446,6 +540,7 @@ def singles(
             _tell_first(asked, known, rough)
             rough.append((group, known))
     sharp = within(asked.clock, seconds, SHARE_OF_TIME if math.isfinite(seconds) else 1.0)
+    last = within(asked.clock, LAST * seconds, SHARE_OF_TIME if math.isfinite(seconds) else 1.0)
     sufficient = list[tuple[Remedy, Edited]]()
     for group, known in rough:
         narrow(asked, known, FACTOR_TOLERANCE, sharp)
@@ -453,7 +548,7 @@ def singles(
             known.bound = known.low
         kind = "even" if len(group.numbers) > 1 else "alone"
         kind = "less" if all(move.role == DUTY for move in group.numbers) else kind
-        tried = _checked_remedy(asked, known, kind, group.what, sharp)
+        tried = _checked_remedy(asked, known, kind, group.what, sharp, last)
         sufficient += [] if tried is None else [tried]
     return [_with_short_form(asked, *tried) for tried in sufficient]
 

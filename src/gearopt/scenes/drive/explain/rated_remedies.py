@@ -25,6 +25,7 @@ from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.explaining.engine import (
     FeasibilityQuestions,
     Group,
+    of_use,
     singles,
     with_least,
     within,
@@ -35,12 +36,13 @@ from gearopt.scenes.explaining.possible import Verdict, of_status
 
 TRANSMITTED = (("duty", "power"), ("duty", "torque"))
 # s, at most, for the conflict: beside an answer, before remedies, and after them if it is open
-CONFLICT_SECONDS, CONFLICT_SECONDS_BESIDE_REMEDIES, CONFLICT_SECONDS_LATER = 1.5, 2.0, 3.0
+CONFLICT_SECONDS, CONFLICT_SECONDS_BESIDE_REMEDIES, CONFLICT_SECONDS_LATER = 1.5, 0.6, 1.5
 # s, at most, for the numbers that help, and for one question
-ROUGH_SECONDS, QUESTION_SECONDS = 7.0, 2.0
+ROUGH_SECONDS, QUESTION_SECONDS = 5.0, 2.0
+LAST_SECONDS = 8.0  # s, at most, for whether a little less than what is proposed suffices
 FARTHEST_FACTOR, LAST_FACTOR = 3.0, 100.0  # of a remedy of use; of one, where there is none
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, for each of these
-SHARPEN_SECONDS, CHOICE_SECONDS = 2.0, 4.0  # s, at most, to make them sharper, and for choices
+SHARPEN_SECONDS, CHOICE_SECONDS = 3.0, 4.0  # s, at most, to make them sharper, and for choices
 CHOSEN = (DISTANCE, "sum_of_centre_distances", "helix_angle", "pinion_shift", "sum")
 MODES = ("bending", "contact")
 SAFETIES = tuple(f"minimum_{mode}_safety" for mode in MODES)
@@ -70,18 +72,25 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
     known = conflict(early)
     case = replace(early, clock=clock, open=[], seconds=QUESTION_SECONDS)
 
-    def works(other: Scene) -> bool | None:
+    def works(other: Scene, case: Case = case) -> bool | None:
         if other.teeth is None:
             return of_status(status(other)).answer
         return any_possible(case, [t for n in other.counts for t in trains(other.held(n))])
 
+    def like(other: Scene) -> bool:
+        return any(map(case.like, (t for n in other.counts for t in trains(other.held(n)))))
+
     asked = FeasibilityQuestions(scene, lambda other, clock: Verdict(works(other)), clock)
+    longer = replace(case, seconds=LAST_SECONDS)
+    asked.sure = lambda other, clock: Verdict(works(other, longer))
+    if scene.teeth is not None and not any(map(scene.choosing, scene.stage_tables)):
+        asked.likely = lambda other, clock: Verdict(like(other))
     first = soon(ROUGH_SECONDS)
-    ways = singles(asked, _until(first, _groups(scene, known)), SHARPEN_SECONDS)
+    ways = singles(asked, _until(first, _groups(scene, known, asked)), SHARPEN_SECONDS)
     if not ways:
         first = clock
         unnamed = Conflict(whatever_load=known.whatever_load)
-        ways = singles(asked, _groups(scene, unnamed, LAST_FACTOR), SHARPEN_SECONDS)
+        ways = singles(asked, _groups(scene, unnamed, asked, LAST_FACTOR), SHARPEN_SECONDS)
     last = soon(CHOICE_SECONDS)
     untried = first.over
     chosen = choices(scene, known, lambda other: None if last.over else works(other))
@@ -116,14 +125,17 @@ def _doubts(known: Conflict) -> str:
     return "" if known.names else "time ran out before the conflict was identified"
 
 
-def _groups(scene: Scene, known: Conflict, far: float = FARTHEST_FACTOR) -> Iterator[Group]:
+def _groups(
+    scene: Scene, known: Conflict, asked: FeasibilityQuestions, far: float = FARTHEST_FACTOR
+) -> Iterator[Group]:
     """Yield the numbers that may help, each alone; those of teeth, which take longest, come last.
 
     What is in no conflict keeps the drive impossible however it is moved; where there are no teeth
-    whatever they carry, so does what they carry.
+    whatever they carry, so does what they carry. Unlikely ones are first moved all at once.
     """
     dropped = known.names and {name.split("[")[0] for name in known.names}
     yield from _of_distances(scene, far, 1)
+    likely, unlikely, slow = list[Group](), list[Group](), list[Group]()
     for number in sorted(numbers(scene), key=_rank):
         if any(step in CHOSEN for step in number.path):
             continue
@@ -131,7 +143,12 @@ def _groups(scene: Scene, known: Conflict, far: float = FARTHEST_FACTOR) -> Iter
         name = _name(number) if way else ""
         idle = known.whatever_load and name not in OF_TEETH
         if way and not idle and not (dropped and name in _PROVEN and name not in dropped):
-            yield Group((_move(scene, number, way, far),))
+            group = Group((_move(scene, number, way, far),))
+            late, rank = _rank(number)
+            (slow if late else likely if rank < len(ORDER[0]) else unlikely).append(group)
+    yield from likely
+    yield from of_use(asked, unlikely)
+    yield from slow
     yield from _of_distances(scene, far, -1)
     for way in (1, -1):
         yield from teeth_groups(scene, way)

@@ -87,6 +87,14 @@ class Case:
         self.open.append(train)
         return None
 
+    def like(self, train: Train) -> bool:
+        """Return whether teeth of designs that are known make a drive possible."""
+        for teeth in self.known[:LIKE]:
+            for narrower in _of_teeth(train, teeth):
+                if any_train(narrower, self.clock.within(FEW), self.clock.watch, self.shelf):
+                    return True
+        return False
+
     def teeth(self, train: Train) -> Teeth | None:
         """Return the teeth of some train of a drive, (): there is none; None: not known."""
         if self.clock.over:
