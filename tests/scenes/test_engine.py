@@ -6,7 +6,13 @@ import pytest
 from bars import Bars
 
 from gearopt.optimise.clock import Clock
-from gearopt.scenes.explaining.engine import FeasibilityQuestions, Group, singles, with_least
+from gearopt.scenes.explaining.engine import (
+    FeasibilityQuestions,
+    Group,
+    of_use,
+    singles,
+    with_least,
+)
 from gearopt.scenes.explaining.moves import DUTY, Move
 from gearopt.scenes.explaining.possible import UNKNOWN, Verdict
 
@@ -87,3 +93,41 @@ def test_numbers_that_move_alike_have_one_factor_and_the_duty_comes_last():
     assert even.factor == pytest.approx(2.0 ** (1.0 / 3.0), rel=6e-4)
     assert even.bound < 2.0 ** (1.0 / 3.0) and less.factor == pytest.approx(2.0, rel=6e-4)
     assert even.verified["others"] == "need more"
+
+
+@pytest.mark.parametrize("needs", [[130.0], [130.0, 131.0, 160.0, 400.0, 3e4], range(111, 1000, 7)])
+def test_known_designs_lead_to_the_least_change_in_fewer_questions(needs):
+    """Designs need so many MPa; the most demanding of those that carry is found."""
+    known = []
+
+    def answer(stress):
+        enough = [need for need in needs if need <= stress]
+        known.extend(enough[-1:] and [max(enough)])
+        return Verdict(bool(enough))
+
+    def likely(scene, clock):
+        return Verdict(float(scene.bar.stress.number) >= min(known[-2:]) or None)
+
+    plain, every = asked(answer)
+    (least,) = singles(plain, [Group((STRESS,))])
+    questions, seen = asked(answer, likely=likely, dear=True)
+    (remedy,) = singles(questions, [Group((STRESS,))])
+    assert min(needs) <= 100.0 * remedy.factor <= min(needs) * 1.0006
+    assert remedy.verified["with_less"] == least.verified["with_less"] == "infeasible"
+    assert len(needs) > 5 or len(seen) < 0.7 * len(every)
+
+
+def test_numbers_of_no_use_together_are_asked_about_at_once():
+    """The diameter alone helps: of five numbers three questions leave the two with it."""
+    others = [Move(("bar", "pull"), -1, far=far) for far in (2.0, 3.0, 4.0)]
+    groups = [Group((move,)) for move in (STRESS, *others[:2])]
+    wide = Group((Move(("bar", "diameter"), 1),))
+    count = []
+
+    def possible(own, clock):
+        count.append(own)
+        return Verdict(own.bar.diameter.number >= 8)
+
+    questions = FeasibilityQuestions(SCENE, possible, Clock())
+    assert of_use(questions, groups) == [] and len(count) == 1
+    assert of_use(questions, [*groups, wide])[-1] == wide and len(count) <= 4
