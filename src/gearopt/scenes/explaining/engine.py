@@ -70,7 +70,7 @@ class FeasibilityQuestions:
     excess: that of the file itself, where it is known. lower_bounds: whether a factor that is
     proven too small is told as a bound. far: the factor, beyond a floor, up to which is tried.
     likely: whether known designs suffice for a changed file, asked as a factor is narrowed once a
-    no was dear; only yes counts.
+    no was dear; only yes counts. sufficient: how many groups of numbers are known to suffice.
     apply: makes the file with numbers moved. halving: seconds of a question while a change is
     halved, and once one stayed open, of which so many doubts may; ladder: factors tried where the
     farthest stays open. open: keys of numbers of which no factor was decided.
@@ -91,6 +91,7 @@ class FeasibilityQuestions:
     apply: Callable[[Any, Moves], Edited | None] = edited
     open: list[str] = field(default_factory=list)
     dear: bool = False
+    sufficient: int = 0
     answers: dict[tuple[Any, ...], Verdict] = field(default_factory=dict)
 
     def edited(self, moves: Moves) -> Edited | None:
@@ -539,6 +540,7 @@ def singles(
         if known is not None:
             _tell_first(asked, known, rough)
             rough.append((group, known))
+            asked.sufficient += 1
     sharp = within(asked.clock, seconds, SHARE_OF_TIME if math.isfinite(seconds) else 1.0)
     last = within(asked.clock, LAST * seconds, SHARE_OF_TIME if math.isfinite(seconds) else 1.0)
     sufficient = list[tuple[Remedy, Edited]]()

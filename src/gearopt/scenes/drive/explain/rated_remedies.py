@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
+from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.optimise.explaining.explanation import Remedies
 from gearopt.optimise.result import Budget
@@ -37,8 +38,8 @@ from gearopt.scenes.explaining.possible import Verdict, of_status
 TRANSMITTED = (("duty", "power"), ("duty", "torque"))
 # s, at most, for the conflict: beside an answer, before remedies, and after them if it is open
 CONFLICT_SECONDS, CONFLICT_SECONDS_BESIDE_REMEDIES, CONFLICT_SECONDS_LATER = 1.5, 0.6, 1.5
-# s, at most, for the numbers that help, and for one question
-ROUGH_SECONDS, QUESTION_SECONDS = 5.0, 2.0
+# s, at most, for a first number that helps, for the others then, and for one question
+ROUGH_SECONDS, OTHERS_SECONDS, QUESTION_SECONDS = 8.0, 2.0, 2.0
 LAST_SECONDS = 8.0  # s, at most, for whether a little less than what is proposed suffices
 FARTHEST_FACTOR, LAST_FACTOR = 3.0, 100.0  # of a remedy of use; of one, where there is none
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, for each of these
@@ -85,22 +86,22 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
     asked.sure = lambda other, clock: Verdict(works(other, longer))
     if scene.teeth is not None and not any(map(scene.choosing, scene.stage_tables)):
         asked.likely = lambda other, clock: Verdict(like(other))
-    first = soon(ROUGH_SECONDS)
-    ways = singles(asked, _until(first, _groups(scene, known, asked)), SHARPEN_SECONDS)
+    turns = _Turns(soon(ROUGH_SECONDS), lambda: soon(OTHERS_SECONDS), asked)
+    ways = singles(asked, turns.until(_groups(scene, known, asked)), SHARPEN_SECONDS)
     if not ways:
-        first = clock
+        turns = replace(turns, first=clock, over=False)
         unnamed = Conflict(whatever_load=known.whatever_load)
-        ways = singles(asked, _groups(scene, unnamed, asked, LAST_FACTOR), SHARPEN_SECONDS)
+        groups = turns.until(_groups(scene, unnamed, asked, LAST_FACTOR))
+        ways = singles(asked, groups, SHARPEN_SECONDS)
     last = soon(CHOICE_SECONDS)
-    untried = first.over
     chosen = choices(scene, known, lambda other: None if last.over else works(other))
     ways += chosen
     if early.clock.over and not known.proven:
         again = conflict(replace(early, clock=soon(CONFLICT_SECONDS_LATER), open=[]))
         known = again if again.names else known
-    complete = not (untried or clock.over or case.open)
+    complete = not (turns.over or clock.over or case.open)
     late = "time ran out before all remedies were tried" if clock.over else ""
-    late = late or ("not all remedies were tried" if untried or last.over else "")
+    late = late or ("not all remedies were tried" if turns.over or last.over else "")
     words = "; ".join(filter(None, (_doubts(known), late)))
     names, unsure = (_told(scene, each) for each in (known.names, known.unsure))
     return Remedies(names, with_least(ways, complete), words, known.any_resolves, unsure)
@@ -113,12 +114,28 @@ def _told(scene: Scene, names: Sequence[str]) -> tuple[str, ...]:
     return tuple(f"{name}{tail}" if name in SAFETIES else name for name in names)
 
 
-def _until(clock: Clock, groups: Iterator[Group]) -> Iterator[Group]:
-    """Yield groups as long as a clock allows."""
-    for group in groups:
-        if clock.over:
-            return
-        yield group
+@dataclass
+class _Turns:
+    """Time for the numbers that may help; it has state as it is over when one has had no turn.
+
+    first: until one is known to suffice; others: then; asked: which knows.
+    """
+
+    first: Clock
+    others: Callable[[], Clock]
+    asked: FeasibilityQuestions
+    over: bool = False
+
+    def until(self, groups: Iterator[Group]) -> Iterator[Group]:
+        """Yield groups as long as there is time."""
+        clock = self.first
+        for group in groups:
+            if clock is self.first and self.asked.sufficient:
+                clock = self.others()
+            if clock.over:
+                self.over = True
+                return
+            yield group
 
 
 def _doubts(known: Conflict) -> str:
@@ -166,19 +183,22 @@ def _of_distances(scene: Scene, far: float, way: int) -> Iterator[Group]:
 def _move(scene: Scene, number: Number, way: int, far: float) -> Move:
     """Return the move of a number; numbers of pinion teeth go no farther than TEETH."""
     role = DUTY if number.path in TRANSMITTED else LIMIT
-    if values := _values(scene, number, way):
+    if values := _values(scene, number, way, far):
         return Move(number.path, way, role, inherits=one_at).to_values(number.value, values)
     if "pinion_teeth" in number.path:
         far = min(far, float(TEETH))
     return Move(number.path, way, role, far=far, inherits=one_at)
 
 
-def _values(scene: Scene, number: Number, way: int) -> list[Any]:
-    """Return the next values of a number that takes steps, near ones first; none: it takes none."""
+def _values(scene: Scene, number: Number, way: int, far: float) -> list[Any]:
+    """Return the next values of a number that takes steps, near ones first; none: it takes none.
+
+    far: the factor of the farthest.
+    """
     values = list[Any]()
     if scene.teeth is not None and "module" in number.path:
         value = next_module(scene, number.value, way)
-        while value is not None and apart(number.value, value) <= FARTHEST_FACTOR:
+        while value is not None and apart(number.value, value) <= far:
             values.append(value)
             value = next_module(scene, value, way)
     elif number.path[-1] in STEPPED:
