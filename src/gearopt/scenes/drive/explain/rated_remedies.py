@@ -35,6 +35,7 @@ from gearopt.scenes.explaining.moves import DUTY, LIMIT, Move
 from gearopt.scenes.explaining.numbers import Number, apart, numbers, one_at
 from gearopt.scenes.explaining.possible import Verdict, of_status
 
+USUAL_SECONDS = 60.0  # budget of all; with more, what follows is allowed in proportion
 TRANSMITTED = (("duty", "power"), ("duty", "torque"))
 # s, at most, for the conflict: beside an answer, before remedies, and after them if it is open
 CONFLICT_SECONDS, CONFLICT_SECONDS_BESIDE_REMEDIES, CONFLICT_SECONDS_LATER = 1.5, 0.6, 1.5
@@ -65,13 +66,15 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
 
     status(scene): of a changed drive, solved; asked where sizes are real-valued.
     """
+    patience = max(1.0, (clock.left.seconds or 0.0) / USUAL_SECONDS)
 
     def soon(seconds: float) -> Clock:
-        return within(clock, seconds, SHARE_OF_TIME)
+        return within(clock, patience * seconds, SHARE_OF_TIME)
 
     early = Case(scene, soon(CONFLICT_SECONDS_BESIDE_REMEDIES))
     known = conflict(early)
-    case = replace(early, clock=clock, open=[], seconds=QUESTION_SECONDS)
+    case = replace(early, clock=clock, open=[], seconds=patience * QUESTION_SECONDS)
+    sharpen = patience * SHARPEN_SECONDS
 
     def works(other: Scene, case: Case = case) -> bool | None:
         if other.teeth is None:
@@ -82,17 +85,17 @@ def remedies(scene: Scene, clock: Clock, status: Callable[[Scene], str]) -> Reme
         return any(map(case.like, (t for n in other.counts for t in trains(other.held(n)))))
 
     asked = FeasibilityQuestions(scene, lambda other, clock: Verdict(works(other)), clock)
-    longer = replace(case, seconds=LAST_SECONDS)
+    longer = replace(case, seconds=patience * LAST_SECONDS)
     asked.sure = lambda other, clock: Verdict(works(other, longer))
     if scene.teeth is not None and not any(map(scene.choosing, scene.stage_tables)):
         asked.likely = lambda other, clock: Verdict(like(other))
     turns = _Turns(soon(ROUGH_SECONDS), lambda: soon(OTHERS_SECONDS), asked)
-    ways = singles(asked, turns.until(_groups(scene, known, asked)), SHARPEN_SECONDS)
+    ways = singles(asked, turns.until(_groups(scene, known, asked)), sharpen)
     if not ways:
         turns = replace(turns, first=clock, over=False)
         unnamed = Conflict(whatever_load=known.whatever_load)
         groups = turns.until(_groups(scene, unnamed, asked, LAST_FACTOR))
-        ways = singles(asked, groups, SHARPEN_SECONDS)
+        ways = singles(asked, groups, sharpen)
     last = soon(CHOICE_SECONDS)
     chosen = choices(scene, known, lambda other: None if last.over else works(other))
     ways += chosen
