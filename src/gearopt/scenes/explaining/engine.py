@@ -356,7 +356,8 @@ def _narrow_by_designs(
         there = asked.edited(known.at(factor))
         if there is not None and _same(there, asked.edited(known.at(known.high))):
             return  # of whole numbers
-        verdict = UNKNOWN if there is None else asked.verdict_of(there)
+        sure, left = asked.sure or asked.possible, clock.left.seconds
+        verdict = UNKNOWN if there is None else asked.ask(there.scene, sure, left or math.inf)
         take(known, factor, verdict.answer)
         step = min(step**FASTER, REACH) if verdict.answer else near
         if verdict.answer:

@@ -41,10 +41,10 @@ TRANSMITTED = (("duty", "power"), ("duty", "torque"))
 CONFLICT_SECONDS, CONFLICT_SECONDS_BESIDE_REMEDIES, CONFLICT_SECONDS_LATER = 1.5, 0.6, 1.5
 # s, at most, for a first number that helps, for the others then, and for one question
 ROUGH_SECONDS, OTHERS_SECONDS, QUESTION_SECONDS = 8.0, 2.0, 2.0
-LAST_SECONDS = 8.0  # s, at most, for whether a little less than what is proposed suffices
+LAST_SECONDS = 20.0  # s, at most, for whether a little less than what is proposed suffices
 FARTHEST_FACTOR, LAST_FACTOR = 3.0, 100.0  # of a remedy of use; of one, where there is none
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, for each of these
-SHARPEN_SECONDS, CHOICE_SECONDS = 3.0, 4.0  # s, at most, to make them sharper, and for choices
+SHARPEN_SECONDS, CHOICE_SECONDS = 10.0, 4.0  # s, at most, to make them sharper, and for choices
 CHOSEN = (DISTANCE, "sum_of_centre_distances", "helix_angle", "pinion_shift", "sum")
 MODES = ("bending", "contact")
 SAFETIES = tuple(f"minimum_{mode}_safety" for mode in MODES)
