@@ -1,7 +1,9 @@
-"""External cylindrical gears and gear pairs (ISO 21771 terms), in mm and t.
+"""Cylindrical gears and gear pairs (ISO 21771 terms), in mm and t.
 
 Every quantity is a float, an array (all of one shape) or a casadi scalar; numbers of teeth may be
-real. An inertia is in t mm^2 (1 kg m^2 = 1e3 t mm^2).
+real. An inertia is in t mm^2 (1 kg m^2 = 1e3 t mm^2). An internal gear (ring) has negative teeth
+and negative diameters, and a pair with it a negative u and a, as in ISO 21771: all formulas then
+hold for both. Only floats and arrays may be negative; symbols are external gears.
 """
 
 import math
@@ -62,6 +64,35 @@ class Rack:
 
 
 ISO_53_A = Rack()
+RIM = 3.5  # modules of a ring below its roots, from which on Y_B = 1: ISO 6336-3 [unverified]
+
+
+@dataclass(frozen=True)
+class Cutter:
+    """Pinion-type cutter, which shapes a gear: number of teeth z_0, the rest in normal modules.
+
+    profile_shift x_0; addendum h_a0: d_a0 = m_n z_0/cos(beta) + 2 m_n (h_a0 + x_0); tip_radius
+    rho_a0 of the round at the corners of its tips. Source: ISO 21771:2007 and ISO 6336-3:2006.
+    """
+
+    teeth: Any
+    profile_shift: Any = 0.0
+    addendum: Any = 1.25
+    tip_radius: Any = 0.0
+
+
+def signed(value: Any, like: Any) -> Any:
+    """Return a value >= 0 with the sign of another number, teeth or a diameter; symbols: +."""
+    if isinstance(like, int | float | np.number):
+        return -value if like < 0 else value
+    if isinstance(like, np.ndarray) and like.dtype != object and (like < 0).any():
+        return np.copysign(value, like)
+    return value
+
+
+def is_internal(teeth: Any) -> bool:
+    """Return whether a number of teeth, or any of an array, is that of a ring: negative."""
+    return bool(np.any(signed(1.0, teeth) < 0.0))
 
 
 def disc_mass(density: Any, length: Any, diameter: Any) -> Any:
@@ -84,7 +115,7 @@ def reference_diameter(module: Any, teeth: Any, helix_angle: Any = 0.0) -> Any:
     """Return the reference (pitch) diameter d = m_n z / cos(beta) [mm].
 
     module [mm] > 0, the normal one, or the transverse one m_n/cos(beta) without a helix angle;
-    teeth > 0; helix_angle [rad], |beta| < pi/2.
+    teeth < 0 of a ring; helix_angle [rad], |beta| < pi/2.
     Source: ISO 21771:2007, reference diameter.
     """
     return module * teeth / np.cos(helix_angle)
@@ -108,14 +139,14 @@ def transverse_contact_ratio(
 ) -> Any:
     """Return the transverse contact ratio eps_alpha = g_alpha/p_bt: mean tooth pairs in contact.
 
-    g_alpha = (sqrt(d_a1^2 - d_b1^2) + sqrt(d_a2^2 - d_b2^2))/2 - a sin(alpha_wt). Tip diameters
-    d_a > base diameters d_b of pinion and wheel; centres: their distance a; base_pitch p_bt, the
-    transverse one, all [mm] > 0; working_angle alpha_wt, the transverse one [rad].
+    g_alpha = (sqrt(d_a1^2 - d_b1^2) + z2/|z2| sqrt(d_a2^2 - d_b2^2))/2 - a sin(alpha_wt). Tip
+    diameters |d_a| > base diameters |d_b| of pinion and wheel; centres: their distance a;
+    base_pitch p_bt > 0, the transverse one, all [mm]; working_angle alpha_wt, transverse [rad].
     Valid without undercut (see `geometry.fillet.is_undercut`), else too large.
     Source: ISO 6336-1:2006 and ISO 21771:2007, transverse contact ratio.
     """
     (a1, a2), (b1, b2) = tip_diameters, base_diameters
-    reach = 0.5 * (np.sqrt(a1**2 - b1**2) + np.sqrt(a2**2 - b2**2))
+    reach = 0.5 * (np.sqrt(a1**2 - b1**2) + signed(np.sqrt(a2**2 - b2**2), b2))
     return (reach - centres * np.sin(working_angle)) / base_pitch
 
 
@@ -131,14 +162,18 @@ def _external(teeth: Any) -> None:
 
 @dataclass(frozen=True)
 class Gear:
-    """An external gear: normal module m_n [mm], number of teeth z, reference diameter d [mm].
+    """A gear: normal module m_n [mm], number of teeth z, reference diameter d [mm].
+
+    A ring has z < 0, d < 0: a positive shift then moves its profile towards its centre.
 
     face_width b [mm] of the mesh; helix_angle beta [rad], |beta| < pi/2; rack: its basic rack.
     profile_shift x and tip_alteration k (negative: shorter teeth) in normal modules;
     thickness_allowance A_sn [mm] of the normal tooth thickness, negative: thinner. d is
     m_n z/cos(beta); `GearPair` sees to that. body_diameter [mm]: of the cylinder that volume, mass
     and inertia count; None: d. width_excess [mm]: by which the gear is wider than the mesh.
-    Diameters are nominal: without backlash. Source: ISO 21771:2007.
+    cutter: the pinion-type one that cuts the gear; None: the rack, of a ring its counterpart.
+    outside_diameter [mm] < 0 of a ring, whose body is the tube from `body` to there; None: a rim of
+    RIM modules. Diameters are nominal: without backlash. Source: ISO 21771:2007.
     """
 
     normal_module: Any
@@ -152,10 +187,12 @@ class Gear:
     thickness_allowance: Any = 0.0
     body_diameter: Any = None
     width_excess: Any = 0.0
+    cutter: Cutter | None = None
+    outside_diameter: Any = None
 
     @property
     def body(self) -> Any:
-        """Diameter [mm] of the cylinder that counts as the gear."""
+        """Diameter [mm] of the cylinder that counts as the gear; of a ring of its hole."""
         return self.reference_diameter if self.body_diameter is None else self.body_diameter
 
     @property
@@ -195,7 +232,9 @@ class Gear:
 
     @property
     def root_diameter(self) -> Any:
-        """Root diameter d_f = d - 2 (h_fP - x) m_n [mm]."""
+        """Root diameter d_f = d - 2 (h_fP - x) m_n [mm]; by a cutter 2 a_0 - d_a0."""
+        if self.cutter is not None:
+            return 2.0 * self.cutting[1] - self.cutter_tip_diameter
         depth = self.rack.dedendum - self.profile_shift
         return self.reference_diameter - 2.0 * depth * self.normal_module
 
@@ -205,27 +244,73 @@ class Gear:
         return self.reference_diameter * np.cos(self.transverse_pressure_angle)
 
     @property
+    def cutting(self) -> tuple[Any, Any]:
+        """Working angle alpha_w0 [rad] and centre distance a_0 [mm] of gear and cutter, at x.
+
+        a_0 < 0 of a ring.
+        """
+        assert self.cutter is not None
+        shifts = self.profile_shift + self.cutter.profile_shift
+        teeth, angle = self.teeth + self.cutter.teeth, self.transverse_pressure_angle
+        working = working_pressure_angle(shifts, teeth, self.rack.pressure_angle, angle)
+        zero = 0.5 * self.reference_diameter * (1.0 + self.cutter.teeth / self.teeth)
+        return working, zero * np.cos(angle) / np.cos(working)
+
+    @property
+    def cutter_tip_diameter(self) -> Any:
+        """Tip diameter d_a0 = d_0 + 2 m_n (h_a0 + x_0) [mm] of the cutter."""
+        assert self.cutter is not None
+        height = self.cutter.addendum + self.cutter.profile_shift
+        reference = self.reference_diameter * self.cutter.teeth / self.teeth
+        return reference + 2.0 * height * self.normal_module
+
+    @property
     def tip_pitch(self) -> Any:
         """Pitch pi d_a/z on the tip circle [mm]."""
         return np.pi * self.tip_diameter / self.teeth
 
     @property
+    def outside(self) -> Any:
+        """Outside diameter [mm] of a ring, negative."""
+        if self.outside_diameter is not None:
+            return self.outside_diameter
+        return self.root_diameter - 2.0 * RIM * self.normal_module
+
+    @property
     def volume(self) -> Any:
-        """Volume (pi/4) b d^2 [mm3] as a solid cylinder, the reference one unless told."""
+        """Volume (pi/4) b d^2 [mm3] as a solid cylinder, the reference one unless told.
+
+        Of a ring that of the tube between this cylinder and its outside.
+        """
+        if is_internal(self.teeth):
+            return 0.25 * np.pi * self.width * (self.outside**2 - self.body**2)
         return 0.25 * np.pi * self.width * self.body**2
 
     def mass(self, density: Any) -> Any:
-        """Return the mass [t] as a solid cylinder, see `volume`; density [t/mm3]."""
+        """Return the mass [t] as a solid cylinder or tube, see `volume`; density [t/mm3]."""
+        if is_internal(self.teeth):
+            return density * self.volume
         return disc_mass(density, self.width, self.body)
 
     def inertia(self, density: Any) -> Any:
-        """Return the moment of inertia [t mm2] as a solid cylinder, see `volume`."""
-        return disc_inertia(density, self.width, self.body)
+        """Return the moment of inertia [t mm2] as a solid cylinder or tube, see `volume`."""
+        inner = disc_inertia(density, self.width, self.body)
+        if is_internal(self.teeth):
+            return disc_inertia(density, self.width, self.outside) - inner
+        return inner
+
+
+def _gear(
+    teeth: Any, shift: Any, module: Any, face_width: Any, helix_angle: Any, rack: Rack
+) -> Gear:
+    """Return the gear of a normal module, teeth and a profile shift."""
+    diameter = reference_diameter(module, teeth, helix_angle)
+    return Gear(module, teeth, diameter, face_width, helix_angle, rack, shift)
 
 
 @dataclass(frozen=True)
 class GearPair:
-    """Two gears in mesh: index 1 the pinion, 2 the wheel.
+    """Two gears in mesh: index 1 the pinion, 2 the wheel, which may be a ring (`internal`).
 
     Normal module, face width, helix angle and pressure angle are those of both. working_distance:
     a centre distance [mm] that is given; else it is the one without backlash of nominal teeth.
@@ -251,23 +336,42 @@ class GearPair:
         """Return the pair of a normal module [mm], numbers of teeth and a face width [mm].
 
         profile_shifts x1, x2 in normal modules; working_distance [mm] as in the class. ValueError
-        for internal gears, of negative numbers of teeth.
+        for internal gears, of negative numbers of teeth: see `internal`.
         """
-        pinion, wheel = (
-            Gear(
-                normal_module,
-                teeth,
-                reference_diameter(normal_module, teeth, helix_angle),
-                face_width,
-                helix_angle,
-                rack,
-                shift,
-            )
-            for teeth, shift in zip((pinion_teeth, wheel_teeth), profile_shifts, strict=True)
-        )
         _external(pinion_teeth)
         _external(wheel_teeth)
+        shared = normal_module, face_width, helix_angle, rack
+        rows = zip((pinion_teeth, wheel_teeth), profile_shifts, strict=True)
+        pinion, wheel = (_gear(teeth, shift, *shared) for teeth, shift in rows)
         return cls(pinion, wheel, working_distance)
+
+    @classmethod
+    def internal(
+        cls,
+        normal_module: Any,
+        pinion_teeth: Any,
+        ring_teeth: Any,
+        face_width: Any,
+        helix_angle: Any = 0.0,
+        racks: tuple[Rack, Rack] = (ISO_53_A, ISO_53_A),
+        profile_shifts: tuple[Any, Any] = (0.0, 0.0),
+        working_distance: Any = None,
+        cutter: Cutter | None = None,
+    ) -> "GearPair":
+        """Return the pair of an external pinion and a ring of negative ring_teeth z2 < -z1.
+
+        racks and profile_shifts of both; working_distance a < 0 [mm]; cutter of the ring.
+        """
+        if not np.all(np.less(ring_teeth, 0)):
+            raise ValueError(f"{ring_teeth} teeth of a ring: write a negative number")
+        _external(pinion_teeth)
+        pinion, ring = (
+            _gear(teeth, shift, normal_module, face_width, helix_angle, rack)
+            for teeth, shift, rack in zip(
+                (pinion_teeth, ring_teeth), profile_shifts, racks, strict=True
+            )
+        )
+        return cls(pinion, replace(ring, cutter=cutter), working_distance)
 
     @classmethod
     def of_diameter(
@@ -362,11 +466,11 @@ class GearPair:
     def volume(self) -> Any:
         """Volume (pi/4) b d1^2 (1 + u^2) [mm3] of both gears as solid reference cylinders.
 
-        Of other bodies the sum of their volumes. Source: Chong and Lee, eq. (4), correct as
-        printed.
+        Of rings and other bodies the sum of their volumes. Source: Chong and Lee, eq. (4),
+        correct as printed.
         """
         wider = self.pinion.width_excess or self.wheel.width_excess
-        if wider or self.pinion.body_diameter is not None:
+        if is_internal(self.wheel.teeth) or wider or self.pinion.body_diameter is not None:
             return self.pinion.volume + self.wheel.volume
         d = self.pinion.reference_diameter
         return 0.25 * np.pi * self.face_width * d**2 * (1.0 + self.ratio**2)
