@@ -82,11 +82,11 @@ class Cutter:
 
 
 def signed(value: Any, like: Any) -> Any:
-    """Return a value >= 0 with the sign of another number, teeth or a diameter; symbols: +."""
+    """Return a value times the sign of another number, teeth or a diameter; of symbols: +."""
     if isinstance(like, int | float | np.number):
         return -value if like < 0 else value
     if isinstance(like, np.ndarray) and like.dtype != object and (like < 0).any():
-        return np.copysign(value, like)
+        return np.where(like < 0, -value, value)
     return value
 
 
@@ -234,7 +234,7 @@ class Gear:
     def root_diameter(self) -> Any:
         """Root diameter d_f = d - 2 (h_fP - x) m_n [mm]; by a cutter 2 a_0 - d_a0."""
         if self.cutter is not None:
-            return 2.0 * self.cutting[1] - self.cutter_tip_diameter
+            return 2.0 * self.cutting(self.profile_shift)[1] - self.cutter_tip_diameter
         depth = self.rack.dedendum - self.profile_shift
         return self.reference_diameter - 2.0 * depth * self.normal_module
 
@@ -243,14 +243,13 @@ class Gear:
         """Base diameter d_b = d cos(alpha_t) [mm]."""
         return self.reference_diameter * np.cos(self.transverse_pressure_angle)
 
-    @property
-    def cutting(self) -> tuple[Any, Any]:
-        """Working angle alpha_w0 [rad] and centre distance a_0 [mm] of gear and cutter, at x.
+    def cutting(self, shift: Any) -> tuple[Any, Any]:
+        """Return alpha_w0 [rad] and a_0 [mm] of gear and cutter at a profile shift x or x_E.
 
-        a_0 < 0 of a ring.
+        Their transverse working pressure angle and centre distance, a_0 < 0 of a ring.
         """
         assert self.cutter is not None
-        shifts = self.profile_shift + self.cutter.profile_shift
+        shifts = shift + self.cutter.profile_shift
         teeth, angle = self.teeth + self.cutter.teeth, self.transverse_pressure_angle
         working = working_pressure_angle(shifts, teeth, self.rack.pressure_angle, angle)
         zero = 0.5 * self.reference_diameter * (1.0 + self.cutter.teeth / self.teeth)

@@ -1,7 +1,8 @@
 """The path of contact: its points A to E, contact ratios, sliding, active diameters.
 
 Positions s [mm] lie on the transverse line of action, 0 at the pitch point C, positive towards the
-pinion's tip; the pinion drives, so contact runs from A to E.
+pinion's tip; the pinion drives, so contact runs from A to E. Radii of curvature of a ring are
+negative, as its diameters are.
 """
 
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.frozen import dataclass
-from gearopt.physics.gears import GearPair
+from gearopt.physics.gears import Gear, GearPair, signed
 from gearopt.physics.geometry.fillet import form_diameter
 
 
@@ -53,6 +54,16 @@ class ContactPath:
         return first + position, second - position
 
 
+def curvature_at(gear: Gear, diameter: Any, inside: Any = None) -> Any:
+    """Return the transverse radius of curvature sqrt(d_y^2 - d_b^2)/2 [mm] of a flank at d_y [mm].
+
+    Negative of a ring. inside: the least d_y^2 - d_b^2; None: NaN inside the base circle.
+    """
+    square = diameter**2 - gear.base_diameter**2
+    square = square if inside is None else np.maximum(square, inside)
+    return signed(0.5 * np.sqrt(square), gear.teeth)
+
+
 @np.errstate(invalid="ignore")
 def contact_path(pair: GearPair, form_diameters: tuple[Any, Any] | None = None) -> ContactPath:
     """Path of contact between the tip circles, or between form circles within them.
@@ -63,11 +74,11 @@ def contact_path(pair: GearPair, form_diameters: tuple[Any, Any] | None = None) 
     """
     tangent = np.tan(pair.working_angle)
     first, second = (0.5 * gear.base_diameter * tangent for gear in pair.gears)
-    reaches = [0.5 * np.sqrt(g.active_tip_diameter**2 - g.base_diameter**2) for g in pair.gears]
+    reaches = [curvature_at(gear, gear.active_tip_diameter) for gear in pair.gears]
     start, end = second - reaches[1], reaches[0] - first
     if form_diameters is not None:
         rows = zip(form_diameters, pair.gears, strict=True)
-        least = [0.5 * np.sqrt(np.maximum(d**2 - g.base_diameter**2, 0.0)) for d, g in rows]
+        least = [curvature_at(gear, d, inside=0.0) for d, gear in rows]
         start, end = np.maximum(start, least[0] - first), np.minimum(end, second - least[1])
     return ContactPath(start, end, pair.base_pitch, (first, second))
 
@@ -81,14 +92,15 @@ def usable_path(pair: GearPair) -> ContactPath:
 def active_root_diameters(pair: GearPair) -> tuple[Any, Any]:
     """Return the start of active profile diameters d_Nf [mm] that the mate's tip circle gives.
 
-    d_Nf1 = sqrt(d_b1^2 + (2 a sin(alpha_wt) - sqrt(d_a2^2 - d_b2^2))^2); NaN where the mate's tip
-    passes the tangent point of the base circle (interference). Below d_Ff there is interference
-    with the fillet. Source: ISO 21771:2007, start of active profile diameter.
+    d_Nf1 = sqrt(d_b1^2 + (2 a sin(alpha_wt) - z2/|z2| sqrt(d_a2^2 - d_b2^2))^2); NaN where the
+    mate's tip passes the tangent point of the base circle (interference). Below d_Ff there is
+    interference with the fillet. Source: ISO 21771:2007, start of active profile diameter.
     """
-    path = contact_path(pair)
+    path, diameters = contact_path(pair), []
     first, second = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
-    rows = zip((first, second), pair.gears, strict=True)
-    diameters = [np.hypot(g.base_diameter, 2.0 * at) + 0.0 * np.sqrt(at) for at, g in rows]
+    for at, gear in zip((first, second), pair.gears, strict=True):
+        diameter = np.hypot(gear.base_diameter, 2.0 * at)
+        diameters.append(signed(diameter + 0.0 * np.sqrt(signed(at, gear.teeth)), gear.teeth))
     return diameters[0], diameters[1]
 
 
@@ -97,7 +109,7 @@ def diameters_at(pair: GearPair, path: ContactPath, position: Any) -> tuple[Any,
     first, second = path.radii_of_curvature(position)
     return (
         np.hypot(pair.pinion.base_diameter, 2.0 * first),
-        np.hypot(pair.wheel.base_diameter, 2.0 * second),
+        signed(np.hypot(pair.wheel.base_diameter, 2.0 * second), pair.wheel.teeth),
     )
 
 
@@ -118,7 +130,8 @@ def largest_sliding(pair: GearPair) -> Any:
     Inf where the mate's tip passes the end of an involute.
     """
     path = contact_path(pair)
-    roots = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
+    lowest = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
+    roots = [signed(at, gear.teeth) for at, gear in zip(lowest, pair.gears, strict=True)]
     first = specific_sliding(path, pair.ratio, path.start)[0]
     second = specific_sliding(path, pair.ratio, path.end)[1]
     return np.where(np.minimum(*roots) > 0.0, -np.minimum(first, second), np.inf)[()]

@@ -1,4 +1,4 @@
-"""The root fillet that a rack with a rounded tip generates, and where it meets the involute.
+"""The root fillet that a rack or a cutter with a rounded tip generates, and where it ends.
 
 Transverse section of the gear, exact for helical gears too: the tip round of the tool is a circle
 in its normal section, an ellipse in the transverse one. A point of the fillet is named by the angle
@@ -6,6 +6,11 @@ theta of the tool's normal there, in the tool's normal section, from the pitch l
 the round leaves the flank of the tool, pi/2 at its tip. Coordinates of a tooth: y along its centre
 line from the gear's axis, x > 0 across it. For the virtual spur gear of AGMA 908 or ISO 6336-3 pass
 a gear of its teeth without helix angle.
+
+Radii of a ring are negative as its diameters are, and so are its half angles; its tooth stands
+upright at y < 0, its tip towards the axis. It is cut by its pinion-type cutter, else by the
+counterpart of its rack, which rolls on the concave side of its reference circle: the limit of
+cutters with many teeth, which no such tool could enter, and the profile that its shift means.
 """
 
 from dataclasses import fields, replace
@@ -14,11 +19,13 @@ from typing import Any
 import numpy as np
 
 from gearopt.frozen import dataclass
-from gearopt.physics.gears import Gear, Rack, transverse_pressure_angle
+from gearopt.physics.gears import Gear, Rack, signed, transverse_pressure_angle
+from gearopt.physics.geometry.cutter import Cut, CutterTip, cut_by, cutter_tip
 from gearopt.physics.geometry.involute import involute
 
 HALVINGS = 50  # of an interval of tool angles: to the last digit
 NEGLIGIBLE = 0.01  # modules that a rack may reach too deep: 17 teeth of 20 degrees need 0.006
+NOT_ROWS = "rack", "body_diameter", "cutter", "outside_diameter"  # of arrays in a gear
 TOUCHES = 1e-12  # of sin(alpha_t)^2 z/2: undercut by less is none
 
 
@@ -84,25 +91,32 @@ def largest_tip_radius(pressure_angle: Any, dedendum: Any) -> Any:
     return left * np.cos(pressure_angle) / (1.0 - sine)
 
 
-def fillet_point(gear: Gear, theta: Any, tip: ToolTip | None = None) -> FilletPoint:
+def fillet_point(gear: Gear, theta: Any, tip: ToolTip | CutterTip | None = None) -> FilletPoint:
     """Return the point of the fillet that the tool cuts where its normal has the angle theta.
 
     theta [rad] in the tool's normal section, from `fillet_end` (root side of the flank) to pi/2
-    (the root circle, or what undercut leaves of it). tip: `tool_tip` of the gear, if known.
+    (the root circle, or what undercut leaves of it). tip: `tool_tip` of the gear, if known, or
+    `cutter_tip`.
     Derived: a point is cut as its normal passes through the pitch point.
     """
-    tip = tool_tip(gear) if tip is None else tip
+    if tip is None:
+        tip = tool_tip(gear) if gear.cutter is None else cutter_tip(gear)
+    cut = _cut(gear, theta, tip) if isinstance(tip, ToolTip) else cut_by(gear, theta, tip)
+    across, along = signed(cut.across, gear.teeth), signed(cut.along, gear.teeth)
+    at = signed(np.hypot(across, along), gear.teeth)
+    half = np.pi / gear.teeth - np.arctan2(across, along) + cut.roll
+    slope = cut.normal - cut.roll - np.pi / gear.teeth
+    return FilletPoint(at * np.sin(half), at * np.cos(half), slope, at, half)
+
+
+def _cut(gear: Gear, theta: Any, tip: ToolTip) -> Cut:
+    """Return where the rack's round cuts with its point theta; see `cutter.cut_by`."""
     cosine, radius = np.cos(gear.helix_angle), 0.5 * gear.reference_diameter
     below = tip.depth + tip.radius * np.sin(theta)
     across = (tip.half_width + tip.radius * np.cos(theta)) / cosine
     beside = below * cosine * np.cos(theta) / np.sin(theta)
-    roll = (beside - across) / radius
-    above = radius - below
-    at = np.hypot(beside, above)
-    half = np.pi / gear.teeth - np.arctan2(beside, above) + roll
     normal = np.arctan2(np.sin(theta), cosine * np.cos(theta))
-    slope = normal - roll - np.pi / gear.teeth
-    return FilletPoint(at * np.sin(half), at * np.cos(half), slope, at, half)
+    return Cut(beside, radius - below, (beside - across) / radius, normal)
 
 
 def least_fillet_radius(gear: Gear) -> Any:
@@ -121,12 +135,12 @@ def undercut_depth(gear: Gear) -> Any:
 
     h_Ff - x_E m_n - (d/2) sin(alpha_t)^2, h_Ff = h_fP m_n - rho (1 - sin(alpha_n)). Above 0 the
     gear is undercut. Source: ISO 21771:2007, undercut; the flank's end passes the tangent point of
-    the base circle.
+    the base circle. Of a ring it is negative: the rack moves away from that point.
     """
     tip = tool_tip(gear)
     end = tip.depth + tip.radius * np.sin(gear.rack.pressure_angle)
     lever = 0.5 * gear.reference_diameter * np.sin(gear.transverse_pressure_angle) ** 2
-    return end - lever
+    return signed(end - lever, gear.teeth)
 
 
 def teeth_without_undercut(rack: Rack, helix_angle: Any) -> Any:
@@ -150,10 +164,11 @@ def is_undercut(gear: Gear) -> Any:
 
 
 def half_angle(gear: Gear, radius: Any) -> Any:
-    """Return half the angle [rad] of a tooth at a radius [mm] >= d_b/2, transverse.
+    """Return half the angle [rad] of a tooth at a radius [mm], |radius| >= |d_b|/2, transverse.
 
     s_t/d + inv(alpha_t) - inv(alpha_yt), s_n = m_n (pi/2 + 2 x tan(alpha_n)) + A_sn. Below the base
-    circle that of the base circle. Source: ISO 21771:2007, tooth thickness half angle.
+    circle that of the base circle. Negative of a ring, as its radii are. Source: ISO 21771:2007,
+    tooth thickness half angle.
     """
     return base_half_angle(gear) - involute(profile_angle(gear, radius))
 
@@ -175,8 +190,11 @@ def fillet_end(gear: Gear) -> Any:
     alpha_n without undercut and protuberance: there they meet with one tangent. Else where the two
     curves cross, by halving an interval (`HALVINGS`): with undercut below alpha_n and above it the
     crossing lies between the base circle and the end of the tool's flank; protuberance moves that
-    end to alpha_n - arccos(1 - pr/rho). Floats or arrays of one shape, not casadi.
+    end to alpha_n - arccos(1 - pr/rho). Of a cutter `CutterTip.flank_end`. Floats or arrays of one
+    shape, not casadi.
     """
+    if gear.cutter is not None:
+        return cutter_tip(gear).flank_end
     rack = gear.rack
     searched = np.asarray(is_undercut(gear) | np.greater(rack.protuberance, 0.0))
     angle = np.array(np.broadcast_to(rack.pressure_angle, searched.shape), float)
@@ -192,7 +210,7 @@ def _rows(gear: Gear, chosen: Any) -> Gear:
         return np.broadcast_to(value, chosen.shape)[chosen]
 
     rack = Rack(*(part(getattr(gear.rack, each.name)) for each in fields(Rack)))
-    names = [each.name for each in fields(gear) if each.name not in ("rack", "body_diameter")]
+    names = [each.name for each in fields(gear) if each.name not in NOT_ROWS]
     return replace(gear, rack=rack, **{name: part(getattr(gear, name)) for name in names})
 
 
@@ -214,7 +232,7 @@ def _crossing(gear: Gear) -> Any:
 def _inside(gear: Gear, tip: ToolTip, theta: Any) -> Any:
     """Return how far the fillet is outside the involute [rad]; negative: it cuts it away."""
     point = fillet_point(gear, theta, tip)
-    return point.half_angle - half_angle(gear, point.radius)
+    return signed(point.half_angle - half_angle(gear, point.radius), gear.teeth)
 
 
 def _at_base(gear: Gear, tip: ToolTip, angle: Any) -> Any:

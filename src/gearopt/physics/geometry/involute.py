@@ -37,8 +37,9 @@ def working_pressure_angle(
     """Return the transverse working pressure angle alpha_wt [rad] without backlash.
 
     inv(alpha_wt) = inv(alpha_t) + 2 (x1 + x2)/(z1 + z2) tan(alpha_n). shift_sum x1 + x2; teeth_sum
-    z1 + z2 > 0; pressure angles alpha_n, alpha_t [rad]. NaN where no centre distance is short
-    enough: x1 + x2 < -(z1 + z2) inv(alpha_t)/(2 tan(alpha_n)). Source: ISO 21771:2007.
+    z1 + z2, negative of internal pairs; pressure angles alpha_n, alpha_t [rad]. NaN where no centre
+    distance is short enough: x1 + x2 < -(z1 + z2) inv(alpha_t)/(2 tan(alpha_n)), of internal pairs
+    greater. Source: ISO 21771:2007.
     """
     shifted = 2.0 * shift_sum / teeth_sum * np.tan(normal_angle)
     return involute_angle(involute(transverse_angle) + shifted)
@@ -57,7 +58,8 @@ def shift_sum(working_angle: Any, teeth_sum: Any, normal_angle: Any, transverse_
 def angle_at_distance(reference_distance: Any, transverse_angle: Any, distance: Any) -> Any:
     """Return alpha_wt = arccos(a_0 cos(alpha_t)/a) [rad] at a centre distance a [mm].
 
-    reference_distance a_0 = (d1 + d2)/2 [mm]; NaN below a_0 cos(alpha_t), where the base circles
-    overlap. Source: ISO 21771:2007, working transverse pressure angle.
+    reference_distance a_0 = (d1 + d2)/2 [mm], negative of internal pairs as a is; NaN below
+    a_0 cos(alpha_t), where the base circles overlap, or one holds the other. Source: ISO
+    21771:2007, working transverse pressure angle.
     """
     return np.arccos(reference_distance * np.cos(transverse_angle) / distance)

@@ -1,13 +1,14 @@
 """Tooth thickness and the dimensions that measure it: span, dimension over balls, backlash.
 
-Arguments are gears and pairs of floats, arrays of one shape or casadi scalars.
+Arguments are gears and pairs of floats, arrays of one shape or casadi scalars. Diameters of a ring
+are negative, its thicknesses and what a gauge shows between its teeth positive.
 """
 
 from typing import Any
 
 import numpy as np
 
-from gearopt.physics.gears import Gear, GearPair
+from gearopt.physics.gears import Gear, GearPair, signed
 from gearopt.physics.geometry.fillet import base_half_angle, half_angle
 from gearopt.physics.geometry.involute import involute, involute_angle
 
@@ -48,27 +49,30 @@ def span_teeth(gear: Gear) -> int:
     """Return the number of teeth k whose span is touched near the diameter d + 2 x m_n.
 
     z/pi (tan(alpha_v)/cos(beta_b)^2 - 2 x/z tan(alpha_n) - inv(alpha_t)) + 1/2, rounded, at least
-    2, alpha_v at that diameter. Of a gear of floats. Source: ISO 21771:2007, number of teeth in a
-    span measurement.
+    2, alpha_v at that diameter; spaces of a ring. Of a gear of floats. Source: ISO 21771:2007,
+    number of teeth in a span measurement.
     """
     middle = gear.reference_diameter + 2.0 * gear.profile_shift * gear.normal_module
     tangent = np.tan(np.arccos(min(1.0, float(gear.base_diameter / middle))))
     teeth, angle = gear.teeth, gear.rack.pressure_angle
     shifted = 2.0 * gear.profile_shift / teeth * np.tan(angle)
     rolled = tangent / np.cos(base_helix_angle(gear)) ** 2 - shifted
-    spanned = teeth / np.pi * (rolled - involute(gear.transverse_pressure_angle)) + 0.5
+    spanned = (
+        signed(teeth, teeth) / np.pi * (rolled - involute(gear.transverse_pressure_angle)) + 0.5
+    )
     return max(2, round(float(spanned)))
 
 
 def span(gear: Gear, teeth: Any) -> Any:
-    """Return the span measurement W_k [mm] over k teeth, with the thickness allowance.
+    """Return the span measurement W_k [mm] over k teeth, or spaces, with the thickness allowance.
 
-    m_n cos(alpha_n) (pi (k - 1/2) + z inv(alpha_t) + 2 x tan(alpha_n)) + A_sn cos(alpha_n).
-    Source: ISO 21771:2007, span measurement.
+    m_n cos(alpha_n) (pi (k - 1/2) + z inv(alpha_t) + 2 x tan(alpha_n)) + A_sn cos(alpha_n); of a
+    ring all terms after the first change their sign. Source: ISO 21771:2007, span measurement.
     """
     angle = gear.rack.pressure_angle
-    arcs = np.pi * (teeth - 0.5) + gear.teeth * involute(gear.transverse_pressure_angle)
-    arcs = arcs + 2.0 * gear.generating_shift * np.tan(angle)
+    rolled = gear.teeth * involute(gear.transverse_pressure_angle)
+    arcs = np.pi * (teeth - 0.5) + signed(rolled, gear.teeth)
+    arcs = arcs + signed(2.0 * gear.generating_shift * np.tan(angle), gear.teeth)
     return gear.normal_module * np.cos(angle) * arcs
 
 
@@ -78,21 +82,23 @@ def span_diameter(gear: Gear, teeth: Any) -> Any:
     It has to lie between form diameter and tip diameter. Source: ISO 21771:2007.
     """
     base = np.cos(base_helix_angle(gear))
-    return np.hypot(gear.base_diameter, span(gear, teeth) * base)
+    return signed(np.hypot(gear.base_diameter, span(gear, teeth) * base), gear.teeth)
 
 
 def over_balls(gear: Gear, ball_diameter: Any) -> Any:
-    """Return the dimension M_dK [mm] over two balls in opposite tooth spaces.
+    """Return the dimension M_dK [mm] over two balls in opposite tooth spaces, of a ring between.
 
     inv(alpha_Kt) = D_M/(z m_n cos(alpha_n)) - pi/(2 z) + 2 x tan(alpha_n)/z + inv(alpha_t), their
     centres on d_K = d_b/cos(alpha_Kt); M = d_K + D_M for even z, d_K cos(pi/(2 z)) + D_M for odd z
-    (for balls of helical gears in one transverse plane). z: floats or arrays, whole.
+    (for balls of helical gears in one transverse plane), of a ring |d_K| and - D_M. z: floats or
+    arrays, whole.
     ball_diameter D_M [mm]. Source: ISO 21771:2007, dimension over balls.
     """
     angle = involute_angle(_ball_value(gear, ball_diameter))
     centres = gear.base_diameter / np.cos(angle)
     odd = np.asarray(gear.teeth) % 2 == 1
-    return centres * np.where(odd, np.cos(0.5 * np.pi / gear.teeth), 1.0)[()] + ball_diameter
+    across = centres * np.where(odd, np.cos(0.5 * np.pi / gear.teeth), 1.0)[()] + ball_diameter
+    return signed(across, gear.teeth)
 
 
 def ball_contact_diameter(gear: Gear, ball_diameter: Any) -> Any:
@@ -104,7 +110,7 @@ def ball_contact_diameter(gear: Gear, ball_diameter: Any) -> Any:
     angle = involute_angle(_ball_value(gear, ball_diameter))
     base = gear.base_diameter
     tangent = np.tan(angle) - ball_diameter * np.cos(base_helix_angle(gear)) / base
-    return np.hypot(base, base * tangent)
+    return signed(np.hypot(base, base * tangent), gear.teeth)
 
 
 def _ball_value(gear: Gear, ball_diameter: Any) -> Any:
