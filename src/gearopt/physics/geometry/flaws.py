@@ -1,7 +1,8 @@
 """Flaws of the teeth of a pair by name: fatal ones, misfits, and those that a designer may accept.
 
 Fatal ones stop a rating; gears with a misfit cannot be assembled or cannot run, whatever their
-strength. Of one pair of floats. `agma.refusals` has the fatal ones for arrays, as codes.
+strength. Of one pair of floats. `agma.refusals` has the fatal ones of external pairs for arrays, as
+codes; `internal.margins` those of internal pairs.
 """
 
 import math
@@ -9,8 +10,9 @@ import math
 import numpy as np
 
 from gearopt.frozen import dataclass
-from gearopt.physics.gears import MEMBERS, Gear, GearPair
+from gearopt.physics.gears import MEMBERS, Gear, GearPair, is_internal, signed
 from gearopt.physics.geometry.contact import active_root_diameters, contact_path, usable_path
+from gearopt.physics.geometry.cutter import cutter_tip
 from gearopt.physics.geometry.fillet import (
     NEGLIGIBLE,
     form_diameter,
@@ -22,6 +24,7 @@ from gearopt.physics.geometry.fillet import (
     tool_tip,
     undercut_depth,
 )
+from gearopt.physics.geometry.internal import margins
 from gearopt.physics.geometry.involute import shift_sum
 from gearopt.physics.geometry.tooth import (
     circumferential_backlash,
@@ -58,16 +61,36 @@ def flaws(pair: GearPair, of: str = "") -> tuple[Flaw, ...]:
 
     of: what sentences add to what they are about, such as " of stage 1".
     """
-    every = [flaw for k, gear in enumerate(pair.gears) for flaw in _of_gear(MEMBERS[k] + of, gear)]
+    rows = zip(members(pair), pair.gears, strict=True)
+    every = [flaw for member, gear in rows for flaw in _of_gear(member + of, gear)]
     if not any(flaw.fatal for flaw in every):
         every += _of_pair(pair, of)
     return tuple(sorted(every, key=lambda flaw: (not flaw.fatal, not flaw.misfit)))
 
 
+def members(pair: GearPair) -> tuple[str, str]:
+    """Names of both gears: pinion and wheel, or ring."""
+    return (MEMBERS[0], "ring") if is_internal(pair.wheel_teeth) else MEMBERS
+
+
+def _of_cutter(member: str, gear: Gear) -> list[Flaw]:
+    """Flaws of a pinion-type cutter, without which a gear has no fillet."""
+    tip = cutter_tip(gear)
+    if not math.isfinite(tip.distance):
+        text = f"The cutter has no centre distance with the {member}: the shifts are too large."
+    elif not tip.angle >= 0.0:
+        text = f"The tips of the cutter of the {member} have no room for their rounds."
+    else:
+        return []
+    return [Flaw("pointed tool" if math.isfinite(tip.distance) else "no cut", text, True)]
+
+
 def _of_gear(member: str, gear: Gear) -> list[Flaw]:
     """Flaws of one gear with any mate."""
-    of_gear = []
-    if tool_tip(gear).half_width < 0.0:
+    of_gear = [] if gear.cutter is None else _of_cutter(member, gear)
+    if any(flaw.fatal for flaw in of_gear):
+        return of_gear
+    if gear.cutter is None and tool_tip(gear).half_width < 0.0:
         most = float(largest_tip_radius(gear.rack.pressure_angle, gear.rack.dedendum))
         of_gear.append(
             Flaw(
@@ -80,11 +103,11 @@ def _of_gear(member: str, gear: Gear) -> list[Flaw]:
                 not has_tip(gear),
             )
         )
-    if gear.root_diameter <= 0.0:
+    if signed(gear.root_diameter, gear.teeth) <= 0.0:
         of_gear.append(Flaw("no root", f"The root circle of the {member} has no diameter.", True))
         return of_gear
     thin = float(tip_thickness(gear)) / gear.normal_module
-    if gear.active_tip_diameter <= gear.base_diameter:
+    if signed(gear.active_tip_diameter - gear.base_diameter, gear.teeth) <= 0.0:
         text = f"The tip circle of the {member} lies inside its base circle: it has no involute."
         of_gear.append(Flaw("no involute", text, True))
     elif thin <= 0.0:
@@ -117,8 +140,11 @@ def _of_pair(pair: GearPair, of: str) -> list[Flaw]:
     """Flaws of the mesh of two gears that have teeth."""
     if not math.isfinite(float(pair.working_angle)):
         text = (
-            f"No centre distance{of} goes with its profile shifts: their sum is too small."
+            f"No centre distance{of} goes with its profile shifts: their sum is too "
+            f"{'large' if is_internal(pair.wheel_teeth) else 'small'}."
             if pair.working_distance is None
+            else f"At the centre distance{of} the base circles have no common tangent."
+            if is_internal(pair.wheel_teeth)
             else f"At the centre distance{of} the base circles overlap."
         )
         return [Flaw("no centre distance", text, True)]
@@ -142,8 +168,8 @@ def _of_pair(pair: GearPair, of: str) -> list[Flaw]:
         of_mesh.append(Flaw("small contact ratio", text))
     if not any(flaw.fatal for flaw in of_mesh):
         of_mesh = _backlash(pair, of) + of_mesh
-    of_mesh += _interference(pair, of)
-    for member, clearance in zip(MEMBERS, tip_clearances(pair), strict=True):
+    of_mesh += _internal(pair, of) if is_internal(pair.wheel_teeth) else _interference(pair, of)
+    for member, clearance in zip(members(pair), tip_clearances(pair), strict=True):
         depth = -float(clearance) / pair.normal_module
         if depth > ROUNDING:
             text = f"The tips of the {member}{of} reach {-clearance:.3f} mm into the mate's root."
@@ -157,8 +183,8 @@ def _backlash(pair: GearPair, of: str) -> list[Flaw]:
     if pair.working_distance is not None:
         shifts = sum(gear.profile_shift for gear in pair.gears)
         given = (
-            f"; without backlash the centre distance of {pair.centre_distance:.6g} mm asks for "
-            f"profile shifts of {shifts_at(pair):.3f} in sum, and the gears have {shifts:.4g}"
+            f"; without backlash the centre distance of {abs(pair.centre_distance):.6g} mm asks "
+            f"for profile shifts of {shifts_at(pair):.3f} in sum, and the gears have {shifts:.4g}"
         )
     if backlash < -2.0 * math.tan(pair.working_angle) * PRINTED:
         text = f"The teeth{of} do not fit in: the backlash is {backlash:.3f} mm{given}."
@@ -182,32 +208,78 @@ def least_backlash(pair: GearPair) -> float:
     Source: ISO/TR 10064-2:1996, table A.1 (m_n 1.5 to 18 mm, steel in iron housings); AGMA 2002-B88
     has 3/2 of it.
     """
-    distance, module = float(pair.centre_distance), float(pair.normal_module)
+    distance, module = abs(float(pair.centre_distance)), float(pair.normal_module)
     return 2.0 / 3.0 * (0.06 + 5e-4 * distance + 0.03 * module)
 
 
-def _interference(pair: GearPair, of: str) -> list[Flaw]:
+def _interference(
+    pair: GearPair, of: str, names: tuple[str, str] = ("interference", "interference")
+) -> list[Flaw]:
     """Return the members into whose fillet the mate's tip cuts, or at least reaches.
 
     Where an undercut gear has no flank left to be reached, only cutting counts.
     """
     of_tips = []
     for k, (gear, active) in enumerate(zip(pair.gears, active_root_diameters(pair), strict=True)):
-        member, form, module = MEMBERS[k], float(form_diameter(gear)), gear.normal_module
+        member, form, module = members(pair)[k], float(form_diameter(gear)), gear.normal_module
         depth = tip_intrusion(pair, k)
         if depth > INTRUSION * module:
             text = (
                 f"The mate's tips cut {depth:.3f} mm into the fillets of the {member}{of}: relieve "
                 "or shorten them."
             )
-            of_tips.append(Flaw("interference", text, misfit=depth / module))
+            of_tips.append(Flaw(names[k], text, misfit=depth / module))
         elif not (active >= form * (1.0 - ROUNDING) or undercut_depth(gear) > NEGLIGIBLE * module):
             text = (
                 f"The mate's tip reaches below the form circle of the {member}{of}, "
-                f"{form:.3f} mm: relieve or shorten the tips."
+                f"{abs(form):.3f} mm: relieve or shorten the tips."
             )
-            of_tips.append(Flaw("interference", text))
+            of_tips.append(Flaw(names[k], text))
     return of_tips
+
+
+LIMITS = {  # of internal pairs: the flaw, and what happens by so many mm
+    "trochoidal_interference": (
+        "trochoidal interference",
+        "The tips of the pinion{of} foul those of the ring by {depth:.3f} mm as they leave mesh: "
+        "shorten the tips, or take more teeth of the ring.",
+    ),
+    "radial_assembly": (
+        "axial assembly",
+        "The pinion{of} does not fit into the ring radially in every position: tips overlap by "
+        "{depth:.3f} mm. It is put in along the axis.",
+    ),
+    "cutter_involute": (
+        "overcut",
+        "The involute of the cutter{of} ends {depth:.3f} mm before the tips of the ring: they are "
+        "no involute. Shorten them, or take a cutter of more teeth.",
+    ),
+    "cutter_overcut": (
+        "overcut",
+        "The cutter{of} takes {depth:.3f} mm off the tips of the ring as it leaves the cut: take a "
+        "cutter of fewer teeth.",
+    ),
+    "cutter_infeed": (
+        "radial infeed",
+        "A cutter{of} that is fed in radially trims the tips of the ring by {depth:.3f} mm: take "
+        "one of fewer teeth, or feed it in along the axis.",
+    ),
+}
+
+
+def _internal(pair: GearPair, of: str) -> list[Flaw]:
+    """Return what an internal pair and its cutter break of their limits."""
+    left, of_pair, module = margins(pair), [], pair.normal_module
+    for key, (name, text) in LIMITS.items():
+        margin = float(left.get(key, 0.0))
+        if margin < -ROUNDING:
+            misfit = -margin if key == "trochoidal_interference" else 0.0
+            of_pair.append(Flaw(name, text.format(of=of, depth=-margin * module), misfit=misfit))
+    if of_pair and of_pair[0].misfit:  # tips that foul each other: no path to fillets is left
+        return of_pair
+    ended = left["involute_interference"] < 0.0
+    first = "involute interference" if ended else "fillet interference"
+    return of_pair + _interference(pair, of, (first, "fillet interference"))
 
 
 def tip_intrusion(pair: GearPair, member: int) -> float:
@@ -223,12 +295,14 @@ def tip_intrusion(pair: GearPair, member: int) -> float:
     corner = np.linspace(-1.0, 1.0, POINTS) * math.acos(min(1.0, max(-1.0, reach)))
     across, along = top * np.sin(corner), distance - top * np.cos(corner)
     radius, turned = np.hypot(across, along), corner - float(half_angle(mate, top))
+    if gear.teeth < 0:
+        radius, across, along = -radius, -across, -along
     play = max(0.0, float(circumferential_backlash(pair)))  # teeth that do not fit stay centred
     free = play / float(pair.working_diameters[member])
     angle = np.arctan2(across, along) - turned * float(mate.teeth / gear.teeth) + free
     x, y = profile(gear, POINTS, 2)
-    fillet = np.hypot(x, y)[:-1]
-    half = np.interp(radius, fillet, np.arctan2(x, y)[:-1])
+    fillet = signed(np.hypot(x, y)[:-1], gear.teeth)
+    half = np.interp(radius, fillet, np.arctan(x / y)[:-1])
     flank = radius > fillet[-1]
     half[flank] = half_angle(gear, radius[flank])
     depth = np.where(radius > fillet[0], (angle + half - math.pi / gear.teeth) * radius, 0.0)

@@ -2,7 +2,7 @@
 
 Margins are in normal modules, of contact ratios their excess, and negative where a limit is broken.
 They are floats, or arrays of pairs whose numbers are arrays, without NaN: minus infinity where a
-pair has no centre distance or a member no involute, of which margins of their own tell.
+pair or a cut has no centre distance, or a member no involute, of which margins of their own tell.
 Lengths here are positive, and so are the teeth of the ring.
 """
 
@@ -130,8 +130,8 @@ def margins(pair: GearPair, contact_ratio: float = 1.0, thickness: float = 0.0) 
         "trochoidal_interference": trochoidal_clearance(mesh),
         "radial_assembly": radial_clearance(mesh),
         "fillet_interference0": fillets[0],
-        "fillet_interference1": np.where(np.isnan(fillets[1]), -np.inf, fillets[1]),  # no round
-        "tip_clearance0": clear[0],
+        "fillet_interference1": np.where(np.isnan(fillets[1]), -np.inf, fillets[1]),  # no cut
+        "tip_clearance0": np.where(np.isnan(ring.root_diameter), -np.inf, clear[0]),  # no cut
         "tip_clearance1": clear[1],
     }
     above = [
