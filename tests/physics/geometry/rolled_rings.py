@@ -68,7 +68,7 @@ def crossing(tip, ring_tip, distance):
     return math.acos(min(1.0, max(-1.0, cosine)))
 
 
-def cut_space(ring, poses=600, points=40, rows=80):
+def cut_space(ring, poses=400, points=40, rows=60):
     """Return the space that the cutter of a ring leaves, from the ring's tip circle on."""
     radius, angle = cutter_outline(ring, points)
     distance = -ring.cutting(ring.generating_shift)[1]
@@ -104,7 +104,7 @@ def overlap(space, r, a):
     return max(0.0, float(np.max(np.where(r >= space.radius[0], deep, 0.0))))
 
 
-def running_overlap(pair, space, poses=400, points=40):
+def running_overlap(pair, space, poses=300, points=40):
     """How deep a pinion's teeth come into those of the ring while they turn, flanks in contact."""
     radius, angle = pinion_outline(pair.pinion, points)
     tip, distance = -0.5 * pair.wheel.tip_diameter, -pair.centre_distance
@@ -113,7 +113,7 @@ def running_overlap(pair, space, poses=400, points=40):
     return overlap(space, *rolled(radius, angle, *teeth, distance, min(reach, math.pi), poses))
 
 
-def entering_overlap(pair, space, poses=50, points=10):
+def entering_overlap(pair, space, poses=40, points=10):
     """How deep a pinion's teeth come into those of the ring as it is put in along the centres.
 
     Of all places of its teeth about the line of centres.

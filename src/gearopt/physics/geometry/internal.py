@@ -115,7 +115,8 @@ def margins(pair: GearPair, contact_ratio: float = 1.0, thickness: float = 0.0) 
 
     contact_ratio, thickness [normal modules]: the least eps_alpha and s_an that are asked for.
     Interference is measured in radii of curvature: of the involute from its end at the base circle
-    to the mate's tip, of fillets from the form circle to there.
+    to the mate's tip, of fillets from the form circle to there. With tip clearances below 0.1 the
+    corners of tips may still touch fillets, by thousandths (`flaws.tip_intrusion`).
     """
     module, path, (pinion, ring) = pair.normal_module, contact_path(pair), pair.gears
     ends = path.radii_of_curvature(path.start)[0], path.radii_of_curvature(path.end)[1]
