@@ -32,21 +32,16 @@ class Engagement:
     angle: Any
     play: Any = 0.0
 
-    @property
-    def turns(self) -> Any:
-        """Angle by which the ring turns while the pinion turns by 1, z1/z2."""
-        return self.bases[0] / self.bases[1]
+    def ring_tip(self, tip: Any) -> Any:
+        """Return the angle of the ring's tip [rad] while the pinion's tip behind it is at an angle.
 
-    @property
-    def backs(self) -> tuple[Any, Any]:
-        """Angles between a flank's point on the working pitch circle and its tip [rad].
-
-        inv(alpha_a1) - inv(alpha_wt), inv(alpha_wt) - inv(alpha_a2).
+        (z1/z2) (tip + inv(alpha_a1) - inv(alpha_wt)) + inv(alpha_wt) - inv(alpha_a2): the flanks
+        of both touch. Angles at both centres, from the line of centres.
         """
         rows = zip(self.tips, self.bases, strict=True)
-        first, second = (involute(np.arccos(np.minimum(base / tip, 1.0))) for tip, base in rows)
-        working = involute(self.angle)
-        return first - working, working - second
+        first, second = (involute(np.arccos(np.minimum(base / top, 1.0))) for top, base in rows)
+        working, share = involute(self.angle), self.bases[0] / self.bases[1]
+        return (tip + first - working) * share + working - second
 
     @property
     def crossing(self) -> Any:
@@ -58,14 +53,13 @@ class Engagement:
 def trochoidal_clearance(mesh: Engagement) -> Any:
     """Return how far the tips pass each other [mm] at the ring's tip circle, as they leave mesh.
 
-    r_a2 ((z1/z2) (theta_1 + inv(alpha_a1) - inv(alpha_wt)) + inv(alpha_wt) - inv(alpha_a2) -
-    theta_2); theta: angles of the crossing of the tip circles at both centres. Negative:
-    trochoidal interference, or fouling. Derived; handbooks of gear makers have the same condition.
+    r_a2 (`ring_tip`(theta_1) - theta_2), theta: angles of the crossing of the tip circles at both
+    centres. Negative: trochoidal interference, or fouling. Derived; handbooks of gear makers have
+    the same condition.
     """
     (first, second), a, corner = mesh.tips, mesh.distance, mesh.crossing
-    back, ahead = mesh.backs
     at = np.arctan2(first * np.sin(corner), a + first * np.cos(corner))
-    return second * ((corner + back) * mesh.turns + ahead - at)
+    return second * (mesh.ring_tip(corner) - at)
 
 
 @np.errstate(invalid="ignore", divide="ignore")
@@ -78,11 +72,10 @@ def radial_clearance(mesh: Engagement) -> Any:
     Negative: the pinion, or the cutter, fits in axially only. Derived; as handbooks have it.
     """
     (first, second), (b1, b2) = mesh.tips, mesh.bases
-    share = (1.0 - (b1 / first * second / b2) ** 2) / (1.0 - mesh.turns**2)
+    share = (1.0 - (b1 / first * second / b2) ** 2) / (1.0 - (b1 / b2) ** 2)
     corner = np.minimum(np.arcsin(np.sqrt(np.clip(share, 0.0, 1.0))), mesh.crossing)
-    back, ahead = mesh.backs
     at = np.arcsin(np.minimum(first * np.sin(corner) / second, 1.0))
-    return second * ((corner + back) * mesh.turns + ahead + mesh.play - at)
+    return second * (mesh.ring_tip(corner) + mesh.play - at)
 
 
 def engagement(pair: GearPair) -> Engagement:
