@@ -228,6 +228,49 @@ def test_one_pair_of_an_array_is_that_pair():
             assert each == pytest.approx(left[name][k], rel=1e-9, abs=1e-9)
 
 
+# SDP/SI, Elements of Metric Gear Technology (D785), page T-45, table 5-3a: teeth of a cutter
+# without shift, and of the smallest standard ring that it does not trim as it is fed in radially.
+# To 15 teeth, which make no involute at the tips, belong 34; here 33 are free by 0.001 modules.
+UNTRIMMED = """16 34 17 35 18 36 19 37 20 38 21 39 22 40 24 42 25 43 27 45 28 46 30 48 31 49 32 50
+33 51 34 52 35 53 38 56 40 58 42 60 44 62 48 66 50 68 56 74 60 78 64 82 66 84 80 98
+96 114 100 118"""
+# Table 5-4, page T-46: z1, x of the ring away from its centre, alpha_w, a, eps of rings of 50
+# teeth; "no involute or trochoid interference, but trimming interference is still there".
+NARROW = [
+    (49, 1.00, 61.0605, 0.971, 1.105),
+    (48, 0.60, 46.0324, 1.354, 1.512),
+    (47, 0.40, 37.4155, 1.775, 1.726),
+    (46, 0.30, 32.4521, 2.227, 1.835),
+    (45, 0.20, 28.2019, 2.666, 1.933),
+    (44, 0.11, 24.5356, 3.099, 2.014),
+    (43, 0.06, 22.3755, 3.557, 2.053),
+    (42, 0.01, 20.3854, 4.010, 2.088),
+]
+
+
+def test_printed_limits_of_cutters():
+    """They trim rings of one tooth less; 15 to 22 teeth end below the involute of the ring."""
+    cutters, rings = np.array(UNTRIMMED.split(), float).reshape(-1, 2).T
+    cutter = Cutter(cutters, 0.0, 1.25, 0.1)
+    at, below = (
+        margins(GearPair.internal(1.0, np.full(len(rings), 12.0), -z, 1.0, cutter=cutter))
+        for z in (rings, rings - 1.0)
+    )
+    assert np.all(at["cutter_infeed"] > 0.0) and np.all(below["cutter_infeed"] < 0.0)
+    assert np.all((at["cutter_involute"] < 0.0) == (cutters <= 22.0))
+
+
+@pytest.mark.parametrize(("teeth", "shift", "angle", "distance", "ratio"), NARROW)
+def test_printed_pairs_of_few_teeth_between_them(teeth, shift, angle, distance, ratio):
+    pair = GearPair.internal(1.0, teeth, -50, 1.0, profile_shifts=(0.0, -shift))
+    assert math.degrees(pair.working_angle) == pytest.approx(angle, abs=6e-5)
+    assert -pair.centre_distance == pytest.approx(distance, abs=6e-4)
+    assert pair.transverse_contact_ratio == pytest.approx(ratio, abs=6e-4)
+    left = margins(pair)
+    assert min(left["involute_interference"], left["trochoidal_interference"]) > 0.0
+    assert left["radial_assembly"] < 0.0
+
+
 def names(pair):
     return [flaw.name for flaw in flaws(pair)]
 

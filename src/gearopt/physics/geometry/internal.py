@@ -54,8 +54,8 @@ def trochoidal_clearance(mesh: Engagement) -> Any:
     """Return how far the tips pass each other [mm] at the ring's tip circle, as they leave mesh.
 
     r_a2 (`ring_tip`(theta_1) - theta_2), theta: angles of the crossing of the tip circles at both
-    centres. Negative: trochoidal interference, or fouling. Derived; handbooks of gear makers have
-    the same condition.
+    centres. Negative: trochoidal interference, or fouling. Source: SDP/SI, Elements of Metric Gear
+    Technology, eqs. (5-6) and (5-7); derived as well.
     """
     (first, second), a, corner = mesh.tips, mesh.distance, mesh.crossing
     at = np.arctan2(first * np.sin(corner), a + first * np.cos(corner))
@@ -67,9 +67,9 @@ def radial_clearance(mesh: Engagement) -> Any:
     """Return the least distance [mm] of tips while the pinion is put in along the line of centres.
 
     sin(theta_1)^2 = (1 - k^2)/(1 - (z1/z2)^2), k = cos(alpha_a1)/cos(alpha_a2), up to the crossing
-    of the tip circles; sin(theta_2) = r_a1/r_a2 sin(theta_1). There a tip of the pinion would touch
-    a tip of the ring first; as `trochoidal_clearance` with these angles, and half the backlash.
-    Negative: the pinion, or the cutter, fits in axially only. Derived; as handbooks have it.
+    of the tip circles; sin(theta_2) = r_a1/r_a2 sin(theta_1): where tips would touch first. As
+    `trochoidal_clearance` with these angles, and half the backlash. Negative: the pinion, or the
+    cutter, fits in axially only (trimming interference). Source: the same, eqs. (5-9) and (5-10).
     """
     (first, second), (b1, b2) = mesh.tips, mesh.bases
     share = (1.0 - (b1 / first * second / b2) ** 2) / (1.0 - (b1 / b2) ** 2)
