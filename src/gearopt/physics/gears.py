@@ -81,18 +81,18 @@ class Cutter:
     tip_radius: Any = 0.0
 
 
-def signed(value: Any, like: Any) -> Any:
-    """Return a value times the sign of another number, teeth or a diameter; of symbols: +."""
-    if isinstance(like, int | float | np.number):
-        return -value if like < 0 else value
-    if isinstance(like, np.ndarray) and like.dtype != object and (like < 0).any():
-        return np.where(like < 0, -value, value)
-    return value
-
-
 def is_internal(teeth: Any) -> bool:
     """Return whether a number of teeth, or any of an array, is that of a ring: negative."""
-    return bool(np.any(signed(1.0, teeth) < 0.0))
+    if isinstance(teeth, int | float | np.number):
+        return bool(teeth < 0)
+    return isinstance(teeth, np.ndarray) and teeth.dtype.kind != "O" and bool((teeth < 0).any())
+
+
+def signed(value: Any, like: Any) -> Any:
+    """Return a value times the sign of another number, teeth or a diameter; of symbols: +."""
+    if not is_internal(like):
+        return value
+    return np.where(like < 0, -value, value)[()]
 
 
 def disc_mass(density: Any, length: Any, diameter: Any) -> Any:
