@@ -45,6 +45,13 @@ def test_shifts_of_a_helical_stage_give_its_centre_distance() -> None:
     assert math.degrees(pair.working_angle) == pytest.approx(19.9096, abs=5e-4)
 
 
+def test_a_planet_and_ring_without_shifts() -> None:
+    # sample of the REXS library (github.com/fva-net/rexs-api-java): 22/61, m 4, a 78
+    pair = GearPair.internal(4.0, 22, -61, 50.0, cutter=Cutter(23))
+    assert pair.centre_distance == pytest.approx(-78.0, rel=1e-15)
+    assert pair.wheel.root_diameter == pytest.approx(-254.0, rel=1e-15)
+
+
 def test_a_handbook_pair_as_numbers_and_arrays() -> None:
     # handbook of a maker of stock gears, table of internal gears; eps_alpha recomputed elsewhere
     pair = GearPair.internal(3.0, 16, -24, 1.0, profile_shifts=(0.0, -0.5))

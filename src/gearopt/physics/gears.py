@@ -171,7 +171,7 @@ class Gear:
     thickness_allowance A_sn [mm] of the normal tooth thickness, negative: thinner. d is
     m_n z/cos(beta); `GearPair` sees to that. body_diameter [mm]: of the cylinder that volume, mass
     and inertia count; None: d. width_excess [mm]: by which the gear is wider than the mesh.
-    cutter: the pinion-type one that cuts the gear; None: the rack, of a ring its counterpart.
+    cutter: the pinion-type one that cuts a ring; None: the rack, of a ring its counterpart.
     outside_diameter [mm] < 0 of a ring, whose body is the tube from `body` to there; None: a rim of
     RIM modules. Diameters are nominal: without backlash. Source: ISO 21771:2007.
     """

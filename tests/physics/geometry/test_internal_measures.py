@@ -15,6 +15,7 @@ from gearopt.physics.geometry.contact import (
     active_root_diameters,
     contact_path,
     free_tip_diameters,
+    largest_sliding,
     specific_sliding,
 )
 from gearopt.physics.geometry.fillet import fillet_point, form_diameter
@@ -105,6 +106,10 @@ def test_tip_clearances_and_sliding_by_construction():
         rolled = 3.0 * rho_1, rho_2  # speeds of the flanks along each other, omega_2 = 1
         expected = 1.0 - rolled[1] / rolled[0], 1.0 - rolled[0] / rolled[1]
         assert specific_sliding(path, pair.ratio, at) == pytest.approx(expected, rel=1e-12)
+    at_roots = [
+        specific_sliding(path, pair.ratio, at)[k] for k, at in enumerate((path.start, path.end))
+    ]
+    assert largest_sliding(pair) == pytest.approx(-min(at_roots), rel=1e-12)
 
 
 @pytest.mark.parametrize("ring", [-61, 61])
