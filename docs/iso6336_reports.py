@@ -1,15 +1,15 @@
-"""Sun and planet of both planetary stages of a printed report: for docs/iso6336.md and its tests.
+"""Both planetary stages of a printed report: for docs/iso6336.md and its tests.
 
 KISSsoft 03/2017, ISO 6336:2006 method B, NREL 5 MW gearbox: gfsReboucas/Drivetrain,
-@NREL_5MW/stage_01.rtf and stage_02.rtf. External spur pairs, in stage 1 of 19 and 17 teeth; load of
-one planet, speed against the carrier. Shifts, K_v and K_Hbeta are as printed, rounded; s_R/m_n 3.5
-of the webs is inferred from C_R. m_red is that of planetary gears, which is not covered.
+@NREL_5MW/stage_01.rtf and stage_02.rtf. Spur gears, in stage 1 of 19 and 17 teeth; load of one
+planet, speed against the carrier. Shifts, K_v and K_Hbeta are as printed, rounded; s_R/m_n 3.5 of
+the webs is inferred from C_R. Rings are held by the casing and cut by a pinion-type cutter.
 """
 
 import math
 from dataclasses import replace
 
-from gearopt.physics.gears import GearPair, Rack
+from gearopt.physics.gears import Cutter, GearPair, Rack
 from gearopt.physics.iso6336.case import Case, Practice
 from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.rating import Operation
@@ -27,7 +27,9 @@ def _sun_and_planet(
     pair = GearPair(first, second, pair.working_distance)
     power = 0.5 * load * first.reference_diameter * rpm * RPM
     operation = Operation(power, rpm * RPM, HOURS, overload=1.25, contacts=(PLANETS, 1.0))
-    practice = Practice(webs=((0.25, 3.5),) * 2, relief=2e-3)
+    bores = (194.32, 576.96) if pair.pinion_teeth == 18 else (482.33, 408.99)
+    webs = ((0.25, 3.5),) * 2
+    practice = Practice(webs=webs, relief=2e-3, bores=bores, meshes=(PLANETS, 1.0))
     sun = Material("Eh", "MQ")
     planet = Material("Eh", "MQ", reversed_load=True)
     strengths = {"sigma_Flim": (430.0, 430.0), "K_gamma": 1.10}
@@ -46,6 +48,45 @@ def case_stage_1() -> Case:
     pair = GearPair.of_teeth(45.0, 19, 17, 491.0, 0.0, Rack(), (0.6170, 0.8021), 863.0)
     rpm = 1124.7e6 / PLANETS / HOURS / 60.0
     return _sun_and_planet(pair, -10.861, 1587.48 * 491.0, rpm, {"K_v": 1.01, "K_Hbeta": 1.15})
+
+
+def _planet_and_ring(
+    pair: GearPair, lengths: tuple[float, float, float], load: float, cycles: float
+) -> Case:
+    """Return the case of planet and fixed ring, K_v computed; F_t [N], cycles of a planet's flank.
+
+    lengths [mm]: tip alteration and bore of the planet, outside diameter of the ring. C_a: the mean
+    of the printed 2.0 and 8.5 um.
+    """
+    shortening, bore, outside = lengths
+    planet = replace(pair.pinion, tip_alteration=shortening / pair.normal_module)
+    pair = GearPair(planet, replace(pair.wheel, outside_diameter=-outside), pair.working_distance)
+    speed = cycles / HOURS / 60.0 * RPM
+    power = 0.5 * load * planet.reference_diameter * speed
+    operation = Operation(power, speed, HOURS, overload=1.25, contacts=(1.0, PLANETS))
+    webs = ((0.25, 3.5),) * 2
+    practice = Practice(webs=webs, relief=5.25e-3, bores=(bore, 0.0), meshes=(1.0, 0.0))
+    hard = Material("Eh", "MQ", reversed_load=True)
+    soft = Material("V alloy", "MQ", 240.0, yield_strength=1000.0, flank=8e-3)
+    given = {"sigma_Flim": (430.0, 290.0), "sigma_Hlim": (1500.0, 700.0), "K_gamma": 1.10}
+    return Case(pair, operation, (hard, soft), practice, given | {"K_Hbeta": 1.15})
+
+
+RACK_B = Rack(tip_radius=0.30)  # ISO 53 profile B, of both rings
+
+
+def case_ring_2() -> Case:
+    """Z 36/-93, m_n 21, b 550, a -584, cutter of 30 teeth; F_t 285.9 kN a planet."""
+    racks, shifts = (Rack(), RACK_B), (0.5039, 0.1171)
+    pair = GearPair.internal(21.0, 36, -93, 550.0, 0.0, racks, shifts, -584.0, Cutter(30))
+    return _planet_and_ring(pair, (-1.750, 576.96, 2148.82), 285900.438, 1297.1e6)
+
+
+def case_ring_1() -> Case:
+    """Z 17/-56, m_n 45, b 491, a -863, cutter of 36 teeth; F_t 779.5 kN a planet."""
+    racks, shifts = (Rack(), RACK_B), (0.8021, -0.5013)
+    pair = GearPair.internal(45.0, 17, -56, 491.0, 0.0, racks, shifts, -863.0, Cutter(36))
+    return _planet_and_ring(pair, (-10.861, 408.99, 2994.24), 779454.877, 419.0e6)
 
 
 # symbol: printed, relative tolerance

@@ -131,7 +131,7 @@ def beyond(pair: GearPair, grades: tuple[Any, Any], edition: str = "1995") -> li
         sizes = {
             "grade": grade,
             "module": gear.normal_module,
-            "diameter": gear.reference_diameter,
+            "diameter": abs(gear.reference_diameter),
             "face_width": gear.face_width,
         }
         outside += [name for name, size in sizes.items() if not _within(size, ranges[name])]
@@ -163,7 +163,7 @@ def slope_2013(diameter: Any, face_width: Any, grade: Any) -> Any:
 
 def _of_gear(gear: Any, grade: Any, edition: str, smooth: bool) -> tuple[Any, Any, Any]:
     """Return f_pt, f_falpha, f_Hbeta of a gear."""
-    diameter, module, width = gear.reference_diameter, gear.normal_module, gear.face_width
+    diameter, module, width = np.abs(gear.reference_diameter), gear.normal_module, gear.face_width
     slope = helix_slope(diameter, width, grade, edition, smooth)
     if edition == "2013":
         pitch = tolerances.single_pitch_tolerance(diameter, module, grade)

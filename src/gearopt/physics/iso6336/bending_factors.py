@@ -38,6 +38,19 @@ def rim_factor(backup: Any) -> Any:
     return choose(backup >= 1.2, 1.0, found)
 
 
+THIN_RING, THICK_RING = 1.75, 3.5  # s_R/m_n of rings: below, and from which on Y_B is 1
+
+
+def ring_rim_factor(rim: Any) -> Any:
+    """Return Y_B = 1.15 ln(8.324 m_n/s_R) of a ring, 1 from s_R/m_n = 3.5; NaN up to 1.75.
+
+    The two do not quite meet: 0.9963 against 1, and at least 1 is taken. rim: s_R/m_n outside the
+    root circle. Source: ISO 6336-3:2006, 9 [memory: unverified].
+    """
+    found = np.maximum(1.15 * np.log(8.324 / np.maximum(rim, THIN_RING)), 1.0)
+    return choose(rim > THIN_RING, choose(rim >= THICK_RING, 1.0, found), np.nan)
+
+
 def deep_tooth_factor(virtual_ratio: Any, grade: Any) -> Any:
     """Return Y_DT: 1 to eps_alphan = 2.05, then, of grades to 4, 2.366 - 0.666 eps_alphan.
 

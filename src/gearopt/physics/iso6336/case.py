@@ -9,7 +9,7 @@ import numpy as np
 
 from gearopt.frozen import dataclass
 from gearopt.physics.blanks import Blank
-from gearopt.physics.gears import GearPair
+from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.geometry.contact import contact_path
 from gearopt.physics.iso6336.accuracy import TOLERANCES, Deviations, deviations
 from gearopt.physics.iso6336.contact_factors import PROFILE_MODIFICATIONS
@@ -32,7 +32,9 @@ class Practice:
     `load_factors.HELIX_MODIFICATIONS`; profile_modification: of `contact_factors.
     PROFILE_MODIFICATIONS`, for 2019; shaft: of the pinion, by default midway; webs: (b_s/b,
     s_R/m_n) of gears with webs; bores: inner diameters d_i [mm], of bore or rim; backup: ratios
-    s_R/h_t of rims;
+    s_R/h_t of rims, but of rings, whose rim ends at `Gear.outside`; meshes: in which pinion and
+    wheel are at once, of planetary stages (number of planets of sun or ring, 1 of a planet, 0 of a
+    ring that the casing holds), None: one pair between two shafts;
     limited_pitting: permitted; lowest: Z_NT and Y_NT at 1e10 cycles, 0.85 to 1.
     """
 
@@ -50,6 +52,7 @@ class Practice:
     backup: tuple[float | None, float | None] = (None, None)
     limited_pitting: bool = False
     lowest: float = LOWEST
+    meshes: tuple[float, float] | None = None
 
 
 def of_blanks(practice: Practice, pair: GearPair, blanks: tuple[Blank, Blank]) -> Practice:
@@ -84,6 +87,8 @@ def check(practice: Practice) -> None:
         raise ValueError("no Y_B of a backup ratio of 0.5 and less: rate the rim by other means")
     if not 0.5 <= practice.lowest <= 1.0:
         raise ValueError(f"the life factor at 1e10 cycles is {practice.lowest:g}: 0.5 to 1")
+    if practice.meshes is not None and not (min(practice.meshes) >= 0.0 < max(practice.meshes)):
+        raise ValueError(f"meshes {practice.meshes}: 0 and more, and not 0 of both gears")
 
 
 @dataclass(frozen=True)
@@ -137,11 +142,16 @@ class Case:
         """Load cycles N_L of pinion and wheel."""
         turns = self.operation.pinion_speed * self.operation.hours * 3600.0 / (2.0 * np.pi)
         first, second = self.operation.contacts
-        return turns * first, turns / self.pair.ratio * second
+        return turns * first, turns / np.abs(self.pair.ratio) * second
 
     def curve(self, member: int, contact: bool) -> Curve:
         """Return the curve of Z_NT or Y_NT of a gear."""
         return life_curve(self.materials[member], self.practice, contact)
+
+
+def ring_rim(gear: Gear) -> Any:
+    """Return s_R/m_n of a ring, from its root circle to its outside."""
+    return 0.5 * (gear.root_diameter - gear.outside) / gear.normal_module
 
 
 def life_curve(material: Material, practice: Practice, contact: bool) -> Curve:

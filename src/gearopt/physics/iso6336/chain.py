@@ -9,11 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from gearopt.physics.choosing import choose
+from gearopt.physics.gears import is_internal
 from gearopt.physics.iso6336 import bending_factors as bending
 from gearopt.physics.iso6336 import contact_factors as contact
 from gearopt.physics.iso6336 import load_factors as loads
 from gearopt.physics.iso6336 import running_in, stiffness
-from gearopt.physics.iso6336.case import Case
+from gearopt.physics.iso6336.case import Case, ring_rim
 from gearopt.physics.iso6336.curves import reference_share
 from gearopt.physics.iso6336.materials import SURFACE_HARDENED, strength
 from gearopt.physics.iso6336.tooth_form import load_sharing
@@ -74,7 +76,8 @@ def _relief(case: Case, values: Values) -> Any:
 
 def _resonance(case: Case, values: Values) -> Any:
     first, second = (material.density for material in case.materials)
-    mass = stiffness.reduced_mass(case.pair, (first, second), case.practice.bores)
+    practice = case.practice
+    mass = stiffness.reduced_mass(case.pair, (first, second), practice.bores, practice.meshes)
     resonance = loads.resonance_speed(case.pair.pinion_teeth, values["c_gamma_alpha"], mass)
     return case.operation.pinion_speed / resonance
 
@@ -89,9 +92,11 @@ def _dynamic(case: Case, values: Values) -> Any:
 
 
 def shaft_misalignment(case: Case, values: Values) -> Any:
-    """Return f_sh [mm]."""
+    """Return f_sh [mm]; of a sun with the twist of all its meshes."""
     diameter = case.pair.pinion.reference_diameter
     bending = case.practice.shaft.bending(diameter)
+    if case.practice.meshes is not None:
+        bending = bending + loads.twist_of_meshes(case.practice.meshes[0])
     line = _line_load(case, values, "K_v")
     return loads.shaft_misalignment(line, case.pair.face_width / diameter, bending)
 
@@ -262,6 +267,10 @@ def _form(case: Case, values: Values) -> Any:
 
 def _rim(case: Case, values: Values) -> Any:
     first, second = (1.0 if r is None else bending.rim_factor(r) for r in case.practice.backup)
+    wheel = case.pair.wheel
+    if is_internal(wheel.teeth):
+        ring = bending.ring_rim_factor(ring_rim(wheel))
+        second = choose(np.less(wheel.teeth, 0.0), ring, second)
     return first, second
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from gearopt.physics.choosing import choose
-from gearopt.physics.gears import GearPair
+from gearopt.physics.gears import GearPair, is_internal
 from gearopt.physics.geometry.tooth import base_helix_angle
 
 # f_ZCa of 2019 by what is known of the profile modification [memory; a printed report has 1.2]
@@ -53,7 +53,8 @@ def single_contact_ratios(pair: GearPair, transverse: Any) -> tuple[Any, Any]:
     """Return M1 and M2: contact stress at B of the pinion, D of the wheel, over that at C.
 
     tan(alpha_wt)/sqrt((t1 - 2 pi/z1) (t2 - (eps_alpha - 1) 2 pi/z2)), t = sqrt((d_a/d_b)^2 - 1),
-    and the same seen from the wheel. NaN where the point lies at or below a base circle. Part 2, 6.
+    and the same seen from the wheel, 1 of a ring. NaN where the point lies at or below a base
+    circle. Part 2, 6.
     """
     tips = [np.sqrt((g.active_tip_diameter / g.base_diameter) ** 2 - 1.0) for g in pair.gears]
     steps = [2.0 * np.pi / g.teeth for g in pair.gears]
@@ -63,6 +64,8 @@ def single_contact_ratios(pair: GearPair, transverse: Any) -> tuple[Any, Any]:
         second = tips[other] - (transverse - 1.0) * steps[other]
         inside = choose(np.minimum(first, second) > 0.0, first * second, np.nan)
         found.append(np.tan(pair.working_angle) / np.sqrt(inside))
+    if is_internal(pair.wheel_teeth):
+        found[1] = choose(np.less(pair.wheel_teeth, 0.0), 1.0 + 0.0 * found[0], found[1])
     return found[0], found[1]
 
 
@@ -158,7 +161,7 @@ def tempered_hardening_factor(pinion: Any, wheel: Any, ratio: Any) -> Any:
     harder = pinion / wheel
     slope = 0.00898 * np.minimum(harder, 1.7) - 0.00829
     slope = choose(harder < 1.2, 0.0, slope)
-    return 1.0 + slope * (np.clip(ratio, 1.0, 20.0) - 1.0)
+    return 1.0 + slope * (np.clip(np.abs(ratio), 1.0, 20.0) - 1.0)
 
 
 def static_hardening_factor(brinell: Any) -> Any:

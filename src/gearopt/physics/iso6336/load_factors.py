@@ -133,6 +133,15 @@ class Shaft:
         return part * self.span * self.offset * diameter**2 / self.diameter**4
 
 
+def twist_of_meshes(meshes: float) -> float:
+    """Return what a pinion in several meshes at once adds to K of `shaft_misalignment`.
+
+    B* - 1 = 2 (100 - k)/k for k = 100/p per cent of its torque in each of p meshes: 4 of three.
+    Source: ISO 6336-1:2006, 7.5, method C [memory: unverified].
+    """
+    return 2.0 * max(meshes - 1.0, 0.0)
+
+
 def shaft_misalignment(line_load: Any, width_ratio: Any, bending: Any = 0.0) -> Any:
     """Return f_sh = w 0.023 um (|1 + K - 0.3| + 0.3) (b/d1)^2 [mm].
 

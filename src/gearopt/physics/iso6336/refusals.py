@@ -14,7 +14,7 @@ from gearopt.physics.iso6336.stiffness import theoretical_stiffness
 from gearopt.physics.iso6336.tooth_form import ToothForm, tooth_forms
 
 SENTENCES = {
-    "internal gear": "internal gears are not covered, only external ones",
+    "internal gear": "a ring is the wheel of a pair and has more teeth than its pinion",
     "no centre distance": "the sum of the profile shifts is too small for any centre distance, or "
     "a given one makes the base circles overlap",
     "pointed tool": "the flanks of a tool meet before its tip round begins",
@@ -58,8 +58,8 @@ def refusal_of_teeth(
     first, second = single_contact_ratios(pair, ratio)
     pressed = np.isfinite(first) & np.isfinite(second)
     flags = [
-        np.less_equal(pair.pinion_teeth, 0) | np.less_equal(pair.wheel_teeth, 0),
-        ~np.isfinite(pair.working_angle) | ~(np.asarray(pair.working_angle) > 0.0),
+        ~_teeth(pair),
+        ~(np.abs(pair.working_angle - 0.25 * np.pi) < 0.25 * np.pi),
         *_of_gears(pair),
         ~(ratio >= 1.0),
         ~(usable + overlap >= 1.0),
@@ -70,6 +70,12 @@ def refusal_of_teeth(
     ]
     shaped = np.broadcast_arrays(*flags, np.zeros(ratio.shape, bool))[:-1]
     return np.select(shaped, range(1, len(REFUSALS)), 0)[()]
+
+
+def _teeth(pair: GearPair) -> Any:
+    """Return whether the numbers of teeth are those of external gears, or of pinion and ring."""
+    pinion, wheel = np.asarray(pair.pinion_teeth), pair.wheel_teeth
+    return (pinion > 0) & (np.greater(wheel, 0) | np.less(wheel, -pinion))
 
 
 def _section(forms: tuple[ToothForm, ToothForm]) -> Any:
@@ -88,8 +94,8 @@ def _of_gears(pair: GearPair) -> list[Any]:
     made = []
     for fault in (
         lambda g: ~np.asarray(has_tip(g)),
-        lambda g: np.less_equal(g.root_diameter, 0.0),
-        lambda g: np.less_equal(g.active_tip_diameter, g.base_diameter),
+        lambda g: np.less_equal(g.root_diameter, 0.0) & np.greater(g.teeth, 0.0),
+        lambda g: np.less_equal(np.abs(g.active_tip_diameter), np.abs(g.base_diameter)),
         lambda g: ~(np.asarray(tip_thickness(g)) > 0.0),
     ):
         made.append(fault(gears[0]) | fault(gears[1]))

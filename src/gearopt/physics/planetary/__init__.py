@@ -1,0 +1,1 @@
+"""Planetary gear trains: speeds, torques and losses; assembly of their planets."""
