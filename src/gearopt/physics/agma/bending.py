@@ -3,7 +3,9 @@
 The tooth is the virtual spur gear in the normal plane, in units of the normal module. Its load acts
 at the highest point of single tooth contact for spur gears and m_F <= 1, at the tip for m_F > 1 or
 where that is asked. The critical section is where the parabola of equal stress, its vertex where
-the load's line meets the centre line of the tooth, touches the fillet.
+the load's line meets the centre line of the tooth, touches the fillet. 908 has no internal gears:
+of a ring it is where the tangent of 60 degrees touches (`iso6336.tooth_form`), of 30 degrees to the
+teeth of the rack that cuts it; all else is as outside, with its signs (unverified).
 """
 
 from dataclasses import replace
@@ -14,7 +16,7 @@ import numpy as np
 from gearopt.frozen import dataclass
 from gearopt.physics.agma.mesh import Mesh, mesh_of, virtual_gear
 from gearopt.physics.choosing import choose
-from gearopt.physics.gears import Gear, GearPair
+from gearopt.physics.gears import Gear, GearPair, is_internal, signed
 from gearopt.physics.geometry.fillet import (
     ToolTip,
     base_half_angle,
@@ -22,6 +24,7 @@ from gearopt.physics.geometry.fillet import (
     least_fillet_radius,
     tool_tip,
 )
+from gearopt.physics.iso6336.tooth_form import tangent_theta
 
 NEWTON = 7  # steps from the middle of an interval of 1.2, halving where one leaves it: to rounding
 LOADS = ("highest single", "tip")
@@ -91,7 +94,7 @@ def loaded_tooth(mesh: Mesh, load: str = "highest single") -> LoadedTooth:
     base_helix = np.arcsin(np.sin(helix) * np.cos(angle))
     working = np.arcsin(np.cos(base_helix) * np.sin(pair.working_angle))
     at_tip = np.sqrt((0.5 * gear.active_tip_diameter / base) ** 2 - 1.0)
-    mate_reach = np.sqrt((0.5 * mate.active_tip_diameter) ** 2 - mate_base**2)
+    mate_reach = signed(np.sqrt((0.5 * mate.active_tip_diameter) ** 2 - mate_base**2), mate_base)
     start = (base + mate_base) * np.tan(working) - mate_reach
     highest = (start + np.pi * np.cos(angle)) / base
     tangent = mesh.chosen(at_tip, highest) if load == "highest single" else at_tip
@@ -199,7 +202,11 @@ def bending_factors(
     """Return J of pinion and wheel; floats or arrays of one shape."""
     mesh = mesh_of(pair)
     teeth = [loaded_tooth(m, load) for m in (mesh, seen_from_wheel(mesh))]
-    first, second = (bending_factor(tooth, critical_theta(tooth)) for tooth in teeth)
+    thetas = critical_theta(teeth[0]), critical_theta(teeth[1])
+    if is_internal(pair.wheel_teeth):
+        tangent = 0.5 * np.pi - tangent_theta(teeth[1].gear)
+        thetas = thetas[0], choose(np.less(pair.wheel_teeth, 0.0), tangent, thetas[1])
+    first, second = (bending_factor(t, angle) for t, angle in zip(teeth, thetas, strict=True))
     return first, second
 
 

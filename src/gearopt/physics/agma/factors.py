@@ -111,12 +111,14 @@ def dynamic_curve(quality: Any) -> tuple[Any, Any]:
 def lewis_form(teeth: Any) -> Any:
     """Return the Lewis form factor Y of LEWIS, linear in the number of teeth between entries.
 
-    teeth 12 to 400; a rack's beyond; of fewer teeth that of 12. Floats or arrays, not casadi.
+    teeth 12 to 400; a rack's beyond, and of rings; of fewer teeth that of 12. Floats or arrays, not
+    casadi.
     Source: Shigley, table 14-2.
     """
     known = [z for z in LEWIS if math.isfinite(z)]
     found = np.interp(teeth, known, [LEWIS[z] for z in known])
-    return np.where(np.asarray(teeth) > known[-1], LEWIS[math.inf], found)[()]
+    straight = (np.asarray(teeth) > known[-1]) | np.less(teeth, 0.0)
+    return np.where(straight, LEWIS[math.inf], found)[()]
 
 
 def size_factor(face_width: Any, module: Any, form: Any) -> Any:

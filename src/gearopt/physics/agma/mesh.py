@@ -16,6 +16,7 @@ from gearopt.physics.choosing import choose
 from gearopt.physics.gears import Gear, GearPair
 from gearopt.physics.geometry.contact import ContactPath, contact_path
 from gearopt.physics.geometry.tooth import base_helix_angle
+from gearopt.physics.iso6336.tooth_form import virtual_rack
 
 REGIMES = ("spur", "low", "conventional")
 
@@ -115,7 +116,8 @@ def pitting_factor(mesh: Mesh) -> Any:
 
     rho at the pinion's lowest point of single tooth contact for spur gears and m_F <= 1, at its
     mean radius above; the pinion is the gear with fewer teeth.
-    Zero or negative where that point lies at or below the base circle. 2101 calls it Z_I.
+    Zero or negative where that point lies at or below the base circle. 2101 calls it Z_I. The
+    radius of a ring is negative, so that its reciprocal is taken off (unverified).
     Source: AGMA 908-B89, clause 4; its table of 15 spur pairs is met to every digit.
     """
     first, second = curvatures(mesh)
@@ -148,7 +150,7 @@ def pitch_point_factor(pair: GearPair, sharing: Any = 1.0) -> Any:
 def virtual_gear(gear: Gear) -> Gear:
     """Return the virtual spur gear in the normal plane: z/cos(beta)^3 teeth, unit module.
 
-    Source: AGMA 908-B89, clause 5.
+    A ring has the rack that leaves its fillet (`virtual_rack`). Source: AGMA 908-B89, clause 5.
     """
     teeth = gear.teeth / np.cos(gear.helix_angle) ** 3
     allowance = gear.thickness_allowance / gear.normal_module
@@ -158,7 +160,7 @@ def virtual_gear(gear: Gear) -> Gear:
         teeth,
         1.0,
         0.0,
-        gear.rack,
+        virtual_rack(gear),
         gear.profile_shift,
         gear.tip_alteration,
         allowance,

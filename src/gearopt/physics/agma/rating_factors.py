@@ -6,10 +6,13 @@ from dataclasses import field
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from gearopt.frozen import dataclass
 from gearopt.physics.agma import allowables, factors, life
 from gearopt.physics.agma.refusals import GeometryFactors, single_factors
-from gearopt.physics.gears import GearPair
+from gearopt.physics.choosing import choose
+from gearopt.physics.gears import Gear, GearPair, is_internal
 from gearopt.physics.rating import Factor, Operation
 
 SURFACE_HARD_KINDS = ("carburised", "nitrided")  # whose pinions count as 48 HRC and more
@@ -96,7 +99,7 @@ class Case:
         rpm = self.operation.pinion_speed * 30.0 / math.pi
         first, second = self.operation.contacts
         hours = self.operation.hours
-        wheel = life.cycles_of(hours, rpm / self.pair.ratio, second)
+        wheel = life.cycles_of(hours, rpm / abs(self.pair.ratio), second)
         return life.cycles_of(hours, rpm, first), wheel
 
 
@@ -124,9 +127,17 @@ def _sizes(case: Case) -> tuple[Any, Any]:
     return first, second
 
 
+def ring_backup(gear: Gear) -> Any:
+    """Return m_B of a ring, whose rim ends at its outside."""
+    return (gear.root_diameter - gear.outside) / (gear.tip_diameter - gear.root_diameter)
+
+
 def _rims(case: Case) -> tuple[Any, Any]:
     law = factors.rim_factor if case.practice.edition == "D04" else factors.rim_factor_b88
     first, second = (1.0 if ratio is None else law(ratio) for ratio in case.practice.backup)
+    wheel = case.pair.wheel
+    if is_internal(wheel.teeth):
+        second = choose(np.less(wheel.teeth, 0.0), law(ring_backup(wheel)), second)
     return first, second
 
 
@@ -141,7 +152,8 @@ def _hardness_ratios(case: Case) -> tuple[Any, Any]:
         return 1.0, 1.0
     if pinion.kind in SURFACE_HARD_KINDS:
         return 1.0, factors.surface_hardened_factor(pinion.finish, wheel.hardness)
-    return 1.0, factors.hardness_ratio_factor(pinion.hardness, wheel.hardness, case.pair.ratio)
+    ratio = abs(case.pair.ratio)
+    return 1.0, factors.hardness_ratio_factor(pinion.hardness, wheel.hardness, ratio)
 
 
 _LAWS = {
@@ -216,18 +228,24 @@ def _bending(case: Case) -> Factor:
 
 def _of_helix(case: Case) -> tuple[bool, str]:
     """Whether published values confirm I and J, and the remark on it."""
+    if is_internal(case.pair.wheel_teeth):
+        return False, "internal: AGMA 908 has external gears only, no published value"
     if case.pair.overlap_ratio == 0.0:
         return True, ""
     return False, "helical: two sources have the method, no published table confirms its values"
 
 
 def _rim(case: Case) -> Factor:
-    thinnest = min(math.inf if ratio is None else ratio for ratio in case.practice.backup)
+    ratios, sound, wheel = case.practice.backup, True, case.pair.wheel
+    if is_internal(wheel.teeth):
+        ratios, sound = (ratios[0], ring_backup(wheel)), False
+    thinnest = min(math.inf if ratio is None else ratio for ratio in ratios)
     if thinnest <= 0.0:
         raise ValueError(f"no K_B of a backup ratio of {thinnest:g}: above 0")
-    remark = "" if thinnest >= factors.THINNEST else "rims thinner than the chart has"
+    remark = "" if sound else "of the ring: the law of external rims"
+    remark = remark if thinnest >= factors.THINNEST else "rims thinner than the chart has"
     clause = f"2001-{case.practice.edition}, annex B"
-    return Factor("K_B", _floats(_rims(case)), clause, "", True, remark)
+    return Factor("K_B", _floats(_rims(case)), clause, "", sound, remark)
 
 
 def _size(case: Case) -> Factor:
@@ -308,7 +326,7 @@ def _hardness_ratio(case: Case) -> Factor:
     (low, high), most = factors.WHEELS, factors.LARGEST_RATIO
     if pinion.kind in SURFACE_HARD_KINDS:
         remark = "" if low <= wheel.hardness <= high else f"wheels of {low:g} to {high:g} HB"
-    elif case.pair.ratio > most and made[1] > 1.0:
+    elif abs(case.pair.ratio) > most and made[1] > 1.0:
         remark = f"that of a ratio of {most:g}, where the chart ends"
     return Factor("C_H", made, clause, "", not remark, remark)
 

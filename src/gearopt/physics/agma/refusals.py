@@ -7,10 +7,11 @@ import numpy as np
 from gearopt.frozen import dataclass
 from gearopt.physics.agma.bending import bending_factors
 from gearopt.physics.agma.mesh import lowest_curvatures, mesh_of, pitting_factor
-from gearopt.physics.gears import Gear, GearPair
+from gearopt.physics.gears import Gear, GearPair, signed
 from gearopt.physics.geometry.contact import usable_path
 from gearopt.physics.geometry.fillet import has_tip
 from gearopt.physics.geometry.tooth import tip_thickness
+from gearopt.physics.iso6336.refusals import has_teeth
 
 REFUSALS = (
     "",
@@ -31,7 +32,7 @@ SENTENCES = dict(
     zip(
         REFUSALS[1:],
         (
-            "internal gears are not covered, only external ones",
+            "a ring is the wheel of a pair and has more teeth than its pinion",
             "the sum of the profile shifts is too small for any centre distance, or a given one "
             "makes the base circles overlap",
             "the flanks of a tool meet before its tip round begins",
@@ -76,14 +77,14 @@ def geometry_factors(pair: GearPair, load: str = "highest single") -> GeometryFa
     ratio, low = mesh.path.transverse_ratio, lowest_curvatures(mesh.path)
     single = mesh.overlap <= 1.0
     bare = [
-        np.less_equal(pair.pinion_teeth, 0) | np.less_equal(pair.wheel_teeth, 0),
-        ~np.isfinite(pair.working_angle) | ~(np.asarray(pair.working_angle) > 0.0),
+        ~has_teeth(pair),
+        ~(np.abs(pair.working_angle - 0.25 * np.pi) < 0.25 * np.pi),
         *_of_gears(pair),
         ~(ratio > 0.0) | (ratio < 1.0) & (ratio + mesh.overlap < 1.0),
         ~(usable_path(pair).transverse_ratio + mesh.overlap >= 1.0),
         single & (ratio >= 2.0),
-        np.greater(pair.pinion_teeth, pair.wheel_teeth),
-        ~(np.minimum(*low) > 0.0) & single | ~(pitting > 0.0),
+        np.greater(pair.pinion_teeth, np.abs(pair.wheel_teeth)),
+        ~(np.minimum(low[0], signed(low[1], pair.wheel_teeth)) > 0.0) & single | ~(pitting > 0.0),
         ~(np.minimum(*bending) > 0.0),
     ]
     flags = np.broadcast_arrays(*bare, np.zeros(np.shape(pitting), bool))[:-1]
@@ -100,14 +101,14 @@ def _of_gears(pair: GearPair) -> list[Any]:
 
     return [
         either(lambda g: ~np.asarray(has_tip(g))),
-        either(lambda g: np.less_equal(g.root_diameter, 0.0)),
+        either(lambda g: np.less_equal(g.root_diameter, 0.0) & np.greater(g.teeth, 0.0)),
         either(_no_involute),
         either(lambda g: ~(np.asarray(tip_thickness(g)) > 0.0)),
     ]
 
 
 def _no_involute(gear: Gear) -> Any:
-    return np.less_equal(gear.active_tip_diameter, gear.base_diameter)
+    return np.less_equal(np.abs(gear.active_tip_diameter), np.abs(gear.base_diameter))
 
 
 def single_factors(pair: GearPair, load: str = "highest single") -> GeometryFactors:

@@ -9,9 +9,10 @@ import numpy as np
 
 from gearopt.frozen import dataclass
 from gearopt.physics.blanks import Blank
-from gearopt.physics.gears import Gear, GearPair
+from gearopt.physics.gears import Gear, GearPair, is_internal
 from gearopt.physics.geometry.contact import contact_path
 from gearopt.physics.iso6336.accuracy import TOLERANCES, Deviations, deviations
+from gearopt.physics.iso6336.bending_factors import THIN_RING
 from gearopt.physics.iso6336.contact_factors import PROFILE_MODIFICATIONS
 from gearopt.physics.iso6336.curves import LOWEST, Curve, bending_curve, pitting_curve
 from gearopt.physics.iso6336.load_factors import ARRANGEMENTS, HELIX_MODIFICATIONS, Shaft
@@ -142,7 +143,7 @@ class Case:
         """Load cycles N_L of pinion and wheel."""
         turns = self.operation.pinion_speed * self.operation.hours * 3600.0 / (2.0 * np.pi)
         first, second = self.operation.contacts
-        return turns * first, turns / np.abs(self.pair.ratio) * second
+        return turns * first, turns / abs(self.pair.ratio) * second
 
     def curve(self, member: int, contact: bool) -> Curve:
         """Return the curve of Z_NT or Y_NT of a gear."""
@@ -152,6 +153,15 @@ class Case:
 def ring_rim(gear: Gear) -> Any:
     """Return s_R/m_n of a ring, from its root circle to its outside."""
     return 0.5 * (gear.root_diameter - gear.outside) / gear.normal_module
+
+
+def check_rim(pair: GearPair) -> None:
+    """Refuse a ring of floats whose rim is too thin for Y_B, by ValueError."""
+    if not is_internal(pair.wheel_teeth):
+        return
+    if not (rim := ring_rim(pair.wheel)) > THIN_RING:
+        what = f"no Y_B of a ring of s_R/m_n = {rim:.3g}, {THIN_RING:g} or less"
+        raise ValueError(f"{what}: make its outside diameter larger, or give Y_B")
 
 
 def life_curve(material: Material, practice: Practice, contact: bool) -> Curve:

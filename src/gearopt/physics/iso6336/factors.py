@@ -4,8 +4,10 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from gearopt.physics.gears import is_internal
 from gearopt.physics.iso6336.accuracy import beyond
-from gearopt.physics.iso6336.case import Case
+from gearopt.physics.iso6336.bending_factors import THICK_RING
+from gearopt.physics.iso6336.case import Case, ring_rim
 from gearopt.physics.iso6336.chain import shaft_misalignment, shared
 from gearopt.physics.iso6336.contact_factors import HARD_LIMIT
 from gearopt.physics.iso6336.curves import LONGEST_LIFE
@@ -20,6 +22,7 @@ SHIFTS = -0.5, 2.0  # x_1 + x_2 for which c' holds. Source: part 1, 9.3 [memory]
 # angles above which results want experience. Source: IACS UR M56, 3.1, of parts 2 and 3
 PRESSURE_ANGLE, HELIX_ANGLE = math.radians(25.0) + 1e-9, math.radians(30.0) + 1e-9
 UNCHECKED = "not checked against any source"
+PLANETARY = "method C has no planets on their pins, and B* of the sun is from memory: give K_Hbeta"
 EXPERIENCE = "to be confirmed by experience"
 NITROCARBURISED = "NV nitrocarburised"
 RANGE = 3000.0  # mm/s of v z1/100 sqrt(u^2/(1 + u^2)): below, K_v by method B is hardly above 1
@@ -118,6 +121,28 @@ def _stiffness(case: Case, values: Values) -> Doubt:
     return True, ""
 
 
+def _ring(case: Case) -> bool:
+    """Return whether the wheel of a case is a ring."""
+    return is_internal(case.pair.wheel_teeth)
+
+
+def _resonance(case: Case, values: Values) -> Doubt:
+    sound, remark = _stiffness(case, values)
+    meshes = case.practice.meshes
+    if sound and _ring(case) and (meshes is None or meshes[1] > 0.0):
+        return False, f"mass of a ring that turns: {UNCHECKED}"
+    return sound, remark
+
+
+def _rim(case: Case, values: Values) -> Doubt:
+    if not _ring(case):
+        return True, ""
+    if ring_rim(case.pair.wheel) < THICK_RING:
+        return False, f"rim of a ring below {THICK_RING:g} m_n: formula {UNCHECKED}"
+    assumed = case.pair.wheel.outside_diameter is None
+    return True, f"rim of the ring of {THICK_RING:g} m_n taken for granted" if assumed else ""
+
+
 def _tolerance(case: Case, values: Values) -> Doubt:
     outside = beyond(case.pair, case.practice.grades, case.practice.tolerances)
     return not outside, f"{', '.join(outside)} outside ISO 1328-1" if outside else ""
@@ -130,7 +155,7 @@ def _tempered(case: Case) -> bool:
 
 
 def _dynamic(case: Case, values: Values) -> Doubt:
-    sound, remark = _stiffness(case, values)
+    sound, remark = _resonance(case, values)
     line = case.load * values["K_A"] * values["K_gamma"] / case.pair.face_width
     resonance = values["N"]
     if resonance > lower_limit(line):
@@ -150,6 +175,8 @@ def _face(case: Case, values: Values) -> Doubt:
         height = 500.0 * (values["f_ma"] + bent)  # that B_1 and B_2 take for granted [memory]
         taken = f", C_beta of {height:.3g} µm taken for granted" * ("crowned" in chosen)
         return False, f"{chosen}{taken}: {UNCHECKED}"
+    if case.practice.meshes is not None or _ring(case):
+        return False, PLANETARY
     if case.practice.shaft.offset:
         return False, f"pinion off the middle, K' for s/l below 0.3 (c: 0.5): {UNCHECKED}"
     sound, remark = _stiffness(case, values)
@@ -176,6 +203,8 @@ def _transverse_root(case: Case, values: Values) -> Doubt:
 def _form(case: Case, values: Values) -> Doubt:
     light = case.pair.overlap_ratio < 1.0 or case.forms[0].virtual_ratio >= 2.0
     sound, remark = _of_2019(case, "load sharing f_eps") if light else (True, "")
+    if _ring(case) and (case.practice.edition == "2019" or case.pair.overlap_ratio > 0.0):
+        return False, "helical rings, and rings by the edition of 2019: no published value"
     steep = max(gear.rack.pressure_angle for gear in case.pair.gears) > PRESSURE_ANGLE
     return sound, remark or (f"alpha_n above 25 degrees: {EXPERIENCE}" if steep else "")
 
@@ -192,6 +221,8 @@ def _helix(case: Case, values: Values) -> Doubt:
 
 def _single(case: Case, values: Values) -> Doubt:
     overlap, chosen = case.pair.overlap_ratio, case.practice.profile_modification
+    if _ring(case) and overlap:
+        return _of_2019(case, "f_ZCa beside a ring")
     if not overlap or overlap >= 1.0 and chosen == "none":
         return True, ""
     return _of_2019(case, "f_ZCa of helical gears")
@@ -256,7 +287,7 @@ DOUBTS: dict[str, Callable[[Case, Values], Doubt]] = {
     "c_prime": _stiffness,
     "c_gamma_alpha": _stiffness,
     "c_gamma_beta": _stiffness,
-    "N": _stiffness,
+    "N": _resonance,
     "K_v": _dynamic,
     "K_Hbeta": _face,
     "K_Fbeta": _root_face,
@@ -271,6 +302,7 @@ DOUBTS: dict[str, Callable[[Case, Values], Doubt]] = {
     "Z_W": _hardening,
     "sigma_Hlim": _strength("H"),
     "sigma_Flim": _strength("F"),
+    "Y_B": _rim,
     "Y_F": _form,
     "Y_S": _notch,
     "Y_beta": _helix,

@@ -9,7 +9,7 @@ from typing import Any
 
 from gearopt.physics.gears import GearPair
 from gearopt.physics.iso6336 import chain
-from gearopt.physics.iso6336.case import Case, Practice, check
+from gearopt.physics.iso6336.case import Case, Practice, check, check_rim
 from gearopt.physics.iso6336.curves import Curve
 from gearopt.physics.iso6336.factors import PAIRED, SHARED, factors
 from gearopt.physics.iso6336.materials import Material
@@ -61,6 +61,8 @@ def _case(
     positive = {name: value for name, value in given.items() if name not in ZERO}
     check_numbers(operation, "application factor", positive)
     refuse(pair, practice)
+    if "Y_B" not in given:
+        check_rim(pair)
     return Case(pair, operation, materials, practice, given)
 
 

@@ -58,7 +58,7 @@ def refusal_of_teeth(
     first, second = single_contact_ratios(pair, ratio)
     pressed = np.isfinite(first) & np.isfinite(second)
     flags = [
-        ~_teeth(pair),
+        ~has_teeth(pair),
         ~(np.abs(pair.working_angle - 0.25 * np.pi) < 0.25 * np.pi),
         *_of_gears(pair),
         ~(ratio >= 1.0),
@@ -72,7 +72,7 @@ def refusal_of_teeth(
     return np.select(shaped, range(1, len(REFUSALS)), 0)[()]
 
 
-def _teeth(pair: GearPair) -> Any:
+def has_teeth(pair: GearPair) -> Any:
     """Return whether the numbers of teeth are those of external gears, or of pinion and ring."""
     pinion, wheel = np.asarray(pair.pinion_teeth), pair.wheel_teeth
     return (pinion > 0) & (np.greater(wheel, 0) | np.less(wheel, -pinion))
