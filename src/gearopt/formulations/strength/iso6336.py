@@ -359,7 +359,7 @@ class Iso6336:
             "helix": pair.pinion.helix_angle,
             "diameter0": pair.pinion.reference_diameter,
             "diameter1": pair.wheel.reference_diameter,
-            "bending": self.practice.shaft.bending(pair.pinion.reference_diameter),
+            "bending": self.practice.bending(pair.pinion.reference_diameter),
             "excess0": pair.pinion.root_excess,
             "excess1": pair.wheel.root_excess,
         }
@@ -370,7 +370,8 @@ class Iso6336:
         found, d1 = self.found, slow.pair.pinion.reference_diameter
         force = 2.0 * found["K_A"] * found["K_gamma"] * load.power / load.speed / d1
         densities = self.materials[0].density, self.materials[1].density
-        mass = stiffness.reduced_mass(slow.pair, densities, slow.practice.bores)
+        practice = slow.practice
+        mass = stiffness.reduced_mass(slow.pair, densities, practice.bores, practice.meshes)
         made = slow.deviations
         pitch = self.given.get("f_pb", made.base_pitch)
         form = self.given.get("f_falpha", made.profile_form)

@@ -151,6 +151,7 @@ class IsoCells:
             return self.given["N"], self.given["N"]
         standard, cells, ratios = self.standard, self.cells, []
         densities = standard.materials[0].density, standard.materials[1].density
+        meshes = standard.practice.meshes
         inner = self._inner_parts()
         for end in (LOWER, UPPER):
             z, d = cells.teeth[end], cells.diameter[end]
@@ -164,7 +165,7 @@ class IsoCells:
                 pair = self._shortened(pair, end)
                 rows = zip(inner, pair.gears, strict=True)
                 first, second = (p[1 - end] * stiffness.mean_diameter(gear) for p, gear in rows)
-                masses.append(stiffness.reduced_mass(pair, densities, (first, second)))
+                masses.append(stiffness.reduced_mass(pair, densities, (first, second), meshes))
             mass = (np.minimum, np.maximum)[end].reduce(masses)
             stiff = self.mesh(1 - end) * self.single(1 - end, 1 - end)
             speed = standard.loads[0].speed * cells.speed[end]
@@ -262,10 +263,10 @@ class IsoCells:
     @cached_property
     def _bending(self) -> tuple[Any, Any]:
         """K of the shaft where |0.7 + K| is least and greatest: at ends, and where K' jumps."""
-        shaft, (low, high) = self.standard.practice.shaft, self.cells.diameter
-        jump = loads.STIFF * shaft.diameter
+        practice, (low, high) = self.standard.practice, self.cells.diameter
+        jump = loads.STIFF * practice.shaft.diameter
         inside = [np.clip(jump * (1.0 + e), low, high) for e in (-NUDGE, NUDGE)]
-        ends = np.stack([shaft.bending(d) for d in (low, high, *inside)])
+        ends = np.stack([practice.bending(d) for d in (low, high, *inside)])
         least, most = ends.min(axis=0), ends.max(axis=0)
         far = np.abs(loads.STRAIGHT + least) > np.abs(loads.STRAIGHT + most)
         return np.clip(-loads.STRAIGHT, least, most), np.where(far, least, most)

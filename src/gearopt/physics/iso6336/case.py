@@ -15,7 +15,12 @@ from gearopt.physics.iso6336.accuracy import TOLERANCES, Deviations, deviations
 from gearopt.physics.iso6336.bending_factors import THIN_RING
 from gearopt.physics.iso6336.contact_factors import PROFILE_MODIFICATIONS
 from gearopt.physics.iso6336.curves import LOWEST, Curve, bending_curve, pitting_curve
-from gearopt.physics.iso6336.load_factors import ARRANGEMENTS, HELIX_MODIFICATIONS, Shaft
+from gearopt.physics.iso6336.load_factors import (
+    ARRANGEMENTS,
+    HELIX_MODIFICATIONS,
+    Shaft,
+    twist_of_meshes,
+)
 from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.iso6336.tooth_form import SHIFTS, ToothForm, tooth_forms
 from gearopt.physics.rating import Operation
@@ -54,6 +59,11 @@ class Practice:
     limited_pitting: bool = False
     lowest: float = LOWEST
     meshes: tuple[float, float] | None = None
+
+    def bending(self, diameter: Any) -> Any:
+        """Return K of `load_factors.shaft_misalignment`, of a sun with the twist by all meshes."""
+        bent = self.shaft.bending(diameter)
+        return bent if self.meshes is None else bent + twist_of_meshes(self.meshes[0])
 
 
 def of_blanks(practice: Practice, pair: GearPair, blanks: tuple[Blank, Blank]) -> Practice:

@@ -92,11 +92,9 @@ def _dynamic(case: Case, values: Values) -> Any:
 
 
 def shaft_misalignment(case: Case, values: Values) -> Any:
-    """Return f_sh [mm]; of a sun with the twist of all its meshes."""
+    """Return f_sh [mm]."""
     diameter = case.pair.pinion.reference_diameter
-    bending = case.practice.shaft.bending(diameter)
-    if case.practice.meshes is not None:
-        bending = bending + loads.twist_of_meshes(case.practice.meshes[0])
+    bending = case.practice.bending(diameter)
     line = _line_load(case, values, "K_v")
     return loads.shaft_misalignment(line, case.pair.face_width / diameter, bending)
 
