@@ -77,15 +77,15 @@ RACK_B = Rack(tip_radius=0.30)  # ISO 53 profile B, of both rings
 
 def case_ring_2() -> Case:
     """Z 36/-93, m_n 21, b 550, a -584, cutter of 30 teeth; F_t 285.9 kN a planet."""
-    racks, shifts = (Rack(), RACK_B), (0.5039, 0.1171)
-    pair = GearPair.internal(21.0, 36, -93, 550.0, 0.0, racks, shifts, -584.0, Cutter(30))
+    racks, shifts, cutter = (Rack(), RACK_B), (0.5039, 0.1171), Cutter(30, tip_radius=0.30)
+    pair = GearPair.internal(21.0, 36, -93, 550.0, 0.0, racks, shifts, -584.0, cutter)
     return _planet_and_ring(pair, (-1.750, 576.96, 2148.82), 285900.438, 1297.1e6)
 
 
 def case_ring_1() -> Case:
     """Z 17/-56, m_n 45, b 491, a -863, cutter of 36 teeth; F_t 779.5 kN a planet."""
-    racks, shifts = (Rack(), RACK_B), (0.8021, -0.5013)
-    pair = GearPair.internal(45.0, 17, -56, 491.0, 0.0, racks, shifts, -863.0, Cutter(36))
+    racks, shifts, cutter = (Rack(), RACK_B), (0.8021, -0.5013), Cutter(36, tip_radius=0.30)
+    pair = GearPair.internal(45.0, 17, -56, 491.0, 0.0, racks, shifts, -863.0, cutter)
     return _planet_and_ring(pair, (-10.861, 408.99, 2994.24), 779454.877, 419.0e6)
 
 

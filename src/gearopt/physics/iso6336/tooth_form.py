@@ -63,14 +63,16 @@ def virtual_gear(gear: Gear, shift: str = "nominal") -> Gear:
 def virtual_rack(gear: Gear) -> Rack:
     """Return the rack whose round leaves the fillet of a gear; its own but of rings by cutters.
 
-    rho_fPv = rho_fP + (x_0 + h_fP - rho_fP)^1.95/(3.156 1.036^z_0) in normal modules, rho_fP that
-    of the ring's rack. Source: ISO 6336-3:2006, 6.2 [memory]; two printed rings are met by it.
+    rho_fPv = rho + (x_0 + h - rho)^1.95/(3.156 1.036^z_0) in normal modules, of the addendum h =
+    h_a0 and tip radius rho = rho_a0 of the cutter, which stand for h_fP and rho_fP. Source: ISO
+    6336-3:2006, 6.2 [memory]; two printed rings are met by it.
     """
     cutter, rack = gear.cutter, gear.rack
     if cutter is None or not is_internal(gear.teeth):
         return rack
-    high = cutter.profile_shift + rack.dedendum - rack.tip_radius
-    return replace(rack, tip_radius=rack.tip_radius + high**1.95 / (3.156 * 1.036**cutter.teeth))
+    high = cutter.profile_shift + cutter.addendum - cutter.tip_radius
+    radius = cutter.tip_radius + high**1.95 / (3.156 * 1.036**cutter.teeth)
+    return replace(rack, dedendum=cutter.addendum, tip_radius=radius)
 
 
 def tangent_angle(gear: Gear) -> Any:
