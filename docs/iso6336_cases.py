@@ -9,7 +9,16 @@ gfsReboucas/Drivetrain, @NREL_5MW/stage_03.rtf.
 import math
 from dataclasses import replace
 
-from iso6336_reports import STAGE_1, STAGE_2, case_stage_1, case_stage_2
+from iso6336_reports import (
+    RING_1,
+    RING_2,
+    STAGE_1,
+    STAGE_2,
+    case_ring_1,
+    case_ring_2,
+    case_stage_1,
+    case_stage_2,
+)
 
 from gearopt.bench.rating import iso_example
 from gearopt.physics.gears import GearPair, Rack
@@ -143,6 +152,8 @@ CASES = {
     "report": (case_report, REPORT),
     "stage 2": (case_stage_2, STAGE_2),
     "stage 1": (case_stage_1, STAGE_1),
+    "ring 2": (case_ring_2, RING_2),
+    "ring 1": (case_ring_1, RING_1),
 }
 
 
@@ -193,7 +204,9 @@ def _geometry(case: Case) -> dict:
 
 def _sections(case: Case) -> dict:
     forms, module = case.forms, case.pair.normal_module
-    mass = stiffness.reduced_mass(case.pair, (7.83e-9, 7.83e-9), case.practice.bores)
+    practice = case.practice
+    densities = 7.83e-9, 7.83e-9
+    mass = stiffness.reduced_mass(case.pair, densities, practice.bores, practice.meshes)
     resonance = quantities(case)["N"]
     web = case.practice.webs[0]
     return {

@@ -18,6 +18,7 @@ from gearopt.physics.agma.rating_factors import (
     check_lives,
     life_curves,
 )
+from gearopt.physics.agma.refusals import check_teeth
 from gearopt.physics.gears import GearPair
 from gearopt.physics.rating import (
     Factor,
@@ -51,6 +52,7 @@ def rate(
     if practice.edition not in EDITIONS:
         raise ValueError(f"no edition {practice.edition!r}; known: {', '.join(EDITIONS)}")
     check_numbers(operation, "overload factor", given)
+    check_teeth(pair)
     case = Case(pair, operation, steels, practice, given)
     return _results(case, {factor.symbol: factor for factor in all_factors(case)})
 

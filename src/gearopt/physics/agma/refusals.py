@@ -111,6 +111,13 @@ def _no_involute(gear: Gear) -> Any:
     return np.less_equal(np.abs(gear.active_tip_diameter), np.abs(gear.base_diameter))
 
 
+def check_teeth(pair: GearPair) -> None:
+    """Refuse a pair of floats whose numbers of teeth are of no pair, by ValueError."""
+    if not has_teeth(pair):
+        name = "internal gear"
+        raise ValueError(f"{name}: {SENTENCES[name]}")
+
+
 def single_factors(pair: GearPair, load: str = "highest single") -> GeometryFactors:
     """I and J of one pair of floats; ValueError names the rule that refuses them."""
     geometry = geometry_factors(pair, load)

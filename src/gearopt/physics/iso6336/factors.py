@@ -22,7 +22,7 @@ SHIFTS = -0.5, 2.0  # x_1 + x_2 for which c' holds. Source: part 1, 9.3 [memory]
 # angles above which results want experience. Source: IACS UR M56, 3.1, of parts 2 and 3
 PRESSURE_ANGLE, HELIX_ANGLE = math.radians(25.0) + 1e-9, math.radians(30.0) + 1e-9
 UNCHECKED = "not checked against any source"
-PLANETARY = "method C has no planets on their pins, and B* of the sun is from memory: give K_Hbeta"
+PLANETARY = "method C has no planets on pins, B* of a sun is from memory: better given"
 EXPERIENCE = "to be confirmed by experience"
 NITROCARBURISED = "NV nitrocarburised"
 RANGE = 3000.0  # mm/s of v z1/100 sqrt(u^2/(1 + u^2)): below, K_v by method B is hardly above 1
@@ -175,8 +175,10 @@ def _face(case: Case, values: Values) -> Doubt:
         height = 500.0 * (values["f_ma"] + bent)  # that B_1 and B_2 take for granted [memory]
         taken = f", C_beta of {height:.3g} µm taken for granted" * ("crowned" in chosen)
         return False, f"{chosen}{taken}: {UNCHECKED}"
-    if case.practice.meshes is not None or _ring(case):
+    if case.practice.meshes is not None:
         return False, PLANETARY
+    if _ring(case):
+        return False, "beside a ring: no published value"
     if case.practice.shaft.offset:
         return False, f"pinion off the middle, K' for s/l below 0.3 (c: 0.5): {UNCHECKED}"
     sound, remark = _stiffness(case, values)
