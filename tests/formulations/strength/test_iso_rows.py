@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 from campaigns import few
-from rated_drives import RACK, agma, iso, static
+from rated_drives import EIGHT, RACK, agma, iso, static
 
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.strength import ALLOWANCE
@@ -14,6 +14,7 @@ from gearopt.formulations.strength.standard import IndexRows, Load
 from gearopt.formulations.strength.use import iso6336 as use
 from gearopt.formulations.strength.widths import first_width
 from gearopt.physics.blanks import SOLID, Blank
+from gearopt.physics.gears import GearPair
 from gearopt.physics.geometry.contact import usable_path
 from gearopt.physics.iso6336.case import Practice
 from gearopt.physics.iso6336.load_factors import (
@@ -144,6 +145,34 @@ def test_rows_of_a_gear_that_is_wider_than_its_mesh(excesses):
         assert np.all(
             bound <= exact(standard, pair, width * 1.05**share, torque, power) * (1 + 1e-12)
         )
+
+
+def rings(helix):
+    """Return random pairs with rings, of unit width."""
+    rng = np.random.default_rng(3)
+    z1 = rng.integers(18, 45, COUNT).astype(float)
+    shifts = rng.uniform(-0.1, 0.5, COUNT), rng.uniform(-0.2, 0.3, COUNT)
+    z2 = -(z1 + rng.integers(8, 90, COUNT))
+    return GearPair.internal(2.0, z1, z2, 1.0, helix, (RACK, RACK), shifts)
+
+
+@pytest.mark.parametrize("helix", [0.0, 0.25])
+@pytest.mark.parametrize("kind", ["iso", "2019", "agma"])
+def test_rows_of_rings_are_what_is_rated_and_bounds_of_boxes(kind, helix):
+    planetary = iso(practice=replace(EIGHT, meshes=(1.0, 0.0)))
+    standard = {"iso": planetary, "2019": iso(practice=NEW), "agma": agma()}[kind]
+    _, width, torque, power, rng = pairs(helix, 2)
+    pair = rings(helix)
+    used = rows(standard, pair, (torque, torque), power).used(width, width)
+    used = np.where(np.isnan(used), np.inf, used)  # of pairs that AGMA refuses
+    rated = exact(standard, pair, width, torque, power)
+    assert np.isfinite(rated).sum() > 0.7 * COUNT
+    np.testing.assert_allclose(used, rated, rtol=1e-12)
+    bound = rows(standard, pair, (torque, torque * 1.05), power).used(width, width * 1.05)
+    for _ in range(4):
+        share = rng.uniform(0.0, 1.0, (2, COUNT))
+        inside = exact(standard, pair, width * 1.05 ** share[0], torque * 1.05 ** share[1], power)
+        assert not np.any(bound > inside * (1.0 + 1e-12))
 
 
 QUICK = "tempered", "2019, spur, fine", "webs", "short life", "many given", "others given"

@@ -358,7 +358,7 @@ class Iso6336:
             "depth": deep * pair.normal_module,
             "helix": pair.pinion.helix_angle,
             "diameter0": pair.pinion.reference_diameter,
-            "diameter1": pair.wheel.reference_diameter,
+            "diameter1": abs(pair.wheel.reference_diameter),
             "bending": self.practice.bending(pair.pinion.reference_diameter),
             "excess0": pair.pinion.root_excess,
             "excess1": pair.wheel.root_excess,

@@ -158,8 +158,7 @@ def _single(case: Case, values: Values) -> Any:
     ratios = contact.single_contact_ratios(case.pair, case.transverse_ratio)
     overlap = case.pair.overlap_ratio
     first, second = (contact.single_contact_factor(m, overlap, helical) for m in ratios)
-    wheel = case.pair.wheel_teeth
-    return first, choose(np.less(wheel, 0.0), 1.0, second) if is_internal(wheel) else second
+    return first, second
 
 
 def _nominal_contact(case: Case, values: Values) -> Any:
