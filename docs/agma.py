@@ -19,9 +19,9 @@ HEAD = """\
 
 External spur and helical gears by ANSI/AGMA 2001-D04 (2101-D04 in metric terms), with the
 geometry factors of AGMA 908-B89 by its analytic method: by [gearopt rate](rate.md), and from
-Python by `gearopt.physics.agma`. The standards themselves were not read: formulas and values are
-from textbooks, tables and public programs. What a single source has is marked *unverified*, in
-the result too (`Rating.unverified`).
+Python by `gearopt.physics.agma`, which takes rings, too. The standards themselves were not read:
+formulas and values are from textbooks, tables and public programs. What a single source has is
+marked *unverified*, in the result too (`Rating.unverified`).
 
 ```python
 import math
@@ -192,6 +192,14 @@ tip, as 908 has it: J jumps at m_F = 1, I does not. Teeth are thinned by a deepe
 optimiser takes `smooth.smooth_factors`: the tangency is an equality, the tool angle of the
 section a variable; for m_F > 1 with m_N = p_N/(0.95 Z), which `smooth_error` puts at -5 to +7 %
 of the exact one.
+
+Rings (`GearPair.internal`) have negative teeth, diameters and radii of curvature, so that I is
+taken at the pinion's lowest point of single tooth contact with 1/rho_1 - 1/abs(rho_2). 908 has no
+J for them: the section is where a tangent of 60 degrees touches the fillet of the rack that stands
+for the ring's cutter, as ISO 6336-3 has it, Y and K_f are as outside, and a J of yours may be
+given. K_B is that of the rim outside the root. No value of either was found in print: I, J and K_B
+are *unverified*; load angles and sections are those of two printed ISO ratings. 2101 has no
+K_gamma: of planetary stages give K_o K_gamma as the overload factor.
 """
 
 

@@ -7,12 +7,14 @@ from agma_cases import digits, printed
 from gearopt.physics.iso6336.factors import CLAUSES
 from gearopt.physics.iso6336.materials import LINES, MATERIALS
 from gearopt.physics.iso6336.refusals import SENTENCES
+from gearopt.physics.planetary.loads import SHARING_RULES, mesh_load_factor
 
 HEAD = """\
 # Rating by ISO 6336
 
 External spur and helical gears by ISO 6336, parts 1, 2, 3 and 5, method B, and 6: by
-[gearopt rate](rate.md), and from Python by `gearopt.physics.iso6336`. `edition` is 2006 or 2019,
+[gearopt rate](rate.md), and from Python by `gearopt.physics.iso6336`, which takes
+[rings and planetary stages](#rings-and-planetary-stages), too. `edition` is 2006 or 2019,
 tolerances are those of ISO 1328-1:1995 or 2013. The standards themselves were not read: formulas
 and values are from public programs, printed reports, rules of ship classes that repeat parts of
 them (IACS UR M56) and tables. What has fewer than two sources is marked
@@ -276,6 +278,86 @@ Correct programs differ in these; this one does as follows.
     for deflection*; the heights are from memory: *unverified*.
 """
 
+RINGS = """
+## Rings and planetary stages
+
+A ring is a wheel of negative teeth and diameters, as in ISO 21771, so that all formulas hold with
+their signs: u, a and d_2 are negative, and a positive shift moves the ring's profile towards its
+centre. `GearPair.internal` makes the pair. What differs from wheels outside:
+
+"""
+# quantity, of a ring, source
+OF_RINGS = (
+    (
+        "Y_F, Y_S",
+        "tangent at 60 degrees, T = π/6 in H; rho_F with abs(z_n) cos² theta - 2 G",
+        "memory; both printed rings are met",
+    ),
+    (
+        "rho_fPv",
+        "rho_a0 + (x_0 + h_a0 - rho_a0)^1.95/(3.156 · 1.036^z_0) of its pinion-type cutter in E, "
+        "G, s_Fn, h_F and rho_F; without a cutter the round of its rack",
+        "memory; both printed rings are met",
+    ),
+    (
+        "c'",
+        "1/z_n2 = 0, its x_2 counts; the external gear is the pinion",
+        "both printed rings are met",
+    ),
+    (
+        "Z_D",
+        "1 (2019, eps_beta > 0: as outside, *unverified*)",
+        "printed; a program of DIN 3990-11",
+    ),
+    (
+        "Y_B",
+        "1.15 ln(8.324 m_n/s_R) for s_R/m_n of 1.75 to 3.5, at least 1, then 1; refused up to 1.75",
+        "memory: *unverified* below 3.5",
+    ),
+    (
+        "m_red",
+        "1/(p_1/m_1 + p_2/m_2), m = J/(b r_b²); p: planets at a sun or ring, 1 of a planet, 0 of a "
+        "ring that the casing holds",
+        "printed of sun and of fixed ring; a public program; of a ring that turns *unverified*",
+    ),
+    (
+        "f_sh of a sun",
+        "B* = 1 + 2 (100 - k)/k for 1, k = 100/p per cent",
+        "memory: *unverified*, as is K_Hbeta of planetary meshes: method C has no pins. Give it",
+    ),
+    ("helical rings, edition 2019", "the same laws", "no printed value: Y_F *unverified*"),
+)
+PLANETS = """
+s_R reaches from the root circle to `Gear.outside_diameter`; without one it is 3.5 m_n, which is
+said beside Y_B. `Practice.meshes` holds p_1 and p_2. Not covered: bending of the ring between its
+supports, planets whose rim is thin on a bearing but for Y_B by s_R/h_t. Each mesh has its own K_v;
+the printed reports take the larger of both for both.
+
+`gearopt.physics.planetary.loads` makes the operations of both meshes from that of the sun against
+the carrier: F_t is T/(N r) without K_gamma, load cycles are N a relative turn for sun and ring, one
+a flank for a planet, whose `reversed_load` gives Y_M = 0.7. K_gamma is given (`given={"K_gamma":
+1.1}`), or follows from the number of planets by a rule that is named (`mesh_load_factor`):
+
+"""
+SOURCES = {
+    "wind": "a public program; 1.10 is printed, too",
+    "class society": "a vendor's help on the rules of one, recomputed",
+    "square root": "memory: 1 + 0.25 sqrt(N - 3)",
+}
+EXAMPLE = """
+```python
+from gearopt.physics.gears import Cutter
+from gearopt.physics.planetary.loads import mesh_load_factor, with_ring
+
+ring = GearPair.internal(3.0, 33, -87, 30.0, cutter=Cutter(25, tip_radius=0.3))
+load = with_ring(operation, planets=3, ratio=33 / 21, held=True)  # of the sun against the carrier
+planet = Material("Eh", "MQ", reversed_load=True)
+given = {"K_gamma": mesh_load_factor(3, "wind")}
+rating = rate(ring, load.operation, (planet, steel), Practice(meshes=load.meshes), given)
+print([round(s, 2) for s in rating.bending_safety + rating.contact_safety], rating.unverified)
+```
+"""
+
 
 def page() -> str:
     """Return the page as the program computes it now."""
@@ -283,6 +365,7 @@ def page() -> str:
     parts = (
         HEAD + "\n## Formulas\n\n" + grid(heads, list(FORMULAS)),
         CHOICES,
+        _rings(),
         _cases(),
         _smooth(),
         _factors(),
@@ -290,6 +373,18 @@ def page() -> str:
         _refusals(),
     )
     return "".join(parts)
+
+
+def _rings() -> str:
+    """Return what differs for rings and planetary stages."""
+    rows = []
+    for name, rule in SHARING_RULES.items():
+        values = [f"{mesh_load_factor(n, name):.4g}" for n in range(3, 8)]
+        source = SOURCES[name] + ("" if rule.verified else ": *unverified*")
+        rows.append((name, *values, source))
+    of_rules = grid(("planets", "3", "4", "5", "6", "7", "source"), rows)
+    heads = "quantity", "of a ring", "source"
+    return RINGS + grid(heads, list(OF_RINGS)) + PLANETS + of_rules + EXAMPLE
 
 
 def _cases() -> str:
@@ -312,6 +407,14 @@ def _cases() -> str:
         "stage 1": "The same report: sun and planet of stage 1\n\nz 19/17, m_n 45, spur, b 491, a "
         "863, x 0.6170/0.8021, k m_n -10.861; F_t 779.5 kN a planet, v 1.60 m/s; K_v 1.01, K_Hbeta "
         "1.15\ngiven as printed, otherwise as stage 2. `stage_01.rtf`.",
+        "ring 2": "The same report: planet and ring of stage 2\n\nz 36/-93, m_n 21, a -584, x "
+        "0.5039/0.1171, racks 1.25/0.38/1.0 and 1.25/0.30/1.0, ring shaped by a cutter z_0 30, "
+        "x_0 0, rho_a0 0.30 and held\nby the casing, outside 2148.82, V 240 HBW, 290/700 MPa, R_z "
+        "8 um; C_a 5.25 um, the mean of the printed; K_Hbeta 1.15 given, K_v not: 1.06 is printed "
+        "of this mesh.",
+        "ring 1": "The same report: planet and ring of stage 1\n\nz 17/-56, m_n 45, a -863, x "
+        "0.8021/-0.5013, cutter z_0 36, outside 2994.24; K_v 1.05, K_Hbeta 1.15 given as printed, "
+        "otherwise as stage 2.",
     }
     parts = ["\n## Published cases\n\n" + UNITS]
     for name, (make, rows) in iso6336_cases.CASES.items():

@@ -117,3 +117,14 @@ def test_python_of_the_pages_on_ratings_runs(capsys, name):
     names = [(m, k) for k in ("bending", "contact") for m in ("pinion", "wheel")]
     of_load = [v**2 if k == "contact" else v for v, (_, k) in zip(values, names, strict=True)]
     assert names[of_load.index(min(of_load))] == (member, mode)
+
+
+def test_python_of_the_page_on_rings_runs_after_that_of_pairs(capsys):
+    """It prints four safety factors and names what no second source has."""
+    known = {}
+    for part in page("iso6336.md").split("```python\n")[1:]:
+        exec(compile(part.split("```")[0], "iso6336.md", "exec"), known)
+    printed = capsys.readouterr().out.splitlines()[-1]
+    numbers, names = re.fullmatch(r"\[(.*)\] \((.*)\)", printed).groups()
+    assert all(float(n) > 0.5 for n in numbers.split(", "))
+    assert "'K_Hbeta'" in names
