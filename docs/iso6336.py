@@ -336,7 +336,8 @@ the printed reports take the larger of both for both.
 `gearopt.physics.planetary.loads` makes the operations of both meshes from that of the sun against
 the carrier: F_t is T/(N r) without K_gamma, load cycles are N a relative turn for sun and ring, one
 a flank for a planet, whose `reversed_load` gives Y_M = 0.7. K_gamma is given (`given={"K_gamma":
-1.1}`), or follows from the number of planets by a rule that is named (`mesh_load_factor`):
+1.1}`; else it is 1 and *unverified*), or follows from the number of planets by a rule that is named
+(`mesh_load_factor`):
 
 """
 SOURCES = {

@@ -8,7 +8,7 @@ import pytest
 
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.physics.blanks import SOLID, Blank
-from gearopt.physics.gears import Rack, reference_diameter
+from gearopt.physics.gears import GearPair, Rack, reference_diameter
 from gearopt.physics.geometry.fillet import profile
 
 RACKS = (Rack(math.radians(20.0)),) * 2
@@ -143,3 +143,12 @@ def test_errors_of_the_reference_circle_that_the_docs_tell(shift, solid, webbed)
             hollow.append(100.0 * (light / (light + exact - disc) - 1.0))
     assert solid[0] < min(whole) and max(whole) < solid[1]
     assert webbed[0] < min(hollow) and max(hollow) < webbed[1]
+
+
+@pytest.mark.parametrize("blank", [SOLID, MADE, Blank(bore=60.0)])
+def test_an_internal_gear_is_a_tube_of_any_blank(blank):
+    """From its reference circle, 284, to its outside, 340 mm, 40 mm wide."""
+    gear = replace(GearPair.internal(4.0, 25, -71, 40.0).wheel, outside_diameter=-340.0)
+    assert blank.volume(gear) == pytest.approx(40.0 * ring(340.0, 284.0), rel=1e-12)
+    body = blank.body(gear)
+    assert (body.web_thickness, body.bore) == (None, None)

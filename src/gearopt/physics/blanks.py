@@ -10,7 +10,7 @@ import numpy as np
 
 from gearopt.frozen import dataclass
 from gearopt.physics.choosing import choose
-from gearopt.physics.gears import Gear
+from gearopt.physics.gears import Gear, is_internal
 
 HUB = 1.6  # usual diameter of a hub over its bore
 HUB_TOLERANCE = 1e-9  # of the diameter: what is this close to the hub counts as touching it
@@ -98,9 +98,9 @@ class Blank:
         """Return (pi/4) b (d^2 - (1 - b_s/b)((d_f - 2 s_R)^2 - (h d_i)^2) - d_i^2) [mm3].
 
         What does not fit is not taken off. Teeth count as the ring between root and reference
-        circle, as in `Gear.volume`.
+        circle, as in `Gear.volume`. A ring is a tube, whose rim ends at its outside, of any blank.
         """
-        if self.solid:
+        if self.solid or is_internal(gear.teeth):
             return gear.volume
         off: Any = self.where_bore(gear, self.bore**2, 0.0)
         if self.has_web:

@@ -206,6 +206,7 @@ def test_what_no_source_confirms_of_rings_is_said():
     helical = rate(ring_of(beta=0.2), LOAD, (EH, V), Practice(meshes=(1.0, 3.0)))
     for symbol, words in (
         ("N", "mass of a ring that turns"),
+        ("K_gamma", "all planets carry alike"),
         ("K_Hbeta", "method C has no planets on pins"),
         ("Y_F", "helical rings"),
     ):

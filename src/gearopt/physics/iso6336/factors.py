@@ -143,6 +143,13 @@ def _rim(case: Case, values: Values) -> Doubt:
     return True, f"rim of the ring of {THICK_RING:g} m_n taken for granted" if assumed else ""
 
 
+def _sharing(case: Case, values: Values) -> Doubt:
+    """Doubts of K_gamma = 1, which is of one mesh."""
+    if case.practice.meshes is None:
+        return True, ""
+    return False, "1 takes for granted that all planets carry alike: give K_gamma"
+
+
 def _tolerance(case: Case, values: Values) -> Doubt:
     outside = beyond(case.pair, case.practice.grades, case.practice.tolerances)
     return not outside, f"{', '.join(outside)} outside ISO 1328-1" if outside else ""
@@ -285,6 +292,7 @@ def _lubrication(case: Case, values: Values) -> Doubt:
 
 
 DOUBTS: dict[str, Callable[[Case, Values], Doubt]] = {
+    "K_gamma": _sharing,
     **dict.fromkeys(("f_pb", "f_falpha", "f_ma"), _tolerance),
     "c_prime": _stiffness,
     "c_gamma_alpha": _stiffness,

@@ -88,9 +88,10 @@ def with_ring(sun: Operation, planets: int, ratio: Any, held: bool) -> MeshLoad:
 
 
 def turned(load: MeshLoad, ratio: Any) -> MeshLoad:
-    """Return a load whose wheel is taken as the pinion, as of a sun with more teeth than a planet.
+    """Return a load whose wheel is taken as the pinion, ratio u of the pair as the load has it.
 
-    ratio u of the pair as the load has it.
+    For AGMA, whose pinion has fewer teeth, of a sun with more teeth than a planet; ISO 6336 takes
+    the sun as the pinion, whose twist it counts.
     """
     (first, second), given = load.operation.contacts, load.operation
     operation = replace(given, pinion_speed=given.pinion_speed / ratio, contacts=(second, first))
