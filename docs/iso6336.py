@@ -297,7 +297,7 @@ OF_RINGS = (
         "rho_fPv",
         "rho_a0 + (x_0 + h_a0 - rho_a0)^1.95/(3.156 · 1.036^z_0) of its pinion-type cutter in E, "
         "G, s_Fn, h_F and rho_F; without a cutter the round of its rack",
-        "memory; both printed rings are met",
+        "memory; both printed rings are met, s_Fn of the fillet that the cutter cuts within 2 %",
     ),
     (
         "c'",

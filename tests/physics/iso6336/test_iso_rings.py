@@ -7,6 +7,7 @@ import pytest
 from iso6336_cases import RING_1, RING_2, case_ring_1, case_ring_2, case_stage_2
 
 from gearopt.physics.gears import Cutter, GearPair, Rack
+from gearopt.physics.geometry.fillet import fillet_end, fillet_point
 from gearopt.physics.iso6336 import bending_factors as bending
 from gearopt.physics.iso6336 import stiffness
 from gearopt.physics.iso6336.batch import rate_rows, spectrum_rows
@@ -16,6 +17,7 @@ from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.iso6336.rating import rate, rate_spectrum
 from gearopt.physics.iso6336.refusals import REFUSALS, refusal
 from gearopt.physics.iso6336.table import tooth_table
+from gearopt.physics.iso6336.tooth_form import tangent_theta, virtual_gear
 from gearopt.physics.rating import Operation
 
 EH, V = Material("Eh", "MQ"), Material("V alloy", "MQ", 300.0, yield_strength=700.0)
@@ -215,3 +217,36 @@ def test_what_no_source_confirms_of_rings_is_said():
     newer = rate(ring_of(), LOAD, (EH, V), Practice(edition="2019"))
     assert "Y_F" in newer.unverified
     assert newer.factors["Z_BD"].value[1] == 1.0
+
+
+def tangent_section(gear, slope):
+    """Thickness and place [modules] where a fillet's tangent has an angle to the centre line.
+
+    The tangent is that of finite differences.
+    """
+    theta = np.linspace(float(fillet_end(gear)), 0.5 * np.pi - 1e-4, 4001)
+    point = fillet_point(gear, theta)
+    turned = np.arctan2(np.abs(np.gradient(point.x)), np.abs(np.gradient(point.y)))
+    at = int(np.argmin(np.abs(turned - slope)))
+    return 2.0 * point.x[at] / gear.normal_module, point.y[at] / gear.normal_module
+
+
+@pytest.mark.parametrize("make", [case_ring_2, case_ring_1])
+def test_the_section_is_where_a_tangent_of_60_degrees_touches(make):
+    gear = virtual_gear(make().pair.wheel)
+    thickness, place = tangent_section(gear, np.pi / 3.0)
+    theta = 0.5 * np.pi - tangent_theta(gear)
+    point = fillet_point(gear, theta)
+    assert (thickness, place) == pytest.approx((2.0 * point.x, point.y), rel=1e-3)
+
+
+@pytest.mark.parametrize(("teeth", "shift"), [(20, 0.0), (30, 0.1), (40, -0.1)])
+@pytest.mark.parametrize("make", [case_ring_2, case_ring_1])
+def test_the_virtual_round_is_near_the_fillet_that_the_cutter_leaves(make, teeth, shift):
+    """s_Fn of the virtual rack within 2 %, its place within 0.12 modules, of the cut fillet."""
+    cutter = Cutter(teeth, shift, tip_radius=0.3)
+    gear = replace(make().pair.wheel, cutter=cutter)
+    cut = tangent_section(gear, np.pi / 3.0)
+    virtual = tangent_section(virtual_gear(gear), np.pi / 3.0)
+    assert virtual[0] == pytest.approx(cut[0], rel=0.02)
+    assert virtual[1] == pytest.approx(cut[1], abs=0.12)
