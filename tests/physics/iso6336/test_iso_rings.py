@@ -73,8 +73,15 @@ def rows_of(count, seed):
     return pair, load
 
 
-@pytest.mark.parametrize("edition", ["2006", "2019"])
-@pytest.mark.parametrize("beta", [0.0, 0.2])
+@pytest.mark.parametrize(
+    ("edition", "beta"),
+    [
+        ("2006", 0.0),
+        ("2019", 0.2),
+        pytest.param("2006", 0.2, marks=pytest.mark.slow),
+        pytest.param("2019", 0.0, marks=pytest.mark.slow),
+    ],
+)
 def test_rows_are_ratings(edition, beta):
     count = 30
     pair, load = rows_of(count, 5)
