@@ -330,7 +330,8 @@ OF_RINGS = (
 PLANETS = """
 s_R reaches from the root circle to `Gear.outside_diameter`; without one it is 3.5 m_n, which is
 said beside Y_B. `Practice.meshes` holds p_1 and p_2. Not covered: bending of the ring between its
-supports, planets whose rim is thin on a bearing but for Y_B by s_R/h_t. Each mesh has its own K_v;
+supports, planets whose rim is thin on a bearing but for Y_B by s_R/h_t; interference is told by
+`geometry.internal`, not by a rating. Each mesh has its own K_v;
 the printed reports take the larger of both for both.
 
 `gearopt.physics.planetary.loads` makes the operations of both meshes from that of the sun against

@@ -33,8 +33,8 @@ SENTENCES = dict(
         REFUSALS[1:],
         (
             "a ring is the wheel of a pair and has more teeth than its pinion",
-            "the sum of the profile shifts is too small for any centre distance, or a given one "
-            "makes the base circles overlap",
+            "the sum of the profile shifts is too small (with a ring too large) for any centre "
+            "distance, or a given one makes the base circles overlap",
             "the flanks of a tool meet before its tip round begins",
             "a root circle has no diameter",
             "a tip circle lies inside its base circle",
@@ -71,6 +71,8 @@ def geometry_factors(pair: GearPair, load: str = "highest single") -> GeometryFa
     load as of `bending.loaded_tooth`. No exception for any finite numbers, and no NaN without a
     refusal. Flaws that a designer may accept refuse nothing: see `geometry.flaws`.
     """
+    if np.ndim(fits := has_teeth(pair)) == 0 and not fits:  # z1 + z2 may be 0
+        return GeometryFactors(np.nan, (np.nan, np.nan), 1)
     mesh = mesh_of(pair)
     pitting = pitting_factor(mesh)
     bending = [f.value for f in bending_factors(pair, load)]

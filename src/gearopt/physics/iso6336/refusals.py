@@ -15,8 +15,8 @@ from gearopt.physics.iso6336.tooth_form import ToothForm, tooth_forms
 
 SENTENCES = {
     "internal gear": "a ring is the wheel of a pair and has more teeth than its pinion",
-    "no centre distance": "the sum of the profile shifts is too small for any centre distance, or "
-    "a given one makes the base circles overlap",
+    "no centre distance": "the sum of the profile shifts is too small (with a ring too large) for "
+    "any centre distance, or a given one makes the base circles overlap",
     "pointed tool": "the flanks of a tool meet before its tip round begins",
     "no root": "a root circle has no diameter",
     "no involute": "a tip circle lies inside its base circle",
@@ -41,6 +41,8 @@ def refusal(pair: GearPair, shift: str = "nominal") -> Any:
 
     shift: as of `tooth_form.tooth_forms`. No exception for any finite numbers.
     """
+    if np.ndim(fits := has_teeth(pair)) == 0 and not fits:  # z1 + z2 may be 0
+        return 1
     ratio = contact_path(pair).transverse_ratio
     forms = tooth_forms(pair, ratio, shift)
     return refusal_of_teeth(pair, ratio, usable_path(pair).transverse_ratio, forms)
