@@ -47,8 +47,8 @@ def ring_rim_factor(rim: Any) -> Any:
     The two do not quite meet: 0.9963 against 1, and at least 1 is taken. rim: s_R/m_n outside the
     root circle. Source: ISO 6336-3:2006, 9 [memory: unverified].
     """
-    found = np.maximum(1.15 * np.log(8.324 / np.maximum(rim, THIN_RING)), 1.0)
-    return choose(rim > THIN_RING, choose(rim >= THICK_RING, 1.0, found), np.nan)
+    thin = np.maximum(1.15 * np.log(8.324 / np.maximum(rim, THIN_RING)), 1.0)
+    return choose(rim > THIN_RING, choose(rim >= THICK_RING, 1.0, thin), np.nan)
 
 
 def deep_tooth_factor(virtual_ratio: Any, grade: Any) -> Any:
