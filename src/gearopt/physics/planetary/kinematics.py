@@ -152,7 +152,7 @@ def _with_drivers(
         rolling = first if sign > 0 else second
         if rolling < 0:
             return None
-        driver = mesh.first if sign > 0 else mesh.second
+        driver = mesh.second if rolling and sign < 0 else mesh.first
         powers.append(MeshPower(mesh, driver, rolling, first + second))
     torques = dict(zip(outside, known[len(meshes) :], strict=True)) | {source: ONE}
     given, taken = -torques[sink] * turning[sink], turning[source]

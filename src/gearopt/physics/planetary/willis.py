@@ -20,7 +20,7 @@ from gearopt.physics.choosing import choose
 class Use:
     """Sets, each by the names of sun, ring and carrier, and which member does what.
 
-    shared: both sets have the same planets. free: the member that turns without a load, of two.
+    shared: both sets have the same planets.
     """
 
     sets: tuple[tuple[str, str, str], ...]
