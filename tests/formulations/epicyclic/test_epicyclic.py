@@ -43,7 +43,7 @@ USES = {
         Use((("sun1", "ring1", "c"), ("c", "ring2", "out")), "sun1", "out", ("ring1", "ring2")),
     ],
 }
-SIZES = {SIMPLE: 9, STEPPED: 7, WOLFROM: 5, COUPLED: 4}
+SIZES = {SIMPLE: 9, STEPPED: 7, WOLFROM: 5, COUPLED: 3}
 
 
 def meshes_of(asked, z):
@@ -153,7 +153,7 @@ def request(seed):
     return replace(asked, ratio=ratio, tolerance=tolerance)
 
 
-@pytest.mark.parametrize("seed", few(range(50), 12))
+@pytest.mark.parametrize("seed", few(range(50), 8))
 def test_the_best_is_that_of_all_trains(seed):
     asked = request(seed)
     known = best(asked, Clock())
@@ -179,7 +179,7 @@ def test_a_bound_rises_on_the_way_and_a_budget_ends_the_search():
         (3,),
         (LOSSES, LOSSES),
         RING,
-        F(116),
+        F(117),
         F(1, 10_000),
     )
     events = []
@@ -187,9 +187,8 @@ def test_a_bound_rises_on_the_way_and_a_budget_ends_the_search():
     bounds = [event.bound for event in events if event.bound is not None]
     assert whole_search.done and bounds == sorted(bounds) and bounds[0] <= whole_search.key[0]
     assert len(bounds) > 1
-    stopped = best(replace(asked, ratio=F(117)), Clock(Budget(evaluations=1)))
-    assert not stopped.done
-    assert stopped.bound <= best(replace(asked, ratio=F(117)), Clock()).key[0]
+    stopped = best(asked, Clock(Budget(evaluations=1)))
+    assert not stopped.done and stopped.bound <= whole_search.key[0]
 
 
 def test_a_module_of_its_own_for_the_second_step():

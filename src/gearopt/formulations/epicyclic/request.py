@@ -66,7 +66,7 @@ class Request:
         return GEARS[self.arrangement]
 
     def parts(self, z: Columns) -> list[tuple[Any, Any]]:
-        """r = b/a of every set as (a, b) in whole numbers."""
+        """Teeth ratio r = b/a of every set as (a, b) in whole numbers."""
         if self.arrangement == SIMPLE:
             return [(z[0], z[2])]
         if self.arrangement == STEPPED:

@@ -8,7 +8,6 @@ train. Lemma 89 of docs/proofs.md.
 
 import math
 from collections.abc import Iterator, Sequence
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -185,8 +184,8 @@ def _completed(request: Request, firsts: IntArray, seconds: IntArray | None) -> 
         return firsts
     if seconds is None:
         (low, high), (r_low, r_high) = request.teeth[-2:]
-        needed = (firsts[:, 0] + firsts[:, 1]) / Fraction(request.modules).limit_denominator()
-        base = np.ceil(needed.astype(float) - request.coaxial - 1e-9).astype(np.int64)
+        needed = (firsts[:, 0] + firsts[:, 1]) / float(request.modules)
+        base = np.ceil(needed - request.coaxial - 1e-9).astype(np.int64)
         planets = np.arange(low, high + 1)
         more = np.arange(2 * request.coaxial + 1)
         shape = (len(firsts), len(planets), len(more))

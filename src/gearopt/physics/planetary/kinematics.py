@@ -108,11 +108,11 @@ def balances(
 ) -> list[Balance]:
     """Every equilibrium in which power goes from one member (torque 1) to another.
 
-    turning: speeds of all members, that of the source above 0; held: members on which a torque acts beside these two. Of each
-    mesh the driven gear has the torque of a loss-free one times the efficiency, if the first gear
-    drives, else divided by it: all ways are tried, and those kept whose rolling power has the sign
-    that was taken, and whose output gives power. None: the train locks itself. The moments of a
-    mesh on both gears and the carrier add up to zero.
+    turning: speeds of all members, that of the source above 0; held: members on which a torque acts
+    beside these two. Of each mesh the driven gear has the torque of a loss-free one times the
+    efficiency, if the first gear drives, else divided by it: all ways are tried, and those kept
+    whose rolling power has the sign that was taken, and whose output gives power. None: the train
+    locks itself. The moments of a mesh on both gears and the carrier add up to zero.
     """
     flows = []
     for signs in product((1, -1), repeat=len(meshes)):

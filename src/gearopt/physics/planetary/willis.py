@@ -75,12 +75,12 @@ def ratio_parts(use: Use, teeth: Teeth) -> tuple[Any, Any]:
 def efficiency(use: Use, teeth: Teeth, losses: Sequence[tuple[Any, Any]]) -> Any:
     """Power given at the output over power taken at the input; 0: the train locks itself.
 
-    losses: efficiency of the sun's and the ring's mesh of every set. A central gear j that drives in
-    the frame of its carrier, T_j (n_j - n_c) > 0, gives its planets that power times the efficiency
-    of its mesh; a driven one takes it divided by it. So torques are those of a train without losses
-    whose r are r' = r eta_s^s eta_r^-t, s and t being 1 for gears that drive and -1 for others, and
-    eta = i(r')/i(r), where the powers that follow have these signs. If several ways do, the
-    lowest efficiency counts. Where the ratio is no number eta is none.
+    losses: efficiency of the sun's and the ring's mesh of every set. A central gear j that drives
+    in the frame of its carrier, T_j (n_j - n_c) > 0, gives its planets that power times the
+    efficiency of its mesh; a driven one takes it divided by it. So torques are those of a train
+    without losses whose r are r' = r eta_s^s eta_r^-t, s and t being 1 for gears that drive and -1
+    for others, and eta = i(r')/i(r), where the powers that follow have these signs. If several ways
+    do, the lowest efficiency counts. Where the ratio is no number eta is none.
     """
     above, below = ratio_parts(use, teeth)
     known: Any = inf
