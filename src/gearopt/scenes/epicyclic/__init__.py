@@ -1,0 +1,103 @@
+"""kind = "epicyclic": numbers of teeth of planetary trains, what they do, and whether they fit."""
+
+from dataclasses import replace
+from typing import Any
+
+from gearopt.formulations.epicyclic import problem
+from gearopt.formulations.epicyclic.design import EpicyclicDesign, describe
+from gearopt.formulations.epicyclic.request import ERROR, LOSS, Request
+from gearopt.optimise.certified import run
+from gearopt.optimise.comparing.plan import Model
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import untyped
+from gearopt.scenes.epicyclic.explain import moves, possible, remedies
+from gearopt.scenes.epicyclic.tables import Scene
+from gearopt.scenes.kind import Kind, examples_in
+from gearopt.scenes.plan import one_step
+from gearopt.scenes.reading.ask import Ask, unseeded
+
+UNRATED = (
+    "Nothing is rated: modules, face widths and strength are not asked here. Loads of planets are "
+    "taken as equal."
+)
+LOSSES = (
+    "Losses are those of the meshes alone, by the efficiency that the file gives each in the frame "
+    "of its carrier, whichever gear drives; bearings, seals and oil are left out."
+)
+GEOMETRY = (
+    "Teeth have an addendum of one module; interference of internal gears is not computed but for "
+    "the least difference of teeth."
+)
+LOCKED = "The train locks itself: with these losses no torque at the input turns the output."
+SHIFTED = "Centre distances are made equal by profile shifts, which are not computed here."
+
+
+def solved(scene: Scene, ask: Ask, known: Result | None) -> Result:
+    """The best train of a file, described."""
+    request = scene.request()
+    result, outcome = run(problem(request), ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
+    unit = {"unit": ""}
+    if result.value is None or outcome.x is None:
+        return replace(result, objective=result.objective | unit)
+    teeth = [round(float(z)) for z in outcome.x]
+    design = describe(request, teeth)
+    report: dict[str, Any] = {
+        "assumptions": [UNRATED, LOSSES, GEOMETRY],
+        "notes": [
+            *([LOCKED] if design.efficiency == 0.0 else []),
+            *([SHIFTED] if _shifted(request, teeth) else []),
+        ],
+    }
+    if request.ratio is not None:
+        report |= {"achieved": _achieved(design, request)}
+    report |= {"best": {ERROR: "nearest", LOSS: "of least loss"}.get(request.goal, "smallest")}
+    return replace(
+        result,
+        objective=result.objective | unit,
+        design=untyped(design),
+        report=report,
+    )
+
+
+def _shifted(request: Request, teeth: list[int]) -> bool:
+    return any(abs(r - p - c) > 1e-9 for r, p, c in request.rings(teeth))
+
+
+def _achieved(design: EpicyclicDesign, request: Request) -> str:
+    """The ratio that the best teeth make, beside the one that is asked for."""
+    if design.ratio_error_percent == 0.0:
+        return f"ratio {design.ratio:.10g} exactly"
+    off = design.ratio_error_percent
+    return f"ratio {design.ratio:.10g} instead of {float(request.ratio or 0):.10g} ({off:+.3g} %)"
+
+
+def idle(scene: Scene, method: str | None) -> dict[str, str]:
+    """Options of `solve` that change nothing, each with the reason."""
+    return {"top": "a planetary train has no list of next best answers"} | unseeded(method)
+
+
+def methods_to_compare(scene: Scene) -> tuple[str, ...]:
+    """Methods of a comparison that names none."""
+    return ("exact", "annealing", "nsga2")
+
+
+def posed(scene: Scene, method: str) -> Model:
+    """The problem of every method."""
+    return Model(problem(scene.request()), "Numbers of teeth")
+
+
+ABOUT = {  # files in examples, that of the kind first
+    "epicyclic": "a planetary train: teeth nearest to a ratio, speeds, torques, efficiency",
+}
+KIND = Kind(
+    scene=Scene,
+    examples=examples_in(__file__, ABOUT),
+    steps=one_step(solved),
+    posed=posed,
+    methods_to_compare=methods_to_compare,
+    methods=("exact",),
+    possible=possible,
+    moves=moves,
+    remedies=remedies,
+    idle=idle,
+)

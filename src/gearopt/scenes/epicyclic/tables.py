@@ -1,0 +1,354 @@
+"""The tables of a file of kind epicyclic, and what they ask in plain numbers."""
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from gearopt.formulations.epicyclic.request import (
+    COUPLED,
+    ERROR,
+    GEARS,
+    LOSS,
+    RING,
+    SIMPLE,
+    STEPPED,
+    WOLFROM,
+    Request,
+)
+from gearopt.physics.planetary.willis import Use, ratio_parts
+from gearopt.scenes.reading.fields import (
+    Reads,
+    Table,
+    choice,
+    number,
+    refuse,
+    speed_ratio,
+    whole,
+    words,
+)
+from gearopt.scenes.reading.lists import mended, several, span
+
+MIN_TEETH, MAX_TEETH, MAX_PLANETS, MAX_SHIFTED = 4, 1000, 12, 20
+SETS = {  # of every arrangement: sun, ring, carrier
+    SIMPLE: (("sun", "ring", "carrier"),),
+    STEPPED: (("sun", "ring", "carrier"),),
+    WOLFROM: (("sun", "ring1", "carrier"), ("sun", "ring2", "carrier")),
+    COUPLED: (("sun1", "ring1", "carrier1"), ("sun2", "ring2", "carrier2")),
+}
+USED = {  # who does what where the file does not say: fixed, input, output, by preference
+    SIMPLE: (("ring", "sun", "carrier"), ("sun", "carrier", "ring"), ("carrier", "ring", "sun")),
+    WOLFROM: (("ring1", "ring2", "sun"), ("sun", "ring1", "ring2"), ("ring2", "ring1", "sun")),
+}
+USED[STEPPED] = USED[SIMPLE]
+MEMBER = choice(*dict.fromkeys(n for sets in SETS.values() for names in sets for n in names))
+TEETH = span(whole(20, MIN_TEETH, MAX_TEETH), [17, 60], single=True)
+SAMPLES = ([(17, 60), (23, 71)], [(31, 79), (19, 97)])  # teeth by which a coupling is tried
+
+
+def _fixed() -> Reads:
+    """Read one member or a list of them."""
+    listed = several(MEMBER, ["ring1", "ring2"])
+
+    def read(value: Any, example: Any) -> tuple[str, ...]:
+        members: tuple[str, ...] = listed.reader(
+            [value] if isinstance(value, str) else value, listed.example
+        )
+        return members
+
+    return Reads(read, "ring", {"anyOf": [MEMBER.schema, listed.schema]})
+
+
+def _joined() -> Reads:
+    """Read two members that turn together."""
+
+    def read(value: Any, example: Any) -> tuple[str, str]:
+        if isinstance(value, tuple):
+            return value[0], value[1]
+        if not isinstance(value, list) or len(value) != 2:
+            raise refuse("is not two members that turn together", example)
+        right, rule = mended(MEMBER, value)
+        if rule:
+            raise refuse(f"has a member that {rule}", None if None in right else right)
+        return value[0], value[1]
+
+    two = {"type": "array", "items": MEMBER.schema, "minItems": 2, "maxItems": 2}
+    return Reads(read, ["ring1", "carrier2"], two)
+
+
+def _signed_ratio() -> Reads:
+    """Read a ratio of speeds of either sign, exactly."""
+    item = speed_ratio(5, 0)
+
+    def read(value: Any, example: Any) -> Fraction:
+        if isinstance(value, str) and value.strip().startswith("-"):
+            return -Fraction(item.reader(value.strip()[1:], example))
+        if isinstance(value, Fraction):
+            return value
+        below = not isinstance(value, str | bool | list | dict) and value is not None and value < 0
+        return -Fraction(item.reader(-value, example)) if below else item.reader(value, example)
+
+    text = {"type": "string", "pattern": r"^\s*-?\s*[0-9]+\s*/\s*[0-9]+\s*$"}
+    return Reads(read, 5, {"anyOf": [{"type": "number"}, text]})
+
+
+class Train(Table):
+    """The train: which members there are, which are used, and how many planets."""
+
+    arrangement: Annotated[str, choice(SIMPLE, STEPPED, WOLFROM, COUPLED)] = Field(
+        description="simple: sun, planets, ring, carrier; stepped: planets of two steps, the sun "
+        "on planet1, the ring on planet2; wolfrom: two rings, ring1 and the sun on planet1, ring2 "
+        "on planet2 (3K); coupled: two simple sets with members joined"
+    )
+    planets: Annotated[int, whole(3, 1, MAX_PLANETS)] = Field(
+        3, description="Number of planets, of coupled sets those of the first"
+    )
+    planets2: Annotated[int | None, whole(3, 1, MAX_PLANETS)] = Field(
+        None, description="Planets of the second of two coupled sets; planets without it"
+    )
+    ratio: Annotated[Fraction | None, _signed_ratio()] = Field(
+        None,
+        description="Ratio to come near to, input over output speed, exactly as written, also as a "
+        'fraction "-80/21"; below 0 where they turn against each other. Without it teeth are '
+        "given, or chosen by the objective alone",
+    )
+    joined: Annotated[tuple[tuple[str, str], ...], several(_joined(), [["ring1", "carrier2"]])] = (
+        Field((), description="Members of coupled sets that turn together, in pairs")
+    )
+    fixed: Annotated[tuple[str, ...], _fixed()] = Field(
+        (), description='Member, or members, that stand still; "ring", or "ring1", where it is free'
+    )
+    input: Annotated[str | None, MEMBER] = Field(
+        None, description="Member that is driven; the sun where it is free"
+    )
+    output: Annotated[str | None, MEMBER] = Field(
+        None, description="Member that drives the load; by default the one left"
+    )
+    spacing: Annotated[str, choice("equal", "nearest")] = Field(
+        "equal",
+        description="equal: planets are spaced equally, which few numbers of teeth allow; nearest: "
+        "at the nearest places that teeth have",
+    )
+    module_ratio: Annotated[Fraction | None, number(0.8, Fraction(1, 10), 10, fraction=True)] = (
+        Field(
+            None,
+            description="Module of the second step (planet2 and its ring) over that of the first; "
+            "1 without it",
+        )
+    )
+
+
+class Teeth(Table):
+    """Numbers of teeth: of every gear of the arrangement a range, or one number."""
+
+    sun: Annotated[tuple[int, int] | None, TEETH] = Field(None, description="Teeth of the sun")
+    planet: Annotated[tuple[int, int] | None, TEETH] = Field(
+        None, description="Teeth of the planets of a simple set"
+    )
+    ring: Annotated[tuple[int, int] | None, TEETH] = Field(None, description="Teeth of the ring")
+    sun1: Annotated[tuple[int, int] | None, TEETH] = Field(
+        None, description="Teeth of the sun of the first coupled set"
+    )
+    planet1: Annotated[tuple[int, int] | None, TEETH] = Field(
+        None, description="Teeth of the first step of planets, or planets of the first set"
+    )
+    ring1: Annotated[tuple[int, int] | None, TEETH] = Field(
+        None, description="Teeth of the first ring"
+    )
+    sun2: Annotated[tuple[int, int] | None, TEETH] = Field(
+        None, description="Teeth of the sun of the second coupled set"
+    )
+    planet2: Annotated[tuple[int, int] | None, TEETH] = Field(
+        None, description="Teeth of the second step of planets, or planets of the second set"
+    )
+    ring2: Annotated[tuple[int, int] | None, TEETH] = Field(
+        None, description="Teeth of the second ring"
+    )
+
+
+ETA = number(0.99, Fraction(1, 2), 1)
+
+
+class Efficiency(Table):
+    """Efficiency of one mesh in the frame of its carrier, whichever gear drives."""
+
+    sun: Annotated[Fraction, ETA] = Field(
+        Fraction(99, 100), description="Sun and planet", json_schema_extra={"default": 0.99}
+    )
+    ring: Annotated[Fraction, ETA] = Field(
+        Fraction(995, 1000),
+        description="Planet and ring (ring1)",
+        json_schema_extra={"default": 0.995},
+    )
+    sun2: Annotated[Fraction | None, ETA] = Field(
+        None, description="Sun and planet of the second coupled set; as sun without it"
+    )
+    ring2: Annotated[Fraction | None, ETA] = Field(
+        None, description="Planet and ring2; as ring without it"
+    )
+
+
+class Limits(Table):
+    """What every train must meet, beside the assembly of its planets."""
+
+    ratio_tolerance: Annotated[Fraction | None, number("1 %", 0, Fraction(1, 2), percent=True)] = (
+        Field(None, description="Largest relative error of the ratio")
+    )
+    minimum_efficiency: Annotated[Fraction | None, number(0.9, 0, 1)] = Field(
+        None, description="Least efficiency of the train"
+    )
+    ring_minus_planet: Annotated[int, whole(10, 1, 100)] = Field(
+        10,
+        description="Least difference of teeth of a ring and its planets; 10 is a rule of thumb "
+        "against interference of tips for 20 deg and full teeth (unverified)",
+    )
+    neighbour_clearance: Annotated[Fraction, number(0.5, 0, 50, zero=True)] = Field(
+        Fraction(1, 2),
+        description="Least gap between tip circles of neighbouring planets, in modules, of an "
+        "addendum of one module",
+        json_schema_extra={"default": 0.5},
+    )
+    coaxial_difference: Annotated[int, whole(0, 0, MAX_SHIFTED)] = Field(
+        0,
+        description="Teeth by which sun + planet and ring - planet may differ, for profile shifts "
+        "to make up; 0: centre distances are equal without shifts",
+    )
+
+
+class Aim(Table):
+    """What to minimise."""
+
+    minimise: Annotated[str, choice(ERROR, LOSS, RING)] = Field(
+        ERROR,
+        description="ratio_error: |achieved/asked - 1|; loss: 1 - efficiency; ring_teeth: those of "
+        "the larger ring. By default ratio_error, without a ratio ring_teeth",
+    )
+
+
+class Scene(Table):
+    """A planetary train."""
+
+    title: Annotated[str, words()] = Field("", description="Title of the report")
+    source: Annotated[str, words()] = Field(
+        "", description="Where the data and the expected value come from"
+    )
+    train: Train
+    teeth: Teeth
+    efficiency: Efficiency = Field(default_factory=Efficiency)
+    limits: Limits = Field(default_factory=Limits)
+    objective: Aim | None = None
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Scene":
+        gears, kind = GEARS[self.train.arrangement], self.train.arrangement
+        for name in Teeth.model_fields:
+            given = getattr(self.teeth, name) is not None
+            if given and name not in gears:
+                rule = f"is no gear of a {kind} train, which has {', '.join(gears)}"
+                raise refuse(rule, at=("teeth", name), action="remove")
+            if not given and name in gears:
+                raise refuse("is missing", at=("teeth", name))
+        for place, rule in self._idle():
+            raise refuse(rule, at=place, action="remove")
+        if self.goal == ERROR and self.train.ratio is None:
+            raise refuse("is missing: ratio_error is its error", at=("train", "ratio"))
+        if self.train.ratio == 0:
+            raise refuse("is 0: the input would stand still", at=("train", "ratio"))
+        if self.goal != ERROR and self.train.ratio and self.limits.ratio_tolerance is None:
+            rule = f"is missing: {self.goal} is minimised within it"
+            raise refuse(rule, at=("limits", "ratio_tolerance"))
+        self._check_use()
+        return self
+
+    def _idle(self) -> Iterator[tuple[tuple[str, str], str]]:
+        """Keys that change nothing, with the reason."""
+        train, kind = self.train, self.train.arrangement
+        if kind != COUPLED:
+            for place in (("train", "planets2"), ("efficiency", "sun2"), ("train", "joined")):
+                if getattr(getattr(self, place[0]), place[1]):
+                    yield place, "is of coupled sets"
+        if kind in (SIMPLE, STEPPED) and self.efficiency.ring2 is not None:
+            yield ("efficiency", "ring2"), f"is of a second ring; a {kind} train has one"
+        if kind in (SIMPLE, COUPLED) and train.module_ratio is not None:
+            yield ("train", "module_ratio"), "is of planets with two steps"
+        if train.ratio is None and self.limits.ratio_tolerance is not None:
+            yield ("limits", "ratio_tolerance"), "is that of a ratio, and none is asked"
+
+    def _check_use(self) -> None:
+        """Check that the members named are there, each used once, and that power can flow."""
+        train, use = self.train, self.use
+        own = {n for names in SETS[train.arrangement] for n in names}
+        usable = own - {"carrier"} if train.arrangement == WOLFROM else own
+        listed = [("fixed", n) for n in train.fixed]
+        listed += [(k, n) for k in ("input", "output") if (n := getattr(train, k))]
+        for key, name in listed:
+            if name not in usable:
+                known = ", ".join(sorted(usable))
+                raise refuse(f"names {name}; members are {known}", at=("train", key))
+        for key in ("input", "output"):
+            if train.arrangement == COUPLED and getattr(train, key) is None:
+                raise refuse("is missing: coupled sets have none by default", at=("train", key))
+        for one, other in train.joined:
+            if own < {one, other} | own or one[-1] == other[-1]:
+                rule = f"joins {one} and {other}, which are not of two sets"
+                raise refuse(rule, at=("train", "joined"))
+        taken = [use.source, use.sink, *use.held]
+        if len({*taken}) < len(taken):
+            raise refuse("is used twice: input, output and fixed differ", at=("train", "fixed"))
+        if len(use.names) != len(taken) + len(use.sets) - 1:
+            rule = (
+                f"leaves {len(use.names)} members, of which {len(taken)} are input, output or "
+                f"fixed: joined pairs and fixed members of two sets are three in all"
+            )
+            place = "joined" if train.arrangement == COUPLED else "fixed"
+            raise refuse(rule, at=("train", place), action="tell", write="Join or fix others")
+        if all(0 in ratio_parts(use, teeth[: len(use.sets)]) for teeth in SAMPLES):
+            raise refuse("does not turn with the input, or locks it", at=("train", "output"))
+
+    @property
+    def goal(self) -> str:
+        """What is minimised."""
+        if self.objective is not None:
+            return self.objective.minimise
+        return RING if self.train.ratio is None else ERROR
+
+    @property
+    def use(self) -> Use:
+        """Sets with their joined members, and who does what."""
+        train, sets = self.train, SETS[self.train.arrangement]
+        same: dict[str, str] = {}
+        for one, other in train.joined:
+            first, second = same.get(one, one), same.get(other, other)
+            same |= {name: first for name in (second, *(n for n in same if same[n] == second))}
+        roles = [train.fixed, (train.input or "",), (train.output or "",)]
+        taken = {name for names in roles for name in names}
+        for k, names in enumerate(USED.get(train.arrangement, ())):
+            if roles[k] in ((), ("",)):
+                roles[k] = (next((n for n in names if n not in taken), names[0]),)
+                taken |= {*roles[k]}
+        held, (source,), (sink,) = (tuple(same.get(n, n) for n in names) for names in roles)
+        renamed = tuple((same.get(a, a), same.get(b, b), same.get(c, c)) for a, b, c in sets)
+        return Use(renamed, source, sink, held, train.arrangement == WOLFROM)
+
+    def request(self) -> Request:
+        """The file in plain numbers."""
+        train, eta, limits = self.train, self.efficiency, self.limits
+        losses = ((eta.sun, eta.ring), (eta.sun2 or eta.sun, eta.ring2 or eta.ring))
+        second = (train.planets2 or train.planets,) if train.arrangement == COUPLED else ()
+        return Request(
+            train.arrangement,
+            self.use,
+            tuple(getattr(self.teeth, name) for name in GEARS[train.arrangement]),
+            (train.planets, *second),
+            losses[: len(SETS[train.arrangement])],
+            self.goal,
+            train.ratio,
+            limits.ratio_tolerance,
+            limits.minimum_efficiency,
+            limits.ring_minus_planet,
+            limits.neighbour_clearance,
+            limits.coaxial_difference,
+            train.spacing == "equal",
+            train.module_ratio or Fraction(1),
+        )
