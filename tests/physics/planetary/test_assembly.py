@@ -51,7 +51,7 @@ def check_simple(planets, suns, planet_teeth, rings):
             chi = sun * k + planets * turns  # in parts of a turn 1/(N z_p)
             at_ring = chi + ring * k  # z_p chi + z_r phi in parts 1/N of a pitch
             whole &= (at_ring % planets == 0).any(axis=0)
-        assert np.array_equal(whole, assembly.places(sun, z_p, ring) % planets == 0)
+        assert np.array_equal(whole, assembly.places(sun, z_p, z_p, ring) % planets == 0)
 
 
 def test_stepped_planets():
@@ -63,12 +63,16 @@ def test_stepped_planets():
             d = int(rng.integers(2, 7))
             p, q = max(d, p // d * d), max(d, q // d * d)
         n = int(rng.integers(2, 7))
-        known = assembly.places(s, p, r, q)
+        known = assembly.places(s, p, q, r)
         able = equally(n, [(s, p), (-r, q)])
         assert able == (known % n == 0)
         seen.add((bool(able), gcd(p, q) > 1))
         assert fits(Fraction(1, int(known)), [(s, p), (-r, q)])
     assert len(seen) == 4
+
+
+def of_two_rings(s, p, r, q, t):
+    return gcd(int(assembly.places(s, p, p, r)), int(assembly.places(s, p, q, t)))
 
 
 def test_wolfrom_sets():
@@ -77,7 +81,7 @@ def test_wolfrom_sets():
         s, p, q = (int(z) for z in rng.integers(12, 40, 3))
         r, t = s + 2 * p, s + p + q
         n = int(rng.integers(2, 5))
-        known = assembly.places_of_two_rings(s, p, r, q, t)
+        known = of_two_rings(s, p, r, q, t)
         able = equally(n, [(s, p), (-r, p), (-t, q)])
         assert able == (known % n == 0), k
         seen.add(bool(able))
@@ -89,11 +93,11 @@ def test_published_sets():
 
     5/4/13 with 6/21 is that of the public repository CKraft11/pygeartrain.
     """
-    assert assembly.places(24, 48, 92, 20) == 3 * 408
-    assert assembly.places_of_two_rings(5, 4, 13, 6, 21) % 6 != 0
-    assert assembly.places_of_two_rings(18, 36, 90, 33, 87) % 3 == 0
+    assert assembly.places(24, 48, 20, 92) == 3 * 408
+    assert of_two_rings(5, 4, 13, 6, 21) % 6 != 0
+    assert of_two_rings(18, 36, 90, 33, 87) % 3 == 0
     for s, r, n, whole in ((18, 93, 3, 37), (21, 99, 3, 40), (26, 89, 5, 23), (17, 61, 3, 26)):
-        assert assembly.places(s, 0, r) == n * whole
+        assert assembly.places(s, 7, 7, r) == n * whole
 
 
 def test_nearest_places_are_the_nearest_of_all():
@@ -111,15 +115,8 @@ def test_nearest_places_are_the_nearest_of_all():
         assert assembly.least_spacing(count, planets) == pytest.approx(min(gaps) / count)
 
 
-def test_gap_between_neighbours():
+def test_distance_of_neighbours():
     """17/22 of module 4, three planets: axes 135.09996 mm apart (REXS sample stage)."""
-    gap = assembly.neighbour_gap(78.0, 0.0, 1 / 3)
-    assert gap == pytest.approx(135.099962990372, rel=1e-12)
-    assert gap == pytest.approx(2 * 78.0 * sin(pi / 3), rel=1e-14)
-    touching = assembly.neighbour_gap(12.0, 12.0, 1 / 6)  # 2 a sin(30 deg) = a
-    assert assembly.wide_enough(touching, 0.0)
-
-
-def test_phases():
-    assert [assembly.in_step(z, n) for z, n in ((18, 3), (17, 3), (18, 4), (20, 4))] == [0, 2, 1, 0]
-    assert assembly.phase(17, 1, 3) == (2, 3)
+    apart = assembly.neighbour_distance(78.0, 1 / 3)
+    assert apart == pytest.approx(135.099962990372, rel=1e-12)
+    assert apart == pytest.approx(2 * 78.0 * sin(pi / 3), rel=1e-14)

@@ -4,8 +4,9 @@ Lengths are in modules of the first step; planets of both steps have one centre 
 columns of whole numbers, of rings positive, in the order of the gears of an arrangement.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -22,13 +23,18 @@ GEARS = {  # of every arrangement
     WOLFROM: ("sun", "planet1", "ring1", "planet2", "ring2"),
     COUPLED: ("sun1", "planet1", "ring1", "sun2", "planet2", "ring2"),
 }
+SETS = {  # places in GEARS of the sun, its planet, the ring's planet and the ring of every set
+    SIMPLE: ((0, 1, 1, 2),),
+    STEPPED: ((0, 1, 2, 3),),
+    WOLFROM: ((0, 1, 1, 2), (0, 1, 3, 4)),
+    COUPLED: ((0, 1, 1, 2), (3, 4, 4, 5)),
+}
 FIRST = {SIMPLE: 3, STEPPED: 2, WOLFROM: 3, COUPLED: 3}  # gears that are chosen first
 ERROR, LOSS, RING = "ratio_error", "loss", "ring_teeth"  # objectives
 TOLERANCE, EFFICIENCY, ASSEMBLY = "ratio_tolerance", "minimum_efficiency", "assembly"
-NEIGHBOURS, DIFFERENCE, COAXIAL = "neighbours", "ring_minus_planet", "coaxial"
-LIMITS = (TOLERANCE, EFFICIENCY, ASSEMBLY, NEIGHBOURS, DIFFERENCE, COAXIAL)
-ADDENDUM = 1  # module, of all gears
-NO_RATIO = np.inf  # error of a train whose input or output cannot turn
+NEIGHBOURS, DIFFERENCE = "neighbour_clearance", "ring_minus_planet"
+COAXIAL = "equal_centre_distances"
+ADDENDUM = 1.0  # module, of all gears
 Columns = Sequence[Any]
 
 
@@ -65,29 +71,28 @@ class Request:
         """Names of the gears."""
         return GEARS[self.arrangement]
 
+    def sets(self, z: Columns) -> list[tuple[Any, ...]]:
+        """Teeth of sun, its planet, the ring's planet and ring of every set."""
+        return [tuple(z[k] for k in places) for places in SETS[self.arrangement]]
+
+    def module(self, k: int) -> float:
+        """Module of the k-th gear over that of the first."""
+        second = {STEPPED: 2, WOLFROM: 3}.get(self.arrangement, len(self.gears))
+        return float(self.modules) if k >= second else 1.0
+
     def parts(self, z: Columns) -> list[tuple[Any, Any]]:
         """Teeth ratio r = b/a of every set as (a, b) in whole numbers."""
-        if self.arrangement == SIMPLE:
-            return [(z[0], z[2])]
-        if self.arrangement == STEPPED:
-            return [(z[0] * z[2], z[1] * z[3])]
-        if self.arrangement == WOLFROM:
-            return [(z[0], z[2]), (z[0] * z[3], z[1] * z[4])]
-        return [(z[0], z[2]), (z[3], z[5])]
-
-    def ratio_parts(self, z: Columns) -> tuple[Any, Any]:
-        """Numerator and denominator of the ratio of input over output speed."""
-        return willis.ratio_parts(self.use, self.parts(z))
+        return [(s * q, p * r) for s, p, q, r in self.sets(z)]
 
     def error(self, z: Columns) -> Any:
         """|i/u - 1| in doubles; infinite where input or output cannot turn, 0 if none is asked."""
-        above, below = self.ratio_parts(z)
+        above, below = willis.ratio_parts(self.use, self.parts(z))
         off: Any = 0.0
         if self.ratio is not None:
             with np.errstate(all="ignore"):
                 rest = above * float(self.ratio.denominator) - below * float(self.ratio.numerator)
                 off = abs(rest / (below * float(self.ratio.numerator)))
-        return choose((above == 0) | (below == 0), NO_RATIO, off)
+        return choose((above == 0) | (below == 0), np.inf, off)
 
     def eta(self, z: Columns) -> Any:
         """Efficiency in doubles; 0 of a train that locks itself or has no ratio."""
@@ -97,51 +102,40 @@ class Request:
 
     def exact_ratio(self, teeth: Sequence[int]) -> Fraction | None:
         """Ratio of one train; None where input or output cannot turn."""
-        above, below = self.ratio_parts([*map(int, teeth)])
+        above, below = willis.ratio_parts(self.use, self.parts(teeth))
         return Fraction(above, below) if above and below else None
 
     def exact_eta(self, teeth: Sequence[int]) -> Fraction:
         """Efficiency of one train that has a ratio; 0 where it locks itself."""
-        parts = [(Fraction(a), Fraction(b)) for a, b in self.parts([*map(int, teeth)])]
+        parts = [(Fraction(a), Fraction(b)) for a, b in self.parts(teeth)]
         return Fraction(willis.efficiency(self.use, parts, self.losses))
 
-    def rings(self, z: Columns) -> list[tuple[Any, Any, Any]]:
-        """Of every ring: its teeth, those of its planet, and z_s + z_p in its own module."""
-        if self.arrangement == SIMPLE:
-            return [(z[2], z[1], z[0] + z[1])]
-        if self.arrangement == STEPPED:
-            return [(z[3], z[2], (z[0] + z[1]) / self._step)]
-        if self.arrangement == WOLFROM:
-            return [(z[2], z[1], z[0] + z[1]), (z[4], z[3], (z[0] + z[1]) / self._step)]
-        return [(z[2], z[1], z[0] + z[1]), (z[5], z[4], z[3] + z[4])]
-
-    @property
-    def _step(self) -> Any:
-        """The ratio of modules, a whole number where it is 1."""
-        return 1 if self.modules == 1 else float(self.modules)
-
     def places(self, z: Columns) -> list[Any]:
-        """Places of planets in a turn, of each set of planets."""
-        if self.arrangement == SIMPLE:
-            return [assembly.places(*z)]
-        if self.arrangement == STEPPED:
-            return [assembly.places(z[0], z[1], z[3], z[2])]
-        if self.arrangement == WOLFROM:
-            return [assembly.places_of_two_rings(*z)]
-        return [assembly.places(*z[:3]), assembly.places(*z[3:])]
+        """Places of planets in a turn, of each carrier; where they fit both rings, of two."""
+        counts = [assembly.places(*teeth) for teeth in self.sets(z)]
+        return [np.gcd(*counts)] if self.arrangement == WOLFROM else counts
 
-    def gaps(self, z: Columns) -> list[Any]:
-        """Gap between tip circles of neighbours, of each set of planets [modules]."""
-        gaps = []
+    def neighbours(self, z: Columns) -> list[tuple[Any, Any]]:
+        """Distance of neighbours' axes and tip diameter of planets [modules], of each carrier."""
+        known = []
         for k, (n, count) in enumerate(zip(self.planets, self.places(z), strict=True)):
             spacing = 1.0 / n if self.equal else assembly.least_spacing(count, n)
-            sun, planet = z[3 * k], z[3 * k + 1]
-            tips = planet + 2.0 * ADDENDUM
-            if self.arrangement in (STEPPED, WOLFROM):
-                second = z[2 if self.arrangement == STEPPED else 3]
-                tips = np.maximum(tips, (second + 2.0 * ADDENDUM) * float(self.modules))
-            gaps.append(assembly.neighbour_gap(0.5 * (sun + planet), tips, spacing))
-        return gaps
+            apart = assembly.neighbour_distance(0.5 * (z[3 * k] + z[3 * k + 1]), spacing)
+            here = self.sets(z) if self.arrangement != COUPLED else [self.sets(z)[k]]
+            tips = z[3 * k + 1] + 2.0 * ADDENDUM
+            for _, _, second, _ in here:
+                tips = np.maximum(tips, (second + 2.0 * ADDENDUM) * self.module(3))
+            known.append((apart, tips))
+        return known
+
+    def apart(self, z: Columns) -> Any:
+        """Teeth by which z_s + z_p and z_r - z_p of one module differ, the most of all sets."""
+        ends = (place[3] for place in SETS[self.arrangement])
+        sums = [
+            abs(r - q - (s + p) / self.module(k))
+            for k, (s, p, q, r) in zip(ends, self.sets(z), strict=True)
+        ]
+        return reduce(np.maximum, sums)
 
     def used(self, z: Columns) -> dict[str, Any]:
         """Utilisation of every limit that is asked, at most 1 where it is met."""
@@ -151,18 +145,16 @@ class Request:
         if self.efficiency is not None:
             with np.errstate(divide="ignore"):
                 used[EFFICIENCY] = float(self.efficiency) / self.eta(z)
-        rings, clearance = self.rings(z), float(self.clearance)
         if self.equal:
             rest = [p % n / n for p, n in zip(self.places(z), self.planets, strict=True)]
-            used[ASSEMBLY] = 1.0 + _most(rest)
-        lack = [
-            choose(assembly.wide_enough(gap, clearance), 0.0, clearance - gap)
-            for gap in self.gaps(z)
-        ]
-        used[NEIGHBOURS] = 1.0 + _most(lack)
-        used[DIFFERENCE] = _most([self.difference / np.maximum(r - p, 0.5) for r, p, _ in rings])
-        apart = [np.maximum(abs(r - p - c) - self.coaxial - 1e-9, 0.0) for r, p, c in rings]
-        used[COAXIAL] = 1.0 + _most(apart)
+            used[ASSEMBLY] = _beyond(reduce(np.maximum, rest), 0.0)
+        gap = float(self.clearance) - assembly.SAME
+        used[NEIGHBOURS] = reduce(
+            np.maximum, [(tips + gap) / np.maximum(a, 1e-9) for a, tips in self.neighbours(z)]
+        )
+        least = reduce(np.minimum, [r - q for _, _, q, r in self.sets(z)])
+        used[DIFFERENCE] = self.difference / np.maximum(least, 0.5)
+        used[COAXIAL] = _beyond(self.apart(z), self.coaxial + assembly.SAME)
         return {name: value for name, value in used.items() if name not in self.without}
 
     def goal_of(self, z: Columns) -> Any:
@@ -170,11 +162,9 @@ class Request:
         error = self.error(z)
         if self.goal == ERROR:
             return error
-        if self.goal == LOSS:
-            goal = 1.0 - self.eta(z)
-        else:
-            goal = 1.0 * _most([ring for ring, _, _ in self.rings(z)])
-        return choose(error < NO_RATIO, goal, NO_RATIO)
+        largest = reduce(np.maximum, [r for *_, r in self.sets(z)])
+        goal = 1.0 - self.eta(z) if self.goal == LOSS else 1.0 * largest
+        return choose(error < np.inf, goal, np.inf)
 
     def key(self, teeth: Sequence[int]) -> tuple[Any, int, tuple[int, ...]] | None:
         """Objective, all teeth and teeth of a train, exactly; None where it breaks a limit.
@@ -185,24 +175,15 @@ class Request:
         if ratio is None:
             return None
         error = abs(ratio / asked - 1) if asked else Fraction(0)
+        most = None if TOLERANCE in self.without else self.tolerance
         least = None if EFFICIENCY in self.without else self.efficiency
         eta = Fraction(1) if least is None and self.goal != LOSS else self.exact_eta(teeth)
-        if TOLERANCE not in self.without and self.tolerance is not None and error > self.tolerance:
+        if (most is not None and error > most) or (least is not None and eta < least):
             return None
-        if least is not None and eta < least:
-            return None
-        rings = [ring for ring, _, _ in self.rings(teeth)]
-        goal = {ERROR: error, LOSS: 1 - eta, RING: max(rings)}[self.goal]
-        return goal, sum(teeth), tuple(int(z) for z in teeth)
+        ring = max(r for *_, r in self.sets(teeth))
+        return {ERROR: error, LOSS: 1 - eta, RING: ring}[self.goal], sum(teeth), tuple(teeth)
 
 
-def _most(values: Sequence[Any]) -> Any:
-    most = values[0]
-    for value in values[1:]:
-        most = np.maximum(most, value)
-    return most
-
-
-def named(request: Request, teeth: Sequence[int]) -> Mapping[str, int]:
-    """Teeth by the names of the gears."""
-    return dict(zip(request.gears, teeth, strict=True))
+def _beyond(value: Any, limit: float) -> Any:
+    """Utilisation of a limit that is met or not: 0, or more than 1."""
+    return choose(value > limit, 1.0 + value - limit, 0.0)

@@ -1,11 +1,12 @@
 """kind = "epicyclic": numbers of teeth of planetary trains, what they do, and whether they fit."""
 
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 from gearopt.formulations.epicyclic import problem
 from gearopt.formulations.epicyclic.design import EpicyclicDesign, describe
-from gearopt.formulations.epicyclic.request import ERROR, LOSS, Request
+from gearopt.formulations.epicyclic.request import ERROR
 from gearopt.optimise.certified import run
 from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.result import Result
@@ -36,39 +37,23 @@ def solved(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """The best train of a file, described."""
     request = scene.request()
     result, outcome = run(problem(request), ask.method, ask.budget, ask.seed, ask.watch, ask.gap)
-    unit = {"unit": ""}
+    result = replace(result, objective=result.objective | {"unit": ""})
     if result.value is None or outcome.x is None:
-        return replace(result, objective=result.objective | unit)
+        return result
     teeth = [round(float(z)) for z in outcome.x]
     design = describe(request, teeth)
-    report: dict[str, Any] = {
-        "assumptions": [UNRATED, LOSSES, GEOMETRY],
-        "notes": [
-            *([LOCKED] if design.efficiency == 0.0 else []),
-            *([SHIFTED] if _shifted(request, teeth) else []),
-        ],
-    }
-    if request.ratio is not None:
-        report |= {"achieved": _achieved(design, request)}
-    report |= {"best": {ERROR: "nearest", LOSS: "of least loss"}.get(request.goal, "smallest")}
-    return replace(
-        result,
-        objective=result.objective | unit,
-        design=untyped(design),
-        report=report,
-    )
+    notes = [LOCKED] * (design.efficiency == 0.0) + [SHIFTED] * (request.apart(teeth) > 1e-9)
+    report: dict[str, Any] = {"assumptions": [UNRATED, LOSSES, GEOMETRY], "notes": notes}
+    if request.goal == ERROR:
+        report["achieved"] = _achieved(design, request.ratio or Fraction(1))
+    return replace(result, design=untyped(design), report=report)
 
 
-def _shifted(request: Request, teeth: list[int]) -> bool:
-    return any(abs(r - p - c) > 1e-9 for r, p, c in request.rings(teeth))
-
-
-def _achieved(design: EpicyclicDesign, request: Request) -> str:
+def _achieved(design: EpicyclicDesign, asked: Fraction) -> str:
     """The ratio that the best teeth make, beside the one that is asked for."""
-    if design.ratio_error_percent == 0.0:
+    if not (off := design.ratio_error_percent):
         return f"ratio {design.ratio:.10g} exactly"
-    off = design.ratio_error_percent
-    return f"ratio {design.ratio:.10g} instead of {float(request.ratio or 0):.10g} ({off:+.3g} %)"
+    return f"ratio {design.ratio:.10g} instead of {float(asked):.10g} ({off:+.3g} %)"
 
 
 def idle(scene: Scene, method: str | None) -> dict[str, str]:

@@ -43,7 +43,11 @@ USED = {  # who does what where the file does not say: fixed, input, output, by 
 }
 USED[STEPPED] = USED[SIMPLE]
 MEMBER = choice(*dict.fromkeys(n for sets in SETS.values() for names in sets for n in names))
-TEETH = span(whole(20, MIN_TEETH, MAX_TEETH), [17, 60], single=True)
+Range = Annotated[
+    tuple[int, int] | None, span(whole(20, MIN_TEETH, MAX_TEETH), [17, 60], single=True)
+]
+ETA = number(0.99, Fraction(1, 2), 1)
+PERCENT = number("1 %", 0, Fraction(1, 2), percent=True)
 SAMPLES = ([(17, 60), (23, 71)], [(31, 79), (19, 97)])  # teeth by which a coupling is tried
 
 
@@ -142,32 +146,15 @@ class Train(Table):
 class Teeth(Table):
     """Numbers of teeth: of every gear of the arrangement a range, or one number."""
 
-    sun: Annotated[tuple[int, int] | None, TEETH] = Field(None, description="Teeth of the sun")
-    planet: Annotated[tuple[int, int] | None, TEETH] = Field(
-        None, description="Teeth of the planets of a simple set"
-    )
-    ring: Annotated[tuple[int, int] | None, TEETH] = Field(None, description="Teeth of the ring")
-    sun1: Annotated[tuple[int, int] | None, TEETH] = Field(
-        None, description="Teeth of the sun of the first coupled set"
-    )
-    planet1: Annotated[tuple[int, int] | None, TEETH] = Field(
-        None, description="Teeth of the first step of planets, or planets of the first set"
-    )
-    ring1: Annotated[tuple[int, int] | None, TEETH] = Field(
-        None, description="Teeth of the first ring"
-    )
-    sun2: Annotated[tuple[int, int] | None, TEETH] = Field(
-        None, description="Teeth of the sun of the second coupled set"
-    )
-    planet2: Annotated[tuple[int, int] | None, TEETH] = Field(
-        None, description="Teeth of the second step of planets, or planets of the second set"
-    )
-    ring2: Annotated[tuple[int, int] | None, TEETH] = Field(
-        None, description="Teeth of the second ring"
-    )
-
-
-ETA = number(0.99, Fraction(1, 2), 1)
+    sun: Range = Field(None, description="Teeth of the sun")
+    planet: Range = Field(None, description="Teeth of the planets of a simple set")
+    ring: Range = Field(None, description="Teeth of the ring")
+    sun1: Range = Field(None, description="Teeth of the first sun of coupled sets")
+    planet1: Range = Field(None, description="Teeth of the first step, or planets of the first set")
+    ring1: Range = Field(None, description="Teeth of the first ring")
+    sun2: Range = Field(None, description="Teeth of the second sun of coupled sets")
+    planet2: Range = Field(None, description="Teeth of the second step, or of the second planets")
+    ring2: Range = Field(None, description="Teeth of the second ring")
 
 
 class Efficiency(Table):
