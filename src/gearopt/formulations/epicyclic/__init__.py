@@ -13,11 +13,9 @@ from gearopt.optimise.terms import Terms, Var
 
 RANDOM = False
 COUNTS = "train looked at"
-PROVEN = (
-    "Proof: {:,} trains of equal centre distances were looked at, every one that can be better "
-    "than the best; their order is decided in fractions."
-)
-NONE = "Proof: none of the {:,} trains of equal centre distances meets all limits."
+LEFT = "those that equal centre distances and a bound of the ratio leave"
+PROVEN = f"Proof: trains were looked at one by one, {LEFT}: {{:,}}. Fractions decide their order."
+NONE = f"Proof: trains were looked at one by one, {LEFT}: {{:,}}. None of them meets all limits."
 
 
 def problem(request: Request) -> Problem:
@@ -36,7 +34,9 @@ def problem(request: Request) -> Problem:
             return Outcome(x, finished=False, evaluations=known.looked, message="stopped early")
         if x is None:
             proof["sentence"] = NONE.format(known.looked)
-            return Outcome(None, infeasible=True, proof=proof, evaluations=known.looked)
+            given = [low for low, high in request.teeth if low == high]
+            x = np.array(given, float) if len(given) == len(request.teeth) else None
+            return Outcome(x, infeasible=True, proof=proof, evaluations=known.looked)
         proof["sentence"] = PROVEN.format(known.looked)
         return Outcome(x, bound=float(known.bound), proof=proof, evaluations=known.looked)
 

@@ -49,7 +49,7 @@ class Place:
 
     carrier: Annotated[str, Shown("carrier")]
     planet: Annotated[int, Shown("planet")]
-    angle_deg: Annotated[float, Shown("angle", form=".6f")]
+    angle_deg: Annotated[float, Shown("angle", unit="deg", form=".6f")]
     turn: Annotated[str, Shown("of a turn")]
     sun_phase: Annotated[float, Shown("phase at the sun", form=".4f")]
     ring_phase: Annotated[float, Shown("phase at the ring", form=".4f")]
@@ -59,10 +59,12 @@ class Place:
 class EpicyclicDesign:
     """A train. exact_ratio: as a fraction; efficiency: 0 where it locks itself.
 
-    gap_modules: between tip circles of neighbours, the smallest.
+    sets: names of sun, ring and carrier, of what turns together one. gap_modules: between tip
+    circles of neighbours, the smallest.
     """
 
     arrangement: str
+    sets: tuple[tuple[str, str, str], ...]
     gears: tuple[GearTeeth, ...]
     ratio: float
     exact_ratio: str
@@ -95,6 +97,7 @@ def describe(request: Request, z: Sequence[int]) -> EpicyclicDesign:
     asked = request.ratio
     return EpicyclicDesign(
         arrangement=request.arrangement,
+        sets=use.sets,
         gears=tuple(
             GearTeeth(name=name, teeth=z[k], module=request.module(k))
             for k, name in enumerate(request.gears)
@@ -124,7 +127,7 @@ def _members(
             speed=float(speed),
             exact_speed=str(speed),
             torque=torque,
-            power=None if torque is None else torque * float(speed),
+            power=None if torque is None else 0.0 + torque * float(speed),
         )
 
 

@@ -42,7 +42,8 @@ def solved(scene: Scene, ask: Ask, known: Result | None) -> Result:
         return result
     teeth = [round(float(z)) for z in outcome.x]
     design = describe(request, teeth)
-    notes = [LOCKED] * (design.efficiency == 0.0) + [SHIFTED] * (request.apart(teeth) > 1e-9)
+    spoken = {LOCKED: design.efficiency == 0.0, SHIFTED: request.apart(teeth) > 1e-9}
+    notes = [words for words, holds in spoken.items() if holds]
     report: dict[str, Any] = {"assumptions": [UNRATED, LOSSES, GEOMETRY], "notes": notes}
     if request.goal == ERROR:
         report["achieved"] = _achieved(design, request.ratio or Fraction(1))

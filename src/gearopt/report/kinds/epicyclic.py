@@ -1,0 +1,115 @@
+"""A planetary train: its teeth, what turns how fast, what flows where, and where planets are."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+from gearopt.formulations.epicyclic.design import EpicyclicDesign
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import typed
+from gearopt.report.drawing import planetary_view
+from gearopt.report.kinds import generic
+from gearopt.report.measures import METRIC, Measures
+from gearopt.report.section import Section, Table, Tile, records
+
+OWN = ("sun1", "ring1", "carrier1", "sun2", "ring2", "carrier2")
+
+
+def _design(result: Result) -> EpicyclicDesign:
+    train: EpicyclicDesign = typed(EpicyclicDesign, result.design, "design")
+    return train
+
+
+def tiles(result: Result, measures: Measures) -> list[Tile]:
+    """Ratio and efficiency as key figures."""
+    if not result.design:
+        return []
+    design = _design(result)
+    exact = "" if design.exact_ratio == f"{design.ratio:g}" else f"= {design.exact_ratio}"
+    locked = "locks itself" if design.efficiency == 0.0 else "of the meshes alone"
+    return [
+        Tile("ratio", f"{design.ratio:.8g}", exact),
+        Tile("efficiency", f"{100.0 * design.efficiency:.3f} %", locked),
+    ]
+
+
+def binding_limit(result: Result, measures: Measures = METRIC) -> str:
+    """What keeps a train from its ratio."""
+    if not result.design or result.objective.get("name") != "ratio_error":
+        return ""
+    if result.value == 0.0:
+        return "the train has the ratio exactly"
+    if result.status == "optimal":
+        return "no train of the allowed teeth that meets the limits has the ratio exactly"
+    return "the train does not have the ratio exactly"
+
+
+def train(result: Result, measures: Measures) -> Section | None:
+    """Tables of the train, and whether its planets can be assembled."""
+    if not result.design:
+        return None
+    design = _design(result)
+    names = {own: own for own in OWN}
+    if len(design.gears) == len(OWN):
+        same = dict(zip(OWN, sum(design.sets, ()), strict=True))
+        names = {n: " = ".join(o for o in OWN if same[o] == n) for n in same.values()}
+    members = [replace(m, name=names.get(m.name) or m.name) for m in design.members]
+    tables = [
+        Table("gears", *records(design.gears, measures)),
+        Table("members", *records(members, measures)),
+        Table("meshes", *records(design.meshes, measures)),
+        Table("planets", *records(design.places, measures)),
+    ]
+    tables = [table for table in tables if table.rows]
+    words = (assembly(design), *_flow(design))
+    return Section("Train", words=words, tables=tables, terminal=(*words, *tables))
+
+
+def assembly(design: EpicyclicDesign) -> str:
+    """Where planets are, and how they mesh with sun and ring."""
+    angles = [place.turn for place in design.places]
+    phases = {place.sun_phase for place in design.places}
+    equal = all(
+        Fraction(place.turn) == Fraction(place.planet - 1, _count(design, place.carrier))
+        for place in design.places
+    )
+    if phases == {0.0}:
+        meshing = "in step at the sun"
+    elif phases == {0.0, 0.5}:
+        meshing = "in counter-phase at the sun"
+    else:
+        meshing = "one after the other at the sun"
+    spaced = "spaced equally" if equal else f"at {', '.join(dict.fromkeys(angles))} of a turn"
+    gap = f"between tip circles of neighbours {design.gap_modules:.3g} modules are left"
+    return f"All planets are alike and can be assembled {spaced}; they mesh {meshing}; {gap}."
+
+
+def _count(design: EpicyclicDesign, carrier: str) -> int:
+    return sum(place.carrier == carrier for place in design.places)
+
+
+def _flow(design: EpicyclicDesign) -> list[str]:
+    """How power flows, against the input's."""
+    if not design.meshes:
+        return ["The train locks itself: no power reaches the output."]
+    most = max(design.meshes, key=lambda mesh: mesh.rolling_power)
+    lost = sum(mesh.lost for mesh in design.meshes)
+    return [
+        f"Of the input's power {100.0 * lost:.3g} % are lost in meshes; the most rolling power, "
+        f"{most.rolling_power:.3g} times the input's, has the mesh of {most.gears}. Torques are "
+        "those from outside, positive with the input's speed; a member that gives power has a "
+        "negative one."
+    ]
+
+
+def turning(result: Result, measures: Measures) -> Section | None:
+    """The train as it turns."""
+    return planetary_view.section(_design(result)) if result.design else None
+
+
+PAGES = replace(
+    generic.PAGES,
+    sections=(*generic.OPENING, turning, train, *generic.REQUEST, *generic.CLOSING),
+    terminal=(train, *generic.PAGES.terminal[1:]),
+    tiles=tiles,
+    binding_limit=binding_limit,
+)
