@@ -165,11 +165,20 @@ GROUPS = {  # heading: {file: what it shows, in a line}
     "A compound train": {
         "sandgren_train": "Four numbers of teeth nearest to 1/6.931, proven in rationals.",
     },
+    "Planetary trains": {
+        "epicyclic_wolfrom": "A 3K train: speeds, torques, rolling power, efficiency.",
+        "epicyclic_stepped": "Stepped planets, which fit by their greatest common divisor.",
+        "epicyclic_impossible": "Too many planets: what to write instead.",
+    },
 }
 KINDS = {  # of a file: the page about it, and what is minimised
     "drive": ("drive.md", lambda file: _of_drive(file)),
     "packing": ("packing.md", lambda file: file.get("objective", {}).get("minimise", "volume")),
     "compound": ("compound.md", lambda file: file["train"].get("minimise", "ratio_error")),
+    "epicyclic": (
+        "epicyclic.md",
+        lambda file: file.get("objective", {}).get("minimise", "ratio_error"),
+    ),
     "servo": ("servo.md", lambda file: _of_servo(file)),
     "pair": ("pair.md", lambda file: _of_pair(file)),
     "strain_wave": ("strain_wave.md", lambda file: "pressure"),
@@ -182,6 +191,8 @@ UNITS = {  # as keys of a result have them
     "area": "mm2",
     "squared_error": "",
     "ratio_error": "",
+    "loss": "",
+    "ring_teeth": "",
     "pressure": "MPa",
     "inertia": "kg_m2",
     "mass": "kg",

@@ -11,10 +11,8 @@ from functools import cache
 from gearopt.scenes.reading.kinds import kinds
 
 GEARS: dict[str, str] = {  # types of gears: kinds that people ask for, and their keys
-    "planetary gear sets are": "planetary planet planets epicyclic planet_gears number_of_planets "
-    "planet_count n_planets planet_teeth sun sun_gear sun_teeth z_sun ring ring_gear ring_teeth "
-    "z_ring carrier planet_carrier annulus differential wolfrom ravigneaux planetengetriebe "
-    "umlaufgetriebe sonnenrad hohlrad planeten planetenzahl planetentraeger steg",
+    "Ravigneaux sets and bevel differentials are": "ravigneaux differential differential_gear "
+    "ausgleichsgetriebe",
     "internal gears are": "internal internal_gear internal_gears internal_teeth innenverzahnung",
     "worm gears are": "worm worms worm_gear worm_wheel worm_starts number_of_starts "
     "number_of_threads threads lead_angle diameter_quotient schnecke schneckenrad "

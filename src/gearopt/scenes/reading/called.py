@@ -163,6 +163,20 @@ COMPOUND = {
     "max_teeth minimum_teeth maximum_teeth z_min z_max pinion_teeth wheel_teeth",
     "ratio, in [train]": "i gear_ratio total_ratio target_ratio uebersetzung",
 }
+EPICYCLIC = {
+    "sun, in [teeth]": "sun_teeth z_sun z_s teeth_sun sonnenrad teeth.z1",
+    "planet, in [teeth]": "planet_teeth z_planet z_p teeth_planet planetenrad teeth.planets",
+    "ring, in [teeth]": "ring_teeth z_ring z_r teeth_ring annulus hohlrad annulus_teeth",
+    "planets, in [train]": "number_of_planets planet_count n_planets planetenzahl planeten",
+    "fixed, in [train]": "held stationary grounded ground fixed_member",
+    "input, in [train]": "input_member driver driving antrieb",
+    "output, in [train]": "output_member driven abtrieb",
+    "ratio, in [train]": "i gear_ratio total_ratio reduction uebersetzung",
+    "minimum_efficiency, in [limits]": "limits.efficiency min_efficiency",
+    "sun and ring, in [efficiency]": "mesh_efficiency eta eta_0 basic_efficiency losses",
+    "neighbour_clearance, in [limits]": "clearance planet_clearance gap",
+    "coaxial_difference, in [limits]": "coaxial profile_shift",
+}
 PACKING = {
     "cylinder, a table [[cylinder]] of each": "circle circles cylinders disc discs disk disks",
     "container, a table of its own": "box bin enclosure",
@@ -208,6 +222,9 @@ KINDS = {
     "servo": "servo_drive servo_train backlash actuator positioning",
     "dynamics": "vibration vibrations dynamic oscillation schwingung",
     "strain_wave": "harmonic_drive harmonic strain_wave_gear strain_wave_gearing wave wellgetriebe",
+    "epicyclic": "planetary planetary_gear planetary_gears planetary_gear_set planetary_set "
+    "planetary_train planetary_drive planetary_gearbox epicyclic_gear epicyclic_train planet "
+    "planets sun ring annulus wolfrom stepped_planet 3k planetengetriebe umlaufgetriebe",
     "packing": "cylinders circles cylinder_packing circle_packing",
 }
 CALLED: dict[str, dict[str, str]] = {
@@ -215,6 +232,7 @@ CALLED: dict[str, dict[str, str]] = {
     "pair": DRIVE | PAIR,
     "servo": SERVO,
     "compound": COMPOUND,
+    "epicyclic": EPICYCLIC,
     "packing": PACKING,
     "strain_wave": STRAIN_WAVE,
     "dynamics": DYNAMICS,

@@ -59,6 +59,16 @@ CONTACT = (
     "contact_ratio transverse_contact_ratio overlap_ratio noise profilueberdeckung "
     "sprungueberdeckung eps_alpha eps_beta"
 )
+PLANETARY = (
+    "planetary planetary_gear planetary_stage planet planets epicyclic planet_gears planet_teeth "
+    "number_of_planets planet_count n_planets sun sun_gear sun_teeth z_sun ring ring_gear "
+    "ring_teeth z_ring carrier planet_carrier annulus wolfrom planetengetriebe umlaufgetriebe "
+    "sonnenrad hohlrad planeten planetenzahl planetentraeger steg"
+)
+EPICYCLIC = (
+    'Nearest: kind = "epicyclic", planetary trains by their numbers of teeth: sun, planet and ring '
+    "in [teeth], planets and fixed in [train]"
+)
 MONEY = "cost price costs budget maximum_cost"
 
 KEYS = frozenset(  # of the names above, those that a drive has as keys
@@ -195,6 +205,15 @@ NEAREST["pair"] = NEAREST["drive"] | {
     ),
     "crowning lead_crowning helix_modification": "Plane models have no crowning: nothing varies "
     "across the face width",
+}
+
+for _kind in NEAREST:
+    NEAREST[_kind] = NEAREST[_kind] | {PLANETARY: EPICYCLIC}
+NEAREST["epicyclic"] = {
+    f"{CENTRES} module modules {MATERIAL} {STRESS} {STRENGTH} {SAFETY} power torque load "
+    "face_width speed input_speed": "Only numbers of teeth are chosen, and nothing is rated. "
+    'Nearest: kind = "drive", which has loads',
+    "stages number_of_stages": 'Nearest: arrangement = "coupled", of two sets',
 }
 
 
