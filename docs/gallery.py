@@ -168,6 +168,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
     "Planetary trains": {
         "epicyclic_wolfrom": "A 3K train: speeds, torques, rolling power, efficiency.",
         "epicyclic_stepped": "Stepped planets, which fit by their greatest common divisor.",
+        "epicyclic_coupled": "Two sets with joined members, as in a gearbox that is shifted.",
         "epicyclic_impossible": "Too many planets: what to write instead.",
     },
 }

@@ -32,6 +32,10 @@ KEYS = {  # of [x-expected], as the tests below read them
     },
     "packing": {"status", "objective", "tolerance", "bound"},
     "compound": {"status", "objective"},
+    "epicyclic": {
+        *("status", "objective", "ratio", "efficiency", "torques", "places", "conflict"),
+        "least_factor",
+    },
     "dynamics": {
         *("status", "objective", "normal_load_N", "deformation_um", "centre_distance_growth_mm"),
         *("pressure_angle_deg", "bearing_force_N", "frequencies_Hz", "unstable_percent"),
@@ -155,6 +159,31 @@ def test_expected_compound_train(path, solved):
     result = solved(path.stem)
     assert result.status == expected["status"] and result.gap < 1e-8
     assert result.value == pytest.approx(expected["objective"], rel=1e-9)
+
+
+@pytest.mark.parametrize("path", of_kind("epicyclic"))
+def test_expected_planetary_train(path, solved):
+    """torques: from outside over the input's; places: of planets; conflict: of an impossible one.
+
+    Numbers are held to half a unit of the last digit that the file prints.
+    """
+    text = tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
+    expected = text["x-expected"]
+    result = solved(path.stem)
+    assert result.status == expected["status"] and text["source"]
+    if "conflict" in expected:
+        ways = result.report["ways_out"]
+        assert ways["conflict"] == expected["conflict"]
+        factors = [way["bound"] or way["factor"] for way in ways["remedies"]]
+        assert any(f == pytest.approx(float(expected["least_factor"]), rel=1e-3) for f in factors)
+        return
+    told = result.design | {"objective": result.value, "places": len(result.design["places"])}
+    torques = {member["name"]: member["torque"] for member in result.design["members"]}
+    named = {n: (v, told[n]) for n, v in expected.items() if n not in ("status", "torques")}
+    named |= {n: (v, torques[n]) for n, v in expected.get("torques", {}).items()}
+    for name, (printed, value) in named.items():
+        last = Decimal(str(printed)).as_tuple().exponent
+        assert value == pytest.approx(float(printed), abs=0.55 * 10.0**last), name
 
 
 @pytest.mark.parametrize("path", of_kind("servo"))

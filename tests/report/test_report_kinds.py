@@ -46,6 +46,7 @@ DESIGNED = {  # a file of every kind, which other tests solve too
     "compound": "sandgren_train",
     "drive": "elevator",
     "dynamics": "soft_bearings",
+    "epicyclic": "epicyclic_wolfrom",
     "packing": "six_cylinders_row_two_layers",
     "pair": "reference_pair",
     "servo": "servo_axis",

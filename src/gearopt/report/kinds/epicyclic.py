@@ -48,16 +48,17 @@ def train(result: Result, measures: Measures) -> Section | None:
     if not result.design:
         return None
     design = _design(result)
-    names = {own: own for own in OWN}
+    names = {n: n for sets in design.sets for n in sets}
     if len(design.gears) == len(OWN):
         same = dict(zip(OWN, sum(design.sets, ()), strict=True))
         names = {n: " = ".join(o for o in OWN if same[o] == n) for n in same.values()}
     members = [replace(m, name=names.get(m.name) or m.name) for m in design.members]
+    places = [replace(p, carrier=names[p.carrier]) for p in design.places]
     tables = [
         Table("gears", *records(design.gears, measures)),
         Table("members", *records(members, measures)),
         Table("meshes", *records(design.meshes, measures)),
-        Table("planets", *records(design.places, measures)),
+        Table("planets", *records(places, measures)),
     ]
     tables = [table for table in tables if table.rows]
     words = (assembly(design), *_flow(design))
@@ -112,4 +113,5 @@ PAGES = replace(
     terminal=(train, *generic.PAGES.terminal[1:]),
     tiles=tiles,
     binding_limit=binding_limit,
+    drawn=False,
 )
