@@ -65,10 +65,7 @@ PLANETARY = (
     "ring_teeth z_ring carrier planet_carrier annulus wolfrom planetengetriebe umlaufgetriebe "
     "sonnenrad hohlrad planeten planetenzahl planetentraeger steg"
 )
-EPICYCLIC = (
-    'Nearest: kind = "epicyclic", planetary trains by their numbers of teeth: sun, planet and ring '
-    "in [teeth], planets and fixed in [train]"
-)
+EPICYCLIC = 'Nearest: kind = "epicyclic", planetary trains by their numbers of teeth'
 MONEY = "cost price costs budget maximum_cost"
 
 KEYS = frozenset(  # of the names above, those that a drive has as keys
