@@ -1,6 +1,7 @@
 """The tables of a file of kind epicyclic, and what they ask in plain numbers."""
 
 from collections.abc import Iterator
+from decimal import Decimal
 from fractions import Fraction
 from typing import Annotated, Any
 
@@ -90,8 +91,11 @@ def _signed_ratio() -> Reads:
             return -Fraction(item.reader(value.strip()[1:], example))
         if isinstance(value, Fraction):
             return value
-        below = not isinstance(value, str | bool | list | dict) and value is not None and value < 0
-        return -Fraction(item.reader(-value, example)) if below else item.reader(value, example)
+        if isinstance(value, int | Decimal) and Decimal(value).is_finite() and value < 0:
+            return -Fraction(item.reader(-value, example))
+        if value == 0 and not isinstance(value, bool):
+            raise refuse("is 0: the input would stand still")
+        return Fraction(item.reader(value, example))
 
     text = {"type": "string", "pattern": r"^\s*-?\s*[0-9]+\s*/\s*[0-9]+\s*$"}
     return Reads(read, 5, {"anyOf": [{"type": "number"}, text]})
@@ -240,8 +244,6 @@ class Scene(Table):
             raise refuse(rule, at=place, action="remove")
         if self.goal == ERROR and self.train.ratio is None:
             raise refuse("is missing: ratio_error is its error", at=("train", "ratio"))
-        if self.train.ratio == 0:
-            raise refuse("is 0: the input would stand still", at=("train", "ratio"))
         if self.goal != ERROR and self.train.ratio and self.limits.ratio_tolerance is None:
             rule = f"is missing: {self.goal} is minimised within it"
             raise refuse(rule, at=("limits", "ratio_tolerance"))
