@@ -1,4 +1,4 @@
-"""The page of a planetary train: its gears stay in mesh as they turn, and its sentences are true."""
+"""The page of a planetary train: gears stay in mesh as they turn, and sentences are true."""
 
 import numpy as np
 import pytest
@@ -77,4 +77,4 @@ def test_planets_one_after_the_other_and_at_unequal_places():
     assert "one after the other at the sun" in page(result, "")
     near = train | {"planets": 4, "fixed": "ring", "spacing": "nearest"}
     result = gearopt.solve(tables | {"train": near})
-    assert "at 0, 10/39, 1/2, 10/13 of a turn" in page(result, "")
+    assert "at 0, 10/39, 1/2, 59/78 of a turn" in page(result, "")

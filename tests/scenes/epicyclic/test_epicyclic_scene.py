@@ -182,7 +182,6 @@ def test_a_train_that_locks_itself_says_so():
         ({"teeth": {"sun": [30, 20]}}, "wrong order. Write sun = [20, 30]"),
         ({"limits": {"ratio_tolerance": 2}}, 'Write ratio_tolerance = "2 %"'),
         ({"objective": {"minimise": "loss"}}, "limits.ratio_tolerance: is missing"),
-        ({"efficiency": {"ring2": 0.9}}, "efficiency.ring2: is of a second ring"),
         ({"train": {"module_ratio": 0.8}}, "train.module_ratio: is of planets with two steps"),
         ({"teeth": {"sun_teeth": 20}}, "Write sun, in [teeth]"),
         ({"duty": {"power": "1 kW"}}, "duty"),

@@ -8,7 +8,8 @@ from gearopt.formulations.epicyclic.request import COUPLED, SETS, Request
 from gearopt.frozen import dataclass
 from gearopt.optimise.typed import Shown
 from gearopt.physics.planetary import assembly
-from gearopt.physics.planetary.kinematics import Balance, Mesh, balances, speeds
+from gearopt.physics.planetary.kinematics import Balance, Mesh, MeshPower, balances, speeds
+from gearopt.physics.planetary.willis import Use
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,34 +90,28 @@ def meshes(request: Request, z: Sequence[int]) -> list[Mesh]:
 
 def describe(request: Request, z: Sequence[int]) -> EpicyclicDesign:
     """The train of numbers of teeth that has a ratio."""
-    use, teeth = request.use, meshes(request, z)
-    turning = speeds(teeth, {use.source: Fraction(1)} | dict.fromkeys(use.held, Fraction(0)))
-    flows = balances(teeth, turning, use.source, use.sink, use.held)
-    flow = min(flows, key=lambda known: known.efficiency, default=None)
-    ratio = 1 / turning[use.sink]
-    asked = request.ratio
+    use, known = request.use, meshes(request, z)
+    turning = speeds(known, {use.source: Fraction(1)} | dict.fromkeys(use.held, Fraction(0)))
+    flows = balances(known, turning, use.source, use.sink, use.held)
+    flow = min(flows, key=lambda balance: balance.efficiency, default=None)
+    ratio, asked = 1 / turning[use.sink], request.ratio
+    gears = enumerate(request.gears)
     return EpicyclicDesign(
         arrangement=request.arrangement,
         sets=use.sets,
-        gears=tuple(
-            GearTeeth(name=name, teeth=z[k], module=request.module(k))
-            for k, name in enumerate(request.gears)
-        ),
+        gears=tuple(GearTeeth(name=n, teeth=z[k], module=request.module(k)) for k, n in gears),
         ratio=float(ratio),
         exact_ratio=str(ratio),
         ratio_error_percent=None if asked is None else 100.0 * float(ratio / asked - 1),
         efficiency=float(flow.efficiency) if flow else 0.0,
-        members=tuple(_members(request, turning, flow)),
-        meshes=tuple(_powers(flow)),
+        members=tuple(_members(use, turning, flow)),
+        meshes=tuple(map(_power, flow.meshes if flow else ())),
         places=tuple(_places(request, z)),
         gap_modules=min(float(apart - tips) for apart, tips in request.neighbours(z)),
     )
 
 
-def _members(
-    request: Request, turning: dict[str, Fraction], flow: Balance | None
-) -> Iterator[Member]:
-    use = request.use
+def _members(use: Use, turning: dict[str, Fraction], flow: Balance | None) -> Iterator[Member]:
     uses = dict.fromkeys(use.free, "free") | dict.fromkeys(use.held, "fixed")
     uses |= {use.source: "input", use.sink: "output"}
     for name, speed in turning.items():
@@ -131,15 +126,14 @@ def _members(
         )
 
 
-def _powers(flow: Balance | None) -> Iterator[RollingPower]:
-    for known in flow.meshes if flow else ():
-        yield RollingPower(
-            gears=f"{known.mesh.first}, {known.mesh.second}",
-            driver=known.driver,
-            efficiency=float(known.mesh.efficiency),
-            rolling_power=float(known.rolling),
-            lost=float(known.lost),
-        )
+def _power(known: MeshPower) -> RollingPower:
+    return RollingPower(
+        gears=f"{known.mesh.first}, {known.mesh.second}",
+        driver=known.driver,
+        efficiency=float(known.mesh.efficiency),
+        rolling_power=float(known.rolling),
+        lost=float(known.lost),
+    )
 
 
 def _places(request: Request, z: Sequence[int]) -> Iterator[Place]:

@@ -7,7 +7,8 @@ train. Lemma 89 of docs/proofs.md.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -136,18 +137,13 @@ def _second_sets(request: Request) -> IntArray:
     What a train loses and its ratio depend on z_r/z_s alone; limits of a set on its own teeth.
     """
     sets = _sets(request, 3)
-    alone = Request(
-        SIMPLE,
-        willis.Use((("sun", "ring", "carrier"),), "sun", "carrier", ("ring",)),
-        request.teeth[3:],
-        request.planets[1:],
-        request.losses[1:],
-        RING,
-        difference=request.difference,
-        clearance=request.clearance,
-        coaxial=request.coaxial,
-        equal=request.equal,
-        without=request.without,
+    alone = replace(
+        request,
+        arrangement=SIMPLE,
+        teeth=request.teeth[3:],
+        planets=request.planets[1:],
+        tolerance=None,
+        efficiency=None,
     )
     sets = sets[_within(alone, sets)]
     divisor = np.gcd(sets[:, 0], sets[:, 2])
@@ -216,14 +212,10 @@ def _promising(request: Request, trains: IntArray, key: Key | None) -> Iterator[
     for k in order:
         if least is not None and goals[k] > least + 2 * DOUBT:
             return
-        exact = request.key(_whole(trains[k]))
+        exact = request.key(trains[k].tolist())
         if exact is not None:
             if request.goal == RING:
                 yield exact
                 return
             least = goals[k] if least is None else least
             yield exact
-
-
-def _whole(row: Sequence[Any]) -> list[int]:
-    return [int(z) for z in row]

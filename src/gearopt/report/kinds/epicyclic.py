@@ -61,45 +61,39 @@ def train(result: Result, measures: Measures) -> Section | None:
         Table("planets", *records(places, measures)),
     ]
     tables = [table for table in tables if table.rows]
-    words = (assembly(design), *_flow(design))
+    words = (assembly(design), flow(design))
     return Section("Train", words=words, tables=tables, terminal=(*words, *tables))
 
 
 def assembly(design: EpicyclicDesign) -> str:
-    """Where planets are, and how they mesh with sun and ring."""
-    angles = [place.turn for place in design.places]
+    """Where planets are, and how they mesh with the suns."""
     phases = {place.sun_phase for place in design.places}
+    meshing = {1: "in step", 2: "in counter-phase" if 0.5 in phases else ""}.get(len(phases))
+    turns = list(dict.fromkeys(place.turn for place in design.places))
+    counts = {sum(p.carrier == place.carrier for p in design.places) for place in design.places}
     equal = all(
-        Fraction(place.turn) == Fraction(place.planet - 1, _count(design, place.carrier))
+        Fraction(place.turn) in {Fraction(place.planet - 1, n) for n in counts}
         for place in design.places
     )
-    if phases == {0.0}:
-        meshing = "in step at the sun"
-    elif phases == {0.0, 0.5}:
-        meshing = "in counter-phase at the sun"
-    else:
-        meshing = "one after the other at the sun"
-    spaced = "spaced equally" if equal else f"at {', '.join(dict.fromkeys(angles))} of a turn"
-    gap = f"between tip circles of neighbours {design.gap_modules:.3g} modules are left"
-    return f"All planets are alike and can be assembled {spaced}; they mesh {meshing}; {gap}."
+    spaced = "spaced equally" if equal else f"at {', '.join(turns)} of a turn"
+    return (
+        f"All planets are alike and can be assembled {spaced}; they mesh "
+        f"{meshing or 'one after the other'} at the sun; between tip circles of neighbours "
+        f"{design.gap_modules:.3g} modules are left."
+    )
 
 
-def _count(design: EpicyclicDesign, carrier: str) -> int:
-    return sum(place.carrier == carrier for place in design.places)
-
-
-def _flow(design: EpicyclicDesign) -> list[str]:
+def flow(design: EpicyclicDesign) -> str:
     """How power flows, against the input's."""
     if not design.meshes:
-        return ["The train locks itself: no power reaches the output."]
+        return "The train locks itself: no power reaches the output."
     most = max(design.meshes, key=lambda mesh: mesh.rolling_power)
     lost = sum(mesh.lost for mesh in design.meshes)
-    return [
-        f"Of the input's power {100.0 * lost:.3g} % are lost in meshes; the most rolling power, "
+    return (
+        f"Of the input's power {100.0 * lost:.3g} % is lost in meshes; the most rolling power, "
         f"{most.rolling_power:.3g} times the input's, has the mesh of {most.gears}. Torques are "
-        "those from outside, positive with the input's speed; a member that gives power has a "
-        "negative one."
-    ]
+        "those from outside: of a member that gives power with the other sign than its speed."
+    )
 
 
 def turning(result: Result, measures: Measures) -> Section | None:

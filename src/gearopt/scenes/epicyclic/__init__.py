@@ -11,7 +11,7 @@ from gearopt.optimise.certified import run
 from gearopt.optimise.comparing.plan import Model
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import untyped
-from gearopt.scenes.epicyclic.explain import moves, possible, remedies
+from gearopt.scenes.epicyclic.explain import remedies
 from gearopt.scenes.epicyclic.tables import Scene
 from gearopt.scenes.kind import Kind, examples_in
 from gearopt.scenes.plan import one_step
@@ -82,8 +82,6 @@ KIND = Kind(
     posed=posed,
     methods_to_compare=methods_to_compare,
     methods=("exact",),
-    possible=possible,
-    moves=moves,
     remedies=remedies,
     idle=idle,
 )

@@ -75,11 +75,6 @@ def conflict(request: Request, clock: Clock) -> tuple[tuple[str, ...], tuple[str
     return (tuple(kept) or (COAXIAL,)), tuple(unsure)
 
 
-def moves(scene: Scene) -> Iterator[Move]:
-    """The numbers that may make the file possible."""
-    return _moves(scene, Clock())
-
-
 def _moves(scene: Scene, clock: Clock) -> Iterator[Move]:
     request, train, limits = scene.request(), scene.train, scene.limits
     if limits.ratio_tolerance is not None and request.ratio is not None:

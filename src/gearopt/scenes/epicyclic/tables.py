@@ -38,11 +38,6 @@ SETS = {  # of every arrangement: sun, ring, carrier
     WOLFROM: (("sun", "ring1", "carrier"), ("sun", "ring2", "carrier")),
     COUPLED: (("sun1", "ring1", "carrier1"), ("sun2", "ring2", "carrier2")),
 }
-USED = {  # who does what where the file does not say: fixed, input, output, by preference
-    SIMPLE: (("ring", "sun", "carrier"), ("sun", "carrier", "ring"), ("carrier", "ring", "sun")),
-    WOLFROM: (("ring1", "ring2", "sun"), ("sun", "ring1", "ring2"), ("ring2", "ring1", "sun")),
-}
-USED[STEPPED] = USED[SIMPLE]
 MEMBER = choice(*dict.fromkeys(n for sets in SETS.values() for names in sets for n in names))
 Range = Annotated[
     tuple[int, int] | None, span(whole(20, MIN_TEETH, MAX_TEETH), [17, 60], single=True)
@@ -125,14 +120,10 @@ class Train(Table):
         Field((), description="Members of coupled sets that turn together, in pairs")
     )
     fixed: Annotated[tuple[str, ...], _fixed()] = Field(
-        (), description='Member, or members, that stand still; "ring", or "ring1", where it is free'
+        description="Member, or members, that stand still"
     )
-    input: Annotated[str | None, MEMBER] = Field(
-        None, description="Member that is driven; the sun where it is free"
-    )
-    output: Annotated[str | None, MEMBER] = Field(
-        None, description="Member that drives the load; by default the one left"
-    )
+    input: Annotated[str, MEMBER] = Field(description="Member that is driven")
+    output: Annotated[str, MEMBER] = Field(description="Member that drives the load")
     spacing: Annotated[str, choice("equal", "nearest")] = Field(
         "equal",
         description="equal: planets are spaced equally, which few numbers of teeth allow; nearest: "
@@ -168,15 +159,7 @@ class Efficiency(Table):
         Fraction(99, 100), description="Sun and planet", json_schema_extra={"default": 0.99}
     )
     ring: Annotated[Fraction, ETA] = Field(
-        Fraction(995, 1000),
-        description="Planet and ring (ring1)",
-        json_schema_extra={"default": 0.995},
-    )
-    sun2: Annotated[Fraction | None, ETA] = Field(
-        None, description="Sun and planet of the second coupled set; as sun without it"
-    )
-    ring2: Annotated[Fraction | None, ETA] = Field(
-        None, description="Planet and ring2; as ring without it"
+        Fraction(995, 1000), description="Planet and ring", json_schema_extra={"default": 0.995}
     )
 
 
@@ -252,14 +235,11 @@ class Scene(Table):
 
     def _idle(self) -> Iterator[tuple[tuple[str, str], str]]:
         """Keys that change nothing, with the reason."""
-        train, kind = self.train, self.train.arrangement
-        if kind != COUPLED:
-            for place in (("train", "planets2"), ("efficiency", "sun2"), ("train", "joined")):
-                if getattr(getattr(self, place[0]), place[1]):
-                    yield place, "is of coupled sets"
-        if kind in (SIMPLE, STEPPED) and self.efficiency.ring2 is not None:
-            yield ("efficiency", "ring2"), f"is of a second ring; a {kind} train has one"
-        if kind in (SIMPLE, COUPLED) and train.module_ratio is not None:
+        train = self.train
+        for key in ("planets2", "joined"):
+            if getattr(train, key) and train.arrangement != COUPLED:
+                yield ("train", key), "is of coupled sets"
+        if train.arrangement in (SIMPLE, COUPLED) and train.module_ratio is not None:
             yield ("train", "module_ratio"), "is of planets with two steps"
         if train.ratio is None and self.limits.ratio_tolerance is not None:
             yield ("limits", "ratio_tolerance"), "is that of a ratio, and none is asked"
@@ -270,28 +250,21 @@ class Scene(Table):
         own = {n for names in SETS[train.arrangement] for n in names}
         usable = own - {"carrier"} if train.arrangement == WOLFROM else own
         listed = [("fixed", n) for n in train.fixed]
-        listed += [(k, n) for k in ("input", "output") if (n := getattr(train, k))]
-        for key, name in listed:
+        for key, name in (*listed, ("input", train.input), ("output", train.output)):
             if name not in usable:
-                known = ", ".join(sorted(usable))
-                raise refuse(f"names {name}; members are {known}", at=("train", key))
-        for key in ("input", "output"):
-            if train.arrangement == COUPLED and getattr(train, key) is None:
-                raise refuse("is missing: coupled sets have none by default", at=("train", key))
+                rule = f"names {name}; members are {', '.join(sorted(usable))}"
+                raise refuse(rule, at=("train", key))
         for one, other in train.joined:
-            if own < {one, other} | own or one[-1] == other[-1]:
+            if not own >= {one, other} or one[-1] == other[-1]:
                 rule = f"joins {one} and {other}, which are not of two sets"
                 raise refuse(rule, at=("train", "joined"))
         taken = [use.source, use.sink, *use.held]
         if len({*taken}) < len(taken):
             raise refuse("is used twice: input, output and fixed differ", at=("train", "fixed"))
         if len(use.names) != len(taken) + len(use.sets) - 1:
-            rule = (
-                f"leaves {len(use.names)} members, of which {len(taken)} are input, output or "
-                f"fixed: joined pairs and fixed members of two sets are three in all"
-            )
-            place = "joined" if train.arrangement == COUPLED else "fixed"
-            raise refuse(rule, at=("train", place), action="tell", write="Join or fix others")
+            rule = "is not as many as there must be"
+            way = "Fix one member; of coupled sets joined pairs and fixed members are three in all"
+            raise refuse(rule, way, ("train", "fixed"), "tell")
         if all(0 in ratio_parts(use, teeth[: len(use.sets)]) for teeth in SAMPLES):
             raise refuse("does not turn with the input, or locks it", at=("train", "output"))
 
@@ -310,27 +283,21 @@ class Scene(Table):
         for one, other in train.joined:
             first, second = same.get(one, one), same.get(other, other)
             same |= {name: first for name in (second, *(n for n in same if same[n] == second))}
-        roles = [train.fixed, (train.input or "",), (train.output or "",)]
-        taken = {name for names in roles for name in names}
-        for k, names in enumerate(USED.get(train.arrangement, ())):
-            if roles[k] in ((), ("",)):
-                roles[k] = (next((n for n in names if n not in taken), names[0]),)
-                taken |= {*roles[k]}
-        held, (source,), (sink,) = (tuple(same.get(n, n) for n in names) for names in roles)
+        held = tuple(same.get(name, name) for name in train.fixed)
+        source, sink = (same.get(name, name) for name in (train.input, train.output))
         renamed = tuple((same.get(a, a), same.get(b, b), same.get(c, c)) for a, b, c in sets)
         return Use(renamed, source, sink, held, train.arrangement == WOLFROM)
 
     def request(self) -> Request:
         """The file in plain numbers."""
         train, eta, limits = self.train, self.efficiency, self.limits
-        losses = ((eta.sun, eta.ring), (eta.sun2 or eta.sun, eta.ring2 or eta.ring))
         second = (train.planets2 or train.planets,) if train.arrangement == COUPLED else ()
         return Request(
             train.arrangement,
             self.use,
             tuple(getattr(self.teeth, name) for name in GEARS[train.arrangement]),
             (train.planets, *second),
-            losses[: len(SETS[train.arrangement])],
+            ((eta.sun, eta.ring),) * len(SETS[train.arrangement]),
             self.goal,
             train.ratio,
             limits.ratio_tolerance,
