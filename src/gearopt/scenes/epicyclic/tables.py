@@ -104,10 +104,10 @@ class Train(Table):
         "on planet1, the ring on planet2; wolfrom: two rings, ring1 and the sun on planet1, ring2 "
         "on planet2 (3K); coupled: two simple sets with members joined"
     )
-    planets: Annotated[int, whole(3, 1, MAX_PLANETS)] = Field(
+    planets: Annotated[int, whole(3, 2, MAX_PLANETS)] = Field(
         3, description="Number of planets, of coupled sets those of the first"
     )
-    planets2: Annotated[int | None, whole(3, 1, MAX_PLANETS)] = Field(
+    planets2: Annotated[int | None, whole(3, 2, MAX_PLANETS)] = Field(
         None, description="Planets of the second of two coupled sets; planets without it"
     )
     ratio: Annotated[Fraction | None, _signed_ratio()] = Field(
