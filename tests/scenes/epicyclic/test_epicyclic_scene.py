@@ -150,6 +150,14 @@ def test_unequal_spacing_is_a_way_out_of_an_assembly_that_cannot_be():
     assert near.design["gap_modules"] == pytest.approx(gap, rel=1e-12)
 
 
+def test_what_is_assumed_and_not_rated_is_said():
+    notes = " ".join(solved(SIMPLE).report["notes"])
+    assert "assumed (unverified): 0.99 at suns, 0.995 at rings." in notes and "rated" in notes
+    notes = " ".join(solved(SIMPLE, efficiency={"sun": 0.98}).report["notes"])
+    assert "assumed (unverified): 0.995 at rings." in notes
+    assert "assumed" not in str(solved(SIMPLE, efficiency={"sun": 1, "ring": 1}).report["notes"])
+
+
 def test_a_train_that_locks_itself_says_so():
     train = {
         "arrangement": "wolfrom",

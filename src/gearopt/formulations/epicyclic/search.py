@@ -17,6 +17,7 @@ from gearopt.formulations.epicyclic.request import (
     COUPLED,
     ERROR,
     FIRST,
+    LOSS,
     RING,
     SIMPLE,
     STEPPED,
@@ -26,6 +27,7 @@ from gearopt.formulations.epicyclic.request import (
 from gearopt.frozen import dataclass
 from gearopt.optimise.clock import Clock
 from gearopt.physics.planetary import willis
+from gearopt.physics.planetary.assembly import SAME
 
 CHUNK = 20_000  # trains that are looked at together: some 10 MB
 DOUBT = 1e-12  # of an error or a loss in doubles, beyond which fractions are not asked
@@ -50,8 +52,8 @@ class Best:
 def best(request: Request, clock: Clock) -> Best:
     """The train of least objective; ties go to the fewest teeth, then to the smallest numbers."""
     firsts, floors, fewest = _firsts(request)
-    seconds = _second_sets(request) if request.arrangement == COUPLED else None
-    size = _per_first(request, seconds)
+    seconds = _seconds(request)
+    size = max(1, CHUNK // max(1, len(seconds)))
     order = np.lexsort((fewest, floors))
     key: Key | None = None
     for start in range(0, len(order), size):
@@ -94,17 +96,22 @@ def _firsts(request: Request) -> tuple[IntArray, Any, Any]:
         firsts = _sets(request, 0)
     rest = request.teeth[FIRST[request.arrangement] :]
     fewest = firsts.sum(axis=1) + sum(low for low, _ in rest)
-    floors = np.zeros(len(firsts))
-    if request.goal == RING and firsts.shape[1] == 3:
-        floors = firsts[:, 2].astype(float)
-    elif request.ratio is not None:
+    error = np.zeros(len(firsts))
+    if request.ratio is not None:
         error = np.maximum(_least_error(request, firsts) - DOUBT, 0.0)
-        if request.goal == ERROR:
-            floors = error
-        if request.tolerance is not None and TOLERANCE not in request.without:
-            kept = error <= float(request.tolerance) + DOUBT
-            firsts, floors, fewest = firsts[kept], floors[kept], fewest[kept]
+    ring = firsts[:, -1] if firsts.shape[1] == 3 else _base(request, firsts) + rest[0][0]
+    floors = {ERROR: error, LOSS: np.zeros(len(firsts)), RING: ring.astype(float)}[request.goal]
+    if request.tolerance is not None and TOLERANCE not in request.without:
+        kept = error <= float(request.tolerance) + DOUBT
+        return firsts[kept], floors[kept], fewest[kept]
     return firsts, floors, fewest
+
+
+def _base(request: Request, firsts: IntArray) -> IntArray:
+    """Least teeth by which the last ring may exceed its planet beside a first part."""
+    needed = (firsts[:, 0] + firsts[:, 1]) / float(request.modules)
+    base: IntArray = np.ceil(needed - request.coaxial - SAME).astype(np.int64)
+    return base
 
 
 def _least_error(request: Request, firsts: IntArray) -> Any:
@@ -131,11 +138,15 @@ def _least_error(request: Request, firsts: IntArray) -> Any:
     return np.where(pole, 0.0, np.maximum.reduce([values[0] - 1.0, 1.0 - values[1], 0.0 * z[0]]))
 
 
-def _second_sets(request: Request) -> IntArray:
-    """Second sets of a coupled train, of each ratio of their teeth the one of fewest.
+def _seconds(request: Request) -> IntArray:
+    """What completes a first part: of two steps the second planet and teeth beyond `_base`.
 
-    What a train loses and its ratio depend on z_r/z_s alone; limits of a set on its own teeth.
+    Of coupled sets second sets, of each ratio of their teeth the one of fewest: what a train loses
+    and its ratio depend on z_r/z_s alone, limits of a set on its own teeth.
     """
+    if request.arrangement != COUPLED:
+        last = request.teeth[-2:-1] if request.arrangement != SIMPLE else ()
+        return _grid(*last, (0, 2 * request.coaxial if last else 0))
     sets = _sets(request, 3)
     alone = replace(
         request,
@@ -163,37 +174,17 @@ def _within(request: Request, trains: IntArray) -> Any:
     return met
 
 
-def _per_first(request: Request, seconds: IntArray | None) -> int:
-    """How many first parts are completed together."""
-    width = 1
-    if seconds is not None:
-        width = max(1, len(seconds))
-    elif request.arrangement != SIMPLE:
-        low, high = request.teeth[-2]
-        width = (high - low + 1) * (2 * request.coaxial + 1)
-    return max(1, CHUNK // width)
-
-
-def _completed(request: Request, firsts: IntArray, seconds: IntArray | None) -> IntArray:
+def _completed(request: Request, firsts: IntArray, seconds: IntArray) -> IntArray:
     """All trains with some first parts whose centre distances are equal."""
     if request.arrangement == SIMPLE:
         return firsts
-    if seconds is None:
-        (low, high), (r_low, r_high) = request.teeth[-2:]
-        needed = (firsts[:, 0] + firsts[:, 1]) / float(request.modules)
-        base = np.ceil(needed - request.coaxial - 1e-9).astype(np.int64)
-        planets = np.arange(low, high + 1)
-        more = np.arange(2 * request.coaxial + 1)
-        shape = (len(firsts), len(planets), len(more))
-        ring = base[:, None, None] + planets[:, None] + more
-        planet = np.broadcast_to(planets[:, None], shape).ravel()
-        second = np.stack((planet, ring.ravel()), axis=1)
-        kept = (r_low <= second[:, 1]) & (second[:, 1] <= r_high)
-        index = np.repeat(np.arange(len(firsts)), shape[1] * shape[2])
-        return np.concatenate((firsts[index], second), axis=1)[kept]
-    index = np.repeat(np.arange(len(firsts)), len(seconds))
-    again = np.tile(seconds, (len(firsts), 1))
-    return np.concatenate((firsts[index], again), axis=1)
+    if request.arrangement == COUPLED:
+        first, second = np.indices((len(firsts), len(seconds))).reshape(2, -1)
+        return np.column_stack((firsts[first], seconds[second]))
+    ring = _base(request, firsts)[:, None] + seconds.sum(axis=1)
+    low, high = request.teeth[-1]
+    first, second = np.nonzero((low <= ring) & (ring <= high))
+    return np.column_stack((firsts[first], seconds[second, 0], ring[first, second]))
 
 
 def _promising(request: Request, trains: IntArray, key: Key | None) -> Iterator[Key]:

@@ -17,17 +17,15 @@ from gearopt.scenes.kind import Kind, examples_in
 from gearopt.scenes.plan import one_step
 from gearopt.scenes.reading.ask import Ask, unseeded
 
-UNRATED = (
-    "Nothing is rated: modules, face widths and strength are not asked here. Loads of planets are "
-    "taken as equal."
-)
+UNRATED = 'Nothing is rated, no module and no face width chosen: kind = "drive" has strength.'
+ASSUMED = "Efficiencies of meshes are assumed (unverified): {}."
 LOSSES = (
-    "Losses are those of the meshes alone, by the efficiency that the file gives each in the frame "
-    "of its carrier, whichever gear drives; bearings, seals and oil are left out."
+    "Losses are those of the meshes alone, an efficiency of each in the frame of its carrier, "
+    "whichever gear drives; bearings, seals and oil are left out. Loads of planets are equal."
 )
 GEOMETRY = (
-    "Teeth have an addendum of one module; interference of internal gears is not computed but for "
-    "the least difference of teeth."
+    "Teeth have an addendum of one module; interference of internal gears is not computed: the "
+    "least difference of teeth of a ring and its planets stands for it, a rule of thumb."
 )
 LOCKED = "The train locks itself: with these losses no torque at the input turns the output."
 SHIFTED = "Centre distances are made equal by profile shifts, which are not computed here."
@@ -42,9 +40,20 @@ def solved(scene: Scene, ask: Ask, known: Result | None) -> Result:
         return result
     teeth = [round(float(z)) for z in outcome.x]
     design = describe(request, teeth)
-    spoken = {LOCKED: design.efficiency == 0.0, SHIFTED: request.apart(teeth) > 1e-9}
+    eta = scene.efficiency
+    assumed = [
+        f"{float(getattr(eta, name)):g} at {name}s"
+        for name in type(eta).model_fields
+        if name not in eta.model_fields_set
+    ]
+    spoken = {
+        LOCKED: design.efficiency == 0.0,
+        SHIFTED: request.apart(teeth) > 1e-9,
+        ASSUMED.format(", ".join(assumed)): bool(assumed),
+        UNRATED: True,
+    }
     notes = [words for words, holds in spoken.items() if holds]
-    report: dict[str, Any] = {"assumptions": [UNRATED, LOSSES, GEOMETRY], "notes": notes}
+    report: dict[str, Any] = {"assumptions": [LOSSES, GEOMETRY], "notes": notes}
     if request.goal == ERROR:
         report["achieved"] = _achieved(design, request.ratio or Fraction(1))
     return replace(result, design=untyped(design), report=report)
