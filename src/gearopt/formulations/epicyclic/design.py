@@ -11,6 +11,8 @@ from gearopt.physics.planetary import assembly
 from gearopt.physics.planetary.kinematics import Balance, Mesh, MeshPower, balances, speeds
 from gearopt.physics.planetary.willis import Use
 
+PLANETS = ("planets", "planets2")  # members, as speeds and places name them
+
 
 @dataclass(frozen=True, kw_only=True)
 class GearTeeth:
@@ -48,7 +50,7 @@ class RollingPower:
 class Place:
     """Where a planet is, and phases of its meshes against the first one's, in pitches."""
 
-    carrier: Annotated[str, Shown("carrier")]
+    planets: Annotated[str, Shown("of")]
     planet: Annotated[int, Shown("planet")]
     angle_deg: Annotated[float, Shown("angle", unit="deg", form=".6f")]
     turn: Annotated[str, Shown("of a turn")]
@@ -82,7 +84,7 @@ def meshes(request: Request, z: Sequence[int]) -> list[Mesh]:
     known: dict[int, Mesh] = {}
     sets = zip(SETS[request.arrangement], request.use.sets, request.losses, strict=True)
     for k, ((s, p, q, r), (sun, ring, carrier), (at_sun, at_ring)) in enumerate(sets):
-        planets = "planets2" if k and request.arrangement == COUPLED else "planets"
+        planets = PLANETS[k if request.arrangement == COUPLED else 0]
         known.setdefault(s, Mesh(sun, planets, carrier, z[s], z[p], at_sun))
         known[r] = Mesh(planets, ring, carrier, z[q], -z[r], at_ring)
     return [*known.values()]
@@ -143,7 +145,7 @@ def _places(request: Request, z: Sequence[int]) -> Iterator[Place]:
         for j, place in enumerate(assembly.spread(count, n).tolist()):
             turn = Fraction(j, n) if request.equal else Fraction(place, int(count))
             yield Place(
-                carrier=request.use.sets[k][2],
+                planets=PLANETS[k],
                 planet=j + 1,
                 angle_deg=360.0 * float(turn),
                 turn=str(turn),

@@ -5,17 +5,19 @@ Planets turn about their own axes until they fit the sun, and the first of them 
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from gearopt.formulations.epicyclic.design import EpicyclicDesign
-from gearopt.formulations.epicyclic.request import SETS
+from gearopt.formulations.epicyclic.request import COUPLED, SETS, SIMPLE
 from gearopt.report.drawing.player import Animation, Body, Reading, View
 from gearopt.report.drawing.sheet import Sheet, Window, series
 from gearopt.report.section import Section
 
 SIZE = 420.0  # px of a view
 MOMENTS, SECONDS = 181, 12.0  # of the motion that is shown, at normal speed
+MOST_TURNS = 10.0
 ROOT, TIP = 0.34, 0.16  # of a pitch: half thickness of a tooth there
 PITCH = 2.0 * math.pi
 
@@ -31,61 +33,60 @@ def outline(teeth: int, module: float, inside: bool = False) -> np.ndarray:
 
 
 def section(design: EpicyclicDesign) -> Section:
-    """The train as it turns: one turn of a carrier, or of the input where carriers rest."""
+    """The train as it turns: one turn of the slower carrier, at most MOST_TURNS of the input."""
     speeds = {member.name: member.speed for member in design.members}
-    source = next(m.name for m in design.members if m.use == "input")
-    slow = min((abs(v) for *_, c in design.sets if (v := speeds[c])), default=1.0)
-    turns = np.linspace(0.0, 1.0 / slow, MOMENTS)
-    views = [_view(design, k, speeds, turns) for k in range(_views(design))]
-    readings = [Reading(f"turns of the {source} (input)", turns, "", 2)]
-    sink = next(m.name for m in design.members if m.use == "output")
-    readings.append(Reading(f"turns of the {sink} (output)", speeds[sink] * turns, "", 3))
-    times = np.linspace(0.0, SECONDS, MOMENTS)
-    caption = "The input turns counter-clockwise; lengths are in modules, teeth are not involutes."
-    animation = Animation("the train as it turns", views, times, caption, readings)
+    slow = min((abs(v) for *_, carrier in design.sets if (v := speeds[carrier])), default=1.0)
+    turns = np.linspace(0.0, min(1.0 / slow, MOST_TURNS), MOMENTS)
+    count = 1 if design.arrangement == SIMPLE else 2  # sets, or steps of the planets
+    readings = [
+        Reading(f"turns of the {member.name} ({member.use})", member.speed * turns, "", 3)
+        for use in ("input", "output")
+        for member in design.members
+        if member.use == use
+    ]
+    animation = Animation(
+        "the train as it turns",
+        [_view(design, k, speeds, turns) for k in range(count)],
+        np.linspace(0.0, SECONDS, MOMENTS),
+        "The input turns counter-clockwise; lengths are in modules, teeth are not involutes.",
+        readings,
+    )
     return Section("The train along its axis", animations=[animation])
-
-
-def _views(design: EpicyclicDesign) -> int:
-    """Sets of two carriers, steps of planets, or one view of a simple set."""
-    return 1 if design.arrangement == "simple" else 2
 
 
 def _view(design: EpicyclicDesign, k: int, speeds: dict[str, float], turns: np.ndarray) -> View:
     """A set, or a step of the planets, with what is in mesh with it there."""
-    sets = SETS[design.arrangement]
-    (s, p, q, r), (sun, ring, carrier) = sets[min(k, len(sets) - 1)], design.sets[-1 if k else 0]
-    stepped = p != q
-    moon, planet = "planets2" if k and len(design.gears) == 6 else "planets", q if k else p
-    places = [place for place in design.places if place.carrier == carrier]
-    angles = [math.radians(place.angle_deg) for place in places]
-    teeth = [gear.teeth for gear in design.gears]
+    (s, p, q, r), (sun, ring, carrier) = SETS[design.arrangement][-k], design.sets[-k]
+    moon = "planets2" if k and design.arrangement == COUPLED else "planets"
+    planet, teeth = q if k else p, [gear.teeth for gear in design.gears]
+    angles = [math.radians(at.angle_deg) for at in design.places if at.planets == moon]
     turned, ring_angle = _fitted(angles, teeth[s], teeth[p], teeth[q], teeth[r])
-    module = design.gears[planet].module
-    distance = 0.5 * (teeth[s] + teeth[p]) * design.gears[s].module
-    orbit = PITCH * speeds[carrier] * turns
-    bodies = []
-    if not (stepped and k):
-        spin = np.stack((0.0 * turns, 0.0 * turns, PITCH * speeds[sun] * turns), axis=1)
-        shape = outline(teeth[s], design.gears[s].module)
-        bodies.append(Body(shape, spin, "tip", series(1), f"{sun}: z {teeth[s]}"))
+    distance = 0.5 * (teeth[s] + teeth[p])
+
+    def body(
+        gear: int, angle: float, speed: float, colour: int, x: Any = 0.0, y: Any = 0.0
+    ) -> Body:
+        """A gear that turns about a place that may move."""
+        it, inside = design.gears[gear], gear == r
+        moving = np.broadcast_arrays(x, y, angle + PITCH * speed * turns)
+        shape, style = outline(it.teeth, it.module, inside), "body" if inside else "tip"
+        title = f"{it.name}: z {it.teeth}"
+        return Body(shape, np.stack(moving, axis=1), style, series(colour), title)
+
+    bodies = [] if k and p != q else [body(s, 0.0, speeds[sun], 1)]
     for angle, turn in zip(angles, turned, strict=True):
-        x, y = distance * np.cos(angle + orbit), distance * np.sin(angle + orbit)
-        spin = np.stack((x, y, turn + PITCH * speeds[moon] * turns), axis=1)
-        shape = outline(teeth[planet], module)
-        bodies.append(
-            Body(shape, spin, "tip", series(2), f"{design.gears[planet].name}: z {teeth[planet]}")
-        )
-    reach = distance + 0.5 * module * (teeth[planet] + 2.0)
-    if not stepped or k or design.arrangement == "wolfrom":
-        spin = np.stack((0.0 * turns, 0.0 * turns, ring_angle + PITCH * speeds[ring] * turns), 1)
-        shape = outline(teeth[r], design.gears[r].module, inside=True)
-        bodies.append(Body(shape, spin, "body", series(3), f"{ring}: z {teeth[r]}"))
-        reach = max(reach, 0.5 * design.gears[r].module * (teeth[r] + 3.0))
+        orbit = angle + PITCH * speeds[carrier] * turns
+        place = distance * np.cos(orbit), distance * np.sin(orbit)
+        bodies.append(body(planet, turn, speeds[moon], 2, *place))
+    if k or p == q:
+        bodies.append(body(r, ring_angle, speeds[ring], 3))
+    reach = 0.5 * max(
+        np.ptp(it.outline[:, 0]) + 2.0 * np.abs(it.places[:, 0]).max() for it in bodies
+    )
     window = Window(-reach, reach, -reach, reach, (8.0, 8.0, 8.0, 8.0))
     sheet = Sheet(window, window.scale(SIZE, SIZE))
     sheet.cross(0.0, 0.0, 2.0)
-    names = ", ".join(dict.fromkeys(body.title for body in bodies))
+    names = ", ".join(dict.fromkeys(it.title for it in bodies))
     return View(sheet, f"planetary train, view {k + 1}", behind=bodies, caption=f"{names}.")
 
 

@@ -53,12 +53,11 @@ def train(result: Result, measures: Measures) -> Section | None:
         same = dict(zip(OWN, sum(design.sets, ()), strict=True))
         names = {n: " = ".join(o for o in OWN if same[o] == n) for n in same.values()}
     members = [replace(m, name=names.get(m.name) or m.name) for m in design.members]
-    places = [replace(p, carrier=names[p.carrier]) for p in design.places]
     tables = [
         Table("gears", *records(design.gears, measures)),
         Table("members", *records(members, measures)),
         Table("meshes", *records(design.meshes, measures)),
-        Table("planets", *records(places, measures)),
+        Table("planets", *records(design.places, measures)),
     ]
     tables = [table for table in tables if table.rows]
     words = (assembly(design), flow(design))
@@ -70,7 +69,7 @@ def assembly(design: EpicyclicDesign) -> str:
     phases = {place.sun_phase for place in design.places}
     meshing = {1: "in step", 2: "in counter-phase" if 0.5 in phases else ""}.get(len(phases))
     turns = list(dict.fromkeys(place.turn for place in design.places))
-    counts = {sum(p.carrier == place.carrier for p in design.places) for place in design.places}
+    counts = {sum(p.planets == place.planets for p in design.places) for place in design.places}
     equal = all(
         Fraction(place.turn) in {Fraction(place.planet - 1, n) for n in counts}
         for place in design.places
