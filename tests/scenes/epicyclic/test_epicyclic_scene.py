@@ -158,6 +158,23 @@ def test_what_is_assumed_and_not_rated_is_said():
     assert "assumed" not in str(solved(SIMPLE, efficiency={"sun": 1, "ring": 1}).report["notes"])
 
 
+def test_a_published_3k_set_fits_three_planets_not_six():
+    """5/4/13 and 6/21 of modules 15 to 9: 50.4 (public repository CKraft11/pygeartrain)."""
+    train = {"arrangement": "wolfrom", "planets": 6, "ratio": "252/5", "module_ratio": "3/5"}
+    train |= {"fixed": "ring1", "output": "ring2"}
+    teeth = {"planet": None, "ring": None, "sun": 5, "planet1": 4, "ring1": 13}
+    tables = {
+        "teeth": teeth | {"planet2": 6, "ring2": 21},
+        "limits": {"ring_minus_planet": 9, "neighbour_clearance": 0},
+    }
+    result = solved(SIMPLE, train=train, **tables)
+    ways = result.report["ways_out"]
+    assert result.status == "infeasible" and ways["conflict"] == ["assembly"]
+    assert ways["remedies"][0]["changes"][0]["write"] == "3"
+    result = solved(SIMPLE, train=train | {"planets": 3}, **tables)
+    assert result.value == 0.0 and result.design["ratio"] == 50.4
+
+
 def test_a_train_that_locks_itself_says_so():
     train = {
         "arrangement": "wolfrom",

@@ -7,11 +7,11 @@ but for it (ratio, loss) moves to that number at once.
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 
 from gearopt.formulations.epicyclic.request import (
     ASSEMBLY,
     COAXIAL,
-    COUPLED,
     DIFFERENCE,
     EFFICIENCY,
     ERROR,
@@ -27,7 +27,7 @@ from gearopt.optimise.result import Result
 from gearopt.scenes.epicyclic.tables import MAX_PLANETS, MAX_SHIFTED, MAX_TEETH, MIN_TEETH, Scene
 from gearopt.scenes.explaining.engine import FeasibilityQuestions, Group, singles, with_least
 from gearopt.scenes.explaining.moves import DUTY, Move
-from gearopt.scenes.explaining.numbers import cut, numbers
+from gearopt.scenes.explaining.numbers import apart, cut, numbers
 from gearopt.scenes.explaining.possible import UNKNOWN, Verdict
 
 FAR = 8.0  # times the end of a range of teeth, at most
@@ -99,11 +99,11 @@ def _moves(scene: Scene, clock: Clock) -> Iterator[Move]:
     more = [*range(now + 1, min(now + 5, MAX_SHIFTED) + 1)]
     steps = [1.0 + k for k, _ in enumerate(more, 1)]
     yield Move(("limits", "coaxial_difference"), 1).to_choices(now, steps, more, more)
-    for name in ("planets", *(("planets2",) if request.arrangement == COUPLED else ())):
-        count = getattr(train, name) or train.planets
-        others = [n for k in (1, 2) for n in (count + k, count - k) if 1 < n <= MAX_PLANETS]
-        if getattr(train, name):
-            yield Move(("train", name), 1).to_values(count, others)
+    for name in ("planets", "planets2"):
+        if count := getattr(train, name):
+            others = [n for n in range(2, min(count + 2, MAX_PLANETS) + 1) if n != count]
+            near = sorted(others, key=partial(apart, count))
+            yield Move(("train", name), 1).to_values(count, near)
     if request.equal:
         switch = ("train.spacing", '"equal"', '"nearest"')
         yield Move(("train", "spacing"), 1, steps=(2.0,), write=lambda *_: "nearest", switch=switch)

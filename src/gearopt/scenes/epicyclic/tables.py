@@ -43,7 +43,6 @@ Range = Annotated[
     tuple[int, int] | None, span(whole(20, MIN_TEETH, MAX_TEETH), [17, 60], single=True)
 ]
 ETA = number(0.99, Fraction(1, 2), 1)
-PERCENT = number("1 %", 0, Fraction(1, 2), percent=True)
 SAMPLES = ([(17, 60), (23, 71)], [(31, 79), (19, 97)])  # teeth by which a coupling is tried
 
 
