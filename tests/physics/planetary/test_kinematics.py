@@ -171,13 +171,14 @@ JOINED = (
     {"sun2": "sun1", "carrier2": "ring1"},
     {"carrier2": "ring1", "ring2": "carrier1"},
     {"sun2": "sun1", "ring2": "carrier1"},
+    {"carrier1": "sun1", "ring2": "sun1"},  # the first set turns as one
 )
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_two_ways_agree(seed):
     """200 random trains: the linear system of all meshes against Willis and Cramer, exactly."""
-    rng, locked, several = np.random.default_rng(seed), 0, 0
+    rng = np.random.default_rng(seed)
     for _ in range(40):
         meshes, sets, teeth, etas, shared = case(rng)
         names = list(dict.fromkeys(n for group in sets for n in group))
@@ -197,8 +198,6 @@ def test_two_ways_agree(seed):
         losses = [(etas[2 * k], etas[2 * k + 1]) for k in range(len(sets))]
         eta = efficiency(use, exact, losses)
         assert eta == min((f.efficiency for f in flows), default=0)
-        locked += not flows
-        several += len(flows) > 1
         for flow in flows:
             assert sum(flow.torques.values()) == 0
             power = sum(t * turning[n] for n, t in flow.torques.items())
@@ -206,7 +205,6 @@ def test_two_ways_agree(seed):
         arrays = [(np.array([a]), np.array([b])) for a, b in teeth]
         by_floats = efficiency(use, arrays, [(float(a), float(b)) for a, b in losses])
         assert by_floats[0] == pytest.approx(float(eta), rel=1e-11, abs=1e-300)
-    print("locked", locked, "several", several)
 
 
 def test_every_permutation_of_a_simple_set_has_the_ratio_of_willis():

@@ -162,4 +162,7 @@ def _with_drivers(
 def _moments(mesh: Mesh, sign: int) -> dict[str, Fraction]:
     """Moments of a mesh on its members for a unit of tooth force."""
     first, second = Fraction(mesh.first_teeth), mesh.second_teeth * mesh.efficiency**sign
-    return {mesh.first: first, mesh.second: second, mesh.carrier: -first - second}
+    moments = dict.fromkeys(mesh.members, Fraction(0))
+    for name, moment in zip(mesh.members, (first, second, -first - second), strict=True):
+        moments[name] += moment
+    return moments
