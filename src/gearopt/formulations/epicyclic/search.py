@@ -156,7 +156,8 @@ def _seconds(request: Request) -> IntArray:
         tolerance=None,
         efficiency=None,
     )
-    sets = sets[_within(alone, sets)]
+    parts = np.array_split(sets, 1 + len(sets) // CHUNK)
+    sets = np.concatenate([part[_within(alone, part)] for part in parts])
     divisor = np.gcd(sets[:, 0], sets[:, 2])
     order = np.lexsort((sets[:, 1], sets.sum(axis=1), sets[:, 2]))
     reduced = np.stack((sets[:, 0] // divisor, sets[:, 2] // divisor), axis=1)[order]

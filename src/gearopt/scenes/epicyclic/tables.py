@@ -31,7 +31,7 @@ from gearopt.scenes.reading.fields import (
 )
 from gearopt.scenes.reading.lists import mended, several, span
 
-MIN_TEETH, MAX_TEETH, MAX_PLANETS, MAX_SHIFTED = 4, 1000, 12, 20
+MIN_TEETH, MAX_TEETH, MAX_PLANETS, MAX_SHIFTED = 4, 600, 12, 6
 SETS = {  # of every arrangement: sun, ring, carrier
     SIMPLE: (("sun", "ring", "carrier"),),
     STEPPED: (("sun", "ring", "carrier"),),
