@@ -54,12 +54,12 @@ def _rows(use: Use, teeth: Teeth) -> list[dict[str, Any]]:
     return rows
 
 
-def _minor(use: Use, rows: list[dict[str, Any]], one: str, *other: str) -> Any:
+def _minor(use: Use, rows: list[dict[str, Any]], name: str, *other: str) -> Any:
     """Determinant of two members' columns; of one set its coefficient."""
     if len(use.sets) == 1:
-        return rows[0][one]
+        return rows[0][name]
     first, second = rows
-    return first[one] * second[other[0]] - second[one] * first[other[0]]
+    return first[name] * second[other[0]] - second[name] * first[other[0]]
 
 
 def ratio_parts(use: Use, teeth: Teeth) -> tuple[Any, Any]:

@@ -246,16 +246,16 @@ class Scene(Table):
     def _check_use(self) -> None:
         """Check that the members named are there, each used once, and that power can flow."""
         train, use = self.train, self.use
-        own = {n for names in SETS[train.arrangement] for n in names}
-        usable = own - {"carrier"} if train.arrangement == WOLFROM else own
+        members = {n for names in SETS[train.arrangement] for n in names}
+        usable = members - {"carrier"} if train.arrangement == WOLFROM else members
         listed = [("fixed", n) for n in train.fixed]
         for key, name in (*listed, ("input", train.input), ("output", train.output)):
             if name not in usable:
                 rule = f"names {name}; members are {', '.join(sorted(usable))}"
                 raise refuse(rule, at=("train", key))
-        for one, other in train.joined:
-            if not own >= {one, other} or one[-1] == other[-1]:
-                rule = f"joins {one} and {other}, which are not of two sets"
+        for two in train.joined:
+            if not members.issuperset(two) or two[0][-1] == two[1][-1]:
+                rule = f"joins {' and '.join(two)}, which are not of two sets"
                 raise refuse(rule, at=("train", "joined"))
         taken = [use.source, use.sink, *use.held]
         if len({*taken}) < len(taken):
@@ -279,8 +279,8 @@ class Scene(Table):
         """Sets with their joined members, and who does what."""
         train, sets = self.train, SETS[self.train.arrangement]
         same: dict[str, str] = {}
-        for one, other in train.joined:
-            first, second = same.get(one, one), same.get(other, other)
+        for two in train.joined:
+            first, second = (same.get(name, name) for name in two)
             same |= {name: first for name in (second, *(n for n in same if same[n] == second))}
         held = tuple(same.get(name, name) for name in train.fixed)
         source, sink = (same.get(name, name) for name in (train.input, train.output))
