@@ -124,6 +124,20 @@ def test_a_three_k_set_locks_itself_as_a_speed_increaser():
     assert efficiency(use, teeth, [rough[:2]] * 2) == 0
 
 
+def test_losses_that_balance_a_ratio_are_no_division_by_zero():
+    """r_1 = 4, r_2 = 3.96 and a ring mesh of 0.99: with one sign of its power r_1' = r_2'."""
+    meshes = wolfrom(20, 30, 80, 25, 66, (F(1), F(1), F("0.99")))
+    use = Use(WOLFROM, "sun", "ring2", ("ring1",), True)
+    turning = speeds(meshes, {"sun": 1, "ring1": 0})
+    flows = balances(meshes, turning, "sun", "ring2", ["ring1"])
+    losses = [(F(1), F(1)), (F(1), F("0.99"))]
+    teeth = [(F(20), F(80)), (F(20 * 25), F(30 * 66))]
+    assert efficiency(use, teeth, losses) == min((f.efficiency for f in flows), default=0)
+    arrays = [(np.array([float(a)]), np.array([float(b)])) for a, b in teeth]
+    eta = efficiency(use, arrays, [(float(a), float(b)) for a, b in losses])
+    assert eta[0] == pytest.approx(float(efficiency(use, teeth, losses)), rel=1e-9)
+
+
 def test_speeds_that_contradict_each_other_or_do_not_suffice():
     for given in ({"sun": 1}, {"sun": 1, "ring": 0, "carrier": 1}):
         with pytest.raises(ValueError, match="set those of all members"):

@@ -103,6 +103,8 @@ def _ways(
         ]
         new = _rows(use, lossy)
         over, under = (_minor(use, new, name, *use.free) for name in (use.sink, use.source))
+        if np.all(under == 0):
+            continue
         forces = [1 / under]  # times the rows: torques from outside, that of the input 1
         if len(new) == 2:
             (x,) = use.free
