@@ -15,7 +15,7 @@ RANDOM = False
 COUNTS = "train looked at"
 LEFT = "those that equal centre distances and a bound of the ratio leave"
 PROVEN = f"Proof: trains were looked at one by one, {LEFT}: {{:,}}. Fractions decide their order."
-NONE = f"Proof: trains were looked at one by one, {LEFT}: {{:,}}. None of them meets all limits."
+NONE = f"Proof: trains were looked at one by one, {LEFT}: {{:,}}; none meets all limits."
 
 
 def problem(request: Request) -> Problem:
