@@ -33,6 +33,8 @@ def objective_share(
         return sum(
             w * objective_share(train, stage, pair, density, option, n) for n, w in train.weights
         )
+    if (planets := _making(train, stage, option).planets) is not None:
+        return _of_planets(train, stage, pair, planets, density, option, objective)
     idler = _idler(train, stage, pair, option)
     if objective in MASSES:
         rows = zip(train.stages[stage].blanks, pair.gears, strict=True)
@@ -55,6 +57,23 @@ def objective_share(
     return length
 
 
+def _of_planets(
+    train: Train,
+    stage: int,
+    pair: GearPair,
+    planets: Any,
+    density: Any,
+    option: int,
+    objective: str,
+) -> Any:
+    """Share of a stage with planets, or of a pinion in a ring; the rolling power counts as loss."""
+    if objective == "mesh_loss":
+        return 100.0 * FRICTION * math.pi * planets.loss(pair)
+    if objective == "gear_volume":
+        return sum(planets.volumes(pair, solid=True))
+    return _worth(train, stage, planets.volumes(pair), density, option, objective)
+
+
 def _idler(train: Train, stage: int, pair: GearPair, option: int) -> Any:
     """Volume [mm3] of the idler of an option; 0 where there is none."""
     options = train.stages[stage].options
@@ -73,7 +92,7 @@ def least_share(
 ) -> Any:
     """Lower bound of a share that grows with every size of the pair, without what cutting costs.
 
-    Equal of solid gears but for that. fewest: least numbers of teeth of pinion and wheel; None:
+    Equal of solid gears, and of planets, but for that. fewest: least numbers of teeth of pinion and wheel; None:
     unknown, then it is proportional to b d1^2 at a given ratio.
     """
     objective, blanks = objective or train.objective, train.stages[stage].blanks
@@ -82,7 +101,10 @@ def least_share(
         return sum(w * least_share(train, stage, pair, *rest, n) for n, w in train.weights)
     if objective == "mesh_loss" and fewest is None:
         return 0.0 * pair.volume  # it falls with more teeth
-    if objective not in MASSES:
+    planets = _making(train, stage, option).planets
+    if planets is not None and fewest is None:  # of teeth that are no numbers of planets
+        return 0.0 * pair.volume
+    if objective not in MASSES or planets is not None:
         return objective_share(train, stage, pair, density, option, objective)
     if not train.hollow:
         volumes = [gear.volume for gear in pair.gears]

@@ -199,6 +199,34 @@ class Stage:
         return width
 
     @property
+    def bodies(self) -> tuple[Blank, ...]:
+        """Blanks of all its gears."""
+        ways = [option.planets for option in self.options if option.planets is not None]
+        return (*self.blanks, *(blank for way in ways for blank in way.cutting.blanks))
+
+    @property
+    def planetary(self) -> bool:
+        """Whether it has planets or a ring."""
+        return any(option.planets is not None for option in self.options)
+
+    def possible(self, z1: Any, z2: Any) -> Any:
+        """Whether some way of making the stage takes numbers of teeth; all do of pairs."""
+        if not self.planetary:
+            return np.ones(np.shape(z1), bool)
+        ways = {option.planets for option in self.options}
+        return np.logical_or.reduce([way.possible(z1, z2) for way in ways])
+
+    @property
+    def options_of_one_material(self) -> dict[str, tuple[Option, ...]]:
+        """Options whose gears are all of one material, by its name."""
+        named: dict[str, tuple[Option, ...]] = {}
+        for option in self.options:
+            if len(names := set(option.materials)) == 1:
+                name = names.pop()
+                named[name] = (*named.get(name, ()), option)
+        return named
+
+    @property
     def pinion_fixed(self) -> bool:
         """Whether z1 is given."""
         return self.pinion_teeth[0] == self.pinion_teeth[1]
@@ -272,6 +300,9 @@ class Train:
         idle = any(option.idler for stage in self.stages for option in stage.options)
         if idle and objective not in ("gear_volume", "mass", WEIGHTED):
             raise ValueError(f"the objective {objective} is not for stages with an idler")
+        epicyclic = any(stage.planetary for stage in self.stages)
+        if epicyclic and objective in (*LENGTHS, "cost"):
+            raise ValueError(f"the objective {objective} is not for stages with planets or a ring")
         if objective == "cost" and not all(stage.options for stage in self.stages):
             raise ValueError("the objective cost needs the price of every stage's materials")
         if objective in MASSES and not solid:
@@ -353,10 +384,10 @@ class Train:
         """The drives of this one whose gears are all of one material; itself without a choice."""
         if not self.several_options:
             return (self,)
-        rows = [{o.materials: o for o in s.options} for s in self.stages]
-        alike = [n for n in rows[0] if n[0] == n[1] and all(n in row for row in rows)]
+        rows = [s.options_of_one_material for s in self.stages]
+        alike = [name for name in rows[0] if all(name in row for row in rows)]
         by_material = [
-            [replace(s, options=(row[n],)) for s, row in zip(self.stages, rows, strict=True)]
+            [replace(s, options=row[n]) for s, row in zip(self.stages, rows, strict=True)]
             for n in alike
         ]
         return tuple(replace(self, stages=tuple(own), same_option=False) for own in by_material)
@@ -364,7 +395,7 @@ class Train:
     @property
     def hollow(self) -> bool:
         """Whether an objective counts gears that are no solid discs."""
-        blanks = [blank for stage in self.stages for blank in stage.blanks]
+        blanks = [blank for stage in self.stages for blank in stage.bodies]
         names = (*self.objectives, *(name for name, _ in self.weights))
         counted = any(name in MASSES for name in names)
         return counted and not all(blank.solid for blank in blanks)

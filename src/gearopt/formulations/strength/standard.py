@@ -186,20 +186,26 @@ class Option:
 
     Of pinion and wheel: densities [t/mm3], or None for that of the drive; prices of a kilogram,
     heat treatment included, and the parts of them that are its; prices of a metre of teeth cut;
-    names of materials. idler: teeth of a gear between them, 0: none.
+    names of materials. idler: teeth of a gear between them, 0: none. planets: how planets or a
+    ring make a stage of it (`formulations.drive.planetary`), None: it is a pair; then what is of
+    pinion and wheel is of sun, planets and ring, or of pinion and ring.
     """
 
     standards: tuple[Standard, ...]
     words: str = ""
-    densities: tuple[float | None, float | None] = (None, None)
-    prices: tuple[float, float] = (1.0, 1.0)
-    treatment_prices: tuple[float, float] = (0.0, 0.0)
-    cutting_prices: tuple[float, float] = (0.0, 0.0)
-    materials: tuple[str, str] = ("", "")
+    densities: tuple[float | None, ...] = (None, None)
+    prices: tuple[float, ...] = (1.0, 1.0)
+    treatment_prices: tuple[float, ...] = (0.0, 0.0)
+    cutting_prices: tuple[float, ...] = (0.0, 0.0)
+    materials: tuple[str, ...] = ("", "")
     idler: int = 0
+    planets: Any = None
 
     def meshes(self, pair: GearPair) -> tuple[GearPair, ...]:
-        """The pairs in mesh: two where an idler is between pinion and wheel."""
+        """The pairs in mesh: two where an idler or planets are between pinion and wheel."""
+        if self.planets is not None:
+            meshes: tuple[GearPair, ...] = self.planets.meshes(pair)
+            return meshes
         ends: tuple[Any, Any] = self.standards[0], self.standards[-1]
         return tuple(one.mesh(pair) for one in ends) if self.idler else (pair,)
 
@@ -214,17 +220,18 @@ class Option:
         rivals: the others; density: of gears without one of their own.
         """
         densities, prices, cutting = [], [], []
-        for k in (0, 1):
+        for k in range(len(self.densities)):
             heavy = [rho for way in (self, *rivals) if (rho := way.densities[k] or density)]
             densities.append(min(heavy, default=None))
             prices.append(min(way.prices[k] for way in (self, *rivals)))
             cutting.append(min(way.cutting_prices[k] for way in (self, *rivals)))
         return replace(
             self,
-            densities=(densities[0], densities[1]),
-            prices=(prices[0], prices[1]),
-            cutting_prices=(cutting[0], cutting[1]),
+            densities=tuple(densities),
+            prices=tuple(prices),
+            cutting_prices=tuple(cutting),
             idler=min(way.idler for way in (self, *rivals)),
+            planets=self.planets and self.planets.lightest_with(way.planets for way in rivals),
         )
 
     def strongest_with(self, rivals: Sequence["Option"]) -> "Option | None":

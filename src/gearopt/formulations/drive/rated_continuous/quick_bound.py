@@ -32,7 +32,7 @@ def quick_bound(train: Train, most: float) -> float:
     Of stages with many ways the kinds of the least sum are divided, a few times.
     """
     sized = train.by_width or train.objective in LENGTHS
-    idle = any(option.idler for stage in train.stages for option in stage.options)
+    idle = any(option.idler or option.planets for stage in train.stages for option in stage.options)
     raised = train.lowest_ratio < 1 or train.driver == "wheel"
     if not (sized and most < math.inf) or raised or idle:
         return -math.inf

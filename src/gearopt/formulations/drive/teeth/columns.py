@@ -117,6 +117,9 @@ def _block(stage: Stage, ranges: Ranges, coprime: bool, toothings: list[int]) ->
         ends = None
     elif cut.shifting is None:
         (z1, z2), ends = _pairs(ranges, coprime), None
+        if stage.planetary:
+            keep = stage.possible(z1, z2)
+            z1, z2 = z1[keep], z2[keep]
         toothing = np.full(len(z1), toothings[0])
     else:
         cuts = tuple(stage.toothings[k] for k in toothings)

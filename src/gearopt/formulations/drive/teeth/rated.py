@@ -384,7 +384,8 @@ class RatedTable(Table):
             ends = self._ends(one, module, pair[rows])
             limit = np.minimum(most[rows], best.cost[rows])
             larger = self._floor(one, ends[0]) <= limit
-            some = np.flatnonzero(self._worth(one, ends[0], VIRTUAL) <= limit)
+            worth = self._worth(one, ends[0], VIRTUAL)
+            some = np.flatnonzero((worth <= limit) & (worth < np.inf))
             if len(some):
                 tried = rows[some], pair[rows[some]], module[some]
                 ends = ends[0][some], ends[1][some]
@@ -419,7 +420,7 @@ class RatedTable(Table):
             limit = np.minimum(most[rows], best.cost[rows])
             with np.errstate(invalid="ignore"):  # of no width
                 worth = self._worth(one, narrow, option)
-            some = np.flatnonzero(np.isfinite(narrow) & (worth <= limit))
+            some = np.flatnonzero(np.isfinite(narrow) & (worth <= limit) & (worth < np.inf))
             if not len(some):
                 continue
             low, high = narrow[some], ends[1][some]
@@ -512,11 +513,18 @@ class RatedTable(Table):
     def _floor(self, pair: GearPair, width: Array) -> Array:
         """Return a lower bound of `_worth` that larger modules and options do not fall below."""
         shifted = self.stage.toothing.shifting is not None
-        if shifted and (self._by_module or self.train.hollow):  # a larger one may be the lighter
+        shifted = shifted and (self._by_module or self.train.hollow)
+        if shifted or (self.stage.planetary and not self._one_shape):  # a larger one may be the lighter
             return np.zeros(np.shape(width))
         fewest = pair.pinion_teeth, pair.wheel_teeth
         shares = least_share(self._cheapest, self.position, pair.of_width(width), fewest=fewest)
         return np.asarray(shares)
+
+    @property
+    def _one_shape(self) -> bool:
+        """Whether bodies of planetary stages grow as modules do."""
+        ways = (option.planets for option in self.stage.options if option.planets is not None)
+        return all(way.cutting.solid and way.cutting.distance is None for way in ways)
 
     def _improve(
         self, best: Found, rows: Index, pair: Index, module: Index, option: int, width: Array

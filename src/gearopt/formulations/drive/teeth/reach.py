@@ -109,7 +109,8 @@ def trimmed(train: Train, maximum: float) -> Train:
     for k, stage in enumerate(train.stages):
         low, high = stage.pinion_teeth
         assert high is not None
-        if stage.toothing.shifting is not None:  # whose bodies are no reference cylinders
+        own_bodies = stage.toothing.shifting is not None or stage.planetary
+        if own_bodies:  # which are no reference cylinders
             stages.append(stage)
             continue
         teeth = np.arange(low, high + 1)

@@ -1,0 +1,419 @@
+"""Planetary stages and pinions in a ring: stages whose pair has their ratio, but is not in mesh.
+
+A pair stands for the gears of a stage, by the member that is held: z1, z2 are z_s, z_s + z_r of a
+held ring (sun to carrier), z_r, z_r + z_s of a held sun (ring to carrier), z_s, z_r of a held
+carrier (sun to ring), so that z2/z1 is the ratio, exactly. Number of planets and their teeth are a
+way of making them. A pinion in a ring has z1 and z2 of both, and no planets.
+"""
+
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from gearopt.formulations.strength.standard import Rows
+from gearopt.frozen import dataclass
+from gearopt.physics.blanks import SOLID, Blank
+from gearopt.physics.gears import ISO_53_A, RIM, Cutter, Gear, GearPair, Rack, reference_diameter
+from gearopt.physics.geometry.internal import margins
+from gearopt.physics.geometry.involute import angle_at_distance, shift_sum, working_pressure_angle
+from gearopt.physics.geometry.tooth import tip_clearances
+
+HELD = ("ring", "sun", "carrier")
+ORDERS = ("any", "simultaneous", "sequential", "hunting")
+SUN, PLANET, RING = 0, 1, 2
+ACCEPTED = ("radial_assembly", "cutter_infeed")  # gears are put together, and cut, axially
+LARGE = 1e6  # teeth: no limit
+ROUNDING = 1e-9  # of margins [normal modules]
+Three = tuple[Any, Any, Any]
+
+
+@dataclass(frozen=True)
+class Cutting:
+    """How sun, planet and ring are cut; of three values that of the ring is last.
+
+    helix_angle beta [rad]; racks; cutter of the ring; shifts x, None: by the rule, or as the
+    distance asks; shift_sum x_s + x_p, None: of the shifts, or by the rule; tip_alterations k, None:
+    by the rule; distance a [mm], None: without backlash of sun and planet. rim s_R [normal modules]
+    of the ring below its roots, or outside [mm], its diameter; blanks of sun and planet.
+
+    The rule: a is midway between the reference distances of both meshes; x_s is half of x_s + x_p,
+    and no less than keeps the sun from undercut; sun and planet are shortened by k = y - x_s - x_p,
+    y m_n being by how much a exceeds their reference distance. x_r leaves no backlash, and tips of
+    the ring reach no lower than the form circle of the planets.
+    """
+
+    helix_angle: float = 0.0
+    racks: tuple[Rack, Rack, Rack] = (ISO_53_A,) * 3
+    cutter: Cutter | None = None
+    shifts: tuple[float | None, float | None, float | None] = (None, None, None)
+    shift_sum: float | None = None
+    tip_alterations: tuple[float | None, float | None, float | None] = (None, None, None)
+    distance: float | None = None
+    rim: float = RIM
+    outside: float | None = None
+    blanks: tuple[Blank, Blank] = (SOLID, SOLID)
+
+    @property
+    def solid(self) -> bool:
+        """Whether bodies of all modules have one shape."""
+        return self.outside is None and all(blank.solid for blank in self.blanks)
+
+    def gears(self, module: Any, teeth: Three, width: Any) -> tuple[Gear, Gear, Gear, Any]:
+        """Sun, planet and ring of numbers of teeth above 0, and their distance [mm].
+
+        A gear counts as the cylinder, or hole, of its mean diameter (d_a + d_f)/2.
+        """
+        sun, planet, ring = teeth
+        pressure, transverse = self.angles
+        each = module / math.cos(self.helix_angle)
+        reference, inner = 0.5 * each * (sun + planet), 0.5 * each * (ring - planet)
+        total = self._sum_of_given
+        if self.distance is not None:
+            distance = self.distance + 0.0 * reference
+        elif total is not None:
+            working = working_pressure_angle(total, sun + planet, pressure, transverse)
+            distance = reference * math.cos(transverse) / np.cos(working)
+        else:
+            distance = 0.5 * (reference + inner)
+        if total is None:
+            working = angle_at_distance(reference, transverse, distance)
+            total = shift_sum(working, sun + planet, pressure, transverse)
+        first, second = self._shares(total, sun)
+        shorter = (distance - reference) / module - first - second
+        third = self._inside(module, planet, ring, distance, second)
+        tips = shorter, shorter, self._ring_tip(module, planet, ring, distance, second, third)
+        rows = zip((sun, planet, -ring), (first, second, third), tips, strict=True)
+        made = [self._gear(k, module, width, *row) for k, row in enumerate(rows)]
+        return made[SUN], made[PLANET], made[RING], distance
+
+    def pinion_in_ring(self, module: Any, teeth: Three, width: Any) -> tuple[Gear, Gear, Any]:
+        """Pinion and ring of numbers of teeth above 0, and their distance [mm].
+
+        Shifts that are not given are 0 of the pinion, and of the ring as the distance asks.
+        """
+        _, pinion, ring = teeth
+        pressure, transverse = self.angles
+        reference = 0.5 * module / math.cos(self.helix_angle) * (ring - pinion)
+        first, second = self.shifts[PLANET] or 0.0, self.shifts[RING]
+        if self.distance is not None:
+            distance = self.distance + 0.0 * reference
+        elif second is None:
+            distance = reference
+        else:
+            working = working_pressure_angle(first + second, pinion - ring, pressure, transverse)
+            distance = reference * math.cos(transverse) / np.cos(working)
+        second = self._inside(module, pinion, ring, distance, first)
+        tip = self._ring_tip(module, pinion, ring, distance, first, second)
+        rows = (pinion, first, 0.0), (-ring, second, tip)
+        made = [self._gear(k, module, width, *row) for k, row in enumerate(rows, PLANET)]
+        return made[0], made[1], distance
+
+    @property
+    def angles(self) -> tuple[float, float]:
+        """Normal and transverse pressure angle [rad]."""
+        normal = self.racks[RING].pressure_angle
+        return normal, math.atan(math.tan(normal) / math.cos(self.helix_angle))
+
+    def _inside(self, module: Any, planet: Any, ring: Any, distance: Any, shift: Any) -> Any:
+        """Shift of the ring: as given, else without backlash at a distance [mm]."""
+        if self.shifts[RING] is not None:
+            return self.shifts[RING]
+        pressure, transverse = self.angles
+        reference = 0.5 * module / math.cos(self.helix_angle) * (ring - planet)
+        working = angle_at_distance(reference, transverse, distance)
+        return shift_sum(working, planet - ring, pressure, transverse) - shift
+
+    def _ring_tip(
+        self, module: Any, planet: Any, ring: Any, distance: Any, first: Any, second: Any
+    ) -> Any:
+        """Tip alteration of the ring at most 0: its tips reach the form circle of planets.
+
+        rho_F = (d sin(alpha_t) - 2 m_n h/sin(alpha_t))/2, h = h_fP - rho_fP (1 - sin(alpha_n)) - x,
+        without undercut; rho_a2 = a sin(alpha_wt) + rho_F. first, second: shifts.
+        """
+        if (own := self.tip_alterations[RING]) is not None:
+            return own
+        each, rack = module / math.cos(self.helix_angle), self.racks[PLANET]
+        normal, transverse = self.angles
+        inside = angle_at_distance(0.5 * each * (ring - planet), transverse, distance)
+        depth = rack.dedendum - rack.tip_radius * (1.0 - math.sin(normal)) - first
+        form = 0.5 * each * planet * math.sin(transverse) - module * depth / math.sin(transverse)
+        base = 0.5 * each * ring * math.cos(transverse)
+        reach = np.hypot(base, distance * np.sin(inside) + form)
+        height = (0.5 * each * ring - reach) / module - self.racks[RING].addendum
+        return np.minimum(height - second, 0.0)
+
+    @property
+    def _sum_of_given(self) -> float | None:
+        """x_s + x_p, where they are given."""
+        first, second, _ = self.shifts
+        if first is not None and second is not None:
+            return first + second
+        return self.shift_sum
+
+    def _shares(self, total: Any, sun: Any) -> tuple[Any, Any]:
+        """Shifts of sun and planet of their sum."""
+        first, second, _ = self.shifts
+        if first is not None:
+            return first, total - first if second is None else second
+        if second is not None:
+            return total - second, second
+        rack, (pressure, transverse) = self.racks[SUN], self.angles
+        depth = rack.dedendum - rack.tip_radius * (1.0 - math.sin(pressure))
+        free = depth - 0.5 * sun * math.sin(transverse) ** 2 / math.cos(self.helix_angle)
+        first = np.maximum(0.5 * total, free)
+        return first, total - first
+
+    def _gear(
+        self, k: int, module: Any, width: Any, teeth: Any, shift: Any, shorter: Any
+    ) -> Gear:
+        """A gear, by its place; shorter: k, where none is given."""
+        rack, d = self.racks[k], reference_diameter(module, teeth, self.helix_angle)
+        own = self.tip_alterations[k]
+        tip = shorter if own is None else own
+        cutter = self.cutter if k == RING else None
+        gear = Gear(
+            *(module, teeth, d, width, self.helix_angle, rack, shift, tip), cutter=cutter
+        )
+        root, outside = gear.root_diameter, None
+        if k == RING:
+            outside = root - 2.0 * self.rim * module
+            outside = outside if self.outside is None else 0.0 * root - self.outside
+        mean = 0.5 * (gear.tip_diameter + root)
+        return replace(gear, body_diameter=mean, outside_diameter=outside)
+
+
+@dataclass(frozen=True)
+class Planets:
+    """A way of making a stage: planets of so many teeth less than (z_r - z_s)/2, in halves.
+
+    count N of planets, 0: a pinion in a ring; held: of HELD; fewer: twice the teeth that a planet
+    has less; sun_first: the sun has no more teeth than a planet, else it has more. sun, planet,
+    ring: ranges of teeth. spaced: equally; order: of ORDERS; clearance of the tips of neighbours
+    [normal modules]. widest: outside diameter [mm] of the ring.
+    """
+
+    cutting: Cutting
+    count: int
+    held: str = "ring"
+    fewer: int = 0
+    sun_first: bool = True
+    sun: tuple[float, float] = (1.0, LARGE)
+    planet: tuple[float, float] = (1.0, LARGE)
+    ring: tuple[float, float] = (1.0, LARGE)
+    spaced: bool = True
+    order: str = "any"
+    clearance: float = 1.0
+    widest: float = math.inf
+
+    def teeth(self, pair: GearPair) -> Three:
+        """Numbers of teeth of sun (or pinion), planet and ring of pairs, above 0."""
+        return self.teeth_of(pair.pinion_teeth, pair.wheel_teeth)
+
+    def teeth_of(self, z1: Any, z2: Any) -> Three:
+        """`teeth` of numbers of teeth of pairs."""
+        if self.held == "sun":
+            sun, ring = z2 - z1, z1
+        else:
+            sun, ring = z1, z2 - z1 if self.held == "ring" and self.count else z2
+        return sun, 0.5 * (ring - sun - self.fewer) if self.count else sun, ring
+
+    def possible(self, z1: Any, z2: Any) -> Any:
+        """Whether numbers of teeth of pairs are allowed and can be put together."""
+        sun, planet, ring = self.teeth_of(z1, z2)
+        fits = _within(ring, self.ring) & np.greater(ring, planet) & _within(sun, self.sun)
+        if not self.count:
+            return fits
+        fits = fits & _within(planet, self.planet) & (np.mod(planet, 1.0) == 0.0)
+        fits = fits & (np.less_equal(sun, planet) == self.sun_first)
+        if self.spaced:
+            fits = fits & (np.mod(sun + ring, self.count) == 0)
+        if self.order == "hunting":
+            whole = [np.rint(z).astype(np.int64) for z in (sun, planet, ring)]
+            fits = fits & (np.gcd(whole[0], whole[1]) == 1) & (np.gcd(whole[1], whole[2]) == 1)
+        elif self.order != "any":
+            fits = fits & ((np.mod(sun, self.count) == 0) == (self.order == "simultaneous"))
+        return fits
+
+    def gears(self, pair: GearPair) -> tuple[Gear, Gear, Gear, Any]:
+        """Sun, planet (or pinion) and ring of pairs, and their distance [mm]."""
+        size = pair.normal_module, self.teeth(pair), pair.face_width
+        if self.count:
+            return self.cutting.gears(*size)
+        pinion, ring, distance = self.cutting.pinion_in_ring(*size)
+        return pinion, pinion, ring, distance
+
+    def mesh(self, pair: GearPair, with_ring: bool) -> GearPair:
+        """Planet and ring, or sun and planet, the one with fewer teeth first."""
+        sun, planet, ring, distance = self.gears(pair)
+        if with_ring:
+            return GearPair(planet, ring, -distance)
+        return GearPair(*((sun, planet) if self.sun_first else (planet, sun)), distance)
+
+    def meshes(self, pair: GearPair) -> tuple[GearPair, ...]:
+        """The pairs in mesh."""
+        return tuple(self.mesh(pair, which) for which in ((False, True) if self.count else (True,)))
+
+    def room(self, pair: GearPair) -> Any:
+        """Whether gears of pairs that are possible fit each other, in any module."""
+        sun, planet, ring, distance = self.gears(pair)
+        with np.errstate(invalid="ignore"):
+            fits = np.isfinite(distance + ring.profile_shift)
+        module = pair.normal_module
+        left = margins(GearPair(planet, ring, -distance))
+        for name, margin in left.items():
+            if name not in ACCEPTED:
+                fits = fits & (margin >= -ROUNDING)
+        if not self.count:
+            return fits
+        outer = GearPair(sun, planet, distance)
+        for clear in tip_clearances(outer):
+            fits = fits & (clear >= -ROUNDING * module)
+        if self.count > 1:
+            gap = 2.0 * distance * np.sin(0.5 * self._angle(pair)) - planet.tip_diameter
+            fits = fits & (gap >= (self.clearance - ROUNDING) * module)
+        return fits
+
+    def _angle(self, pair: GearPair) -> Any:
+        """Least angle [rad] between planets: equal, or as close to that as teeth allow."""
+        if self.spaced:
+            return 2.0 * math.pi / self.count
+        sun, _, ring = self.teeth(pair)
+        return 2.0 * math.pi * np.floor((sun + ring) / self.count) / (sun + ring)
+
+    def volumes(self, pair: GearPair, solid: bool = False) -> tuple[Any, ...]:
+        """Volumes [mm3] of sun, all planets and ring; infinite of pairs that are not possible.
+
+        solid: without bores.
+        """
+        fits = self.possible(pair.pinion_teeth, pair.wheel_teeth)
+        with np.errstate(invalid="ignore"):
+            sun, planet, ring, _ = self.gears(pair)
+            shapes = (SOLID, SOLID) if solid else self.cutting.blanks
+            each = [shape.volume(gear) for shape, gear in zip(shapes, (sun, planet), strict=True)]
+        parts = [each[SUN], self.count * each[PLANET]] if self.count else [each[PLANET]]
+        return tuple(np.where(fits, part, np.inf)[()] for part in (*parts, ring.volume))
+
+    def slower(self, pair: GearPair, with_ring: bool) -> tuple[Any, Any]:
+        """Torque and speed of the driving gear of a mesh over those of the pair's pinion.
+
+        Of one planet, against the carrier.
+        """
+        if not self.count:
+            return 1.0, 1.0
+        sun, planet, ring = self.teeth(pair)
+        torque = (sun / ring if self.held == "sun" else 1.0) / self.count
+        speed = 1.0 if self.held == "carrier" else ring / (sun + ring)
+        if with_ring or not self.sun_first:
+            return torque * planet / sun, speed * sun / planet
+        return torque, speed
+
+    def lightest_with(self, rivals: Iterable["Planets"]) -> "Lightest":
+        """A virtual way that is no heavier than this one and others."""
+        return Lightest(tuple(dict.fromkeys((self, *rivals))))
+
+    def loss(self, pair: GearPair) -> Any:
+        """Sum of 1/z1 + 1/z2 over the meshes, times the part of the power that rolls."""
+        sun, planet, ring = self.teeth(pair)
+        inner = 1.0 / planet - 1.0 / ring
+        if not self.count:
+            return inner
+        part = {"ring": ring, "sun": sun, "carrier": sun + ring}[self.held] / (sun + ring)
+        return part * (1.0 / sun + 1.0 / planet + inner)
+
+
+def _within(teeth: Any, span: tuple[float, float]) -> Any:
+    return np.greater_equal(teeth, span[0]) & np.less_equal(teeth, span[1])
+
+
+@dataclass(frozen=True)
+class Lightest:
+    """A virtual way of making a stage, whose volumes are the least of all ways."""
+
+    ways: tuple[Planets, ...]
+
+    def volumes(self, pair: GearPair, solid: bool = False) -> tuple[Any, ...]:
+        """Least volumes [mm3] of each of the gears."""
+        rows = zip(*(way.volumes(pair, solid) for way in self.ways), strict=True)
+        return tuple(np.minimum.reduce(row) for row in rows)
+
+    def loss(self, pair: GearPair) -> Any:
+        """Least of the losses."""
+        return np.minimum.reduce([way.loss(pair) for way in self.ways])
+
+
+@dataclass(frozen=True)
+class Ready:
+    """What a standard takes of meshes (n,), and whether their gears fit each other."""
+
+    teeth: Any
+    fits: Any
+
+    def take(self, place: Any) -> "Ready":
+        """Those of some meshes."""
+        return Ready(self.teeth.take(place), self.fits[place])
+
+    def scaled(self, factor: Any) -> "Ready":
+        """Those of meshes whose lengths are all greater by a factor."""
+        return Ready(self.teeth.scaled(factor), self.fits)
+
+
+@dataclass(frozen=True)
+class InPlanetaryMesh:
+    """A standard that rates one mesh of stages with planets, or a pinion in a ring.
+
+    with_ring: whether the mesh is that of planet and ring, else of sun and planet.
+    """
+
+    standard: Any
+    planets: Planets
+    with_ring: bool
+    suffix: str
+    monotone: bool = False
+
+    def mesh(self, pair: GearPair) -> GearPair:
+        """The mesh, of pairs that stand for stages."""
+        return self.planets.mesh(pair, self.with_ring)
+
+    def _loads(self, pair: GearPair, fits: Any) -> tuple[Any, Any]:
+        """`Planets.slower`; torques are NaN where gears do not fit, or the ring is too large."""
+        torque, speed = self.planets.slower(pair, self.with_ring)
+        fits = fits & self.planets.possible(pair.pinion_teeth, pair.wheel_teeth)
+        if math.isfinite(self.planets.widest):
+            fits = fits & (-self.planets.gears(pair)[RING].outside <= self.planets.widest)
+        return np.where(fits, torque, np.nan)[()], speed
+
+    def safeties(self, pair: GearPair, torque: Any, speed: Any) -> Any:
+        """Return S_F1, S_F2, S_H1, S_H2; NaN where the gears do not fit or are refused."""
+        slower, relative = self._loads(pair, self.planets.room(pair))
+        return self.standard.safeties(self.mesh(pair), torque * slower, speed * relative)
+
+    def best_with(self, rivals: Any) -> None:
+        """No virtual way: other planets differ in more than strength."""
+
+    def like(self, other: Any) -> bool:
+        """Whether `prepared` of another standard returns the same."""
+        if not isinstance(other, InPlanetaryMesh) or self.with_ring != other.with_ring:
+            return False
+        alike = self._shape == other._shape
+        return bool(alike and self.standard.like(other.standard))
+
+    @property
+    def _shape(self) -> Any:
+        """What gears and their room depend on."""
+        own = self.planets
+        return own.cutting, own.held, own.fewer, own.sun_first, own.count, own.clearance, own.spaced
+
+    def prepared(self, pair: GearPair) -> Ready:
+        """Numbers of pairs (n,) that `rows` takes, of any load and width."""
+        return Ready(self.standard.prepared(self.mesh(pair)), self.planets.room(pair))
+
+    def rows(self, prepared: Ready, pair: GearPair, torque: Any, speed: Any, safety: Any) -> Rows:
+        """Rows of the mesh, at torques and speeds of its driving gear."""
+        slower, relative = self._loads(pair, prepared.fits)
+        loads = tuple(t * slower for t in torque), tuple(w * relative for w in speed)
+        rows: Rows = self.standard.rows(prepared.teeth, self.mesh(pair), *loads, safety)
+        return rows
