@@ -1,0 +1,238 @@
+"""Small drives with planetary stages, and every candidate of them, built and rated on its own."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction as F
+
+import numpy as np
+from rated_drives import FREE, MODULES, iso, rated_drive
+
+from gearopt.formulations.drive.planetary import Cutting, InPlanetaryMesh, Planets
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import FaceWidth
+from gearopt.formulations.strength.standard import Option
+from gearopt.physics.gears import ISO_53_A, Cutter, Gear, GearPair, reference_diameter
+from gearopt.physics.geometry.internal import margins
+from gearopt.physics.geometry.involute import involute, involute_angle
+from gearopt.physics.iso6336.case import Practice
+from gearopt.physics.iso6336.materials import Material
+from gearopt.physics.iso6336.rating import rate
+from gearopt.physics.planetary.loads import mesh_load_factor, turned, with_ring, with_sun
+from gearopt.physics.rating import Operation
+
+HARD = Material("Eh", "MQ")
+BENT = replace(HARD, reversed_load=True)
+HOURS = 20000.0
+EACH = (None,) * 3, (1.0,) * 3, (0.0,) * 3, (0.0,) * 3, ("",) * 3
+
+
+def ways(cutting, counts, fewer, held="ring", **limits):
+    """Options of a planetary stage."""
+    made = []
+    for count in counts:
+        factor = {"K_gamma": mesh_load_factor(count, "wind")}
+        for less in fewer:
+            for first in (True, False):
+                planets = Planets(cutting, count, held, less, first, **limits)
+                turns = (float(count), 1.0) if first else (1.0, float(count))
+                steels = (HARD, BENT) if first else (BENT, HARD)
+                outer = _standard(steels, turns, turns, factor)
+                held_ring = 0.0 if held == "ring" else float(count)
+                inner = _standard((BENT, HARD), (1.0, float(count)), (1.0, held_ring), factor)
+                rated = (
+                    InPlanetaryMesh(outer, planets, False, "_of_sun"),
+                    InPlanetaryMesh(inner, planets, True, "_of_ring"),
+                )
+                made.append(Option(rated, "", *EACH, planets=planets))
+    return tuple(made)
+
+
+def _standard(steels, contacts, meshes, factor):
+    made = iso(steels, Practice(grades=(6.0, 6.0), meshes=meshes), HOURS, given=factor)
+    return replace(made, operation=replace(made.operation, contacts=contacts))
+
+
+def some_planetary_drive(seed, count=1, kinds=("ring", "sun", "carrier")):
+    """A random small drive of so many stages, the first of which is planetary."""
+    rng = np.random.default_rng(seed)
+    held = str(rng.choice(kinds))
+    helix = float(rng.choice([0.0, 0.2]))
+    cutter = Cutter(23, 0.0, 1.25, 0.2) if rng.random() < 0.3 else None
+    shifts = [(None, None, None), (0.0, 0.0, None), (0.3, 0.1, None)][int(rng.integers(3))]
+    cutting = Cutting(helix, cutter=cutter, shifts=shifts)
+    counts = (3, 4) if rng.random() < 0.6 else (int(rng.integers(3, 6)),)
+    fewer = (0, 1, 2) if shifts == (None, None, None) else ((0,), (0, 1))[int(any(map(bool, shifts)))]
+    order = str(rng.choice(["any", "any", "sequential", "simultaneous", "hunting"]))
+    options = ways(cutting, counts, fewer, held, order=order, spaced=bool(rng.random() < 0.7))
+    low = int(rng.integers(14, 24))
+    sun = low, low + int(rng.integers(2, 5))
+    ring_over_sun = float(rng.uniform(1.8, 5.0))
+    own = {"ring": 1 + ring_over_sun, "carrier": ring_over_sun, "sun": 1 + 1 / ring_over_sun}[held]
+    begin = int(rng.integers(2, 6))
+    modules = MODULES[begin : begin + 3]
+    d = float(modules[1]) * low
+    torque = d**3 * float(rng.choice([0.1, 0.3, 0.6]))
+    face = FaceWidth(F(3, 5), F(3, 5)) if rng.random() < 0.5 else FaceWidth(F(1, 2), F(1), step=F(5))
+    if held == "sun":
+        sun = round(low * ring_over_sun), round(low * ring_over_sun) + 3
+        face = FaceWidth(F(1, 5), F(1, 5))
+    rest = float(rng.uniform(1.5, 3.0)) if count > 1 else 1.0
+    drive = rated_drive(
+        F(round(100 * own * rest), 100),
+        (face,) + (FaceWidth(F(3, 5), F(3, 5)),) * (count - 1),
+        torque * 150.0,
+        1450.0,
+        helix=0.2,
+        options=(Option((iso((HARD, HARD), hours=HOURS),)),),
+        modules=modules,
+        pinion_teeth=(18, 20),
+    )
+    first = replace(
+        drive.stages[0], options=options, pinion_teeth=sun, toothings=(Toothing(helix),)
+    )
+    aim = {"objective": "mass" if seed % 2 else "gear_volume", "density": 7.85e-9}
+    tolerance = F(2, 100) if count == 1 else F(1, 200)
+    return replace(
+        drive, stages=(first, *drive.stages[1:]), safety=(1.3, 1.05), tolerance=tolerance, **aim
+    )
+
+
+def candidates(stage, z1, z2, module):
+    """Every set of gears of a pair of a planetary stage that fits: option and gears of 1 mm."""
+    for option in stage.options:
+        way = option.planets
+        cut, n = way.cutting, way.count
+        sun, ring = (z2 - z1, z1) if way.held == "sun" else (z1, z2 - z1)
+        if way.held == "carrier":
+            ring = z2
+        if sun < 5 or ring < sun or (ring - sun - way.fewer) % 2:
+            continue
+        planet = (ring - sun - way.fewer) // 2
+        if planet < 5 or (sun <= planet) != way.sun_first:
+            continue
+        if way.spaced and (sun + ring) % n:
+            continue
+        hunting = math.gcd(sun, planet) == 1 == math.gcd(planet, ring)
+        alike = {"any": True, "hunting": hunting, "simultaneous": sun % n == 0}
+        if not alike.get(way.order, sun % n != 0):
+            continue
+        made = gears_of(cut, module, sun, planet, ring)
+        if made is not None and fits(way, made, sun + ring, module):
+            yield option, made, (sun, planet, ring)
+
+
+def gears_of(cut, module, sun, planet, ring):
+    """Sun, planet, ring and distance by the formulas of textbooks, ring with positive teeth."""
+    t, each = math.atan(math.tan(math.radians(20)) / math.cos(cut.helix_angle)), module
+    each = module / math.cos(cut.helix_angle)
+    a0, a1 = each * (sun + planet) / 2, each * (ring - planet) / 2
+    tan = math.tan(math.radians(20))
+    if cut.shifts[0] is None:
+        a = (a0 + a1) / 2
+        x = (involute(math.acos(a0 * math.cos(t) / a)) - involute(t)) * (sun + planet) / (2 * tan)
+        sine = math.sin(math.radians(20))
+        free = 1.25 - 0.38 * (1 - sine) - sun * math.sin(t) ** 2 / (2 * math.cos(cut.helix_angle))
+        xs = max(x / 2, free)
+        xp = x - xs
+    else:
+        xs, xp = cut.shifts[:2]
+        w = involute_angle(involute(t) + 2 * (xs + xp) * tan / (sun + planet))
+        a = a0 * math.cos(t) / math.cos(w)
+    if a1 * math.cos(t) >= a:
+        return None
+    w = math.acos(a1 * math.cos(t) / a)
+    outward = (involute(w) - involute(t)) * (ring - planet) / (2 * tan) + xp  # of the ring's profile
+    k = (a - a0) / module - xs - xp
+    form = each * planet * math.sin(t) / 2 - module * (
+        1.25 - 0.38 * (1 - math.sin(math.radians(20))) - xp
+    ) / math.sin(t)
+    least = math.hypot(each * ring * math.cos(t) / 2, a * math.sin(w) + form)
+    tip = max(least, each * ring / 2 + module * (outward - 1.0))
+    kr = (each * ring / 2 - tip) / module + outward - 1.0
+    made = []
+    for z, x, tips in ((sun, xs, k), (planet, xp, k), (-ring, -outward, kr)):
+        d = reference_diameter(module, float(z), cut.helix_angle)
+        cutter = cut.cutter if z < 0 else None
+        made.append(Gear(module, float(z), d, 1.0, cut.helix_angle, ISO_53_A, x, tips, cutter=cutter))
+    return (*made, a)
+
+
+def fits(way, made, teeth, module):
+    """Whether gears go together: margins of the ring's mesh, and room between planets."""
+    sun, planet, ring, a = made
+    left = margins(GearPair(planet, ring, -a))
+    if any(v < -1e-9 for n, v in left.items() if n not in ("radial_assembly", "cutter_infeed")):
+        return False
+    for one, other in ((sun, planet), (planet, sun)):
+        if a - one.tip_diameter / 2 - other.root_diameter / 2 < -1e-9 * module:
+            return False
+    part = 1 / way.count if way.spaced else (teeth // way.count) / teeth
+    return 2 * a * math.sin(math.pi * part) - planet.tip_diameter >= module * (1.0 - 1e-9)
+
+
+def body(gear, width, outside=None):
+    """Volume of a gear as the disc of its mean diameter, of a ring as the tube around it."""
+    inside = (gear.tip_diameter + gear.root_diameter) / 2
+    out = 2 * inside if outside is None else outside
+    return math.pi / 4 * width * (inside**2 if outside is None else out**2 - inside**2)
+
+
+def volume(way, made, width, module):
+    """Volume of all gears of a stage [mm3]."""
+    sun, planet, ring, _ = made
+    outside = abs(ring.root_diameter) + 7.0 * module
+    return body(sun, width) + way.count * body(planet, width) + body(ring, width, outside)
+
+
+def safe(train, way, made, teeth, width, torque):
+    """Whether both meshes have the safety factors that are asked for."""
+    speed = train.speed * train.torque / torque
+    (sun, planet, ring), n = teeth, way.count
+    of_sun, relative = torque, speed
+    if way.held == "ring":
+        relative = speed - speed * sun / (sun + ring)  # less that of the carrier
+    if way.held == "sun":
+        of_sun, relative = torque * sun / ring, speed * ring / (sun + ring)
+    load = Operation(of_sun * relative, relative, HOURS, overload=1.25)
+    g1, g2, g3, a = (*(replace(g, face_width=width) for g in made[:3]), made[3])
+    outer, inner = with_sun(load, n), with_ring(load, n, planet / sun, way.held == "ring")
+    pairs = [(GearPair(g1, g2, a), outer, (HARD, BENT)), (GearPair(g2, g3, -a), inner, (BENT, HARD))]
+    if sun > planet:
+        pairs[0] = GearPair(g2, g1, a), turned(outer, planet / sun), (BENT, HARD)
+    for pair, mesh, steels in pairs:
+        practice = Practice(grades=(6.0, 6.0), meshes=mesh.meshes)
+        factor = {"K_gamma": mesh_load_factor(n, "wind")}
+        try:
+            found = rate(pair, mesh.operation, steels, practice, factor)
+        except ValueError:
+            return False
+        reached = min(found.bending_safety) / 1.3, min(found.contact_safety) / 1.05
+        if min(reached) < 1.0 - 1e-11:
+            return False
+    return True
+
+
+def widths(face, d1):
+    """Face widths of a stage."""
+    if face.step is None:
+        return [float(face.low) * d1]
+    step = float(face.step)
+    counts = range(1, math.floor(float(face.high) * d1 / step + 1e-9) + 1)
+    return [step * n for n in counts if step * n >= float(face.low) * d1 - 1e-9]
+
+
+def least_share(train, k, torque, z1, z2, most=math.inf):
+    """Least share of a planetary stage with these teeth."""
+    stage, found = train.stages[k], []
+    for module in map(float, stage.modules):
+        d1 = module * z1 / math.cos(stage.toothing.helix_angle)
+        for option, made, teeth in candidates(stage, z1, z2, module):
+            for width in widths(stage.face_width, d1):
+                share = volume(option.planets, made, width, module)
+                share *= 1000 * train.density if train.objective == "mass" else 1.0
+                if share < most:
+                    found.append((share, len(found), option.planets, made, teeth, width))
+    for share, _, way, made, teeth, width in sorted(found, key=lambda row: row[:2]):
+        if safe(train, way, made, teeth, width, torque):
+            return share
+    return math.inf
