@@ -17,7 +17,7 @@ from gearopt.physics.geometry.involute import involute, involute_angle
 from gearopt.physics.iso6336.case import Practice
 from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.iso6336.rating import rate
-from gearopt.physics.planetary.loads import mesh_load_factor, turned, with_ring, with_sun
+from gearopt.physics.planetary.loads import mesh_load_factor, with_ring, with_sun
 from gearopt.physics.rating import Operation
 
 HARD = Material("Eh", "MQ")
@@ -32,18 +32,15 @@ def ways(cutting, counts, fewer, held="ring", **limits):
     for count in counts:
         factor = {"K_gamma": mesh_load_factor(count, "wind")}
         for less in fewer:
-            for first in (True, False):
-                planets = Planets(cutting, count, held, less, first, **limits)
-                turns = (float(count), 1.0) if first else (1.0, float(count))
-                steels = (HARD, BENT) if first else (BENT, HARD)
-                outer = _standard(steels, turns, turns, factor)
-                held_ring = 0.0 if held == "ring" else float(count)
-                inner = _standard((BENT, HARD), (1.0, float(count)), (1.0, held_ring), factor)
-                rated = (
-                    InPlanetaryMesh(outer, planets, False, "_of_sun"),
-                    InPlanetaryMesh(inner, planets, True, "_of_ring"),
-                )
-                made.append(Option(rated, "", *EACH, planets=planets))
+            planets = Planets(cutting, count, held, less, **limits)
+            turns, held_ring = (float(count), 1.0), 0.0 if held == "ring" else float(count)
+            outer = _standard((HARD, BENT), turns, turns, factor)
+            inner = _standard((BENT, HARD), turns[::-1], (1.0, held_ring), factor)
+            rated = (
+                InPlanetaryMesh(outer, planets, False, "_of_sun"),
+                InPlanetaryMesh(inner, planets, True, "_of_ring"),
+            )
+            made.append(Option(rated, "", *EACH, planets=planets))
     return tuple(made)
 
 
@@ -108,7 +105,7 @@ def candidates(stage, z1, z2, module):
         if sun < 5 or ring < sun or (ring - sun - way.fewer) % 2:
             continue
         planet = (ring - sun - way.fewer) // 2
-        if planet < 5 or (sun <= planet) != way.sun_first:
+        if planet < 5:
             continue
         if way.spaced and (sun + ring) % n:
             continue
@@ -197,8 +194,6 @@ def safe(train, way, made, teeth, width, torque):
     g1, g2, g3, a = (*(replace(g, face_width=width) for g in made[:3]), made[3])
     outer, inner = with_sun(load, n), with_ring(load, n, planet / sun, way.held == "ring")
     pairs = [(GearPair(g1, g2, a), outer, (HARD, BENT)), (GearPair(g2, g3, -a), inner, (BENT, HARD))]
-    if sun > planet:
-        pairs[0] = GearPair(g2, g1, a), turned(outer, planet / sun), (BENT, HARD)
     for pair, mesh, steels in pairs:
         practice = Practice(grades=(6.0, 6.0), meshes=mesh.meshes)
         factor = {"K_gamma": mesh_load_factor(n, "wind")}

@@ -61,6 +61,7 @@ class Cutting:
         """Whether bodies of all modules have one shape."""
         return self.outside is None and all(blank.solid for blank in self.blanks)
 
+    @np.errstate(invalid="ignore", divide="ignore")
     def gears(self, module: Any, teeth: Three, width: Any) -> tuple[Gear, Gear, Gear, Any]:
         """Sun, planet and ring of numbers of teeth above 0, and their distance [mm].
 
@@ -89,6 +90,7 @@ class Cutting:
         made = [self._gear(k, module, width, *row) for k, row in enumerate(rows)]
         return made[SUN], made[PLANET], made[RING], distance
 
+    @np.errstate(invalid="ignore", divide="ignore")
     def pinion_in_ring(self, module: Any, teeth: Three, width: Any) -> tuple[Gear, Gear, Any]:
         """Pinion and ring of numbers of teeth above 0, and their distance [mm].
 
@@ -191,16 +193,14 @@ class Planets:
     """A way of making a stage: planets of so many teeth less than (z_r - z_s)/2, in halves.
 
     count N of planets, 0: a pinion in a ring; held: of HELD; fewer: twice the teeth that a planet
-    has less; sun_first: the sun has no more teeth than a planet, else it has more. sun, planet,
-    ring: ranges of teeth. spaced: equally; order: of ORDERS; clearance of the tips of neighbours
-    [normal modules]. widest: outside diameter [mm] of the ring.
+    has less. sun, planet, ring: ranges of teeth. spaced: equally; order: of ORDERS; clearance of
+    the tips of neighbours [normal modules]. widest: outside diameter [mm] of the ring.
     """
 
     cutting: Cutting
     count: int
     held: str = "ring"
     fewer: int = 0
-    sun_first: bool = True
     sun: tuple[float, float] = (1.0, LARGE)
     planet: tuple[float, float] = (1.0, LARGE)
     ring: tuple[float, float] = (1.0, LARGE)
@@ -228,7 +228,6 @@ class Planets:
         if not self.count:
             return fits
         fits = fits & _within(planet, self.planet) & (np.mod(planet, 1.0) == 0.0)
-        fits = fits & (np.less_equal(sun, planet) == self.sun_first)
         if self.spaced:
             fits = fits & (np.mod(sun + ring, self.count) == 0)
         if self.order == "hunting":
@@ -247,11 +246,11 @@ class Planets:
         return pinion, pinion, ring, distance
 
     def mesh(self, pair: GearPair, with_ring: bool) -> GearPair:
-        """Planet and ring, or sun and planet, the one with fewer teeth first."""
+        """Planet and ring, or sun and planet; ISO 6336 counts the twist of the sun as a pinion's."""
         sun, planet, ring, distance = self.gears(pair)
         if with_ring:
             return GearPair(planet, ring, -distance)
-        return GearPair(*((sun, planet) if self.sun_first else (planet, sun)), distance)
+        return GearPair(sun, planet, distance)
 
     def meshes(self, pair: GearPair) -> tuple[GearPair, ...]:
         """The pairs in mesh."""
@@ -307,7 +306,7 @@ class Planets:
         sun, planet, ring = self.teeth(pair)
         torque = (sun / ring if self.held == "sun" else 1.0) / self.count
         speed = 1.0 if self.held == "carrier" else ring / (sun + ring)
-        if with_ring or not self.sun_first:
+        if with_ring:
             return torque * planet / sun, speed * sun / planet
         return torque, speed
 
@@ -405,7 +404,7 @@ class InPlanetaryMesh:
     def _shape(self) -> Any:
         """What gears and their room depend on."""
         own = self.planets
-        return own.cutting, own.held, own.fewer, own.sun_first, own.count, own.clearance, own.spaced
+        return own.cutting, own.held, own.fewer, own.count, own.clearance, own.spaced
 
     def prepared(self, pair: GearPair) -> Ready:
         """Numbers of pairs (n,) that `rows` takes, of any load and width."""
