@@ -39,9 +39,18 @@ class StageDesign:
     and what their blanks have, None of what a gear does not have; a result leaves out those that
     hold it. Fields stand in the order of the table of stages. working_pressure_angle: transverse;
     None: on the reference circles. idler: its pinion is the wheel of the stage before, where it is
-    counted.
+    counted. type: of a stage with planets sun and planet stand as pinion and wheel, of which mass_kg
+    counts all; of a pinion in a ring the ring is the wheel. Numbers of a ring are above 0 but its
+    profile shift, which of a positive one moves teeth towards the centre; torque and speed are
+    those of the sun against the carrier.
     """
 
+    type: Annotated[str, Shown("type")] = "parallel"
+    fixed: Annotated[str, Shown("fixed member")] = ""
+    planets: Annotated[int | None, Shown("number of planets")] = None
+    sun_teeth: Annotated[float | None, Shown("teeth of the sun z_s")] = None
+    planet_teeth: Annotated[float | None, Shown("teeth of a planet z_p")] = None
+    ring_teeth: Annotated[float | None, Shown("teeth of the ring z_r")] = None
     normal_module_mm: float
     pinion_teeth: Annotated[float, Shown("teeth z1")]
     wheel_teeth: Annotated[float, Shown("teeth z2")]
@@ -86,6 +95,16 @@ class StageDesign:
     wheel_hub_diameter_mm: Annotated[float | None, Shown("wheel hub diameter")] = None
     pinion_bore_mm: Annotated[float | None, Shown("pinion bore")] = None
     wheel_bore_mm: Annotated[float | None, Shown("wheel bore")] = None
+    mesh_load_factor: Annotated[float | None, Shown("mesh load factor K_γ")] = None
+    ring_diameter_mm: Annotated[float | None, Shown("reference diameter of the ring")] = None
+    ring_tip_diameter_mm: Annotated[float | None, Shown("tip diameter of the ring")] = None
+    ring_root_diameter_mm: Annotated[float | None, Shown("root diameter of the ring")] = None
+    ring_outside_diameter_mm: Annotated[float | None, Shown("outside diameter of the ring")] = None
+    ring_profile_shift: Annotated[float | None, Shown("profile shift of the ring")] = None
+    ring_tip_alteration: Annotated[float | None, Shown("tip alteration of the ring")] = None
+    ring_contact_ratio: Annotated[float | None, Shown("contact ratio with the ring ε_α")] = None
+    ring_mass_kg: Annotated[float | None, Shown("mass of the ring")] = None
+    ring_material: Annotated[str, Shown("material of the ring")] = ""
     pinion_addendum: float = ISO_53_A.addendum
     wheel_addendum: float = ISO_53_A.addendum
     pinion_tool_addendum: float = ISO_53_A.dedendum
@@ -101,6 +120,8 @@ class StageDesign:
     def end_diameters(self) -> tuple[float, float]:
         """Reference diameters [mm] of the gear that drives and of the one that is driven."""
         first, second = self.pinion_diameter_mm, self.wheel_diameter_mm
+        if self.type != "parallel":
+            first = second = self.ring_outside_diameter_mm or second
         return (first, second) if self.driver == "pinion" else (second, first)
 
     @property
@@ -108,7 +129,11 @@ class StageDesign:
         """The gears with their teeth, at their centre distance."""
         shifted = self.working_pressure_angle_deg is not None
         gears = [self._gear(member) for member in ("pinion", "wheel")]
-        return GearPair(gears[0], gears[1], self.centre_distance_mm if shifted else None)
+        distance = self.centre_distance_mm
+        if self.type == "internal":
+            d, z = -self.wheel_diameter_mm, -self.wheel_teeth
+            gears[1], distance = replace(gears[1], teeth=z, reference_diameter=d), -distance
+        return GearPair(gears[0], gears[1], distance if shifted else None)
 
     def _gear(self, member: str) -> Gear:
         values = {
@@ -183,13 +208,20 @@ def describe(train: Train, pairs: tuple[GearPair, ...], options: Sequence[int] =
     rows = [
         (mesh, s.blanks, s.options[k], driver)
         for s, k, pair, driver in chosen
-        for mesh in s.options[k].meshes(pair)
+        for mesh in ((pair,) if s.options[k].planets else s.options[k].meshes(pair))
     ]
     meshes, bodies, made, drivers = zip(*rows, strict=True)
     idlers = range(len(rows), len(pairs), -1)
     design = of_pairs(train.law, meshes, *loaded, asked, train.density, bodies, drivers, idlers)
     usual, each = train.density or STEEL_DENSITY, zip(design.stages, made, strict=True)
-    stages = tuple(_of_materials(stage, option, usual) for stage, option in each)
+    stages = tuple(
+        _of_materials(stage, option, usual)
+        if option.planets is None
+        else _of_planets(train, stage, mesh, option, usual)
+        for (stage, option), mesh in zip(each, meshes, strict=True)
+    )
+    if any(option.planets is not None for option in made):
+        design = _with_planets(design, stages)
     costs = tuple(cost for k in range(len(made)) for cost in _costs(k + 1, stages[k], made[k]))
     priced = "cost" in train.objectives
     return replace(
@@ -215,6 +247,70 @@ def _costs(number: int, stage: StageDesign, option: Option) -> Iterator[GearCost
             cutting=cutting,
             total=material + treatment + cutting,
         )
+
+
+def _of_planets(
+    train: Train, stage: StageDesign, pair: GearPair, option: Option, usual: float
+) -> StageDesign:
+    """Return the stage with planets, or with a ring, for which a pair stood.
+
+    usual: the density [t/mm3] of gears of no material.
+    """
+    planets = option.planets
+    mesh, (sun, planet, ring, _) = planets.meshes(pair)[0], planets.gears(pair)
+    torque, relative = planets.slower(pair, False) if planets.count else (1.0, 1.0)
+    driven = 1e3 * stage.pinion_torque_Nm * torque * max(planets.count, 1)
+    speed = 2e3 * stage.pitch_line_velocity_m_per_s / stage.pinion_diameter_mm * relative
+    bodies = planets.cutting.blanks if planets.count else (planets.cutting.blanks[0], SOLID)
+    made = _stage(train.law, mesh, driven, speed, usual, bodies, stage.driver)
+    volumes = planets.volumes(pair)
+    densities = [own or usual for own in option.densities]
+    masses = [
+        1000.0 * rho * float(volume) for rho, volume in zip(densities, volumes, strict=True)
+    ]
+    z_s, z_p, z_r = (_whole(float(z)) for z in planets.teeth(pair))
+    factors = getattr(option.standards[0], "standard", None)
+    sharing = None if factors is None else factors.given.get("K_gamma")
+    gears: dict[str, Any] = {"sun_teeth": z_s, "planet_teeth": z_p, "planets": planets.count}
+    gears |= {"fixed": planets.held, "wheel_mass_kg": masses[1] / max(planets.count, 1)}
+    gears |= {"mesh_load_factor": sharing, "wheel_material": option.materials[1]}
+    if not planets.count:
+        names = ("teeth", "diameter_mm", "tip_diameter_mm", "root_diameter_mm")
+        gears = {f"wheel_{name}": abs(getattr(made, f"wheel_{name}")) for name in names}
+        gears |= {"wheel_mass_kg": masses[-1], "wheel_material": option.materials[-1]}
+    return replace(
+        made,
+        type="planetary" if planets.count else "internal",
+        ratio=stage.ratio,
+        centre_distance_mm=abs(made.centre_distance_mm),
+        gear_volume_mm3=float(sum(planets.volumes(pair, solid=True))),
+        pinion_mass_kg=masses[0],
+        mass_kg=sum(masses),
+        pinion_material=option.materials[0],
+        ring_teeth=z_r,
+        ring_diameter_mm=-float(ring.reference_diameter),
+        ring_tip_diameter_mm=-float(ring.tip_diameter),
+        ring_root_diameter_mm=-float(ring.root_diameter),
+        ring_outside_diameter_mm=-float(ring.outside),
+        ring_profile_shift=float(ring.profile_shift),
+        ring_tip_alteration=float(ring.tip_alteration),
+        ring_contact_ratio=float(planets.meshes(pair)[-1].transverse_contact_ratio),
+        ring_mass_kg=masses[-1],
+        ring_material=option.materials[-1],
+        **gears,
+    )
+
+
+def _with_planets(design: DriveDesign, stages: tuple[StageDesign, ...]) -> DriveDesign:
+    """Totals of a drive with planetary stages, whose shafts are in one line."""
+    apart = [s.centre_distance_mm for s in stages if s.type != "planetary"]
+    ends = stages[0].end_diameters[0] + stages[-1].end_diameters[1]
+    return replace(
+        design,
+        gear_volume_mm3=sum(s.gear_volume_mm3 for s in stages),
+        sum_of_centre_distances_mm=sum(apart),
+        total_length_mm=0.5 * ends + sum(apart),
+    )
 
 
 def _of_materials(stage: StageDesign, option: Option, usual: float) -> StageDesign:

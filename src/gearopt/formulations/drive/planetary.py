@@ -245,6 +245,13 @@ class Planets:
         pinion, ring, distance = self.cutting.pinion_in_ring(*size)
         return pinion, pinion, ring, distance
 
+    def pair(self, module: Any, sun: Any, ring: Any, width: Any) -> GearPair:
+        """The pair that stands for a stage of sun (or pinion) and ring; a module [mm]."""
+        z1, z2 = sun, ring
+        if self.count and self.held != "carrier":
+            z1, z2 = ring if self.held == "sun" else sun, sun + ring
+        return GearPair.of_teeth(module, z1, z2, width, self.cutting.helix_angle)
+
     def mesh(self, pair: GearPair, with_ring: bool) -> GearPair:
         """Planet and ring, or sun and planet; ISO 6336 counts the twist of the sun as a pinion's."""
         sun, planet, ring, distance = self.gears(pair)

@@ -179,6 +179,17 @@ class LoadLevel:
 
 
 @dataclass(frozen=True, kw_only=True)
+class MeshName:
+    """What a mesh and its gears are called; stage: that has it, from 1; suffix: of its limits."""
+
+    stage: int
+    title: str
+    pinion: str = "pinion"
+    wheel: str = "wheel"
+    suffix: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
 class DriveRating:
     """The rating of all stages.
 
@@ -188,7 +199,8 @@ class DriveRating:
     assembled or cannot run. flaws: on what a designer may accept, and on the ratio of given gears
     that is not the one asked for. by: the standard in short; beside: the rating by another one.
     static: of every gear under a peak torque.
-    idlers: stages whose pinion is the wheel of the stage before, one gear in two meshes.
+    idlers: stages whose pinion is the wheel of the stage before, one gear in two meshes. named: of
+    drives with planets or rings, of every mesh, which its rows then count in place of stages.
     """
 
     standard: str
@@ -213,6 +225,7 @@ class DriveRating:
     by: str = "AGMA"
     static: tuple[StaticRating, ...] = ()
     idlers: tuple[int, ...] = ()
+    named: tuple["MeshName", ...] = ()
     beside: "DriveRating | None" = None
 
     @property
@@ -229,8 +242,19 @@ class DriveRating:
         )
 
     def called(self, gear: GearRating | StaticRating | ToothGeometry | LoadLevel) -> str:
-        """What a gear is: pinion, wheel or idler."""
+        """What a gear is: pinion, wheel or idler, sun, planet or ring."""
+        if self.named:
+            of_mesh = self.named[gear.stage - 1]
+            return of_mesh.wheel if gear.member == "wheel" else of_mesh.pinion
         return "idler" if gear.stage + (gear.member == "wheel") in self.idlers else gear.member
+
+    def titled(self, mesh: int) -> str:
+        """A mesh (from 1) by its stage."""
+        return self.named[mesh - 1].title if self.named else f"stage {mesh}"
+
+    def stage_of(self, mesh: int) -> int:
+        """The stage of a mesh, both from 1."""
+        return self.named[mesh - 1].stage if self.named else mesh
 
     def known_life_h(self, gear: GearRating) -> float:
         """Life of a gear [h] as far as its curve reaches: at least that."""

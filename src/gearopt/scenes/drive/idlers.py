@@ -78,8 +78,8 @@ def with_idlers(stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
             if before.wheel.reversed_load is False:
                 place = (k - 1, "wheel", "reversed_load")
                 raise refuse("is of an idler, whose teeth are bent both ways", at=place)
-            wheel = _copied(before.wheel, {"reversed_load": True})
-            made[-1] = _copied(before, {"wheel": wheel})
+            wheel = copied(before.wheel, {"reversed_load": True})
+            made[-1] = copied(before, {"wheel": wheel})
             own = _following(made[-1], own, k)
         made.append(own)
     return tuple(made)
@@ -95,10 +95,10 @@ def _following(before: StageTable, own: StageTable, k: int) -> StageTable:
         if said not in (None, value):
             rule = f"follows from the wheel of stage {k}, which is this pinion"
             raise refuse(rule, at=(k, *place), action="remove")
-    return _copied(own, values | {"pinion": before.wheel})
+    return copied(own, values | {"pinion": before.wheel})
 
 
-def _copied(table: T, values: dict[str, Any]) -> T:
+def copied(table: T, values: dict[str, Any]) -> T:
     """A table with other values, which its file does not hold."""
     copy = table.model_copy(update=values)
     object.__setattr__(copy, "__pydantic_fields_set__", set(table.model_fields_set))

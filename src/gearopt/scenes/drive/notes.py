@@ -103,11 +103,12 @@ def _noted(scene: Scene, result: Result, exact: bool) -> Result:
     if not result.design:
         return result
     from gearopt.formulations.drive.design import drive_design
+    from gearopt.scenes.drive.planetary import by_mesh
 
     design = drive_design(result.design)
     held = scene.held(len(design.stages))
-    pairs = held.pairs(design)
-    bodies = [flaw.sentence for flaw in body_flaws(held.blanks, pairs)]
+    meshed, pairs, _ = by_mesh(held, design)
+    bodies = [flaw.sentence for flaw in body_flaws(meshed.blanks, pairs)]
     remarks = [*notes(held, exact), *bodies, *tooth_warnings(pairs, WEAKER)]
     report = result.report | ({"notes": remarks} if remarks else {})
     if any(len(held.helix_angles(own)) > 1 for own in held.stage_tables):

@@ -7,18 +7,28 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
+from pydantic_core import PydanticCustomError
 
 from gearopt.formulations.drive.gearbox import Gearbox
 from gearopt.formulations.drive.idler import with_idler
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength import RATED, Law
-from gearopt.physics.blanks import Blank
+from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import MEMBERS, GearPair
 from gearopt.scenes.drive.distances import joint_limits, reach, rows_together
 from gearopt.scenes.drive.driving import check_driving, may_drive, ratio_of
 from gearopt.scenes.drive.face_widths import check_excess, check_width, excesses, face_width
 from gearopt.scenes.drive.idlers import check_idlers, with_idlers
+from gearopt.scenes.drive.planetary import (
+    OF_INNER,
+    check_planetary,
+    inner,
+    options,
+    renamed,
+    stage_with_planets,
+    with_planets,
+)
 from gearopt.scenes.drive.rating.checks import (
     check_given,
     check_objective,
@@ -49,6 +59,7 @@ from gearopt.scenes.drive.tables.layout import (
     check_layout,
     gearbox,
 )
+from gearopt.scenes.drive.tables.planetary import PLANETARY
 from gearopt.scenes.drive.tables.rating import LoadTable, RatingTable, with_shared
 from gearopt.scenes.drive.toothings import (
     check_centre_distances,
@@ -154,7 +165,7 @@ class Scene(Table):
     @classmethod
     def _idlers(cls, stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
         """Stages whose idlers have the keys of the wheels that they are."""
-        return with_idlers(stages)
+        return with_planets(with_idlers(stages))
 
     @field_validator("limits", mode="wrap")
     @classmethod
@@ -168,6 +179,13 @@ class Scene(Table):
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
         """Refuse what tables ask against each other, with its key and what to write instead."""
+        try:
+            self._check()
+        except PydanticCustomError as wrong:
+            raise renamed(self, wrong) from None
+        return self
+
+    def _check(self) -> None:
         number = len(self.stage)
         if self.stages is None and not self.stage:
             if self.gears.face_width_over_diameter is None:
@@ -186,6 +204,7 @@ class Scene(Table):
                 raise refuse("holds no module that [teeth] allows", self._around(stage), place)
         check_driving(self)
         check_idlers(self, self._lacks("beside an idler"))
+        check_planetary(self, "" if self.given else self._lacks("beside planets and rings"))
         check_layout(self)
         self._check_loads()
         self._check_teeth()
@@ -200,7 +219,6 @@ class Scene(Table):
                 raise refuse(rule, at=(name,), action="remove")
             if table is not None:
                 table.check(self.counts[0], name)
-        return self
 
     @property
     def counts(self) -> tuple[int, ...]:
@@ -291,12 +309,26 @@ class Scene(Table):
             check_materials(places, self.gears, self.material)
             check_same(self.gears, self.stage)
             check_rated(self.rating, self.gears, self.stage, self.load, self.material)
+            self._check_rings(self.rating)
         check_objective(self.objective, self.gears, self.stage, self.material)
         if self.given and not self.to_size:
             check_unsized(self.limits.LAW, self.stage)
         if self.by_ratings:
             ruled = [n for n in PROCESSES if getattr(self, n) is not None]
             check_sized(self.law, self.limits.LAW, self.stage, ruled)
+
+    def _check_rings(self, rating: RatingTable) -> None:
+        """Check the materials of planets and rings, as those of pairs are."""
+        if not any(own.type == PLANETARY for own in self.stage):
+            return
+        stages = [inner(own) if own.type == PLANETARY else own for own in self.stage]
+        places = [(("stage", k), own) for k, own in enumerate(stages)]
+        try:
+            check_materials(places, self.gears, self.material)
+            check_rated(rating, self.gears, stages, self.load, self.material)
+            check_objective(self.objective, self.gears, stages, self.material)
+        except PydanticCustomError as wrong:
+            raise renamed(self, wrong, OF_INNER) from None
 
     def _check_teeth(self) -> None:
         """Check that gears have a centre distance, and that what is sought can take it."""
@@ -319,7 +351,7 @@ class Scene(Table):
         check_shift(self, shifted, lacks, "" if follows else asked)
         check_tools(self.stage_tables, self.gears)
         for k, table in enumerate(self.stage if self.to_size else ()):  # else a rating refuses it
-            if k not in shifted:
+            if k not in shifted and not table.epicyclic:
                 check_mesh(self._stage(table), k, table, self.gears)
 
     def _lacks(self, what: str) -> str:
@@ -356,7 +388,9 @@ class Scene(Table):
                 raise refuse(rule, "15 deg", ("gears", "helix_angle"), "sample")
 
     def shifted(self, own: StageTable) -> bool:
-        """Whether profile shifts of a stage follow from its centre distance or a sum of them."""
+        """Whether profile shifts of a pair follow from its centre distance or a sum of them."""
+        if own.epicyclic:
+            return False
         summed = self.shift is not None and self.shift.sum is not None
         return (own.centre_distance is not None or summed) and not self.given
 
@@ -370,7 +404,7 @@ class Scene(Table):
     def choosing(self, own: StageTable) -> bool:
         """Whether the teeth of a stage may be cut in several ways, or shifts are chosen."""
         several = len(self.helix_angles(own)) > 1 and not inclination(own, self.gears)
-        return self.shifted(own) and not self.shift_ranges(own) or several or own.idler
+        return self.shifted(own) and not self.shift_ranges(own) or several or own.idler or own.epicyclic
 
     def shift_ranges(
         self, own: StageTable
@@ -452,6 +486,10 @@ class Scene(Table):
             times = ((b / safety[0], c / safety[1]) for b, c in asked)
             rows = zip(stages, rated, times, strict=True)
             stages = tuple(replace(s, options=made, safety=more) for s, made, more in rows)
+            each = zip(stages, tables, strict=True)
+            stages = tuple(
+                replace(s, options=options(self, own)) if own.epicyclic else s for s, own in each
+            )
         if tables[-1].idler:
             stages = (*stages[:-2], with_idler(*stages[-2:]))
         driver = driver or may_drive(self)[0]
@@ -507,12 +545,14 @@ class Scene(Table):
     def pairs(self, design: "DriveDesign") -> tuple[GearPair, ...]:
         """Gear pairs of a design, with shifts, tools and centre distances of the file."""
         tables = self.held(len(design.stages)).stage_tables
-        return tuple(
-            self._chosen(own, s).pair(
-                s.normal_module_mm, s.pinion_teeth, s.wheel_teeth, s.face_width_mm
-            )
-            for own, s in zip(tables, design.stages, strict=True)
-        )
+        rows = zip(tables, design.stages, strict=True)
+        return tuple(self.pair(own, stage) for own, stage in rows)
+
+    def pair(self, own: StageTable, stage: "StageDesign") -> GearPair:
+        """Gear pair of a stage of a design."""
+        teeth = stage.pinion_teeth, stage.wheel_teeth
+        cut = self._chosen(own, stage)
+        return cut.pair(stage.normal_module_mm, *teeth, stage.face_width_mm)
 
     def _chosen(self, own: StageTable, stage: "StageDesign") -> Toothing:
         """The toothing of a stage of a design."""
@@ -550,7 +590,7 @@ class Scene(Table):
         limits = self.limits
         diameter = own.wheel_diameter or limits.wheel_diameter
         force = own.axial_force or limits.axial_force
-        return Stage(
+        made = Stage(
             allowable=tuple(
                 (getattr(own, name) or limits.load(name)).value for name in self.law.names
             ),
@@ -567,9 +607,12 @@ class Scene(Table):
             overlap=float(own.overlap_ratio or limits.overlap_ratio or 0),
             axial_force=force.value if force else math.inf,
         )
+        return stage_with_planets(self, own, made) if own.epicyclic else made
 
     def _blanks(self, own: StageTable) -> tuple[Blank, Blank]:
-        """Return the blanks of a stage."""
+        """Return the blanks of a stage; those of planets and rings are of the ways to make it."""
+        if own.epicyclic:
+            return SOLID, SOLID
         pinion, wheel = (with_shared(getattr(own, m), self.gears) for m in MEMBERS)
         width = own.face_width.value if own.face_width else None
         return blank(pinion, width), blank(wheel, width)

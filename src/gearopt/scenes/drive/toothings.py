@@ -40,7 +40,7 @@ def toothings(
     pinion, wheel = with_shared(own.pinion, gears), with_shared(own.wheel, gears)
     first = Toothing(
         helices[0].value,
-        (_rack(pinion, pressure), _rack(wheel, pressure)),
+        (rack(pinion, pressure), rack(wheel, pressure)),
         (_or(pinion.profile_shift, 0.0), _or(wheel.profile_shift, 0.0)),
         (_or(pinion.tip_alteration, 0.0), _or(wheel.tip_alteration, 0.0)),
         (_allowance(pinion), _allowance(wheel)),
@@ -81,7 +81,7 @@ def toothing(own: StageTable, gears: Gears) -> Toothing:
     return toothings(own, gears)[0]
 
 
-def _rack(gear: GearTable, pressure_angle: float) -> Rack:
+def rack(gear: GearTable, pressure_angle: float) -> Rack:
     usual = ISO_53_A
     return Rack(
         pressure_angle,

@@ -1,6 +1,7 @@
 """Rating by ISO 6336: a stage from its tables, factors by name, materials in words."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from gearopt.formulations.drive.rating import RatingFactor
@@ -41,7 +42,8 @@ def title(asked: RatingTable, factors: Sequence[RatingFactor]) -> str:
 
 def practice(rating: RatingTable, own: StageTable, pair: GearPair, tables: Tables) -> Practice:
     """Manufacture and rating practice of the pair of a stage."""
-    return of_blanks(bare_practice(rating, tables), pair, blanks(tables, pair))
+    made = of_blanks(bare_practice(rating, tables), pair, blanks(tables, pair))
+    return made if own.as_mesh is None else replace(made, meshes=own.as_mesh.meshes)
 
 
 def bare_practice(rating: RatingTable, gears: Tables) -> Practice:

@@ -82,16 +82,24 @@ def required_hours(rating: RatingTable, duty: Duty) -> float:
 
 
 def operations(
-    rating: RatingTable, duty: Duty, levels: Sequence[LoadTable], slower: float, tables: Tables
+    rating: RatingTable,
+    duty: Duty,
+    levels: Sequence[LoadTable],
+    slower: float,
+    tables: Tables,
+    share: float = 1.0,
 ) -> tuple[Operation, ...]:
-    """Operation of a pair at every level of load; slower: input over pinion speed."""
+    """Operation of a pair at every level of load; slower: input over pinion speed.
+
+    share: part of the power that the mesh transmits.
+    """
     hours = required_hours(rating, duty)
-    at_duty = duty.input_power, duty.input_speed.value / slower
+    at_duty = share * duty.input_power, duty.input_speed.value / slower
     at_power = _operation(rating, *at_duty, hours, tables)
     each: list[Any] = [
         replace(
             at_power,
-            power=level.power.value,
+            power=share * level.power.value,
             pinion_speed=(level.input_speed or duty.input_speed).value / slower,
             hours=hours * float(level.share),
         )

@@ -37,6 +37,7 @@ class Mesh:
     damages: tuple[tuple[float, float], tuple[float, float]] | None  # of bending, of contact
     grown: Callable[[float], "Mesh"]  # the same with all powers times a factor
     static: Rating | None = None  # under the peak torque, if there is one
+    own: Any = None  # an `AsMesh` of a stage with planets or a ring
 
     @property
     def hardest(self) -> Rating:
@@ -69,6 +70,9 @@ def rated_meshes(
     meshes, refused = [], list[str]()
     slower = torque_ratios([float(pair.ratio) for pair in pairs], drivers(scene))
     for k, pair in enumerate(pairs):
+        own, title = scene.stage_tables[k].as_mesh, f"stage {k + 1}"
+        if own is not None:
+            title, slower[k] = own.name.title, (own.slower, slower[k][1])
         known = flaws(pair)
         sentences = [flaw.sentence[0].lower() + flaw.sentence[1:].rstrip(".") for flaw in known]
         try:
@@ -77,7 +81,7 @@ def rated_meshes(
             meshes.append(_mesh(scene, k, pair, slower[k][0], standard, materials[k]))
         except ValueError as reason:
             why = "; ".join([str(reason), *sentences])
-            refused.append(f"stage {k + 1} cannot be rated: {why}")
+            refused.append(f"{title} cannot be rated: {why}")
     if refused:
         raise SolveError("; ".join(refused))
     return meshes
@@ -93,9 +97,10 @@ def _mesh(
     tables = gear_tables(stage, scene.gears, scene.material, k, named)
     steels = standard.steel(tables[0]), standard.steel(tables[1])
     practice = standard.practice(rating, stage, pair, tables)
-    levels = operations(rating, scene.duty, scene.load, slower, tables)
+    share = 1.0 if stage.as_mesh is None else stage.as_mesh.share
+    levels = operations(rating, scene.duty, scene.load, slower, tables, share)
     given, peak = standard.given(rating, stage), rating.static_torque_factor
-    (at_duty,) = operations(rating, scene.duty, (), slower, tables)
+    (at_duty,) = operations(rating, scene.duty, (), slower, tables, share)
 
     def static(factor: float) -> Rating | None:
         if peak is None or not standard.STATIC:
@@ -110,11 +115,11 @@ def _mesh(
             rated = standard.rate(pair, loaded[0], steels, practice, given)
             both = rated.bending_safety, rated.contact_safety
             made = standard, k + 1, pair, tables, loaded, (rated,)
-            return Mesh(*made, *both, None, grown, static(factor))
+            return Mesh(*made, *both, None, grown, static(factor), stage.as_mesh)
         spectrum = standard.rate_spectrum(pair, loaded, steels, practice, given)
         damages = spectrum.bending_damage, spectrum.contact_damage
         both = spectrum.bending_safety, spectrum.contact_safety
         made = standard, k + 1, pair, tables, loaded, spectrum.levels
-        return Mesh(*made, *both, damages, grown, static(factor))
+        return Mesh(*made, *both, damages, grown, static(factor), stage.as_mesh)
 
     return grown(1.0)

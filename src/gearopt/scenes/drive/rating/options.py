@@ -48,7 +48,7 @@ def of_stages(
         pinion, wheel = (choices(getattr(table, member), gears, materials) for member in MEMBERS)
         options.append(
             tuple(
-                _option(of_stage(rating, table), table, (a, b), hours, loaded)
+                option(of_stage(rating, table), table, (a, b), hours, loaded)
                 for a in pinion
                 for b in wheel
             )
@@ -60,7 +60,7 @@ def of_stages(
     return tuple(tuple(stage[names] for names in shared) for stage in named)
 
 
-def _option(
+def option(
     rating: RatingTable,
     own: StageTable,
     made: tuple[tuple[GearTable, Named | None], tuple[GearTable, Named | None]],

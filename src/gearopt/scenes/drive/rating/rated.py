@@ -17,6 +17,7 @@ from gearopt.physics.shaft_forces import hands
 from gearopt.scenes.drive.driving import driven, drivers
 from gearopt.scenes.drive.idlers import idlers
 from gearopt.scenes.drive.notes import masses
+from gearopt.scenes.drive.planetary import by_mesh
 from gearopt.scenes.drive.rating.assumptions import rating_assumptions, unused_materials
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.gears import (
@@ -27,7 +28,7 @@ from gearopt.scenes.drive.rating.gears import (
     required_hours,
 )
 from gearopt.scenes.drive.rating.geometry import tooth_geometry
-from gearopt.scenes.drive.rating.mesh import Materials, rated_meshes
+from gearopt.scenes.drive.rating.mesh import Materials, Mesh, rated_meshes
 from gearopt.scenes.drive.rating.options import (
     SECOND,
     STANDARDS,
@@ -81,9 +82,7 @@ def rate_design(scene: Scene, ask: Ask, design: Mapping[str, Any]) -> Result:
         found = replace(drive_design(design), rating=None)
     except ValueError as why:
         raise SolveError(f"the design is no drive: {why}") from None
-    scene = driven(scene.held(len(found.stages)), found)
-    pairs = scene.pairs(found)
-    materials = [(stage.pinion_material, stage.wheel_material) for stage in found.stages]
+    scene, pairs, materials = by_mesh(driven(scene.held(len(found.stages)), found), found)
     bodies = [
         blanks(gear_tables(own, scene.gears, scene.material, k, chosen), pair)
         for k, (own, chosen, pair) in enumerate(
@@ -203,7 +202,8 @@ def with_rating(scene: Scene, result: Result) -> Result:
     if result.value is None:
         return result
     design = drive_design(result.design)
-    held, pairs = scene.held(len(design.stages)), scene.pairs(design)
+    held = driven(scene.held(len(design.stages)), design)
+    held, pairs, materials = by_mesh(held, design)
     notes = result.report.get("notes", [])
     if misfits := [flaw.sentence for flaw in tooth_flaws(pairs) if flaw.misfit]:
         notes = [note for note in notes if note not in misfits]
@@ -211,8 +211,7 @@ def with_rating(scene: Scene, result: Result) -> Result:
     if scene.rating is None:
         return result
     try:
-        materials = [(s.pinion_material, s.wheel_material) for s in design.stages]
-        rated = fitted(rating(driven(held, design), pairs, materials), misfits)
+        rated = fitted(rating(held, pairs, materials), misfits)
     except SolveError as reason:
         report = result.report | {"notes": [*notes, f"There is no rating: {reason}."]}
         return replace(result, report=report)
@@ -248,7 +247,9 @@ def utilisations(rated: DriveRating) -> dict[str, float]:
     for by_standard, of_second in zip(rated.each, ("", SECOND), strict=False):
         for gear, mode, reached, asked in by_standard.margins:
             static, end = mode.startswith("static "), mode.split(" ")[-1]
-            name = f"{gear.member}_{end}{STATIC if static else of_second}[{gear.stage}]"
+            of_mesh = by_standard.named[gear.stage - 1].suffix if by_standard.named else ""
+            place = by_standard.stage_of(gear.stage)
+            name = f"{gear.member}_{end}{of_mesh}{STATIC if static else of_second}[{place}]"
             limits[name] = asked / reached
     return limits
 
@@ -313,11 +314,17 @@ def _by(
     factors = tuple(row for mesh in meshes for row in factor_rows(asked, mesh))
     drive = drivers(scene)
     turned = hands([table.pinion_hand for table in scene.stage] or [None] * len(pairs), drive)
-    (efficiency, error), idle = _efficiency(rows), idlers(scene.stage)
+    (efficiency, error), idle = _efficiency(rows, meshes), idlers(scene.stage)
+    known = [own.as_mesh for own in scene.stage_tables]
+    named = tuple(own.name for own in known if own is not None)
+
+    def title(mesh: int) -> str:
+        return named[mesh - 1].title if named else f"stage {mesh}"
+
     rated = DriveRating(
         standard=standard.title(asked, factors),
         safe=False,
-        governs=f"{least.governs}, stage {least.stage}",
+        governs=f"{least.governs}, {title(least.stage)}",
         minimum_bending_safety=float(asked.minimum_bending_safety),
         minimum_contact_safety=float(asked.minimum_contact_safety),
         power_capacity_kW=least.power_capacity_kW,
@@ -328,7 +335,9 @@ def _by(
         gears=gears,
         meshes=rows,
         factors=factors,
-        shafts=tuple(
+        shafts=()
+        if named
+        else tuple(
             replace(row, torque_Nm=0.0) if row.shaft in idle else row
             for row in shaft_rows(pairs, turned, drive, *_largest_load(scene))
         ),
@@ -344,21 +353,36 @@ def _by(
             for row in level_rows(scene.load, scene.duty.input_speed, mesh)
         ),
         unverified=(
-            *dict.fromkeys(f"{name} of stage {m.stage}" for m in meshes for name in m.unverified),
+            *dict.fromkeys(f"{n} of {title(m.stage)}" for m in meshes for n in m.unverified),
             *(standard.UNVERIFIED_SPECTRUM if scene.load else ()),
         ),
         by=standard.NAME,
         static=tuple(row for mesh in meshes for row in static_rows(mesh, still)),
         idlers=idle,
+        named=named,
     )
     return replace(rated, safe=rated.met, life_h=rated.shortest_lived.life_h)
 
 
-def _efficiency(rows: Sequence[MeshRating]) -> tuple[float | None, float | None]:
-    """Return the efficiency of all meshes and its error [%]; None where one is not known."""
-    known = [p for row in rows if (p := row.mesh_efficiency_percent) is not None]
-    errors = [e for row in rows if (e := row.mesh_efficiency_error_percent) is not None]
-    whole = 100.0 * math.prod(p / 100.0 for p in known) if len(known) == len(rows) else None
+def _efficiency(
+    rows: Sequence[MeshRating], meshes: Sequence[Mesh]
+) -> tuple[float | None, float | None]:
+    """Return the efficiency of all meshes and its error [%]; None where one is not known.
+
+    Of a planetary stage the losses of its meshes are those of the power that rolls.
+    """
+    parts = [1.0 if mesh.own is None else mesh.own.rolled for mesh in meshes]
+    known = [
+        1.0 - part * (1.0 - p / 100.0)
+        for row, part in zip(rows, parts, strict=True)
+        if (p := row.mesh_efficiency_percent) is not None
+    ]
+    errors = [
+        e * part
+        for row, part in zip(rows, parts, strict=True)
+        if (e := row.mesh_efficiency_error_percent) is not None
+    ]
+    whole = 100.0 * math.prod(known) if len(known) == len(rows) else None
     return whole, sum(errors) if errors else None
 
 

@@ -103,7 +103,7 @@ def mesh_row(rating: RatingTable, mesh: Mesh, wanted: Sequence[float]) -> MeshRa
     return MeshRating(
         stage=mesh.stage,
         governs=governs,
-        power_capacity_kW=1e-6 * growth * strongest,
+        power_capacity_kW=1e-6 * growth * strongest / (mesh.own.share if mesh.own else 1.0),
         tangential_force_N=float(forces.tangential),
         radial_force_N=float(forces.radial),
         axial_force_N=float(forces.axial),

@@ -13,6 +13,7 @@ from gearopt.formulations.strength import Law
 from gearopt.formulations.strength.laws.k_factor import K_FACTOR
 from gearopt.physics.geometry.profile_shift import ROOT_SAFETY, RULES, Shifting
 from gearopt.scenes.drive.tables.iso6336 import IsoGiven
+from gearopt.scenes.drive.tables.planetary import PlanetaryKeys
 from gearopt.scenes.drive.tables.rating import GearKeys, GearTable, GivenTable, ShaftTable
 from gearopt.scenes.reading.choices import Between, Choice, Preferred, Steps, to_choose, values_of
 from gearopt.scenes.reading.fields import (
@@ -155,7 +156,7 @@ class Gears(GearKeys):
 
 
 @limited_by(LAW)
-class StageTable(Loaded):
+class StageTable(Loaded, PlanetaryKeys):
     """One stage: what differs from the other tables, and what is fixed."""
 
     idler: Annotated[bool, truth()] = Field(

@@ -1,0 +1,453 @@
+"""Stages with planets, or a pinion in a ring: how their tables fit together, and their ways."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+from pydantic_core import PydanticCustomError
+
+from gearopt.formulations.drive.design import DriveDesign, StageDesign
+from gearopt.formulations.drive.planetary import LARGE, Cutting, InPlanetaryMesh, Planets
+from gearopt.formulations.drive.rating import MeshName
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.formulations.drive.train import Stage
+from gearopt.formulations.strength.standard import Option
+from gearopt.frozen import dataclass
+from gearopt.physics.gears import RIM, Cutter, GearPair
+from gearopt.physics.loads import torque_ratios
+from gearopt.physics.planetary.loads import SHARING_RULES, mesh_load_factor
+from gearopt.scenes.drive.idlers import copied, idlers
+from gearopt.scenes.drive.rating.gears import loads, required_hours
+from gearopt.scenes.drive.rating.materials import choices
+from gearopt.scenes.drive.rating.options import STANDARDS, of_stage, option
+from gearopt.scenes.drive.tables.blanks import blank
+from gearopt.scenes.drive.tables.drive import Gears, ShiftTable, StageTable
+from gearopt.scenes.drive.tables.planetary import INTERNAL, OF_INTERNAL, OWN, PLANETARY, REDUCTIONS
+from gearopt.scenes.drive.tables.rating import with_shared
+from gearopt.scenes.drive.toothings import rack
+from gearopt.scenes.reading.choices import values_of
+from gearopt.scenes.reading.fields import refuse
+
+if TYPE_CHECKING:
+    from gearopt.scenes.drive.scene import Scene
+
+SHARING = "wind"  # of SHARING_RULES: K_gamma that a file does not give
+OF_PAIRS = {  # keys of a stage that one with planets, or a pinion in a ring, does not have
+    PLANETARY: ("pinion_teeth", "wheel_teeth", "pinion", "wheel"),
+    INTERNAL: ("wheel_teeth", "wheel"),
+}
+NOT_YET = (  # that no stage with a ring takes
+    *("pinion_face_width_excess", "overlap_ratio", "axial_force", "driver", "pinion_hand"),
+    *("shaft", "idler"),
+)
+MEMBERS = {PLANETARY: ("sun", "planet", "ring"), INTERNAL: ("pinion", "ring")}
+NAMES = {  # of what checks call the gears of a pair
+    PLANETARY: {"pinion": "sun", "wheel": "planet", "pinion_teeth": "sun_teeth"},
+    INTERNAL: {"wheel": "ring"},
+}
+OF_INNER = {"pinion": "planet", "wheel": "ring"}
+OF_GEAR = (  # keys of a gear that such a stage sets or does not have
+    *("contacts", "reversed_load", "face_width", "thickness_allowance", "rim_thickness"),
+    *("web_thickness", "web_over_face_width"),
+)
+
+
+def with_planets(stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
+    """Stages in which sun and planet, or pinion and ring, are what checks call pinion and wheel.
+
+    Keys that mean nothing of a type are refused.
+    """
+    made = []
+    for k, own in enumerate(stages):
+        written = own.model_fields_set
+        wrong = OF_PAIRS.get(own.type, OWN)
+        if own.type == INTERNAL:
+            wrong = (*wrong, *(name for name in OWN if name not in OF_INTERNAL))
+        if name := next((name for name in wrong if name in written), None):
+            kind = "a stage of external gears" if own.type not in OF_PAIRS else f'"{own.type}"'
+            rule = f"is not of {kind}" if own.type in OF_PAIRS else f"needs {_kinds(name)}"
+            raise refuse(rule, at=(k, name), action="remove")
+        if own.type == PLANETARY:
+            own = copied(own, {"pinion": own.sun, "wheel": _bent(own.planet)})
+            own = copied(own, {"pinion_teeth": own.sun_teeth, "wheel_teeth": own.ring_teeth})
+        elif own.type == INTERNAL:
+            own = copied(own, {"wheel": own.ring, "wheel_teeth": own.ring_teeth})
+        made.append(own)
+    return tuple(made)
+
+
+def _kinds(name: str) -> str:
+    both = 'type = "planetary" or "internal"' if name in OF_INTERNAL else 'type = "planetary"'
+    return both
+
+
+def _bent(planet: Any) -> Any:
+    """A planet, whose teeth are bent both ways."""
+    return copied(planet, {"reversed_load": True})
+
+
+def inner(own: StageTable) -> StageTable:
+    """A planetary stage as its mesh of planet and ring."""
+    return copied(own, {"pinion": _bent(own.planet), "wheel": own.ring})
+
+
+def renamed(scene: "Scene", wrong: PydanticCustomError, names: Any = None) -> PydanticCustomError:
+    """The refusal of a check of pairs, by the names of the gears of a stage."""
+    context = dict(wrong.context or {})
+    place = tuple(context.get("at", ()))
+    if len(place) > 2 and place[0] == "stage" and place[1] < len(scene.stage):
+        kind = scene.stage[place[1]].type
+        own = names if names and kind == PLANETARY else NAMES.get(kind, {})
+        own = own | ({"wheel_teeth": "ring_teeth"} if kind in NAMES else {})
+        context["at"] = (*place[:2], own.get(place[2], place[2]), *place[3:])
+    return PydanticCustomError("gearopt", "{rule}", context)
+
+
+def check_planetary(scene: "Scene", lacks: str) -> None:
+    """Refuse what does not go together with planets or a ring.
+
+    lacks: what the file lacks for gears to be sized by ratings alone; "" for nothing.
+    """
+    for k, own in enumerate(scene.stage):
+        if not own.epicyclic:
+            continue
+        rule = _beside(scene, own) or (f"needs {lacks}" if lacks and scene.to_size else "")
+        if rule:
+            raise refuse(rule, at=("stage", k, "type"), action="remove")
+        for name in NOT_YET:
+            if getattr(own, name):
+                rule = f'is not of type = "{own.type}"'
+                raise refuse(rule, at=("stage", k, name), action="remove")
+        if scene.to_size and own.centre_distance is not None:
+            rule = "is not chosen beside planets: it follows from their shifts"
+            raise refuse(rule, at=("stage", k, "centre_distance"), action="remove")
+        _check_gears(scene, own, k)
+        _check_teeth(scene, own, k)
+
+
+def _beside(scene: "Scene", own: StageTable) -> str:
+    """Why a file cannot have planets or a ring; "" where it can."""
+    if scene.UNRATED:
+        return "is for drives: a pair has external gears"
+    if scene.layout is not None or scene.process_one or scene.process_two:
+        return "does not go together with [layout] and processes: they are of external gears"
+    if scene.rating is None or scene.rating.standard != "iso6336":
+        return 'needs a [rating] by standard = "iso6336": AGMA 908 has no J of rings'
+    if idlers(scene.stage) or scene.gears.same_materials or (scene.teeth and scene.teeth.coprime):
+        return "does not go together with idlers, same_materials and coprime (but mesh_order)"
+    if scene.limits.coaxial or scene.limits.sum_of_centre_distances:
+        return "does not go together with coaxial and sum_of_centre_distances of [limits]"
+    if scene.to_size and scene.objective.minimise not in ("gear_volume", "mass", "mesh_loss"):
+        return f"needs minimise = gear_volume, mass or mesh_loss, not {scene.objective.minimise}"
+    if len(scene.helix_angles(own)) > 1:
+        return "needs one helix angle"
+    return ""
+
+
+def _check_gears(scene: "Scene", own: StageTable, k: int) -> None:
+    """Refuse keys of gears that a stage with a ring sets, or does not have."""
+    for member in MEMBERS[own.type]:
+        table = getattr(own, member)
+        for name in OF_GEAR:
+            set_here = name in table.model_fields_set
+            shared = getattr(scene.gears, name, None) is not None
+            if set_here or (shared and name not in ("contacts", "reversed_load")):
+                place = ("stage", k, member, name) if set_here else ("gears", name)
+                rule = f'does not go together with type = "{own.type}"'
+                raise refuse(rule, at=place, action="remove")
+    ring = with_shared(own.ring, scene.gears)
+    if own.ring.outside_diameter is not None and own.ring.rim_over_module is not None:
+        rule = "conflicts with outside_diameter; one is enough"
+        raise refuse(rule, at=("stage", k, "ring", "rim_over_module"), action="remove")
+    if ring.cutter_teeth is None:
+        for name in ("cutter_profile_shift", "cutter_addendum", "cutter_tip_radius"):
+            if getattr(own.ring, name) is not None:
+                rule = "needs cutter_teeth, of the cutter that shapes the ring"
+                raise refuse(rule, at=("stage", k, "ring", name), action="remove")
+    sized = scene.to_size and not scene.given
+    if sized and own.type == PLANETARY and own.ring.profile_shift is not None:
+        rule = "follows from the distance of sun and planet"
+        raise refuse(rule, at=("stage", k, "ring", "profile_shift"), action="remove")
+
+
+def _check_teeth(scene: "Scene", own: StageTable, k: int) -> None:
+    """Refuse numbers of planets without K_gamma, and reductions that leave no whole teeth."""
+    if own.mesh_load_factor is None:
+        for count in own.counts if own.type == PLANETARY else ():
+            if count and count not in SHARING_RULES[SHARING].values:
+                rule = f"is missing: {count} planets have no K_gamma by default"
+                raise refuse(rule, 1.1, ("stage", k, "mesh_load_factor"), "sample")
+    for step in own.planet_teeth_reduction or ():
+        if (2 * step).denominator != 1:
+            rule = "has a value that is no multiple of 0.5"
+            raise refuse(rule, [0, 0.5, 1], ("stage", k, "planet_teeth_reduction"), "sample")
+    if own.held == "sun" and own.ring_teeth is None and not scene.limits.wheel_teeth:
+        rule = "is missing: a ring that drives needs a range"
+        raise refuse(rule, [60, 140], ("stage", k, "ring_teeth"), "sample")
+
+
+def cuttings(scene: "Scene", own: StageTable) -> tuple[Cutting, ...]:
+    """Ways to cut the gears of a stage: by the sums of profile shifts that are given."""
+    gears, ring = scene.gears, with_shared(own.ring, scene.gears)
+    members = ("pinion", *("pinion", "ring")) if own.type == INTERNAL else MEMBERS[PLANETARY]
+    tables = [with_shared(getattr(own, member), gears) for member in members]
+    pressure = (own.pressure_angle or gears.pressure_angle).value
+    first, second, third = (rack(table, pressure) for table in tables)
+    cutter = None
+    if own.ring.cutter_teeth is not None:
+        cutter = Cutter(
+            float(own.ring.cutter_teeth),
+            float(own.ring.cutter_profile_shift or 0),
+            float(own.ring.cutter_addendum or third.dedendum),
+            float(own.ring.cutter_tip_radius or 0),
+        )
+    outside = own.ring.outside_diameter
+    x = [_number(table.profile_shift) for table in tables]
+    tips = [_number(table.tip_alteration) for table in tables]
+    width = own.face_width.value if own.face_width else None
+    made = Cutting(
+        scene.helix_angles(own)[0].value,
+        (first, second, third),
+        cutter,
+        (x[0], x[1], x[2]),
+        None,
+        (tips[0], tips[1], tips[2]),
+        values_of(own.centre_distance)[0].value if own.centre_distance is not None else None,
+        float(ring.rim_over_module or RIM),
+        outside.value if outside else None,
+        (blank(tables[0], width), blank(tables[1], width)),
+    )
+    shift = scene.shift or ShiftTable()
+    if own.type == INTERNAL or None not in made.shifts[:2]:
+        return (made,)
+    sums = [float(total) for total in values_of(shift.sum)] if shift.sum is not None else [None]
+    starts = [x[0]]
+    if shift.pinion_shift is not None and x[0] is None:
+        starts = [float(start) for start in values_of(shift.pinion_shift)]
+    return tuple(
+        replace(made, shift_sum=total, shifts=(start, x[1], x[2]))
+        for total, start in product(sums, starts)
+    )
+
+
+def _number(value: Fraction | None) -> float | None:
+    return None if value is None else float(value)
+
+
+def ways(scene: "Scene", own: StageTable) -> Iterator[Planets]:
+    """Ways of making a stage, without its materials."""
+    diameter = own.wheel_diameter or scene.limits.wheel_diameter
+    usual = scene.limits.wheel_teeth or (1, None)
+    sun = own.pinion_teeth or scene.limits.pinion_teeth
+    reductions = own.planet_teeth_reduction or REDUCTIONS
+    if own.planet_teeth and own.planet_teeth[0] == own.planet_teeth[1] and not scene.to_size:
+        reductions = (Fraction(0),)
+    fewer = [0] if own.type == INTERNAL else [int(2 * step) for step in reductions]
+    for cutting, count, less in product(cuttings(scene, own), own.counts, fewer):
+        yield Planets(
+            cutting,
+            count,
+            own.held,
+            less,
+            _span(sun),
+            _span(own.planet_teeth or (1, None)),
+            _span(own.ring_teeth or usual),
+            own.equally_spaced is not False,
+            own.mesh_order or "any",
+            1.0 if own.planet_clearance is None else float(own.planet_clearance),
+            **({"widest": diameter.value} if diameter else {}),
+        )
+
+
+def _span(ends: tuple[int, int | None]) -> tuple[float, float]:
+    return float(ends[0]), LARGE if ends[1] is None else float(ends[1])
+
+
+def stage_with_planets(scene: "Scene", own: StageTable, stage: Stage) -> Stage:
+    """The stage whose pair has the ratio of one with planets, or of a pinion in a ring."""
+    sun, ring = stage.pinion_teeth, stage.wheel_teeth
+    first, second = sun, ring
+    if own.type == PLANETARY and own.held != "carrier":
+        most = None if None in (sun[1], ring[1]) else (sun[1] or 0) + (ring[1] or 0)
+        second = sun[0] + ring[0], most
+        first = ring if own.held == "sun" else sun
+    angle = scene.helix_angles(own)[0].value
+    pressure = (own.pressure_angle or scene.gears.pressure_angle).value
+    plain = rack(with_shared(own.ring, Gears()), pressure)
+    return replace(
+        stage,
+        pinion_teeth=first,
+        wheel_teeth=second,
+        wheel_diameter=None,
+        toothings=(Toothing(angle, (plain, plain)),),
+    )
+
+
+def load_factor(own: StageTable, count: int) -> Fraction:
+    """K_gamma of a number of planets."""
+    if own.mesh_load_factor is not None:
+        return own.mesh_load_factor
+    return Fraction(str(mesh_load_factor(count, SHARING)))
+
+
+def meshes(own: StageTable, count: int) -> tuple[StageTable, ...]:
+    """Tables of the meshes of a stage, with their load cycles and K_gamma; count: of planets."""
+    if not count:
+        return (own,)
+    given = copied(own.given_iso6336, {"K_gamma": load_factor(own, count)})
+    more: dict[str, Any] = {"given_iso6336": given}
+    sun, ring = (copied(gear, {"contacts": count}) for gear in (own.sun, own.ring))
+    planet = _bent(own.planet)
+    return (
+        copied(own, more | {"pinion": sun, "wheel": planet}),
+        copied(own, more | {"pinion": planet, "wheel": ring}),
+    )
+
+
+def at_once(own: StageTable, count: int, with_ring: bool) -> tuple[float, float] | None:
+    """`Practice.meshes` of a mesh of a stage."""
+    if not count:
+        return None
+    held = 0.0 if own.held == "ring" else float(count)
+    return (1.0, held) if with_ring else (float(count), 1.0)
+
+
+def options(scene: "Scene", own: StageTable) -> tuple[Option, ...]:
+    """Ways of making the gears of a stage, each with the ratings that limit its meshes."""
+    assert scene.rating
+    asked, duty = of_stage(scene.rating, own), scene.duty
+    hours, levels = required_hours(asked, duty), loads(asked, duty, scene.load)
+    gears = [
+        choices(table, scene.gears, scene.material)
+        for table in ((own.pinion, own.wheel) if own.type == INTERNAL else ())
+    ]
+    made = []
+    for planets in ways(scene, own):
+        tables = meshes(own, planets.count)
+        if planets.count:
+            outer, second = tables
+            members = (outer.pinion, outer.wheel, second.wheel)
+            gears = [choices(table, scene.gears, scene.material) for table in members]
+        for row in product(*gears):
+            pairs = [(row[k], row[k + 1]) for k in range(len(tables))]
+            each = [
+                option(asked, table, pair, hours, levels)
+                for table, pair in zip(tables, pairs, strict=True)
+            ]
+            made.append(_combined(own, planets, each))
+    return tuple(made)
+
+
+def _combined(own: StageTable, planets: Planets, each: Sequence[Option]) -> Option:
+    """One way of making a stage of those of its meshes."""
+    standards: list[Any] = []
+    for k, one in enumerate(each):
+        with_ring = k == len(each) - 1
+        words = "" if len(each) == 1 else "_of_ring" if with_ring else "_of_sun"
+        for standard in one.standards:
+            at: Any = standard
+            practice = replace(at.practice, meshes=at_once(own, planets.count, with_ring))
+            rated = replace(at, practice=practice)
+            standards.append(InPlanetaryMesh(rated, planets, with_ring, words + at.suffix))
+    first, last = each[0], each[-1]
+
+    def three(name: str) -> Any:
+        more = getattr(last, name)[1:] if len(each) > 1 else ()
+        return (*getattr(first, name), *more)
+
+    names = ("densities", "prices", "treatment_prices", "cutting_prices", "materials")
+    words = f"{planets.count} planets" if planets.count else "ring"
+    fields: dict[str, Any] = {name: three(name) for name in names}
+    return Option(tuple(standards), words, planets=planets, **fields)
+
+
+@dataclass(frozen=True)
+class AsMesh:
+    """A mesh of a stage that is rated in the place of a stage.
+
+    slower: input over pinion speed, against the carrier; share of the drive's power in the mesh;
+    rolled: in all meshes of this kind; meshes: as of `Practice`.
+    """
+
+    name: MeshName
+    slower: float
+    share: float
+    rolled: float
+    meshes: tuple[float, float] | None
+
+
+Meshes = tuple["Scene", tuple[GearPair, ...], list[tuple[str, str]]]
+
+
+def by_mesh(scene: "Scene", design: DriveDesign) -> Meshes:
+    """The drive with every mesh in the place of a stage, its pairs, and names of materials."""
+    pairs, tables = list[GearPair](), list[StageTable]()
+    names = list[tuple[str, str]]()
+    plain = [s.type == "parallel" for s in design.stages]
+    drivers = [s.driver for s in design.stages]
+    slower = torque_ratios([s.ratio for s in design.stages], drivers)
+    for k, (own, stage) in enumerate(zip(scene.stage_tables, design.stages, strict=True)):
+        if plain[k]:
+            pairs.append(scene.pair(own, stage))
+            names.append((stage.pinion_material, stage.wheel_material))
+            tables.append(own)
+            title = MeshName(stage=k + 1, title=f"stage {k + 1}")
+            rated = [AsMesh(title, slower[k][0], 1.0, 1.0, None)]
+        else:
+            rows, both = _meshes_of(scene, own, stage, k, slower[k][0])
+            pairs += both
+            tables += meshes(own, stage.planets or 0)
+            materials = stage.pinion_material, stage.wheel_material, stage.ring_material
+            names += [materials[:2], materials[1:]] if stage.planets else [materials[:2]]
+            rated = rows
+        if not all(plain):
+            for place, mesh in enumerate(rated, len(tables) - len(rated)):
+                tables[place] = tables[place].rated_as(mesh)
+    made = scene if all(plain) else scene.model_copy(update={"stage": tuple(tables)})
+    return made, tuple(pairs), names
+
+
+def _meshes_of(
+    scene: "Scene", own: StageTable, stage: StageDesign, k: int, slower: float
+) -> tuple[list[AsMesh], tuple[GearPair, ...]]:
+    """Meshes of a stage (from 0) of a design; slower: input over pinion speed of its pair."""
+    planets = planets_of(scene, own, stage)
+    pair = planets.pair(
+        stage.normal_module_mm, stage.sun_teeth or stage.pinion_teeth, stage.ring_teeth, stage.face_width_mm
+    )
+    rated = []
+    kinds = [False, True] if planets.count else [True]
+    words = {False: ("sun", "planet", "_of_sun"), True: ("planet", "ring", "_of_ring")}
+    for with_ring in kinds:
+        torque, speed = planets.slower(pair, with_ring)
+        first, second, suffix = words[with_ring] if planets.count else ("pinion", "ring", "")
+        name = MeshName(
+            stage=k + 1,
+            title=f"stage {k + 1}, {first} and {second}",
+            pinion=first,
+            wheel=second,
+            suffix=suffix,
+        )
+        share = float(torque * speed)
+        times = max(planets.count, 1)
+        held = at_once(own, planets.count, with_ring)
+        rated.append(AsMesh(name, slower / float(speed), share, times * share, held))
+    return rated, planets.meshes(pair)
+
+
+def planets_of(scene: "Scene", own: StageTable, stage: StageDesign) -> Planets:
+    """The planets, or the ring, of a stage of a design."""
+    internal = own.type == INTERNAL
+    shifts = stage.pinion_profile_shift, stage.wheel_profile_shift, stage.ring_profile_shift
+    tips = stage.pinion_tip_alteration, stage.wheel_tip_alteration, stage.ring_tip_alteration
+    if internal:
+        shifts, tips = (shifts[0], *shifts[::2]), (tips[0], *tips[::2])
+    made = cuttings(scene, own)[0]
+    distance = None if made.distance is None else stage.centre_distance_mm
+    cut = replace(made, shifts=shifts, shift_sum=None, tip_alterations=tips, distance=distance)
+    if internal or not stage.planets:
+        return Planets(cut, 0)
+    fewer = round(stage.ring_teeth - stage.sun_teeth - 2 * stage.planet_teeth)
+    return Planets(cut, stage.planets, own.held, fewer)

@@ -1,0 +1,133 @@
+"""Keys of a stage with planets, or of a pinion in a ring."""
+
+from fractions import Fraction
+from typing import Annotated, Any, Self
+
+from pydantic import Field, PrivateAttr
+
+from gearopt.formulations.drive.planetary import HELD, ORDERS
+from gearopt.scenes.drive.tables.rating import GearTable
+from gearopt.scenes.reading.fields import Table, choice, number, quantity, truth, whole
+from gearopt.scenes.reading.lists import several, span
+from gearopt.units import Quantity
+
+PARALLEL, PLANETARY, INTERNAL = TYPES = ("parallel", "planetary", "internal")
+USUAL = (3, 3)  # planets
+REDUCTIONS = (Fraction(0), Fraction(1, 2), Fraction(1))  # by default
+Teeth = tuple[int, int] | None
+
+
+class RingTable(GearTable):
+    """Keys of a ring: as of other gears, and of the pinion-type cutter that shapes it."""
+
+    outside_diameter: Annotated[Quantity | None, quantity("length", "300 mm")] = Field(
+        None, description="Outside diameter of the ring, instead of rim_over_module (3.5)"
+    )
+    cutter_teeth: Annotated[int | None, whole(30, 5, 500)] = Field(
+        None,
+        description="Number of teeth of the pinion-type cutter; without it the ring is cut by the "
+        "counterpart of its basic rack",
+    )
+    cutter_profile_shift: Annotated[Fraction | None, number(0.1, -1, 1, zero=True)] = Field(
+        None, description="Profile shift x_0 of the cutter; by default 0"
+    )
+    cutter_addendum: Annotated[Fraction | None, number(1.25, 0, 3)] = Field(
+        None, description="Addendum h_a0 of the cutter, in normal modules; by default 1.25"
+    )
+    cutter_tip_radius: Annotated[Fraction | None, number(0.3, 0, 1, zero=True)] = Field(
+        None,
+        description="Radius rho_a0 of the rounds at the cutter's tips, in normal modules; by "
+        "default 0",
+    )
+
+
+class PlanetaryKeys(Table):
+    """What a stage has that is no pair of external gears."""
+
+    type: Annotated[str, choice(*TYPES)] = Field(
+        PARALLEL,
+        description="parallel: a pair of external gears; planetary: sun, planets and ring; "
+        "internal: a pinion in a ring. Sized by ISO 6336 in whole teeth, or all given and rated",
+    )
+    fixed: Annotated[str | None, choice(*HELD)] = Field(
+        None,
+        description="Member of a planetary stage that stands still: ring (by default; the ratio "
+        "1 + z_r/z_s is that of sun to carrier), carrier (z_r/z_s, sun to ring, turning the other "
+        "way) or sun (1 + z_s/z_r, ring to carrier)",
+    )
+    planets: Annotated[Teeth, span(whole(3, 1, 12), [3, 5], single=True)] = Field(
+        None, description="Number of planets, or a range to choose from; by default 3"
+    )
+    sun_teeth: Annotated[Teeth, span(whole(21, 5, 1000), [15, 30], single=True)] = Field(
+        None, description="Number of teeth of the sun: fixed, or a range"
+    )
+    planet_teeth: Annotated[Teeth, span(whole(30, 5, 1000), [20, 50], single=True)] = Field(
+        None, description="Number of teeth of a planet: fixed, or a range"
+    )
+    ring_teeth: Annotated[Teeth, span(whole(81, 10, 2000), [60, 140], single=True)] = Field(
+        None, description="Number of teeth of the ring: fixed, or a range"
+    )
+    planet_teeth_reduction: Annotated[
+        tuple[Fraction, ...] | None, several(number(0.5, 0, 10, zero=True), [0, 0.5, 1])
+    ] = Field(
+        None,
+        description="By how many teeth a planet may be smaller than (z_r - z_s)/2: multiples of "
+        "0.5 to choose from; by default 0, 0.5 and 1",
+    )
+    mesh_load_factor: Annotated[Fraction | None, number(1.1, 1, 5)] = Field(
+        None,
+        description="K_gamma of both meshes; by default by the number of planets: 1.10, 1.25, "
+        "1.35, 1.44 and 1.47 for 3 to 7 (practice of wind turbines; only 1.10 is printed in a "
+        "report, the rest is unverified)",
+    )
+    planet_clearance: Annotated[Fraction | None, number(1, 0, 20, zero=True)] = Field(
+        None,
+        description="Smallest gap of the tip circles of neighbouring planets, in normal modules; "
+        "by default 1 (a rule of this program)",
+    )
+    mesh_order: Annotated[str | None, choice(*ORDERS)] = Field(
+        None,
+        description="How planets mesh: any (by default); simultaneous: z_s a multiple of their "
+        "number; sequential: it is not; hunting: no common divisor in either mesh",
+    )
+    equally_spaced: Annotated[bool | None, truth()] = Field(
+        None,
+        description="Planets are equally spaced (by default), so that z_s + z_r is a multiple of "
+        "their number; false: as nearly as teeth allow",
+    )
+    sun: GearTable = Field(default_factory=GearTable, description="Data of the sun alone")
+    planet: GearTable = Field(default_factory=GearTable, description="Data of the planets alone")
+    ring: RingTable = Field(default_factory=RingTable, description="Data of the ring alone")
+
+    _mesh: Any = PrivateAttr(None)  # of a stage of which a mesh is rated: an `AsMesh`
+
+    @property
+    def as_mesh(self) -> Any:
+        """What mesh of a stage is rated in its place, an `AsMesh`; None: it is a pair."""
+        return self._mesh
+
+    def rated_as(self, mesh: Any) -> Self:
+        """The stage as one of its meshes."""
+        copy = self.model_copy()
+        copy._mesh = mesh
+        return copy
+
+    @property
+    def epicyclic(self) -> bool:
+        """Whether the stage has planets or a ring."""
+        return self.type != PARALLEL
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Numbers of planets that it may have; 0: a pinion in a ring."""
+        low, high = self.planets or USUAL
+        return (0,) if self.type == INTERNAL else tuple(range(low, high + 1))
+
+    @property
+    def held(self) -> str:
+        """The member that stands still."""
+        return self.fixed or HELD[0]
+
+
+OWN = tuple(name for name in PlanetaryKeys.model_fields if name != "type")
+OF_INTERNAL = ("ring_teeth", "ring")  # of these, what a pinion in a ring has
