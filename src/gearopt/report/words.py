@@ -102,6 +102,12 @@ def of_problem_file(result: Result) -> bool:
     return result.scene is not None
 
 
+OF_PLANETS = {  # endings of limits of a mesh with planets: what its gears are called
+    "_of_sun": {"pinion": "sun", "wheel": "planet_at_the_sun"},
+    "_of_ring": {"pinion": "planet_at_the_ring", "wheel": "ring"},
+}
+
+
 def _stem_words(stem: str) -> str:
     """`k_factor` as "K-factor", `ratio_low` as "minimum ratio"."""
     known = {limit.name: limit.label for law in laws() for limit in law.limits}
@@ -110,6 +116,10 @@ def _stem_words(stem: str) -> str:
             return f"{words} {stem.removesuffix(end).replace('_', ' ')}"
     if "_after_idler" in stem:  # of the mesh of an idler, its pinion, and the wheel
         stem = stem.replace("_after_idler", "").replace("pinion", "idler_towards_the_wheel_in")
+    for end, names in OF_PLANETS.items():  # of the meshes of planets
+        if end in stem:
+            member, _, mode = stem.replace(end, "").partition("_")
+            stem = f"{names[member]}_{mode}" if member in names else stem
     name, static, _ = stem.removesuffix("_iso").partition("_static")
     words = f"{'static ' if static else ''}{known.get(name, name.replace('_', ' '))}"
     return words if not stem.endswith("_iso") else f"{words} by ISO 6336"

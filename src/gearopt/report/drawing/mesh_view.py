@@ -39,7 +39,7 @@ def section(result: Result, measures: Measures) -> Section | None:
     if not result.design.get("rating"):
         return None
     stages = drive_design(result.design).stages
-    pairs = [stage.pair for stage in stages]
+    pairs = [stage.pair for stage in stages if stage.type != "internal"]
     drawn = [(pair, _mesh(pair, k, len(pairs))) for k, pair in enumerate(pairs, 1)]
     meshes = [(pair, drawing) for pair, drawing in drawn if drawing is not None]
     if not meshes:

@@ -124,7 +124,8 @@ def _picked(stages: Sequence[Mapping[str, Any]]) -> Sequence[DrawnStage]:
 def is_drawn(stages: Sequence[Mapping[str, Any]]) -> bool:
     """Whether there are stages, and all sizes that are drawn of them."""
     keys = [f.name for f in fields(DrawnStage) if f.default is MISSING]
-    return bool(stages) and all(key in stage for stage in stages for key in keys)
+    plain = all(stage.get("type", "parallel") == "parallel" for stage in stages)
+    return bool(stages) and plain and all(key in stage for stage in stages for key in keys)
 
 
 def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Drawing, ...]:

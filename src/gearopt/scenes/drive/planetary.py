@@ -48,6 +48,10 @@ NAMES = {  # of what checks call the gears of a pair
     INTERNAL: {"wheel": "ring"},
 }
 OF_INNER = {"pinion": "planet", "wheel": "ring"}
+CALLED = {  # meshes by whether the ring is in them: title, gears, ending of limits
+    False: ("sun and planet", "sun", "planet at the sun", "_of_sun"),
+    True: ("planet and ring", "planet at the ring", "ring", "_of_ring"),
+}
 OF_GEAR = (  # keys of a gear that such a stage sets or does not have
     *("contacts", "reversed_load", "face_width", "thickness_allowance", "rim_thickness"),
     *("web_thickness", "web_over_face_width"),
@@ -368,7 +372,8 @@ class AsMesh:
     """A mesh of a stage that is rated in the place of a stage.
 
     slower: input over pinion speed, against the carrier; share of the drive's power in the mesh;
-    rolled: in all meshes of this kind; meshes: as of `Practice`.
+    rolled: in all meshes of this kind; meshes: as of `Practice`. ratio and driver of the stage, and
+    whether its output turns the other way.
     """
 
     name: MeshName
@@ -376,6 +381,13 @@ class AsMesh:
     share: float
     rolled: float
     meshes: tuple[float, float] | None
+    ratio: float
+    driver: str
+    reverses: bool
+
+    def ends(self, after: "AsMesh | None") -> bool:
+        """Whether it is the last mesh of its stage."""
+        return after is None or after.name.stage != self.name.stage
 
 
 Meshes = tuple["Scene", tuple[GearPair, ...], list[tuple[str, str]]]
@@ -394,7 +406,7 @@ def by_mesh(scene: "Scene", design: DriveDesign) -> Meshes:
             names.append((stage.pinion_material, stage.wheel_material))
             tables.append(own)
             title = MeshName(stage=k + 1, title=f"stage {k + 1}")
-            rated = [AsMesh(title, slower[k][0], 1.0, 1.0, None)]
+            rated = [AsMesh(title, slower[k][0], 1.0, 1.0, None, stage.ratio, stage.driver, True)]
         else:
             rows, both = _meshes_of(scene, own, stage, k, slower[k][0])
             pairs += both
@@ -419,21 +431,18 @@ def _meshes_of(
     )
     rated = []
     kinds = [False, True] if planets.count else [True]
-    words = {False: ("sun", "planet", "_of_sun"), True: ("planet", "ring", "_of_ring")}
     for with_ring in kinds:
         torque, speed = planets.slower(pair, with_ring)
-        first, second, suffix = words[with_ring] if planets.count else ("pinion", "ring", "")
-        name = MeshName(
-            stage=k + 1,
-            title=f"stage {k + 1}, {first} and {second}",
-            pinion=first,
-            wheel=second,
-            suffix=suffix,
-        )
+        called = CALLED[with_ring] if planets.count else ("pinion and ring", "pinion", "ring", "")
+        title, first, second, suffix = called
+        title = f"stage {k + 1}, {title}"
+        name = MeshName(stage=k + 1, title=title, pinion=first, wheel=second, suffix=suffix)
         share = float(torque * speed)
         times = max(planets.count, 1)
         held = at_once(own, planets.count, with_ring)
-        rated.append(AsMesh(name, slower / float(speed), share, times * share, held))
+        turns = planets.count > 0 and planets.held == "carrier"
+        of_stage = stage.ratio, stage.driver, turns
+        rated.append(AsMesh(name, slower / float(speed), share, times * share, held, *of_stage))
     return rated, planets.meshes(pair)
 
 

@@ -63,7 +63,7 @@ def names(rating: DriveRating) -> list[str]:
 
 def name(rating: DriveRating, gear: Any) -> str:
     """The name of a gear of some table, with its stage where there are several."""
-    return gear.member if len(rating.meshes) == 1 else f"{rating.called(gear)} {gear.stage}"
+    return gear.member if len(rating.meshes) == 1 else f"{rating.called(gear)} {rating.stage_of(gear.stage)}"
 
 
 def figure(value: Any, key: str, measures: Measures) -> Any:
@@ -94,13 +94,14 @@ def forces(result: Result, measures: Measures) -> Section | None:
     """Contact and forces of every mesh, and what shafts carry; None without a rating."""
     if (rating := rating_of(result)) is None:
         return None
-    heads = ["", *(f"stage {mesh.stage}" for mesh in rating.meshes)]
+    heads = ["", *(rating.titled(mesh.stage) for mesh in rating.meshes)]
     shown, lacking = _lacking(rating.meshes, measures)
     rows = [*_least_rows(rating, measures), *shown]
     meshes = Table("meshes", heads, rows, across=True)
     heads = ["", *(f"shaft {shaft.shaft}" for shaft in rating.shafts)]
     *rows, (axial, *_) = side_by_side(rating.shafts, measures)
-    rows.append([axial, *_end_words(rating, measures)])
+    if not rating.named:  # else each sun, planet and ring has axial forces of its own
+        rows.append([axial, *_end_words(rating, measures)])
     shafts = Table("shafts", heads, rows, across=True)
     level = ", at the load level of largest force" if rating.levels else ""
     words = [
@@ -117,7 +118,8 @@ def forces(result: Result, measures: Measures) -> Section | None:
     words += lacking
     stages = result.design["stages"]
     sentences = "\n".join(
-        f"{_mesh_words(rating, stage, k, measures)}" for k, stage in enumerate(stages)
+        _mesh_words(rating, stages[rating.stage_of(mesh.stage) - 1], k, measures)
+        for k, mesh in enumerate(rating.meshes)
     )
     half = single(rating)
     return Section(
@@ -137,9 +139,12 @@ def _least_rows(rating: DriveRating, measures: Measures) -> Iterator[list[Any]]:
 def _mesh_words(rating: DriveRating, stage: Mapping[str, Any], k: int, measures: Measures) -> str:
     """Sizes, contact and forces of a stage (from 0) in a sentence."""
     mesh, size = rating.meshes[k], measures.amount
+    teeth = [stage["pinion_teeth"], stage["wheel_teeth"]]
+    if rating.called(rating.gears[2 * k + 1]) == "ring":
+        teeth = [stage.get("planet_teeth", teeth[0]), stage["ring_teeth"]]
     parts = [
-        f"Stage {k + 1}: {module_words(stage[MODULE], measures)}",
-        f"z {number(stage['pinion_teeth'])}/{number(stage['wheel_teeth'])}"
+        f"{rating.titled(k + 1).capitalize()}: {module_words(stage[MODULE], measures)}",
+        f"z {'/'.join(map(number, teeth))}"
         + (", the wheel drives" if "driver" in stage else ""),
         f"b {size(stage['face_width_mm'], 'mm')}",
         *(f"{m} {size(b, 'mm')}" for m in MEMBERS if (b := stage.get(f"{m}_face_width_mm"))),

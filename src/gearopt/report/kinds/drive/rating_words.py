@@ -198,7 +198,7 @@ def nearest(rating: DriveRating) -> list[str]:
         ]
         _, what, by = min(rows)
         of = f" by {by}" if rating.beside is not None else ""
-        words.append(f"stage {mesh.stage}, {what}{of}")
+        words.append(f"{rating.titled(mesh.stage)}, {what}{of}")
     return words
 
 
@@ -210,7 +210,7 @@ def weakest(rating: DriveRating) -> MeshRating:
 def gear_words(rating: DriveRating, gear: GearRating | StaticRating) -> str:
     """A gear in a sentence: of several stages with its own."""
     called = rating.called(gear)
-    return called if len(rating.meshes) == 1 else f"{called} of stage {gear.stage}"
+    return called if len(rating.meshes) == 1 else f"{called} of stage {rating.stage_of(gear.stage)}"
 
 
 def required(rating: DriveRating) -> float:
@@ -368,6 +368,8 @@ def _unverified(rating: DriveRating, named: bool) -> list[str]:
 
 
 def _in_stages(stages: Sequence[str]) -> str:
+    if not all(stage.isdigit() for stage in stages):  # meshes of stages with planets
+        return f"in {' and in '.join(f'stage {stage}' for stage in stages)}: "
     return f"in stage{'s' * (len(stages) > 1)} {counted(stages)} " if stages else ""
 
 

@@ -46,6 +46,7 @@ from gearopt.scenes.drive.rating.rows import (
     level_rows,
     mesh_row,
     shaft_rows,
+    shafts_of_stages,
     static_rows,
 )
 from gearopt.scenes.drive.scene import Scene
@@ -335,7 +336,7 @@ def _by(
         gears=gears,
         meshes=rows,
         factors=factors,
-        shafts=()
+        shafts=shafts_of_stages(known, *_largest_load(scene))
         if named
         else tuple(
             replace(row, torque_Nm=0.0) if row.shaft in idle else row

@@ -220,12 +220,34 @@ def shaft_rows(
     """Loads of every shaft; moved: torque [N mm] of the input, speed [rad/s]."""
     forces = train_forces(pairs, moved, pinion_hands, drivers)
     ratios = torque_ratios([float(pair.ratio) for pair in pairs], drivers)
+    return _shafts(ratios, [True] * len(ratios), (moved, speed), forces)
+
+
+def shafts_of_stages(meshes: Sequence[Any], moved: float, speed: float) -> tuple[ShaftRating, ...]:
+    """`shaft_rows` of drives with planets or rings, without axial forces.
+
+    meshes: `AsMesh` of every mesh.
+    """
+    last = [m for m, after in zip(meshes, [*meshes[1:], None], strict=True) if m.ends(after)]
+    ratios = torque_ratios([m.ratio for m in last], [m.driver for m in last])
+    return _shafts(ratios, [m.reverses for m in last], (moved, speed), ())
+
+
+def _shafts(
+    ratios: Sequence[tuple[float, float]],
+    reverses: Sequence[bool],
+    loads: tuple[float, float],
+    forces: Sequence[Any],
+) -> tuple[ShaftRating, ...]:
+    """Shafts at torque [N mm] and speed [rad/s] of the input, by `torque_ratios`."""
+    moved, speed = loads
+    turns = [1 + sum(reverses[:k]) for k in range(len(reverses) + 1)]
     return tuple(
         ShaftRating(
             shaft=shaft,
             torque_Nm=1e-3 * moved * ratio,
             speed_rpm=rpm(speed / ratio),
-            rotation=rotation(shaft),
+            rotation=rotation(turns[shaft - 1]),
             axial_force_N=sum(f.axial for f in forces if f.shaft == shaft),
         )
         for shaft, ratio in enumerate((1.0, *(behind for _, behind in ratios)), 1)
