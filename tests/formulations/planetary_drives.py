@@ -5,7 +5,7 @@ from dataclasses import replace
 from fractions import Fraction as F
 
 import numpy as np
-from rated_drives import FREE, MODULES, iso, rated_drive
+from rated_drives import MODULES, iso, rated_drive
 
 from gearopt.formulations.drive.planetary import Cutting, InPlanetaryMesh, Planets
 from gearopt.formulations.drive.toothing import Toothing
@@ -58,7 +58,9 @@ def some_planetary_drive(seed, count=1, kinds=("ring", "sun", "carrier")):
     shifts = [(None, None, None), (0.0, 0.0, None), (0.3, 0.1, None)][int(rng.integers(3))]
     cutting = Cutting(helix, cutter=cutter, shifts=shifts)
     counts = (3, 4) if rng.random() < 0.6 else (int(rng.integers(3, 6)),)
-    fewer = (0, 1, 2) if shifts == (None, None, None) else ((0,), (0, 1))[int(any(map(bool, shifts)))]
+    fewer = (
+        (0, 1, 2) if shifts == (None, None, None) else ((0,), (0, 1))[int(any(map(bool, shifts)))]
+    )
     order = str(rng.choice(["any", "any", "sequential", "simultaneous", "hunting"]))
     options = ways(cutting, counts, fewer, held, order=order, spaced=bool(rng.random() < 0.7))
     low = int(rng.integers(14, 24))
@@ -69,7 +71,9 @@ def some_planetary_drive(seed, count=1, kinds=("ring", "sun", "carrier")):
     modules = MODULES[begin : begin + 3]
     d = float(modules[1]) * low
     torque = d**3 * float(rng.choice([0.1, 0.3, 0.6]))
-    face = FaceWidth(F(3, 5), F(3, 5)) if rng.random() < 0.5 else FaceWidth(F(1, 2), F(1), step=F(5))
+    face = (
+        FaceWidth(F(3, 5), F(3, 5)) if rng.random() < 0.5 else FaceWidth(F(1, 2), F(1), step=F(5))
+    )
     if held == "sun":
         sun = round(low * ring_over_sun), round(low * ring_over_sun) + 3
         face = FaceWidth(F(1, 5), F(1, 5))
@@ -138,7 +142,9 @@ def gears_of(cut, module, sun, planet, ring):
     if a1 * math.cos(t) >= a:
         return None
     w = math.acos(a1 * math.cos(t) / a)
-    outward = (involute(w) - involute(t)) * (ring - planet) / (2 * tan) + xp  # of the ring's profile
+    outward = (involute(w) - involute(t)) * (ring - planet) / (
+        2 * tan
+    ) + xp  # of the ring's profile
     k = (a - a0) / module - xs - xp
     form = each * planet * math.sin(t) / 2 - module * (
         1.25 - 0.38 * (1 - math.sin(math.radians(20))) - xp
@@ -150,7 +156,9 @@ def gears_of(cut, module, sun, planet, ring):
     for z, x, tips in ((sun, xs, k), (planet, xp, k), (-ring, -outward, kr)):
         d = reference_diameter(module, float(z), cut.helix_angle)
         cutter = cut.cutter if z < 0 else None
-        made.append(Gear(module, float(z), d, 1.0, cut.helix_angle, ISO_53_A, x, tips, cutter=cutter))
+        made.append(
+            Gear(module, float(z), d, 1.0, cut.helix_angle, ISO_53_A, x, tips, cutter=cutter)
+        )
     return (*made, a)
 
 
@@ -193,7 +201,10 @@ def safe(train, way, made, teeth, width, torque):
     load = Operation(of_sun * relative, relative, HOURS, overload=1.25)
     g1, g2, g3, a = (*(replace(g, face_width=width) for g in made[:3]), made[3])
     outer, inner = with_sun(load, n), with_ring(load, n, planet / sun, way.held == "ring")
-    pairs = [(GearPair(g1, g2, a), outer, (HARD, BENT)), (GearPair(g2, g3, -a), inner, (BENT, HARD))]
+    pairs = [
+        (GearPair(g1, g2, a), outer, (HARD, BENT)),
+        (GearPair(g2, g3, -a), inner, (BENT, HARD)),
+    ]
     for pair, mesh, steels in pairs:
         practice = Practice(grades=(6.0, 6.0), meshes=mesh.meshes)
         factor = {"K_gamma": mesh_load_factor(n, "wind")}

@@ -217,11 +217,11 @@ def describe(train: Train, pairs: tuple[GearPair, ...], options: Sequence[int] =
     stages = tuple(
         _of_materials(stage, option, usual)
         if option.planets is None
-        else _of_planets(train, stage, mesh, option, usual)
+        else of_planets(train.law, stage, mesh, option, usual)
         for (stage, option), mesh in zip(each, meshes, strict=True)
     )
     if any(option.planets is not None for option in made):
-        design = _with_planets(design, stages)
+        design = with_planets(design, stages)
     costs = tuple(cost for k in range(len(made)) for cost in _costs(k + 1, stages[k], made[k]))
     priced = "cost" in train.objectives
     return replace(
@@ -249,8 +249,8 @@ def _costs(number: int, stage: StageDesign, option: Option) -> Iterator[GearCost
         )
 
 
-def _of_planets(
-    train: Train, stage: StageDesign, pair: GearPair, option: Option, usual: float
+def of_planets(
+    law: Law, stage: StageDesign, pair: GearPair, option: Option, usual: float
 ) -> StageDesign:
     """Return the stage with planets, or with a ring, for which a pair stood.
 
@@ -262,12 +262,10 @@ def _of_planets(
     driven = 1e3 * stage.pinion_torque_Nm * torque * max(planets.count, 1)
     speed = 2e3 * stage.pitch_line_velocity_m_per_s / stage.pinion_diameter_mm * relative
     bodies = planets.cutting.blanks if planets.count else (planets.cutting.blanks[0], SOLID)
-    made = _stage(train.law, mesh, driven, speed, usual, bodies, stage.driver)
+    made = _stage(law, mesh, driven, speed, usual, bodies, stage.driver)
     volumes = planets.volumes(pair)
     densities = [own or usual for own in option.densities]
-    masses = [
-        1000.0 * rho * float(volume) for rho, volume in zip(densities, volumes, strict=True)
-    ]
+    masses = [1000.0 * rho * float(volume) for rho, volume in zip(densities, volumes, strict=True)]
     z_s, z_p, z_r = (_whole(float(z)) for z in planets.teeth(pair))
     factors = getattr(option.standards[0], "standard", None)
     sharing = None if factors is None else factors.given.get("K_gamma")
@@ -301,12 +299,14 @@ def _of_planets(
     )
 
 
-def _with_planets(design: DriveDesign, stages: tuple[StageDesign, ...]) -> DriveDesign:
-    """Totals of a drive with planetary stages, whose shafts are in one line."""
+def with_planets(design: DriveDesign, stages: tuple[StageDesign, ...]) -> DriveDesign:
+    """A drive with its planetary stages, whose shafts are in one line, and their totals."""
     apart = [s.centre_distance_mm for s in stages if s.type != "planetary"]
     ends = stages[0].end_diameters[0] + stages[-1].end_diameters[1]
     return replace(
         design,
+        stages=stages,
+        mass_kg=sum(s.mass_kg for s in stages),
         gear_volume_mm3=sum(s.gear_volume_mm3 for s in stages),
         sum_of_centre_distances_mm=sum(apart),
         total_length_mm=0.5 * ends + sum(apart),

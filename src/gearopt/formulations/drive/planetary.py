@@ -37,7 +37,8 @@ class Cutting:
     helix_angle beta [rad]; racks; cutter of the ring; shifts x, None: by the rule, or as the
     distance asks; shift_sum x_s + x_p, None: of the shifts, or by the rule; tip_alterations k, None:
     by the rule; distance a [mm], None: without backlash of sun and planet. rim s_R [normal modules]
-    of the ring below its roots, or outside [mm], its diameter; blanks of sun and planet.
+    of the ring below its roots, or outside [mm], its diameter; blanks of sun and planet; allowances
+    A_sn [mm] of gears that are given.
 
     The rule: a is midway between the reference distances of both meshes; x_s is half of x_s + x_p,
     and no less than keeps the sun from undercut; sun and planet are shortened by k = y - x_s - x_p,
@@ -55,6 +56,7 @@ class Cutting:
     rim: float = RIM
     outside: float | None = None
     blanks: tuple[Blank, Blank] = (SOLID, SOLID)
+    allowances: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def solid(self) -> bool:
@@ -169,16 +171,15 @@ class Cutting:
         first = np.maximum(0.5 * total, free)
         return first, total - first
 
-    def _gear(
-        self, k: int, module: Any, width: Any, teeth: Any, shift: Any, shorter: Any
-    ) -> Gear:
+    def _gear(self, k: int, module: Any, width: Any, teeth: Any, shift: Any, shorter: Any) -> Gear:
         """A gear, by its place; shorter: k, where none is given."""
         rack, d = self.racks[k], reference_diameter(module, teeth, self.helix_angle)
         own = self.tip_alterations[k]
         tip = shorter if own is None else own
         cutter = self.cutter if k == RING else None
         gear = Gear(
-            *(module, teeth, d, width, self.helix_angle, rack, shift, tip), cutter=cutter
+            *(module, teeth, d, width, self.helix_angle, rack, shift, tip, self.allowances[k]),
+            cutter=cutter,
         )
         root, outside = gear.root_diameter, None
         if k == RING:

@@ -8,9 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic_core import PydanticCustomError
 
-from gearopt.formulations.drive.design import DriveDesign, StageDesign
+from gearopt.formulations.drive.design import (
+    STEEL_DENSITY,
+    DriveDesign,
+    StageDesign,
+    of_pairs,
+    of_planets,
+    with_planets,
+)
 from gearopt.formulations.drive.planetary import LARGE, Cutting, InPlanetaryMesh, Planets
-from gearopt.formulations.drive.rating import MeshName
+from gearopt.formulations.drive.rating import MeshName, RatingFactor
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import Stage
 from gearopt.formulations.strength.standard import Option
@@ -18,10 +25,12 @@ from gearopt.frozen import dataclass
 from gearopt.physics.gears import RIM, Cutter, GearPair
 from gearopt.physics.loads import torque_ratios
 from gearopt.physics.planetary.loads import SHARING_RULES, mesh_load_factor
+from gearopt.scenes.drive.driving import drivers
+from gearopt.scenes.drive.face_widths import fixed_width
 from gearopt.scenes.drive.idlers import copied, idlers
-from gearopt.scenes.drive.rating.gears import loads, required_hours
+from gearopt.scenes.drive.rating.gears import given_pairs, loads, required_hours
 from gearopt.scenes.drive.rating.materials import choices
-from gearopt.scenes.drive.rating.options import STANDARDS, of_stage, option
+from gearopt.scenes.drive.rating.options import of_stage, option
 from gearopt.scenes.drive.tables.blanks import blank
 from gearopt.scenes.drive.tables.drive import Gears, ShiftTable, StageTable
 from gearopt.scenes.drive.tables.planetary import INTERNAL, OF_INTERNAL, OWN, PLANETARY, REDUCTIONS
@@ -33,6 +42,7 @@ from gearopt.scenes.reading.fields import refuse
 if TYPE_CHECKING:
     from gearopt.scenes.drive.scene import Scene
 
+BY_PLANETS = "by the number of planets, practice of wind turbines"  # source of K_gamma
 SHARING = "wind"  # of SHARING_RULES: K_gamma that a file does not give
 OF_PAIRS = {  # keys of a stage that one with planets, or a pinion in a ring, does not have
     PLANETARY: ("pinion_teeth", "wheel_teeth", "pinion", "wheel"),
@@ -53,12 +63,13 @@ CALLED = {  # meshes by whether the ring is in them: title, gears, ending of lim
     True: ("planet and ring", "planet at the ring", "ring", "_of_ring"),
 }
 OF_GEAR = (  # keys of a gear that such a stage sets or does not have
-    *("contacts", "reversed_load", "face_width", "thickness_allowance", "rim_thickness"),
+    *("contacts", "reversed_load", "face_width", "rim_thickness"),
     *("web_thickness", "web_over_face_width"),
 )
+OF_GIVEN = ("thickness_allowance",)  # that only gears have which are given
 
 
-def with_planets(stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
+def with_gears_named(stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
     """Stages in which sun and planet, or pinion and ring, are what checks call pinion and wheel.
 
     Keys that mean nothing of a type are refused.
@@ -154,7 +165,7 @@ def _check_gears(scene: "Scene", own: StageTable, k: int) -> None:
     """Refuse keys of gears that a stage with a ring sets, or does not have."""
     for member in MEMBERS[own.type]:
         table = getattr(own, member)
-        for name in OF_GEAR:
+        for name in (*OF_GEAR, *(OF_GIVEN if scene.to_size else ())):
             set_here = name in table.model_fields_set
             shared = getattr(scene.gears, name, None) is not None
             if set_here or (shared and name not in ("contacts", "reversed_load")):
@@ -211,6 +222,7 @@ def cuttings(scene: "Scene", own: StageTable) -> tuple[Cutting, ...]:
     x = [_number(table.profile_shift) for table in tables]
     tips = [_number(table.tip_alteration) for table in tables]
     width = own.face_width.value if own.face_width else None
+    thinner = [t.thickness_allowance.value if t.thickness_allowance else 0.0 for t in tables]
     made = Cutting(
         scene.helix_angles(own)[0].value,
         (first, second, third),
@@ -222,6 +234,7 @@ def cuttings(scene: "Scene", own: StageTable) -> tuple[Cutting, ...]:
         float(ring.rim_over_module or RIM),
         outside.value if outside else None,
         (blank(tables[0], width), blank(tables[1], width)),
+        (thinner[0], thinner[1], thinner[2]),
     )
     shift = scene.shift or ShiftTable()
     if own.type == INTERNAL or None not in made.shifts[:2]:
@@ -246,9 +259,11 @@ def ways(scene: "Scene", own: StageTable) -> Iterator[Planets]:
     usual = scene.limits.wheel_teeth or (1, None)
     sun = own.pinion_teeth or scene.limits.pinion_teeth
     reductions = own.planet_teeth_reduction or REDUCTIONS
-    if own.planet_teeth and own.planet_teeth[0] == own.planet_teeth[1] and not scene.to_size:
-        reductions = (Fraction(0),)
     fewer = [0] if own.type == INTERNAL else [int(2 * step) for step in reductions]
+    each = own.sun_teeth, own.planet_teeth, own.ring_teeth
+    if all(ends is not None and ends[0] == ends[1] for ends in each):
+        z_s, z_p, z_r = (ends[0] for ends in each if ends is not None)
+        fewer = [z_r - z_s - 2 * z_p]
     for cutting, count, less in product(cuttings(scene, own), own.counts, fewer):
         yield Planets(
             cutting,
@@ -427,7 +442,10 @@ def _meshes_of(
     """Meshes of a stage (from 0) of a design; slower: input over pinion speed of its pair."""
     planets = planets_of(scene, own, stage)
     pair = planets.pair(
-        stage.normal_module_mm, stage.sun_teeth or stage.pinion_teeth, stage.ring_teeth, stage.face_width_mm
+        stage.normal_module_mm,
+        stage.sun_teeth or stage.pinion_teeth,
+        stage.ring_teeth,
+        stage.face_width_mm,
     )
     rated = []
     kinds = [False, True] if planets.count else [True]
@@ -460,3 +478,40 @@ def planets_of(scene: "Scene", own: StageTable, stage: StageDesign) -> Planets:
         return Planets(cut, 0)
     fewer = round(stage.ring_teeth - stage.sun_teeth - 2 * stage.planet_teeth)
     return Planets(cut, stage.planets, own.held, fewer)
+
+
+def given_design(scene: "Scene") -> DriveDesign:
+    """The design of gears that are all given, some of which are planets or rings."""
+    rows = list[tuple[GearPair, Option | None]]()
+    for own in scene.stage_tables:
+        assert own.size
+        module, fixed = float(own.size[0].exact[0]), fixed_width(own)
+        option = options(scene, own)[0] if own.epicyclic else None
+        if option is None:
+            rows.append((given_pairs((own,), scene.gears)[0], None))
+            continue
+        assert own.pinion_teeth and own.wheel_teeth
+        teeth = float(own.pinion_teeth[0]), float(own.wheel_teeth[0])
+        pair = option.planets.pair(module, *teeth, 1.0)
+        span = own.face_width_over_diameter or scene.gears.face_width_over_diameter or (0, 0)
+        width = float(span[0]) * float(pair.pinion.reference_diameter)
+        rows.append((pair.of_width(fixed.value if fixed else width), option))
+    pairs, law, density = tuple(pair for pair, _ in rows), scene.limits.LAW, scene.objective.density
+    usual, speed = density.value if density else STEEL_DENSITY, scene.duty.input_speed.value
+    asked = scene.duty.total_ratio if scene.duty.asks_ratio else None
+    made = of_pairs(law, pairs, scene.torque, speed, asked, usual, scene.blanks, drivers(scene))
+    each = zip(made.stages, rows, strict=True)
+    stages = tuple(
+        stage if option is None else of_planets(law, stage, pair, option, usual)
+        for stage, (pair, option) in each
+    )
+    return with_planets(made, stages)
+
+
+def shared(scene: "Scene", row: RatingFactor) -> RatingFactor:
+    """A factor of a mesh in the place of a stage; K_gamma that no file gives is marked."""
+    own = scene.stage_tables[row.stage - 1]
+    by_rule = own.type == PLANETARY and own.mesh_load_factor is None
+    if row.symbol != "K_gamma" or not by_rule:
+        return row
+    return replace(row, source=BY_PLANETS, verified=False)

@@ -27,7 +27,7 @@ from gearopt.scenes.drive.planetary import (
     options,
     renamed,
     stage_with_planets,
-    with_planets,
+    with_gears_named,
 )
 from gearopt.scenes.drive.rating.checks import (
     check_given,
@@ -165,7 +165,7 @@ class Scene(Table):
     @classmethod
     def _idlers(cls, stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
         """Stages whose idlers have the keys of the wheels that they are."""
-        return with_planets(with_idlers(stages))
+        return with_gears_named(with_idlers(stages))
 
     @field_validator("limits", mode="wrap")
     @classmethod
@@ -404,7 +404,13 @@ class Scene(Table):
     def choosing(self, own: StageTable) -> bool:
         """Whether the teeth of a stage may be cut in several ways, or shifts are chosen."""
         several = len(self.helix_angles(own)) > 1 and not inclination(own, self.gears)
-        return self.shifted(own) and not self.shift_ranges(own) or several or own.idler or own.epicyclic
+        return (
+            self.shifted(own)
+            and not self.shift_ranges(own)
+            or several
+            or own.idler
+            or own.epicyclic
+        )
 
     def shift_ranges(
         self, own: StageTable

@@ -514,7 +514,9 @@ class RatedTable(Table):
         """Return a lower bound of `_worth` that larger modules and options do not fall below."""
         shifted = self.stage.toothing.shifting is not None
         shifted = shifted and (self._by_module or self.train.hollow)
-        if shifted or (self.stage.planetary and not self._one_shape):  # a larger one may be the lighter
+        if shifted or (
+            self.stage.planetary and not self._one_shape
+        ):  # a larger one may be the lighter
             return np.zeros(np.shape(width))
         fewest = pair.pinion_teeth, pair.wheel_teeth
         shares = least_share(self._cheapest, self.position, pair.of_width(width), fewest=fewest)

@@ -342,6 +342,9 @@ def _by_stage(rating: DriveRating, group: Sequence[RatingFactor], key: str) -> s
         stages.setdefault(getattr(factor, key), []).append(str(factor.stage))
     if len(stages) == 1 or key == "source" and GIVEN not in stages:
         return "; ".join(dict.fromkeys(part for words in stages for part in words.split("; ")))
+    if rating.named:
+        titles = {w: " and ".join(rating.titled(int(k)) for k in of) for w, of in stages.items()}
+        return "; ".join(f"{of}: {words}" for words, of in titles.items() if words)
     return "; ".join(f"stage {series_of(k)}: {words}" for words, k in stages.items() if words)
 
 

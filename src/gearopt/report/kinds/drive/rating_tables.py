@@ -63,7 +63,11 @@ def names(rating: DriveRating) -> list[str]:
 
 def name(rating: DriveRating, gear: Any) -> str:
     """The name of a gear of some table, with its stage where there are several."""
-    return gear.member if len(rating.meshes) == 1 else f"{rating.called(gear)} {rating.stage_of(gear.stage)}"
+    return (
+        gear.member
+        if len(rating.meshes) == 1
+        else f"{rating.called(gear)} {rating.stage_of(gear.stage)}"
+    )
 
 
 def figure(value: Any, key: str, measures: Measures) -> Any:
@@ -144,8 +148,7 @@ def _mesh_words(rating: DriveRating, stage: Mapping[str, Any], k: int, measures:
         teeth = [stage.get("planet_teeth", teeth[0]), stage["ring_teeth"]]
     parts = [
         f"{rating.titled(k + 1).capitalize()}: {module_words(stage[MODULE], measures)}",
-        f"z {'/'.join(map(number, teeth))}"
-        + (", the wheel drives" if "driver" in stage else ""),
+        f"z {'/'.join(map(number, teeth))}" + (", the wheel drives" if "driver" in stage else ""),
         f"b {size(stage['face_width_mm'], 'mm')}",
         *(f"{m} {size(b, 'mm')}" for m in MEMBERS if (b := stage.get(f"{m}_face_width_mm"))),
         f"a {size(stage['centre_distance_mm'], 'mm')}; contact ratio "

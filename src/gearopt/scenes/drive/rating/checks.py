@@ -51,12 +51,17 @@ def not_given(gears: Gears, stages: Sequence[StageTable]) -> Iterator[Place]:
     for k, stage in enumerate(stages):
         width = stage.face_width_over_diameter or gears.face_width_over_diameter
         fixed: Any = (given,) * 2 if (given := fixed_width(stage)) else width
-        for name, ends in (
+        first, second = stage.teeth_keys
+        sizes: tuple[tuple[str, Any], ...] = (
             ("module", stage.size),
-            ("pinion_teeth", stage.pinion_teeth),
-            ("wheel_teeth", stage.wheel_teeth),
+            (first, stage.pinion_teeth),
+            (second, stage.wheel_teeth),
             ("face_width", fixed),
-        ):
+        )
+        if first == "sun_teeth":
+            more = stage.planets or (stage.counts[0],) * 2
+            sizes += ("planet_teeth", stage.planet_teeth), ("planets", more)
+        for name, ends in sizes:
             if ends is None or ends[0] != ends[1]:
                 yield ("stage", k, name)
 

@@ -17,7 +17,8 @@ from gearopt.physics.shaft_forces import hands
 from gearopt.scenes.drive.driving import driven, drivers
 from gearopt.scenes.drive.idlers import idlers
 from gearopt.scenes.drive.notes import masses
-from gearopt.scenes.drive.planetary import by_mesh
+from gearopt.scenes.drive.planetary import BY_PLANETS, by_mesh, shared
+from gearopt.scenes.drive.planetary import given_design as given_planets
 from gearopt.scenes.drive.rating.assumptions import rating_assumptions, unused_materials
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.gears import (
@@ -84,18 +85,29 @@ def rate_design(scene: Scene, ask: Ask, design: Mapping[str, Any]) -> Result:
     except ValueError as why:
         raise SolveError(f"the design is no drive: {why}") from None
     scene, pairs, materials = by_mesh(driven(scene.held(len(found.stages)), found), found)
-    bodies = [
-        blanks(gear_tables(own, scene.gears, scene.material, k, chosen), pair)
-        for k, (own, chosen, pair) in enumerate(
-            zip(scene.stage_tables, materials, pairs, strict=True)
-        )
-    ]
     rated = _rated(scene, ask, pairs, materials)
-    return _with_gears(scene, rated, pairs, found, bodies)
+    return _with_gears(scene, rated, pairs, found, _bodies(scene, pairs, materials))
+
+
+def _bodies(scene: Scene, pairs: tuple[GearPair, ...], materials: Materials) -> list[Blanks]:
+    """Blanks of the gears of pairs; materials: as of `rated_meshes`."""
+    rows = enumerate(zip(scene.stage_tables, materials, pairs, strict=True))
+    return [
+        blanks(gear_tables(own, scene.gears, scene.material, k, chosen), pair)
+        for k, (own, chosen, pair) in rows
+    ]
+
+
+def _weighty(pairs: tuple[GearPair, ...], rated: DriveRating) -> list[str]:
+    """Sentences on what decides the mass; of stages with planets or rings none are known."""
+    return [] if rated.named else [*weighty(pairs, rated)]
 
 
 def with_given_rating(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """Rating of gears that are all given; SolveError where they have none."""
+    if any(own.epicyclic for own in scene.stage):
+        meshed, pairs, materials = by_mesh(scene, given_planets(scene))
+        return _rated(meshed, ask, pairs, materials)
     return _rated(scene, ask, given_pairs(scene.stage, scene.gears))
 
 
@@ -105,7 +117,7 @@ def _rated(
     """Rating of gears, status `evaluated`; materials: as of `rating`."""
     assert scene.rating is not None
     rated = rating(scene, pairs, materials)
-    limits, remarks = utilisations(rated), [*unused_materials(scene), *weighty(pairs, rated)]
+    limits, remarks = utilisations(rated), [*unused_materials(scene), *_weighty(pairs, rated)]
     return Result(
         name="rating",
         status="evaluated",
@@ -125,6 +137,10 @@ def _rated(
 def with_given_gears(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """The rating with its gears and their flaws: by some it is not safe, others may be accepted."""
     assert known is not None
+    if any(own.epicyclic for own in scene.stage):
+        design = given_planets(scene)
+        meshed, pairs, materials = by_mesh(scene, design)
+        return _with_gears(meshed, known, pairs, design, _bodies(meshed, pairs, materials))
     pairs = given_pairs(scene.stage, scene.gears)
     return _with_gears(scene, known, pairs, *given_design(scene, pairs))
 
@@ -216,7 +232,7 @@ def with_rating(scene: Scene, result: Result) -> Result:
     except SolveError as reason:
         report = result.report | {"notes": [*notes, f"There is no rating: {reason}."]}
         return replace(result, report=report)
-    report = result.report | {"notes": [*notes, *weighty(pairs, rated)]}
+    report = result.report | {"notes": [*notes, *_weighty(pairs, rated)]}
     return replace(result, design=result.design | {"rating": untyped(rated)}, report=report)
 
 
@@ -312,7 +328,7 @@ def _by(
     least = min(rows, key=lambda row: row.power_capacity_kW)
     each = zip(meshes, scene.stage_tables, strict=True)
     gears = tuple(gear_row(mesh, k, own_safety(own)) for mesh, own in each for k in (0, 1))
-    factors = tuple(row for mesh in meshes for row in factor_rows(asked, mesh))
+    factors = tuple(shared(scene, row) for mesh in meshes for row in factor_rows(asked, mesh))
     drive = drivers(scene)
     turned = hands([table.pinion_hand for table in scene.stage] or [None] * len(pairs), drive)
     (efficiency, error), idle = _efficiency(rows, meshes), idlers(scene.stage)
@@ -355,6 +371,7 @@ def _by(
         ),
         unverified=(
             *dict.fromkeys(f"{n} of {title(m.stage)}" for m in meshes for n in m.unverified),
+            *(f"{f.symbol} of {title(f.stage)}" for f in factors if f.source == BY_PLANETS),
             *(standard.UNVERIFIED_SPECTRUM if scene.load else ()),
         ),
         by=standard.NAME,

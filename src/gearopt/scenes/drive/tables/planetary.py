@@ -118,6 +118,12 @@ class PlanetaryKeys(Table):
         return self.type != PARALLEL
 
     @property
+    def teeth_keys(self) -> tuple[str, str]:
+        """Keys of the numbers of teeth that stand for those of pinion and wheel."""
+        first = "sun_teeth" if self.type == PLANETARY else "pinion_teeth"
+        return first, "ring_teeth" if self.epicyclic else "wheel_teeth"
+
+    @property
     def counts(self) -> tuple[int, ...]:
         """Numbers of planets that it may have; 0: a pinion in a ring."""
         low, high = self.planets or USUAL
