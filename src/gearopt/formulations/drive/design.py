@@ -39,10 +39,10 @@ class StageDesign:
     and what their blanks have, None of what a gear does not have; a result leaves out those that
     hold it. Fields stand in the order of the table of stages. working_pressure_angle: transverse;
     None: on the reference circles. idler: its pinion is the wheel of the stage before, where it is
-    counted. type: of a stage with planets sun and planet stand as pinion and wheel, of which mass_kg
-    counts all; of a pinion in a ring the ring is the wheel. Numbers of a ring are above 0 but its
-    profile shift, which of a positive one moves teeth towards the centre; torque and speed are
-    those of the sun against the carrier.
+    counted. type: of a stage with planets sun and planet stand as pinion and wheel, mass_kg
+    counting all planets; torque and speed are those of the sun against the carrier. Of a pinion in
+    a ring the ring is the wheel. Numbers of a ring are above 0, but a positive profile shift moves
+    its teeth towards the centre.
     """
 
     type: Annotated[str, Shown("type")] = "parallel"
@@ -257,7 +257,7 @@ def of_planets(
     usual: the density [t/mm3] of gears of no material.
     """
     planets = option.planets
-    mesh, (sun, planet, ring, _) = planets.meshes(pair)[0], planets.gears(pair)
+    mesh, ring = planets.meshes(pair)[0], planets.meshes(pair)[-1].wheel
     torque, relative = planets.slower(pair, False) if planets.count else (1.0, 1.0)
     driven = 1e3 * stage.pinion_torque_Nm * torque * max(planets.count, 1)
     speed = 2e3 * stage.pitch_line_velocity_m_per_s / stage.pinion_diameter_mm * relative

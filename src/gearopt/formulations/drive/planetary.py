@@ -35,10 +35,10 @@ class Cutting:
     """How sun, planet and ring are cut; of three values that of the ring is last.
 
     helix_angle beta [rad]; racks; cutter of the ring; shifts x, None: by the rule, or as the
-    distance asks; shift_sum x_s + x_p, None: of the shifts, or by the rule; tip_alterations k, None:
-    by the rule; distance a [mm], None: without backlash of sun and planet. rim s_R [normal modules]
-    of the ring below its roots, or outside [mm], its diameter; blanks of sun and planet; allowances
-    A_sn [mm] of gears that are given.
+    distance asks; shift_sum x_s + x_p, None: of the shifts, or by the rule; tip_alterations k,
+    None: by the rule; distance a [mm], None: without backlash of sun and planet. rim s_R [normal
+    modules] of the ring below its roots, or outside [mm], its diameter; blanks of sun and planet;
+    allowances A_sn [mm] of gears that are given.
 
     The rule: a is midway between the reference distances of both meshes; x_s is half of x_s + x_p,
     and no less than keeps the sun from undercut; sun and planet are shortened by k = y - x_s - x_p,
@@ -254,7 +254,7 @@ class Planets:
         return GearPair.of_teeth(module, z1, z2, width, self.cutting.helix_angle)
 
     def mesh(self, pair: GearPair, with_ring: bool) -> GearPair:
-        """Planet and ring, or sun and planet; ISO 6336 counts the twist of the sun as a pinion's."""
+        """Planet and ring, or sun and planet, the sun as the pinion, whose twist counts."""
         sun, planet, ring, distance = self.gears(pair)
         if with_ring:
             return GearPair(planet, ring, -distance)

@@ -92,8 +92,8 @@ def least_share(
 ) -> Any:
     """Lower bound of a share that grows with every size of the pair, without what cutting costs.
 
-    Equal of solid gears, and of planets, but for that. fewest: least numbers of teeth of pinion and wheel; None:
-    unknown, then it is proportional to b d1^2 at a given ratio.
+    Equal of solid gears, and of planets, but for that. fewest: least numbers of teeth of pinion and
+    wheel; None: unknown, then it is proportional to b d1^2 at a given ratio.
     """
     objective, blanks = objective or train.objective, train.stages[stage].blanks
     if objective == WEIGHTED:

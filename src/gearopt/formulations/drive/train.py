@@ -209,6 +209,12 @@ class Stage:
         """Whether it has planets or a ring."""
         return any(option.planets is not None for option in self.options)
 
+    @property
+    def one_shape(self) -> bool:
+        """Whether bodies of planetary stages grow as modules do; those of pairs do."""
+        ways = (option.planets for option in self.options if option.planets is not None)
+        return all(way.cutting.solid and way.cutting.distance is None for way in ways)
+
     def possible(self, z1: Any, z2: Any) -> Any:
         """Whether some way of making the stage takes numbers of teeth; all do of pairs."""
         if not self.planetary:

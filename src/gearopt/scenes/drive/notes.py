@@ -103,7 +103,7 @@ def _noted(scene: Scene, result: Result, exact: bool) -> Result:
     if not result.design:
         return result
     from gearopt.formulations.drive.design import drive_design
-    from gearopt.scenes.drive.planetary import by_mesh
+    from gearopt.scenes.drive.rating.by_mesh import by_mesh
 
     design = drive_design(result.design)
     held = scene.held(len(design.stages))

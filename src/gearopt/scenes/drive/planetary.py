@@ -8,33 +8,21 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic_core import PydanticCustomError
 
-from gearopt.formulations.drive.design import (
-    STEEL_DENSITY,
-    DriveDesign,
-    StageDesign,
-    of_pairs,
-    of_planets,
-    with_planets,
-)
 from gearopt.formulations.drive.planetary import LARGE, Cutting, InPlanetaryMesh, Planets
-from gearopt.formulations.drive.rating import MeshName, RatingFactor
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import Stage
 from gearopt.formulations.strength.standard import Option
-from gearopt.frozen import dataclass
-from gearopt.physics.gears import RIM, Cutter, GearPair
-from gearopt.physics.loads import torque_ratios
+from gearopt.physics.gears import RIM, Cutter
 from gearopt.physics.planetary.loads import SHARING_RULES, mesh_load_factor
-from gearopt.scenes.drive.driving import drivers
-from gearopt.scenes.drive.face_widths import fixed_width
 from gearopt.scenes.drive.idlers import copied, idlers
-from gearopt.scenes.drive.rating.gears import given_pairs, loads, required_hours
-from gearopt.scenes.drive.rating.materials import choices
+from gearopt.scenes.drive.rating.checks import check_objective, check_rated
+from gearopt.scenes.drive.rating.gears import loads, required_hours
+from gearopt.scenes.drive.rating.materials import check_materials, choices
 from gearopt.scenes.drive.rating.options import of_stage, option
 from gearopt.scenes.drive.tables.blanks import blank
 from gearopt.scenes.drive.tables.drive import Gears, ShiftTable, StageTable
 from gearopt.scenes.drive.tables.planetary import INTERNAL, OF_INTERNAL, OWN, PLANETARY, REDUCTIONS
-from gearopt.scenes.drive.tables.rating import with_shared
+from gearopt.scenes.drive.tables.rating import RatingTable, with_shared
 from gearopt.scenes.drive.toothings import rack
 from gearopt.scenes.reading.choices import values_of
 from gearopt.scenes.reading.fields import refuse
@@ -42,7 +30,6 @@ from gearopt.scenes.reading.fields import refuse
 if TYPE_CHECKING:
     from gearopt.scenes.drive.scene import Scene
 
-BY_PLANETS = "by the number of planets, practice of wind turbines"  # source of K_gamma
 SHARING = "wind"  # of SHARING_RULES: K_gamma that a file does not give
 OF_PAIRS = {  # keys of a stage that one with planets, or a pinion in a ring, does not have
     PLANETARY: ("pinion_teeth", "wheel_teeth", "pinion", "wheel"),
@@ -58,10 +45,6 @@ NAMES = {  # of what checks call the gears of a pair
     INTERNAL: {"wheel": "ring"},
 }
 OF_INNER = {"pinion": "planet", "wheel": "ring"}
-CALLED = {  # meshes by whether the ring is in them: title, gears, ending of limits
-    False: ("sun and planet", "sun", "planet at the sun", "_of_sun"),
-    True: ("planet and ring", "planet at the ring", "ring", "_of_ring"),
-}
 OF_GEAR = (  # keys of a gear that such a stage sets or does not have
     *("contacts", "reversed_load", "face_width", "rim_thickness"),
     *("web_thickness", "web_over_face_width"),
@@ -120,6 +103,20 @@ def renamed(scene: "Scene", wrong: PydanticCustomError, names: Any = None) -> Py
     return PydanticCustomError("gearopt", "{rule}", context)
 
 
+def check_rings(scene: "Scene", rating: RatingTable) -> None:
+    """Check the materials of planets and rings, as those of pairs are."""
+    if not any(own.type == PLANETARY for own in scene.stage):
+        return
+    stages = [inner(own) if own.type == PLANETARY else own for own in scene.stage]
+    places = [(("stage", k), own) for k, own in enumerate(stages)]
+    try:
+        check_materials(places, scene.gears, scene.material)
+        check_rated(rating, scene.gears, stages, scene.load, scene.material)
+        check_objective(scene.objective, scene.gears, stages, scene.material)
+    except PydanticCustomError as wrong:
+        raise renamed(scene, wrong, OF_INNER) from None
+
+
 def check_planetary(scene: "Scene", lacks: str) -> None:
     """Refuse what does not go together with planets or a ring.
 
@@ -172,11 +169,10 @@ def _check_gears(scene: "Scene", own: StageTable, k: int) -> None:
                 place = ("stage", k, member, name) if set_here else ("gears", name)
                 rule = f'does not go together with type = "{own.type}"'
                 raise refuse(rule, at=place, action="remove")
-    ring = with_shared(own.ring, scene.gears)
     if own.ring.outside_diameter is not None and own.ring.rim_over_module is not None:
         rule = "conflicts with outside_diameter; one is enough"
         raise refuse(rule, at=("stage", k, "ring", "rim_over_module"), action="remove")
-    if ring.cutter_teeth is None:
+    if own.ring.cutter_teeth is None:
         for name in ("cutter_profile_shift", "cutter_addendum", "cutter_tip_radius"):
             if getattr(own.ring, name) is not None:
                 rule = "needs cutter_teeth, of the cutter that shapes the ring"
@@ -380,138 +376,3 @@ def _combined(own: StageTable, planets: Planets, each: Sequence[Option]) -> Opti
     words = f"{planets.count} planets" if planets.count else "ring"
     fields: dict[str, Any] = {name: three(name) for name in names}
     return Option(tuple(standards), words, planets=planets, **fields)
-
-
-@dataclass(frozen=True)
-class AsMesh:
-    """A mesh of a stage that is rated in the place of a stage.
-
-    slower: input over pinion speed, against the carrier; share of the drive's power in the mesh;
-    rolled: in all meshes of this kind; meshes: as of `Practice`. ratio and driver of the stage, and
-    whether its output turns the other way.
-    """
-
-    name: MeshName
-    slower: float
-    share: float
-    rolled: float
-    meshes: tuple[float, float] | None
-    ratio: float
-    driver: str
-    reverses: bool
-
-    def ends(self, after: "AsMesh | None") -> bool:
-        """Whether it is the last mesh of its stage."""
-        return after is None or after.name.stage != self.name.stage
-
-
-Meshes = tuple["Scene", tuple[GearPair, ...], list[tuple[str, str]]]
-
-
-def by_mesh(scene: "Scene", design: DriveDesign) -> Meshes:
-    """The drive with every mesh in the place of a stage, its pairs, and names of materials."""
-    pairs, tables = list[GearPair](), list[StageTable]()
-    names = list[tuple[str, str]]()
-    plain = [s.type == "parallel" for s in design.stages]
-    drivers = [s.driver for s in design.stages]
-    slower = torque_ratios([s.ratio for s in design.stages], drivers)
-    for k, (own, stage) in enumerate(zip(scene.stage_tables, design.stages, strict=True)):
-        if plain[k]:
-            pairs.append(scene.pair(own, stage))
-            names.append((stage.pinion_material, stage.wheel_material))
-            tables.append(own)
-            title = MeshName(stage=k + 1, title=f"stage {k + 1}")
-            rated = [AsMesh(title, slower[k][0], 1.0, 1.0, None, stage.ratio, stage.driver, True)]
-        else:
-            rows, both = _meshes_of(scene, own, stage, k, slower[k][0])
-            pairs += both
-            tables += meshes(own, stage.planets or 0)
-            materials = stage.pinion_material, stage.wheel_material, stage.ring_material
-            names += [materials[:2], materials[1:]] if stage.planets else [materials[:2]]
-            rated = rows
-        if not all(plain):
-            for place, mesh in enumerate(rated, len(tables) - len(rated)):
-                tables[place] = tables[place].rated_as(mesh)
-    made = scene if all(plain) else scene.model_copy(update={"stage": tuple(tables)})
-    return made, tuple(pairs), names
-
-
-def _meshes_of(
-    scene: "Scene", own: StageTable, stage: StageDesign, k: int, slower: float
-) -> tuple[list[AsMesh], tuple[GearPair, ...]]:
-    """Meshes of a stage (from 0) of a design; slower: input over pinion speed of its pair."""
-    planets = planets_of(scene, own, stage)
-    pair = planets.pair(
-        stage.normal_module_mm,
-        stage.sun_teeth or stage.pinion_teeth,
-        stage.ring_teeth,
-        stage.face_width_mm,
-    )
-    rated = []
-    kinds = [False, True] if planets.count else [True]
-    for with_ring in kinds:
-        torque, speed = planets.slower(pair, with_ring)
-        called = CALLED[with_ring] if planets.count else ("pinion and ring", "pinion", "ring", "")
-        title, first, second, suffix = called
-        title = f"stage {k + 1}, {title}"
-        name = MeshName(stage=k + 1, title=title, pinion=first, wheel=second, suffix=suffix)
-        share = float(torque * speed)
-        times = max(planets.count, 1)
-        held = at_once(own, planets.count, with_ring)
-        turns = planets.count > 0 and planets.held == "carrier"
-        of_stage = stage.ratio, stage.driver, turns
-        rated.append(AsMesh(name, slower / float(speed), share, times * share, held, *of_stage))
-    return rated, planets.meshes(pair)
-
-
-def planets_of(scene: "Scene", own: StageTable, stage: StageDesign) -> Planets:
-    """The planets, or the ring, of a stage of a design."""
-    internal = own.type == INTERNAL
-    shifts = stage.pinion_profile_shift, stage.wheel_profile_shift, stage.ring_profile_shift
-    tips = stage.pinion_tip_alteration, stage.wheel_tip_alteration, stage.ring_tip_alteration
-    if internal:
-        shifts, tips = (shifts[0], *shifts[::2]), (tips[0], *tips[::2])
-    made = cuttings(scene, own)[0]
-    distance = None if made.distance is None else stage.centre_distance_mm
-    cut = replace(made, shifts=shifts, shift_sum=None, tip_alterations=tips, distance=distance)
-    if internal or not stage.planets:
-        return Planets(cut, 0)
-    fewer = round(stage.ring_teeth - stage.sun_teeth - 2 * stage.planet_teeth)
-    return Planets(cut, stage.planets, own.held, fewer)
-
-
-def given_design(scene: "Scene") -> DriveDesign:
-    """The design of gears that are all given, some of which are planets or rings."""
-    rows = list[tuple[GearPair, Option | None]]()
-    for own in scene.stage_tables:
-        assert own.size
-        module, fixed = float(own.size[0].exact[0]), fixed_width(own)
-        option = options(scene, own)[0] if own.epicyclic else None
-        if option is None:
-            rows.append((given_pairs((own,), scene.gears)[0], None))
-            continue
-        assert own.pinion_teeth and own.wheel_teeth
-        teeth = float(own.pinion_teeth[0]), float(own.wheel_teeth[0])
-        pair = option.planets.pair(module, *teeth, 1.0)
-        span = own.face_width_over_diameter or scene.gears.face_width_over_diameter or (0, 0)
-        width = float(span[0]) * float(pair.pinion.reference_diameter)
-        rows.append((pair.of_width(fixed.value if fixed else width), option))
-    pairs, law, density = tuple(pair for pair, _ in rows), scene.limits.LAW, scene.objective.density
-    usual, speed = density.value if density else STEEL_DENSITY, scene.duty.input_speed.value
-    asked = scene.duty.total_ratio if scene.duty.asks_ratio else None
-    made = of_pairs(law, pairs, scene.torque, speed, asked, usual, scene.blanks, drivers(scene))
-    each = zip(made.stages, rows, strict=True)
-    stages = tuple(
-        stage if option is None else of_planets(law, stage, pair, option, usual)
-        for stage, (pair, option) in each
-    )
-    return with_planets(made, stages)
-
-
-def shared(scene: "Scene", row: RatingFactor) -> RatingFactor:
-    """A factor of a mesh in the place of a stage; K_gamma that no file gives is marked."""
-    own = scene.stage_tables[row.stage - 1]
-    by_rule = own.type == PLANETARY and own.mesh_load_factor is None
-    if row.symbol != "K_gamma" or not by_rule:
-        return row
-    return replace(row, source=BY_PLANETS, verified=False)

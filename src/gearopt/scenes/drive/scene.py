@@ -20,10 +20,10 @@ from gearopt.scenes.drive.distances import joint_limits, reach, rows_together
 from gearopt.scenes.drive.driving import check_driving, may_drive, ratio_of
 from gearopt.scenes.drive.face_widths import check_excess, check_width, excesses, face_width
 from gearopt.scenes.drive.idlers import check_idlers, with_idlers
+from gearopt.scenes.drive.places import ENDS, KEYS
 from gearopt.scenes.drive.planetary import (
-    OF_INNER,
     check_planetary,
-    inner,
+    check_rings,
     options,
     renamed,
     stage_with_planets,
@@ -59,7 +59,6 @@ from gearopt.scenes.drive.tables.layout import (
     check_layout,
     gearbox,
 )
-from gearopt.scenes.drive.tables.planetary import PLANETARY
 from gearopt.scenes.drive.tables.rating import LoadTable, RatingTable, with_shared
 from gearopt.scenes.drive.toothings import (
     check_centre_distances,
@@ -78,33 +77,6 @@ from gearopt.units import Quantity
 
 if TYPE_CHECKING:
     from gearopt.formulations.drive.design import DriveDesign, StageDesign
-
-KEYS: dict[
-    str, str | tuple[str, ...]
-] = {  # of `Train.numbers`, those of the whole drive: their places in a file
-    "speed": "duty.input_speed",
-    **dict.fromkeys(("lowest_ratio", "highest_ratio"), "duty.ratio_tolerance"),
-    "density": "objective.density",
-    "bending_safety": "rating.minimum_bending_safety",
-    "contact_safety": "rating.minimum_contact_safety",
-}
-RANGES = {  # stem of the two limits of a stage: the key of their range
-    "width": "face_width_over_diameter",
-    "module": "module",
-    "pinion": "pinion_teeth",
-    "wheel": "wheel_teeth",
-    "ratio": "stage_ratio",
-}
-ENDS: dict[str, tuple[str, int | None]] = {
-    **{f"{stem}_low": (key, 1) for stem, key in RANGES.items()},
-    **{f"{stem}_high": (key, 2) for stem, key in RANGES.items()},
-    "over_module_low": ("face_width_over_module", 1),
-    "over_module_high": ("face_width_over_module", 2),
-    "least_width": ("minimum_face_width", None),
-    "wheel_diameter": ("wheel_diameter", None),
-    "helix_cosine": ("helix_angle", None),
-}
-
 
 RANGE = (
     "is a range, which [[stage]] tables do not fit: write what all stages share in [gears] and "
@@ -210,15 +182,7 @@ class Scene(Table):
         self._check_teeth()
         self._check_blanks()
         self._check_rating()
-        for name in PROCESSES:
-            table = getattr(self, name)
-            if table is not None and self.teeth is None:
-                raise refuse("needs a table [teeth]", at=(name,), action="remove")
-            if table is not None and self.several:
-                rule = "is for one number of stages, and stages is a range"
-                raise refuse(rule, at=(name,), action="remove")
-            if table is not None:
-                table.check(self.counts[0], name)
+        self._check_processes()
 
     @property
     def counts(self) -> tuple[int, ...]:
@@ -267,6 +231,16 @@ class Scene(Table):
         """Strength law that limits the loads of the gears beside ratings."""
         return RATED if self.rating is not None and not self.limits.loaded else self.limits.LAW
 
+    def _check_processes(self) -> None:
+        """Check that processes have teeth, and the lists of one number of stages."""
+        for name in (name for name in PROCESSES if getattr(self, name) is not None):
+            if self.teeth is None:
+                raise refuse("needs a table [teeth]", at=(name,), action="remove")
+            if self.several:
+                rule = "is for one number of stages, and stages is a range"
+                raise refuse(rule, at=(name,), action="remove")
+            getattr(self, name).check(self.counts[0], name)
+
     def _check_loads(self) -> None:
         """Check that something limits the loads: the strength law, or a rating."""
         if self.rating is None and not self.limits.loaded and not self._enough:
@@ -309,26 +283,13 @@ class Scene(Table):
             check_materials(places, self.gears, self.material)
             check_same(self.gears, self.stage)
             check_rated(self.rating, self.gears, self.stage, self.load, self.material)
-            self._check_rings(self.rating)
+            check_rings(self, self.rating)
         check_objective(self.objective, self.gears, self.stage, self.material)
         if self.given and not self.to_size:
             check_unsized(self.limits.LAW, self.stage)
         if self.by_ratings:
             ruled = [n for n in PROCESSES if getattr(self, n) is not None]
             check_sized(self.law, self.limits.LAW, self.stage, ruled)
-
-    def _check_rings(self, rating: RatingTable) -> None:
-        """Check the materials of planets and rings, as those of pairs are."""
-        if not any(own.type == PLANETARY for own in self.stage):
-            return
-        stages = [inner(own) if own.type == PLANETARY else own for own in self.stage]
-        places = [(("stage", k), own) for k, own in enumerate(stages)]
-        try:
-            check_materials(places, self.gears, self.material)
-            check_rated(rating, self.gears, stages, self.load, self.material)
-            check_objective(self.objective, self.gears, stages, self.material)
-        except PydanticCustomError as wrong:
-            raise renamed(self, wrong, OF_INNER) from None
 
     def _check_teeth(self) -> None:
         """Check that gears have a centre distance, and that what is sought can take it."""
@@ -490,12 +451,12 @@ class Scene(Table):
             safety = required(self.rating)
             asked = (required(of_stage(self.rating, own)) for own in tables)
             times = ((b / safety[0], c / safety[1]) for b, c in asked)
-            rows = zip(stages, rated, times, strict=True)
-            stages = tuple(replace(s, options=made, safety=more) for s, made, more in rows)
-            each = zip(stages, tables, strict=True)
-            stages = tuple(
-                replace(s, options=options(self, own)) if own.epicyclic else s for s, own in each
+            made = (
+                options(self, own) if own.epicyclic else ways
+                for own, ways in zip(tables, rated, strict=True)
             )
+            rows = zip(stages, made, times, strict=True)
+            stages = tuple(replace(s, options=ways, safety=more) for s, ways, more in rows)
         if tables[-1].idler:
             stages = (*stages[:-2], with_idler(*stages[-2:]))
         driver = driver or may_drive(self)[0]

@@ -82,6 +82,7 @@ def toothing(own: StageTable, gears: Gears) -> Toothing:
 
 
 def rack(gear: GearTable, pressure_angle: float) -> Rack:
+    """Return the basic rack of a gear; pressure_angle [rad]."""
     usual = ISO_53_A
     return Rack(
         pressure_angle,

@@ -385,7 +385,7 @@ class RatedTable(Table):
             limit = np.minimum(most[rows], best.cost[rows])
             larger = self._floor(one, ends[0]) <= limit
             worth = self._worth(one, ends[0], VIRTUAL)
-            some = np.flatnonzero((worth <= limit) & (worth < np.inf))
+            some = np.flatnonzero((worth <= limit) & np.isfinite(worth))
             if len(some):
                 tried = rows[some], pair[rows[some]], module[some]
                 ends = ends[0][some], ends[1][some]
@@ -515,18 +515,12 @@ class RatedTable(Table):
         shifted = self.stage.toothing.shifting is not None
         shifted = shifted and (self._by_module or self.train.hollow)
         if shifted or (
-            self.stage.planetary and not self._one_shape
+            self.stage.planetary and not self.stage.one_shape
         ):  # a larger one may be the lighter
             return np.zeros(np.shape(width))
         fewest = pair.pinion_teeth, pair.wheel_teeth
         shares = least_share(self._cheapest, self.position, pair.of_width(width), fewest=fewest)
         return np.asarray(shares)
-
-    @property
-    def _one_shape(self) -> bool:
-        """Whether bodies of planetary stages grow as modules do."""
-        ways = (option.planets for option in self.stage.options if option.planets is not None)
-        return all(way.cutting.solid and way.cutting.distance is None for way in ways)
 
     def _improve(
         self, best: Found, rows: Index, pair: Index, module: Index, option: int, width: Array

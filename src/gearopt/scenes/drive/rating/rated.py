@@ -17,9 +17,9 @@ from gearopt.physics.shaft_forces import hands
 from gearopt.scenes.drive.driving import driven, drivers
 from gearopt.scenes.drive.idlers import idlers
 from gearopt.scenes.drive.notes import masses
-from gearopt.scenes.drive.planetary import BY_PLANETS, by_mesh, shared
-from gearopt.scenes.drive.planetary import given_design as given_planets
 from gearopt.scenes.drive.rating.assumptions import rating_assumptions, unused_materials
+from gearopt.scenes.drive.rating.by_mesh import BY_PLANETS, by_mesh, shared
+from gearopt.scenes.drive.rating.by_mesh import given_design as given_planets
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.gears import (
     Blanks,

@@ -1,0 +1,167 @@
+"""Stages with planets, or a pinion in a ring, mesh by mesh, as ratings take them."""
+
+from dataclasses import replace
+
+from gearopt.formulations.drive.design import (
+    DriveDesign,
+    StageDesign,
+    of_pairs,
+    of_planets,
+    with_planets,
+)
+from gearopt.formulations.drive.planetary import Planets
+from gearopt.formulations.drive.rating import MeshName, RatingFactor
+from gearopt.formulations.drive.train import STEEL_DENSITY
+from gearopt.formulations.strength.standard import Option
+from gearopt.frozen import dataclass
+from gearopt.physics.gears import GearPair
+from gearopt.physics.loads import torque_ratios
+from gearopt.scenes.drive.driving import drivers
+from gearopt.scenes.drive.face_widths import fixed_width
+from gearopt.scenes.drive.planetary import at_once, cuttings, meshes, options
+from gearopt.scenes.drive.rating.gears import given_pairs
+from gearopt.scenes.drive.scene import Scene
+from gearopt.scenes.drive.tables.drive import StageTable
+from gearopt.scenes.drive.tables.planetary import INTERNAL, PLANETARY
+
+BY_PLANETS = "by the number of planets, practice of wind turbines"  # source of K_gamma
+CALLED = {  # meshes by whether the ring is in them: title, gears, ending of limits
+    False: ("sun and planet", "sun", "planet at the sun", "_of_sun"),
+    True: ("planet and ring", "planet at the ring", "ring", "_of_ring"),
+}
+
+
+@dataclass(frozen=True)
+class AsMesh:
+    """A mesh of a stage that is rated in the place of a stage.
+
+    slower: input over pinion speed, against the carrier; share of the drive's power in the mesh;
+    rolled: in all meshes of this kind; meshes: as of `Practice`. ratio and driver of the stage, and
+    whether its output turns the other way.
+    """
+
+    name: MeshName
+    slower: float
+    share: float
+    rolled: float
+    meshes: tuple[float, float] | None
+    ratio: float
+    driver: str
+    reverses: bool
+
+    def ends(self, after: "AsMesh | None") -> bool:
+        """Whether it is the last mesh of its stage."""
+        return after is None or after.name.stage != self.name.stage
+
+
+Meshes = tuple[Scene, tuple[GearPair, ...], list[tuple[str, str]]]
+
+
+def by_mesh(scene: Scene, design: DriveDesign) -> Meshes:
+    """The drive with every mesh in the place of a stage, its pairs, and names of materials."""
+    pairs, tables = list[GearPair](), list[StageTable]()
+    names = list[tuple[str, str]]()
+    plain = [s.type == "parallel" for s in design.stages]
+    drivers = [s.driver for s in design.stages]
+    slower = torque_ratios([s.ratio for s in design.stages], drivers)
+    for k, (own, stage) in enumerate(zip(scene.stage_tables, design.stages, strict=True)):
+        if plain[k]:
+            pairs.append(scene.pair(own, stage))
+            names.append((stage.pinion_material, stage.wheel_material))
+            tables.append(own)
+            title = MeshName(stage=k + 1, title=f"stage {k + 1}")
+            rated = [AsMesh(title, slower[k][0], 1.0, 1.0, None, stage.ratio, stage.driver, True)]
+        else:
+            rows, both = _meshes_of(scene, own, stage, k, slower[k][0])
+            pairs += both
+            tables += meshes(own, stage.planets or 0)
+            materials = stage.pinion_material, stage.wheel_material, stage.ring_material
+            names += [materials[:2], materials[1:]] if stage.planets else [materials[:2]]
+            rated = rows
+        if not all(plain):
+            for place, mesh in enumerate(rated, len(tables) - len(rated)):
+                tables[place] = tables[place].rated_as(mesh)
+    made = scene if all(plain) else scene.model_copy(update={"stage": tuple(tables)})
+    return made, tuple(pairs), names
+
+
+def _meshes_of(
+    scene: Scene, own: StageTable, stage: StageDesign, k: int, slower: float
+) -> tuple[list[AsMesh], tuple[GearPair, ...]]:
+    """Meshes of a stage (from 0) of a design; slower: input over pinion speed of its pair."""
+    planets = planets_of(scene, own, stage)
+    pair = planets.pair(
+        stage.normal_module_mm,
+        stage.sun_teeth or stage.pinion_teeth,
+        stage.ring_teeth,
+        stage.face_width_mm,
+    )
+    rated = []
+    kinds = [False, True] if planets.count else [True]
+    for with_ring in kinds:
+        torque, speed = planets.slower(pair, with_ring)
+        called = CALLED[with_ring] if planets.count else ("pinion and ring", "pinion", "ring", "")
+        title, first, second, suffix = called
+        title = f"stage {k + 1}, {title}"
+        name = MeshName(stage=k + 1, title=title, pinion=first, wheel=second, suffix=suffix)
+        share = float(torque * speed)
+        times = max(planets.count, 1)
+        held = at_once(own, planets.count, with_ring)
+        turns = planets.count > 0 and planets.held == "carrier"
+        of_stage = stage.ratio, stage.driver, turns
+        rated.append(AsMesh(name, slower / float(speed), share, times * share, held, *of_stage))
+    return rated, planets.meshes(pair)
+
+
+def planets_of(scene: Scene, own: StageTable, stage: StageDesign) -> Planets:
+    """The planets, or the ring, of a stage of a design."""
+    internal = own.type == INTERNAL
+    shifts = stage.pinion_profile_shift, stage.wheel_profile_shift, stage.ring_profile_shift
+    tips = stage.pinion_tip_alteration, stage.wheel_tip_alteration, stage.ring_tip_alteration
+    if internal:
+        shifts, tips = (shifts[0], *shifts[::2]), (tips[0], *tips[::2])
+    made = cuttings(scene, own)[0]
+    distance = None if made.distance is None else stage.centre_distance_mm
+    cut = replace(made, shifts=shifts, shift_sum=None, tip_alterations=tips, distance=distance)
+    if internal or not stage.planets:
+        return Planets(cut, 0)
+    assert stage.ring_teeth and stage.sun_teeth and stage.planet_teeth
+    fewer = round(stage.ring_teeth - stage.sun_teeth - 2 * stage.planet_teeth)
+    return Planets(cut, stage.planets, own.held, fewer)
+
+
+def given_design(scene: Scene) -> DriveDesign:
+    """The design of gears that are all given, some of which are planets or rings."""
+    rows = list[tuple[GearPair, Option | None]]()
+    for own in scene.stage_tables:
+        assert own.size
+        module, fixed = float(own.size[0].exact[0]), fixed_width(own)
+        option = options(scene, own)[0] if own.epicyclic else None
+        if option is None:
+            rows.append((given_pairs((own,), scene.gears)[0], None))
+            continue
+        assert own.pinion_teeth and own.wheel_teeth
+        teeth = float(own.pinion_teeth[0]), float(own.wheel_teeth[0])
+        pair = option.planets.pair(module, *teeth, 1.0)
+        span = own.face_width_over_diameter or scene.gears.face_width_over_diameter or (0, 0)
+        width = float(span[0]) * float(pair.pinion.reference_diameter)
+        rows.append((pair.of_width(fixed.value if fixed else width), option))
+    pairs, law, density = tuple(pair for pair, _ in rows), scene.limits.LAW, scene.objective.density
+    usual, speed = density.value if density else STEEL_DENSITY, scene.duty.input_speed.value
+    asked = scene.duty.total_ratio if scene.duty.asks_ratio else None
+    made = of_pairs(law, pairs, scene.torque, speed, asked, usual, scene.blanks, drivers(scene))
+    each = zip(made.stages, rows, strict=True)
+    stages = tuple(
+        stage if option is None else of_planets(law, stage, pair, option, usual)
+        for stage, (pair, option) in each
+    )
+    return with_planets(made, stages)
+
+
+def shared(scene: Scene, row: RatingFactor) -> RatingFactor:
+    """A factor of a mesh in the place of a stage; K_gamma that no file gives is marked."""
+    own = scene.stage_tables[row.stage - 1]
+    by_rule = own.type == PLANETARY and own.mesh_load_factor is None
+    if row.symbol != "K_gamma" or not by_rule:
+        return row
+    return replace(row, source=BY_PLANETS, verified=False)
