@@ -7,7 +7,7 @@ way of making them. A pinion in a ring has z1 and z2 of both, and no planets.
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -334,6 +334,35 @@ class Planets:
 
 def _within(teeth: Any, span: tuple[float, float]) -> Any:
     return np.greater_equal(teeth, span[0]) & np.less_equal(teeth, span[1])
+
+
+def no_room(ways: Sequence[Planets], pairs: GearPair) -> str:
+    """Why no planets or ring fit any of the pairs (n,), of the least module; "" where some do."""
+    first = ways[0]
+    if not np.size(pairs.pinion_teeth):
+        counts = " or ".join(str(n) for n in dict.fromkeys(way.count for way in ways))
+        spaced = ", z_s + z_r being a multiple of that" if first.spaced else ""
+        return (
+            f"No numbers of teeth allowed can be put together with {counts} planets{spaced}"
+            if first.count
+            else "No numbers of teeth allowed have the ratio"
+        )
+    left = [(way, way.possible(pairs.pinion_teeth, pairs.wheel_teeth)) for way in ways]
+    left = [(way, fits & way.room(pairs)) for way, fits in left]
+    if not any(fits.any() for _, fits in left):
+        return (
+            "Of all numbers of teeth allowed neighbouring planets touch, or the mesh of planet and "
+            "ring interferes: allow fewer planets, or other planet_teeth_reduction"
+            if first.count
+            else "Of all numbers of teeth allowed pinion and ring interfere"
+        )
+    least = min(
+        (float(np.min(-way.gears(pairs)[RING].outside[fits])) for way, fits in left if fits.any()),
+        default=0.0,
+    )
+    if least > first.widest:
+        return f"The smallest ring is {least:.5g} mm wide, {first.widest:.5g} mm are allowed"
+    return ""
 
 
 @dataclass(frozen=True)

@@ -55,7 +55,8 @@ def check_shift(scene: "Scene", shifted: list[int], lacks: str, asked: str) -> N
     shift = scene.shift
     if shift is None:
         return
-    if not shifted:
+    summed = shift.sum is not None or shift.pinion_shift is not None
+    if not shifted and not (summed and any(own.type == "planetary" for own in scene.stage)):
         rule = (
             "changes nothing: no gears are chosen at a given centre_distance of a [[stage]], nor "
             "by a sum of profile shifts"
@@ -105,7 +106,7 @@ def _check_sum(scene: "Scene", lacks: str, asked: str) -> None:
 def _check_ways(scene: "Scene", stages: list[int]) -> None:
     """Refuse more ways to cut the teeth of stages (from 0) than are looked at."""
     assert scene.shift is not None
-    ways = max(len(scene.toothings(scene.stage_tables[k])) for k in stages)
+    ways = max((len(scene.toothings(scene.stage_tables[k])) for k in stages), default=0)
     if ways > MOST_WAYS:
         rule = f"makes {ways:,} ways of cutting a stage with its helix angles and distances"
         tell = f"Give fewer of these, for {MOST_WAYS:,} ways at most"

@@ -14,12 +14,14 @@ import numpy as np
 
 from gearopt.errors import SolveError
 from gearopt.formulations.drive import sizing_text
+from gearopt.formulations.drive.planetary import no_room
 from gearopt.formulations.drive.teeth.choices import best_choices
 from gearopt.formulations.drive.teeth.front import fronts
 from gearopt.formulations.drive.teeth.progress import MARGIN, TIE, Progress, Teeth
 from gearopt.formulations.drive.teeth.rated import RatedTable
 from gearopt.formulations.drive.teeth.reach import largest_ratio, narrowed, trimmed
 from gearopt.formulations.drive.teeth.search import BEAM, search
+from gearopt.formulations.drive.teeth.stage import Table
 from gearopt.formulations.drive.teeth.tables import table
 from gearopt.formulations.drive.train import Stage, Train
 from gearopt.optimise.clock import Clock
@@ -342,15 +344,28 @@ def _searched(
 
 
 def _unfit(train: Train) -> str:
-    """What keeps gears from given centre distances; nothing where teeth fit all of them."""
+    """What keeps gears from fitting planets or given distances; nothing where teeth fit."""
     cut = largest_ratio(train)
     stages = [k for k, stage in enumerate(train.stages) if stage.toothing.shifting is not None]
     bare = [k for k in stages if not len(table(train, k, cut).ratio)]
-    return " ".join(
+    planetary = [k for k, stage in enumerate(train.stages) if stage.planetary]
+    ways = [(k, train.stages[k].options, table(train, k, cut)) for k in planetary]
+    reasons = [
+        f"{why} (stage {k + 1})."
+        for k, options, known in ways
+        if (why := no_room([o.planets for o in options], _smallest(known)))
+    ]
+    return " ".join(reasons) or " ".join(
         f"No teeth fit {_distances(train.stages[k])} of stage {k + 1}, with the modules, "
         "numbers of teeth, ratios and profile shifts allowed."
         for k in bare
     )
+
+
+def _smallest(known: Table) -> GearPair:
+    """All pairs of a table with the smallest module."""
+    every = np.arange(len(known.ratio))
+    return known.made(np.full(len(every), known.modules[0]), every)
 
 
 def _distances(stage: Stage) -> str:

@@ -1,0 +1,153 @@
+"""Planetary stages of whole teeth: the search against every candidate, built and rated alone."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import planetary_drives as own
+import pytest
+import rated_brute_force as brute
+from campaigns import few
+
+from gearopt.formulations.drive.planetary import HELD, Cutting
+from gearopt.formulations.drive.shares import objective_share
+from gearopt.formulations.drive.teeth import problem
+from gearopt.formulations.drive.toothing import Toothing
+from gearopt.optimise.solve import run
+from gearopt.physics.gears import Cutter
+
+PLAIN = brute.least_share
+
+
+@pytest.fixture(autouse=True)
+def _of_both_kinds(monkeypatch):
+    """Candidates of planetary stages beside those of pairs."""
+
+    def least(train, k, *rest):
+        return (own.least_share if train.stages[k].planetary else PLAIN)(train, k, *rest)
+
+    monkeypatch.setattr(brute, "least_share", least)
+    monkeypatch.setattr(brute, "worth", objective_share)
+
+
+def agree(train):
+    """Whether the search proves what every candidate says; the value of the best."""
+    result, _ = run(problem(train))
+    best = brute.cheapest(train)
+    if result.status == "infeasible":
+        assert math.isinf(best)
+    else:
+        assert result.status == "optimal"
+        assert result.value == pytest.approx(best, rel=1e-9)
+    return best
+
+
+@pytest.mark.parametrize("seed", few(range(100), (0, 2, 9)))
+def test_stages_are_those_of_every_candidate(seed):
+    agree(own.some_planetary_drive(seed))
+
+
+@pytest.mark.parametrize("seed", few(range(40), 0))
+def test_drives_with_a_planetary_stage_are_those_of_every_candidate(seed):
+    agree(own.some_planetary_drive(seed, 2))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(12))
+def test_twice_the_power_is_never_lighter(seed):
+    train = own.some_planetary_drive(seed)
+    values = [run(problem(replace(train, torque=f * train.torque)))[0].value for f in (1.0, 2.0)]
+    one, two = (math.inf if value is None else value for value in values)
+    assert two >= one * (1.0 - 1e-9)
+
+
+def some_pairs(held, count, rng, helix):
+    """Random pairs of stages, with what their options take of them."""
+    sun, ring = rng.integers(12, 45, count), rng.integers(50, 150, count)
+    ends = {"ring": (sun, sun + ring), "sun": (ring, sun + ring), "carrier": (sun, ring)}[held]
+    module, width = rng.choice([1.5, 3.0, 8.0], count), rng.uniform(15.0, 80.0, count)
+    return Toothing(helix).pair(module, *ends, width)
+
+
+def used(safeties):
+    """What is used of S_F 1.4 and S_H 1.1."""
+    b1, b2, c1, c2 = safeties
+    return np.maximum.reduce([1.4 / b1, 1.4 / b2, (1.1 / c1) ** 2, (1.1 / c2) ** 2])
+
+
+@pytest.mark.parametrize(
+    ("held", "helix"), few([(held, helix) for held in HELD for helix in (0.0, 0.2)], 1)
+)
+def test_no_width_and_torque_of_a_box_use_less(held, helix):
+    """Rows of both meshes are bounds between two ends, and exact where these meet."""
+    rng = np.random.default_rng(len(held))
+    count, looked = 300, 0
+    pair = some_pairs(held, count, rng, helix)
+    cut = Cutting(helix, cutter=None if helix else Cutter(25, 0.0, 1.25, 0.2))
+    torque, speed = 10.0 ** rng.uniform(4.0, 7.0, count), 10.0 ** rng.uniform(0.0, 2.3, count)
+    low, high = pair.face_width * rng.uniform(0.5, 1.0, count), pair.face_width * 1.7
+    strong = torque * rng.uniform(1.0, 3.0, count)
+    for option in own.ways(cut, (3,), (0, 1, 2), held):
+        for standard in option.standards:
+            ready = standard.prepared(pair)
+            point = standard.rows(ready, pair, (torque,) * 2, (speed,) * 2, (1.4, 1.1))
+            at = point.used(pair.face_width, pair.face_width)
+            exact = used(standard.safeties(pair, torque, speed))
+            rated = np.isfinite(exact)
+            assert (rated == np.isfinite(at)).all()
+            np.testing.assert_allclose(at[rated], exact[rated], rtol=1e-9)
+            ends = (torque, strong), (speed, torque * speed / strong)
+            bound = standard.rows(ready, pair, *ends, (1.4, 1.1)).used(low, high)
+            for _ in range(3):
+                width = low * (high / low) ** rng.random(count)
+                there = torque * (strong / torque) ** rng.random(count)
+                inside = used(
+                    standard.safeties(pair.of_width(width), there, torque * speed / there)
+                )
+                assert (bound <= inside * (1.0 + 1e-9))[np.isfinite(inside)].all()
+            looked += int(rated.sum())
+    assert looked > 100
+
+
+@pytest.mark.parametrize("held", HELD)
+def test_a_larger_module_is_never_lighter(held):
+    """And a virtual way is no heavier than any: what the search leaves modules out by."""
+    rng = np.random.default_rng(1)
+    pair = some_pairs(held, 200, rng, 0.1)
+    options = own.ways(Cutting(0.1), (3, 4), (0, 1, 2), held)
+    virtual = options[0].cheapest_with(options[1:], None).planets
+    larger = Toothing(0.1).pair(
+        1.25 * pair.normal_module, pair.pinion_teeth, pair.wheel_teeth, 1.25 * pair.face_width
+    )
+    least = sum(virtual.volumes(pair))
+    for option in options:
+        now, then = (sum(option.planets.volumes(each)) for each in (pair, larger))
+        fits = np.isfinite(now)
+        assert fits.any() == (option.planets.count % 2 == 1 or option.planets.fewer % 2 == 0)
+        np.testing.assert_allclose(then[fits], 1.25**3 * now[fits])
+        assert (least <= now * (1.0 + 1e-12)).all()
+
+
+def test_planets_that_do_not_fit_are_named():
+    train = own.some_planetary_drive(0)
+    stage = train.stages[0]
+    way = stage.options[0].planets
+    alone = replace(stage, options=own.ways(way.cutting, (5,), (0,), way.held))
+    odd = replace(alone, pinion_teeth=(20, 20), wheel_teeth=(101, 101))
+    if way.held == "sun":
+        odd = replace(odd, pinion_teeth=(81, 81))
+    result, _ = run(problem(replace(train, stages=(odd,), ratio=train.ratio, tolerance=0.9)))
+    assert result.status == "infeasible"
+    assert "5 planets" in result.message
+
+
+def test_the_speed_of_the_sun_is_against_the_carrier():
+    """Willis: of 18/36/90 and a held ring the carrier turns at a sixth of the sun."""
+    option = own.ways(Cutting(), (3,), (0,))[0]
+    pair = option.planets.pair(2.0, 18.0, 90.0, 20.0)
+    assert pair.ratio == pytest.approx(6.0)
+    torque, speed = option.planets.slower(pair, False)
+    assert (torque, speed) == pytest.approx((1 / 3, 5 / 6))
+    torque, speed = option.planets.slower(pair, True)
+    assert (torque, speed) == pytest.approx((2 / 3, 5 / 12))
+    assert option.planets.loss(pair) == pytest.approx(5 / 6 * (1 / 18 + 2 / 36 - 1 / 90))
