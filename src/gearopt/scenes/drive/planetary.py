@@ -20,9 +20,16 @@ from gearopt.scenes.drive.rating.gears import loads, required_hours
 from gearopt.scenes.drive.rating.materials import check_materials, choices
 from gearopt.scenes.drive.rating.options import of_stage, option
 from gearopt.scenes.drive.tables.blanks import blank
-from gearopt.scenes.drive.tables.drive import Gears, ShiftTable, StageTable
-from gearopt.scenes.drive.tables.planetary import INTERNAL, OF_INTERNAL, OWN, PLANETARY, REDUCTIONS
-from gearopt.scenes.drive.tables.rating import RatingTable, with_shared
+from gearopt.scenes.drive.tables.drive import ShiftTable, StageTable
+from gearopt.scenes.drive.tables.planetary import (
+    INTERNAL,
+    OF_INTERNAL,
+    OWN,
+    PLANETARY,
+    REDUCTIONS,
+    gear_of,
+)
+from gearopt.scenes.drive.tables.rating import GearTable, RatingTable, with_shared
 from gearopt.scenes.drive.toothings import rack
 from gearopt.scenes.reading.choices import values_of
 from gearopt.scenes.reading.fields import refuse
@@ -45,11 +52,10 @@ NAMES = {  # of what checks call the gears of a pair
     INTERNAL: {"wheel": "ring"},
 }
 OF_INNER = {"pinion": "planet", "wheel": "ring"}
-OF_GEAR = (  # keys of a gear that such a stage sets or does not have
-    *("contacts", "reversed_load", "face_width", "rim_thickness"),
-    *("web_thickness", "web_over_face_width"),
+OF_GEAR = (  # keys of gears that no stage with planets or a ring takes
+    *("contacts", "reversed_load", "face_width", "rim_thickness", "web_thickness"),
+    "web_over_face_width",
 )
-OF_GIVEN = ("thickness_allowance",)  # that only gears have which are given
 
 
 def with_gears_named(stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
@@ -68,10 +74,10 @@ def with_gears_named(stages: tuple[StageTable, ...]) -> tuple[StageTable, ...]:
             rule = f"is not of {kind}" if own.type in OF_PAIRS else f"needs {_kinds(name)}"
             raise refuse(rule, at=(k, name), action="remove")
         if own.type == PLANETARY:
-            own = copied(own, {"pinion": own.sun, "wheel": _bent(own.planet)})
+            own = copied(own, {"pinion": gear_of(own.sun), "wheel": _bent(own)})
             own = copied(own, {"pinion_teeth": own.sun_teeth, "wheel_teeth": own.ring_teeth})
         elif own.type == INTERNAL:
-            own = copied(own, {"wheel": own.ring, "wheel_teeth": own.ring_teeth})
+            own = copied(own, {"wheel": gear_of(own.ring), "wheel_teeth": own.ring_teeth})
         made.append(own)
     return tuple(made)
 
@@ -81,14 +87,14 @@ def _kinds(name: str) -> str:
     return both
 
 
-def _bent(planet: Any) -> Any:
-    """A planet, whose teeth are bent both ways."""
-    return copied(planet, {"reversed_load": True})
+def _bent(own: StageTable) -> GearTable:
+    """The planet of a stage, whose teeth are bent both ways."""
+    return copied(gear_of(own.planet), {"reversed_load": True})
 
 
 def inner(own: StageTable) -> StageTable:
     """A planetary stage as its mesh of planet and ring."""
-    return copied(own, {"pinion": _bent(own.planet), "wheel": own.ring})
+    return copied(own, {"pinion": _bent(own), "wheel": gear_of(own.ring)})
 
 
 def renamed(scene: "Scene", wrong: PydanticCustomError, names: Any = None) -> PydanticCustomError:
@@ -160,16 +166,18 @@ def _beside(scene: "Scene", own: StageTable) -> str:
 
 def _check_gears(scene: "Scene", own: StageTable, k: int) -> None:
     """Refuse keys of gears that a stage with a ring sets, or does not have."""
-    for member in MEMBERS[own.type]:
-        table = getattr(own, member)
-        for name in (*OF_GEAR, *(OF_GIVEN if scene.to_size else ())):
-            set_here = name in table.model_fields_set
-            shared = getattr(scene.gears, name, None) is not None
-            if set_here or (shared and name not in ("contacts", "reversed_load")):
-                place = ("stage", k, member, name) if set_here else ("gears", name)
+    for name in OF_GEAR:
+        for place, table in ((("gears",), scene.gears), (("stage", k, "pinion"), own.pinion)):
+            written = place[0] == "gears" or own.type == INTERNAL
+            if written and getattr(table, name, None) is not None:
                 rule = f'does not go together with type = "{own.type}"'
-                raise refuse(rule, at=place, action="remove")
-    if own.ring.outside_diameter is not None and own.ring.rim_over_module is not None:
+                raise refuse(rule, at=(*place, name), action="remove")
+    for member in MEMBERS[own.type]:
+        thinner = getattr(own, member).thickness_allowance
+        if thinner is not None and (scene.to_size or thinner.number > 0):
+            rule = "is for gears that are given, and below zero: teeth are thinned"
+            raise refuse(rule, at=("stage", k, member, "thickness_allowance"), action="remove")
+    if own.ring.outside_diameter is not None and gear_of(own.ring).rim_over_module is not None:
         rule = "conflicts with outside_diameter; one is enough"
         raise refuse(rule, at=("stage", k, "ring", "rim_over_module"), action="remove")
     if own.ring.cutter_teeth is None:
@@ -178,7 +186,7 @@ def _check_gears(scene: "Scene", own: StageTable, k: int) -> None:
                 rule = "needs cutter_teeth, of the cutter that shapes the ring"
                 raise refuse(rule, at=("stage", k, "ring", name), action="remove")
     sized = scene.to_size and not scene.given
-    if sized and own.type == PLANETARY and own.ring.profile_shift is not None:
+    if sized and own.type == PLANETARY and gear_of(own.ring).profile_shift is not None:
         rule = "follows from the distance of sun and planet"
         raise refuse(rule, at=("stage", k, "ring", "profile_shift"), action="remove")
 
@@ -201,10 +209,9 @@ def _check_teeth(scene: "Scene", own: StageTable, k: int) -> None:
 
 def cuttings(scene: "Scene", own: StageTable) -> tuple[Cutting, ...]:
     """Ways to cut the gears of a stage: by the sums of profile shifts that are given."""
-    gears, ring = scene.gears, with_shared(own.ring, scene.gears)
-    members = ("pinion", *("pinion", "ring")) if own.type == INTERNAL else MEMBERS[PLANETARY]
-    tables = [with_shared(getattr(own, member), gears) for member in members]
-    pressure = (own.pressure_angle or gears.pressure_angle).value
+    first_two = (own.pinion, own.pinion if own.type == INTERNAL else own.wheel)
+    tables = [with_shared(gear, scene.gears) for gear in (*first_two, gear_of(own.ring))]
+    pressure = (own.pressure_angle or scene.gears.pressure_angle).value
     first, second, third = (rack(table, pressure) for table in tables)
     cutter = None
     if own.ring.cutter_teeth is not None:
@@ -227,7 +234,7 @@ def cuttings(scene: "Scene", own: StageTable) -> tuple[Cutting, ...]:
         None,
         (tips[0], tips[1], tips[2]),
         values_of(own.centre_distance)[0].value if own.centre_distance is not None else None,
-        float(ring.rim_over_module or RIM),
+        float(tables[2].rim_over_module or RIM),
         outside.value if outside else None,
         (blank(tables[0], width), blank(tables[1], width)),
         (thinner[0], thinner[1], thinner[2]),
@@ -290,7 +297,7 @@ def stage_with_planets(scene: "Scene", own: StageTable, stage: Stage) -> Stage:
         first = ring if own.held == "sun" else sun
     angle = scene.helix_angles(own)[0].value
     pressure = (own.pressure_angle or scene.gears.pressure_angle).value
-    plain = rack(with_shared(own.ring, Gears()), pressure)
+    plain = rack(GearTable(), pressure)
     return replace(
         stage,
         pinion_teeth=first,
@@ -313,8 +320,8 @@ def meshes(own: StageTable, count: int) -> tuple[StageTable, ...]:
         return (own,)
     given = copied(own.given_iso6336, {"K_gamma": load_factor(own, count)})
     more: dict[str, Any] = {"given_iso6336": given}
-    sun, ring = (copied(gear, {"contacts": count}) for gear in (own.sun, own.ring))
-    planet = _bent(own.planet)
+    sun, ring = (copied(gear_of(gear), {"contacts": count}) for gear in (own.sun, own.ring))
+    planet = _bent(own)
     return (
         copied(own, more | {"pinion": sun, "wheel": planet}),
         copied(own, more | {"pinion": planet, "wheel": ring}),

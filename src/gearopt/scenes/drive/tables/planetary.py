@@ -3,7 +3,7 @@
 from fractions import Fraction
 from typing import Annotated, Any, Self
 
-from pydantic import Field, PrivateAttr
+from pydantic import Field, PrivateAttr, create_model
 
 from gearopt.formulations.drive.planetary import HELD, ORDERS
 from gearopt.scenes.drive.tables.rating import GearTable
@@ -17,7 +17,22 @@ REDUCTIONS = (Fraction(0), Fraction(1, 2), Fraction(1))  # by default
 Teeth = tuple[int, int] | None
 
 
-class RingTable(GearTable):
+IN_PLANETS = (  # keys of a gear that sun, planets and ring have, too
+    *("iso_material", "iso_quality", "iso_core", "flank_hardness", "yield_strength", "sigma_Hlim"),
+    *("sigma_Flim", "flank_rz", "accuracy_grade", "root_rz", "addendum", "tip_chamfer"),
+    *("tool_addendum", "tool_tip_radius", "tool_protuberance", "grinding_allowance", "steel"),
+    *("treatment", "hardness", "elastic_modulus", "poisson_ratio", "roughness", "materials"),
+    *("profile_shift", "tip_alteration", "thickness_allowance"),
+)
+
+
+def _of_gear(*names: str) -> dict[str, Any]:
+    """Fields of a gear by their names."""
+    known = GearTable.model_fields
+    return {name: (known[name].annotation, known[name]) for name in names}
+
+
+class RingKeys(Table):
     """Keys of a ring: as of other gears, and of the pinion-type cutter that shapes it."""
 
     outside_diameter: Annotated[Quantity | None, quantity("length", "300 mm")] = Field(
@@ -32,13 +47,34 @@ class RingTable(GearTable):
         None, description="Profile shift x_0 of the cutter; by default 0"
     )
     cutter_addendum: Annotated[Fraction | None, number(1.25, 0, 3)] = Field(
-        None, description="Addendum h_a0 of the cutter, in normal modules; by default 1.25"
+        None,
+        description="Addendum h_a0 of the cutter, in normal modules; by default tool_addendum",
     )
     cutter_tip_radius: Annotated[Fraction | None, number(0.3, 0, 1, zero=True)] = Field(
         None,
         description="Radius rho_a0 of the rounds at the cutter's tips, in normal modules; by "
         "default 0",
     )
+
+
+SunTable = create_model(
+    "SunTable",
+    __base__=Table,
+    __doc__="Keys of a sun, or of a planet.",
+    **_of_gear("bore", "hub_over_bore", *IN_PLANETS),
+)
+RingTable = create_model(
+    "RingTable",
+    __base__=RingKeys,
+    __doc__=RingKeys.__doc__,
+    **_of_gear("rim_over_module", *IN_PLANETS),
+)
+
+
+def gear_of(table: Table) -> GearTable:
+    """The keys of a sun, planet or ring as those of a gear."""
+    held = {name: value for name, value in table if name in GearTable.model_fields}
+    return GearTable.model_construct(set(held) & table.model_fields_set, **held)
 
 
 class PlanetaryKeys(Table):
@@ -95,8 +131,8 @@ class PlanetaryKeys(Table):
         description="Planets are equally spaced (by default), so that z_s + z_r is a multiple of "
         "their number; false: as nearly as teeth allow",
     )
-    sun: GearTable = Field(default_factory=GearTable, description="Data of the sun alone")
-    planet: GearTable = Field(default_factory=GearTable, description="Data of the planets alone")
+    sun: SunTable = Field(default_factory=SunTable, description="Data of the sun alone")
+    planet: SunTable = Field(default_factory=SunTable, description="Data of the planets alone")
     ring: RingTable = Field(default_factory=RingTable, description="Data of the ring alone")
 
     _mesh: Any = PrivateAttr(None)  # of a stage of which a mesh is rated: an `AsMesh`
