@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import gearopt
-from gearopt.formulations.epicyclic.design import EpicyclicDesign
-from gearopt.optimise.typed import typed
-from gearopt.report.drawing.planetary_view import outline, section
+from gearopt.report.drawing.planetary_view import outline
+from gearopt.report.kinds.epicyclic import turning
+from gearopt.report.measures import METRIC
 from gearopt.report.pages.result import page
 from gearopt.report.shown import table_rows
 
@@ -14,7 +14,7 @@ FILES = ("epicyclic_wolfrom", "epicyclic_stepped", "epicyclic_coupled")
 
 
 def views(result):
-    (animation,) = section(typed(EpicyclicDesign, result.design, "design")).animations
+    (animation,) = turning(result, METRIC).animations
     return animation.views
 
 

@@ -112,23 +112,24 @@ def rings_of(body: Body, gear: Gear, start: float, end: float) -> list[tuple[flo
 
 def twist(gear: Gear) -> float:
     """The angle by which teeth turn along the axis [rad/mm]."""
-    return float(2.0 * math.tan(gear.helix_angle) / gear.reference_diameter)
+    return float(2.0 * math.tan(gear.helix_angle) / abs(gear.reference_diameter))
 
 
-def outline(gear: Gear, flank: int) -> list[tuple[float, float]]:
-    """(angle, radius) once round the gear, a tooth in the middle of angle 0.
+def outline(gear: Gear, flank: int, backlash: float = BACKLASH) -> list[tuple[float, float]]:
+    """(angle, radius) once round the gear or in the ring, a tooth in the middle of angle 0.
 
     flank: points from root circle to tip circle, at least 2: of the fillet and the involute, with
-    2 a straight flank from root to tip. Thinner by BACKLASH.
+    2 a straight flank from root to tip. Thinner by a backlash, a part of half a pitch.
     """
-    teeth = drawn_teeth(gear.teeth)
-    x, y = (list(map(float, v)) for v in profile(_of_whole_teeth(gear, teeth), *_shares(flank)))
-    side = [(math.atan2(a, b), math.hypot(a, b)) for a, b in zip(x, y, strict=True)]
+    teeth = drawn_teeth(abs(gear.teeth))
+    whole = _of_whole_teeth(gear, math.copysign(teeth, gear.teeth))
+    x, y = (list(map(float, v)) for v in profile(whole, *_shares(flank)))
+    side = [(math.atan2(a, abs(b)), math.hypot(a, b)) for a, b in zip(x, y, strict=True)]
     if flank == 2:
         side = [(side[1][0], side[0][1]), side[-1]]
     half = math.pi / teeth
-    least, most = 0.05 * half, (1.0 - BACKLASH) * half  # of pointed teeth and pointed tools
-    side = [(min(max(angle - half * BACKLASH, least), most), at) for angle, at in side]
+    least, most = 0.05 * half, (1.0 - backlash) * half  # of pointed teeth and pointed tools
+    side = [(min(max(angle - half * backlash, least), most), at) for angle, at in side]
     tooth = [(-angle, at) for angle, at in side] + side[::-1]
     pitch = 2.0 * math.pi / teeth
     return [(k * pitch + angle, at) for k in range(teeth) for angle, at in tooth]
@@ -140,7 +141,7 @@ def _shares(flank: int) -> tuple[int, int]:
     return on_fillet, max(2, flank + 1 - on_fillet)
 
 
-def _of_whole_teeth(gear: Gear, teeth: int) -> Gear:
+def _of_whole_teeth(gear: Gear, teeth: float) -> Gear:
     """The gear with a whole number of teeth in the same circles."""
     scale = gear.teeth / teeth
     rack = gear.rack
@@ -149,7 +150,7 @@ def _of_whole_teeth(gear: Gear, teeth: int) -> Gear:
     return replace(
         gear,
         normal_module=gear.normal_module * scale,
-        teeth=float(teeth),
+        teeth=teeth,
         rack=drawn,
         profile_shift=gear.profile_shift / scale,
         tip_alteration=gear.tip_alteration / scale,

@@ -1,12 +1,14 @@
 """A planetary train: its teeth, what turns how fast, what flows where, and where planets are."""
 
+import math
 from dataclasses import replace
 from fractions import Fraction
 
-from gearopt.formulations.epicyclic.design import EpicyclicDesign
+from gearopt.formulations.epicyclic.design import PLANETS, EpicyclicDesign
+from gearopt.formulations.epicyclic.request import COUPLED, SETS, SIMPLE
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
-from gearopt.report.drawing import planetary_view
+from gearopt.report.drawing.planetary_view import GearSet, Wheel, animation, outline
 from gearopt.report.kinds import generic
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.section import Section, Table, Tile, records
@@ -96,8 +98,46 @@ def flow(design: EpicyclicDesign) -> str:
 
 
 def turning(result: Result, measures: Measures) -> Section | None:
-    """The train as it turns."""
-    return planetary_view.section(_design(result)) if result.design else None
+    """The train as it turns; in modules and without shifts."""
+    if not result.design:
+        return None
+    design = _design(result)
+    count = 1 if design.arrangement == SIMPLE else 2  # sets, or steps of the planets
+    ends = [
+        (f"{member.name} ({use})", member.speed)
+        for use in ("input", "output")
+        for member in design.members
+        if member.use == use
+    ]
+    words = "lengths are in modules, teeth are not involutes."
+    sets = [gear_set(design, k) for k in range(count)]
+    turns = animation(sets, "the train as it turns", ends, words)
+    return Section("The train along its axis", animations=[turns])
+
+
+def gear_set(design: EpicyclicDesign, k: int) -> GearSet:
+    """A set, or a step of the planets, with what is in mesh with it there; from 0."""
+    (s, p, q, r), (sun, ring, carrier) = SETS[design.arrangement][-k], design.sets[-k]
+    moon = PLANETS[1 if k and design.arrangement == COUPLED else 0]
+    speeds = {member.name: member.speed for member in design.members}
+
+    def wheel(gear: int, speed: float) -> Wheel:
+        it = design.gears[gear]
+        shape = outline(it.teeth, it.module, inside=gear == r)
+        return Wheel(it.name, it.teeth, speed, shape)
+
+    teeth = [gear.teeth for gear in design.gears]
+    return GearSet(
+        wheel(s, speeds[sun]),
+        wheel(q if k else p, speeds[moon]),
+        wheel(r, speeds[ring]),
+        teeth[p],
+        teeth[q],
+        speeds[carrier],
+        [math.radians(at.angle_deg) for at in design.places if at.planets == moon],
+        0.5 * (teeth[s] + teeth[p]),
+        (not k or p == q, bool(k) or p == q),
+    )
 
 
 PAGES = replace(
