@@ -105,9 +105,14 @@ class GearSet:
             place = self.distance * np.cos(orbit), self.distance * np.sin(orbit)
             rows.append(body(self.planet, turn, 2, *place))
         if self.shown[1]:
-            rows.append(body(self.ring, ring_angle, 3))
+            ring = body(self.ring, ring_angle, 3)
             if self.ring.rim:
-                rows.append(Body(_circle(self.ring.rim), style="body", colour=series(3)))
+                around = _circle(self.ring.rim)
+                rows.append(Body(around, style="body", colour=series(3)))
+                whole = np.concatenate((around, around[:1], self.ring.outline[::-1]))
+                whole = np.concatenate((whole, self.ring.outline[-1:]))
+                rows.append(Body(whole, ring.places, "rim", series(3)))
+            rows.append(ring)
         return rows
 
     def arms(self, turns: np.ndarray) -> Body:

@@ -22,6 +22,7 @@ from gearopt.report.kinds import Pages
 from gearopt.report.kinds.drive import (
     impossible_layout,
     layout_solid,
+    planetary,
     rating_gears,
     rating_tables,
     rating_words,
@@ -387,15 +388,18 @@ def _in_one_line(result: Result, measures: Measures) -> Section | None:
     return replace(drawn, heading=f"{sized}, all shafts in one plane") if drawn and sized else drawn
 
 
-DRAWINGS = (layout_views.section, layout_solid.section, _in_one_line)
+DRAWINGS = (layout_views.section, layout_solid.section, _in_one_line, planetary.turning)
 CAPACITIES = rating_gears.gears, rating_gears.static
 RATINGS = (
     *(rating_gears.gears, rating_tables.forces, rating_gears.factors),
     *(rating_gears.levels, rating_gears.static, mesh_view.section, rating_tables.teeth),
 )
 PAGES_OF_GIVEN = Pages(
-    sections=(summary, *RATINGS[:2], *DRAWINGS, *RATINGS[2:], numbers, asked, assumptions),
-    terminal=(*CAPACITIES, rating_gears.factors, rating_tables.forces),
+    sections=(
+        *(summary, *RATINGS[:2], *DRAWINGS, *RATINGS[2:]),
+        *(planetary.loads, numbers, asked, assumptions),
+    ),
+    terminal=(*CAPACITIES, planetary.loads, rating_gears.factors, rating_tables.forces),
     tiles=rating_words.tiles,
     binding_limit=rating_words.binding_limit,
     figures=rating_words.figures,
@@ -407,6 +411,7 @@ PAGES = Pages(
         impossible_layout.section,
         *DRAWINGS,
         numbers,
+        planetary.loads,
         *RATINGS,
         processes,
         counts,
@@ -416,6 +421,7 @@ PAGES = Pages(
     ),
     terminal=(
         rating_tables.design,
+        planetary.loads,
         gears_first,
         places,
         counts,

@@ -1,0 +1,263 @@
+"""Planetary stages of a drive: as they turn, in space, places and loads of planets, power flow."""
+
+import math
+from fractions import Fraction
+from typing import Annotated, Any
+
+import numpy as np
+
+from gearopt.formulations.drive.design import StageDesign, drive_design
+from gearopt.frozen import dataclass
+from gearopt.optimise.result import Result
+from gearopt.optimise.typed import Shown
+from gearopt.physics.gears import Gear
+from gearopt.physics.planetary import assembly
+from gearopt.physics.planetary.kinematics import Balance, Mesh, balances, speeds
+from gearopt.report.drawing.planetary_view import GearSet, Wheel, animation
+from gearopt.report.drawing.player import Animation
+from gearopt.report.drawing.solid import outline
+from gearopt.report.drawing.stage_gears import sun_planet_ring
+from gearopt.report.kinds.drive.planetary_solid import figure
+from gearopt.report.measures import Measures
+from gearopt.report.section import Section, Table, records, side_by_side
+
+ENDS = {  # members that a pair's pinion and wheel stand for, by the one that is held
+    "ring": ("sun", "carrier"),
+    "sun": ("ring", "carrier"),
+    "carrier": ("sun", "ring"),
+}
+POINTS = 8_000  # of the outlines of a set
+FLANKS = (10, 8, 6, 5, 4, 3, 2)  # points on a flank
+TRUE = (
+    "teeth and lengths are those of the design, in a transverse section, the planets on the arms "
+    "of their carrier."
+)
+FLOW = (
+    "Speeds, torques and powers are without losses, of each stage with the turning of its input "
+    "above 0; torques are those from outside, so that of a member that gives power torque and "
+    "speed have other signs. The power that rolls in the meshes is the torque of the sun times its "
+    "speed against the carrier."
+)
+PINS = (
+    "The force on a pin is that of both meshes on a planet, 2 F_t where both have one working "
+    "pressure angle, as the mean of all planets, without K_γ; positive radial forces point "
+    "outwards. Centrifugal forces are left out."
+)
+
+
+@dataclass(frozen=True)
+class Flow:
+    """What turns how fast in a stage, and what flows: over the speed and torque of its input.
+
+    speed [rad/s] and torque [N m] of the input.
+    """
+
+    source: str
+    sink: str
+    held: str
+    turning: dict[str, Fraction]
+    balance: Balance
+    speed: float
+    torque: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Member:
+    """A member of a stage under load."""
+
+    stage: Annotated[int, Shown("stage")]
+    member: Annotated[str, Shown("member")]
+    use: Annotated[str, Shown("use")]
+    teeth: Annotated[int | None, Shown("teeth z")]
+    speed_rpm: Annotated[float, Shown("speed")]
+    torque_Nm: Annotated[float | None, Shown("torque")]
+    power_kW: Annotated[float | None, Shown("power")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Planet:
+    """Where a planet is, and phases of its meshes against the first one's, in pitches."""
+
+    stage: Annotated[int, Shown("stage")]
+    planet: Annotated[int, Shown("planet")]
+    angle_deg: Annotated[float, Shown("angle", unit="deg", form=".6f")]
+    turn: Annotated[str, Shown("of a turn")]
+    sun_phase: Annotated[float, Shown("phase at the sun", form=".4f")]
+    ring_phase: Annotated[float, Shown("phase at the ring", form=".4f")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanetLoad:
+    """What a planet and its pin carry."""
+
+    tangential_N: Annotated[float, Shown("tangential force on a pin")]
+    radial_N: Annotated[float, Shown("radial force on a pin")]
+    speed_rpm: Annotated[float, Shown("speed of a planet on its pin")]
+    gap_mm: Annotated[float | None, Shown("gap between tips of neighbours")]
+    rolling_kW: Annotated[float, Shown("power that rolls in the meshes")]
+
+
+def _teeth(stage: StageDesign) -> tuple[int, int, int]:
+    """Teeth of sun, planet and ring."""
+    z_s, z_p, z_r = (round(z or 0) for z in (stage.sun_teeth, stage.planet_teeth, stage.ring_teeth))
+    return z_s, z_p, z_r
+
+
+def flow(stage: StageDesign) -> Flow:
+    """Speeds and torques of a planetary stage, without losses."""
+    z_s, z_p, z_r = _teeth(stage)
+    known = [Mesh("sun", "planets", "carrier", z_s, z_p)]
+    known.append(Mesh("planets", "ring", "carrier", z_p, -z_r))
+    ends = ENDS[stage.fixed]
+    source, sink = ends if stage.driver == "pinion" else ends[::-1]
+    turning = speeds(known, {source: Fraction(1), stage.fixed: Fraction(0)})
+    balance = balances(known, turning, source, sink, (stage.fixed,))[0]
+    rolls = 2e3 * stage.pitch_line_velocity_m_per_s / stage.pinion_diameter_mm
+    speed = rolls / abs(float(turning["sun"] - turning["carrier"]))
+    torque = stage.pinion_torque_Nm / abs(float(balance.torques["sun"]))
+    return Flow(source, sink, stage.fixed, turning, balance, speed, torque)
+
+
+def members(stage: StageDesign, number: int) -> list[Member]:
+    """Members of a stage (its number from 1) under load."""
+    it, teeth = flow(stage), dict(zip(("sun", "planets", "ring"), _teeth(stage), strict=True))
+    uses = {it.source: "input", it.sink: "output", it.held: "fixed"}
+    rows = []
+    for name in ("sun", "planets", "ring", "carrier"):
+        speed = it.speed * float(it.turning[name])
+        torque = it.balance.torques.get(name)
+        own = None if torque is None else it.torque * float(torque)
+        rows.append(
+            Member(
+                stage=number,
+                member=name,
+                use=uses.get(name, ""),
+                teeth=teeth.get(name),
+                speed_rpm=30.0 / math.pi * speed,
+                torque_Nm=own,
+                power_kW=None if own is None else 1e-3 * own * speed + 0.0,
+            )
+        )
+    return rows
+
+
+def planets(stage: StageDesign, number: int) -> list[Planet]:
+    """Places of the planets of a stage (its number from 1), as equal as teeth allow."""
+    z_s, z_p, z_r = _teeth(stage)
+    count, n = int(assembly.places(z_s, z_p, z_p, z_r)), stage.planets or 1
+    turns = [Fraction(place, count) for place in assembly.spread(count, n).tolist()]
+    return [
+        Planet(
+            stage=number,
+            planet=k,
+            angle_deg=360.0 * float(turn),
+            turn=str(turn),
+            sun_phase=float(z_s * turn % 1),
+            ring_phase=float(z_r * turn % 1),
+        )
+        for k, turn in enumerate(turns, 1)
+    ]
+
+
+def planet_load(stage: StageDesign) -> PlanetLoad:
+    """Forces on a pin, T_c/(N a) along the path of the planets, and what turns on it.
+
+    Both meshes have the force T_s/(N r_bs) along their lines of action.
+    """
+    it, n, a = flow(stage), stage.planets or 1, stage.centre_distance_mm
+    torques = {name: 1e3 * it.torque * float(t) for name, t in it.balance.torques.items()}
+    outer = stage.pair
+    base = 0.5 * float(outer.pinion.base_diameter)
+    z_s, z_p, z_r = _teeth(stage)
+    inner = math.acos(min(base / z_s * (z_r - z_p) / a, 1.0))
+    along = abs(torques["sun"]) / (n * base)
+    rolls = it.speed * float(it.turning["sun"] - it.turning["carrier"])
+    own = it.speed * float(it.turning["planets"] - it.turning["carrier"])
+    angles = [360.0, *(360.0 + at.angle_deg for at in planets(stage, 1)[1:]), 720.0]
+    closest = min(end - start for start, end in zip(angles, angles[1:], strict=False))
+    apart = 2.0 * a * math.sin(math.radians(0.5 * closest)) - stage.wheel_tip_diameter_mm
+    return PlanetLoad(
+        tangential_N=abs(torques["carrier"]) / (n * a),
+        radial_N=along * (math.sin(float(outer.working_angle)) - math.sin(inner)),
+        speed_rpm=30.0 / math.pi * own,
+        gap_mm=apart if n > 1 else None,
+        rolling_kW=1e-6 * abs(torques["sun"] * rolls),
+    )
+
+
+def gear_set(stage: StageDesign, gears: tuple[Gear, Gear, Gear]) -> GearSet:
+    """A stage as it is seen along its axis, in mm."""
+    n, turning = stage.planets or 1, flow(stage).turning
+    teeth = [abs(round(gear.teeth)) for gear in gears]
+    points = 2 * (teeth[0] + n * teeth[1] + teeth[2])
+    flank = next((flank for flank in FLANKS if flank * points < POINTS), FLANKS[-1])
+    rims = 0.0, 0.0, 0.5 * (stage.ring_outside_diameter_mm or 0.0)
+
+    def wheel(k: int, name: str, speed: str) -> Wheel:
+        angle, r = np.array(outline(gears[k], flank, 0.0)).T
+        shape = np.stack((r * np.cos(angle), r * np.sin(angle)), axis=1)
+        return Wheel(name, teeth[k], float(turning[speed]), shape, rims[k])
+
+    return GearSet(
+        wheel(0, "sun", "sun"),
+        wheel(1, "planet", "planets"),
+        wheel(2, "ring", "ring"),
+        teeth[1],
+        teeth[1],
+        float(turning["carrier"]),
+        [math.radians(at.angle_deg) for at in planets(stage, 1)],
+        stage.centre_distance_mm,
+    )
+
+
+def _stages(result: Result) -> list[tuple[int, StageDesign]]:
+    """The planetary stages of a design, with their numbers from 1."""
+    if not any(s.get("type") == "planetary" for s in result.design.get("stages", ())):
+        return []
+    rows = enumerate(drive_design(result.design).stages, 1)
+    return [(k, stage) for k, stage in rows if stage.type == "planetary"]
+
+
+def turning(result: Result, measures: Measures) -> Section | None:
+    """Planetary stages as they turn, and in space."""
+    turns: list[Animation] = []
+    figures, words = [], []
+    for k, stage in _stages(result):
+        if (gears := sun_planet_ring(stage)) is None:
+            words.append(
+                f"Stage {k} is not drawn with its teeth: its design does not hold the tool of the "
+                "ring, which is not that of the planets."
+            )
+            continue
+        it, seen = flow(stage), gear_set(stage, gears)
+        ends = [(f"{n} ({use})", float(it.turning[n])) for use, n in _ends(it)]
+        turns.append(animation([seen], f"stage {k} as it turns", ends, f"{TRUE} {_held(it)}"))
+        figures.append(figure(stage, k, seen, gears, measures))
+    if not turns and not words:
+        return None
+    return Section("Planetary stages", words=words, animations=turns, figures=figures)
+
+
+def _ends(it: Flow) -> list[tuple[str, str]]:
+    return [("input", it.source), ("output", it.sink)]
+
+
+def _held(it: Flow) -> str:
+    return f"The {it.held} is held."
+
+
+def loads(result: Result, measures: Measures) -> Section | None:
+    """Power flow, places of planets and forces on their pins."""
+    stages = _stages(result)
+    if not stages:
+        return None
+    heads = ["", *(f"stage {k}" for k, _ in stages)]
+    flows: list[Any] = [row for k, stage in stages for row in members(stage, k)]
+    where: list[Any] = [row for k, stage in stages for row in planets(stage, k)]
+    carried = side_by_side([planet_load(stage) for _, stage in stages], measures)
+    tables = (
+        Table("members", *records(flows, measures)),
+        Table("planet pins", heads, carried, across=True),
+        Table("planets", *records(where, measures)),
+    )
+    return Section("Power flow", words=(FLOW, PINS), tables=tables, terminal=tables)
