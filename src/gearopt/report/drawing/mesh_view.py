@@ -2,12 +2,13 @@
 
 import math
 
-from gearopt.formulations.drive.design import drive_design
+from gearopt.formulations.drive.design import StageDesign, drive_design
 from gearopt.optimise.result import Result
-from gearopt.physics.gears import MEMBERS, Gear, GearPair
+from gearopt.physics.gears import MEMBERS, Gear, GearPair, signed
 from gearopt.physics.geometry.contact import ContactPath, contact_path
 from gearopt.physics.geometry.fillet import half_angle, profile
 from gearopt.report.drawing.sheet import Drawing, Place, Point, Sheet, Window, series
+from gearopt.report.drawing.stage_gears import meshes
 from gearopt.report.measures import Measures, rounded
 from gearopt.report.section import Section
 from gearopt.report.words import sentence
@@ -18,8 +19,8 @@ FILLET, FLANK = 8, 13  # points of a tooth's side
 DOT = 2.6  # px: radius of a point of contact
 WORDS = (
     "Transverse sections of the teeth as their tools cut them, touching at the pitch point C; the "
-    "pinion, below, {turns}. Dash-dotted: working pitch circles. The line of action from A to E is "
-    "that of contact"
+    "{names}, below, {turns}. Dash-dotted: working pitch circles. The line of action from A to E "
+    "is that of contact"
 )
 TURNS = {"pinion": "turns clockwise and drives", "wheel": "turns anticlockwise and is driven"}
 ALONE = "; from B to D one pair of spur teeth carries alone"
@@ -27,31 +28,39 @@ HELICAL = (
     " in this section. Helical teeth touch along slanting lines: other sections are in contact at "
     "other moments, so that more pairs of teeth touch than one section shows"
 )
-SEVERAL = " Each mesh is drawn as seen from the end from which its pinion turns so."
+SEVERAL = " Each mesh is drawn as seen from the end from which its {names} turns so."
 ROUNDING = 1e-9  # of a contact ratio: so near to a whole number it is that
 
 
 def section(result: Result, measures: Measures) -> Section | None:
     """Draw the mesh of every stage of a rating; None without one, or of teeth of no whole number.
 
-    Stages whose contact is none are left out.
+    Meshes whose contact is none are left out.
     """
     if not result.design.get("rating"):
         return None
     stages = drive_design(result.design).stages
-    pairs = [stage.pair for stage in stages if stage.type != "internal"]
-    drawn = [(pair, _mesh(pair, k, len(pairs))) for k, pair in enumerate(pairs, 1)]
-    meshes = [(pair, drawing) for pair, drawing in drawn if drawing is not None]
-    if not meshes:
+    rows = [(k, *mesh) for k, stage in enumerate(stages, 1) for mesh in meshes(stage)]
+    drawn = [(pair, _mesh(pair, k, names, len(stages))) for k, pair, names in rows]
+    shown = [(pair, drawing) for pair, drawing in drawn if drawing is not None]
+    if not shown:
         return None
-    helical = HELICAL * any(pair.pinion.helix_angle for pair, _ in meshes)
-    alone = ALONE * any(carries_alone(pair, contact_path(pair)) for pair, _ in meshes)
-    words = WORDS.format(turns=" or ".join(dict.fromkeys(TURNS[stage.driver] for stage in stages)))
+    helical = HELICAL * any(pair.pinion.helix_angle for pair, _ in shown)
+    alone = ALONE * any(carries_alone(pair, contact_path(pair)) for pair, _ in shown)
+    below = "pinion" if all(names[0] == "pinion" for *_, names in rows) else "gear named first"
+    turns = " or ".join(dict.fromkeys(TURNS[_driver(stage)] for stage in stages))
+    several = SEVERAL.format(names=below) * (len(rows) > 1)
     return Section(
         "Teeth in mesh",
-        words=(f"{words}{helical}{alone}.{SEVERAL * (len(pairs) > 1)}",),
-        drawings=tuple(drawing for _, drawing in meshes),
+        words=(f"{WORDS.format(names=below, turns=turns)}{helical}{alone}.{several}",),
+        drawings=tuple(drawing for _, drawing in shown),
     )
+
+
+def _driver(stage: StageDesign) -> str:
+    """The gear that drives against the carrier: a ring that drives past a held sun drives it."""
+    swapped = {"pinion": "wheel", "wheel": "pinion"}
+    return swapped[stage.driver] if stage.fixed == "sun" else stage.driver
 
 
 def carries_alone(pair: GearPair, path: ContactPath) -> bool:
@@ -70,21 +79,24 @@ def _touching(pair: GearPair) -> str:
     return f"total contact ratio {rounded(ratio, 4)}: {pairs} of teeth touch at once"
 
 
-def _mesh(pair: GearPair, stage: int, stages: int) -> Drawing | None:
+def _mesh(pair: GearPair, stage: int, names: tuple[str, str], stages: int) -> Drawing | None:
     """Draw a pair with its pitch point in the middle; None where its teeth are not whole."""
     path = contact_path(pair)
     if not all(float(g.teeth).is_integer() for g in pair.gears) or not path.length > 0.0:
         return None
     sheet = sheet_of(pair, (8.0, 8.0, 8.0, 8.0))
-    for name, gear, at in zip(MEMBERS, pair.gears, axes(pair), strict=True):
+    for name, gear, at in zip(names, pair.gears, axes(pair), strict=True):
         rim = [(x, y + at) for x, y in sector(gear, at)]
         path_ = "M " + " L ".join(f"{x:.1f} {y:.1f}" for x, y in (sheet.at(*p) for p in rim)) + " Z"
         sheet.shape(path_, "tip", series(stage), f"{name} {stage}" if stages > 1 else name)
         pitch_circle(sheet, at, pair.normal_module, series(stage))
     action(sheet, pair, path)
     caption = [f"Stage {stage}"] if stages > 1 else []
+    caption += [" and ".join(names)] if names != MEMBERS else []
     caption += [_touching(pair)] if pair.pinion.helix_angle else []
-    return sheet.drawing(f"teeth of stage {stage} in mesh", sentence("; ".join(caption)), cut=True)
+    of = "" if names == MEMBERS else f", {' and '.join(names)}"
+    name = f"teeth of stage {stage} in mesh{of}"
+    return sheet.drawing(name, sentence("; ".join(caption)), cut=True)
 
 
 def sheet_of(pair: GearPair, free: tuple[float, float, float, float], larger: float = 1.0) -> Sheet:
@@ -115,15 +127,21 @@ def pitch_circle(sheet: Sheet, at: float, module: float, colour: str) -> None:
 def sector(gear: Gear, at: float, turned: int = 0) -> list[Point]:
     """The outline [mm] about its axis of the teeth that a sheet may show, and of the axis.
 
-    at: y of the axis from the pitch point [mm], below 0 for the pinion. One flank passes the pitch
-    point, at which the pinion drives to the right. turned: pitches that it turns to either side.
+    Of a ring that of its teeth and of a rim beyond the sheet. at: y of the axis from the pitch
+    point [mm], below 0 for the pinion and a ring. One flank passes the pitch point, at which the
+    pinion drives to the right. turned: pitches that it turns to either side.
     """
-    lowest = 0.5 * float(gear.root_diameter) - ACROSS * gear.normal_module
-    seen = ALONG * gear.normal_module / lowest if lowest > 0.0 else 1.0
-    reach = math.asin(min(1.0, seen)) * gear.teeth / (2.0 * math.pi)  # pitches
-    count = min(math.ceil(reach) + 1 + turned, int(gear.teeth) // 2)
-    teeth = [tooth(gear, at, number) for number in range(-count, count + 1)]
-    return [(0.0, 0.0), *(point for outline in teeth for point in outline)]
+    module, teeth = gear.normal_module, abs(gear.teeth)
+    lowest = min(abs(0.5 * float(d)) for d in (gear.root_diameter, gear.tip_diameter))
+    lowest -= ACROSS * module
+    seen = ALONG * module / lowest if lowest > 0.0 else 1.0
+    reach = math.asin(min(1.0, seen)) * teeth / (2.0 * math.pi)  # pitches
+    count = min(math.ceil(reach) + 1 + turned, int(teeth) // 2)
+    rim = [point for number in range(-count, count + 1) for point in tooth(gear, at, number)]
+    if gear.teeth > 0.0:
+        return [(0.0, 0.0), *rim]
+    beyond = 1.0 + 2.0 * ALONG * module / lowest
+    return [*rim, *((beyond * x, beyond * y) for x, y in reversed(rim))]
 
 
 def tooth(gear: Gear, at: float, number: int) -> list[Point]:
@@ -133,8 +151,9 @@ def tooth(gear: Gear, at: float, number: int) -> list[Point]:
     """
     sign = -math.copysign(1.0, at)
     points = zip(*profile(gear, FILLET, FLANK), strict=True)  # from the root to the tip
-    side = [(math.atan2(x, y), math.hypot(x, y)) for x, y in points]
-    middle = number * 2.0 * math.pi / gear.teeth - sign * float(half_angle(gear, abs(at)))
+    side = [(math.atan2(x, abs(y)), math.hypot(x, y)) for x, y in points]
+    half = float(half_angle(gear, signed(abs(at), gear.teeth)))
+    middle = number * 2.0 * math.pi / abs(gear.teeth) - sign * half
     rim = [(middle - angle, r) for angle, r in side]
     rim += [(middle + angle, r) for angle, r in reversed(side)]
     return [(r * math.sin(angle), sign * r * math.cos(angle)) for angle, r in rim]
