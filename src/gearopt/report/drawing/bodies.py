@@ -22,14 +22,41 @@ Corner = tuple[float, float, float]  # x, y, z
 KEEP_OUT_REACH = 0.12  # of the box's larger side: keep-outs are drawn so far beyond box and motor
 
 
+@dataclass(frozen=True, kw_only=True)
+class RingDesign(GearDesign):
+    """A ring, its diameters above 0."""
+
+    outside_diameter_mm: float
+
+
+@dataclass(frozen=True)
+class Plate:
+    """A plate across a shaft that carries planets or a ring: its radius and ends along x [mm]."""
+
+    stage: int
+    shaft: int
+    reach: float
+    start: float
+    end: float
+
+
 @dataclass(frozen=True)
 class Bodies:
-    """Shafts with their gears and bearings, and which stages stand side by side."""
+    """Shafts with their gears and bearings, and which stages stand side by side.
+
+    Pins of planets are shafts whose numbers are below 0. plates: of carriers and rings.
+    """
 
     shafts: tuple[ShaftDesign, ...]
     gears: tuple[GearDesign, ...]
     slabs: tuple[tuple[int, ...], ...]
     bearings: tuple[BearingDesign, ...] = ()
+    plates: tuple[Plate, ...] = ()
+
+
+def widest(gear: GearDesign) -> float:
+    """The largest diameter of a gear [mm]."""
+    return gear.outside_diameter_mm if isinstance(gear, RingDesign) else gear.tip_diameter_mm
 
 
 Turning = Bodies | LayoutDesign  # what has shafts and gears

@@ -13,6 +13,7 @@ from gearopt.formulations.drive.layout.layout_design import (
 from gearopt.optimise.result import Result
 from gearopt.report.drawing.bodies import (
     Disc,
+    RingDesign,
     Turning,
     along,
     box_corners,
@@ -24,6 +25,7 @@ from gearopt.report.drawing.bodies import (
     motor,
     nearest,
     sides,
+    widest,
 )
 from gearopt.report.drawing.sheet import SIZE, Drawing, Place, Point, Sheet, Window, around, series
 from gearopt.report.measures import Measures
@@ -175,13 +177,18 @@ def gear_circles(
     for gear in gears:
         y, z = places[gear.shaft]
         colour = series(gear.stage)
-        sheet.circle(y, z, 0.5 * gear.tip_diameter_mm, "tip", colour, title(gear))
+        if isinstance(gear, RingDesign):
+            radii = 0.5 * gear.outside_diameter_mm, 0.5 * gear.tip_diameter_mm
+            sheet.ring(y, z, radii, "tip", colour, title(gear))
+        else:
+            sheet.circle(y, z, 0.5 * gear.tip_diameter_mm, "tip", colour, title(gear))
         sheet.circle(y, z, 0.5 * gear.reference_diameter_mm, "reference", colour)
 
 
 def gear_names(sheet: Sheet, train: Turning) -> None:
-    """Write the name of every gear, the largest first."""
-    for gear in sorted(train.gears, key=lambda g: -g.tip_diameter_mm):
+    """Write the name of every gear, the largest first; of planets one is named."""
+    named = {gear.name: gear for gear in reversed(train.gears)}
+    for gear in sorted([*named.values()][::-1], key=lambda g: -g.tip_diameter_mm):
         _name(sheet, train, gear)
 
 
@@ -246,10 +253,11 @@ def _name(sheet: Sheet, train: Turning, gear: GearDesign) -> None:
     """Write the gear's name where it is alone inside it, else outside with a line to it."""
     disc, others = gear_disc(train, gear), [g for g in train.gears if g.name != gear.name]
     discs = [gear_disc(train, g) for g in others]
-    centre, r = sheet.at(*disc.centre), disc.radius * sheet.scale
+    centre, r = sheet.at(*disc.centre), 0.5 * widest(gear) * sheet.scale
     half = Place(0, 0).half_width(gear.name)
     inside = around(centre, [share * r for share in (0.6, 0.75, 0.45) if share * r > 24.0])
-    inside = [p for p in inside if math.dist((p.x, p.y), centre) + 0.8 * half < r]
+    ring = isinstance(gear, RingDesign)
+    inside = [p for p in inside if math.dist((p.x, p.y), centre) + 0.8 * half < r and not ring]
     shared = [sum(_within(sheet, p, body) for body in discs) for p in inside]
     alone = [replace(p, cost=p.cost + 8.0 * n) for p, n in zip(inside, shared, strict=True)]
     outside = around(centre, (r + half + 6, r + half + 20, r + half + 40), r, 20.0)
@@ -332,9 +340,15 @@ def gears_on(
     """Draw the gears of a shaft as rectangles, and its centre line."""
     for gear in train.gears:
         if gear.shaft == shaft.shaft:
-            half = 0.5 * gear.tip_diameter_mm
-            a, b = (gear.from_mm, height - half), (gear.to_mm, height + half)
-            sheet.rectangle(a, b, "tip", series(gear.stage), meaning(gear, measures))
+            half, inner = 0.5 * widest(gear), 0.5 * gear.tip_diameter_mm
+            cuts = [(-half, half)]
+            if isinstance(gear, RingDesign):
+                cuts = [(-half, -inner), (inner, half)]
+            for low, high in cuts:
+                a, b = (gear.from_mm, height + low), (gear.to_mm, height + high)
+                sheet.rectangle(a, b, "tip", series(gear.stage), meaning(gear, measures))
+                if isinstance(gear, RingDesign):
+                    sheet.hatch(a, b)
             for z in (-0.5, 0.5):
                 level = height + z * gear.reference_diameter_mm
                 sheet.line((a[0], level), (b[0], level), "reference", series(gear.stage))
@@ -375,8 +389,14 @@ def face_widths(
 
 
 def side_name(sheet: Sheet, gear: GearDesign, height: float, text: str) -> None:
-    """Write the name of a gear in its rectangle, level or upright, else beside it."""
+    """Write the name of a gear in its rectangle, level or upright, else beside it.
+
+    Of a ring in the upper half of its section.
+    """
     r = 0.5 * gear.tip_diameter_mm * sheet.scale
+    if isinstance(gear, RingDesign):
+        height += 0.25 * (gear.outside_diameter_mm + gear.tip_diameter_mm)
+        r = 0.25 * (gear.outside_diameter_mm - gear.tip_diameter_mm) * sheet.scale
     wide = (gear.to_mm - gear.from_mm) * sheet.scale
     x, y = sheet.at(0.5 * (gear.from_mm + gear.to_mm), height)
     half = Place(0, 0).half_width(text)

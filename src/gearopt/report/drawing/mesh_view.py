@@ -28,7 +28,7 @@ HELICAL = (
     " in this section. Helical teeth touch along slanting lines: other sections are in contact at "
     "other moments, so that more pairs of teeth touch than one section shows"
 )
-SEVERAL = " Each mesh is drawn as seen from the end from which its {names} turns so."
+SEVERAL = " Each mesh is drawn as seen from the end from which its lower gear turns so."
 ROUNDING = 1e-9  # of a contact ratio: so near to a whole number it is that
 
 
@@ -49,10 +49,11 @@ def section(result: Result, measures: Measures) -> Section | None:
     alone = ALONE * any(carries_alone(pair, contact_path(pair)) for pair, _ in shown)
     below = "pinion" if all(names[0] == "pinion" for *_, names in rows) else "gear named first"
     turns = " or ".join(dict.fromkeys(TURNS[_driver(stage)] for stage in stages))
-    several = SEVERAL.format(names=below) * (len(rows) > 1)
     return Section(
         "Teeth in mesh",
-        words=(f"{WORDS.format(names=below, turns=turns)}{helical}{alone}.{several}",),
+        words=(
+            f"{WORDS.format(names=below, turns=turns)}{helical}{alone}.{SEVERAL * (len(rows) > 1)}",
+        ),
         drawings=tuple(drawing for _, drawing in shown),
     )
 

@@ -206,6 +206,18 @@ class Sheet:
         turns = (2.0 * math.pi * k / count for k in range(count))
         self._ink.add((cx + size * math.cos(t), cy + size * math.sin(t)) for t in turns)
 
+    def ring(
+        self, x: float, y: float, radii: Point, style: str, colour: str = "", title: str = ""
+    ) -> None:
+        """Draw what is between two circles [mm], the larger one first."""
+        (cx, cy), path = self.at(x, y), ""
+        for sweep, radius in enumerate(radii):
+            r = self.scale * radius
+            half = f"A {r:.2f} {r:.2f} 0 0 {sweep}"
+            path += f"M {cx - r:.2f} {cy:.2f} {half} {cx + r:.2f} {cy:.2f} "
+            path += f"{half} {cx - r:.2f} {cy:.2f} Z "
+        self.shape(path.strip(), style, colour, title)
+
     def rectangle(
         self, a: Point, b: Point, style: str, colour: str = "", title: str = "", round_: float = 0
     ) -> None:

@@ -7,11 +7,11 @@ from itertools import pairwise
 from typing import Any
 
 from gearopt.formulations.drive.layout.layout_design import GearDesign, ShaftDesign
-from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.physics.gears import MEMBERS
-from gearopt.report.drawing.bodies import Bodies, meaning
+from gearopt.report.drawing.bodies import Bodies, Plate, meaning, widest
+from gearopt.report.drawing.drawn_stage import DrawnStage
 from gearopt.report.drawing.layout_views import (
     LEVEL,
     face_widths,
@@ -36,34 +36,12 @@ CHAIN = 30.0  # px from the lowest circle to the dimensions of the centre distan
 MODULES = 26.0  # px from the face widths up to the modules: two lines that keep apart
 SIDE = (24.0, 44.0, 24.0, 60.0)  # px kept free around the side view
 MAX_STAGES = 100  # in one line; a drive has six at most
-
-
-@dataclass(frozen=True)
-class DrawnStage:
-    """Dimensions of a stage that are drawn, by the keys of a result."""
-
-    normal_module_mm: float
-    pinion_teeth: float
-    wheel_teeth: float
-    face_width_mm: float
-    pinion_diameter_mm: float
-    wheel_diameter_mm: float
-    pinion_tip_diameter_mm: float
-    wheel_tip_diameter_mm: float
-    centre_distance_mm: float
-    pinion_face_width_mm: float | None = None
-    wheel_face_width_mm: float | None = None
-    driver: str = "pinion"
-    idler: bool = False  # the pinion is the wheel of the stage before
-
-    @property
-    def members(self) -> tuple[str, ...]:
-        """The gear that drives and the one that is driven."""
-        return MEMBERS if self.driver == "pinion" else MEMBERS[::-1]
-
-    def width(self, member: str) -> float:
-        """Face width [mm] of a gear."""
-        return getattr(self, f"{member}_face_width_mm") or self.face_width_mm
+SET = 400.0  # px of the largest ring, at most
+NOT_SIZED = (
+    " Rings are hatched where they are cut; of the planets those are seen whose axes lie in the "
+    "plane of the shafts. Plates and pins of carriers, and plates that hold rings, are not of the "
+    "design: they show what turns with which shaft."
+)
 
 
 def section(result: Result, measures: Measures, hint: str = "") -> Section | None:
@@ -77,19 +55,22 @@ def section(result: Result, measures: Measures, hint: str = "") -> Section | Non
     name, sign, unit = measures.module
     webs = [circles(s, m) for s in result.design["stages"] for m in MEMBERS]
     inside = ", thin ones the insides of rims, hubs and bores" if any(webs) else ""
-    folded, single = is_folded(_picked(result.design["stages"])), len(result.design["stages"]) == 1
+    picked = _picked(result.design["stages"])
+    folded, single = is_folded(picked), len(picked) == 1
+    rings = any(stage.type != "parallel" for stage in picked)
     lie = ", the output in line with the input, as both stages have one distance" * folded
     gaps = ", and the gaps between the stages are only as wide as the labels need" * (not single)
     unfolded = "not of this drawing but of all shafts in one line, " if folded else "that "
-    total = f"{unfolded}over reference circles"
+    total = f" (the total length of the design is {unfolded}over reference circles)"
+    total = ", outside diameters of rings" if rings else total
     plural = f"modules {sign} in {unit}" if unit == "mm" else f"{name}es {sign} in {unit}"
     words = (
         f"{'Both' if single else 'All'} shafts are drawn in one plane{lie}: their positions are "
         f"not optimised{gaps}.{hint}",
         f"Drawn to one scale; dimensions in {measures.lengths}: centre distances, length over "
-        f"tip circles (the total length of the design is {total}), face widths b; {plural}; teeth "
-        f"z. Solid lines are tip circles, dash-dotted ones reference circles{inside}; numbers in "
-        "circles name the shafts, which are not drawn.",
+        f"tip circles{total}, face widths b; {plural}; teeth z. Solid lines are tip circles, "
+        f"dash-dotted ones reference circles{inside}; numbers in circles name the shafts, which "
+        f"are not drawn.{NOT_SIZED * rings}",
     )
     return Section("Gears with all shafts in one plane", words=words, drawings=drawn)
 
@@ -124,18 +105,56 @@ def _picked(stages: Sequence[Mapping[str, Any]]) -> Sequence[DrawnStage]:
 def is_drawn(stages: Sequence[Mapping[str, Any]]) -> bool:
     """Whether there are stages, and all sizes that are drawn of them."""
     keys = [f.name for f in fields(DrawnStage) if f.default is MISSING]
-    plain = all(stage.get("type", "parallel") == "parallel" for stage in stages)
-    return bool(stages) and plain and all(key in stage for stage in stages for key in keys)
+    of_rings = all(
+        s.get("type", "parallel") == "parallel" or s.get("ring_outside_diameter_mm") for s in stages
+    )
+    return bool(stages) and of_rings and all(key in stage for stage in stages for key in keys)
 
 
 def views(stages: Sequence[Mapping[str, Any]], measures: Measures) -> tuple[Drawing, ...]:
     """Draw a train along its shafts and across them; nothing where a size is not known."""
     if not is_drawn(stages):
         return ()
-    train, scale = _in_plane(_picked(stages))
+    picked = _picked(stages)
+    train, scale = _in_plane(picked)
     inner = {g.name: circles(stages[g.stage - 1], g.member) for g in train.gears}
-    front = view_along_shafts(train, scale, measures.length, lambda g: meaning(g, measures), inner)
-    return front, _side(train, scale, measures)
+    fronts = []
+    for numbers in _seen_together(picked):
+        part = _part(train, numbers)
+        front = view_along_shafts(
+            part, scale, measures.length, lambda g: meaning(g, measures), inner
+        )
+        if len(numbers) < len(stages) or picked[numbers[0] - 1].is_set:
+            front = replace(front, caption=_caption(picked, numbers))
+        fronts.append(front)
+    return *fronts, _side(train, scale, measures)
+
+
+def _seen_together(stages: Sequence[DrawnStage]) -> list[list[int]]:
+    """Numbers of stages, from 1, that one view along the shafts shows: each set alone."""
+    groups: list[list[int]] = []
+    for k, stage in enumerate(stages, 1):
+        if not groups or stage.is_set or stages[k - 2].is_set:
+            groups.append([])
+        groups[-1].append(k)
+    return groups
+
+
+def _part(train: Bodies, numbers: Sequence[int]) -> Bodies:
+    """What belongs to some stages."""
+    gears = tuple(g for g in train.gears if g.stage in numbers)
+    plates = tuple(p for p in train.plates if p.stage in numbers)
+    on = {gear.shaft for gear in gears} | {plate.shaft for plate in plates}
+    shafts = tuple(s for s in train.shafts if s.shaft in on)
+    return replace(train, shafts=shafts, gears=gears, plates=plates)
+
+
+def _caption(stages: Sequence[DrawnStage], numbers: Sequence[int]) -> str:
+    """What a view of some stages of several shows."""
+    named = f"Stage {numbers[0]}" if len(numbers) == 1 else f"Stages {numbers[0]} to {numbers[-1]}"
+    stage = stages[numbers[0] - 1]
+    words = f"; {stage.planets} planets, the {stage.fixed} is held" if stage.is_set else ""
+    return f"{named}, front view along the shafts{words}."
 
 
 def circles(stage: Mapping[str, Any], member: str) -> list[float]:
@@ -150,7 +169,8 @@ def circles(stage: Mapping[str, Any], member: str) -> list[float]:
 def is_folded(stages: Sequence[DrawnStage]) -> bool:
     """Whether the output is drawn in line with the input: two stages of one centre distance."""
     distances = [stage.centre_distance_mm for stage in stages]
-    return len(distances) == 2 and not stages[1].idler and math.isclose(*distances)
+    plain = len(stages) == 2 and not stages[1].idler
+    return plain and not any(s.is_set for s in stages) and math.isclose(*distances)
 
 
 def _in_plane(stages: Sequence[DrawnStage]) -> tuple[Bodies, float]:
@@ -168,16 +188,18 @@ def in_one_line(stages: Sequence[DrawnStage], folded: bool = False) -> tuple[Bod
         raise ValueError(f"{len(stages):,} stages cannot be drawn")
     axes = [0.0]
     for stage in stages:
-        axes.append(axes[-1] + stage.centre_distance_mm)
+        axes.append(axes[-1] + stage.offset)
     if folded:
         axes[2] = axes[0]
     rims = [
-        (axes[k + end], 0.5 * getattr(stage, f"{member}_tip_diameter_mm"))
+        (axes[k + end], 0.5 * diameter)
         for k, stage in enumerate(stages)
-        for end, member in enumerate(stage.members)
+        for end, diameter in enumerate(stage.largest)
     ]
     long = max(y + r for y, r in rims) - min(y - r for y, r in rims)
     scale = (WIDE - 2.0 * EDGE) / long  # no wheel is higher than the row is long
+    sets = [stage.largest[0] for stage in stages if stage.is_set]
+    scale = min(scale, SET / max(sets)) if sets else scale
     if not 0.0 < scale < math.inf:
         raise ValueError(f"stages {long:g} mm long cannot be drawn")
     wide = [max(map(stage.width, MEMBERS)) for stage in stages]
@@ -186,33 +208,24 @@ def in_one_line(stages: Sequence[DrawnStage], folded: bool = False) -> tuple[Bod
     idlers = [k for k, stage in enumerate(stages, 1) if stage.idler]  # their shafts
     for k in idlers:
         starts[k - 1], wide[k - 1] = starts[k - 2], wide[k - 2]
-    gears = [
-        GearDesign(
-            name=f"{'idler' if shaft in idlers else member} {k}",
-            stage=k,
-            member=member,
-            shaft=shaft,
-            teeth=getattr(stage, f"{member}_teeth"),
-            normal_module_mm=stage.normal_module_mm,
-            reference_diameter_mm=getattr(stage, f"{member}_diameter_mm"),
-            tip_diameter_mm=getattr(stage, f"{member}_tip_diameter_mm"),
-            root_diameter_mm=0.0,
-            helix_angle_deg=0.0,
-            from_mm=start + 0.5 * (wide[k - 1] - stage.width(member)),
-            to_mm=start + 0.5 * (wide[k - 1] + stage.width(member)),
-        )
-        for k, (stage, start) in enumerate(zip(stages, starts, strict=True), 1)
-        for shaft, member in list(enumerate(stage.members, k))[stage.idler :]
-    ]
+    gears: list[GearDesign] = []
+    pins: list[ShaftDesign] = []
+    plates: list[Plate] = []
+    for k, (stage, start) in enumerate(zip(stages, starts, strict=True), 1):
+        middle = start + 0.5 * wide[k - 1]
+        gears += stage.gears(k, middle, idlers)
+        pins += stage.pins(k, middle, axes[k - 1])
+        plates += stage.plates(k, middle, scale)
     shafts = []
     for k, y in enumerate(axes, 1):
-        on = [g for g in gears if g.shaft == k]
-        start, end = min(g.from_mm for g in on), max(g.to_mm for g in on)
+        on = [(g.from_mm, g.to_mm) for g in gears if g.shaft == k]
+        on += [(p.start, p.end) for p in plates if p.shaft == k]
+        start, end = min(a for a, _ in on), max(b for _, b in on)
         shafts.append(
             ShaftDesign(shaft=k, y_mm=y, z_mm=0.0, diameter_mm=0.0, from_mm=start, to_mm=end)
         )
     slabs = tuple((k,) for k, stage in enumerate(stages, 1) if not stage.idler)
-    return Bodies(tuple(shafts), tuple(gears), slabs), scale
+    return Bodies((*shafts, *pins), tuple(gears), slabs, plates=tuple(plates)), scale
 
 
 def _along(widths: Sequence[float], scale: float) -> tuple[float, list[float]]:
@@ -228,9 +241,9 @@ def _along(widths: Sequence[float], scale: float) -> tuple[float, list[float]]:
 
 
 def _ends(train: Bodies) -> tuple[float, float]:
-    """The ends of the row of gears, over tip circles [mm]."""
+    """The ends of the row of gears, over tip circles and rings [mm]."""
     places = {s.shaft: s.y_mm for s in train.shafts}
-    rims = [(places[g.shaft], 0.5 * g.tip_diameter_mm) for g in train.gears]
+    rims = [(places[g.shaft], 0.5 * widest(g)) for g in train.gears]
     return min(y - r for y, r in rims), max(y + r for y, r in rims)
 
 
@@ -247,21 +260,28 @@ def view_along_shafts(
     diameters [mm] of circles inside the teeth, by the name of a gear.
     """
     left, right = _ends(train)
-    high = max(0.5 * g.tip_diameter_mm for g in train.gears)
+    high = max(0.5 * widest(g) for g in train.gears)
     if scale * high < LOW:
         high += NAMES / scale
-    axes = sorted({s.y_mm for s in train.shafts})
+    shafts = [s for s in train.shafts if s.shaft > 0]
+    axes = sorted({s.y_mm for s in shafts})
     texts = [length(b - a) for a, b in pairwise(axes)]
     narrow = sum(
         scale * (b - a) < _room(text) for (a, b), text in zip(pairwise(axes), texts, strict=True)
     )
     below = CHAIN + min(narrow, ROWS) * ROW + 46.0
     sheet = Sheet(Window(left, right, -high, high, (EDGE, EDGE, below, 44.0)), scale)
-    places = {s.shaft: (s.y_mm, 0.0) for s in train.shafts}
+    places = {s.shaft: (s.y_mm, s.z_mm) for s in train.shafts}
     gear_circles(sheet, train, places, title)
     for gear in train.gears:
         for diameter in (inner or {}).get(gear.name, ()):
             sheet.circle(*places[gear.shaft], 0.5 * diameter, "body", series(gear.stage))
+    pins = [s for s in train.shafts if s.shaft < 0]
+    for pin in pins[:1]:
+        sheet.circle(axes[0], 0.0, math.dist((axes[0], 0.0), (pin.y_mm, pin.z_mm)), "centres")
+    for pin in pins:
+        sheet.circle(pin.y_mm, pin.z_mm, 0.5 * pin.diameter_mm, "shaft", title="pin")
+        sheet.cross(pin.y_mm, pin.z_mm, 0.5 * pin.diameter_mm)
     level = sheet.at(0.0, -high)[1] + CHAIN
     for y in axes:
         x = sheet.at(y, 0.0)[0]
@@ -269,11 +289,12 @@ def view_along_shafts(
         sheet.tick((x, level - CHAIN), (x, level + 5.0))
         ways = (0.0, -12.0, 12.0, -24.0, 24.0)
         spots = [Place(x + dx, 16.0, 0.0, abs(dx), (x, 28.0)) for dx in ways]
-        for shaft in (s for s in train.shafts if s.y_mm == y):
+        for shaft in (s for s in shafts if s.y_mm == y):
             sheet.balloon(str(shaft.shaft), spots)
     sheet.line((left - 6.0 / scale, 0.0), (right + 6.0 / scale, 0.0), "axis")
     away = sheet.height - 18.0 - sheet.at(0.0, -high)[1]
-    sheet.dimension((left, -high), (right, -high), away, length(right - left))
+    sign = "⌀ " if len(axes) == 1 else ""
+    sheet.dimension((left, -high), (right, -high), away, f"{sign}{length(right - left)}")
     for (a, b), text in reversed(list(zip(pairwise(axes), texts, strict=True))):
         _distance(sheet, sheet.at(a, 0.0)[0], sheet.at(b, 0.0)[0], level, text)
     gear_names(sheet, train)
@@ -302,30 +323,53 @@ def _room(text: str) -> float:
 
 def _side(train: Bodies, scale: float, measures: Measures) -> Drawing:
     """Draw the view across the shafts: gears as rectangles, with face width and module."""
-    (left, right), shafts = _ends(train), train.shafts
+    (left, right), shafts = _ends(train), [s for s in train.shafts if s.z_mm == 0.0]
     places = {s.shaft: s.y_mm for s in shafts}
     long = sum(max(PITCH, scale * b + STAGE_GAP) for b in _widths(train)) / scale
     sheet = Sheet(Window(0.0, long, left, right, SIDE), scale)
     tops: dict[int, float] = {}
+    for plate in train.plates:
+        y = places[plate.shaft]
+        a, b = (plate.start, y - plate.reach), (plate.end, y + plate.reach)
+        sheet.rectangle(a, b, "shaft", title=f"plate of stage {plate.stage}")
     for shaft in shafts:
         gears_on(sheet, train, shaft, shaft.y_mm, measures)
-    for gear in train.gears:
-        top = places[gear.shaft] + 0.5 * gear.tip_diameter_mm
+        if shaft.shaft < 0:
+            half = 0.5 * shaft.diameter_mm
+            a, b = (shaft.from_mm, shaft.y_mm - half), (shaft.to_mm, shaft.y_mm + half)
+            sheet.rectangle(a, b, "shaft", title="pin")
+    seen = [gear for gear in train.gears if gear.shaft in places]
+    for gear in seen:
+        top = places[gear.shaft] + 0.5 * widest(gear)
         tops[gear.stage] = max(top, tops.get(gear.stage, top))
-    for gear in (g for g in train.gears if g.member == "wheel" and (g.stage,) in train.slabs):
+    for gear in (g for g in seen if g.member == "wheel" and (g.stage,) in train.slabs):
         x = sheet.at(0.5 * (gear.from_mm + gear.to_mm), 0.0)[0]
         module = measures.of_module(gear.normal_module_mm)
         sheet.label(f"{measures.module[1]} {number(module)}", [Place(x, LEVEL - MODULES)], "size")
     face_widths(sheet, train, tops, measures)
-    for shaft in shafts:
-        folded = any(s.y_mm == shaft.y_mm and s.shaft > shaft.shaft for s in shafts)
-        end, beside = (shaft.from_mm, -20.0) if folded else (shaft.to_mm, 20.0)
-        x, y = sheet.at(end, shaft.y_mm)
-        spots = [Place(x + beside, y + dy, 0.0, abs(dy), (x, y)) for dy in (0.0, -14.0, 14.0)]
-        sheet.balloon(str(shaft.shaft), spots)
-    for gear in sorted(train.gears, key=lambda g: -g.tip_diameter_mm):
-        side_name(sheet, gear, places[gear.shaft], f"z {number(gear.teeth)}")
+    for shaft in (s for s in shafts if s.shaft > 0):
+        _numbered(sheet, train, shaft)
+    for gear in sorted(seen, key=lambda g: -g.tip_diameter_mm):
+        called = "" if gear.member in MEMBERS and not train.plates else f"{gear.name.split()[0]} "
+        side_name(sheet, gear, places[gear.shaft], f"{called}z {number(gear.teeth)}")
     return sheet.drawing("side view", "Side view, across the shafts.")
+
+
+def _numbered(sheet: Sheet, train: Bodies, shaft: ShaftDesign) -> None:
+    """Write the number of a shaft at its end, or between the stages where others are in line."""
+    k, sets = shaft.shaft, {-pin.shaft // 100 for pin in train.shafts if pin.shaft < 0}
+    others = [s for s in train.shafts if s.y_mm == shaft.y_mm and s.shaft > 0 and s != shaft]
+    folded = any(s.shaft > k for s in others)
+    end, beside = (shaft.from_mm, -20.0) if folded else (shaft.to_mm, 20.0)
+    if others and sets & {k - 1, k}:
+        before = max((g.to_mm for g in train.gears if g.stage == k - 1), default=None)
+        after = min((g.from_mm for g in train.gears if g.stage == k), default=None)
+        if before is not None and after is not None:
+            end, beside = 0.5 * (before + after), 0.0
+    x, y = sheet.at(end, shaft.y_mm)
+    ways = [(dy, (x, y) if beside or dy else None) for dy in (0.0, -14.0, 14.0)]
+    spots = [Place(x + beside, y + dy, 0.0, abs(dy), leader) for dy, leader in ways]
+    sheet.balloon(str(shaft.shaft), spots)
 
 
 def _widths(train: Bodies) -> list[float]:

@@ -7,8 +7,9 @@ from gearopt.formulations.drive.layout.layout_design import GearDesign
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.report.design_tables import ratio_tile
+from gearopt.report.drawing.drawn_stage import DrawnStage
 from gearopt.report.drawing.number_line import Guide, Span, number_line
-from gearopt.report.drawing.train_views import DrawnStage, in_one_line, view_along_shafts
+from gearopt.report.drawing.train_views import in_one_line, view_along_shafts
 from gearopt.report.kinds import generic
 from gearopt.report.measures import METRIC, Measures
 from gearopt.report.section import Section, Tile

@@ -382,7 +382,9 @@ def _in_one_line(result: Result, measures: Measures) -> Section | None:
     asks = " A [layout] table in the file places the gears in the smallest box."
     shown, sized = _with_gears(result)
     stages = shown.design.get("stages", ())
-    not_laid = any(stage.get("idler") or stage.get("driver") == "wheel" for stage in stages)
+    not_laid = any(
+        stage.get("idler") or stage.get("driver") == "wheel" or "type" in stage for stage in stages
+    )
     hint = "" if sized or not_laid or result.status == "evaluated" else asks
     drawn = train_views.section(shown, measures, hint)
     return replace(drawn, heading=f"{sized}, all shafts in one plane") if drawn and sized else drawn

@@ -13,6 +13,7 @@ from gearopt.optimise.typed import Shown
 from gearopt.physics.gears import Gear
 from gearopt.physics.planetary import assembly
 from gearopt.physics.planetary.kinematics import Balance, Mesh, balances, speeds
+from gearopt.report.drawing.drawn_stage import ENDS
 from gearopt.report.drawing.planetary_view import GearSet, Wheel, animation
 from gearopt.report.drawing.player import Animation
 from gearopt.report.drawing.solid import outline
@@ -21,11 +22,6 @@ from gearopt.report.kinds.drive.planetary_solid import figure
 from gearopt.report.measures import Measures
 from gearopt.report.section import Section, Table, records, side_by_side
 
-ENDS = {  # members that a pair's pinion and wheel stand for, by the one that is held
-    "ring": ("sun", "carrier"),
-    "sun": ("ring", "carrier"),
-    "carrier": ("sun", "ring"),
-}
 POINTS = 8_000  # of the outlines of a set
 FLANKS = (10, 8, 6, 5, 4, 3, 2)  # points on a flank
 TRUE = (

@@ -1,0 +1,164 @@
+"""A stage as it is drawn: its gears, the pins of its planets, and the plates that hold them."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from gearopt.formulations.drive.layout.layout_design import GearDesign, ShaftDesign
+from gearopt.frozen import dataclass
+from gearopt.physics.gears import MEMBERS
+from gearopt.physics.planetary import assembly
+from gearopt.report.drawing.bodies import Plate, RingDesign
+
+ENDS = {  # members that a pair's pinion and wheel stand for, by the one that is held
+    "ring": ("sun", "carrier"),
+    "sun": ("ring", "carrier"),
+    "carrier": ("sun", "ring"),
+}
+PLATE = (2.0, 7.0)  # px from the gears to a plate, and to its other face
+PIN = 0.35  # of a planet's reference diameter: a pin as it is drawn
+PINS = 100  # numbers of pins of a stage
+
+
+@dataclass(frozen=True)
+class DrawnStage:
+    """Dimensions of a stage that are drawn, by the keys of a result."""
+
+    normal_module_mm: float
+    pinion_teeth: float
+    wheel_teeth: float
+    face_width_mm: float
+    pinion_diameter_mm: float
+    wheel_diameter_mm: float
+    pinion_tip_diameter_mm: float
+    wheel_tip_diameter_mm: float
+    centre_distance_mm: float
+    pinion_face_width_mm: float | None = None
+    wheel_face_width_mm: float | None = None
+    driver: str = "pinion"
+    idler: bool = False  # the pinion is the wheel of the stage before
+    type: str = "parallel"
+    fixed: str = ""
+    planets: int | None = None
+    ring_teeth: float | None = None
+    ring_diameter_mm: float | None = None
+    ring_tip_diameter_mm: float | None = None
+    ring_outside_diameter_mm: float | None = None
+
+    @property
+    def is_set(self) -> bool:
+        """Whether it has planets, its shafts being in one line."""
+        return self.type == "planetary"
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """The member that drives and the one that is driven."""
+        ends = ENDS[self.fixed] if self.is_set else MEMBERS
+        return ends if self.driver == "pinion" else ends[::-1]
+
+    @property
+    def offset(self) -> float:
+        """Distance of its shafts [mm]."""
+        return 0.0 if self.is_set else self.centre_distance_mm
+
+    @property
+    def largest(self) -> tuple[float, float]:
+        """Diameters [mm] of all that is about the first and about the second shaft."""
+        outside = self.ring_outside_diameter_mm or 0.0
+        if self.is_set:
+            return outside, outside
+        first, second = (getattr(self, f"{member}_tip_diameter_mm") for member in self.members)
+        return first, max(second, outside)
+
+    def width(self, member: str) -> float:
+        """Face width [mm] of a gear."""
+        return getattr(self, f"{member}_face_width_mm") or self.face_width_mm
+
+    @property
+    def turns(self) -> list[float]:
+        """Angles of the planets [rad], as equal as teeth allow."""
+        whole = round(self.pinion_teeth + (self.ring_teeth or 0.0))
+        where = assembly.spread(whole, self.planets or 1).tolist()
+        return [2.0 * math.pi * place / whole for place in where]
+
+    def gears(self, k: int, middle: float, idlers: Sequence[int]) -> list[GearDesign]:
+        """Gears of the stage of number k, about a middle along the shafts [mm]; idlers: shafts."""
+        rows = list(enumerate(self.members, k))[self.idler :]
+        if not self.is_set:
+            return [self._gear(k, member, shaft, middle, idlers) for shaft, member in rows]
+        shafts = {member: shaft for shaft, member in rows}
+        planets = [-(PINS * k + n) for n in range(len(self.turns))]
+        on = [("pinion", "sun", shafts.get("sun", k)), *(("wheel", "planet", n) for n in planets)]
+        made = [self._round(k, member, name, at, middle) for member, name, at in on]
+        return [*made, self._ring(k, shafts.get("ring", k), middle)]
+
+    def _gear(
+        self, k: int, member: str, shaft: int, middle: float, idlers: Sequence[int]
+    ) -> GearDesign:
+        if self.type == "internal" and member == "wheel":
+            return self._ring(k, shaft, middle)
+        return self._round(k, member, "idler" if shaft in idlers else member, shaft, middle)
+
+    def _round(self, k: int, member: str, name: str, shaft: int, middle: float) -> GearDesign:
+        """A gear with teeth outside."""
+        sizes = ("teeth", "diameter_mm", "tip_diameter_mm")
+        teeth, d, tip = (getattr(self, f"{member}_{size}") for size in sizes)
+        planet = "planet" if name == "planet" else member
+        return GearDesign(
+            **self._of(k, planet, name, shaft, middle, self.width(member), teeth, d, tip)
+        )
+
+    def _ring(self, k: int, shaft: int, middle: float) -> RingDesign:
+        sizes = self.ring_teeth, self.ring_diameter_mm, self.ring_tip_diameter_mm
+        own = self._of(k, "wheel", "ring", shaft, middle, self.face_width_mm, *sizes)
+        return RingDesign(**own, outside_diameter_mm=self.ring_outside_diameter_mm or 0.0)
+
+    def _of(
+        self, k: int, member: str, name: str, shaft: int, middle: float, b: float, *sizes: Any
+    ) -> dict[str, Any]:
+        """Words of a gear of teeth, reference and tip diameter."""
+        return {
+            "name": f"{name} {k}",
+            "stage": k,
+            "member": member,
+            "shaft": shaft,
+            "teeth": sizes[0],
+            "normal_module_mm": self.normal_module_mm,
+            "reference_diameter_mm": sizes[1],
+            "tip_diameter_mm": sizes[2],
+            "root_diameter_mm": 0.0,
+            "helix_angle_deg": 0.0,
+            "from_mm": middle - 0.5 * b,
+            "to_mm": middle + 0.5 * b,
+        }
+
+    def pins(self, k: int, middle: float, y: float) -> list[ShaftDesign]:
+        """Pins of the planets of the stage of number k, about an axis y [mm]."""
+        a, half = self.centre_distance_mm, 0.5 * self.face_width_mm
+        return [
+            ShaftDesign(
+                shaft=-(PINS * k + n),
+                y_mm=y + a * math.cos(turn),
+                z_mm=0.0 if math.isclose(abs(math.cos(turn)), 1.0) else a * math.sin(turn),
+                diameter_mm=PIN * self.wheel_diameter_mm,
+                from_mm=middle - half,
+                to_mm=middle + half,
+            )
+            for n, turn in enumerate(self.turns if self.is_set else [])
+        ]
+
+    def plates(self, k: int, middle: float, scale: float) -> list[Plate]:
+        """Plates of the carrier, and of a ring that turns, beside the gears; scale [px/mm]."""
+        shafts = {member: shaft for shaft, member in enumerate(self.members, k)}
+        outer, reach = 0.5 * (self.ring_outside_diameter_mm or 0.0), self.centre_distance_mm
+        reach += PIN * self.wheel_diameter_mm
+        ring = shafts.get("ring") if self.is_set else shafts["wheel"]
+        rows = [(ring, outer)] if ring is not None and self.type != "parallel" else []
+        if self.is_set:
+            rows.append((shafts.get("carrier", 2 * k + 1 - (ring or k)), reach))
+        made = []
+        for shaft, radius in rows:
+            side = 1.0 if shaft > k else -1.0
+            start, end = (middle + side * (0.5 * self.face_width_mm + px / scale) for px in PLATE)
+            made.append(Plate(k, shaft, radius, min(start, end), max(start, end)))
+        return made
