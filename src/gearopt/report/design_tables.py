@@ -32,6 +32,13 @@ PAGE_ONLY = {
     *("pinion_mass_kg", "wheel_mass_kg", "mass_kg"),
 }
 EXACT_RATIO = 1e-11  # relative error of a ratio below which it is rounding
+MATES = {
+    "parallel": ("pinion", "wheel"),
+    "planetary": ("sun", "planet"),
+    "internal": ("pinion", "ring"),
+}
+OF_SETS = "sun_teeth", "planet_teeth"  # the teeth z1 and z2 of planetary stages
+OF_LINES = "sum_of_centre_distances_mm", "total_length_mm"  # of shafts beside each other
 LISTED = {"between": ("from", "to")}  # lists of as many values: what each is called
 
 
@@ -51,12 +58,19 @@ def design_section(result: Result, measures: Measures) -> Section | None:
     if not design:
         return None
     stages = design.pop("stages", [])
+    if types(stages) - {"parallel"}:
+        design = {key: value for key, value in design.items() if key not in OF_LINES}
     chosen = result.report.get("chosen", ())
     shown = [stage_table(stages, measures, chosen=chosen)] if stages else []
     shown += tables_of("", design, measures)
     short = [table for table in shown if table.name in ("stages", "totals", "costs")]
     known = result.value is not None or result.given
     return Section("Design", tables=shown, terminal=short if known else ())
+
+
+def types(stages: Sequence[Mapping[str, Any]]) -> frozenset[str]:
+    """Types of stages."""
+    return frozenset(stage.get("type", "parallel") for stage in stages)
 
 
 def stage_table(
@@ -73,9 +87,9 @@ def stage_table(
     rows, hidden, absent = [], [], False
     for key, (_, unit) in STAGE_ROWS.items():
         every_stage = _own_teeth(key, stages) if key in OF_TEETH else all(key in s for s in stages)
-        if not (every_stage or key in chosen):
+        if not (every_stage or key in chosen) or key in OF_SETS:
             continue
-        label = stage_label(key, measures)
+        label = stage_label(key, measures, types(stages))
         if key == MODULE:
             rows.append([label, *(measures.of_module(s[key]) for s in stages)])
             continue
@@ -105,11 +119,19 @@ def _own_teeth(key: str, stages: Sequence[Mapping[str, Any]]) -> bool:
     return len(values) > 1 or not (key in OF_FILE or values == {OF_TEETH[key]})
 
 
-def stage_label(key: str, measures: Measures) -> str:
-    """Label of a key of a stage, with its unit."""
+def stage_label(key: str, measures: Measures, kinds: Collection[str] = ("parallel",)) -> str:
+    """Label of a key of a stage, with its unit; kinds: types of the stages that stand beside."""
     if key == MODULE:
         return "{} {} [{}]".format(*measures.module)
     words, unit = STAGE_ROWS.get(key, (key, ""))
+    member, *_ = key.split("_")
+    if {*kinds} != {"parallel"} and member in MATES["parallel"]:
+        named = dict.fromkeys(
+            MATES[kind][MATES["parallel"].index(member)] for kind in sorted(kinds)
+        )
+        words = f"{words.replace(f'{member} ', '')} of the {' or '.join(named)}"
+    elif key == "mass_kg" and {*kinds} != {"parallel"}:
+        words = "mass of the gears"
     return f"{words} [{measures.unit(unit)}]" if unit else words
 
 
@@ -153,18 +175,21 @@ def trains(result: Result, measures: Measures) -> Section | None:
         f"{words} {k}" for k in range(1, stages + 1) for words in (*teeth_heads(measures), "a")
     ]
     single = [f"{h} [{length}]" if h[0] == "a" else h for h in single]
+    teeth = teeth_head(measures)
+    if any(stage.get("ring_teeth") for train in ranked for stage in train["stages"]):
+        teeth += "/z_r"
     rows = [_train_row(k, train, minimum, unit, measures) for k, train in enumerate(ranked, 1)]
     widest = max(len(row) for row in rows)
     rows = [row + [""] * (widest - len(row)) for row in rows]  # of trains of fewer stages
     first, last = names
-    heads = ("", first, "above the best, %", "ratio", teeth_head(measures), last, *single)
+    heads = ("", first, "above the best, %", "ratio", teeth, last, *single)
     table = Table(
         "best trains",
         heads,
         rows,
         page_only=("above the best, %",),
         csv_only=single,
-        read_only=(teeth_head(measures), last),
+        read_only=(teeth, last),
         short=names,
         left=6,
         wrap=6,
@@ -187,7 +212,9 @@ def _train_row(
 ) -> list[Any]:
     stages, extra = train["stages"], 100.0 * (train["objective"] / minimum - 1.0)
     gears = [(measures.of_module(s[MODULE]), s["pinion_teeth"], s["wheel_teeth"]) for s in stages]
-    teeth = "; ".join(f"{m:g}, {a}/{b}" for m, a, b in gears)
+    rings = [f"/{ring}" if (ring := s.get("ring_teeth")) else "" for s in stages]
+    rows = zip(gears, rings, strict=True)
+    teeth = "; ".join(f"{m:g}, {a}/{b}{ring}" for (m, a, b), ring in rows)
     sizes = [cell(s["centre_distance_mm"], "mm", measures) for s in stages]
     single = [value for gear, size in zip(gears, sizes, strict=True) for value in (*gear, size)]
     return [

@@ -8,7 +8,7 @@ from typing import Any
 from gearopt.formulations.drive.rating import DriveRating, MeshRating
 from gearopt.optimise.result import Result
 from gearopt.physics.gears import MEMBERS
-from gearopt.report.design_tables import design_section, stage_label
+from gearopt.report.design_tables import design_section, stage_label, types
 from gearopt.report.kinds.drive.rating_words import FRICTION, ROUNDING, rating_of, safety
 from gearopt.report.measures import Measures
 from gearopt.report.section import ABSENT, Cell, Section, Table, cell, listed_fields, side_by_side
@@ -46,7 +46,8 @@ def beside(table: Table, result: Result, measures: Measures) -> Table:
     """Stages or totals without what a rating, or the only stage, shows of them."""
     stages, hidden = result.design["stages"], set(IN_DESIGN)
     if table.name == "stages":
-        return replace(table, csv_only=[stage_label(key, measures) for key in hidden])
+        labels = [stage_label(key, measures, types(stages)) for key in hidden]
+        return replace(table, csv_only=labels)
     if table.name != "totals":
         return table
     if len(stages) == 1:
