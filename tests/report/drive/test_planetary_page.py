@@ -106,7 +106,7 @@ def test_a_pin_carries_the_forces_of_both_meshes():
 
 def test_planets_are_where_their_teeth_fit_and_as_far_apart_as_told():
     for stage in stages()[:3]:
-        rows = planetary.planets(stage, 1)
+        rows = planetary.planets(stage)
         whole = stage.sun_teeth + stage.ring_teeth
         angles = np.array([row.angle_deg for row in rows])
         assert np.allclose(np.mod(angles * whole / 360.0 + 0.5, 1.0), 0.5)
@@ -200,7 +200,7 @@ def test_views_of_the_train_are_to_scale():
         x, y = drawn[:, 0] / scale, -drawn[:, 1] / scale
         sun = np.argmin(np.abs(drawn[:, 2] / scale - stage.pinion_tip_diameter_mm / 2))
         at = np.delete((x - x[sun]) + 1j * (y - y[sun]), sun)
-        meant = [math.radians(row.angle_deg) for row in planetary.planets(stage, 1)]
+        meant = [math.radians(row.angle_deg) for row in planetary.planets(stage)]
         places = stage.centre_distance_mm * np.exp(1j * np.array(meant))
         assert np.allclose(np.sort_complex(at.round(1)), np.sort_complex(places.round(1)), atol=0.2)
     assert f"{stages()[3].centre_distance_mm:.2f}" in texts[3]

@@ -144,11 +144,16 @@ def _places(request: Request, z: Sequence[int]) -> Iterator[Place]:
         sun, _, _, ring = request.sets(z)[k]
         for j, place in enumerate(assembly.spread(count, n).tolist()):
             turn = Fraction(j, n) if request.equal else Fraction(place, int(count))
-            yield Place(
-                planets=PLANETS[k],
-                planet=j + 1,
-                angle_deg=360.0 * float(turn),
-                turn=str(turn),
-                sun_phase=float(sun * turn % 1),
-                ring_phase=float(ring * turn % 1),
-            )
+            yield place_at(PLANETS[k], j + 1, turn, sun, ring)
+
+
+def place_at(of: str, planet: int, turn: Fraction, sun: int, ring: int) -> Place:
+    """The place of a planet, its number from 1, at a part of a turn; teeth of sun and ring."""
+    return Place(
+        planets=of,
+        planet=planet,
+        angle_deg=360.0 * float(turn),
+        turn=str(turn),
+        sun_phase=float(sun * turn % 1),
+        ring_phase=float(ring * turn % 1),
+    )

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 from gearopt.formulations.drive.layout.layout_design import GearDesign, ShaftDesign
 from gearopt.frozen import dataclass
@@ -67,12 +66,12 @@ class DrawnStage:
         outside = self.ring_outside_diameter_mm or 0.0
         if self.is_set:
             return outside, outside
-        first, second = (getattr(self, f"{member}_tip_diameter_mm") for member in self.members)
-        return first, max(second, outside)
+        ends = self.pinion_tip_diameter_mm, max(self.wheel_tip_diameter_mm, outside)
+        return ends if self.driver == "pinion" else ends[::-1]
 
     def width(self, member: str) -> float:
         """Face width [mm] of a gear."""
-        return getattr(self, f"{member}_face_width_mm") or self.face_width_mm
+        return getattr(self, f"{member}_face_width_mm", None) or self.face_width_mm
 
     @property
     def turns(self) -> list[float]:
@@ -83,54 +82,42 @@ class DrawnStage:
 
     def gears(self, k: int, middle: float, idlers: Sequence[int]) -> list[GearDesign]:
         """Gears of the stage of number k, about a middle along the shafts [mm]; idlers: shafts."""
-        rows = list(enumerate(self.members, k))[self.idler :]
-        if not self.is_set:
-            return [self._gear(k, member, shaft, middle, idlers) for shaft, member in rows]
-        shafts = {member: shaft for shaft, member in rows}
-        planets = [-(PINS * k + n) for n in range(len(self.turns))]
-        on = [("pinion", "sun", shafts.get("sun", k)), *(("wheel", "planet", n) for n in planets)]
-        made = [self._round(k, member, name, at, middle) for member, name, at in on]
-        return [*made, self._ring(k, shafts.get("ring", k), middle)]
+        shafts = {member: shaft for shaft, member in enumerate(self.members, k)}
+        if self.is_set:
+            parts = [("pinion", "sun", shafts.get("sun", k))]
+            parts += [("wheel", "planet", -(PINS * k + n)) for n in range(len(self.turns))]
+            parts.append(("ring", "ring", shafts.get("ring", k)))
+        else:
+            ring = self.type == "internal"
+            rows = [*shafts.items()][self.idler :]
+            parts = [("ring" if ring and m == "wheel" else m, m, shaft) for m, shaft in rows]
+        made = []
+        for part, name, shaft in parts:
+            called = "idler" if shaft in idlers else "ring" if part == "ring" else name
+            made.append(self._gear(part, f"{called} {k}", k, shaft, middle))
+        return made
 
-    def _gear(
-        self, k: int, member: str, shaft: int, middle: float, idlers: Sequence[int]
-    ) -> GearDesign:
-        if self.type == "internal" and member == "wheel":
-            return self._ring(k, shaft, middle)
-        return self._round(k, member, "idler" if shaft in idlers else member, shaft, middle)
-
-    def _round(self, k: int, member: str, name: str, shaft: int, middle: float) -> GearDesign:
-        """A gear with teeth outside."""
-        sizes = ("teeth", "diameter_mm", "tip_diameter_mm")
-        teeth, d, tip = (getattr(self, f"{member}_{size}") for size in sizes)
-        planet = "planet" if name == "planet" else member
-        return GearDesign(
-            **self._of(k, planet, name, shaft, middle, self.width(member), teeth, d, tip)
-        )
-
-    def _ring(self, k: int, shaft: int, middle: float) -> RingDesign:
-        sizes = self.ring_teeth, self.ring_diameter_mm, self.ring_tip_diameter_mm
-        own = self._of(k, "wheel", "ring", shaft, middle, self.face_width_mm, *sizes)
-        return RingDesign(**own, outside_diameter_mm=self.ring_outside_diameter_mm or 0.0)
-
-    def _of(
-        self, k: int, member: str, name: str, shaft: int, middle: float, b: float, *sizes: Any
-    ) -> dict[str, Any]:
-        """Words of a gear of teeth, reference and tip diameter."""
-        return {
-            "name": f"{name} {k}",
+    def _gear(self, part: str, name: str, k: int, shaft: int, middle: float) -> GearDesign:
+        """A gear; part: the first word of its keys."""
+        b = self.width(part)
+        words = {
+            "name": name,
             "stage": k,
-            "member": member,
+            "member": part,
             "shaft": shaft,
-            "teeth": sizes[0],
+            "teeth": getattr(self, f"{part}_teeth"),
             "normal_module_mm": self.normal_module_mm,
-            "reference_diameter_mm": sizes[1],
-            "tip_diameter_mm": sizes[2],
+            "reference_diameter_mm": getattr(self, f"{part}_diameter_mm"),
+            "tip_diameter_mm": getattr(self, f"{part}_tip_diameter_mm"),
             "root_diameter_mm": 0.0,
             "helix_angle_deg": 0.0,
             "from_mm": middle - 0.5 * b,
             "to_mm": middle + 0.5 * b,
         }
+        outside = self.ring_outside_diameter_mm
+        if part == "ring" and outside is not None:
+            return RingDesign(**words, outside_diameter_mm=outside)
+        return GearDesign(**words)
 
     def pins(self, k: int, middle: float, y: float) -> list[ShaftDesign]:
         """Pins of the planets of the stage of number k, about an axis y [mm]."""

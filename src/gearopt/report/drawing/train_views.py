@@ -342,7 +342,8 @@ def _side(train: Bodies, scale: float, measures: Measures) -> Drawing:
     for gear in seen:
         top = places[gear.shaft] + 0.5 * widest(gear)
         tops[gear.stage] = max(top, tops.get(gear.stage, top))
-    for gear in (g for g in seen if g.member == "wheel" and (g.stage,) in train.slabs):
+    wheels = {g.stage: g for g in seen if g.member != "pinion" and (g.stage,) in train.slabs}
+    for gear in wheels.values():
         x = sheet.at(0.5 * (gear.from_mm + gear.to_mm), 0.0)[0]
         module = measures.of_module(gear.normal_module_mm)
         sheet.label(f"{measures.module[1]} {number(module)}", [Place(x, LEVEL - MODULES)], "size")

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from gearopt.formulations.drive.design import StageDesign, drive_design
+from gearopt.formulations.epicyclic.design import Place, place_at
 from gearopt.frozen import dataclass
 from gearopt.optimise.result import Result
 from gearopt.optimise.typed import Shown
@@ -71,18 +72,6 @@ class Member:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Planet:
-    """Where a planet is, and phases of its meshes against the first one's, in pitches."""
-
-    stage: Annotated[int, Shown("stage")]
-    planet: Annotated[int, Shown("planet")]
-    angle_deg: Annotated[float, Shown("angle", unit="deg", form=".6f")]
-    turn: Annotated[str, Shown("of a turn")]
-    sun_phase: Annotated[float, Shown("phase at the sun", form=".4f")]
-    ring_phase: Annotated[float, Shown("phase at the ring", form=".4f")]
-
-
-@dataclass(frozen=True, kw_only=True)
 class PlanetLoad:
     """What a planet and its pin carry."""
 
@@ -137,22 +126,13 @@ def members(stage: StageDesign, number: int) -> list[Member]:
     return rows
 
 
-def planets(stage: StageDesign, number: int) -> list[Planet]:
+def planets(stage: StageDesign, number: int = 1) -> list[Place]:
     """Places of the planets of a stage (its number from 1), as equal as teeth allow."""
     z_s, z_p, z_r = _teeth(stage)
-    count, n = int(assembly.places(z_s, z_p, z_p, z_r)), stage.planets or 1
-    turns = [Fraction(place, count) for place in assembly.spread(count, n).tolist()]
-    return [
-        Planet(
-            stage=number,
-            planet=k,
-            angle_deg=360.0 * float(turn),
-            turn=str(turn),
-            sun_phase=float(z_s * turn % 1),
-            ring_phase=float(z_r * turn % 1),
-        )
-        for k, turn in enumerate(turns, 1)
-    ]
+    whole = int(assembly.places(z_s, z_p, z_p, z_r))
+    where = assembly.spread(whole, stage.planets or 1).tolist()
+    turns = [Fraction(place, whole) for place in where]
+    return [place_at(f"stage {number}", k, at, z_s, z_r) for k, at in enumerate(turns, 1)]
 
 
 def planet_load(stage: StageDesign) -> PlanetLoad:
@@ -169,7 +149,7 @@ def planet_load(stage: StageDesign) -> PlanetLoad:
     along = abs(torques["sun"]) / (n * base)
     rolls = it.speed * float(it.turning["sun"] - it.turning["carrier"])
     own = it.speed * float(it.turning["planets"] - it.turning["carrier"])
-    angles = [360.0, *(360.0 + at.angle_deg for at in planets(stage, 1)[1:]), 720.0]
+    angles = [360.0, *(360.0 + at.angle_deg for at in planets(stage)[1:]), 720.0]
     closest = min(end - start for start, end in zip(angles, angles[1:], strict=False))
     apart = 2.0 * a * math.sin(math.radians(0.5 * closest)) - stage.wheel_tip_diameter_mm
     return PlanetLoad(
@@ -201,7 +181,7 @@ def gear_set(stage: StageDesign, gears: tuple[Gear, Gear, Gear]) -> GearSet:
         teeth[1],
         teeth[1],
         float(turning["carrier"]),
-        [math.radians(at.angle_deg) for at in planets(stage, 1)],
+        [math.radians(at.angle_deg) for at in planets(stage)],
         stage.centre_distance_mm,
     )
 
@@ -226,20 +206,14 @@ def turning(result: Result, measures: Measures) -> Section | None:
             )
             continue
         it, seen = flow(stage), gear_set(stage, gears)
-        ends = [(f"{n} ({use})", float(it.turning[n])) for use, n in _ends(it)]
-        turns.append(animation([seen], f"stage {k} as it turns", ends, f"{TRUE} {_held(it)}"))
+        both = ("input", it.source), ("output", it.sink)
+        ends = [(f"{name} ({use})", float(it.turning[name])) for use, name in both]
+        held = f"The {it.held} of stage {k} is held."
+        turns.append(animation([seen], f"stage {k} as it turns", ends, f"{TRUE} {held}"))
         figures.append(figure(stage, k, seen, gears, measures))
     if not turns and not words:
         return None
     return Section("Planetary stages", words=words, animations=turns, figures=figures)
-
-
-def _ends(it: Flow) -> list[tuple[str, str]]:
-    return [("input", it.source), ("output", it.sink)]
-
-
-def _held(it: Flow) -> str:
-    return f"The {it.held} is held."
 
 
 def loads(result: Result, measures: Measures) -> Section | None:
