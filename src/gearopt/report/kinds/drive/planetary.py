@@ -1,4 +1,4 @@
-"""Planetary stages of a drive: as they turn, in space, places and loads of planets, power flow."""
+"""Stages with planets or a ring: as they turn, in space, places and loads of planets, powers."""
 
 import math
 from fractions import Fraction
@@ -14,6 +14,7 @@ from gearopt.optimise.typed import Shown
 from gearopt.physics.gears import Gear
 from gearopt.physics.planetary import assembly
 from gearopt.physics.planetary.kinematics import Balance, Mesh, balances, speeds
+from gearopt.report.design_tables import types
 from gearopt.report.drawing.drawn_stage import ENDS
 from gearopt.report.drawing.planetary_view import GearSet, Wheel, animation
 from gearopt.report.drawing.player import Animation
@@ -32,13 +33,13 @@ TRUE = (
 FLOW = (
     "Speeds, torques and powers are without losses, of each stage with the turning of its input "
     "above 0; torques are those from outside, so that of a member that gives power torque and "
-    "speed have other signs. The power that rolls in the meshes is the torque of the sun times its "
-    "speed against the carrier."
+    "speed have other signs."
 )
 PINS = (
-    "The force on a pin is that of both meshes on a planet, 2 F_t where both have one working "
-    "pressure angle, as the mean of all planets, without K_γ; positive radial forces point "
-    "outwards. Centrifugal forces are left out."
+    "The power that rolls in the meshes is the torque of the sun times its speed against the "
+    "carrier. The force on a pin is that of both meshes on a planet, 2 F_t where both have one "
+    "working pressure angle, as the mean of all planets, without K_γ; positive radial forces "
+    "point outwards. Centrifugal forces are left out."
 )
 
 
@@ -67,8 +68,8 @@ class Member:
     use: Annotated[str, Shown("use")]
     teeth: Annotated[int | None, Shown("teeth z")]
     speed_rpm: Annotated[float, Shown("speed")]
-    torque_Nm: Annotated[float | None, Shown("torque")]
-    power_kW: Annotated[float | None, Shown("power")]
+    torque_Nm: Annotated[float, Shown("torque")]
+    power_kW: Annotated[float, Shown("power")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,26 +105,47 @@ def flow(stage: StageDesign) -> Flow:
 
 
 def members(stage: StageDesign, number: int) -> list[Member]:
-    """Members of a stage (its number from 1) under load."""
-    it, teeth = flow(stage), dict(zip(("sun", "planets", "ring"), _teeth(stage), strict=True))
+    """Members of a stage (its number from 1) under load, of pairs pinion and wheel, or ring."""
+    if stage.type != "planetary":
+        return _pair(stage, number)
+    it, (z_s, _, z_r) = flow(stage), _teeth(stage)
     uses = {it.source: "input", it.sink: "output", it.held: "fixed"}
     rows = []
-    for name in ("sun", "planets", "ring", "carrier"):
+    for name, teeth in (("sun", z_s), ("ring", z_r), ("carrier", None)):
         speed = it.speed * float(it.turning[name])
-        torque = it.balance.torques.get(name)
-        own = None if torque is None else it.torque * float(torque)
-        rows.append(
-            Member(
-                stage=number,
-                member=name,
-                use=uses.get(name, ""),
-                teeth=teeth.get(name),
-                speed_rpm=30.0 / math.pi * speed,
-                torque_Nm=own,
-                power_kW=None if own is None else 1e-3 * own * speed + 0.0,
-            )
-        )
+        torque = it.torque * float(it.balance.torques[name])
+        rows.append(_member(number, name, uses[name], teeth, speed, torque))
     return rows
+
+
+def _pair(stage: StageDesign, number: int) -> list[Member]:
+    speed = 2e3 * stage.pitch_line_velocity_m_per_s / stage.pinion_diameter_mm
+    ring = stage.type == "internal"
+    other = speed / stage.ratio * (1.0 if ring else -1.0)
+    power, rows = speed * stage.pinion_torque_Nm, []
+    drives = stage.driver == "pinion"
+    speeds_of = (speed, other) if drives else (math.copysign(speed, other), abs(other))
+    names = "pinion", "ring" if ring else "wheel"
+    teeth = round(stage.pinion_teeth), round(stage.wheel_teeth)
+    for name, z, own, first in zip(names, teeth, speeds_of, (drives, not drives), strict=True):
+        use, given = ("input", power) if first else ("output", -power)
+        rows.append(_member(number, name, use, z, own, given / own))
+    return rows
+
+
+def _member(
+    stage: int, name: str, use: str, teeth: int | None, speed: float, torque: float
+) -> Member:
+    """A row of the table; speed [rad/s], torque [N m]."""
+    return Member(
+        stage=stage,
+        member=name,
+        use=use,
+        teeth=teeth,
+        speed_rpm=30.0 / math.pi * speed,
+        torque_Nm=torque,
+        power_kW=1e-3 * torque * speed + 0.0,
+    )
 
 
 def planets(stage: StageDesign, number: int = 1) -> list[Place]:
@@ -188,10 +210,14 @@ def gear_set(stage: StageDesign, gears: tuple[Gear, Gear, Gear]) -> GearSet:
 
 def _stages(result: Result) -> list[tuple[int, StageDesign]]:
     """The planetary stages of a design, with their numbers from 1."""
-    if not any(s.get("type") == "planetary" for s in result.design.get("stages", ())):
+    return [(k, stage) for k, stage in _with_rings(result) if stage.type == "planetary"]
+
+
+def _with_rings(result: Result) -> list[tuple[int, StageDesign]]:
+    """All stages, with their numbers from 1, of a design in which there is a ring."""
+    if types(result.design.get("stages", ())) <= {"parallel"}:
         return []
-    rows = enumerate(drive_design(result.design).stages, 1)
-    return [(k, stage) for k, stage in rows if stage.type == "planetary"]
+    return [*enumerate(drive_design(result.design).stages, 1)]
 
 
 def turning(result: Result, measures: Measures) -> Section | None:
@@ -217,17 +243,17 @@ def turning(result: Result, measures: Measures) -> Section | None:
 
 
 def loads(result: Result, measures: Measures) -> Section | None:
-    """Power flow, places of planets and forces on their pins."""
-    stages = _stages(result)
-    if not stages:
+    """Power flow, places of planets and forces on their pins; None without a ring."""
+    if not (every := _with_rings(result)):
         return None
-    heads = ["", *(f"stage {k}" for k, _ in stages)]
-    flows: list[Any] = [row for k, stage in stages for row in members(stage, k)]
-    where: list[Any] = [row for k, stage in stages for row in planets(stage, k)]
-    carried = side_by_side([planet_load(stage) for _, stage in stages], measures)
-    tables = (
-        Table("members", *records(flows, measures)),
-        Table("planet pins", heads, carried, across=True),
-        Table("planets", *records(where, measures)),
-    )
-    return Section("Power flow", words=(FLOW, PINS), tables=tables, terminal=tables)
+    flows: list[Any] = [row for k, stage in every for row in members(stage, k)]
+    tables = [Table("members", *records(flows, measures), texts=("member", "use"))]
+    words = [FLOW]
+    if stages := _stages(result):
+        heads = ["", *(f"stage {k}" for k, _ in stages)]
+        where: list[Any] = [row for k, stage in stages for row in planets(stage, k)]
+        carried = side_by_side([planet_load(stage) for _, stage in stages], measures)
+        tables.append(Table("planet pins", heads, carried, across=True))
+        tables.append(Table("planets", *records(where, measures)))
+        words.append(PINS)
+    return Section("Power flow", words=words, tables=tables, terminal=tables)

@@ -19,7 +19,8 @@ IN_DESIGN = {  # keys of stages and totals that tables of a rating show
     *("wheel_tip_diameter_mm", "pinion_root_diameter_mm", "wheel_root_diameter_mm"),
     *("transverse_contact_ratio", "overlap_ratio", "pitch_line_velocity_m_per_s"),
     *("working_pressure_angle_deg", "pinion_profile_shift", "wheel_profile_shift"),
-    *("pinion_torque_Nm", "output_torque_Nm"),
+    *("pinion_torque_Nm", "output_torque_Nm", "mesh_load_factor", "ring_contact_ratio"),
+    *("ring_diameter_mm", "ring_tip_diameter_mm", "ring_root_diameter_mm", "ring_profile_shift"),
 }
 REASONS = {  # why a gear or a mesh may lack a value that others have, by field
     "usable_contact_ratio": "undercut leaves all of the transverse contact ratio",
@@ -107,7 +108,8 @@ def forces(result: Result, measures: Measures) -> Section | None:
     *rows, (axial, *_) = side_by_side(rating.shafts, measures)
     if not rating.named:  # else each sun, planet and ring has axial forces of its own
         rows.append([axial, *_end_words(rating, measures)])
-    shafts = Table("shafts", heads, rows, across=True)
+    flow = [row[0] for row in rows[:2]] if rating.named else ()  # a table of members has them
+    shafts = Table("shafts", heads, rows, across=True, csv_only=flow)
     level = ", at the load level of largest force" if rating.levels else ""
     words = [
         f"Forces of a mesh act at the working pitch circles{level}. Shafts transmit torques "
