@@ -329,6 +329,35 @@ def train_figures(train: TrainDesign, springs: StiffnessDesign | None) -> dict[s
 
 
 @dataclass(frozen=True)
+class GearheadDesign:
+    """A planetary stage that is given; teeth above 0. inertia: at the motor, with its parts.
+
+    rolling_power: of the mesh with more of it, over the motor's. lost motion at the output, below 0
+    where planets may bind. Both None where no friction or no deviation is given.
+    """
+
+    planets: Annotated[int, Shown("planets")]
+    held: Annotated[str, Shown("fixed")]
+    sun_teeth: Annotated[int, Shown("teeth of sun")]
+    planet_teeth: Annotated[int, Shown("of a planet")]
+    ring_teeth: Annotated[int, Shown("of the ring")]
+    normal_module_mm: float
+    ratio: Annotated[float, Shown("ratio")]
+    centre_distance_mm: Annotated[float, Shown("centre distance")]
+    ring_outside_diameter_mm: Annotated[float, Shown("outside diameter of the ring")]
+    mass_kg: Annotated[float, Shown("mass of gears")]
+    inertia_kg_m2: Annotated[float, Shown("inertia at the motor")]
+    sun_inertia_kg_m2: Annotated[float, Shown("of the sun")]
+    planets_inertia_kg_m2: Annotated[float, Shown("of all planets")]
+    ring_inertia_kg_m2: Annotated[float, Shown("of the ring")]
+    carrier_inertia_kg_m2: Annotated[float, Shown("of the carrier")]
+    efficiency: Annotated[float | None, Shown("efficiency of the meshes")] = None
+    rolling_power: Annotated[float | None, Shown("rolling power over input power")] = None
+    least_lost_motion_deg: Annotated[float | None, Shown("least lost motion")] = None
+    lost_motion_deg: Annotated[float | None, Shown("largest lost motion")] = None
+
+
+@dataclass(frozen=True)
 class ServoDesign:
     """The design of a servo axis: the parts that its file asks for."""
 
@@ -341,6 +370,7 @@ class ServoDesign:
     allocation: Allocation | None = None
     drawn: DrawnErrors | None = None
     backlash: tuple[MeshBacklash, ...] = ()
+    gearhead: GearheadDesign | None = None
 
     def __or__(self, other: "ServoDesign") -> "ServoDesign":
         """Both together; where both have a value, that of the other counts."""

@@ -35,6 +35,7 @@ from gearopt.scenes.servo.axis_steps import (
     given_gears,
     with_box,
     with_errors,
+    with_gearhead,
     with_lightest,
     with_other_trains,
     with_ratio,
@@ -67,6 +68,7 @@ def steps(scene: Scene, ask: Ask) -> tuple[Step[Scene], ...]:
     }
     first, *others = (part for part, table in asked.items() if table is not None)
     others += [with_errors, with_key_figures, with_notes]
+    others += [with_gearhead] if scene.planetary is not None else []
     others += [with_nearest] if scene.train is not None else []
     return Step(first), *(Step(part, own=False, always=True) for part in others)
 

@@ -13,6 +13,7 @@ from gearopt.scenes.parts import tooth_warnings
 from gearopt.scenes.reading.module_series import unverified
 from gearopt.scenes.servo.axis_steps import candidates, given_gears
 from gearopt.scenes.servo.scene import Scene
+from gearopt.scenes.servo.tables.planetary import Planetary
 from gearopt.scenes.servo.tables.trains import Train
 
 SLOWEST = "acceleration"  # what nobody minimises
@@ -39,6 +40,8 @@ def assumptions(scene: Scene) -> list[str]:
         )
     if scene.train is not None:
         sentences += _of_train(scene)
+    if scene.planetary is not None:
+        sentences += _of_planetary(scene.planetary)
     if scene.mesh:
         sides = "" if any(mesh.two_sided for mesh in scene.mesh) else "one-sided and "
         sentences.append(
@@ -70,6 +73,34 @@ def assumptions(scene: Scene) -> list[str]:
         sentences.append(
             "The root of the sum of squares neglects the mean of one-sided deviations, which is "
             "above zero; the Monte Carlo yield includes it."
+        )
+    return sentences
+
+
+def _of_planetary(stage: Planetary) -> list[str]:
+    """Say what is counted of a planetary stage."""
+    sentences = [
+        "The planetary stage is given and is not rated; gears count as cylinders and tubes of the "
+        "mean of tip and root diameters, and all planets share the load alike.",
+        "Stiffness is that of the meshes, c_gamma_alpha of ISO 6336-1 along the line of action, of "
+        "steel gears with solid blanks, and of the pins; carrier, ring, shafts and housing are "
+        "rigid, sun and ring are centred, and the motor is locked.",
+    ]
+    if stage.load_torque is not None:
+        sentences.append("Below 100 N/mm c' is times (F_t/b/100)^0.25: unverified.")
+    if stage.carrier_inertia is None:
+        sentences.append("The inertia of the carrier is not counted.")
+    if stage.friction is not None:
+        sentences.append(
+            "Teeth lose their coefficient of friction times the loss factor of Ohlendorf of the "
+            "rolling power, that in the frame of the carrier."
+        )
+    if stage.deviations is not None:
+        sentences.append(
+            "Lost motion is exact for the allowances, with the source locked: all planets have one "
+            "play, the least of theirs. It is least with one planet tightest and two pins off to "
+            "either side, and largest with all planets loosest; pitch deviations and run-outs of "
+            "sun, ring and carrier are not counted."
         )
     return sentences
 

@@ -1,6 +1,7 @@
 """A servo axis's file as a whole: its tables, how they fit together, the axis they describe."""
 
 import math
+from dataclasses import replace
 from typing import Annotated, Any
 
 from pydantic import Field, model_validator
@@ -26,6 +27,7 @@ from gearopt.scenes.servo.tables.mesh import (
     price,
 )
 from gearopt.scenes.servo.tables.motion import Duty, Load, Motor, servo_duty
+from gearopt.scenes.servo.tables.planetary import Planetary
 from gearopt.scenes.servo.tables.trains import (
     AIMS,
     Lightest,
@@ -40,10 +42,24 @@ from gearopt.scenes.servo.tables.trains import (
 )
 
 __all__ = ["Scene"]  # messages show tables of the example
+BESIDE_PAIRS = (
+    "train",
+    "mesh",
+    "tolerances",
+    "cost",
+    "budget",
+    "shaft",
+    "stiffness",
+    "lightest",
+    "space",
+)
 
 
 class Scene(Table):
-    """A servo axis: motor, two-stage spur gear train, load. Tables switch its parts on."""
+    """A servo axis: motor, two-stage spur gear train, load. Tables switch its parts on.
+
+    Or a planetary stage that is given, in place of the train.
+    """
 
     title: Annotated[str, words()] = Field("", description="Title of the report")
     source: Annotated[str, words()] = Field(
@@ -62,6 +78,7 @@ class Scene(Table):
     stiffness: Stiffness | None = None
     lightest: Lightest | None = None
     space: Space | None = None
+    planetary: Planetary | None = None
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
@@ -69,6 +86,7 @@ class Scene(Table):
             rule = "is missing, as are [train] and [[mesh]]: nothing is asked for"
             raise refuse(rule, at=("duty",))
         self._check_motion()
+        self._check_planetary()
         self._check_meshes()
         self._check_train()
         self._check_tolerances()
@@ -83,6 +101,20 @@ class Scene(Table):
                 raise refuse(rule, at=(name,))
         assert self.duty and self.motor and self.load
         self.duty.check(self.motor, self.load)
+
+    def _check_planetary(self) -> None:
+        """Check that a planetary stage is the whole train, and has a motion."""
+        if self.planetary is None:
+            return
+        if self.duty is None:
+            raise refuse("is missing: [planetary] needs it", at=("duty",))
+        for name in BESIDE_PAIRS:
+            if getattr(self, name):
+                rule = "does not go together with [planetary]: it is of a train of gear pairs"
+                raise refuse(rule, at=(name,), action="remove")
+        if self.duty.motion == "swing" and self.planetary.friction is not None:
+            rule = 'does not go together with motion = "swing", of a train without losses'
+            raise refuse(rule, at=("planetary", "friction"), action="remove")
 
     def _check_meshes(self) -> None:
         if len(self.mesh) > 2:
@@ -253,7 +285,11 @@ class Scene(Table):
         """Return the motion of the load and its drive, in plain numbers; None for none."""
         if self.duty is None or self.motor is None or self.load is None:
             return None
-        return servo_duty(self.duty, self.motor, self.load)
+        duty = servo_duty(self.duty, self.motor, self.load)
+        if (stage := self.planetary) is None or stage.friction is None:
+            return duty
+        left = duty.drive.efficiency * stage.gearhead().efficiency
+        return replace(duty, drive=replace(duty.drive, efficiency=left))
 
     def servo_train(self) -> ServoTrain:
         """Return the train to be chosen, in plain numbers."""

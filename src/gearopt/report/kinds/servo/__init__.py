@@ -8,6 +8,7 @@ from gearopt.report.headline import PROVEN
 from gearopt.report.kinds import MakeSection, Pages
 from gearopt.report.kinds.generic import AFTER_DESIGN, CLOSING, REQUEST
 from gearopt.report.kinds.servo import accuracy as axis_accuracy
+from gearopt.report.kinds.servo import gearhead as axis_gearhead
 from gearopt.report.kinds.servo import housing as axis_housing
 from gearopt.report.kinds.servo import motion as axis_motion
 from gearopt.report.kinds.servo import trains as axis_trains
@@ -114,6 +115,7 @@ PAGES = Pages(
         explained.remedies,
         impossible_views.section,
         axis_motion.section,
+        axis_gearhead.section,
         axis_trains.section,
         axis_housing.box,
         axis_trains.compared_with_given,
@@ -129,6 +131,7 @@ PAGES = Pages(
     ),
     terminal=(
         _answered(axis_motion.section),
+        _answered(axis_gearhead.section),
         _answered(axis_trains.section),
         _answered(axis_trains.best),
         _answered(axis_trains.compared_with_given),

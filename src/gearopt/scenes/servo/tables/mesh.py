@@ -5,7 +5,7 @@ Where it comes from, how large it may be, and the same deviations reallocated at
 
 from fractions import Fraction
 from functools import cache
-from typing import Annotated, get_args
+from typing import Annotated, Any, get_args
 
 from pydantic import Field, model_validator
 
@@ -178,11 +178,7 @@ class Mesh(Table):
 
     def opening(self, name: str) -> tuple[float, float]:
         """Return the ends of a deviation [mm], in the direction that opens the mesh."""
-        deviation = getattr(self, name)
-        if not isinstance(deviation, tuple):
-            return 0.0, 0.0 if deviation is None else float(deviation.value)
-        low, high = (float(end.value) for end in deviation)
-        return (-high, -low) if name in THICKNESS else (low, high)
+        return opening(getattr(self, name), name in THICKNESS)
 
     @property
     def deviates(self) -> bool:
@@ -224,6 +220,17 @@ class Mesh(Table):
         gear = self.pair().gears[("pinion_pitch", "wheel_pitch").index(name)]
         diameter, module = gear.reference_diameter, gear.normal_module
         return float(total_pitch_tolerance(diameter, module, float(self.grade)))
+
+
+def opening(deviation: Any, thinner: bool = True) -> tuple[float, float]:
+    """Return the ends of a deviation [mm], in the direction that opens the mesh; 0 without one.
+
+    thinner: whether the allowances of two are of a tooth thickness, which opens it below 0.
+    """
+    if not isinstance(deviation, tuple):
+        return 0.0, 0.0 if deviation is None else float(deviation.value)
+    low, high = (float(end.value) for end in deviation)
+    return (-high, -low) if thinner else (low, high)
 
 
 @cache
