@@ -1,4 +1,4 @@
-"""A planetary stage between motor and load, against particles, springs in the plane, and a print."""
+"""A planetary stage between motor and load, against particles, springs in the plane, a print."""
 
 import math
 from fractions import Fraction
@@ -10,14 +10,13 @@ from planar_set import PlanarSet
 from gearopt.formulations.drive.planetary import Cutting
 from gearopt.physics.geometry.tooth import circumferential_backlash
 from gearopt.physics.planetary.gearhead import (
-    SINKS,
-    SOURCES,
+    DRIVEN,
+    DRIVING,
     Gearset,
     balance,
     compliances,
     inertias,
     lost_motion,
-    masses,
     planet_play,
 )
 
@@ -39,8 +38,9 @@ def planar(gears):
     return PlanarSet(TEETH, float(gears.distance), angles, gears.planets)
 
 
-def particles(inner, outer, mass, count=200):
-    """Equal masses on circles, of a tube of these radii: (mass, radius, angle)."""
+def particles(inner, outer, width, count=200):
+    """Equal masses on circles of a tube of these radii and this width: (mass, radii)."""
+    mass = STEEL * width * np.pi * (outer**2 - inner**2)
     rings = (np.arange(count) + 0.5) / count
     radii = np.sqrt(inner**2 + rings * (outer**2 - inner**2))
     return mass / count, radii
@@ -59,14 +59,14 @@ def test_inertia_is_that_of_particles_that_move(held):
     sun, ring, arm = rolls(1.0)
     spin = arm - z_s / z_p * (sun - arm)
     assert spin == pytest.approx(arm + z_r / z_p * (ring - arm))
-    weights = masses(gears, STEEL, bores)
-    energy = 0.5 * carrier * arm**2
-    bodies = [(gears.sun, bores[0], sun, "sun"), (gears.ring, None, ring, "ring")]
-    for gear, bore, turn, name in bodies:
+    energy, mass = 0.5 * carrier * arm**2, 0.0
+    bodies = [(gears.sun, bores[0], sun), (gears.ring, None, ring)]
+    for gear, bore, turn in bodies:
         ends = (bore, gear.body) if bore is not None else (-gear.body, -gear.outside)
-        each, radii = particles(0.5 * ends[0], 0.5 * ends[1], float(weights[name]))
-        energy += 0.5 * each * (radii**2 * turn**2).sum()
-    each, radii = particles(0.5 * bores[1], 0.5 * gears.planet.body, float(weights["planets"]))
+        each, radii = particles(0.5 * ends[0], 0.5 * ends[1], 8.0)
+        energy, mass = energy + 0.5 * each * (radii * turn) @ (radii * turn), mass + 200 * each
+    each, radii = particles(0.5 * bores[1], 0.5 * gears.planet.body, 3 * 8.0)
+    mass += 200 * each
     step, phases = 1e-6, 2.0 * np.pi * np.arange(8) / 8
     for start in phases:
 
@@ -76,8 +76,10 @@ def test_inertia_is_that_of_particles_that_move(held):
 
         velocity = (path(step) - path(-step)) / (2.0 * step)
         energy += 0.5 * each / len(phases) * (abs(velocity) ** 2).sum()
-    total = sum(float(part) for part in inertias(gears, STEEL, bores, carrier).values())
+    weight, parts = inertias(gears, STEEL, bores, carrier)
+    total = sum(float(part) for part in parts.values())
     assert total == pytest.approx(2.0 * energy, rel=1e-5)
+    assert weight == pytest.approx(mass)
 
 
 def printed(allowances=(0.0, 0.0, 0.0)):
@@ -107,12 +109,12 @@ def test_springs_in_the_plane(held, helix, pin):
     gears = gearset(held, helix)
     whole, springs = 3 * gears.lever**2, compliances(gears, 2e4, pin)
     meshes = [1.0 / (whole * float(c)) for c in springs[:2]]
-    turn = planar(gears).compliance(SINKS[held], meshes, min(pin, 1e14))
+    turn = planar(gears).compliance(DRIVING[held], meshes, min(pin, 1e14))
     assert sum(springs) == pytest.approx(turn, rel=1e-6)
 
 
 def test_light_loads_soften_the_teeth():
-    """A line load of F_t/b below 100 N/mm: c' by its fourth root; F_t from the torque of the sun."""
+    """Below 100 N/mm of F_t/b c' goes by its fourth root; F_t from the torque of the sun."""
     gears = gearset("ring")
     force = 20.0 * gears.sun.face_width  # N, of 20 N/mm
     torque = 3 * force * 0.5 * gears.sun.reference_diameter * (1 + TEETH[2] / TEETH[0])
@@ -130,9 +132,9 @@ def test_play_of_planets_that_differ(held):
     for _ in range(6):
         backlashes = rng.uniform(0.01, 0.05, (3, 2))
         play = float(backlashes.sum(axis=1).min())
-        turn = plane.play(SINKS[held], backlashes, [0.0] * 3)
+        turn = plane.play(DRIVING[held], backlashes, [0.0] * 3)
         assert float(lost_motion(gears, play)) == pytest.approx(turn, rel=1e-9)
-        loose = plane.play(SINKS[held], np.full((3, 2), 0.02), [0.0] * 3, 0.015)
+        loose = plane.play(DRIVING[held], np.full((3, 2), 0.02), [0.0] * 3, 0.015)
         assert float(lost_motion(gears, 0.04, 0.015)) == pytest.approx(loose, rel=1e-4)
 
 
@@ -141,10 +143,10 @@ def test_pins_that_are_off_their_places(held):
     """Two pins to opposite sides take their difference; where it is too much, planets bind."""
     gears = gearset(held)
     plane, alike = planar(gears), np.full((3, 2), 0.01)
-    turn = plane.play(SINKS[held], alike, [0.004, -0.003, 0.001])
-    assert float(lost_motion(gears, 0.02, position=0.007)) == pytest.approx(turn, rel=1e-9)
-    assert plane.play(SINKS[held], alike, [0.008, -0.008, 0.0]) is None
-    assert lost_motion(gears, 0.02, position=0.016) < 0.0
+    turn = plane.play(DRIVING[held], alike, [0.004, -0.003, 0.001])
+    assert float(lost_motion(gears, 0.02, apart=0.007)) == pytest.approx(turn, rel=1e-9)
+    assert plane.play(DRIVING[held], alike, [0.008, -0.008, 0.0]) is None
+    assert lost_motion(gears, 0.02, apart=0.016) < 0.0
 
 
 def test_planets_moved_outwards():
@@ -169,8 +171,8 @@ def test_efficiency_by_rolling_power(held):
         "sun": (r + eta) / (1.0 + r),
     }[held]
     assert float(flow.efficiency) == pytest.approx(expected, rel=1e-12)
-    speeds = gearset(held).speeds()
+    speeds = gearset(held).speeds
     power = sum(flow.torques.get(n, Fraction(0)) * speeds[n] for n in ("sun", "ring", "carrier"))
     assert power == sum(mesh.lost for mesh in flow.meshes)
     assert sum(flow.torques.values()) == 0
-    assert SOURCES[held] in flow.torques
+    assert DRIVEN[held] in flow.torques

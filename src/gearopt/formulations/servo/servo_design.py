@@ -330,27 +330,19 @@ def train_figures(train: TrainDesign, springs: StiffnessDesign | None) -> dict[s
 
 @dataclass(frozen=True)
 class GearheadDesign:
-    """A planetary stage that is given; teeth above 0. inertia: at the motor, with its parts.
+    """A planetary stage that is given; its inertia is at the motor, its lost motion at the output.
 
-    rolling_power: of the mesh with more of it, over the motor's. lost motion at the output, below 0
-    where planets may bind. Both None where no friction or no deviation is given.
+    Lost motion below 0: planets may bind. rolling_power: of a mesh, the largest, over the motor's.
     """
 
     planets: Annotated[int, Shown("planets")]
-    held: Annotated[str, Shown("fixed")]
-    sun_teeth: Annotated[int, Shown("teeth of sun")]
-    planet_teeth: Annotated[int, Shown("of a planet")]
-    ring_teeth: Annotated[int, Shown("of the ring")]
-    normal_module_mm: float
+    teeth: Annotated[str, Shown("teeth of sun, planet, ring")]
     ratio: Annotated[float, Shown("ratio")]
     centre_distance_mm: Annotated[float, Shown("centre distance")]
     ring_outside_diameter_mm: Annotated[float, Shown("outside diameter of the ring")]
-    mass_kg: Annotated[float, Shown("mass of gears")]
+    mass_kg: Annotated[float, Shown("mass of the gears")]
     inertia_kg_m2: Annotated[float, Shown("inertia at the motor")]
-    sun_inertia_kg_m2: Annotated[float, Shown("of the sun")]
-    planets_inertia_kg_m2: Annotated[float, Shown("of all planets")]
-    ring_inertia_kg_m2: Annotated[float, Shown("of the ring")]
-    carrier_inertia_kg_m2: Annotated[float, Shown("of the carrier")]
+    planets_inertia_kg_m2: Annotated[float, Shown("of it that of the planets")]
     efficiency: Annotated[float | None, Shown("efficiency of the meshes")] = None
     rolling_power: Annotated[float | None, Shown("rolling power over input power")] = None
     least_lost_motion_deg: Annotated[float | None, Shown("least lost motion")] = None

@@ -51,10 +51,6 @@ from gearopt.scenes.servo.tables.mesh import Source
 STAGES = 6  # that a ratio is split into, at most, for comparison
 COUNTS = {"combinations": "trains_looked_at", "feasible_trains": "feasible_trains"}
 LISTED = 400  # trains that are shown
-GEARHEAD_FIGURES = (  # of a planetary stage, by which axes are compared
-    *("ratio", "inertia_kg_m2", "mass_kg", "efficiency", "least_lost_motion_deg"),
-    "lost_motion_deg",
-)
 PATIENCE = 10.0  # seconds, for the Pareto front
 BOUNDS = 0.3  # s, at least, for real-valued bounds beside a train
 NO_DESIGN, NO_REPORT = ServoDesign(), ServoReport()
@@ -339,22 +335,20 @@ def candidates(scene: Scene, chosen: TrainDesign | None) -> dict[str, Candidate]
             where = f"With the {who.removesuffix('_train')} train, of ratio {train.ratio:.6g},"
             by_name[who] = Candidate(where, train.ratio, train.inertia_kg_m2 / KG_M2)
     if scene.planetary is not None:
-        stage = scene.planetary.gearhead()
+        stage = scene.planetary.design()
         where = f"With the planetary stage, of ratio {stage.ratio:.6g},"
-        by_name["given_train"] = Candidate(where, stage.ratio, stage.inertia)
+        by_name["given_train"] = Candidate(where, stage.ratio, stage.inertia_kg_m2 / KG_M2)
     return by_name
 
 
 def with_gearhead(scene: Scene, ask: Ask, known: Result | None) -> Result:
     """The axis with its planetary stage: inertia, efficiency, lost motion and stiffness."""
     assert known is not None and scene.planetary is not None and scene.load is not None
-    stage = scene.planetary.gearhead()
-    design, springs = stage.design(), stage.stiffness(scene.load.inertia.value)
-    figures = {name: getattr(design, name) for name in GEARHEAD_FIGURES}
-    figures["output_stiffness_Nm_per_rad"] = springs.output_Nm_per_rad
-    figures |= {"frequency_Hz": springs.frequency_Hz, "windup_deg": springs.windup_deg}
-    named = {f"given_{name}": value for name, value in figures.items() if value is not None}
+    design, springs = scene.planetary.design(), scene.planetary.springs(scene.load.inertia.value)
     axis = ServoDesign(gearhead=design, stiffness=springs)
+    figures = untyped(design) | {"output_stiffness_Nm_per_rad": springs.output_Nm_per_rad}
+    figures |= {"frequency_Hz": springs.frequency_Hz, "windup_deg": springs.windup_deg}
+    named = {f"given_{k}": v for k, v in figures.items() if isinstance(v, float)}
     return added(known, None, axis, ServoReport(figures=named))
 
 

@@ -79,30 +79,16 @@ def assumptions(scene: Scene) -> list[str]:
 
 def _of_planetary(stage: Planetary) -> list[str]:
     """Say what is counted of a planetary stage."""
-    sentences = [
-        "The planetary stage is given and is not rated; gears count as cylinders and tubes of the "
-        "mean of tip and root diameters, and all planets share the load alike.",
-        "Stiffness is that of the meshes, c_gamma_alpha of ISO 6336-1 along the line of action, of "
-        "steel gears with solid blanks, and of the pins; carrier, ring, shafts and housing are "
-        "rigid, sun and ring are centred, and the motor is locked.",
+    return [
+        "The planetary stage is given and not rated. Gears have racks of 20 degrees and count as "
+        "cylinders and tubes of mean tip and root diameter; planets share the load alike. Meshes "
+        "are as stiff as c_gamma_alpha of ISO 6336-1, along the line of action; carrier, ring and "
+        "shafts are rigid. Below 100 N/mm c' falls by the fourth root of the load: unverified.",
+        "Teeth lose friction times Ohlendorf's loss factor of their rolling power. Lost motion is "
+        "the play of the tightest planet, for the allowances exactly, largest where all are at "
+        "their loosest; pitch and run-out are not counted.",
+        *(() if stage.carrier_inertia else ("The inertia of the carrier is not counted.",)),
     ]
-    if stage.load_torque is not None:
-        sentences.append("Below 100 N/mm c' is times (F_t/b/100)^0.25: unverified.")
-    if stage.carrier_inertia is None:
-        sentences.append("The inertia of the carrier is not counted.")
-    if stage.friction is not None:
-        sentences.append(
-            "Teeth lose their coefficient of friction times the loss factor of Ohlendorf of the "
-            "rolling power, that in the frame of the carrier."
-        )
-    if stage.deviations is not None:
-        sentences.append(
-            "Lost motion is exact for the allowances, with the source locked: all planets have one "
-            "play, the least of theirs. It is least with one planet tightest and two pins off to "
-            "either side, and largest with all planets loosest; pitch deviations and run-outs of "
-            "sun, ring and carrier are not counted."
-        )
-    return sentences
 
 
 def _of_train(scene: Scene) -> list[str]:

@@ -42,17 +42,7 @@ from gearopt.scenes.servo.tables.trains import (
 )
 
 __all__ = ["Scene"]  # messages show tables of the example
-BESIDE_PAIRS = (
-    "train",
-    "mesh",
-    "tolerances",
-    "cost",
-    "budget",
-    "shaft",
-    "stiffness",
-    "lightest",
-    "space",
-)
+OF_PAIRS = "train mesh tolerances cost budget shaft stiffness lightest space".split()
 
 
 class Scene(Table):
@@ -108,7 +98,7 @@ class Scene(Table):
             return
         if self.duty is None:
             raise refuse("is missing: [planetary] needs it", at=("duty",))
-        for name in BESIDE_PAIRS:
+        for name in OF_PAIRS:
             if getattr(self, name):
                 rule = "does not go together with [planetary]: it is of a train of gear pairs"
                 raise refuse(rule, at=(name,), action="remove")
@@ -288,7 +278,7 @@ class Scene(Table):
         duty = servo_duty(self.duty, self.motor, self.load)
         if (stage := self.planetary) is None or stage.friction is None:
             return duty
-        left = duty.drive.efficiency * stage.gearhead().efficiency
+        left = duty.drive.efficiency * (stage.design().efficiency or 1.0)
         return replace(duty, drive=replace(duty.drive, efficiency=left))
 
     def servo_train(self) -> ServoTrain:
