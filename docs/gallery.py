@@ -160,6 +160,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "servo_gimbal_trade_off": "What less error costs: `gearopt pareto`, cost against error.",
         "servo_gimbal_costs": "The same with costs that grow differently.",
         "servo_gimbal_grades": "The same by choice among nine grades.",
+        "servo_planetary": "A planetary gearhead: inertia, losses, stiffness, lost motion.",
         "servo_gimbal_impossible": "No train is so accurate: what to write instead.",
     },
     "A compound train": {

@@ -83,7 +83,8 @@ def _of_planetary(stage: Planetary) -> list[str]:
         "The planetary stage is given and not rated. Gears have racks of 20 degrees and count as "
         "cylinders and tubes of mean tip and root diameter; planets share the load alike. Meshes "
         "are as stiff as c_gamma_alpha of ISO 6336-1, along the line of action; carrier, ring and "
-        "shafts are rigid. Below 100 N/mm c' falls by the fourth root of the load: unverified.",
+        "shafts are rigid. c' is that of 100 N/mm and more; at a load_torque below it is less by "
+        "the fourth root of the load: unverified.",
         "Teeth lose friction times Ohlendorf's loss factor of their rolling power. Lost motion is "
         "the play of the tightest planet, for the allowances exactly, largest where all are at "
         "their loosest; pitch and run-out are not counted.",

@@ -93,16 +93,14 @@ class Scene(Table):
         self.duty.check(self.motor, self.load)
 
     def _check_planetary(self) -> None:
-        """Check that a planetary stage is the whole train, and has a motion."""
+        """Check that a planetary stage is the whole train, and of a motion that knows losses."""
         if self.planetary is None:
             return
-        if self.duty is None:
-            raise refuse("is missing: [planetary] needs it", at=("duty",))
         for name in OF_PAIRS:
             if getattr(self, name):
                 rule = "does not go together with [planetary]: it is of a train of gear pairs"
                 raise refuse(rule, at=(name,), action="remove")
-        if self.duty.motion == "swing" and self.planetary.friction is not None:
+        if self.duty and self.duty.motion == "swing" and self.planetary.friction is not None:
             rule = 'does not go together with motion = "swing", of a train without losses'
             raise refuse(rule, at=("planetary", "friction"), action="remove")
 
