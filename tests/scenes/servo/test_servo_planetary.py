@@ -1,6 +1,7 @@
 """A planetary stage in place of the train of a servo axis: its file, and what the axis does."""
 
 import math
+from decimal import Decimal
 
 import pytest
 from scene_files import dump, mended, parse, walk
@@ -16,17 +17,20 @@ NO_ERRORS = [
 ] + [("planetary", "pin_position"), ("planetary", "pin_clearance")]
 PAIRS = {"module": "0.5 mm", "pinion_teeth": 20, "wheel_teeth": 100}
 
+TENTH = Decimal("0.1")
 REFUSED = [  # edits, dropped, key, words, whether what is to be written is accepted
     ([(("planetary", "ring_teeth"), 61)], [], "planetary.ring_teeth", "no multiple of the 3", True),
-    ([(("planetary", "planet_teeth"), 13)], [], "planetary.ring_teeth", "no room", False),
-    ([(("planetary", "planets"), 6)], [], "planetary.ring_teeth", "no room", False),
-    ([(("planetary", "planet_bore"), "8 mm")], [], "planetary.planet_bore", "root circle", False),
+    ([(("planetary", "planet_teeth"), 13)], [], "planetary.planet_teeth", "no room", True),
+    ([(("planetary", "planets"), 6)], [], "planetary.planets", "no room", True),
+    ([(("planetary", "ring_shift"), 1)], [], "planetary.ring_shift", "no room", True),
+    ([(("planetary", "ring_shift"), TENTH)], [], "planetary.ring_shift", "thicker", True),
+    ([(("planetary", "planet_bore"), "8 mm")], [], "planetary.planet_bore", "root circle", True),
     (
         [(("planetary", "ring_outside_diameter"), "24 mm")],
         [],
         "planetary.ring_outside_diameter",
         "root circle",
-        False,
+        True,
     ),
     ([(("planetary", "fixed"), "planet")], [], "planetary.fixed", "ring", True),
     ([(("mesh",), [PAIRS, PAIRS])], [], "mesh", "gear pairs", True),

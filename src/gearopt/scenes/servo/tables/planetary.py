@@ -9,13 +9,14 @@ from pydantic import Field, model_validator
 from gearopt.formulations.drive.planetary import Cutting, Planets
 from gearopt.formulations.servo.gearhead import described, lost_motions, stiffness_of
 from gearopt.formulations.servo.servo_design import GearheadDesign, StiffnessDesign
-from gearopt.physics.planetary.gearhead import DRIVING, Gearset
+from gearopt.physics.planetary.gearhead import DRIVING, Gearset, planet_play
 from gearopt.scenes.reading.allowances import allowances
 from gearopt.scenes.reading.fields import Table, choice, number, quantity, refuse, whole
 from gearopt.scenes.servo.tables.mesh import opening
 from gearopt.units import Quantity
 
 GEARS, OUTSIDE = ("sun", "planet", "ring"), "ring_outside_diameter"
+TIGHT = 1e-6  # modules: play below zero that is rounding
 Length = Annotated[Quantity | None, quantity("length", "8 mm")]
 Small = Annotated[Quantity | None, quantity("length", "0.01 mm", zero=True)]
 Allowance = Annotated[Quantity | tuple[Quantity, Quantity] | None, allowances("0.02 mm")]
@@ -53,7 +54,9 @@ class Planetary(Table):
     ring_shift: Shift = _key(
         "Profile shift of the ring, positive towards its centre; by default without backlash"
     )
-    density: Annotated[Quantity, quantity("density", "7.85 g/cm^3")] = Field(description="Density")
+    density: Annotated[Quantity, quantity("density", "7.85 g/cm^3")] = Field(
+        description="Density of the gears"
+    )
     sun_bore: Length = _key("Bore of the sun; solid without it")
     planet_bore: Length = _key("Bore of a planet; solid without it")
     ring_outside_diameter: Length = _key(
@@ -81,23 +84,44 @@ class Planetary(Table):
 
     @model_validator(mode="after")
     def _fits(self) -> "Planetary":
-        sun, planet, ring = self.sun_teeth, self.planet_teeth, self.ring_teeth
-        if (sun + ring) % self.planets:
-            rule = f"makes z_s + z_r = {sun + ring}, no multiple of the {self.planets} planets"
-            raise refuse(rule, ring + -(sun + ring) % self.planets, ("ring_teeth",))
-        less, size = ring - sun - 2 * planet, (self.module.value, sun, ring, self.face_width.value)
-        way = Planets(self._cutting(), self.planets, fewer=less, clearance=0.0)
-        if not way.room(way.pair(*size)):
+        total = self.sun_teeth + self.ring_teeth
+        if not self._assembles(self.ring_teeth, self.planets):
             rule = "leaves no room for the planets, or gears that interfere"
-            raise refuse(rule, sun + 2 * planet, ("ring_teeth",), "sample")
+            if total % self.planets:
+                rule = f"makes z_s + z_r = {total}, no multiple of the {self.planets} planets"
+            usual = self.sun_teeth + 2 * self.planet_teeth
+            near = sorted(range(usual - 6, usual + 7), key=lambda ring: abs(ring - usual))
+            fits = [("ring_teeth", z) for z in near if self._assembles(z, self.planets)]
+            fewer = reversed(range(1, self.planets))
+            fits += [("planets", n) for n in fewer if self._assembles(self.ring_teeth, n)]
+            given = [
+                f"{gear}_shift" for gear in GEARS if getattr(self, f"{gear}_shift") is not None
+            ]
+            if not fits and given:
+                raise refuse(rule, at=(given[-1],), action="remove")
+            middle = (self.ring_teeth - self.sun_teeth) // 2
+            name, write = (*fits, ("planet_teeth", middle))[0]
+            raise refuse(rule, write, (name,))
         gears = self.gearset()
+        if planet_play(gears) < -TIGHT * gears.sun.normal_module:
+            rule = "makes teeth of the ring, or of planets, thicker than the gaps for them"
+            raise refuse(rule, at=("ring_shift",), action="remove")
         sides = (gears.sun, "sun_bore"), (gears.planet, "planet_bore"), (gears.ring, OUTSIDE)
         for gear, name in sides:
             given, root = getattr(self, name), abs(gear.root_diameter)
             if given is not None and (given.value - root) * gear.teeth >= 0.0:
                 rule = f"is on the wrong side of the root circle of {root:.4g} mm"
-                raise refuse(rule, at=(name,))
+                raise refuse(rule, f"{root * (0.7 if gear.teeth > 0 else 1.2):.3g} mm", (name,))
         return self
+
+    def _assembles(self, ring: int, planets: int) -> bool:
+        """Whether equally spaced planets have room, and gears do not interfere."""
+        sun = self.sun_teeth
+        way = Planets(
+            self._cutting(), planets, fewer=ring - sun - 2 * self.planet_teeth, clearance=0
+        )
+        pair = way.pair(self.module.value, float(sun), float(ring), self.face_width.value)
+        return bool((sun + ring) % planets == 0 and ring > sun and way.room(pair))
 
     def _cutting(self, *thickness: float) -> Cutting:
         x = [None if (s := getattr(self, f"{gear}_shift")) is None else float(s) for gear in GEARS]
