@@ -6,9 +6,10 @@ the input shaft at 0, 0; x runs along them from the inner face of the box. All l
 """
 
 import math
+from itertools import accumulate
+from typing import Any
 
 from gearopt.frozen import dataclass
-from gearopt.physics.gears import GearPair
 
 Range = tuple[float, float]
 ANYWHERE: Range = (-math.inf, math.inf)
@@ -61,9 +62,30 @@ class Place:
 
 
 @dataclass(frozen=True)
+class Planetary:
+    """A planetary stage as a disc on the line of its input and output shaft, which end at it.
+
+    tip_diameter: outside diameter of the ring [mm]. It stands for the gears of both shafts.
+    """
+
+    tip_diameter: float
+    width: float
+    ratio: float
+    centre_distance: float = 0.0
+
+    @property
+    def gears(self) -> tuple["Planetary", "Planetary"]:
+        """Itself, on either shaft."""
+        return self, self
+
+    pinion = wheel = property(lambda self: self)
+
+
+@dataclass(frozen=True)
 class Gearbox:
     """Gears, shafts and obstacles that are to be laid out.
 
+    pairs: `GearPair` or `Planetary` of every stage.
     partial: shafts end beside their gears instead of passing the whole box. slabs: the stages of
     each axial slab in order (None: the best). motor: radius of a motor on the input shaft at the
     face where the output shaft leaves (0: none in its way). level: shafts on the split line of the
@@ -71,7 +93,7 @@ class Gearbox:
     length.
     """
 
-    pairs: tuple[GearPair, ...]
+    pairs: tuple[Any, ...]
     shafts: tuple[Shaft, ...]
     clearances: Clearances = Clearances()
     partial: bool = False
@@ -87,6 +109,8 @@ class Gearbox:
     def __post_init__(self) -> None:
         if len(self.shafts) != len(self.pairs) + 1 or not self.pairs:
             raise ValueError("a gearbox of N stages has N + 1 shafts")
+        if all(isinstance(pair, Planetary) for pair in self.pairs):
+            raise ValueError("planetary stages alone are in one line: there is nothing to lay out")
         if self.width is not None and self.width > self.largest[0]:
             raise ValueError("the given width is above the largest width")
         if self.objective not in OBJECTIVES and self.objective != "width":
@@ -98,6 +122,8 @@ class Gearbox:
                 raise ValueError("slabs must name every stage once")
             if any(s + 1 in slab for slab in self.slabs for s in slab):
                 raise ValueError("stages that follow each other cannot share a slab")
+            if not self.in_line(self.slabs):
+                raise ValueError("a planetary stage stands between the gears of its two shafts")
         if any(not 1 <= p.shaft < len(self.shafts) for p in self.places):
             raise ValueError("a place is that of a shaft after the input shaft")
         if any(not 0 <= k < len(self.shafts) for k in self.level):
@@ -106,6 +132,19 @@ class Gearbox:
         ranges += [r for k in self.keep_outs for r in (k.y, k.z, k.x)]
         if any(not low <= high for low, high in ranges):
             raise ValueError("the range of a place or keep-out ends before it starts")
+
+    @property
+    def axes(self) -> tuple[int, ...]:
+        """The axis of every shaft, from 0: those of a planetary stage have one."""
+        apart = (0, *(not isinstance(pair, Planetary) for pair in self.pairs))
+        return tuple(accumulate(map(int, apart)))
+
+    def in_line(self, slabs: tuple[tuple[int, ...], ...]) -> bool:
+        """Whether no shaft of an order of slabs would pass through a planetary stage."""
+        place = {stage: k for k, slab in enumerate(slabs) for stage in slab}
+        steps = [place[k + 1] - place[k] for k in range(len(self.pairs) - 1)]
+        turns = zip(self.pairs[1:], steps, steps[1:], strict=False)
+        return all(a * b > 0 for pair, a, b in turns if isinstance(pair, Planetary))
 
     @property
     def unit(self) -> str:

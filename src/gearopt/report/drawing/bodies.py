@@ -146,6 +146,11 @@ class Disc:
 def meaning(gear: GearDesign, measures: Measures) -> str:
     """Describe a gear in a line, as drawings do where the pointer rests."""
     unit = measures.unit("mm")
+    if gear.member == "ring":
+        return (
+            f"{gear.name}: outside diameter {measures.length(gear.tip_diameter_mm)} {unit}, "
+            f"b {measures.length(gear.to_mm - gear.from_mm)} {unit}"
+        )
     module = module_words(gear.normal_module_mm, measures)
     shift = ""
     if gear.profile_shift:

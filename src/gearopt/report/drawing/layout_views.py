@@ -371,7 +371,7 @@ def face_widths(
     sheet: Sheet, train: Turning, tops: Mapping[int, float], measures: Measures
 ) -> None:
     """Draw face widths above all that is drawn; tops: where their lines begin, by stage [mm]."""
-    wheels = {g.stage: g for g in train.gears if g.member != "pinion"}
+    wheels = {g.stage: g for g in train.gears if g.member in ("wheel", "ring")}
     for slab in train.slabs:
         for stage in slab:
             if stage not in wheels:

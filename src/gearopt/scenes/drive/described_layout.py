@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from gearopt.formulations.drive.design import DriveDesign
-from gearopt.formulations.drive.gearbox import Gearbox, KeepOut
+from gearopt.formulations.drive.design import DriveDesign, StageDesign
+from gearopt.formulations.drive.gearbox import Gearbox, KeepOut, Planetary
 from gearopt.formulations.drive.layout.layout_design import (
     BearingDesign,
     BoxDesign,
@@ -19,7 +19,7 @@ from gearopt.formulations.drive.layout.layout_design import (
     gear_sizes,
 )
 from gearopt.formulations.drive.layout.layout_text import Placed, placed
-from gearopt.formulations.drive.layout.slabs import Arrangement
+from gearopt.formulations.drive.layout.slabs import Arrangement, Body
 from gearopt.physics.shaft_forces import OTHER, hands
 
 
@@ -69,7 +69,9 @@ def handed(layout: LayoutDesign, given: Sequence[str | None]) -> LayoutDesign:
     if not any(given):
         return layout
     of_stage = [{"pinion": hand, "wheel": OTHER[hand]} for hand in hands(given)]
-    gears = [replace(gear, hand=of_stage[gear.stage - 1][gear.member]) for gear in layout.gears]
+    gears = [
+        replace(gear, hand=of_stage[gear.stage - 1].get(gear.member, "")) for gear in layout.gears
+    ]
     return replace(layout, gears=tuple(gears))
 
 
@@ -116,6 +118,9 @@ def _gears(box: Gearbox, arrangement: Arrangement, sized: DriveDesign) -> tuple[
     for k, on_shaft in enumerate(arrangement.bodies, 1):
         for body in (b for b in on_shaft if b.gear):
             member, stage = body.name.split()[0], sized.stages[body.stage]
+            if isinstance(box.pairs[body.stage], Planetary):
+                gears += [_disc(body, stage, k)] if body.stage == k - 1 else []
+                continue
             wheel, pair = member == "wheel", box.pairs[body.stage]
             gear = pair.wheel if wheel else pair.pinion
             gears.append(
@@ -131,6 +136,31 @@ def _gears(box: Gearbox, arrangement: Arrangement, sized: DriveDesign) -> tuple[
                 )
             )
     return tuple(gears)
+
+
+def disc(stage: StageDesign) -> Planetary | None:
+    """A planetary stage as a layout sees it; None of other stages."""
+    if stage.type != "planetary" or stage.ring_outside_diameter_mm is None:
+        return None
+    return Planetary(stage.ring_outside_diameter_mm, stage.face_width_mm, stage.ratio)
+
+
+def _disc(body: Body, stage: StageDesign, shaft: int) -> GearDesign:
+    """The ring of a planetary stage as a gear on its input shaft, of its outside diameter."""
+    return GearDesign(
+        name=body.name,
+        stage=shaft,
+        member="ring",
+        shaft=shaft,
+        teeth=stage.ring_teeth or 0,
+        normal_module_mm=stage.normal_module_mm,
+        reference_diameter_mm=stage.ring_diameter_mm or 0.0,
+        tip_diameter_mm=2.0 * body.radius,
+        root_diameter_mm=stage.ring_root_diameter_mm or 0.0,
+        helix_angle_deg=stage.helix_angle_deg,
+        from_mm=body.x[0],
+        to_mm=body.x[1],
+    )
 
 
 def _gaps(box: Gearbox, arrangement: Arrangement, layout: Placed) -> tuple[GapDesign, ...]:

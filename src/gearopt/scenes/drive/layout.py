@@ -201,7 +201,7 @@ def _scope(sized: Result) -> dict[str, str]:
 def _of_gears_first(scene: Scene, result: Result, sized: Result) -> Result:
     """Layout whose message says that it is one of gears that were sized before it."""
     words = f"the box is that of {_scope(sized)['scope']}"
-    if scene.teeth is not None:
+    if scene.teeth is not None and not any(own.epicyclic for own in scene.stage):
         words += ": with together = true in [layout] gears and box are optimised together"
     message = "; ".join(filter(None, (result.message, words)))
     return replace(result, proof=result.proof | _scope(sized), message=message)

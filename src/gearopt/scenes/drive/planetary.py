@@ -149,8 +149,10 @@ def _beside(scene: "Scene", own: StageTable) -> str:
     """Why a file cannot have planets or a ring; "" where it can."""
     if scene.UNRATED:
         return "is for drives: a pair has external gears"
-    if scene.layout is not None or scene.process_one or scene.process_two:
-        return "does not go together with [layout] and processes: they are of external gears"
+    if scene.process_one or scene.process_two:
+        return "does not go together with processes: they are of external gears"
+    if scene.layout is not None and (rule := _in_layout(scene, own)):
+        return f"does not go together with {rule}"
     if scene.rating is None or scene.rating.standard != "iso6336":
         return 'needs a [rating] by standard = "iso6336": AGMA 908 has no J of rings'
     if idlers(scene.stage) or scene.gears.same_materials or (scene.teeth and scene.teeth.coprime):
@@ -161,6 +163,20 @@ def _beside(scene: "Scene", own: StageTable) -> str:
         return f"needs minimise = gear_volume, mass or mesh_loss, not {scene.objective.minimise}"
     if len(scene.helix_angles(own)) > 1:
         return "needs one helix angle"
+    return ""
+
+
+def _in_layout(scene: "Scene", own: StageTable) -> str:
+    """What of a [layout] a stage does not go together with; "" where it can be laid out."""
+    assert scene.layout is not None
+    if own.type == INTERNAL:
+        return "[layout]: a pinion stands inside its ring"
+    if scene.layout.together:
+        return "together = true of [layout]: its gears are sized first"
+    if scene.layout.bearing_widths or scene.layout.slabs:
+        return "bearings and slabs of [layout]: where they may be is not known"
+    if all(stage.type == PLANETARY for stage in scene.stage):
+        return "[layout], unless another stage is of external gears: all is in one line"
     return ""
 
 

@@ -16,6 +16,7 @@ from gearopt.formulations.drive.train import Stage, Train
 from gearopt.formulations.strength import RATED, Law
 from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import MEMBERS, GearPair
+from gearopt.scenes.drive.described_layout import disc
 from gearopt.scenes.drive.distances import joint_limits, reach, rows_together
 from gearopt.scenes.drive.driving import check_driving, may_drive, ratio_of
 from gearopt.scenes.drive.face_widths import check_excess, check_width, excesses, face_width
@@ -509,11 +510,14 @@ class Scene(Table):
         ends = {name: (name, None) for name in self.law.names} | ENDS
         return {n: tuple(place(k, *ends[n]) for k in range(len(stages))) for n in ends}
 
-    def pairs(self, design: "DriveDesign") -> tuple[GearPair, ...]:
-        """Gear pairs of a design, with shifts, tools and centre distances of the file."""
+    def pairs(self, design: "DriveDesign") -> tuple[Any, ...]:
+        """Gear pairs of a design, with shifts, tools and centre distances of the file.
+
+        Of planetary stages discs of their rings.
+        """
         tables = self.held(len(design.stages)).stage_tables
         rows = zip(tables, design.stages, strict=True)
-        return tuple(self.pair(own, stage) for own, stage in rows)
+        return tuple(disc(stage) or self.pair(own, stage) for own, stage in rows)
 
     def pair(self, own: StageTable, stage: "StageDesign") -> GearPair:
         """Gear pair of a stage of a design."""
@@ -547,7 +551,7 @@ class Scene(Table):
         """Blanks of pinion and wheel of every stage."""
         return tuple(self._blanks(own) for own in self.stage_tables)
 
-    def gearbox(self, pairs: tuple[GearPair, ...]) -> Gearbox:
+    def gearbox(self, pairs: tuple[Any, ...]) -> Gearbox:
         """Drive of gear pairs with its [layout], to be laid out."""
         assert self.layout is not None
         places = (*self.place, IN_LINE) if self.limits.coaxial else self.place

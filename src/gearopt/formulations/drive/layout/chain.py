@@ -14,16 +14,16 @@ from gearopt.optimise.terms import Array
 class Chain(NamedTuple):
     """A layout in numbers, for M arrangements of the slabs; lengths in mm, N links, K keep-outs.
 
-    link (N,): centre distances. reach (N+1,): from each axis to the box. apart (M, N+1, N+1):
-    minimum distances of axes, 0 where there is none or, of neighbours, the centre distance is
-    enough. keep (K, 4): left, right, bottom, top of keep-outs; keep_apart (M, K, N+1): minimum
-    distance of each axis from them. place (N+1, 4): range of y, then of z, of each axis. level:
-    shafts of equal z (empty: none). close (N,): 0 for a free link, 1 for one that ends at a given
-    height, 2 and 3 for two that end at a given place, 4 for one that ends at a given y; goal (N,
-    3): shaft that a height is measured from, y, z. most (3,): largest width, height, length. power
-    (2,): exponents of width and height in the objective, factor (M,) times it (its lengths and
-    constants). longest: the objective is the longest side instead, and factor the third side.
-    length (M,): of the box. The first axis is the origin.
+    Shafts of one line are one axis here. link (N,): centre distances. reach (N+1,): from each axis
+    to the box. apart (M, N+1, N+1): minimum distances of axes, 0 where there is none or, of
+    neighbours, the centre distance is enough. keep (K, 4): left, right, bottom, top of keep-outs;
+    keep_apart (M, K, N+1): minimum distance of each axis from them. place (N+1, 4): range of y,
+    then of z, of each axis. level: axes of equal z (empty: none). close (N,): 0 for a free link, 1
+    for one that ends at a given height, 2 and 3 for two that end at a given place, 4 for one that
+    ends at a given y; goal (N, 3): axis that a height is measured from, y, z. most (3,): largest
+    width, height, length. power (2,): exponents of width and height in the objective, factor (M,)
+    times it (its lengths and constants). longest: the objective is the longest side instead, and
+    factor the third side. length (M,): of the box. The first axis is the origin.
     """
 
     link: Array
@@ -47,29 +47,33 @@ NARROW = 0.1  # of a link: a range of places smaller than this is met by closing
 
 def chain(box: Gearbox, orders: tuple[Arrangement, ...]) -> Chain:
     """Return the numbers of a gearbox with some arrangements of its slabs."""
-    count = len(box.shafts)
-    link = np.array([p.centre_distance for p in box.pairs])
-    reach = [max(body.radius for body in own) for own in orders[0].bodies]
+    axes = np.array(box.axes)
+    first = np.flatnonzero(np.diff(axes, prepend=-1))  # shaft of every axis
+    link = np.array([pair.centre_distance for pair in box.pairs])[first[1:] - 1]
+    shafts = np.array([max(body.radius for body in own) for own in orders[0].bodies])
+    reach = np.maximum.reduceat(shafts, first)
     apart = np.stack([a.apart for a in orders])
+    apart = np.maximum.reduceat(np.maximum.reduceat(apart, first, 1), first, 2)
     for i, there in enumerate(link):
         need = apart[:, i, i + 1]
         apart[:, i, i + 1] = apart[:, i + 1, i] = np.where(need > there + TOUCH, need, 0.0)
-    place = np.tile([-math.inf, math.inf], (count, 2))
+    place = np.tile([-math.inf, math.inf], (len(first), 2))
     for p in box.places:
-        place[p.shaft, ::2] = np.maximum(place[p.shaft, ::2], (p.y[0], p.z[0]))
-        place[p.shaft, 1::2] = np.minimum(place[p.shaft, 1::2], (p.y[1], p.z[1]))
+        on = axes[p.shaft]
+        place[on, ::2] = np.maximum(place[on, ::2], (p.y[0], p.z[0]))
+        place[on, 1::2] = np.minimum(place[on, 1::2], (p.y[1], p.z[1]))
     close, goal = _closings(box, link, place)
     length = np.array([a.length for a in orders])
     powers, factor = _objective(box, length)
     width = math.inf if box.width is None else box.width
     return Chain(
         link,
-        np.array(reach) + box.clearances.wall,
+        reach + box.clearances.wall,
         apart,
         np.array([(*k.y, *k.z) for k in box.keep_outs]).reshape(-1, 4),
-        np.stack([a.keep_apart for a in orders]),
+        np.maximum.reduceat(np.stack([a.keep_apart for a in orders]), first, 2),
         place,
-        np.array(sorted(set(box.level)), np.int64),
+        np.array(levels(box), np.int64),
         close,
         goal,
         np.array([min(width, box.largest[0]), *box.largest[1:]]),
@@ -78,6 +82,11 @@ def chain(box: Gearbox, orders: tuple[Arrangement, ...]) -> Chain:
         box.objective == "longest_side",
         length,
     )
+
+
+def levels(box: Gearbox) -> list[int]:
+    """Axes on the split line, in order."""
+    return sorted({box.axes[shaft] for shaft in box.level})
 
 
 def _objective(box: Gearbox, length: Array) -> tuple[tuple[float, float], Array]:
@@ -105,7 +114,7 @@ def _closings(box: Gearbox, link: Array, place: Array) -> tuple[NDArray[np.int64
             close[k], goal[k] = 1, (0.0, 0.0, 0.5 * (bottom + top))
         elif at_y and not close[k]:
             close[k], goal[k] = 4, (0.0, 0.5 * (left + right), 0.0)
-    level = sorted(set(box.level))
+    level = levels(box)
     for before, after in zip(level, level[1:], strict=False):
         if not close[after - 1]:
             close[after - 1], goal[after - 1] = 1, (before, 0.0, 0.0)

@@ -166,7 +166,7 @@ def _through(box: Gearbox) -> Iterator[str]:
             radii = [box.shafts[k].radius for k in (first, last)]
             least = box.clearances.shafts + (radii[0] if first == 0 else 0.0)
             _, far = _between(a, b)
-            if first != last and far < least - TOUCH:
+            if box.axes[first] != box.axes[last] and far < least - TOUCH:
                 yield (
                     f"Shafts {first + 1} and {last + 1} pass through the whole box (span = "
                     f'"full"), and their places are at most {far:.2f} mm apart: with their radii '

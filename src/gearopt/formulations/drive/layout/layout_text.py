@@ -31,7 +31,7 @@ def direct(
     goals: objectives and sides that are minimised instead of the objective of the box.
     """
     shape = chain(box, orders)
-    links = len(box.pairs)
+    links = shape.link.size
     variables = [Var("angle", "rad", -math.pi, math.pi, 0.1, links)]
     if len(orders) > 1:
         variables.append(Var("arrangement", "", 0, len(orders) - 1, 0, integer=True))
@@ -56,7 +56,7 @@ def direct(
 def smooth(box: Gearbox, order: Arrangement) -> Problem:
     """Return the problem in link angles [rad] and left, bottom, width, height of the box [mm]."""
     shape = chain(box, (order,))
-    links, span = len(box.pairs), 2.0 * float(shape.link.sum() + shape.reach.max())
+    links, span = shape.link.size, 2.0 * float(shape.link.sum() + shape.reach.max())
     minimum = 2.0 * float(shape.reach.max())
     variables = (
         Var("angle", "rad", -2.0 * math.pi, 2.0 * math.pi, 0.1, links, search=True),
@@ -215,7 +215,7 @@ class Placed:
 
 def read(orders: tuple[Arrangement, ...], x: Array) -> tuple[tuple[float, ...], Arrangement]:
     """Return the link angles [rad] and the arrangement of slabs of a point of `direct`."""
-    links = len(orders[0].bodies) - 1
+    links = orders[0].axes[-1]
     m = round(float(x[links])) if len(orders) > 1 else 0
     return tuple(float(t) for t in x[:links]), orders[m]
 
@@ -228,5 +228,5 @@ def placed(box: Gearbox, one: Arrangement, angles: tuple[float, ...]) -> Placed:
     if box.width is not None:
         around["left"] -= 0.5 * (box.width - around["width"])
         around["width"] = box.width
-    axes = tuple((float(a), float(b)) for a, b in zip(y, z, strict=True))
+    axes = tuple((float(y[k]), float(z[k])) for k in box.axes)
     return Placed(axes, one.length, **around)

@@ -2,10 +2,11 @@
 
 from collections.abc import Iterator
 from functools import cache, lru_cache
+from itertools import combinations
 
 import numpy as np
 
-from gearopt.formulations.drive.gearbox import ANYWHERE, Gearbox, Range
+from gearopt.formulations.drive.gearbox import ANYWHERE, Gearbox, Planetary, Range
 from gearopt.frozen import dataclass
 from gearopt.optimise.terms import Array
 
@@ -38,7 +39,7 @@ class Arrangement:
     """One order of slabs: its length, the bodies of each shaft, minimum distances and their causes.
 
     apart (N+1, N+1): minimum distance of two axes, of neighbours too. needs: its causes. keep_apart
-    (K, N+1): minimum distance of an axis from a keep-out.
+    (K, N+1): minimum distance of an axis from a keep-out. axes: of every shaft.
     """
 
     slabs: Slabs
@@ -47,6 +48,7 @@ class Arrangement:
     apart: Array
     needs: dict[tuple[int, int], Need]
     keep_apart: Array
+    axes: tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -117,7 +119,8 @@ def orders(box: Gearbox) -> tuple[Slabs, ...]:
     def alike(slabs: Slabs) -> bool:
         return not ended and not (beside and len(slabs) < len(box.pairs))
 
-    return tuple(s for s in _orders(len(box.pairs)) if s <= s[::-1] or not alike(s))
+    kept = filter(box.in_line, _orders(len(box.pairs)))
+    return tuple(s for s in kept if s <= s[::-1] or not alike(s))
 
 
 @cache
@@ -146,26 +149,25 @@ def arrange(box: Gearbox, slabs: Slabs) -> Arrangement:
     """Return the bodies of an order of slabs, and the distances their axes must keep."""
     bodies, length = _bodies(box, slabs)
     count = len(bodies)
-    apart, needs = np.zeros((count, count)), {}
-    for i in range(count):
-        for j in range(i + 1, count):
-            causes = [
-                _need(box, p, q) for p in bodies[i] for q in bodies[j] if face_each_other(p, q)
-            ]
-            if i == 0 and j == count - 1 and box.motor > 0:
-                gap, output = box.clearances.shafts, box.shafts[-1].radius
-                between = ("motor", f"shaft {count}")
-                causes.append(Need(between, box.motor + output + gap, gap))
-            if causes:
-                needs[i, j] = max(causes, key=lambda n: n.distance)
-                apart[i, j] = apart[j, i] = needs[i, j].distance
+    apart, needs, axes = np.zeros((count, count)), {}, box.axes
+    for i, j in combinations(range(count), 2):
+        if axes[i] == axes[j]:
+            continue
+        causes = [_need(box, p, q) for p in bodies[i] for q in bodies[j] if face_each_other(p, q)]
+        if i == 0 and j == count - 1 and box.motor > 0:
+            gap, output = box.clearances.shafts, box.shafts[-1].radius
+            between = ("motor", f"shaft {count}")
+            causes.append(Need(between, box.motor + output + gap, gap))
+        if causes:
+            needs[i, j] = max(causes, key=lambda n: n.distance)
+            apart[i, j] = apart[j, i] = needs[i, j].distance
     near = np.array(
         [
             [largest_beside(own, keep.x).radius + box.clearances.shafts for own in bodies]
             for keep in box.keep_outs
         ]
     ).reshape(len(box.keep_outs), count)
-    return Arrangement(slabs, length, bodies, apart, needs, np.maximum(near, 0.0))
+    return Arrangement(slabs, length, bodies, apart, needs, np.maximum(near, 0.0), axes)
 
 
 def _bodies(box: Gearbox, slabs: Slabs) -> tuple[tuple[tuple[Body, ...], ...], float]:
@@ -188,6 +190,7 @@ def _on(box: Gearbox, k: int, start: dict[int, float], length: float) -> tuple[B
     for stage, word in ((k - 1, "wheel"), (k, "pinion")):
         if 0 <= stage < len(box.pairs):
             gear, both = getattr(box.pairs[stage], word), box.pairs[stage].gears
+            word = "planetary stage" if isinstance(gear, Planetary) else word
             x0 = start[stage] + 0.5 * (max(each.width for each in both) - gear.width)
             x = (x0, x0 + gear.width)
             gears.append(Body(f"{word} {stage + 1}", 0.5 * gear.tip_diameter, x, True, stage))
@@ -195,11 +198,24 @@ def _on(box: Gearbox, k: int, start: dict[int, float], length: float) -> tuple[B
     span = (0.0, length)
     if box.partial:
         span = (min(g.x[0] for g in gears) - wide, max(g.x[1] for g in gears) + wide)
+    for disc in (g for g in gears if g.name.startswith("planetary")):
+        span = _up_to(disc, disc.stage == k, start, span)
     bodies = [*gears, Body(f"shaft {k + 1}", shaft.radius, span)]
     if wide > 0.0:
         ends = ((span[0], span[0] + wide), (span[1] - wide, span[1]))
         bodies += [Body(f"bearing of shaft {k + 1}", shaft.bearing_radius, x) for x in ends]
     return tuple(bodies)
+
+
+def _up_to(disc: Body, driving: bool, start: dict[int, float], span: Range) -> Range:
+    """The part of a shaft on its side of a planetary stage, which it drives or is driven by.
+
+    Power goes on along x where the next stage is farther, or the last one nearer.
+    """
+    s = disc.stage if disc.stage + 1 in start else disc.stage - 1
+    if (start[s + 1] > start[s]) == driving:
+        return span[0], min(span[1], disc.x[0])
+    return max(span[0], disc.x[1]), span[1]
 
 
 def largest_beside(bodies: tuple[Body, ...], x: Range) -> Body:

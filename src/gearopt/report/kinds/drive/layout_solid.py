@@ -59,7 +59,7 @@ def section(result: Result, measures: Measures) -> Section | None:
     """Draw the gearbox in space; None where there is no layout."""
     if (layout := layout_of(result)) is None:
         return None
-    if why := undrawn(gear.teeth for gear in layout.gears):
+    if why := undrawn(gear.teeth for gear in layout.gears if gear.member != "ring"):
         return Section("In three dimensions", words=(why,))
     seen = space(*drawn_corners(layout), measures)
     whole = all(gear.teeth == drawn_teeth(gear.teeth) for gear in layout.gears)
@@ -105,7 +105,10 @@ def _picture_of(
     places: Mapping[int, tuple[float, float]],
     measures: Measures,
 ) -> Rod:
-    """A gear with its teeth, as they are at its face on the side of the output."""
+    """A gear with its teeth, as they are at its face on the side of the output; a ring's disc."""
+    if gear.member == "ring":
+        r, words, colour = 0.5 * gear.tip_diameter_mm, meaning(gear, measures), series(gear.stage)
+        return Rod(places[gear.shaft], r, gear.from_mm, gear.to_mm, "gear", colour, words)
     solid, r = _toothed(layout, gear, places), 0.5 * gear.tip_diameter_mm
     turn = solid.phase + twist(solid.gear) * (gear.to_mm - solid.middle)
     rim = tuple((angle + turn, at) for angle, at in outline(solid.gear, 2))
@@ -147,14 +150,16 @@ def _traces(layout: LayoutDesign, measures: Measures) -> list[dict[str, Any]]:
 def _gears(
     layout: LayoutDesign, places: Mapping[int, tuple[float, float]], measures: Measures
 ) -> list[dict[str, Any]]:
-    solids = [(gear, _toothed(layout, gear, places)) for gear in layout.gears]
+    discs = [gear for gear in layout.gears if gear.member == "ring"]
+    gears = [gear for gear in layout.gears if gear.member != "ring"]
     for flank, step in DETAIL:
-        meshes = [gear_mesh(solid, flank, step) for _, solid in solids]
+        meshes = [gear_mesh(_toothed(layout, gear, places), flank, step) for gear in gears]
         if sum(len(faces) for _, faces in meshes) <= MAX_TRIANGLES:
             break
     seen: set[int] = set()
     traces = []
-    for (gear, _), mesh in zip(solids, meshes, strict=True):
+    meshes += [rod(places[g.shaft], 0.5 * g.tip_diameter_mm, g.from_mm, g.to_mm) for g in discs]
+    for gear, mesh in zip((*gears, *discs), meshes, strict=True):
         stage = gear.stage
         first, colour = stage not in seen, series(stage)
         seen.add(stage)
