@@ -98,6 +98,7 @@ GROUPS = {  # heading: {file: what it shows, in a line}
         "thousand_in_two_stages": "1000:1 does not go into two stages of at most 10.",
     },
     "The box around a drive": {
+        "planetary_box": "A planetary stage, a disc with both shafts in one line, and two pairs.",
         "elevator_box": "Shafts placed past a motor, a floor, a ceiling and a brake.",
         "table4_process_one_layout": "Gears all given, only laid out; beside the box of a paper.",
         "four_stage_box": "A slab for each stage, and an output shaft level with the input.",

@@ -84,7 +84,18 @@ def motor(layout: LayoutDesign) -> tuple[float, float, float] | None:
     """Radius, start and end of the motor, which is drawn as long as it is wide."""
     if layout.motor is None:
         return None
-    return 0.5 * layout.motor.diameter_mm, -layout.motor.diameter_mm, 0.0
+    size = layout.motor.diameter_mm
+    start = layout.box.length_mm if _leaves_far(layout) else -size
+    return 0.5 * size, start, start + size
+
+
+def _leaves_far(layout: LayoutDesign) -> bool:
+    """Whether the input shaft, else the output shaft, goes from a ring's disc to the far wall."""
+    shafts, rings = layout.shafts, {g.stage: g for g in layout.gears if g.member == "ring"}
+    for shaft, stage in ((shafts[0], 1), (shafts[-1], len(shafts) - 1)):
+        if stage in rings:
+            return bool(shaft.from_mm >= rings[stage].to_mm)
+    return False
 
 
 def sides(it: KeepOutDesign, axis: str) -> tuple[float, float]:

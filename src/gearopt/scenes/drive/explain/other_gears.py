@@ -50,7 +50,7 @@ def _candidates(
     Where no gears fit the file, those without the reason; else the file as it is.
     """
     assert scene.layout is not None
-    if scene.given or scene.teeth is None:
+    if scene.given or scene.teeth is None or any(own.epicyclic for own in scene.stage):
         return
     free = scene.model_copy(update={"layout": scene.layout.model_copy(update={"together": True})})
     both = () if scene.layout.together else (TOGETHER,)
