@@ -84,24 +84,8 @@ class Planetary(Table):
 
     @model_validator(mode="after")
     def _fits(self) -> "Planetary":
-        total = self.sun_teeth + self.ring_teeth
-        if not self._assembles(self.ring_teeth, self.planets):
-            rule = "leaves no room for the planets, or gears that interfere"
-            if total % self.planets:
-                rule = f"makes z_s + z_r = {total}, no multiple of the {self.planets} planets"
-            usual = self.sun_teeth + 2 * self.planet_teeth
-            near = sorted(range(usual - 6, usual + 7), key=lambda ring: abs(ring - usual))
-            fits = [("ring_teeth", z) for z in near if self._assembles(z, self.planets)]
-            fewer = reversed(range(1, self.planets))
-            fits += [("planets", n) for n in fewer if self._assembles(self.ring_teeth, n)]
-            given = [
-                f"{gear}_shift" for gear in GEARS if getattr(self, f"{gear}_shift") is not None
-            ]
-            if not fits and given:
-                raise refuse(rule, at=(given[-1],), action="remove")
-            middle = (self.ring_teeth - self.sun_teeth) // 2
-            name, write = (*fits, ("planet_teeth", middle))[0]
-            raise refuse(rule, write, (name,))
+        if not self._assembles:
+            self._refuse_teeth()
         gears = self.gearset()
         if planet_play(gears) < -TIGHT * gears.sun.normal_module:
             rule = "makes teeth of the ring, or of planets, thicker than the gaps for them"
@@ -114,14 +98,33 @@ class Planetary(Table):
                 raise refuse(rule, f"{root * (0.7 if gear.teeth > 0 else 1.2):.3g} mm", (name,))
         return self
 
-    def _assembles(self, ring: int, planets: int) -> bool:
+    @property
+    def _assembles(self) -> bool:
         """Whether equally spaced planets have room, and gears do not interfere."""
-        sun = self.sun_teeth
-        way = Planets(
-            self._cutting(), planets, fewer=ring - sun - 2 * self.planet_teeth, clearance=0
-        )
-        pair = way.pair(self.module.value, float(sun), float(ring), self.face_width.value)
-        return bool((sun + ring) % planets == 0 and ring > sun and way.room(pair))
+        sun, ring, width = self.sun_teeth, self.ring_teeth, self.face_width.value
+        less = ring - sun - 2 * self.planet_teeth
+        way = Planets(self._cutting(), self.planets, fewer=less, clearance=0.0)
+        pair = way.pair(self.module.value, float(sun), float(ring), width)
+        return bool((sun + ring) % self.planets == 0 and ring > sun and way.room(pair))
+
+    def _refuse_teeth(self) -> None:
+        """Name one number with which planets can be assembled, or a shift to leave out."""
+        total, usual = self.sun_teeth + self.ring_teeth, self.sun_teeth + 2 * self.planet_teeth
+        rule = "leaves no room for the planets, or gears that interfere"
+        if total % self.planets:
+            rule = f"makes z_s + z_r = {total}, no multiple of the {self.planets} planets"
+        near = sorted(range(usual - 6, usual + 7), key=lambda ring: abs(ring - usual))
+        ways = [("ring_teeth", ring) for ring in near]
+        ways += [("planets", n) for n in reversed(range(1, self.planets))]
+        ways += [("planet_teeth", (self.ring_teeth - self.sun_teeth) // 2)]
+        for name, other in ways:
+            if self.model_copy(update={name: other})._assembles:
+                raise refuse(rule, other, (name,))
+        for name in (f"{gear}_shift" for gear in reversed(GEARS)):
+            if getattr(self, name) is not None:
+                raise refuse(rule, at=(name,), action="remove")
+        advice = "Write more teeth of planet and ring, or fewer planets"
+        raise refuse(rule, advice, ("planet_teeth",), "tell")
 
     def _cutting(self, *thickness: float) -> Cutting:
         x = [None if (s := getattr(self, f"{gear}_shift")) is None else float(s) for gear in GEARS]
