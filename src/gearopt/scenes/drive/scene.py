@@ -496,6 +496,8 @@ class Scene(Table):
         """Return the places of what a stage has of its own; "" where the file has none."""
 
         def place(k: int, field: str, end: int | None) -> str:
+            if stages[k].epicyclic and field in ("pinion_teeth", "wheel_teeth"):
+                return ""  # numbers of teeth that stand for others
             if field == "module" and stages[k].diametral_pitch is not None:
                 return f"stage[{k + 1}].diametral_pitch"
             tables = ("limits", self.limits), ("gears", self.gears)

@@ -18,6 +18,7 @@ from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth, Stage, Train
 from gearopt.physics.iso6336.materials import QUALITIES
 from gearopt.scenes.drive.driving import trains
+from gearopt.scenes.drive.explain.planets import OF_PLANETS, of_planets, without_planets
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.drive import StageTable
 from gearopt.scenes.explaining.numbers import allowed, times
@@ -37,7 +38,7 @@ OF_NUMBERS = (  # what decides which numbers of teeth there are, in integers
     *("coprime", "module", "module_low", "module_high", "modules", "wheel_diameter"),
 )
 # what decides which gears there are, whatever they carry
-OF_TEETH = (*OF_NUMBERS, *OF_SHIFTS, SHIFT, SUM, DISTANCE, *OF_DISTANCES)
+OF_TEETH = (*OF_NUMBERS, *OF_SHIFTS, SHIFT, SUM, DISTANCE, *OF_DISTANCES, *OF_PLANETS)
 ORDER = (  # the likeliest to be in conflict first; those of the second group are dear to drop
     (
         *(CONTACT, BENDING, "face_width", "face_width_over_diameter", "face_width_high"),
@@ -49,6 +50,7 @@ ORDER = (  # the likeliest to be in conflict first; those of the second group ar
         *("pinion_teeth", "pinion_teeth_high", "pinion_teeth_low", "ratio_tolerance"),
         *("stage_ratio_low", "wheel_teeth_low", "module_low", "modules", "face_width_low"),
         *("face_width_over_module_low", *OF_SHIFTS, SHIFT, SUM, DISTANCE, *OF_DISTANCES),
+        *OF_PLANETS,
     ),
 )
 WIDTHS = Fraction(1, 20), Fraction(3)  # b/d1 of free widths
@@ -109,8 +111,11 @@ def _of_stage(scene: Scene, own: StageTable, stage: Stage) -> Iterator[str]:
         yield "module"
     elif ends:
         yield from ("module_low", "module_high")
-    yield from _ends("pinion_teeth", *stage.pinion_teeth)
-    yield from _ends("wheel_teeth", stage.wheel_teeth[0], stage.wheel_teeth[1], least=1)
+    if stage.planetary:
+        yield from of_planets(stage)
+    else:
+        yield from _ends("pinion_teeth", *stage.pinion_teeth)
+        yield from _ends("wheel_teeth", stage.wheel_teeth[0], stage.wheel_teeth[1], least=1)
     yield from _ends("stage_ratio", *stage.ratio, least=1)
     face = stage.face_width
     if face.fixed is not None:
@@ -191,7 +196,7 @@ def _stage(scene: Scene, own: StageTable, stage: Stage, dropped: set[str]) -> St
     for name, field, values in ((SHIFT, "pinion_shift", SHIFTS), (SUM, "shift_sum", SUMS)):
         toothings = _widened(toothings, field, values) if name in dropped else toothings
     toothings = tuple(_unlimited(cut, dropped) for cut in toothings)
-    return replace(
+    made = replace(
         stage,
         toothings=toothings,
         allowable=tuple(limit * ALWAYS if name in dropped else limit for name, limit in law),
@@ -204,6 +209,7 @@ def _stage(scene: Scene, own: StageTable, stage: Stage, dropped: set[str]) -> St
         overlap=0.0 if "overlap_ratio" in dropped else stage.overlap,
         axial_force=math.inf if "axial_force" in dropped else stage.axial_force,
     )
+    return without_planets(made, dropped) if stage.planetary else made
 
 
 def _widened(

@@ -1,5 +1,6 @@
 """Stages with planets, or a pinion in a ring, mesh by mesh, as ratings take them."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from gearopt.formulations.drive.design import (
@@ -10,7 +11,7 @@ from gearopt.formulations.drive.design import (
     with_planets,
 )
 from gearopt.formulations.drive.planetary import Planets
-from gearopt.formulations.drive.rating import MeshName, RatingFactor
+from gearopt.formulations.drive.rating import MeshName, MeshRating, RatingFactor
 from gearopt.formulations.drive.train import STEEL_DENSITY
 from gearopt.formulations.strength.standard import Option
 from gearopt.frozen import dataclass
@@ -165,3 +166,13 @@ def shared(scene: Scene, row: RatingFactor) -> RatingFactor:
     if row.symbol != "K_gamma" or not by_rule:
         return row
     return replace(row, source=BY_PLANETS, verified=False)
+
+
+def governing(named: Sequence[MeshName], least: MeshRating) -> str:
+    """What governs the power capacity, and the stage; named: all meshes, or none."""
+    if not named:
+        return f"{least.governs}, stage {least.stage}"
+    of_mesh = named[least.stage - 1]
+    mode, _, member = least.governs.partition(" of the ")
+    called = of_mesh.wheel if member == "wheel" else of_mesh.pinion
+    return f"{mode} of the {called}, stage {of_mesh.stage}"

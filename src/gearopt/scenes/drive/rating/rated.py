@@ -18,7 +18,7 @@ from gearopt.scenes.drive.driving import driven, drivers
 from gearopt.scenes.drive.idlers import idlers
 from gearopt.scenes.drive.notes import masses
 from gearopt.scenes.drive.rating.assumptions import rating_assumptions, unused_materials
-from gearopt.scenes.drive.rating.by_mesh import BY_PLANETS, by_mesh, shared
+from gearopt.scenes.drive.rating.by_mesh import BY_PLANETS, by_mesh, governing, shared
 from gearopt.scenes.drive.rating.by_mesh import given_design as given_planets
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.gears import (
@@ -341,7 +341,7 @@ def _by(
     rated = DriveRating(
         standard=standard.title(asked, factors),
         safe=False,
-        governs=f"{least.governs}, {title(least.stage)}",
+        governs=governing(named, least),
         minimum_bending_safety=float(asked.minimum_bending_safety),
         minimum_contact_safety=float(asked.minimum_contact_safety),
         power_capacity_kW=least.power_capacity_kW,
