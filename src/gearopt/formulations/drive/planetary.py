@@ -279,10 +279,14 @@ class Planets:
         outer = GearPair(sun, planet, distance)
         for clear in tip_clearances(outer):
             fits = fits & (clear >= -ROUNDING * module)
-        if self.count > 1:
-            gap = 2.0 * distance * np.sin(0.5 * self._angle(pair)) - planet.tip_diameter
-            fits = fits & (gap >= (self.clearance - ROUNDING) * module)
-        return fits
+        return fits & (self.gap(pair) >= (self.clearance - ROUNDING) * module)
+
+    def gap(self, pair: GearPair) -> Any:
+        """Least gap [mm] of the tip circles of neighbouring planets."""
+        _, planet, _, distance = self.gears(pair)
+        if self.count < 2:
+            return distance
+        return 2.0 * distance * np.sin(0.5 * self._angle(pair)) - planet.tip_diameter
 
     def _angle(self, pair: GearPair) -> Any:
         """Least angle [rad] between planets: equal, or as close to that as teeth allow."""

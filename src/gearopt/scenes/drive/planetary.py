@@ -30,7 +30,7 @@ from gearopt.scenes.drive.tables.planetary import (
     gear_of,
 )
 from gearopt.scenes.drive.tables.rating import GearTable, RatingTable, with_shared
-from gearopt.scenes.drive.toothings import rack
+from gearopt.scenes.drive.toothings import check_tools, rack
 from gearopt.scenes.reading.choices import values_of
 from gearopt.scenes.reading.fields import refuse
 
@@ -119,6 +119,7 @@ def check_rings(scene: "Scene", rating: RatingTable) -> None:
         check_materials(places, scene.gears, scene.material)
         check_rated(rating, scene.gears, stages, scene.load, scene.material)
         check_objective(scene.objective, scene.gears, stages, scene.material)
+        check_tools(tuple(stages), scene.gears)
     except PydanticCustomError as wrong:
         raise renamed(scene, wrong, OF_INNER) from None
 

@@ -1,6 +1,6 @@
 """Stages with planets, or a pinion in a ring, mesh by mesh, as ratings take them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from gearopt.formulations.drive.design import (
@@ -16,10 +16,11 @@ from gearopt.formulations.drive.train import STEEL_DENSITY
 from gearopt.formulations.strength.standard import Option
 from gearopt.frozen import dataclass
 from gearopt.physics.gears import GearPair
+from gearopt.physics.geometry.flaws import Flaw
 from gearopt.physics.loads import torque_ratios
 from gearopt.scenes.drive.driving import drivers
 from gearopt.scenes.drive.face_widths import fixed_width
-from gearopt.scenes.drive.planetary import at_once, cuttings, meshes, options
+from gearopt.scenes.drive.planetary import at_once, cuttings, meshes, options, ways
 from gearopt.scenes.drive.rating.gears import given_pairs
 from gearopt.scenes.drive.scene import Scene
 from gearopt.scenes.drive.tables.drive import StageTable
@@ -176,3 +177,23 @@ def governing(named: Sequence[MeshName], least: MeshRating) -> str:
     mode, _, member = least.governs.partition(" of the ")
     called = of_mesh.wheel if member == "wheel" else of_mesh.pinion
     return f"{mode} of the {called}, stage {of_mesh.stage}"
+
+
+def assembly_flaws(scene: Scene, design: DriveDesign) -> Iterator[Flaw]:
+    """Yield why planets of given gears cannot be put together, or are close to each other."""
+    for k, (own, stage) in enumerate(zip(scene.stage_tables, design.stages, strict=True), 1):
+        if stage.type != "planetary" or not (stage.planets and stage.sun_teeth):
+            continue
+        asked = next(ways(scene, own))
+        total, count = stage.sun_teeth + (stage.ring_teeth or 0), stage.planets
+        if asked.spaced and total % count:
+            text = f"z_s + z_r = {total:g} of stage {k} is no multiple of its {count} planets: "
+            yield Flaw("assembly", f"{text}they cannot be equally spaced.", misfit=1.0)
+        module = stage.normal_module_mm
+        size = stage.sun_teeth, stage.ring_teeth, stage.face_width_mm
+        planets = replace(planets_of(scene, own, stage), spaced=asked.spaced)
+        gap = float(planets.gap(planets.pair(module, *size)))
+        if gap < asked.clearance * module:
+            text = f"Neighbouring planets of stage {k} are {gap:.3f} mm apart at their tips, below "
+            text += f"{asked.clearance:g} m_n."
+            yield Flaw("planets close", text, misfit=max(0.0, -gap / module))

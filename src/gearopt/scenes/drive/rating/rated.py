@@ -12,13 +12,20 @@ from gearopt.optimise.result import Result, versions
 from gearopt.optimise.typed import typed, untyped
 from gearopt.physics.blanks import Blank
 from gearopt.physics.gears import GearPair
+from gearopt.physics.geometry.flaws import Flaw
 from gearopt.physics.loads import torque
 from gearopt.physics.shaft_forces import hands
 from gearopt.scenes.drive.driving import driven, drivers
 from gearopt.scenes.drive.idlers import idlers
 from gearopt.scenes.drive.notes import masses
 from gearopt.scenes.drive.rating.assumptions import rating_assumptions, unused_materials
-from gearopt.scenes.drive.rating.by_mesh import BY_PLANETS, by_mesh, governing, shared
+from gearopt.scenes.drive.rating.by_mesh import (
+    BY_PLANETS,
+    assembly_flaws,
+    by_mesh,
+    governing,
+    shared,
+)
 from gearopt.scenes.drive.rating.by_mesh import given_design as given_planets
 from gearopt.scenes.drive.rating.checks import not_given
 from gearopt.scenes.drive.rating.gears import (
@@ -140,7 +147,8 @@ def with_given_gears(scene: Scene, ask: Ask, known: Result | None) -> Result:
     if any(own.epicyclic for own in scene.stage):
         design = given_planets(scene)
         meshed, pairs, materials = by_mesh(scene, design)
-        return _with_gears(meshed, known, pairs, design, _bodies(meshed, pairs, materials))
+        made = meshed, known, pairs, design, _bodies(meshed, pairs, materials)
+        return _with_gears(*made, tuple(assembly_flaws(scene, design)))
     pairs = given_pairs(scene.stage, scene.gears)
     return _with_gears(scene, known, pairs, *given_design(scene, pairs))
 
@@ -151,10 +159,11 @@ def _with_gears(
     pairs: tuple[GearPair, ...],
     design: DriveDesign,
     bodies: Sequence[Blanks],
+    others: Sequence[Flaw] = (),
 ) -> Result:
-    """The rating of a design with its gears and their flaws."""
+    """The rating of a design with its gears and their flaws, and others of planets."""
     bored = [(s.pinion.bore is not None, s.wheel.bore is not None) for s in scene.stage_tables]
-    geometric = (*tooth_flaws(pairs), *body_flaws(bodies, pairs, bored))
+    geometric = (*others, *tooth_flaws(pairs), *body_flaws(bodies, pairs, bored))
     accepted = (flaw.sentence for flaw in geometric if not flaw.misfit)
     rated: DriveRating = typed(DriveRating, known.design["rating"])
     rated = fitted(rated, [flaw.sentence for flaw in geometric if flaw.misfit])
