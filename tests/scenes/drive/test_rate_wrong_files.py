@@ -198,7 +198,7 @@ WRONG = {  # the mistake: what stands there, what is written, key and value as t
         "wheel_teeth = 60",
         "wheel_teeth = -60",
         "stage[1].wheel_teeth = -60",
-        "Internal gears are not supported yet",
+        'A ring has ring_teeth, above zero, in a [[stage]] of type = "internal"',
     ),
     "teeth as a range": (
         "pinion_teeth = 20",

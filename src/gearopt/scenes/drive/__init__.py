@@ -164,6 +164,7 @@ ABOUT = {  # files in examples, that of the kind first
     "drive": "a multi-stage drive of cylindrical gears of minimum volume, mass or length",
     "rating": "gears that are given, rated by AGMA or ISO 6336",
     "sizing": "a drive of least volume that is safe by its rating",
+    "planetary": "a planetary stage of least volume that is safe by ISO 6336",
 }
 KIND = Kind(
     scene=Scene,

@@ -13,7 +13,6 @@ from gearopt.scenes.reading.kinds import kinds
 GEARS: dict[str, str] = {  # types of gears: kinds that people ask for, and their keys
     "Ravigneaux sets and bevel differentials are": "ravigneaux differential differential_gear "
     "ausgleichsgetriebe",
-    "internal gears are": "internal internal_gear internal_gears internal_teeth innenverzahnung",
     "worm gears are": "worm worms worm_gear worm_wheel worm_starts number_of_starts "
     "number_of_threads threads lead_angle diameter_quotient schnecke schneckenrad "
     "schneckengetriebe gangzahl globoid",

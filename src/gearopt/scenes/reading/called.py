@@ -50,6 +50,17 @@ DRIVE = {
     "flank_rz, in [gears]": "rz r_z flank_roughness surface_roughness",
     "idler, in a [[stage]]: its pinion is the wheel before": "idler_gear intermediate_gear "
     "zwischenrad",
+    'type = "planetary", in a [[stage]] of kind "drive"': "planetary epicyclic planet_gear "
+    "planet_gears planetengetriebe umlaufgetriebe carrier planet_carrier planetentraeger steg",
+    'type = "internal", in a [[stage]] of kind "drive", with ring_teeth': "internal internal_gear "
+    "internal_gears internal_teeth innenverzahnung",
+    'planets, in a [[stage]] of type = "planetary"': "number_of_planets planet_count n_planets "
+    "planeten planetenzahl stage.planet_number",
+    'sun_teeth, in a [[stage]] of type = "planetary"': "z_sun sun_gear sonnenrad",
+    'ring_teeth, in a [[stage]] of type = "planetary" or "internal"': "z_ring ring_gear annulus "
+    "hohlrad",
+    'mesh_load_factor, in a [[stage]] of type = "planetary"': "k_gamma load_sharing_factor "
+    "lastaufteilungsfaktor",
     "reversed_load, of a gear": "reverse_bending alternating alternating_load wechselbiegung",
     "tool_protuberance, of a gear": "protuberance",
     "tip_chamfer, of a gear, in normal modules": "chamfer tip_form_diameter d_na kopfkantenbruch",
@@ -215,16 +226,17 @@ KINDS = {
     "drive": "gearbox gear_unit transmission reducer speed_reducer gear_reducer gear gears "
     "gear_drive spur helical spur_gear helical_gear helical_gears parallel_shaft cylindrical "
     "cylindrical_gear cylindrical_gears rating rate getriebe stirnrad stirnraeder "
-    "stirnradgetriebe",
+    "stirnradgetriebe planetary planetary_gear planetary_gears planetary_gearbox planetary_stage "
+    "planetary_set planetary_gear_set planetary_drive planetengetriebe internal internal_gear "
+    "internal_gears",
     "pair": "gear_pair spur_pair spur_gears mesh gear_mesh contact tooth_contact relief "
     "tip_relief profile_modification transmission_error",
     "compound": "compound_train compound_gear_train train gear_train",
     "servo": "servo_drive servo_train backlash actuator positioning",
     "dynamics": "vibration vibrations dynamic oscillation schwingung",
     "strain_wave": "harmonic_drive harmonic strain_wave_gear strain_wave_gearing wave wellgetriebe",
-    "epicyclic": "planetary planetary_gear planetary_gears planetary_gear_set planetary_set "
-    "planetary_train planetary_drive planetary_gearbox epicyclic_gear epicyclic_train planet "
-    "planets sun ring annulus wolfrom stepped_planet 3k planetengetriebe umlaufgetriebe",
+    "epicyclic": "planetary_train epicyclic_gear epicyclic_train planet planets sun ring annulus "
+    "wolfrom stepped_planet 3k umlaufgetriebe",
     "packing": "cylinders circles cylinder_packing circle_packing",
 }
 CALLED: dict[str, dict[str, str]] = {

@@ -65,7 +65,10 @@ PLANETARY = (
     "ring_teeth z_ring carrier planet_carrier annulus wolfrom planetengetriebe umlaufgetriebe "
     "sonnenrad hohlrad planeten planetenzahl planetentraeger steg"
 )
-EPICYCLIC = 'Nearest: kind = "epicyclic", planetary trains by their numbers of teeth'
+EPICYCLIC = (
+    'Nearest: type = "planetary" in a [[stage]] of kind = "drive", sized by ratings, or kind = '
+    '"epicyclic", trains by their numbers of teeth'
+)
 MONEY = "cost price costs budget maximum_cost"
 
 KEYS = frozenset(  # of the names above, those that a drive has as keys

@@ -45,7 +45,7 @@ PRESSURE = quantity("angle", "20 deg", "45 deg")
 TOOTH_COUNT = whole(21, 5, 1000)
 WHEEL_TEETH = advised(
     whole(100, 5, 100_000),
-    {r"-\d+": "Internal gears are not supported yet; numbers of external teeth are above zero"},
+    {r"-\d+": 'A ring has ring_teeth, above zero, in a [[stage]] of type = "internal"'},
 )
 PITCH = advised(
     number(10, 0, 2000),
