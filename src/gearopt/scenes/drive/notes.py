@@ -193,7 +193,10 @@ def masses(scene: Scene, noted: bool = True) -> str:
 def _bodies(scene: Scene) -> str:
     """The bodies whose volumes and masses are given."""
     stages = scene.stage_tables
-    tables = [with_shared(getattr(own, m), scene.gears) for own in stages for m in MEMBERS]
+    pairs = [own for own in stages if not own.epicyclic]
+    if not pairs:
+        return "Volumes are those of solid cylinders, masses those without the bores of the file"
+    tables = [with_shared(getattr(own, m), scene.gears) for own in pairs for m in MEMBERS]
     if all(blank(table, None).solid and not table.web_thickness for table in tables):
         if any(map(scene.shifted, stages)):
             return (
@@ -227,7 +230,8 @@ def _loads(scene: Scene, angle: str, assumed: str) -> list[str]:
 
 def _teeth(scene: Scene) -> list[str]:
     """Assumptions on the teeth: shifts, tools, backlash."""
-    each = [scene.toothings(own)[0] for own in scene.stage_tables]
+    pairs = [own for own in scene.stage_tables if not own.epicyclic]
+    each = [scene.toothings(own)[0] for own in pairs or scene.stage_tables]
     shifted = any(any(cut.profile_shifts) for cut in each)
     shifts = "with the profile shifts of the file" if shifted else "without profile shift"
     given = next((cut for cut in each if cut.shifting is not None), None)
@@ -249,7 +253,10 @@ def _teeth(scene: Scene) -> list[str]:
                 f"from {source}, with both tips shortened alike"
             )
     ends = "torques are those without losses in mesh and bearings"
-    sentences = [f"The gears are external cylindrical ones {shifts}; {ends}."]
+    what = "The gears" if len(pairs) == len(scene.stage_tables) else "Those of pairs"
+    sentences = [f"{what} are external cylindrical ones {shifts}; {ends}."]
+    if not pairs:
+        sentences = [f"{ends.capitalize()}."]
     usual = {replace(ISO_53_A, pressure_angle=r.pressure_angle) for cut in each for r in cut.racks}
     if {rack for cut in each for rack in cut.racks} <= usual:
         sentences.append(

@@ -97,6 +97,12 @@ def inner(own: StageTable) -> StageTable:
     return copied(own, {"pinion": _bent(own), "wheel": gear_of(own.ring)})
 
 
+def every_mesh(stages: Sequence[StageTable]) -> tuple[StageTable, ...]:
+    """Tables of stages, and those of planet and ring beside the ones of sun and planet."""
+    rings = (inner(own) for own in stages if own.type == PLANETARY and own.as_mesh is None)
+    return (*stages, *rings)
+
+
 def renamed(scene: "Scene", wrong: PydanticCustomError, names: Any = None) -> PydanticCustomError:
     """The refusal of a check of pairs, by the names of the gears of a stage."""
     context = dict(wrong.context or {})
@@ -162,6 +168,8 @@ def _beside(scene: "Scene", own: StageTable) -> str:
         return "does not go together with coaxial and sum_of_centre_distances of [limits]"
     if scene.to_size and scene.objective.minimise not in ("gear_volume", "mass", "mesh_loss"):
         return f"needs minimise = gear_volume, mass or mesh_loss, not {scene.objective.minimise}"
+    if scene.limits.axial_force is not None:
+        return "does not go together with axial_force of [limits], which is of pairs"
     if len(scene.helix_angles(own)) > 1:
         return "needs one helix angle"
     return ""
@@ -322,6 +330,30 @@ def stage_with_planets(scene: "Scene", own: StageTable, stage: Stage) -> Stage:
         wheel_diameter=None,
         toothings=(Toothing(angle, (plain, plain)),),
     )
+
+
+def planet_assumptions(scene: "Scene") -> Iterator[str]:
+    """What the gears of planets and rings take for granted, in sentences."""
+    stages = [own for own in scene.stage if own.epicyclic]
+    if not stages:
+        return
+    yield (
+        "Sun, planets and ring, or a pinion in a ring, are put together axially and count as "
+        "cylinders of the mean diameter (d_a + d_f)/2, a ring as the tube from there to its "
+        "outside; carrier, pins and bearings are left out."
+    )
+    if any(own.type == PLANETARY for own in stages):
+        yield (
+            "Profile shifts that the file does not give follow a rule of this program: the centre "
+            "distance is midway between the reference distances of both meshes, x_s is half of "
+            "x_s + x_p and no less than keeps the sun from undercut, sun and planets are shortened "
+            "by x_s + x_p - y, the ring has no backlash, and its tips end at the form circle of "
+            "the planets. A positive shift moves the ring's teeth towards its centre."
+        )
+        yield (
+            "Meshes of planets are rated against the carrier, with the torque over their number "
+            "times K_γ; K_Hβ is that of pairs, without pins and carrier."
+        )
 
 
 def load_factor(own: StageTable, count: int) -> Fraction:

@@ -9,6 +9,7 @@ from gearopt.physics.iso6336.case import Practice
 from gearopt.scenes.drive.driving import drivers
 from gearopt.scenes.drive.face_widths import excesses
 from gearopt.scenes.drive.idlers import idlers
+from gearopt.scenes.drive.planetary import every_mesh, planet_assumptions
 from gearopt.scenes.drive.rating.iso_material import steel
 from gearopt.scenes.drive.rating.materials import Named, choices, unused
 from gearopt.scenes.drive.rating.options import by, of_stage
@@ -29,12 +30,14 @@ def rating_assumptions(scene: Scene) -> list[str]:
     agma, iso = asked.standard != "iso6336", asked.standard != "agma"
     members = dict.fromkeys(drivers(scene))
     drive = "the gears named drive" if len(members) > 1 else f"the {next(iter(members))}s drive"
+    outer = "" if any(own.epicyclic for own in scene.stage) else "external "
     sentences = [
-        f"The rating is of external cylindrical gears on parallel shafts; {drive}. "
+        f"The rating is of {outer}cylindrical gears on parallel shafts; {drive}. "
         "Torques and forces are those without losses.",
         "The standards themselves were not read: formulas and values are those of textbooks, "
         "tables and public programs; those from a single source are marked unverified.",
         *_idlers(scene),
+        *planet_assumptions(scene),
         *_named_steels(scene),
         *(_agma_assumptions(scene, asked) if agma else []),
         *(_iso_assumptions(scene, asked) if iso else []),
@@ -172,12 +175,12 @@ def _unstated(asked: RatingTable, by_agma: bool, by_iso: bool) -> list[str]:
 
 def unused_materials(scene: Scene) -> list[str]:
     """Return a note on the materials of the file that no gear may have, if there are any."""
-    names = unused(scene.stage_tables, scene.gears, scene.material)
+    names = unused(every_mesh(scene.stage_tables), scene.gears, scene.material)
     return [f"[[material]] in no list of a gear: {', '.join(names)}."] if names else []
 
 
 def every_gear(scene: Scene) -> Iterator[tuple[GearTable, Named | None]]:
     """Every gear with each material that it may have, and that material."""
-    for stage in scene.stage_tables:
+    for stage in every_mesh(scene.stage_tables):
         for member in MEMBERS:
             yield from choices(getattr(stage, member), scene.gears, scene.material)
