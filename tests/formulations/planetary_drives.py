@@ -49,6 +49,25 @@ def _standard(steels, contacts, meshes, factor):
     return replace(made, operation=replace(made.operation, contacts=contacts))
 
 
+def rings(cutting, **limits):
+    """The option of a pinion in a ring."""
+    planets = Planets(cutting, 0, **limits)
+    rated = InPlanetaryMesh(_standard((HARD, HARD), (1.0, 1.0), None, {}), planets, True, "")
+    two = (None,) * 2, (1.0,) * 2, (0.0,) * 2, (0.0,) * 2, ("",) * 2
+    return (Option((rated,), "", *two, planets=planets),)
+
+
+def some_internal_drive(seed):
+    """A random small drive whose first stage is a pinion in a ring."""
+    train = some_planetary_drive(seed, 1 + seed % 2, ("carrier",))
+    first = train.stages[0]
+    cutting = replace(first.options[0].planets.cutting, shifts=(None, None, None))
+    if seed % 3 == 0:
+        cutting = replace(cutting, shifts=(None, 0.3, 0.2))
+    first = replace(first, options=rings(cutting))
+    return replace(train, stages=(first, *train.stages[1:]))
+
+
 def some_planetary_drive(seed, count=1, kinds=("ring", "sun", "carrier")):
     """A random small drive of so many stages, the first of which is planetary."""
     rng = np.random.default_rng(seed)
@@ -103,6 +122,13 @@ def candidates(stage, z1, z2, module):
     for option in stage.options:
         way = option.planets
         cut, n = way.cutting, way.count
+        if cut.cutter and (z2 - z1 if way.held == "ring" and n else z2) <= cut.cutter.teeth:
+            continue
+        if not n:
+            made = pinion_in_ring(cut, module, z1, z2) if z2 > z1 else None
+            if made is not None and margins_left(made):
+                yield option, made, (z1, z1, z2)
+            continue
         sun, ring = (z2 - z1, z1) if way.held == "sun" else (z1, z2 - z1)
         if way.held == "carrier":
             ring = z2
@@ -120,6 +146,52 @@ def candidates(stage, z1, z2, module):
         made = gears_of(cut, module, sun, planet, ring)
         if made is not None and fits(way, made, sun + ring, module):
             yield option, made, (sun, planet, ring)
+
+
+def pinion_in_ring(cut, module, pinion, ring):
+    """Pinion (twice), ring and distance: without backlash at their shifts."""
+    t, each = math.atan(math.tan(math.radians(20)) / math.cos(cut.helix_angle)), module
+    each = module / math.cos(cut.helix_angle)
+    a, x, outward = each * (ring - pinion) / 2, cut.shifts[1] or 0.0, cut.shifts[1] or 0.0
+    w = t
+    if cut.shifts[2] is not None:
+        outward = -cut.shifts[2]
+        change = 2 * (outward - x) * math.tan(math.radians(20)) / (ring - pinion)
+        w = involute_angle(involute(t) + change)
+        a *= math.cos(t) / math.cos(w)
+    tip = ring_tip(cut, module, pinion, ring, a, x, outward, w)
+    rows = (pinion, x, 0.0), (pinion, x, 0.0), (-ring, -outward, tip)
+    return None if math.isnan(a) else (*_cut(cut, module, rows), a)
+
+
+def margins_left(made):
+    """Whether the mesh of the ring breaks no limit but that of radial assembly."""
+    _, planet, ring, a = made
+    left = margins(GearPair(planet, ring, -a))
+    accepted = "radial_assembly", "cutter_infeed"
+    return not any(v < -1e-9 for n, v in left.items() if n not in accepted)
+
+
+def ring_tip(cut, module, planet, ring, a, x, outward, w):
+    """Tip alteration of a ring that ends at the form circle of the planets."""
+    t, each = math.atan(math.tan(math.radians(20)) / math.cos(cut.helix_angle)), module
+    each = module / math.cos(cut.helix_angle)
+    deep = 1.25 - 0.38 * (1 - math.sin(math.radians(20))) - x
+    form = each * planet * math.sin(t) / 2 - module * deep / math.sin(t)
+    least = math.hypot(each * ring * math.cos(t) / 2, a * math.sin(w) + form)
+    tip = max(least, each * ring / 2 + module * (outward - 1.0))
+    return (each * ring / 2 - tip) / module + outward - 1.0
+
+
+def _cut(cut, module, rows):
+    """Gears of teeth, shifts and tip alterations."""
+    made = []
+    for z, x, tips in rows:
+        d = reference_diameter(module, float(z), cut.helix_angle)
+        cutter = cut.cutter if z < 0 else None
+        of_teeth = module, float(z), d, 1.0, cut.helix_angle, ISO_53_A, x, tips
+        made.append(Gear(*of_teeth, cutter=cutter))
+    return made
 
 
 def gears_of(cut, module, sun, planet, ring):
@@ -146,27 +218,15 @@ def gears_of(cut, module, sun, planet, ring):
         2 * tan
     ) + xp  # of the ring's profile
     k = (a - a0) / module - xs - xp
-    form = each * planet * math.sin(t) / 2 - module * (
-        1.25 - 0.38 * (1 - math.sin(math.radians(20))) - xp
-    ) / math.sin(t)
-    least = math.hypot(each * ring * math.cos(t) / 2, a * math.sin(w) + form)
-    tip = max(least, each * ring / 2 + module * (outward - 1.0))
-    kr = (each * ring / 2 - tip) / module + outward - 1.0
-    made = []
-    for z, x, tips in ((sun, xs, k), (planet, xp, k), (-ring, -outward, kr)):
-        d = reference_diameter(module, float(z), cut.helix_angle)
-        cutter = cut.cutter if z < 0 else None
-        made.append(
-            Gear(module, float(z), d, 1.0, cut.helix_angle, ISO_53_A, x, tips, cutter=cutter)
-        )
-    return (*made, a)
+    kr = ring_tip(cut, module, planet, ring, a, xp, outward, w)
+    rows = (sun, xs, k), (planet, xp, k), (-ring, -outward, kr)
+    return (*_cut(cut, module, rows), a)
 
 
 def fits(way, made, teeth, module):
     """Whether gears go together: margins of the ring's mesh, and room between planets."""
     sun, planet, ring, a = made
-    left = margins(GearPair(planet, ring, -a))
-    if any(v < -1e-9 for n, v in left.items() if n not in ("radial_assembly", "cutter_infeed")):
+    if not margins_left(made):
         return False
     for one, other in ((sun, planet), (planet, sun)):
         if a - one.tip_diameter / 2 - other.root_diameter / 2 < -1e-9 * module:
@@ -186,6 +246,8 @@ def volume(way, made, width, module):
     """Volume of all gears of a stage [mm3]."""
     sun, planet, ring, _ = made
     outside = abs(ring.root_diameter) + 7.0 * module
+    if not way.count:
+        return body(sun, width) + body(ring, width, outside)
     return body(sun, width) + way.count * body(planet, width) + body(ring, width, outside)
 
 
@@ -194,11 +256,14 @@ def safe(train, way, made, teeth, width, torque):
     speed = train.speed * train.torque / torque
     (sun, planet, ring), n = teeth, way.count
     of_sun, relative = torque, speed
-    if way.held == "ring":
+    if n and way.held == "ring":
         relative = speed - speed * sun / (sun + ring)  # less that of the carrier
-    if way.held == "sun":
+    if n and way.held == "sun":
         of_sun, relative = torque * sun / ring, speed * ring / (sun + ring)
     load = Operation(of_sun * relative, relative, HOURS, overload=1.25)
+    if not n:
+        pair = GearPair(*(replace(gear, face_width=width) for gear in made[1:3]), -made[3])
+        return _meets(pair, load, (HARD, HARD), Practice(grades=(6.0, 6.0)), {})
     g1, g2, g3, a = (*(replace(g, face_width=width) for g in made[:3]), made[3])
     outer, inner = with_sun(load, n), with_ring(load, n, planet / sun, way.held == "ring")
     pairs = [
@@ -208,14 +273,19 @@ def safe(train, way, made, teeth, width, torque):
     for pair, mesh, steels in pairs:
         practice = Practice(grades=(6.0, 6.0), meshes=mesh.meshes)
         factor = {"K_gamma": mesh_load_factor(n, "wind")}
-        try:
-            found = rate(pair, mesh.operation, steels, practice, factor)
-        except ValueError:
-            return False
-        reached = min(found.bending_safety) / 1.3, min(found.contact_safety) / 1.05
-        if min(reached) < 1.0 - 1e-11:
+        if not _meets(pair, mesh.operation, steels, practice, factor):
             return False
     return True
+
+
+def _meets(pair, operation, steels, practice, factor):
+    """Whether a mesh has the safety factors that are asked for."""
+    try:
+        found = rate(pair, operation, steels, practice, factor)
+    except ValueError:
+        return False
+    reached = min(found.bending_safety) / 1.3, min(found.contact_safety) / 1.05
+    return min(reached) >= 1.0 - 1e-11
 
 
 def widths(face, d1):

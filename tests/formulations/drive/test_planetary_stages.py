@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import planetary_drives as own
@@ -11,7 +12,7 @@ from campaigns import few
 
 from gearopt.formulations.drive.planetary import HELD, Cutting
 from gearopt.formulations.drive.shares import objective_share
-from gearopt.formulations.drive.teeth import problem
+from gearopt.formulations.drive.teeth import gears, problem
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.optimise.solve import run
 from gearopt.physics.gears import Cutter
@@ -50,6 +51,40 @@ def test_stages_are_those_of_every_candidate(seed):
 @pytest.mark.parametrize("seed", few(range(40), 0))
 def test_drives_with_a_planetary_stage_are_those_of_every_candidate(seed):
     agree(own.some_planetary_drive(seed, 2))
+
+
+@pytest.mark.parametrize("seed", few(range(30), (1,)))
+def test_pinions_in_rings_are_those_of_every_candidate(seed):
+    agree(own.some_internal_drive(seed))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(10))
+def test_a_given_ratio_is_raised_by_the_mirrored_drive(seed):
+    """Lemma 87: the same pairs, driven from the other end at the same power."""
+    train = replace(own.some_planetary_drive(seed, 1 + seed % 2), tolerance=Fraction(0))
+    ratio = brute_ratio(train)
+    if ratio is None:
+        return
+    train = replace(train, ratio=ratio)
+    up = replace(
+        train,
+        driver="wheel",
+        torque=train.torque * float(ratio),
+        speed=train.speed / float(ratio),
+        stages=train.stages[::-1],
+    )
+    one, other = (run(problem(each))[0].value for each in (train, up))
+    assert one == other if None in (one, other) else one == pytest.approx(other, rel=1e-9)
+
+
+def brute_ratio(train):
+    """A total ratio that numbers of teeth have, near the one asked for."""
+    result, outcome = run(problem(replace(train, tolerance=Fraction(1, 50))))
+    if result.value is None:
+        return None
+    pairs = gears(train, outcome.x)[0]
+    return math.prod((Fraction(int(p.wheel_teeth), int(p.pinion_teeth)) for p in pairs), start=1)
 
 
 @pytest.mark.slow

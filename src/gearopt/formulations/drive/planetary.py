@@ -226,6 +226,8 @@ class Planets:
         """Whether numbers of teeth of pairs are allowed and can be put together."""
         sun, planet, ring = self.teeth_of(z1, z2)
         fits = _within(ring, self.ring) & np.greater(ring, planet) & _within(sun, self.sun)
+        if self.cutting.cutter is not None:
+            fits = fits & np.greater(ring, self.cutting.cutter.teeth)
         if not self.count:
             return fits
         fits = fits & _within(planet, self.planet) & (np.mod(planet, 1.0) == 0.0)

@@ -205,6 +205,10 @@ def _check_gears(scene: "Scene", own: StageTable, k: int) -> None:
     if own.ring.outside_diameter is not None and gear_of(own.ring).rim_over_module is not None:
         rule = "conflicts with outside_diameter; one is enough"
         raise refuse(rule, at=("stage", k, "ring", "rim_over_module"), action="remove")
+    most = own.ring_teeth or scene.limits.wheel_teeth
+    if own.ring.cutter_teeth is not None and most and most[1] and most[1] <= own.ring.cutter_teeth:
+        rule = f"is no less than the ring has, {most[1]}: the cutter runs within it"
+        raise refuse(rule, most[1] // 3, ("stage", k, "ring", "cutter_teeth"), "sample")
     if own.ring.cutter_teeth is None:
         for name in ("cutter_profile_shift", "cutter_addendum", "cutter_tip_radius"):
             if getattr(own.ring, name) is not None:
