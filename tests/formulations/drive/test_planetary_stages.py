@@ -16,6 +16,8 @@ from gearopt.formulations.drive.teeth import gears, problem
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.optimise.solve import run
 from gearopt.physics.gears import Cutter
+from gearopt.physics.geometry.contact import free_tip_diameters
+from gearopt.physics.geometry.fillet import is_undercut
 
 PLAIN = brute.least_share
 
@@ -161,6 +163,18 @@ def test_a_larger_module_is_never_lighter(held):
         assert fits.any() == (option.planets.count % 2 == 1 or option.planets.fewer % 2 == 0)
         np.testing.assert_allclose(then[fits], 1.25**3 * now[fits])
         assert (least <= now * (1.0 + 1e-12)).all()
+
+
+def test_tips_of_a_ring_end_at_the_form_circles_of_planets():
+    rng = np.random.default_rng(3)
+    for option in own.ways(Cutting(0.15), (3,), (0, 1, 2)):
+        pair = some_pairs("ring", 200, rng, 0.15)
+        fits = option.planets.possible(pair.pinion_teeth, pair.wheel_teeth)
+        mesh = option.planets.mesh(pair, with_ring=True)
+        fits &= ~is_undercut(mesh.pinion) & (mesh.wheel.tip_alteration < 0.0)
+        free = free_tip_diameters(mesh)[1]
+        assert fits.sum() > 10
+        np.testing.assert_allclose(mesh.wheel.tip_diameter[fits], free[fits], rtol=1e-12)
 
 
 def test_planets_that_do_not_fit_are_named():

@@ -215,6 +215,10 @@ def _check_gears(scene: "Scene", own: StageTable, k: int) -> None:
                 rule = "needs cutter_teeth, of the cutter that shapes the ring"
                 raise refuse(rule, at=("stage", k, "ring", name), action="remove")
     sized = scene.to_size and not scene.given
+    planet = with_shared(own.wheel if own.type == PLANETARY else own.pinion, scene.gears)
+    if sized and planet.tool_protuberance and gear_of(own.ring).tip_alteration is None:
+        rule = "is missing: beside a tool_protuberance of its mates it has no rule"
+        raise refuse(rule, -0.1, ("stage", k, "ring", "tip_alteration"), "sample")
     if sized and own.type == PLANETARY and gear_of(own.ring).profile_shift is not None:
         rule = "follows from the distance of sun and planet"
         raise refuse(rule, at=("stage", k, "ring", "profile_shift"), action="remove")
@@ -227,6 +231,9 @@ def _check_teeth(scene: "Scene", own: StageTable, k: int) -> None:
             if count and count not in SHARING_RULES[SHARING].values:
                 rule = f"is missing: {count} planets have no K_gamma by default"
                 raise refuse(rule, 1.1, ("stage", k, "mesh_load_factor"), "sample")
+    if own.equally_spaced is False and own.mesh_order in ("simultaneous", "sequential"):
+        rule = "is of equally spaced planets"
+        raise refuse(rule, at=("stage", k, "mesh_order"), action="remove")
     for step in own.planet_teeth_reduction or ():
         if (2 * step).denominator != 1:
             rule = "has a value that is no multiple of 0.5"
