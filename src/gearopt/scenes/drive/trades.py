@@ -24,7 +24,8 @@ def objectives(scene: Scene) -> dict[str, str]:
     to_choose(scene)
     names = {name: unit for name, unit in OBJECTIVES.items() if not _why_lacking(scene, name)}
     used = {load_front.UTILISATION: ""} if scene.teeth is not None else {}
-    by_rating = used and scene.by_ratings and not scene.limits.loaded and not idlers(scene.stage)
+    pairs = not idlers(scene.stage) and not any(own.epicyclic for own in scene.stage)
+    by_rating = used and scene.by_ratings and not scene.limits.loaded and pairs
     return names | used | (EXTREMES if by_rating else {}) | _of_box(scene)
 
 
@@ -60,7 +61,7 @@ def advice(scene: Scene, names: Sequence[str]) -> str:
     why = (_why_lacking(scene, name) for name in names if name in OBJECTIVES)
     what = next(filter(None, why), "")
     if not what and any(name in EXTREMES for name in names):
-        what = "it needs a table [teeth], limits by [rating] alone and no idler"
+        what = "it needs a table [teeth], limits by [rating] alone and no idler, planets or ring"
     hint = ', as in [objective] density = "7.85 kg/dm^3"' if "density" in what else ""
     return what + hint
 
