@@ -11,10 +11,11 @@ from gearopt.formulations.drive.planetary import Cutting, InPlanetaryMesh, Plane
 from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import FaceWidth
 from gearopt.formulations.strength.standard import Option
+from gearopt.physics.blanks import SOLID, Blank
 from gearopt.physics.gears import ISO_53_A, Cutter, Gear, GearPair, reference_diameter
 from gearopt.physics.geometry.internal import margins
 from gearopt.physics.geometry.involute import involute, involute_angle
-from gearopt.physics.iso6336.case import Practice
+from gearopt.physics.iso6336.case import Practice, of_blanks
 from gearopt.physics.iso6336.materials import Material
 from gearopt.physics.iso6336.rating import rate
 from gearopt.physics.planetary.loads import mesh_load_factor, with_ring, with_sun
@@ -85,6 +86,11 @@ def some_planetary_drive(seed, count=1, kinds=("ring", "sun", "carrier")):
     low = int(rng.integers(14, 24))
     sun = low, low + int(rng.integers(2, 5))
     ring_over_sun = float(rng.uniform(1.8, 5.0))
+    if seed % 4 == 1:  # bodies of another shape in every module, of a mass
+        bores = Blank(bore=0.3 * low * 2.0, hub_over_bore=1.2), Blank(bore=10.0)
+        outside = 1.05 * float(MODULES[4]) * low * ring_over_sun + 25.0
+        cutting = replace(cutting, blanks=bores, outside=None if seed % 8 == 1 else outside)
+        options = ways(cutting, counts, fewer, held, order=order)
     own = {"ring": 1 + ring_over_sun, "carrier": ring_over_sun, "sun": 1 + 1 / ring_over_sun}[held]
     begin = int(rng.integers(2, 6))
     modules = MODULES[begin : begin + 3]
@@ -242,13 +248,23 @@ def body(gear, width, outside=None):
     return math.pi / 4 * width * (inside**2 if outside is None else out**2 - inside**2)
 
 
-def volume(way, made, width, module):
+def volume(way, made, width, module, mass=False):
     """Volume of all gears of a stage [mm3]."""
     sun, planet, ring, _ = made
-    outside = abs(ring.root_diameter) + 7.0 * module
+    outside = way.cutting.outside or abs(ring.root_diameter) + 7.0 * module
     if not way.count:
         return body(sun, width) + body(ring, width, outside)
-    return body(sun, width) + way.count * body(planet, width) + body(ring, width, outside)
+    first, second = (
+        body(gear, width) - (taken(blank, gear, width) if mass else 0.0)
+        for blank, gear in zip(way.cutting.blanks, (sun, planet), strict=True)
+    )
+    return first + way.count * second + body(ring, width, outside)
+
+
+def taken(blank, gear, width):
+    """Volume of the bore of a gear, whose hub has to lie within its root circle."""
+    fits = blank.bore * blank.hub_over_bore < gear.root_diameter * (1.0 - 1e-9)
+    return math.pi / 4 * width * blank.bore**2 if fits else 0.0
 
 
 def safe(train, way, made, teeth, width, torque):
@@ -266,12 +282,15 @@ def safe(train, way, made, teeth, width, torque):
         return _meets(pair, load, (HARD, HARD), Practice(grades=(6.0, 6.0)), {})
     g1, g2, g3, a = (*(replace(g, face_width=width) for g in made[:3]), made[3])
     outer, inner = with_sun(load, n), with_ring(load, n, planet / sun, way.held == "ring")
+    g3 = replace(g3, outside_diameter=way.cutting.outside and -way.cutting.outside)
+    blanks = (*way.cutting.blanks, SOLID)
     pairs = [
         (GearPair(g1, g2, a), outer, (HARD, BENT)),
         (GearPair(g2, g3, -a), inner, (BENT, HARD)),
     ]
-    for pair, mesh, steels in pairs:
-        practice = Practice(grades=(6.0, 6.0), meshes=mesh.meshes)
+    for k, (pair, mesh, steels) in enumerate(pairs):
+        bare = Practice(grades=(6.0, 6.0), meshes=mesh.meshes)
+        practice = of_blanks(bare, pair, (blanks[k], blanks[k + 1]))
         factor = {"K_gamma": mesh_load_factor(n, "wind")}
         if not _meets(pair, mesh.operation, steels, practice, factor):
             return False
@@ -304,8 +323,9 @@ def least_share(train, k, torque, z1, z2, most=math.inf):
         d1 = module * z1 / math.cos(stage.toothing.helix_angle)
         for option, made, teeth in candidates(stage, z1, z2, module):
             for width in widths(stage.face_width, d1):
-                share = volume(option.planets, made, width, module)
-                share *= 1000 * train.density if train.objective == "mass" else 1.0
+                heavy = train.objective == "mass"
+                share = volume(option.planets, made, width, module, heavy)
+                share *= 1000 * train.density if heavy else 1.0
                 if share < most:
                     found.append((share, len(found), option.planets, made, teeth, width))
     for share, _, way, made, teeth, width in sorted(found, key=lambda row: row[:2]):

@@ -13,6 +13,7 @@ from gearopt.formulations.drive.toothing import Toothing
 from gearopt.formulations.drive.train import Stage
 from gearopt.formulations.strength.standard import Option
 from gearopt.physics.gears import RIM, Cutter
+from gearopt.physics.iso6336.bending_factors import THIN_RING
 from gearopt.physics.planetary.loads import SHARING_RULES, mesh_load_factor
 from gearopt.scenes.drive.idlers import copied, idlers
 from gearopt.scenes.drive.rating.checks import check_objective, check_rated
@@ -205,6 +206,9 @@ def _check_gears(scene: "Scene", own: StageTable, k: int) -> None:
     if own.ring.outside_diameter is not None and gear_of(own.ring).rim_over_module is not None:
         rule = "conflicts with outside_diameter; one is enough"
         raise refuse(rule, at=("stage", k, "ring", "rim_over_module"), action="remove")
+    if (rim := gear_of(own.ring).rim_over_module) is not None and rim <= THIN_RING:
+        rule = f"is {THIN_RING:g} or less, for which ISO 6336 has no Y_B of rings"
+        raise refuse(rule, 3.5, ("stage", k, "ring", "rim_over_module"))
     most = own.ring_teeth or scene.limits.wheel_teeth
     if own.ring.cutter_teeth is not None and most and most[1] and most[1] <= own.ring.cutter_teeth:
         rule = f"is no less than the ring has, {most[1]}: the cutter runs within it"
