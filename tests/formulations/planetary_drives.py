@@ -62,7 +62,8 @@ def some_internal_drive(seed):
     """A random small drive whose first stage is a pinion in a ring."""
     train = some_planetary_drive(seed, 1 + seed % 2, ("carrier",))
     first = train.stages[0]
-    cutting = replace(first.options[0].planets.cutting, shifts=(None, None, None))
+    plain = {"shifts": (None, None, None), "blanks": (SOLID, SOLID), "outside": None}
+    cutting = replace(first.options[0].planets.cutting, **plain)
     if seed % 3 == 0:
         cutting = replace(cutting, shifts=(None, 0.3, 0.2))
     first = replace(first, options=rings(cutting))
