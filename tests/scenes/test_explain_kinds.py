@@ -409,7 +409,10 @@ def test_every_key_of_a_problem_is_a_place_of_its_file(path):
     problem = kind_named(kind).posed(own, METHODS.get(kind, "")).problem
     problem = problem.relaxed or problem
     keys = {k for q in problem.parameters for k in each_word(q.key, q.size)}
-    keys = {k for k in keys | {h.key for h in handles(problem)} if k}
+    whole = kind == "epicyclic"  # a text of whole numbers, which is not traced
+    named = problem.variables if whole else handles(problem)
+    keys = {k for k in keys | {each.key for each in named} if k}
+    assert keys or not whole
     for key in keys:
         table = type(own)
         *tables, field = re.sub(r"\[\d+\]", "", key).split(".")

@@ -40,7 +40,7 @@ TRANSMITTED = (("duty", "power"), ("duty", "torque"))
 # s, at most, for the conflict: beside an answer, before remedies, and after them if it is open
 CONFLICT_SECONDS, CONFLICT_SECONDS_BESIDE_REMEDIES, CONFLICT_SECONDS_LATER = 1.5, 0.6, 1.5
 # s, at most, for a first number that helps, for the others then, and for one question
-ROUGH_SECONDS, OTHERS_SECONDS, QUESTION_SECONDS = 8.0, 2.0, 2.0
+ROUGH_SECONDS, OTHERS_SECONDS, QUESTION_SECONDS = 8.0, 4.0, 2.0
 LAST_SECONDS = 20.0  # s, at most, for whether a little less than what is proposed suffices
 FARTHEST_FACTOR, LAST_FACTOR = 3.0, 100.0  # of a remedy of use; of one, where there is none
 SHARE_OF_TIME = 0.4  # at most, of the time that is left, for each of these
