@@ -102,6 +102,7 @@ LONG = (
     "how_many_stages",
     "four_stages",
     "four_stage_box",
+    "planetary_box",
     "three_stage_free_width",
     "three_stage_both_series",
     "three_stage_fine_ratio_coprime",

@@ -64,7 +64,7 @@ class PlanarSet:
         load[0] = 1.0
         return np.linalg.solve(stiffness[np.ix_(free, free)], load)[0]
 
-    def play(self, sink, backlashes, positions, clearance=0.0, sides=720):
+    def play(self, sink, backlashes, positions, clearance=0.0, sides=360):
         """Turn of the sink from end to end, the other two locked; by linear programming.
 
         backlashes: of both meshes of every planet, along the line of action; positions: of the

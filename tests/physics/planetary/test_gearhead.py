@@ -129,7 +129,7 @@ def test_play_of_planets_that_differ(held):
     rng = np.random.default_rng(7)
     gears = gearset(held)
     plane = planar(gears)
-    for _ in range(6):
+    for _ in range(2):
         backlashes = rng.uniform(0.01, 0.05, (3, 2))
         play = float(backlashes.sum(axis=1).min())
         turn = plane.play(DRIVING[held], backlashes, [0.0] * 3)
