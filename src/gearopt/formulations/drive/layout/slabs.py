@@ -150,10 +150,14 @@ def arrange(box: Gearbox, slabs: Slabs) -> Arrangement:
     bodies, length = _bodies(box, slabs)
     count = len(bodies)
     apart, needs, axes = np.zeros((count, count)), {}, box.axes
+    once = [  # a disc on the first of its shafts
+        [b for b in own if b.stage != k - 1 or not b.name.startswith("planetary")]
+        for k, own in enumerate(bodies)
+    ]
     for i, j in combinations(range(count), 2):
         if axes[i] == axes[j]:
             continue
-        causes = [_need(box, p, q) for p in bodies[i] for q in bodies[j] if face_each_other(p, q)]
+        causes = [_need(box, p, q) for p in once[i] for q in once[j] if face_each_other(p, q)]
         if i == 0 and j == count - 1 and box.motor > 0:
             gap, output = box.clearances.shafts, box.shafts[-1].radius
             between = ("motor", f"shaft {count}")
