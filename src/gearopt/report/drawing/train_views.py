@@ -11,7 +11,7 @@ from gearopt.optimise.result import Result
 from gearopt.optimise.typed import typed
 from gearopt.physics.gears import MEMBERS
 from gearopt.report.drawing.bodies import Bodies, Plate, meaning, widest
-from gearopt.report.drawing.drawn_stage import DrawnStage
+from gearopt.report.drawing.drawn_stage import PINS, DrawnStage
 from gearopt.report.drawing.layout_views import (
     LEVEL,
     face_widths,
@@ -277,8 +277,9 @@ def view_along_shafts(
         for diameter in (inner or {}).get(gear.name, ()):
             sheet.circle(*places[gear.shaft], 0.5 * diameter, "body", series(gear.stage))
     pins = [s for s in train.shafts if s.shaft < 0]
-    for pin in pins[:1]:
-        sheet.circle(axes[0], 0.0, math.dist((axes[0], 0.0), (pin.y_mm, pin.z_mm)), "centres")
+    for sun in (gear for gear in train.gears if gear.name.startswith("sun ")):
+        at, pin = places[sun.shaft], next(s for s in pins if -s.shaft // PINS == sun.stage)
+        sheet.circle(*at, math.dist(at, (pin.y_mm, pin.z_mm)), "centres")
     for pin in pins:
         sheet.circle(pin.y_mm, pin.z_mm, 0.5 * pin.diameter_mm, "shaft", title="pin")
         sheet.cross(pin.y_mm, pin.z_mm, 0.5 * pin.diameter_mm)
@@ -358,7 +359,7 @@ def _side(train: Bodies, scale: float, measures: Measures) -> Drawing:
 
 def _numbered(sheet: Sheet, train: Bodies, shaft: ShaftDesign) -> None:
     """Write the number of a shaft at its end, or between the stages where others are in line."""
-    k, sets = shaft.shaft, {-pin.shaft // 100 for pin in train.shafts if pin.shaft < 0}
+    k, sets = shaft.shaft, {-pin.shaft // PINS for pin in train.shafts if pin.shaft < 0}
     others = [s for s in train.shafts if s.y_mm == shaft.y_mm and s.shaft > 0 and s != shaft]
     folded = any(s.shaft > k for s in others)
     end, beside = (shaft.from_mm, -20.0) if folded else (shaft.to_mm, 20.0)
