@@ -229,6 +229,22 @@ def test_what_means_nothing_of_shafts_in_line_is_left_out():
     assert planetary.loads(result(), METRIC).terminal
 
 
-def test_a_ring_of_a_tool_that_the_design_does_not_hold_is_not_drawn_with_teeth():
+def test_a_ring_is_drawn_as_its_own_tool_cuts_it():
+    """Rings by a cutter, and by a tool of other addenda than the planets'."""
+    own = {"cutter_teeth": 21, "cutter_tip_radius": 0.2}, {"addendum": 0.9, "tool_addendum": 1.4}
+    for ring in own:
+        asked = result().asked
+        stage = asked["stage"][0] | {"ring": ring}
+        rated = gearopt.rate(asked | {"stage": [stage]})
+        (drawn,) = drive_design(rated.design).stages
+        gears = sun_planet_ring(drawn)
+        assert gears is not None and bool(gears[2].cutter) == ("cutter_teeth" in ring)
+        assert -float(gears[2].root_diameter) == pytest.approx(drawn.ring_root_diameter_mm)
+        assert drawn.ring_root_diameter_mm != pytest.approx(stages()[0].ring_root_diameter_mm)
+        rows = rated.table("teeth")
+        assert all(row["teeth z"] > 0 and row["tip diameter d_a [mm]"] > 0 for row in rows)
+
+
+def test_a_ring_of_other_diameters_than_its_tool_cuts_is_not_drawn_with_teeth():
     stage = replace(stages()[0], ring_root_diameter_mm=stages()[0].ring_root_diameter_mm + 0.1)
     assert sun_planet_ring(stage) is None and len(meshes(stage)) == 1

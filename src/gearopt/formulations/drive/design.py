@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, field, replace
+from dataclasses import asdict, astuple, field, replace
 from fractions import Fraction
 from typing import Annotated, Any
 
@@ -115,6 +115,13 @@ class StageDesign:
     wheel_tool_protuberance: float = ISO_53_A.protuberance
     pinion_tip_chamfer: float = ISO_53_A.tip_chamfer
     wheel_tip_chamfer: float = ISO_53_A.tip_chamfer
+    ring_addendum: float = ISO_53_A.addendum
+    ring_tool_addendum: float = ISO_53_A.dedendum
+    ring_tool_tip_radius: float = ISO_53_A.tip_radius
+    ring_tool_protuberance: float = ISO_53_A.protuberance
+    ring_tip_chamfer: float = ISO_53_A.tip_chamfer
+    ring_thickness_allowance_mm: float = 0.0
+    ring_cutter: tuple[float, ...] | None = None  # as in a `Cutter`
 
     @property
     def end_diameters(self) -> tuple[float, float]:
@@ -276,6 +283,7 @@ def of_planets(
         names = ("teeth", "diameter_mm", "tip_diameter_mm", "root_diameter_mm")
         gears = {f"wheel_{name}": abs(getattr(made, f"wheel_{name}")) for name in names}
         gears |= {"wheel_mass_kg": masses[-1], "wheel_material": option.materials[-1]}
+    cutter = None if ring.cutter is None else astuple(ring.cutter)
     return replace(
         made,
         type="planetary" if planets.count else "internal",
@@ -295,6 +303,8 @@ def of_planets(
         ring_contact_ratio=float(planets.meshes(pair)[-1].transverse_contact_ratio),
         ring_mass_kg=masses[-1],
         ring_material=option.materials[-1],
+        ring_cutter=None if cutter is None else tuple(map(float, cutter)),
+        **_tool("ring", ring),
         **gears,
     )
 
@@ -432,13 +442,18 @@ def _teeth(pair: GearPair) -> dict[str, Any]:
         "working_pressure_angle_deg": None if working == reference else math.degrees(working),
     }
     for member, gear in zip(("pinion", "wheel"), pair.gears, strict=True):
+        words |= _tool(member, gear)
         words[f"{member}_profile_shift"] = float(gear.profile_shift)
         words[f"{member}_tip_alteration"] = float(gear.tip_alteration)
-        words[f"{member}_thickness_allowance_mm"] = float(gear.thickness_allowance)
-        rack = gear.rack
-        tool = rack.addendum, rack.dedendum, rack.tip_radius, rack.protuberance, rack.tip_chamfer
-        words |= {f"{member}_{n}": float(v) for n, v in zip(TOOL, tool, strict=True)}
     return words
+
+
+def _tool(member: str, gear: Gear) -> dict[str, Any]:
+    """Words on the rack that cuts a gear, and how much thinner its teeth are."""
+    rack = gear.rack
+    tool = rack.addendum, rack.dedendum, rack.tip_radius, rack.protuberance, rack.tip_chamfer
+    words = {f"{member}_{n}": float(v) for n, v in zip(TOOL, tool, strict=True)}
+    return words | {f"{member}_thickness_allowance_mm": float(gear.thickness_allowance)}
 
 
 def _bodies(pair: GearPair, blanks: tuple[Blank, Blank]) -> dict[str, Any]:

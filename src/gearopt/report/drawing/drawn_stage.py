@@ -15,7 +15,7 @@ ENDS = {  # members that a pair's pinion and wheel stand for, by the one that is
     "carrier": ("sun", "ring"),
 }
 PLATE = (2.0, 7.0)  # px from the gears to a plate, and to its other face
-PIN = 0.35  # of a planet's reference diameter: a pin as it is drawn
+PIN = 0.35  # of a planet's reference diameter: a pin as it is drawn, but in a bore
 PINS = 100  # numbers of pins of a stage
 
 
@@ -43,6 +43,7 @@ class DrawnStage:
     ring_diameter_mm: float | None = None
     ring_tip_diameter_mm: float | None = None
     ring_outside_diameter_mm: float | None = None
+    wheel_bore_mm: float | None = None
 
     @property
     def is_set(self) -> bool:
@@ -127,7 +128,7 @@ class DrawnStage:
                 shaft=-(PINS * k + n),
                 y_mm=y + a * math.cos(turn),
                 z_mm=0.0 if math.isclose(abs(math.cos(turn)), 1.0) else a * math.sin(turn),
-                diameter_mm=PIN * self.wheel_diameter_mm,
+                diameter_mm=self.wheel_bore_mm or PIN * self.wheel_diameter_mm,
                 from_mm=middle - half,
                 to_mm=middle + half,
             )

@@ -3,8 +3,8 @@
 import math
 from dataclasses import replace
 
-from gearopt.formulations.drive.design import StageDesign
-from gearopt.physics.gears import Gear, GearPair
+from gearopt.formulations.drive.design import TOOL, StageDesign
+from gearopt.physics.gears import Cutter, Gear, GearPair, Rack
 
 SAME = 1e-9  # relative; a diameter so near to the design's is that one
 
@@ -14,7 +14,7 @@ def meshes(stage: StageDesign) -> list[tuple[GearPair, tuple[str, str]]]:
     if stage.type == "parallel":
         return [(stage.pair, ("pinion", "wheel"))]
     if stage.type == "internal":
-        pair = stage.pair
+        pair = replace(stage.pair, wheel=replace(stage.pair.wheel, cutter=_cutter(stage)))
         diameters = stage.wheel_tip_diameter_mm, stage.wheel_root_diameter_mm
         return [(pair, ("pinion", "ring"))] if _is(pair.wheel, *diameters) else []
     rows = [(stage.pair, ("sun", "planet"))]
@@ -25,7 +25,7 @@ def meshes(stage: StageDesign) -> list[tuple[GearPair, tuple[str, str]]]:
 
 
 def sun_planet_ring(stage: StageDesign) -> tuple[Gear, Gear, Gear] | None:
-    """Gears of whole teeth of a planetary stage; None of others, or of a ring of unknown teeth."""
+    """Gears of whole teeth of a planetary stage; None of others, or of a ring unlike its tool."""
     if stage.type != "planetary" or (ring := _ring(stage)) is None:
         return None
     gears = *stage.pair.gears, ring
@@ -33,20 +33,28 @@ def sun_planet_ring(stage: StageDesign) -> tuple[Gear, Gear, Gear] | None:
 
 
 def _ring(stage: StageDesign) -> Gear | None:
-    """The ring as the tool of the planets cuts it; None where the design's is another."""
+    """The ring as its tool cuts it; None where that has other diameters."""
     assert stage.ring_teeth and stage.ring_diameter_mm
+    planet = stage.pair.wheel
+    tool = (getattr(stage, f"ring_{name}") for name in TOOL)
     ring = replace(
-        stage.pair.wheel,
+        planet,
+        rack=Rack(planet.rack.pressure_angle, *tool),
+        cutter=_cutter(stage),
         teeth=-stage.ring_teeth,
         reference_diameter=-stage.ring_diameter_mm,
         profile_shift=stage.ring_profile_shift or 0.0,
         tip_alteration=stage.ring_tip_alteration or 0.0,
-        thickness_allowance=0.0,
+        thickness_allowance=stage.ring_thickness_allowance_mm,
     )
     return ring if _is(ring, stage.ring_tip_diameter_mm, stage.ring_root_diameter_mm) else None
 
 
+def _cutter(stage: StageDesign) -> Cutter | None:
+    return None if stage.ring_cutter is None else Cutter(*stage.ring_cutter)
+
+
 def _is(ring: Gear, tip: float | None, root: float | None) -> bool:
-    """Whether a ring has these diameters [mm], above 0: a design does not hold its tool."""
+    """Whether a ring has these diameters [mm], above 0."""
     pairs = (ring.tip_diameter, tip), (ring.root_diameter, root)
     return all(math.isclose(-own, other or 0.0, rel_tol=SAME) for own, other in pairs)

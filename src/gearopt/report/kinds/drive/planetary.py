@@ -227,8 +227,8 @@ def turning(result: Result, measures: Measures) -> Section | None:
     for k, stage in _stages(result):
         if (gears := sun_planet_ring(stage)) is None:
             words.append(
-                f"Stage {k} is not drawn with its teeth: its design does not hold the tool of the "
-                "ring, which is not that of the planets."
+                f"Stage {k} is not drawn with its teeth: the ring has other diameters than its "
+                "tool cuts."
             )
             continue
         it, seen = flow(stage), gear_set(stage, gears)

@@ -42,7 +42,8 @@ def figure(
     points = 4 * sum(abs(gear.gear.teeth) for _, gear in placed)
     flank = next((n for n in FLANKS if n * points < POINTS), FLANKS[-1])
     b, outer = stage.face_width_mm, 0.5 * (stage.ring_outside_diameter_mm or 0.0)
-    pin, start, end = 0.5 * PIN * stage.wheel_root_diameter_mm, -PLATE * b, -MARGIN * b
+    pin = 0.5 * (stage.wheel_bore_mm or PIN * stage.wheel_root_diameter_mm)
+    start, end = -PLATE * b, -MARGIN * b
     rods = [Rod(it.centre, pin, end, -end + b, "metal") for _, it in placed[1:-1]]
     bodies = [(name, gear_mesh(it, flank, TWIST)) for name, it in placed[:-1]]
     ring = placed[-1][1]  # its faces look towards the axis

@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import isclose
 from typing import Any
 
-from gearopt.formulations.drive.rating import DriveRating, MeshRating
+from gearopt.formulations.drive.rating import DriveRating, MeshRating, ToothGeometry
 from gearopt.optimise.result import Result
 from gearopt.physics.gears import MEMBERS
 from gearopt.report.design_tables import design_section, stage_label, types
@@ -176,7 +176,7 @@ def teeth(result: Result, measures: Measures) -> Section | None:
     """The geometry of the teeth of every gear; None without a rating."""
     if (rating := rating_of(result)) is None:
         return None
-    rows, lacking = _lacking(rating.teeth, measures)
+    rows, lacking = _lacking([_above_zero(gear) for gear in rating.teeth], measures)
     table = Table("teeth", ["", *names(rating)], rows, across=True)
     words = [
         "Terms are those of ISO 21771, shifts are in normal modules. The generating shift is that "
@@ -185,6 +185,13 @@ def teeth(result: Result, measures: Measures) -> Section | None:
         *lacking,
     ]
     return Section("Teeth", words=words, tables=(table,), half=len(rating.meshes) <= ABREAST)
+
+
+def _above_zero(gear: ToothGeometry) -> ToothGeometry:
+    """A gear whose teeth and diameters are above 0: those of rings count as negative."""
+    keys = ["teeth", "over_balls_mm", *(k for k in vars(gear) if k.endswith("diameter_mm"))]
+    known = {key: getattr(gear, key) for key in keys}
+    return replace(gear, **{key: abs(v) for key, v in known.items() if v is not None})
 
 
 def _end_words(rating: DriveRating, measures: Measures) -> list[Any]:
