@@ -71,6 +71,8 @@ LONG = (
         "cutting_by_cost",
         "same_materials",
     ),
+    "wind_gearbox",
+    "planetary_gearhead",
     "elevator_processes_rated",
     "three_stage_by_both",
     "thousand_in_two_stages",

@@ -5,7 +5,6 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from campaigns import few
 
 import gearopt
 from gearopt.errors import SceneError
@@ -72,12 +71,10 @@ def given(stage, asked):
     return {k: v for k, v in asked.items() if k not in ("limits", "teeth")} | {"stage": [own]}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("held", "ratio", "turns"),
-    few(
-        [("ring", 5.2, "clockwise"), ("carrier", 4.2, "anticlockwise"), ("sun", 1.3, "clockwise")],
-        1,
-    ),
+    [("ring", 5.2, "clockwise"), ("carrier", 4.2, "anticlockwise"), ("sun", 1.3, "clockwise")],
 )
 def test_what_is_found_is_rated_alike_when_it_is_given(held, ratio, turns):
     asked = tomllib.loads(STAGE.read_text())
