@@ -236,7 +236,14 @@ def test_couplings_that_are_none(train, words):
     assert any(word in message for word in words.split("|")), message
 
 
-@pytest.mark.parametrize("kind", ["planetary", "planetary gear", "wolfrom", "epicyclic_train"])
+def test_planetary_sets_are_stages_of_drives():
+    with pytest.raises(SceneError) as wrong:
+        gearopt.solve({"gearopt": 1, "kind": "planetary gear"})
+    start = "gearopt new planetary prints a file to start from"
+    assert wrong.value.remedy == f'Write kind = "drive"; {start}'
+
+
+@pytest.mark.parametrize("kind", ["planetary train", "wolfrom", "epicyclic_train"])
 def test_other_names_lead_here(kind):
     with pytest.raises(SceneError) as wrong:
         gearopt.solve({"gearopt": 1, "kind": kind})

@@ -248,7 +248,12 @@ def _head(content: dict[str, Any], file: str) -> tuple[str, list[SceneError]]:
     rule = "is missing" if kind is None else known
     sure = meant or not content.keys().isdisjoint(kind_named(likely).scene.model_fields)
     guessed = not sure and kind_called(name) is None
-    errors.append(wrong_value(file, "kind", kind, rule, likely, sample=guessed))
+    wrong = wrong_value(file, "kind", kind, rule, likely, sample=guessed)
+    shown = [e for e in kind_named(likely).examples if e != likely and e in name.lower()]
+    if shown:
+        remedy = f"{wrong.remedy}; gearopt new {shown[0]} prints a file to start from"
+        wrong = SceneError(file, "kind", short(name), rule, remedy)
+    errors.append(wrong)
     return likely if sure else "", errors
 
 
