@@ -11,7 +11,7 @@ from gearopt.formulations.strength.laws import laws
 from gearopt.optimise.result import Result
 from gearopt.report.measures import DIGITS, Measures, error_of, rounded
 from gearopt.report.section import ABSENT, Cell, Section, Table, Tile, cell, listed_fields, percent
-from gearopt.report.words import EXACT, MODULE, heading, is_module, objective, parted
+from gearopt.report.words import EXACT, MODULE, heading, is_module, objective, parted, teeth_of
 
 VOLUME = "gear_volume_mm3"
 SIZES = {it.key: (it.label, it.unit) for it in listed_fields(StageDesign)}
@@ -212,9 +212,8 @@ def _train_row(
 ) -> list[Any]:
     stages, extra = train["stages"], 100.0 * (train["objective"] / minimum - 1.0)
     gears = [(measures.of_module(s[MODULE]), s["pinion_teeth"], s["wheel_teeth"]) for s in stages]
-    rings = [f"/{ring}" if (ring := s.get("ring_teeth")) else "" for s in stages]
-    rows = zip(gears, rings, strict=True)
-    teeth = "; ".join(f"{m:g}, {a}/{b}{ring}" for (m, a, b), ring in rows)
+    rows = zip(gears, stages, strict=True)
+    teeth = "; ".join(f"{m:g}, {teeth_of(stage)}" for (m, *_), stage in rows)
     sizes = [cell(s["centre_distance_mm"], "mm", measures) for s in stages]
     single = [value for gear, size in zip(gears, sizes, strict=True) for value in (*gear, size)]
     return [

@@ -11,7 +11,7 @@ from gearopt.optimise.pareto.objectives import Objective
 from gearopt.report.design_tables import OF_TEETH
 from gearopt.report.measures import METRIC, Measures, read_in, rounded
 from gearopt.report.section import Cell, Table, cell
-from gearopt.report.words import MODULE, SECONDS, goal_words, number, sentence
+from gearopt.report.words import MODULE, SECONDS, goal_words, number, sentence, teeth_of
 
 VERDICTS = {
     "complete": ("complete Pareto front, proven", "green"),
@@ -283,7 +283,7 @@ def _gears(design: Mapping[str, Any], measures: Measures) -> Cell:
     rows = []
     for stage in stages_of(design):
         module = number(measures.of_module(stage[MODULE]))
-        rows.append(f"{module}, {number(stage['pinion_teeth'])}/{number(stage['wheel_teeth'])}")
+        rows.append(f"{module}, {teeth_of(stage)}")
     text = "; ".join(rows)
     return Cell(text, text)
 

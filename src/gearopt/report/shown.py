@@ -41,6 +41,7 @@ from gearopt.report.words import (
     number,
     of_problem_file,
     parted,
+    teeth_of,
     title,
     verdict,
 )
@@ -91,8 +92,7 @@ def _design(result: Result) -> list[str]:
     parts = sorted((design, *groups), key=lambda part: not part.get("stages"))
     stages: list[Any] = parts[0].get("stages", [])
     rows = [
-        f"stage {k}: m_n {s[MODULE]:.6g} mm, "
-        f"z {number(s['pinion_teeth'])}/{number(s['wheel_teeth'])}"
+        f"stage {k}: m_n {s[MODULE]:.6g} mm, z {teeth_of(s)}"
         for k, s in enumerate(stages, 1)
         if {MODULE, "pinion_teeth", "wheel_teeth"} <= s.keys()
     ]

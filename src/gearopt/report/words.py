@@ -222,6 +222,12 @@ def effort(method: str, evaluations: int, seconds: float) -> str:
     )
 
 
+def teeth_of(stage: Mapping[str, Any]) -> str:
+    """Numbers of teeth of the gears of a stage of a design, z1/z2 or z_s/z_p/z_r."""
+    members = ("sun", "planet", "ring") if stage.get("sun_teeth") else ("pinion", "wheel")
+    return "/".join(number(stage[f"{member}_teeth"]) for member in members)
+
+
 def number(value: Any) -> str:
     """A number without a unit for reading: whole ones in full, others to five digits."""
     if isinstance(value, bool) or not isinstance(value, int | float):
