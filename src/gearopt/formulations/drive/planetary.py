@@ -306,6 +306,7 @@ class Planets:
         fits = self.possible(pair.pinion_teeth, pair.wheel_teeth)
         with np.errstate(invalid="ignore"):
             sun, planet, ring, _ = self.gears(pair)
+            fits = fits & (ring.outside < ring.root_diameter)  # with a rim below its roots
             shapes = (SOLID, SOLID) if solid else self.cutting.blanks
             each = [shape.volume(gear) for shape, gear in zip(shapes, (sun, planet), strict=True)]
         parts = [each[SUN], self.count * each[PLANET]] if self.count else [each[PLANET]]
